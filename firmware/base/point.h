@@ -1,0 +1,21 @@
+/*
+ * The axes of a machine and points in their space.
+ *
+ * X, Y, Z are linear: mm. A, B, C are rotary: radians inside the firmware, degrees only in part programs,
+ * machine files and traces. A field that ends in _mm, _mm_s, _mm_s2 or _mm_s3 and belongs to a rotary axis
+ * is in rad, rad/s, rad/s2 or rad/s3.
+ */
+#ifndef TAKT_BASE_POINT_H
+#define TAKT_BASE_POINT_H
+
+enum axis { AXIS_X, AXIS_Y, AXIS_Z, AXIS_A, AXIS_B, AXIS_C, AXIS_COUNT };
+
+#define AXIS_LINEAR_COUNT 3
+#define AXIS_LETTERS      "XYZABC"
+
+/* Position of every axis: mm for X, Y, Z, rad for A, B, C. Axes a machine does not have stay 0. */
+struct point {
+    double at[AXIS_COUNT];
+};
+
+#endif

@@ -1,0 +1,76 @@
+/*
+ * Drive profile CiA 402-2: objects, and the state machine of a drive as both ends see it. The drive
+ * moves from state to state (cia402_next_state) and shows where it is (cia402_statusword); the
+ * controller reads that (cia402_state) and says what it wants next (cia402_step_to_enabled).
+ *
+ *     NOT_READY -> SWITCH_ON_DISABLED -shutdown-> READY -switch on-> SWITCHED_ON -enable-> ENABLED
+ *                        ^    ^                                                              |
+ *                        |    +---------- disable voltage, from all four ---- QUICK_STOP <---+
+ *                        +-- fault reset -- FAULT <-- FAULT_REACTION <-- any state
+ */
+#ifndef TAKT_CANOPEN_CIA402_H
+#define TAKT_CANOPEN_CIA402_H
+
+#include "canopen/pdo.h"
+
+#include <stdint.h>
+
+/* Objects, as they are mapped into PDOs. */
+#define CIA402_ERROR_CODE       PDO_MAPPED(0x603F, 0, 16)
+#define CIA402_CONTROLWORD      PDO_MAPPED(0x6040, 0, 16)
+#define CIA402_STATUSWORD       PDO_MAPPED(0x6041, 0, 16)
+#define CIA402_MODE             PDO_MAPPED(0x6060, 0, 8)
+#define CIA402_MODE_DISPLAY     PDO_MAPPED(0x6061, 0, 8)
+#define CIA402_POSITION_ACTUAL  PDO_MAPPED(0x6064, 0, 32)
+#define CIA402_FOLLOWING_WINDOW PDO_MAPPED(0x6065, 0, 32)
+#define CIA402_TARGET_POSITION  PDO_MAPPED(0x607A, 0, 32)
+#define CIA402_FOLLOWING_ERROR  PDO_MAPPED(0x60F4, 0, 32)
+
+#define CIA402_MODE_NONE                 0
+#define CIA402_MODE_CYCLIC_SYNC_POSITION 8
+
+enum cia402_state {
+    CIA402_NOT_READY,
+    CIA402_SWITCH_ON_DISABLED,
+    CIA402_READY,
+    CIA402_SWITCHED_ON,
+    CIA402_ENABLED,
+    CIA402_QUICK_STOP,
+    CIA402_FAULT_REACTION,
+    CIA402_FAULT
+};
+
+/* Controlwords of the commands. */
+#define CIA402_DISABLE_VOLTAGE  0x0000
+#define CIA402_QUICK_STOP_NOW   0x0002 /* bit 2 clear is the command */
+#define CIA402_SHUTDOWN         0x0006
+#define CIA402_SWITCH_ON        0x0007
+#define CIA402_ENABLE_OPERATION 0x000F
+#define CIA402_FAULT_RESET      0x0080 /* acts when bit 7 rises */
+
+/* Bits of the statusword beside the state. */
+#define CIA402_VOLTAGE_ENABLED  0x0010
+#define CIA402_REMOTE           0x0200
+#define CIA402_FOLLOWS_TARGET   0x1000 /* cyclic synchronous modes: the target is being followed */
+#define CIA402_FOLLOWING_FAILED 0x2000
+
+/* State that a statusword shows. A pattern CiA 402 does not define reads as CIA402_NOT_READY. */
+enum cia402_state cia402_state(uint16_t statusword);
+
+/* The statusword's state bits (mask 0x6F). */
+uint16_t cia402_statusword(enum cia402_state state);
+
+/*
+ * State of a drive after a controlword; previous: the controlword before, for the rising edge of
+ * fault reset.
+ */
+enum cia402_state cia402_next_state(enum cia402_state state, uint16_t controlword,
+                                    uint16_t previous);
+
+/*
+ * Controlword that brings a drive one step nearer to CIA402_ENABLED. From FAULT it is fault reset:
+ * a step of its own, since the bit must have been clear before.
+ */
+uint16_t cia402_step_to_enabled(enum cia402_state state);
+
+#endif

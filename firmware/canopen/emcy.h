@@ -1,0 +1,35 @@
+/*
+ * Emergency messages (CiA 301, 7.2.7): a node tells a new error, or that all are gone (EMCY_NONE).
+ */
+#ifndef TAKT_CANOPEN_EMCY_H
+#define TAKT_CANOPEN_EMCY_H
+
+#include "hal/can.h"
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#define EMCY_FUNCTION 0x080 /* identifier: this plus the node id; without a node it is SYNC */
+
+/* Error codes of CiA 301, table 26, and CiA 402-2, table of error codes. */
+#define EMCY_NONE            0x0000
+#define EMCY_PDO_LENGTH      0x8210 /* a PDO was shorter than its mapping; not processed */
+#define EMCY_FOLLOWING_ERROR 0x8611
+
+/* Bits of the error register, object 1001. */
+#define EMCY_REGISTER_GENERIC       0x01
+#define EMCY_REGISTER_COMMUNICATION 0x10
+#define EMCY_REGISTER_PROFILE       0x20 /* defined by the device profile: CiA 402 */
+
+struct emcy {
+    uint8_t node;           /* 1 ... 127 */
+    uint16_t code;          /* EMCY_... */
+    uint8_t error_register; /* EMCY_REGISTER_... */
+    uint8_t vendor[5];      /* the manufacturer's own; 0 unless documented by the drive */
+};
+
+void emcy_write(struct can_frame *frame, const struct emcy *emcy);
+/* False: the frame is no emergency message. */
+bool emcy_read(const struct can_frame *frame, struct emcy *emcy);
+
+#endif

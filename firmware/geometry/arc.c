@@ -1,0 +1,249 @@
+/*
+ * An arc in fractions. With f from 0 to 1,
+ *
+ *     angle  = angle_start + sweep f
+ *     radius = radius_start + radius_change f
+ *     other  = start + (end - start) f            (every axis outside the plane)
+ *
+ * so a circle, a helix and an arc whose two radii differ are one form; the last is how an arc is run whose end is,
+ * within the tolerance, not on the circle of its start. The length element is
+ *
+ *     ds/df = g(f) = sqrt((radius sweep)^2 + radius_change^2 + sum of other linear axes^2)
+ *
+ * which is constant for a circle or helix: f = s / L. Else f(s) is the cubic with the right value and slope
+ * (1/g) at both ends; it moves the point along the curve, never off it, and its error in length is below
+ * L (radius_change / radius)^3 / 400.
+ */
+#include "geometry/arc.h"
+
+#include "base/maths.h"
+
+#include <string.h>
+
+/* Start and end closer than this in the plane are the same point: a full circle. */
+#define ARC_CLOSED_MM 1e-7
+
+/* Where an arc is: fraction, its first three derivatives by s, and the radius vector there. */
+struct arc_state {
+    double f, f1, f2;
+    double radius_mm;
+    double cosine, sine;
+};
+
+void plane_axes(enum plane plane, enum axis *first, enum axis *second)
+{
+    static const unsigned char axes[3][2] = {{AXIS_X, AXIS_Y}, {AXIS_Z, AXIS_X}, {AXIS_Y, AXIS_Z}};
+
+    *first = (enum axis)axes[plane][0];
+    *second = (enum axis)axes[plane][1];
+}
+
+/* g(f)^2 without the part that changes with the radius: radius_change^2 + sum of other linear axes^2 */
+static double constant_speed_squared(const struct curve *c)
+{
+    double sum = c->arc.radius_change_mm * c->arc.radius_change_mm;
+
+    for (int i = 0; i < AXIS_LINEAR_COUNT; i++) {
+        if (i != c->arc.first && i != c->arc.second) {
+            const double delta = c->end.at[i] - c->start.at[i];
+
+            sum += delta * delta;
+        }
+    }
+    return sum;
+}
+
+/* g(f) = ds/df */
+static double speed(const struct curve *c, double constant_squared, double f)
+{
+    const double radius = c->arc.radius_start_mm + c->arc.radius_change_mm * f;
+    const double across = radius * c->arc.sweep_rad;
+
+    return maths_sqrt(across * across + constant_squared);
+}
+
+/* L = integral of g over 0 ... 1 by Gauss-Legendre with five points; exact for constant radius. */
+static double arc_length(const struct curve *c, double constant_squared)
+{
+    static const double node[3] = {0.0, 0.53846931010568309104, 0.90617984593866399280};
+    static const double weight[3] = {0.56888888888888888889, 0.47862867049936646804,
+                                     0.23692688505618908751};
+    double sum = weight[0] * speed(c, constant_squared, 0.5);
+
+    for (int i = 1; i < 3; i++) {
+        sum += weight[i] * speed(c, constant_squared, 0.5 - 0.5 * node[i]);
+        sum += weight[i] * speed(c, constant_squared, 0.5 + 0.5 * node[i]);
+    }
+    return 0.5 * sum;
+}
+
+/* Angle from start to end in the sense of turning, one to turns full turns when they coincide. */
+static double arc_sweep(double from_rad, double to_rad, bool clockwise, bool closed, unsigned turns)
+{
+    double sweep = clockwise ? from_rad - to_rad : to_rad - from_rad;
+
+    if (closed) {
+        sweep = MATHS_TWO_PI;
+    } else if (sweep <= 0.0) {
+        sweep += MATHS_TWO_PI;
+    }
+    sweep += MATHS_TWO_PI * (double)(turns - 1U);
+    return clockwise ? -sweep : sweep;
+}
+
+static void set_length(struct curve *c)
+{
+    const double constant_squared = constant_speed_squared(c);
+
+    if (c->arc.radius_change_mm == 0.0) {
+        c->length_mm = speed(c, constant_squared, 0.0);
+    } else {
+        c->length_mm = arc_length(c, constant_squared);
+        c->arc.bend_start = c->length_mm / speed(c, constant_squared, 0.0) - 1.0;
+        c->arc.bend_end = c->length_mm / speed(c, constant_squared, 1.0) - 1.0;
+    }
+}
+
+static void set_slope(struct curve *c)
+{
+    for (int i = 0; i < AXIS_COUNT; i++) {
+        if (i != c->arc.first && i != c->arc.second) {
+            c->slope.at[i] = (c->end.at[i] - c->start.at[i]) / c->length_mm;
+        }
+    }
+}
+
+bool curve_set_arc(struct curve *c, const struct point *start, const struct point *end,
+                   enum plane plane, const double centre_mm[2], bool clockwise, unsigned turns)
+{
+    enum axis first;
+    enum axis second;
+
+    plane_axes(plane, &first, &second);
+    const double x0 = start->at[first] - centre_mm[0];
+    const double y0 = start->at[second] - centre_mm[1];
+    const double x1 = end->at[first] - centre_mm[0];
+    const double y1 = end->at[second] - centre_mm[1];
+    const bool closed = maths_abs(x1 - x0) <= ARC_CLOSED_MM && maths_abs(y1 - y0) <= ARC_CLOSED_MM;
+    const double radius_end = maths_sqrt(x1 * x1 + y1 * y1);
+
+    memset(c, 0, sizeof(*c));
+    c->kind = CURVE_ARC;
+    c->start = *start;
+    c->end = *end;
+    c->arc.first = (unsigned char)first;
+    c->arc.second = (unsigned char)second;
+    c->arc.centre_mm[0] = centre_mm[0];
+    c->arc.centre_mm[1] = centre_mm[1];
+    c->arc.radius_start_mm = maths_sqrt(x0 * x0 + y0 * y0);
+    c->arc.radius_change_mm = radius_end - c->arc.radius_start_mm;
+    c->arc.angle_start_rad = maths_atan2(y0, x0);
+    c->arc.sweep_rad =
+        arc_sweep(c->arc.angle_start_rad, maths_atan2(y1, x1), clockwise, closed, turns);
+    if (c->arc.radius_start_mm == 0.0 || radius_end == 0.0) {
+        return false;
+    }
+    set_length(c);
+    set_slope(c);
+    return true;
+}
+
+static void arc_locate(const struct curve *c, double s_mm, struct arc_state *a)
+{
+    const double u = s_mm / c->length_mm;
+    const double p = c->arc.bend_start;
+    const double q = c->arc.bend_end;
+
+    a->f = u + u * (1.0 - u) * (p * (1.0 - u) - q * u);
+    a->f1 = (1.0 + p * (1.0 - 4.0 * u + 3.0 * u * u) - q * (2.0 * u - 3.0 * u * u)) / c->length_mm;
+    a->f2 = (p * (6.0 * u - 4.0) - q * (2.0 - 6.0 * u)) / (c->length_mm * c->length_mm);
+    a->radius_mm = c->arc.radius_start_mm + c->arc.radius_change_mm * a->f;
+    maths_sincos(c->arc.angle_start_rad + c->arc.sweep_rad * a->f, &a->sine, &a->cosine);
+}
+
+void arc_point(const struct curve *c, double s_mm, struct point *p)
+{
+    struct arc_state a;
+
+    arc_locate(c, s_mm, &a);
+    for (int i = 0; i < AXIS_COUNT; i++) {
+        p->at[i] = c->start.at[i] + c->slope.at[i] * c->length_mm * a.f;
+    }
+    p->at[c->arc.first] = c->arc.centre_mm[0] + a.radius_mm * a.cosine;
+    p->at[c->arc.second] = c->arc.centre_mm[1] + a.radius_mm * a.sine;
+}
+
+/* dx/ds = dx/df f'; in the plane dx/df = radius_change (cos, sin) + radius sweep (-sin, cos) */
+void arc_tangent(const struct curve *c, double s_mm, struct point *t)
+{
+    struct arc_state a;
+
+    arc_locate(c, s_mm, &a);
+    const double along = c->arc.radius_change_mm * a.f1;
+    const double across = a.radius_mm * c->arc.sweep_rad * a.f1;
+
+    for (int i = 0; i < AXIS_COUNT; i++) {
+        t->at[i] = c->slope.at[i] * c->length_mm * a.f1;
+    }
+    t->at[c->arc.first] = along * a.cosine - across * a.sine;
+    t->at[c->arc.second] = along * a.sine + across * a.cosine;
+}
+
+/*
+ * d2x/ds2 = d2x/df2 f'^2 + dx/df f''; in the plane
+ * d2x/df2 = -radius sweep^2 (cos, sin) + 2 radius_change sweep (-sin, cos)
+ */
+void arc_curvature(const struct curve *c, double s_mm, struct point *k)
+{
+    struct arc_state a;
+
+    arc_locate(c, s_mm, &a);
+    const double sweep = c->arc.sweep_rad;
+    const double change = c->arc.radius_change_mm;
+    const double along = change * a.f2 - a.radius_mm * sweep * sweep * a.f1 * a.f1;
+    const double across = a.radius_mm * sweep * a.f2 + 2.0 * change * sweep * a.f1 * a.f1;
+
+    for (int i = 0; i < AXIS_COUNT; i++) {
+        k->at[i] = c->slope.at[i] * c->length_mm * a.f2;
+    }
+    k->at[c->arc.first] = along * a.cosine - across * a.sine;
+    k->at[c->arc.second] = along * a.sine + across * a.cosine;
+}
+
+/*
+ * Bounds of the derivatives by s. With R the larger radius, d = |radius_change|, w = |sweep|, and bounds F1, F2, F3 of
+ * the derivatives of f, in the plane
+ *     |x'|   <= (R w + d) F1
+ *     |x''|  <= (R w + 2 d) w F1^2 + (R w + d) F2
+ *     |x'''| <= (R w + 3 d) w^2 F1^3 + 3 (R w + 2 d) w F1 F2 + (R w + d) F3
+ * and outside it the same with (R w + ...) replaced by the axis's travel and w by 0.
+ */
+void arc_bound(const struct curve *c, struct curve_bounds *b)
+{
+    const double bend = maths_abs(c->arc.bend_start) + maths_abs(c->arc.bend_end);
+    const double inverse = 1.0 / c->length_mm;
+    const double f1 = (1.0 + bend) * inverse;
+    const double f2 = 4.0 * bend * inverse * inverse;
+    const double f3 = 6.0 * bend * inverse * inverse * inverse;
+    const double w = maths_abs(c->arc.sweep_rad);
+    const double d = maths_abs(c->arc.radius_change_mm);
+    const double rw =
+        w * maths_max(c->arc.radius_start_mm, c->arc.radius_start_mm + c->arc.radius_change_mm);
+
+    for (int i = 0; i < AXIS_COUNT; i++) {
+        const double travel = maths_abs(c->slope.at[i]) * c->length_mm;
+
+        b->first[i] = travel * f1;
+        b->second[i] = travel * f2;
+        b->third[i] = travel * f3;
+    }
+    const double first = (rw + d) * f1;
+    const double second = (rw + 2.0 * d) * w * f1 * f1 + (rw + d) * f2;
+    const double third =
+        (rw + 3.0 * d) * w * w * f1 * f1 * f1 + 3.0 * (rw + 2.0 * d) * w * f1 * f2 + (rw + d) * f3;
+
+    b->first[c->arc.first] = b->first[c->arc.second] = first;
+    b->second[c->arc.first] = b->second[c->arc.second] = second;
+    b->third[c->arc.first] = b->third[c->arc.second] = third;
+    b->radius_min_mm = 1.0 / second;
+}

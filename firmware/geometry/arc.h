@@ -1,0 +1,12 @@
+/* Arcs, helices and arcs of changing radius: the cases of curve.h for CURVE_ARC. */
+#ifndef TAKT_GEOMETRY_ARC_H
+#define TAKT_GEOMETRY_ARC_H
+
+#include "geometry/curve.h"
+
+void arc_point(const struct curve *c, double s_mm, struct point *p);
+void arc_tangent(const struct curve *c, double s_mm, struct point *t);
+void arc_curvature(const struct curve *c, double s_mm, struct point *k);
+void arc_bound(const struct curve *c, struct curve_bounds *b);
+
+#endif

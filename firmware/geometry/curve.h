@@ -1,0 +1,80 @@
+/*
+ * A piece of path, told by its arc length.
+ *
+ * The path length s counts millimetres along X, Y, Z if any of them moves; else radians along A, B, C.
+ * Points, first and second derivatives by s are closed forms; nothing here knows time.
+ */
+#ifndef TAKT_GEOMETRY_CURVE_H
+#define TAKT_GEOMETRY_CURVE_H
+
+#include "base/point.h"
+
+#include <stdbool.h>
+
+enum curve_kind { CURVE_LINE, CURVE_ARC };
+
+/* The plane of an arc: its first and second axis in the sense of G17 (X, Y), G18 (Z, X), G19 (Y, Z). */
+enum plane { PLANE_XY, PLANE_ZX, PLANE_YZ };
+
+/*
+ * The part of an arc that a line does not have. Everything about an arc is linear in its fraction f, 0 at the start
+ * and 1 at the end: the angle, the radius (equal at both ends for a true circle) and every axis outside the plane.
+ */
+struct curve_arc {
+    unsigned char first, second; /* axes of the plane */
+    double centre_mm[2];
+    double radius_start_mm;
+    double radius_change_mm; /* radius at the end minus radius at the start */
+    double angle_start_rad;  /* of the radius vector at s = 0 */
+    double sweep_rad;        /* signed, counter-clockwise > 0, several turns allowed */
+    /* f(s) = u + u (1 - u) (bend_start (1 - u) - bend_end u), u = s / length: 0 for a true circle. */
+    double bend_start;
+    double bend_end;
+};
+
+struct curve {
+    enum curve_kind kind;
+    double length_mm; /* > 0 */
+    struct point start, end;
+    struct point
+        slope; /* d axis / d s of every axis (of an arc: d axis / d (f length)); 0 in an arc's plane */
+    struct curve_arc arc; /* kind CURVE_ARC alone */
+};
+
+/* How sharply a curve bends at most, for limits: bounds on derivatives by s, over the whole curve. */
+struct curve_bounds {
+    double first[AXIS_COUNT];  /* max |dx_i/ds| */
+    double second[AXIS_COUNT]; /* max |d2x_i/ds2|, 1/mm */
+    double third[AXIS_COUNT];  /* max |d3x_i/ds3|, 1/mm2 */
+    double radius_min_mm;      /* smallest radius of curvature; 0: straight */
+};
+
+/*
+ * Line from start to end. False when both are the same point (no length): *c is then not usable.
+ */
+bool curve_set_line(struct curve *c, const struct point *start, const struct point *end);
+
+/*
+ * Arc or helix from start to end about centre_mm (absolute, first and second axis of the plane), turns >= 1:
+ * a full circle when start and end coincide in the plane. Radii at start and end may differ: the radius then
+ * changes linearly with the angle. False when either radius is 0.
+ */
+bool curve_set_arc(struct curve *c, const struct point *start, const struct point *end,
+                   enum plane plane, const double centre_mm[2], bool clockwise, unsigned turns);
+
+/* True when s counts radians of rotary axes, because no linear axis moves. */
+bool curve_is_rotary(const struct curve *c);
+
+/* Point at 0 <= s <= length. At the length it is the end but for rounding. */
+void curve_point(const struct curve *c, double s_mm, struct point *p);
+
+/* d point / d s and d2 point / d s2 at s. */
+void curve_tangent(const struct curve *c, double s_mm, struct point *t);
+void curve_curvature(const struct curve *c, double s_mm, struct point *k);
+
+void curve_bound(const struct curve *c, struct curve_bounds *b);
+
+/* First and second axis of a plane. */
+void plane_axes(enum plane plane, enum axis *first, enum axis *second);
+
+#endif

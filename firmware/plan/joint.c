@@ -1,0 +1,188 @@
+/*
+ * Goal: at every joint passed in motion, the setpoints keep the axes' limits although velocity steps by D v (D the
+ * change of tangent) and acceleration by K v^2 (K the change of curvature vector).
+ *
+ * What a step costs. Setpoints are samples of the path, one a cycle. The third difference of samples over cycle^3 is
+ * the mean of the jerk over three cycles with the quadratic B-spline as weight, whose peak is 3/4 per cycle and whose
+ * slope is at most 1 per cycle^2. A step of acceleration (a spike of jerk) therefore shows as at most
+ * 3/4 K v^2 / cycle, a step of velocity (a double spike) as D v / cycle^2. Likewise the second difference shows a step
+ * of velocity as at most D v / cycle. So with
+ *
+ *     P = max_i D_i / (J_i cycle^2),  Q = max_i 3/4 K_i / (J_i cycle),  R = max_i D_i / (A_i cycle)
+ *
+ * a joint at feed v uses the part P v + Q v^2 of the jerk limit and R v of the acceleration limit. The blocks beside it
+ * leave it that part (block.c): up to BLOCK_SHARE_MAX.
+ *
+ * Short blocks. Joints less than three cycles apart add up. With f = min(1, d / (6 cycles)), d the time of the shorter
+ * block beside a joint at its ceiling, a joint may use f of the share. If several fall into three cycles, each block
+ * between them, of time D_b, bounds f by D_b / (6 cycles) for the joints at its two ends, and the D_b add up to less than three
+ * cycles: the sum of all f is below 1. That needs the ceilings of short blocks to agree with d, so they are lowered.
+ *
+ * Rejected: one fixed corner feed (wrong for every other cycle time and angle); using the limit in full at each joint
+ * (two joints in three cycles then break it, seen as jerk of 1.4 times the limit on chains of 0.1 mm blocks).
+ */
+#include "plan/joint.h"
+
+#include "base/maths.h"
+
+/* Part of the acceleration limit a joint may use, when its share of jerk is BLOCK_SHARE_MAX. */
+#define JOINT_ACCELERATION 0.1
+
+/* Joints closer than this many cycles add up, with the margin of the proof above. */
+#define JOINT_CYCLES_APART 6.0
+#define JOINT_CYCLES_SPAN  3.0
+
+/* A joint feed that one or two cycles of full jerk reach from rest is not worth passing: the axes stop. */
+#define JOINT_STOP_CYCLES 4.0
+
+struct joint_steps {
+    double p_s_mm;   /* P, s/mm */
+    double q_s2_mm2; /* Q, s2/mm2 */
+    double r_s_mm;   /* R, s/mm */
+};
+
+static void joint_measure(const struct curve *before, const struct curve *after,
+                          const struct plan_limits *limits, struct joint_steps *steps)
+{
+    const double cycle = limits->cycle_s;
+    struct point t0, t1, k0, k1;
+
+    curve_tangent(before, before->length_mm, &t0);
+    curve_tangent(after, 0.0, &t1);
+    curve_curvature(before, before->length_mm, &k0);
+    curve_curvature(after, 0.0, &k1);
+    *steps = (struct joint_steps){0.0, 0.0, 0.0};
+    for (int i = 0; i < AXIS_COUNT; i++) {
+        if ((limits->axes >> i & 1U) != 0) {
+            const double d = maths_abs(t1.at[i] - t0.at[i]);
+            const double k = maths_abs(k1.at[i] - k0.at[i]);
+            const double j = limits->jerk_mm_s3[i] * cycle;
+
+            steps->p_s_mm = maths_max(steps->p_s_mm, d / (j * cycle));
+            steps->q_s2_mm2 = maths_max(steps->q_s2_mm2, 0.75 * k / j);
+            steps->r_s_mm = maths_max(steps->r_s_mm, d / (limits->acceleration_mm_s2[i] * cycle));
+        }
+    }
+}
+
+/* Largest v with P v + Q v^2 <= share and R v <= acceleration: a joint by itself. */
+static double alone_feed(const struct joint_steps *steps)
+{
+    const double p = steps->p_s_mm;
+    const double q = steps->q_s2_mm2;
+    const double root = p + maths_sqrt(p * p + 4.0 * q * BLOCK_SHARE_MAX);
+    const double by_jerk = root > 0.0 ? 2.0 * BLOCK_SHARE_MAX / root : MATHS_INFINITY;
+    const double by_acceleration =
+        steps->r_s_mm > 0.0 ? JOINT_ACCELERATION / steps->r_s_mm : MATHS_INFINITY;
+
+    return maths_min(by_jerk, by_acceleration);
+}
+
+/*
+ * The same with f = reach / v, reach = length / (6 cycles) the feed at which blocks stop being short:
+ * P v^2 + Q v^3 <= share reach and R v^2 <= acceleration reach. v0, where the larger of the first two terms meets the
+ * right side, then scaled by the root of the excess: exact for one term, safe for both.
+ */
+static double crowded_feed(const struct joint_steps *steps, double reach_mm_s)
+{
+    const double right = BLOCK_SHARE_MAX * reach_mm_s;
+    const double p = steps->p_s_mm;
+    const double q = steps->q_s2_mm2;
+    double v = MATHS_INFINITY;
+
+    if (p > 0.0) {
+        v = maths_min(v, maths_sqrt(right / p));
+    }
+    if (q > 0.0) {
+        v = maths_min(v, maths_cbrt(right / q));
+    }
+    if (p > 0.0 || q > 0.0) {
+        v *= maths_sqrt(right / (p * v * v + q * v * v * v));
+    }
+    if (steps->r_s_mm > 0.0) {
+        v = maths_min(v, maths_sqrt(JOINT_ACCELERATION * reach_mm_s / steps->r_s_mm));
+    }
+    return v;
+}
+
+/* Part of the limits a joint at feed v takes, as a share of jerk. */
+static double joint_share(const struct joint_steps *steps, double v, double reach_mm_s)
+{
+    const double jerk = steps->p_s_mm * v + steps->q_s2_mm2 * v * v;
+    const double acceleration = steps->r_s_mm * v * (BLOCK_SHARE_MAX / JOINT_ACCELERATION);
+    const double crowding = maths_max(1.0, v / reach_mm_s);
+
+    return maths_min(BLOCK_SHARE_MAX, maths_max(jerk, acceleration) * crowding);
+}
+
+static bool is_short(const struct block *b, double cycle_s)
+{
+    return b->length_mm < JOINT_CYCLES_SPAN * cycle_s * b->feed_cap_mm_s;
+}
+
+/* A block beside a short one may share three cycles with joints it does not touch: it leaves the largest share. */
+static double neighbour_share(double share, const struct block *neighbour, double cycle_s)
+{
+    return is_short(neighbour, cycle_s) ? BLOCK_SHARE_MAX : share;
+}
+
+/* Keeps d true: a block of length L is passed no faster than L / d, or than it would be if it were not short. */
+static double short_ceiling(const struct block *b, double v, double shorter_mm, double apart_s)
+{
+    return maths_max(v * b->length_mm / shorter_mm, b->length_mm / apart_s);
+}
+
+void joint_stop(struct block *b)
+{
+    b->end = JOINT_STOP;
+    b->closed = true;
+    b->feed_joint_mm_s = 0.0;
+    b->feed_end_mm_s = 0.0;
+    block_set_share(b, b->share_start);
+}
+
+static void joint_pass(struct block *before, struct block *after, double v, double share,
+                       double cycle_s)
+{
+    const double top = maths_min(block_top_feed(before), block_top_feed(after));
+
+    before->closed = true;
+    before->end = v >= top ? JOINT_PASSED : JOINT_REDUCED;
+    before->feed_joint_mm_s = v;
+    after->share_start = neighbour_share(share, before, cycle_s);
+    block_set_share(before, maths_max(before->share_start, neighbour_share(share, after, cycle_s)));
+}
+
+void joint_form(struct block *before, const struct curve *before_curve, struct block *after,
+                const struct curve *after_curve, double start_mm_s,
+                const struct plan_limits *limits)
+{
+    const double apart_s = JOINT_CYCLES_APART * limits->cycle_s;
+    const double shorter_mm = maths_min(before->length_mm, after->length_mm);
+    const double reach_mm_s = shorter_mm / apart_s;
+    struct joint_steps steps;
+
+    if (before->move.path == PATH_EXACT_STOP || before->rotary != after->rotary) {
+        joint_stop(before);
+        return;
+    }
+    joint_measure(before_curve, after_curve, limits, &steps);
+    double v = alone_feed(&steps);
+    const double top = maths_min(block_top_feed(before), block_top_feed(after));
+
+    if (maths_min(v, top) > reach_mm_s) {
+        v = crowded_feed(&steps, reach_mm_s);
+    }
+    const double worth_mm_s =
+        JOINT_STOP_CYCLES * before->ramp.j_mm_s3 * limits->cycle_s * limits->cycle_s;
+    const double ceiling = short_ceiling(before, v, shorter_mm, apart_s);
+
+    if (v < maths_min(worth_mm_s, top) || ceiling < start_mm_s) {
+        joint_stop(before);
+        return;
+    }
+    block_cap_feed(before, ceiling, GOVERNOR_SHORT);
+    block_cap_feed(after, short_ceiling(after, v, shorter_mm, apart_s), GOVERNOR_SHORT);
+    joint_pass(before, after, v, joint_share(&steps, maths_min(v, top), reach_mm_s),
+               limits->cycle_s);
+}

@@ -1,0 +1,19 @@
+/*
+ * What a machine can do, as the planner needs it.
+ */
+#ifndef TAKT_PLAN_LIMITS_H
+#define TAKT_PLAN_LIMITS_H
+
+#include "base/point.h"
+
+struct plan_limits {
+    unsigned axes; /* bit i set: the machine has axis i */
+    double velocity_mm_s[AXIS_COUNT];
+    double acceleration_mm_s2[AXIS_COUNT];
+    double jerk_mm_s3[AXIS_COUNT];
+    double cycle_s; /* control cycle */
+    double
+        chord_error_max_mm; /* largest deviation of the chord between two cycles from the curve */
+};
+
+#endif

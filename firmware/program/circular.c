@@ -1,0 +1,189 @@
+/*
+ * Two ways to tell where an arc's centre is.
+ *
+ * I J K: the offset of the centre from the start (G91.1) or its coordinates (G90.1). The end need not be exactly
+ * on the circle of the start; how far it may be off is what LinuxCNC allows.
+ *
+ * R: the radius; of the two arcs shorter than half a turn the one that turns the right way, or with a negative R
+ * the one longer than half a turn. With the chord from start to end of length 2 h and its middle M, the centre is
+ *
+ *     M + sqrt(R^2 - h^2) n,   n the unit normal of the chord: to its left for G3 and R > 0 or G2 and R < 0
+ */
+#include "program/circular.h"
+
+#include "base/maths.h"
+#include "program/coordinates.h"
+#include "program/emit.h"
+#include "program/report.h"
+#include "program/words.h"
+
+/* Difference of the radii at start and end that is always allowed, by the program's units: an end and a centre
+ * rounded to 0.01 mm or 0.001 inch. */
+#define OFF_CIRCLE_MAX_MM   (2.0 * 0.01 * 1.41421356237309504880)
+#define OFF_CIRCLE_MAX_INCH (2.0 * 0.001 * 1.41421356237309504880)
+/* A larger one is allowed up to this share of the larger radius ... */
+#define OFF_CIRCLE_MAX_RATIO 1e-3
+/* ... and up to this many times the one above. */
+#define OFF_CIRCLE_TIMES 100.0
+
+/* Radii below this are none, and an R may be this much too short. 0.00005 inch. */
+#define RADIUS_SLACK_MM 0.00127
+/* From this ratio of h to R on the arc is half a turn. */
+#define HALF_TURN_RATIO (1.0 - 1e-12)
+
+/* What an arc looks like in its plane. */
+struct circle {
+    enum axis first, second;
+    double start_mm[2], end_mm[2], centre_mm[2];
+};
+
+static char centre_letter(enum axis axis)
+{
+    return (char)('i' + (int)axis);
+}
+
+static double distance(const double a[2], const double b[2])
+{
+    const double x = a[0] - b[0];
+    const double y = a[1] - b[1];
+
+    return maths_sqrt(x * x + y * y);
+}
+
+/* One coordinate of the centre from its word. */
+static bool centre_coordinate(struct program *p, enum axis axis, double *centre_mm)
+{
+    const char letter = centre_letter(axis);
+    const struct program_modes *m = &p->modes;
+    const double word_mm = words_has(p, letter) ? words_value(p, letter) * m->unit_mm : 0.0;
+
+    if (!m->centre_absolute) {
+        *centre_mm = m->at.at[axis] + word_mm;
+        return true;
+    }
+    if (!words_has(p, letter)) {
+        const char name = (char)(letter - 'a' + 'A');
+
+        diagnostic_set(&p->error, TAKT_ERROR_ARC_CENTRE_PARTIAL, p->lexer.line, 0, &name, 1, 0.0);
+        return false;
+    }
+    *centre_mm =
+        word_mm + m->system_offset.at[axis] + m->axis_offset.at[axis] + m->tool_offset.at[axis];
+    return true;
+}
+
+static bool check_radii(struct program *p, const struct circle *c)
+{
+    const double start_mm = distance(c->start_mm, c->centre_mm);
+    const double end_mm = distance(c->end_mm, c->centre_mm);
+    const double off_mm = maths_abs(start_mm - end_mm);
+    const double always_mm =
+        p->modes.unit_mm == 1.0 ? OFF_CIRCLE_MAX_MM : OFF_CIRCLE_MAX_INCH * p->modes.unit_mm;
+    const double ratio_mm = OFF_CIRCLE_MAX_RATIO * maths_max(start_mm, end_mm);
+
+    if (start_mm < RADIUS_SLACK_MM || end_mm < RADIUS_SLACK_MM) {
+        return report_error_code(p, TAKT_ERROR_ARC_RADIUS_ZERO, STEP_MOTION, 0.0);
+    }
+    if (off_mm <= always_mm || (off_mm <= ratio_mm && off_mm <= OFF_CIRCLE_TIMES * always_mm)) {
+        return true;
+    }
+    return report_error_code(p, TAKT_ERROR_ARC_ENDPOINT, STEP_MOTION, off_mm);
+}
+
+static bool centre_from_offsets(struct program *p, struct circle *c)
+{
+    return centre_coordinate(p, c->first, &c->centre_mm[0]) &&
+           centre_coordinate(p, c->second, &c->centre_mm[1]) && check_radii(p, c);
+}
+
+/* sqrt(R^2 - h^2), 0 when R is as good as h. */
+static double centre_distance(double radius_mm, double half_mm)
+{
+    if (half_mm >= radius_mm * HALF_TURN_RATIO) {
+        return 0.0;
+    }
+    return maths_sqrt((radius_mm - half_mm) * (radius_mm + half_mm));
+}
+
+static bool centre_from_radius(struct program *p, struct circle *c, bool clockwise)
+{
+    const double given_mm = words_value(p, 'r') * p->modes.unit_mm;
+    const double radius_mm = maths_abs(given_mm);
+    const double x = c->end_mm[0] - c->start_mm[0];
+    const double y = c->end_mm[1] - c->start_mm[1];
+    const double half_mm = distance(c->start_mm, c->end_mm) * 0.5;
+
+    if (half_mm == 0.0) {
+        return report_error_letter(p, TAKT_ERROR_ARC_CLOSED, 'r', 0.0);
+    }
+    if (half_mm - radius_mm > RADIUS_SLACK_MM) {
+        return report_error_letter(p, TAKT_ERROR_ARC_RADIUS_SMALL, 'r', half_mm - radius_mm);
+    }
+    const bool left = clockwise != (given_mm > 0.0);
+    const double along =
+        centre_distance(radius_mm, half_mm) / (2.0 * half_mm) * (left ? 1.0 : -1.0);
+
+    c->centre_mm[0] = (c->start_mm[0] + c->end_mm[0]) * 0.5 - along * y;
+    c->centre_mm[1] = (c->start_mm[1] + c->end_mm[1]) * 0.5 + along * x;
+    return true;
+}
+
+/* The offset of the axis that is not in the plane has no meaning. */
+static bool check_words(struct program *p, const struct circle *c)
+{
+    const enum axis other = (enum axis)(AXIS_X + AXIS_Y + AXIS_Z - c->first - c->second);
+    const unsigned plane_axes = (1U << c->first) | (1U << c->second);
+    const bool offsets = (p->words.given & LETTERS_CENTRE) != 0;
+
+    if ((p->config.axes & plane_axes) != plane_axes) {
+        const bool first = (p->config.axes & (1U << c->first)) == 0;
+
+        diagnostic_set(&p->error, TAKT_ERROR_AXIS_MISSING, p->lexer.line, 0,
+                       &AXIS_LETTERS[first ? c->first : c->second], 1, 0.0);
+        return false;
+    }
+    if (words_has(p, centre_letter(other))) {
+        return report_error_letter(p, TAKT_ERROR_WORD_UNUSED, centre_letter(other), 0.0);
+    }
+    if (words_has(p, 'r') && offsets) {
+        return report_error_letter(p, TAKT_ERROR_ARC_CENTRE_TWICE, 'r', 0.0);
+    }
+    if (!words_has(p, 'r') && !offsets) {
+        return report_error_code(p, TAKT_ERROR_ARC_CENTRE_MISSING, STEP_MOTION, 0.0);
+    }
+    return true;
+}
+
+static void set_circle(const struct program *p, const struct point *end, struct circle *c)
+{
+    plane_axes(p->modes.plane, &c->first, &c->second);
+    c->start_mm[0] = p->modes.at.at[c->first];
+    c->start_mm[1] = p->modes.at.at[c->second];
+    c->end_mm[0] = end->at[c->first];
+    c->end_mm[1] = end->at[c->second];
+}
+
+bool circular_move(struct program *p, const struct program_code *code)
+{
+    const bool clockwise = code->argument == MOVE_ARC_CW;
+    struct point end;
+    struct circle c;
+    struct move m;
+
+    coordinates_end(p, &end);
+    set_circle(p, &end, &c);
+    if (!check_words(p, &c) ||
+        !(words_has(p, 'r') ? centre_from_radius(p, &c, clockwise) : centre_from_offsets(p, &c))) {
+        return false;
+    }
+    emit_prepare(p, (enum move_kind)code->argument, &end, &m);
+    m.plane = p->modes.plane;
+    m.centre_mm[0] = c.centre_mm[0];
+    m.centre_mm[1] = c.centre_mm[1];
+    m.turns = 1;
+    if (words_has(p, 'p') && !words_whole(p, 'p', 1.0, PROGRAM_TURNS_MAX, &m.turns)) {
+        return false;
+    }
+    p->modes.motion = code;
+    return emit_motion(p, &m);
+}

@@ -1,0 +1,47 @@
+/*
+ * Coordinates: from what a word says to machine positions and back.
+ *
+ *     machine = work + offset of the coordinate system (G54 ...) + axis offset (G92) + tool offset (G43)
+ *
+ * axis by axis, in mm and rad. The machine position is what the interpreter keeps; changing an offset moves
+ * nothing.
+ */
+#ifndef TAKT_PROGRAM_COORDINATES_H
+#define TAKT_PROGRAM_COORDINATES_H
+
+#include "program/program.h"
+
+/* Coordinate systems G54 ... G59.3. */
+#define COORDINATES_SYSTEMS 9
+
+/* Work coordinate of the current position, in the program's units: degrees, and mm or inch. */
+double coordinates_work(const struct program *p, enum axis axis);
+
+/* The word of an axis: true and its value in mm or rad, when it is given. */
+bool coordinates_word(const struct program *p, enum axis axis, double *value);
+
+/* The point that the axis words ask for; axes without a word stay where they are. */
+void coordinates_end(const struct program *p, struct point *end);
+
+/* Values of parameters, mm and degrees, to and from mm and rad. */
+double coordinates_to_parameter(double value, enum axis axis);
+double coordinates_from_parameter(double value, enum axis axis);
+
+/* Takes the coordinate system and the axis offsets from the parameters, at the start of a program. */
+void coordinates_open(struct program *p);
+
+/* G54 ... G59.3; argument: 1 ... 9 */
+bool coordinates_select(struct program *p, const struct program_code *code);
+/* G92 */
+bool coordinates_set_axis_offset(struct program *p, const struct program_code *code);
+/* G92.1 (argument 1: parameters too) and G92.2 */
+bool coordinates_cancel_axis_offset(struct program *p, const struct program_code *code);
+/* G92.3 */
+bool coordinates_restore_axis_offset(struct program *p, const struct program_code *code);
+/* G43 and G49 */
+bool coordinates_use_tool(struct program *p, const struct program_code *code);
+bool coordinates_drop_tool(struct program *p, const struct program_code *code);
+/* G53: the axis words of this line are machine coordinates. */
+bool coordinates_use_machine(struct program *p, const struct program_code *code);
+
+#endif

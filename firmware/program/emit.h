@@ -1,0 +1,22 @@
+/*
+ * The way out: moves made by the current line, checked and queued until they are fetched.
+ */
+#ifndef TAKT_PROGRAM_EMIT_H
+#define TAKT_PROGRAM_EMIT_H
+
+#include "program/program.h"
+
+/* A new move at the end of the queue, of the current line, everything but its kind 0. */
+struct move *emit_event(struct program *p, enum move_kind kind);
+
+/* Sets *m to a motion from the current position to end, in the current path mode; no feed yet. */
+void emit_prepare(const struct program *p, enum move_kind kind, const struct point *end,
+                  struct move *m);
+
+/*
+ * Gives a cutting motion its feed and queues it when it stays inside the travel; the position is then its end.
+ * False: p->error is set.
+ */
+bool emit_motion(struct program *p, struct move *m);
+
+#endif

@@ -1,0 +1,284 @@
+#include "program/expression.h"
+
+#include "base/decimal.h"
+#include "base/maths.h"
+#include "program/calculation.h"
+#include "program/lexer.h"
+#include "program/names.h"
+#include "program/report.h"
+#include "program/system_parameters.h"
+
+/* How far a value that must be whole may be from it. */
+#define WHOLE_MAX 1e-4
+
+bool expression_whole(double value, double *whole)
+{
+    *whole = maths_round(value);
+    return maths_abs(value - *whole) <= WHOLE_MAX;
+}
+
+/* About what stands before the next character; the caller has read something. */
+static bool missing_here(struct program *p, enum takt_error code)
+{
+    return report_error_at(p, code, p->lexer.at - 1U, 0.0);
+}
+
+static bool read_number(struct program *p, double *value)
+{
+    struct program_lexer *l = &p->lexer;
+    const size_t count = decimal_read(l->text + l->at, (size_t)(l->length - l->at), value);
+
+    if (count == 0) {
+        return missing_here(p, TAKT_ERROR_NUMBER_EXPECTED);
+    }
+    l->at = (uint16_t)(l->at + count);
+    return true;
+}
+
+static struct program_span span_from(const struct program *p, unsigned begin)
+{
+    return (struct program_span){(uint16_t)begin, p->lexer.at};
+}
+
+/* An operator whose right side has not been read yet. */
+struct pending {
+    double left;
+    const struct operation_entry *operation;
+    struct program_span span;
+};
+
+static bool apply_operator(struct program *p, const struct pending *pending, double *value)
+{
+    const double right = *value;
+    const enum takt_error code = pending->operation->apply(pending->left, right, value);
+
+    if (code != TAKT_OK) {
+        return report_error(p, code, pending->span, pending->left);
+    }
+    return maths_is_finite(*value) ||
+           report_error(p, TAKT_ERROR_CALCULATION_NOT_FINITE, pending->span, *value);
+}
+
+static bool read_operator(struct program *p, struct pending *next)
+{
+    struct program_lexer *l = &p->lexer;
+    const unsigned begin = l->at;
+
+    next->operation = operation_find(l->text + begin);
+    if (next->operation == NULL) {
+        return missing_here(p, l->text[begin] == '\0' ? TAKT_ERROR_BRACKET_UNCLOSED
+                                                      : TAKT_ERROR_OPERATOR_EXPECTED);
+    }
+    l->at = (uint16_t)(begin + next->operation->length);
+    next->span = span_from(p, begin);
+    return true;
+}
+
+/*
+ * Operators wait in stack until one that binds no tighter follows. Levels rise from the bottom to the top, so
+ * there are never more of them than levels.
+ */
+static bool read_bracket(struct program *p, double *value)
+{
+    struct pending stack[LEVEL_COUNT];
+    struct pending next;
+    unsigned depth = 0;
+
+    if (!lexer_accept(&p->lexer, '[')) {
+        return missing_here(p, TAKT_ERROR_BRACKET_EXPECTED);
+    }
+    for (;;) {
+        if (!expression_read(p, value) || !read_operator(p, &next)) {
+            return false;
+        }
+        while (depth > 0 && stack[depth - 1].operation->level >= next.operation->level) {
+            depth--;
+            if (!apply_operator(p, &stack[depth], value)) {
+                return false;
+            }
+        }
+        if (next.operation->level == LEVEL_END) {
+            return true;
+        }
+        next.left = *value;
+        stack[depth++] = next;
+    }
+}
+
+static bool read_name(struct program *p, struct program_reference *reference)
+{
+    struct program_lexer *l = &p->lexer;
+    const unsigned begin = l->at;
+
+    while (l->text[l->at] != '\0' && l->text[l->at] != '>') {
+        l->at++;
+    }
+    reference->number = 0;
+    reference->span = span_from(p, begin);
+    const unsigned length = l->at - begin;
+
+    if (!lexer_accept(l, '>') || length == 0 || length > PROGRAM_NAME_MAX) {
+        return report_error_at(p, TAKT_ERROR_PARAMETER_NAME, begin - 1U, PROGRAM_NAME_MAX);
+    }
+    return true;
+}
+
+bool expression_read_reference(struct program *p, struct program_reference *reference)
+{
+    const unsigned begin = p->lexer.at - 1U;
+    double value;
+    double number;
+
+    if (lexer_accept(&p->lexer, '<')) {
+        return read_name(p, reference);
+    }
+    if (!expression_read(p, &value)) {
+        return false;
+    }
+    reference->span = span_from(p, begin);
+    if (!expression_whole(value, &number) || number < 1.0 || number > PARAMETER_NUMBER_MAX) {
+        return report_error(p, TAKT_ERROR_PARAMETER_NUMBER, reference->span, value);
+    }
+    reference->number = (uint16_t)number;
+    return true;
+}
+
+static const double *find_named(struct program *p, const struct program_reference *reference)
+{
+    return names_find(&p->names, p->lexer.text + reference->span.begin,
+                      (size_t)(reference->span.end - reference->span.begin));
+}
+
+static bool read_parameter(struct program *p, double *value)
+{
+    struct program_reference reference;
+
+    p->lexer.at++;
+    if (!expression_read_reference(p, &reference)) {
+        return false;
+    }
+    if (reference.number != 0) {
+        *value = system_parameter_get(p, reference.number);
+        return true;
+    }
+    const double *named = find_named(p, &reference);
+
+    if (named == NULL) {
+        return report_error(p, TAKT_ERROR_PARAMETER_UNDEFINED, reference.span, 0.0);
+    }
+    *value = *named;
+    return true;
+}
+
+static bool read_atan(struct program *p, double *value)
+{
+    double x;
+
+    if (!read_bracket(p, value)) {
+        return false;
+    }
+    if (!lexer_accept(&p->lexer, '/')) {
+        return missing_here(p, TAKT_ERROR_SLASH_EXPECTED);
+    }
+    if (!read_bracket(p, &x)) {
+        return false;
+    }
+    *value = calculation_atan(*value, x);
+    return true;
+}
+
+/* EXISTS[#<name>]: 1 when it has been set; numbered parameters always exist. */
+static bool read_exists(struct program *p, double *value)
+{
+    struct program_reference reference;
+
+    if (!lexer_accept(&p->lexer, '[')) {
+        return missing_here(p, TAKT_ERROR_BRACKET_EXPECTED);
+    }
+    if (!lexer_accept(&p->lexer, '#')) {
+        return missing_here(p, TAKT_ERROR_NUMBER_EXPECTED);
+    }
+    if (!expression_read_reference(p, &reference)) {
+        return false;
+    }
+    if (!lexer_accept(&p->lexer, ']')) {
+        return missing_here(p, TAKT_ERROR_BRACKET_UNCLOSED);
+    }
+    *value = reference.number != 0 || find_named(p, &reference) != NULL ? 1.0 : 0.0;
+    return true;
+}
+
+static bool read_function(struct program *p, double *value)
+{
+    struct program_lexer *l = &p->lexer;
+    const unsigned begin = l->at;
+    const struct function_entry *function = function_find(l->text + begin);
+
+    if (function == NULL) {
+        return missing_here(p, TAKT_ERROR_NUMBER_EXPECTED);
+    }
+    l->at = (uint16_t)(begin + function->length);
+    const struct program_span span = span_from(p, begin);
+
+    if (function->apply == NULL) {
+        return function->name[0] == 'a' ? read_atan(p, value) : read_exists(p, value);
+    }
+    if (!read_bracket(p, value)) {
+        return false;
+    }
+    const double x = *value;
+    const enum takt_error code = function->apply(x, value);
+
+    return code == TAKT_OK || report_error(p, code, span, x);
+}
+
+static bool read_sign(struct program_lexer *l)
+{
+    bool negative = false;
+
+    while (l->text[l->at] == '-' || l->text[l->at] == '+') {
+        negative ^= l->text[l->at] == '-';
+        l->at++;
+    }
+    return negative;
+}
+
+static bool read_unsigned(struct program *p, double *value)
+{
+    const char c = p->lexer.text[p->lexer.at];
+
+    if (c == '[') {
+        return read_bracket(p, value);
+    }
+    if (c == '#') {
+        return read_parameter(p, value);
+    }
+    if (c >= 'a' && c <= 'z') {
+        return read_function(p, value);
+    }
+    return read_number(p, value);
+}
+
+bool expression_read(struct program *p, double *value)
+{
+    struct program_lexer *l = &p->lexer;
+    const unsigned begin = l->at;
+
+    if (l->nesting == PROGRAM_NESTING_MAX) {
+        return report_error_at(p, TAKT_ERROR_NESTING_TOO_DEEP, begin, PROGRAM_NESTING_MAX);
+    }
+    l->nesting++;
+    const bool negative = read_sign(l);
+
+    if (!read_unsigned(p, value)) {
+        return false;
+    }
+    l->nesting--;
+    if (!maths_is_finite(*value)) {
+        return report_error(p, TAKT_ERROR_CALCULATION_NOT_FINITE, span_from(p, begin), *value);
+    }
+    if (negative) {
+        *value = -*value;
+    }
+    return true;
+}

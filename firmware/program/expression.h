@@ -1,0 +1,26 @@
+/*
+ * Values: numbers, parameters, functions and expressions in brackets, read and worked out in one pass.
+ *
+ *     value      = { '+' | '-' } ( number | '[' expression ']' | function | reference )
+ *     expression = value { operator value }
+ *     function   = NAME '[' expression ']' | ATAN '[' expression ']' '/' '[' expression ']'
+ *                | EXISTS '[' reference ']'
+ *     reference  = '#' value | '#' '<' name '>'
+ */
+#ifndef TAKT_PROGRAM_EXPRESSION_H
+#define TAKT_PROGRAM_EXPRESSION_H
+
+#include "program/program.h"
+
+/* Reads a value from the line. It is finite. False: p->error is set. */
+bool expression_read(struct program *p, double *value);
+
+/* Reads a reference; '#' is read already. The number is checked, a name need not be known. */
+bool expression_read_reference(struct program *p, struct program_reference *reference);
+
+/*
+ * The nearest integer to value when it is within 0.0001 of it, as for all values that must be whole.
+ */
+bool expression_whole(double value, double *whole);
+
+#endif

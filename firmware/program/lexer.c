@@ -1,0 +1,150 @@
+#include "program/lexer.h"
+
+/* What has been seen of a line while it is read. */
+struct scan {
+    uint32_t column;         /* of the last character, from 1 */
+    char comment;            /* '(' or ';' while in one, else 0 */
+    uint32_t comment_column; /* where it began */
+    bool failed;
+};
+
+void lexer_open(struct program_lexer *l, const struct source *source)
+{
+    l->source = *source;
+    l->input_at = 0;
+    l->input_length = 0;
+    l->line = 0;
+    l->at = 0;
+    l->length = 0;
+    l->nesting = 0;
+    l->text[0] = '\0';
+}
+
+/* The next byte, or what the source says instead. */
+static int next_byte(struct program_lexer *l)
+{
+    if (l->input_at == l->input_length) {
+        const long count = l->source.read(l->source.context, l->input, sizeof(l->input));
+
+        l->input_at = 0;
+        l->input_length = 0;
+        if (count <= 0) {
+            return count == SOURCE_END ? SOURCE_END : SOURCE_ERROR;
+        }
+        l->input_length = (size_t)count;
+    }
+    return (unsigned char)l->input[l->input_at++];
+}
+
+/* Only the first fault of a line is told. */
+static void fail(const struct program_lexer *l, struct scan *s, struct diagnostic *error,
+                 enum takt_error code, uint32_t column, char c)
+{
+    if (!s->failed) {
+        diagnostic_set(error, code, l->line, column, &c, 1, PROGRAM_LINE_MAX);
+        s->failed = true;
+    }
+}
+
+/* What cannot be shown is told by its code: 0x1b. */
+static void fail_unprintable(const struct program_lexer *l, struct scan *s,
+                             struct diagnostic *error, unsigned char c)
+{
+    static const char digits[] = "0123456789abcdef";
+    const char word[] = {'0', 'x', digits[c >> 4], digits[c & 15U]};
+
+    if (!s->failed) {
+        diagnostic_set(error, TAKT_ERROR_CHARACTER_UNKNOWN, l->line, s->column, word, sizeof(word),
+                       0.0);
+        s->failed = true;
+    }
+}
+
+static void append(struct program_lexer *l, char c, uint32_t column)
+{
+    l->column[l->length] = (uint16_t)column;
+    l->text[l->length++] = c >= 'A' && c <= 'Z' ? (char)(c - 'A' + 'a') : c;
+}
+
+static void scan_comment(const struct program_lexer *l, struct scan *s, struct diagnostic *error,
+                         char c)
+{
+    if (s->comment == ';') {
+        return;
+    }
+    if (c == ')') {
+        s->comment = '\0';
+    } else if (c == '(') {
+        fail(l, s, error, TAKT_ERROR_COMMENT_NESTED, s->column, c);
+    }
+}
+
+static void scan_character(struct program_lexer *l, struct scan *s, struct diagnostic *error,
+                           char c)
+{
+    if (c == '(' || c == ';') {
+        s->comment = c;
+        s->comment_column = s->column;
+    } else if (c > ' ' && c <= '~') {
+        append(l, c, s->column);
+    } else if (c != ' ' && c != '\t') {
+        fail_unprintable(l, s, error, (unsigned char)c);
+    }
+}
+
+static void scan_byte(struct program_lexer *l, struct scan *s, struct diagnostic *error, char c)
+{
+    if (c == '\r') {
+        return;
+    }
+    s->column++;
+    if (s->column > PROGRAM_LINE_MAX) {
+        fail(l, s, error, TAKT_ERROR_LINE_TOO_LONG, s->column, c);
+    } else if (s->comment != '\0') {
+        scan_comment(l, s, error, c);
+    } else {
+        scan_character(l, s, error, c);
+    }
+}
+
+static void close_line(struct program_lexer *l, struct scan *s, struct diagnostic *error)
+{
+    if (s->comment == '(') {
+        fail(l, s, error, TAKT_ERROR_COMMENT_UNCLOSED, s->comment_column, '(');
+    }
+    l->text[l->length] = '\0';
+    l->column[l->length] = s->failed ? 0 : (uint16_t)(s->column + 1);
+}
+
+enum lexer_result lexer_next_line(struct program_lexer *l, struct diagnostic *error)
+{
+    struct scan s = {0};
+    int c = next_byte(l);
+
+    if (c == SOURCE_END) {
+        return LEXER_END;
+    }
+    l->line++;
+    l->at = 0;
+    l->length = 0;
+    l->nesting = 0;
+    while (c >= 0 && c != '\n') {
+        scan_byte(l, &s, error, (char)c);
+        c = next_byte(l);
+    }
+    if (c == SOURCE_ERROR) {
+        diagnostic_set(error, TAKT_ERROR_SOURCE_UNREADABLE, l->line, 0, "", 0, 0.0);
+        return LEXER_UNREADABLE;
+    }
+    close_line(l, &s, error);
+    return s.failed ? LEXER_ERROR : LEXER_LINE;
+}
+
+bool lexer_accept(struct program_lexer *l, char c)
+{
+    if (l->text[l->at] != c) {
+        return false;
+    }
+    l->at++;
+    return true;
+}

@@ -1,0 +1,22 @@
+/*
+ * Lines: from the source's bytes to the current line's characters, and where in the text they stood.
+ */
+#ifndef TAKT_PROGRAM_LEXER_H
+#define TAKT_PROGRAM_LEXER_H
+
+#include "program/program.h"
+
+enum lexer_result { LEXER_LINE, LEXER_END, LEXER_ERROR, LEXER_UNREADABLE };
+
+void lexer_open(struct program_lexer *l, const struct source *source);
+
+/*
+ * Reads the next line whole, whatever its length. LEXER_ERROR: *error says what is wrong with it; the one after it
+ * can be read. LEXER_UNREADABLE: the source fails.
+ */
+enum lexer_result lexer_next_line(struct program_lexer *l, struct diagnostic *error);
+
+/* True and past it, when the line goes on with c. */
+bool lexer_accept(struct program_lexer *l, char c);
+
+#endif

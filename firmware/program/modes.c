@@ -1,0 +1,105 @@
+#include "program/modes.h"
+
+#include "base/maths.h"
+#include "program/report.h"
+#include "program/words.h"
+
+#include <string.h>
+
+#define MM_PER_INCH        25.4
+#define SECONDS_PER_MINUTE 60.0
+#define RAD_PER_DEGREE     (MATHS_PI / 180.0)
+
+void modes_open(struct program *p)
+{
+    memset(&p->modes, 0, sizeof(p->modes));
+    p->modes.at = p->config.start;
+    p->modes.unit_mm = 1.0;
+    p->modes.plane = PLANE_XY;
+    p->modes.path = PATH_EXACT;
+    p->modes.direction = SPINDLE_OFF;
+}
+
+/* An F of the other mode means nothing in this one. */
+bool modes_set_feed_mode(struct program *p, const struct program_code *code)
+{
+    const bool inverse_time = code->argument == 1;
+
+    if (inverse_time != p->modes.inverse_time) {
+        p->modes.inverse_time = inverse_time;
+        p->modes.feed_mm_s = 0.0;
+        p->modes.feed_rad_s = 0.0;
+    }
+    return true;
+}
+
+/* With G93 the F of a line is for its motion alone, which reads it itself. */
+bool modes_set_feed(struct program *p, const struct program_code *code)
+{
+    const double feed = words_value(p, 'f');
+
+    (void)code;
+    if (feed < 0.0) {
+        return report_error_letter(p, TAKT_ERROR_WORD_NEGATIVE, 'f', feed);
+    }
+    if (!p->modes.inverse_time) {
+        p->modes.feed_mm_s = feed * p->modes.unit_mm / SECONDS_PER_MINUTE;
+        p->modes.feed_rad_s = feed * RAD_PER_DEGREE / SECONDS_PER_MINUTE;
+    }
+    return true;
+}
+
+bool modes_set_plane(struct program *p, const struct program_code *code)
+{
+    p->modes.plane = (enum plane)code->argument;
+    return true;
+}
+
+bool modes_set_units(struct program *p, const struct program_code *code)
+{
+    p->modes.unit_mm = code->argument == 1 ? MM_PER_INCH : 1.0;
+    return true;
+}
+
+static bool set_tolerance(struct program *p)
+{
+    if (!words_has(p, 'p')) {
+        p->modes.tolerance_mm = p->config.path_tolerance_mm;
+        return true;
+    }
+    const double tolerance = words_value(p, 'p');
+
+    p->modes.tolerance_mm = tolerance * p->modes.unit_mm;
+    return tolerance >= 0.0 || report_error_letter(p, TAKT_ERROR_WORD_NEGATIVE, 'p', tolerance);
+}
+
+bool modes_set_path(struct program *p, const struct program_code *code)
+{
+    p->modes.path = (enum move_path)code->argument;
+    if (p->modes.path != PATH_BLEND) {
+        return true;
+    }
+    if (p->config.exact_path) {
+        p->modes.path = PATH_EXACT;
+    }
+    return set_tolerance(p);
+}
+
+bool modes_set_distance(struct program *p, const struct program_code *code)
+{
+    p->modes.incremental = code->argument == 1;
+    return true;
+}
+
+bool modes_set_centre(struct program *p, const struct program_code *code)
+{
+    p->modes.centre_absolute = code->argument == 1;
+    return true;
+}
+
+bool modes_accept(struct program *p, const struct program_code *code)
+{
+    (void)p;
+    (void)code;
+    return true;
+}

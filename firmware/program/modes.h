@@ -1,0 +1,29 @@
+/*
+ * The codes that only change how later words are understood.
+ */
+#ifndef TAKT_PROGRAM_MODES_H
+#define TAKT_PROGRAM_MODES_H
+
+#include "program/program.h"
+
+/* The state a program starts in: G17 G21 G40 G49 G61 G80 G90 G91.1 G94, no F, no S, no tool. */
+void modes_open(struct program *p);
+
+/* G93 (argument 1), G94 (0) */
+bool modes_set_feed_mode(struct program *p, const struct program_code *code);
+/* F */
+bool modes_set_feed(struct program *p, const struct program_code *code);
+/* G17, G18, G19; argument: enum plane */
+bool modes_set_plane(struct program *p, const struct program_code *code);
+/* G20 (argument 1: inch), G21 (0: mm) */
+bool modes_set_units(struct program *p, const struct program_code *code);
+/* G61, G61.1, G64; argument: enum move_path */
+bool modes_set_path(struct program *p, const struct program_code *code);
+/* G90 (argument 0), G91 (1) */
+bool modes_set_distance(struct program *p, const struct program_code *code);
+/* G90.1 (argument 1: absolute), G91.1 (0) */
+bool modes_set_centre(struct program *p, const struct program_code *code);
+/* Codes that are understood and change nothing here: G40, M48, M49. */
+bool modes_accept(struct program *p, const struct program_code *code);
+
+#endif

@@ -1,0 +1,10 @@
+#include "program/move.h"
+
+bool move_curve(const struct move *m, const struct point *start, struct curve *c)
+{
+    if (m->kind == MOVE_ARC_CW || m->kind == MOVE_ARC_CCW) {
+        return curve_set_arc(c, start, &m->end, m->plane, m->centre_mm, m->kind == MOVE_ARC_CW,
+                             m->turns);
+    }
+    return curve_set_line(c, start, &m->end);
+}

@@ -1,0 +1,91 @@
+#include "program/parameters.h"
+
+#include <string.h>
+
+void parameters_clear(struct parameters *p)
+{
+    memset(p, 0, sizeof(*p));
+}
+
+/* Index of the first number not below number, by bisection. */
+static unsigned position_of(const struct parameters *p, unsigned number)
+{
+    unsigned low = 0;
+    unsigned high = p->count;
+
+    while (low < high) {
+        const unsigned middle = (low + high) / 2;
+
+        if (p->number[middle] < number) {
+            low = middle + 1;
+        } else {
+            high = middle;
+        }
+    }
+    return low;
+}
+
+static bool holds(const struct parameters *p, unsigned position, unsigned number)
+{
+    return position < p->count && p->number[position] == number;
+}
+
+double parameters_get(const struct parameters *p, unsigned number)
+{
+    if (number <= PARAMETERS_LOCAL) {
+        return p->local[number - 1];
+    }
+    const unsigned position = position_of(p, number);
+
+    return holds(p, position, number) ? p->value[position] : 0.0;
+}
+
+static void insert(struct parameters *p, unsigned position, unsigned number)
+{
+    for (unsigned i = p->count; i > position; i--) {
+        p->number[i] = p->number[i - 1];
+        p->value[i] = p->value[i - 1];
+    }
+    p->number[position] = (uint16_t)number;
+    p->count++;
+}
+
+bool parameters_set(struct parameters *p, unsigned number, double value)
+{
+    if (number <= PARAMETERS_LOCAL) {
+        p->local[number - 1] = value;
+        return true;
+    }
+    const unsigned position = position_of(p, number);
+
+    if (!holds(p, position, number)) {
+        if (value == 0.0) {
+            return true;
+        }
+        if (p->count == PARAMETERS_MAX) {
+            return false;
+        }
+        insert(p, position, number);
+    }
+    p->value[position] = value;
+    return true;
+}
+
+bool parameters_next(const struct parameters *p, unsigned *number, double *value)
+{
+    for (unsigned n = *number + 1; n <= PARAMETERS_LOCAL; n++) {
+        if (p->local[n - 1] != 0.0) {
+            *number = n;
+            *value = p->local[n - 1];
+            return true;
+        }
+    }
+    for (unsigned i = position_of(p, *number + 1); i < p->count; i++) {
+        if (p->value[i] != 0.0) {
+            *number = p->number[i];
+            *value = p->value[i];
+            return true;
+        }
+    }
+    return false;
+}

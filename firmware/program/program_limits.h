@@ -1,0 +1,37 @@
+/*
+ * Every fixed size of the interpreter. struct program and struct parameters together stay below
+ * PROGRAM_MEMORY_MAX bytes (checked in program.c).
+ */
+#ifndef TAKT_PROGRAM_LIMITS_H
+#define TAKT_PROGRAM_LIMITS_H
+
+#define PROGRAM_MEMORY_MAX (24 * 1024)
+
+/* Characters of a line, comments included, its end not (LinuxCNC's limit). */
+#define PROGRAM_LINE_MAX 256
+/* Bytes asked from the source at once. */
+#define PROGRAM_INPUT_MAX 512
+/* Moves one line can make: S T M6 (two) M3 M8 G4 G28 (two) M2 are ten. */
+#define PROGRAM_QUEUE_MAX 12
+/* Warnings kept until they are fetched. */
+#define PROGRAM_WARNINGS_MAX 4
+/* '#... = ...' on one line. */
+#define PROGRAM_ASSIGNMENTS_MAX 16
+/* Values inside values: brackets, functions, parameters of parameters. Bounds the recursion. */
+#define PROGRAM_NESTING_MAX 16
+
+/* Numbered parameters are #1 ... #PARAMETER_NUMBER_MAX, as in LinuxCNC. */
+#define PARAMETER_NUMBER_MAX 5601
+/* #1 ... #30 always have a place. */
+#define PARAMETERS_LOCAL 30
+/* Others that can be set to something else than 0. */
+#define PARAMETERS_MAX 1000
+/* Named parameters, and the characters of a name. */
+#define PROGRAM_NAMES_MAX 96
+#define PROGRAM_NAME_MAX  31
+
+/* Largest P of an arc, and largest tool number of T and H. */
+#define PROGRAM_TURNS_MAX 1000000
+#define PROGRAM_TOOL_MAX  99999
+
+#endif

@@ -1,0 +1,48 @@
+#include "program/report.h"
+
+static char capital(char c)
+{
+    return c >= 'a' && c <= 'z' ? (char)(c - 'a' + 'A') : c;
+}
+
+static void describe(const struct program *p, struct diagnostic *d, enum takt_error code,
+                     struct program_span span, double value)
+{
+    char word[DIAGNOSTIC_WORD_MAX];
+    size_t length = 0;
+
+    for (unsigned i = span.begin; i < span.end && length < sizeof(word); i++) {
+        word[length++] = capital(p->lexer.text[i]);
+    }
+    diagnostic_set(d, code, p->lexer.line, p->lexer.column[span.begin], word, length, value);
+}
+
+bool report_error(struct program *p, enum takt_error code, struct program_span span, double value)
+{
+    describe(p, &p->error, code, span, value);
+    return false;
+}
+
+bool report_error_at(struct program *p, enum takt_error code, unsigned at, double value)
+{
+    const unsigned end = at < p->lexer.length ? at + 1 : at;
+
+    return report_error(p, code, (struct program_span){(uint16_t)at, (uint16_t)end}, value);
+}
+
+bool report_error_code(struct program *p, enum takt_error code, enum step step, double value)
+{
+    return report_error(p, code, p->words.code_span[step], value);
+}
+
+bool report_error_letter(struct program *p, enum takt_error code, char letter, double value)
+{
+    return report_error(p, code, p->words.span[LETTER_INDEX(letter)], value);
+}
+
+void report_warning(struct program *p, enum takt_error code, struct program_span span, double value)
+{
+    if (p->warnings < PROGRAM_WARNINGS_MAX) {
+        describe(p, &p->warning[p->warnings++], code, span, value);
+    }
+}

@@ -1,0 +1,19 @@
+/*
+ * Straight motion: G0, G1, and the way to the reference positions G28, G30.
+ */
+#ifndef TAKT_PROGRAM_STRAIGHT_H
+#define TAKT_PROGRAM_STRAIGHT_H
+
+#include "program/program.h"
+
+/* G0, G1; argument: MOVE_RAPID or MOVE_FEED */
+bool straight_move(struct program *p, const struct program_code *code);
+/*
+ * G28, G30; argument: the first of the parameters with the position. The axes with a word go to the point it asks
+ * for and then on to the reference position; without any word all axes go there at once.
+ */
+bool straight_to_reference(struct program *p, const struct program_code *code);
+/* G80 */
+bool straight_cancel(struct program *p, const struct program_code *code);
+
+#endif

@@ -1,0 +1,51 @@
+#include "program/system_parameters.h"
+
+#include "program/coordinates.h"
+
+static bool is_position(unsigned number)
+{
+    return number >= PARAMETER_POSITION && number < PARAMETER_POSITION + AXIS_COUNT;
+}
+
+static bool is_tool(unsigned number)
+{
+    return number >= PARAMETER_TOOL_NUMBER && number <= PARAMETER_TOOL_DIAMETER;
+}
+
+bool system_parameter_is_read_only(unsigned number)
+{
+    return is_position(number) || is_tool(number);
+}
+
+static double tool_parameter(const struct program *p, unsigned number)
+{
+    const struct tool *tool = tool_table_find(p->config.tools, p->modes.tool_current);
+
+    if (number == PARAMETER_TOOL_NUMBER) {
+        return p->modes.tool_current;
+    }
+    if (tool == NULL) {
+        return 0.0;
+    }
+    if (number == PARAMETER_TOOL_DIAMETER) {
+        return tool->diameter_mm;
+    }
+    const unsigned axis = number - PARAMETER_TOOL_OFFSET;
+
+    return axis < AXIS_COUNT ? coordinates_to_parameter(tool->offset.at[axis], (enum axis)axis)
+                             : 0.0;
+}
+
+double system_parameter_get(const struct program *p, unsigned number)
+{
+    if (number < PARAMETER_TOOL_NUMBER) {
+        return parameters_get(p->config.parameters, number);
+    }
+    if (is_position(number)) {
+        return coordinates_work(p, (enum axis)(number - PARAMETER_POSITION));
+    }
+    if (is_tool(number)) {
+        return tool_parameter(p, number);
+    }
+    return parameters_get(p->config.parameters, number);
+}

@@ -1,0 +1,27 @@
+/*
+ * The tool table as the interpreter reads it.
+ */
+#ifndef TAKT_PROGRAM_TOOLS_H
+#define TAKT_PROGRAM_TOOLS_H
+
+#include "base/point.h"
+
+#include <stddef.h>
+#include <stdint.h>
+
+struct tool {
+    uint32_t number;     /* T and H words name it; one of the table alone */
+    struct point offset; /* G43 adds it to the work offset: mm, rad. The length is its Z */
+    double diameter_mm;
+};
+
+/* The caller owns the tools; any order. */
+struct tool_table {
+    const struct tool *tools;
+    size_t count;
+};
+
+/* NULL when there is no such tool, or table is NULL. */
+const struct tool *tool_table_find(const struct tool_table *table, uint32_t number);
+
+#endif

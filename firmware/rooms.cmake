@@ -1,0 +1,40 @@
+# How a room is built.
+#
+# A room is a folder of sources, a library, and one name to include it by: "plan/window.h" is found only by
+# targets that link takt_plan. Each room therefore has an include folder of its own that holds nothing but a
+# link to itself; a room that is not linked cannot be included, so data cannot flow backwards by accident
+# (tests/unit/rooms proves it).
+
+# Flags of every target. -ffp-contract=off: a fused multiply-add rounds once where two operations round twice,
+# so it would make the last bit depend on the processor.
+add_library(takt_flags INTERFACE)
+target_compile_options(takt_flags INTERFACE
+  -Wall -Wextra -Wpedantic -Wconversion -Wsign-conversion -Wshadow -Wdouble-promotion -Wundef
+  -Wstrict-prototypes -Wmissing-prototypes -Wold-style-definition -Wcast-qual -Wpointer-arith
+  -Wformat=2 -Wvla -Wswitch-enum -Werror
+  -ffp-contract=off -fno-math-errno)
+if(TAKT_SANITIZE)
+  target_compile_options(takt_flags INTERFACE
+    -fsanitize=address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer)
+  target_link_options(takt_flags INTERFACE -fsanitize=address,undefined)
+endif()
+
+# takt_room(NAME AFTER rooms... SOURCES files...)
+# AFTER: the rooms this one may include. Without SOURCES the room is headers alone.
+function(takt_room name)
+  cmake_parse_arguments(ROOM "" "" "AFTER;SOURCES" ${ARGN})
+  set_property(GLOBAL APPEND PROPERTY TAKT_ROOMS ${name})
+  set(doors ${CMAKE_BINARY_DIR}/rooms/${name})
+  file(MAKE_DIRECTORY ${doors})
+  file(CREATE_LINK ${CMAKE_CURRENT_SOURCE_DIR} ${doors}/${name} SYMBOLIC)
+  list(TRANSFORM ROOM_AFTER PREPEND takt_ OUTPUT_VARIABLE before)
+  if(ROOM_SOURCES)
+    add_library(takt_${name} STATIC ${ROOM_SOURCES})
+    target_include_directories(takt_${name} PUBLIC ${doors})
+    target_link_libraries(takt_${name} PUBLIC ${before} PRIVATE takt_flags)
+  else()
+    add_library(takt_${name} INTERFACE)
+    target_include_directories(takt_${name} INTERFACE ${doors})
+    target_link_libraries(takt_${name} INTERFACE ${before})
+  endif()
+endfunction()

@@ -1,0 +1,53 @@
+#include "report/report.h"
+
+#include "report/page.h"
+#include "report/recording.h"
+
+#include <errno.h>
+#include <stdlib.h>
+
+struct report {
+    struct recording recording;
+};
+
+struct report *report_open(const struct plan_limits *limits)
+{
+    struct report *r = malloc(sizeof *r);
+    if (r != NULL && !recording_open(&r->recording, limits)) {
+        report_close(r);
+        return NULL;
+    }
+    return r;
+}
+
+void report_close(struct report *r)
+{
+    if (r == NULL)
+        return;
+    recording_close(&r->recording);
+    free(r);
+}
+
+void report_add(struct report *r, const struct cycle_record *record, bool rapid)
+{
+    recording_add(&r->recording, record, rapid);
+}
+
+int report_write(struct report *r, FILE *file, const char *summary_json)
+{
+    trail_finish(&r->recording.trail);
+    errno = 0;
+    if (page_write(file, &r->recording, summary_json) && fflush(file) == 0)
+        return 0;
+    return errno != 0 ? errno : EIO;
+}
+
+const char *report_get_plots_missing(void)
+{
+    if (page_has_plots())
+        return NULL;
+    return "this takt was built without the plotting library, so the report has tables alone; "
+           "configure the build "
+           "with -DTAKT_PLOTLY_TARBALL=FILE (the package named in host/report/README.md) and build "
+           "again";
+}

@@ -1,0 +1,204 @@
+"use strict";
+/* Numbers and words, and the tables made of the run's summary. */
+
+listenForErrors();
+
+const runSummary = parseJson("run-summary");
+const runData = parseJson("run-data");
+
+function parseJson(id) {
+  return JSON.parse(document.getElementById(id).textContent);
+}
+
+/* Whatever goes wrong is said on the page, not only in the browser's console. */
+function listenForErrors() {
+  const say = (text) => {
+    document.documentElement.dataset.errors = (document.documentElement.dataset.errors || "") + text + "\n";
+    document.getElementById("problems").append(element("p", { class: "note warn" }, `This page has a problem: ${text}`));
+  };
+  addEventListener("error", (event) => say(event.message));
+  addEventListener("unhandledrejection", (event) => say(String(event.reason)));
+  document.addEventListener("securitypolicyviolation", (event) => say(`${event.violatedDirective} ${event.blockedURI}`));
+}
+
+/* element("td", { class: "code" }, "text", otherElement, ...) */
+function element(tag, attributes, ...children) {
+  const made = document.createElement(tag);
+  for (const [name, value] of Object.entries(attributes || {})) made.setAttribute(name, value);
+  made.append(...children.filter((child) => child !== null));
+  return made;
+}
+
+function formatNumber(value, digits = 5) {
+  const size = Math.abs(value);
+  if (size > 0 && (size < 1e-6 || size >= 1e12)) return Number(value.toPrecision(3)).toExponential().replaceAll("-", "−");
+  const whole = size >= 1 ? Math.floor(Math.log10(size)) + 1 : 0;
+  return value.toLocaleString("en", { maximumSignificantDigits: Math.max(digits, whole) }).replace("-", "−");
+}
+
+function formatDuration(seconds) {
+  if (seconds < 60) return [formatNumber(seconds, 5), "s"];
+  const whole = Math.floor(seconds / 60);
+  const rest = formatNumber(seconds - 60 * whole, 3);
+  if (whole < 60) return [`${whole}`, `min ${rest} s`];
+  return [`${Math.floor(whole / 60)}`, `h ${whole % 60} min ${Math.floor(seconds % 60)} s`];
+}
+
+/* A field's name ends in its unit; the longest ending counts. */
+const unitEndings = [
+  ["_mm_s3", "mm/s³"], ["_mm_s2", "mm/s²"], ["_mm_s", "mm/s"], ["_mm_min", "mm/min"], ["_mm", "mm"],
+  ["_deg_s3", "°/s³"], ["_deg_s2", "°/s²"], ["_deg_s", "°/s"], ["_deg", "°"],
+  ["_percent", "%"], ["_ns", "ns"], ["_us", "µs"], ["_s", "s"],
+];
+
+/* "load_percent" -> ["load", "%"] */
+function splitUnit(field) {
+  const ending = unitEndings.find(([suffix]) => field.endsWith(suffix));
+  return ending ? [field.slice(0, -ending[0].length), ending[1]] : [field, ""];
+}
+
+function axisUnits(axis) {
+  const length = axis.rotary ? "°" : "mm";
+  return { velocity: `${length}/s`, acceleration: `${length}/s²`, jerk: `${length}/s³`, following: length };
+}
+
+function fileName(path) {
+  return String(path).replace(/^.*[\\/]/, "");
+}
+
+function brokenChecks() {
+  return (runSummary.checks || []).filter((check) => check.held === false);
+}
+
+/* ---- headline ---- */
+
+function showBadges() {
+  const outcome = runSummary.outcome || "unknown";
+  const tone = { completed: "good", faulted: "bad" }[outcome] || "warn";
+  const badges = document.getElementById("badges");
+  badges.append(element("span", { class: `badge ${tone}` }, outcome[0].toUpperCase() + outcome.slice(1)));
+  const measured = (runSummary.checks || []).filter((check) => typeof check.held === "boolean");
+  if (measured.length === 0) return;
+  const broken = brokenChecks().length;
+  badges.append(broken === 0
+    ? element("span", { class: "badge good" }, `✓ All ${measured.length} checks held`)
+    : element("span", { class: "badge bad" }, `✗ ${broken} of ${measured.length} checks broken`));
+}
+
+function showHeadline() {
+  const program = fileName(runSummary.program || "Run");
+  const machine = runSummary.machine ? `on ${fileName(runSummary.machine)}` : "";
+  document.title = `${program} ${machine} – ${runSummary.outcome || "run report"}`;
+  document.getElementById("program").textContent = program;
+  document.getElementById("subtitle").textContent = `takt run report ${machine && "· " + machine}`;
+  showBadges();
+  const problems = document.getElementById("problems");
+  if (runSummary.fault) problems.append(element("p", { class: "note bad" }, `Fault: ${describe(runSummary.fault)}`));
+  for (const check of brokenChecks()) {
+    const [reached, limit] = [check.value, check.limit].map((n) => typeof n === "number" ? formatNumber(n, 6) : "?");
+    problems.append(element("p", { class: "note bad" }, `Check ${check.name} is broken: ${reached}, limit ${limit}`));
+  }
+}
+
+function describe(value) {
+  return typeof value === "object" ? Object.entries(value).map(([k, v]) => `${k} ${v}`).join(", ") : String(value);
+}
+
+function showFigures() {
+  const figures = document.getElementById("figures");
+  const add = (name, value, unit) => {
+    if (value === undefined || value === null) return;
+    const text = typeof value === "number" ? formatNumber(value) : value;
+    figures.append(element("div", {}, element("dt", {}, name), element("dd", {}, text + " ", element("small", {}, unit))));
+  };
+  if (typeof runSummary.program_time_s === "number") add("Program time", ...formatDuration(runSummary.program_time_s));
+  add("Path length", runSummary.path_length_mm, "mm");
+  add("Blocks", runSummary.blocks, "");
+  add("Control cycles", runSummary.cycles, `of ${formatNumber(runData.cycle_s * 1e3)} ms`);
+  add("Path error", runSummary.path_error_max_mm, "mm");
+  add("Bus load", runSummary.bus ? runSummary.bus.load_percent : null, "%");
+  add("Real time ratio", runSummary.realtime_ratio, "×");
+}
+
+/* ---- tables ---- */
+
+function bar(ratio) {
+  const width = `width:${Math.min(100, 100 * ratio).toFixed(1)}%`;
+  const percent = formatNumber(100 * ratio, 4);
+  return element("div", { class: "bar", title: `${percent} % of the limit` },
+    element("i", { style: width, class: ratio > 1 ? "over" : "" }));
+}
+
+/* A value beside its limit, with a bar for how much of the limit is used. */
+function measured(value, unit, limit) {
+  if (typeof value !== "number") return [element("span", { class: "unit" }, "not measured")];
+  const text = [formatNumber(value, 6) + " "];
+  if (typeof limit !== "number") return [...text, element("span", { class: "unit" }, unit)];
+  text.push(element("span", { class: "of" }, `of ${formatNumber(limit, 6)} ${unit}`));
+  if (limit > 0) text.push(bar(Math.abs(value) / limit));
+  return text;
+}
+
+/* "max_velocity_mm_s" or "max_velocity_deg_s", whichever the axis has. */
+function axisMaximum(axis, quantity) {
+  const key = Object.keys(axis).find((field) => field.startsWith(`max_${quantity}_`));
+  return key === undefined ? null : axis[key];
+}
+
+function showAxes() {
+  const rows = (runSummary.axes || []).map((axis) => {
+    const machine = runData.axes.find((candidate) => candidate.name === axis.name) || { limit: {} };
+    const units = axisUnits(machine);
+    const check = (runSummary.checks || []).find((candidate) => candidate.name === `following.${axis.name}`) || {};
+    const cells = ["velocity", "acceleration", "jerk"].map((quantity) =>
+      element("td", {}, ...measured(axisMaximum(axis, quantity), units[quantity], machine.limit[quantity])));
+    cells.push(element("td", {}, ...measured(axisMaximum(axis, "following_error"), units.following, check.limit)));
+    return element("tr", {}, element("th", { scope: "row" }, axis.name), ...cells);
+  });
+  const heads = ["Axis", "Velocity", "Acceleration", "Jerk", "Following error"];
+  fillTable("axes", heads, rows);
+}
+
+function showChecks() {
+  const checks = runSummary.checks || [];
+  document.getElementById("checks-section").hidden = checks.length === 0;
+  fillTable("checks", ["Check", "Result", "Value beside limit"], checks.map((check) => {
+    const [tone, word] = check.held === true ? ["good", "✓ held"] : check.held === false ? ["bad", "✗ broken"] : ["", "not measured"];
+    return element("tr", {}, element("th", { scope: "row" }, check.name), element("td", { class: tone }, word),
+      element("td", {}, ...measured(check.value, "", check.limit)));
+  }));
+}
+
+function fillTable(id, heads, rows) {
+  const head = element("tr", {}, ...heads.map((text) => element("th", { scope: "col" }, text)));
+  document.getElementById(id).append(element("thead", {}, head), element("tbody", {}, ...rows));
+}
+
+/* Everything that is neither a list nor empty, nested names joined by a space. */
+function summaryRows(object, prefix) {
+  return Object.entries(object).flatMap(([field, value]) => {
+    if (Array.isArray(value)) return [];
+    if (value !== null && typeof value === "object") return summaryRows(value, `${prefix}${field} `);
+    const [name, unit] = splitUnit(field);
+    const label = (prefix + name).replaceAll("_", " ");
+    return [summaryRow(label[0].toUpperCase() + label.slice(1), value, unit)];
+  });
+}
+
+function summaryRow(label, value, unit) {
+  const row = element("tr", {}, element("th", { scope: "row" }, label));
+  if (value === null) row.append(element("td", { class: "unit" }, element("span", { class: "unit" }, "not measured")));
+  else if (typeof value === "number") row.append(element("td", {}, formatNumber(value, 9), " ", element("span", { class: "unit" }, unit)));
+  else row.append(element("td", { class: "code" }, String(value)));
+  return row;
+}
+
+function showSummary() {
+  showHeadline();
+  showFigures();
+  showAxes();
+  showChecks();
+  document.getElementById("summary").append(element("tbody", {}, ...summaryRows(runSummary, "")));
+  const width = runData.width_cycles;
+  document.getElementById("bucket").textContent = width === 1 ? "cycle" : `${width} cycles`;
+}

@@ -1,0 +1,149 @@
+#include "takt/canon.h"
+
+#include "base/decimal.h"
+#include "base/maths.h"
+
+#include <assert.h>
+#include <string.h>
+
+#define PLACES             6
+#define DEGREES_PER_RAD    (180.0 / MATHS_PI)
+#define SECONDS_PER_MINUTE 60.0
+
+struct line {
+    char *text;
+    size_t length;
+};
+
+static void add_text(struct line *l, const char *text)
+{
+    const size_t length = strlen(text);
+
+    assert(l->length + length < CANON_TEXT_MAX);
+    memcpy(l->text + l->length, text, length + 1);
+    l->length += length;
+}
+
+static void add_number(struct line *l, double value, unsigned places)
+{
+    char number[DECIMAL_TEXT_MAX + 1];
+
+    number[decimal_write(number, value, places)] = '\0';
+    add_text(l, number);
+}
+
+static void add_word(struct line *l, char letter, double value, unsigned places)
+{
+    const char word[] = {' ', letter, '\0'};
+
+    add_text(l, word);
+    add_number(l, value, places);
+}
+
+static void add_axes(struct line *l, unsigned axes, const struct point *point)
+{
+    for (unsigned i = 0; i < AXIS_COUNT; i++) {
+        if ((axes & (1U << i)) != 0) {
+            const double scale = i < AXIS_LINEAR_COUNT ? 1.0 : DEGREES_PER_RAD;
+
+            add_word(l, AXIS_LETTERS[i], point->at[i] * scale, PLACES);
+        }
+    }
+}
+
+static void add_arc(struct line *l, const struct move *move, const struct point *at)
+{
+    static const char *const planes[] = {" G17", " G18", " G19"};
+    struct point centre = *at;
+    enum axis first;
+    enum axis second;
+
+    plane_axes(move->plane, &first, &second);
+    centre.at[first] = move->centre_mm[0];
+    centre.at[second] = move->centre_mm[1];
+    for (unsigned i = 0; i < AXIS_LINEAR_COUNT; i++) {
+        add_word(l, (char)('I' + (char)i), centre.at[i], PLACES);
+    }
+    add_word(l, 'P', move->turns, 0);
+    add_text(l, planes[move->plane]);
+}
+
+static bool is_rotary_only(const struct move *move, const struct point *at)
+{
+    struct curve curve;
+
+    return move_curve(move, at, &curve) && curve_is_rotary(&curve);
+}
+
+static void add_feed(struct line *l, const struct move *move, const struct point *at)
+{
+    const double scale = is_rotary_only(move, at) ? DEGREES_PER_RAD : 1.0;
+
+    add_word(l, 'F', move->feed_mm_s * SECONDS_PER_MINUTE * scale, PLACES);
+}
+
+static void add_spindle(struct line *l, const struct move *move)
+{
+    if (move->direction == SPINDLE_OFF) {
+        add_text(l, "spindle_off");
+        return;
+    }
+    add_text(l, move->direction == SPINDLE_CW ? "spindle_cw" : "spindle_ccw");
+    add_word(l, 'S', move->speed_rpm, PLACES);
+}
+
+static const char *coolant_name(const struct move *move)
+{
+    if (move->mist) {
+        return move->flood ? "coolant_mist_flood_on" : "coolant_mist_on";
+    }
+    return move->flood ? "coolant_flood_on" : "coolant_off";
+}
+
+static void add_event(struct line *l, const struct move *move)
+{
+    if (move->kind == MOVE_DWELL) {
+        add_text(l, "dwell");
+        add_word(l, 'P', move->dwell_s, PLACES);
+    } else if (move->kind == MOVE_SPINDLE) {
+        add_spindle(l, move);
+    } else if (move->kind == MOVE_COOLANT) {
+        add_text(l, coolant_name(move));
+    } else if (move->kind == MOVE_TOOL) {
+        add_text(l, move->tool_change ? "tool_change" : "tool_prepare");
+        add_word(l, 'T', move->tool, 0);
+    } else if (move->kind == MOVE_STOP) {
+        add_text(l, move->optional ? "optional_stop" : "stop");
+    } else {
+        add_text(l, "end");
+    }
+}
+
+static void add_motion(struct line *l, const struct move *move, unsigned axes,
+                       const struct point *at)
+{
+    static const char *const kinds[] = {"rapid", "feed", "arc_cw", "arc_ccw"};
+
+    add_text(l, kinds[move->kind]);
+    add_axes(l, axes, &move->end);
+    if (move->kind == MOVE_ARC_CW || move->kind == MOVE_ARC_CCW) {
+        add_arc(l, move, at);
+    }
+    if (move->kind != MOVE_RAPID) {
+        add_feed(l, move, at);
+    }
+}
+
+size_t canon_format(const struct move *move, unsigned axes, const struct point *at, char *text)
+{
+    struct line l = {text, 0};
+
+    add_number(&l, move->line, 0);
+    add_text(&l, " ");
+    if (move_is_motion(move)) {
+        add_motion(&l, move, axes, at);
+    } else {
+        add_event(&l, move);
+    }
+    return l.length;
+}

@@ -1,0 +1,114 @@
+#include "takt/command.h"
+
+#include "takt/interrupt.h"
+#include "takt/message.h"
+#include "takt/suggest.h"
+
+#include <errno.h>
+#include <stdio.h>
+#include <string.h>
+
+static const struct command *const commands[] = {
+    &command_run, &command_plan, &command_check, &command_canon, &command_trace, &command_machine,
+};
+
+#define COMMANDS (sizeof commands / sizeof commands[0])
+
+static void print_usage(FILE *stream)
+{
+    (void)fputs("usage: takt COMMAND [arguments]\n\ncommands:\n", stream);
+    for (size_t i = 0; i < COMMANDS; i++)
+        (void)fprintf(stream, "  %-10s %s\n", commands[i]->name, commands[i]->summary);
+    (void)fputs("  help       explain a command\n"
+                "\n"
+                "takt help COMMAND shows options and examples, takt --version the version.\n",
+                stream);
+}
+
+static void print_help(const struct command *command)
+{
+    (void)printf("usage: takt %s %s\n\ntakt %s: %s\n\noptions:\n", command->name, command->usage,
+                 command->name, command->summary);
+    options_print(command->options);
+    (void)printf("\n%s", command->help);
+}
+
+/* NULL after a message. */
+static const struct command *find_command(const char *name)
+{
+    const char *names[COMMANDS + 1] = {"help"};
+
+    for (size_t i = 0; i < COMMANDS; i++) {
+        names[i + 1] = commands[i]->name;
+        if (strcmp(name, commands[i]->name) == 0)
+            return commands[i];
+    }
+    message_command_error("there is no command '%s'%s", name,
+                          message_did_you_mean("", suggest_word(name, names, COMMANDS + 1)));
+    print_usage(stderr);
+    return NULL;
+}
+
+static enum command_status help(int argc, char **argv)
+{
+    const struct command *command;
+
+    if (argc < 3) {
+        print_usage(stdout);
+        return STATUS_DONE;
+    }
+    command = find_command(argv[2]);
+    if (command == NULL)
+        return STATUS_INPUT;
+    print_help(command);
+    return STATUS_DONE;
+}
+
+static enum command_status run_command(const struct command *command, int argc, char **argv)
+{
+    struct options options;
+
+    message_set_command(command->name);
+    if (!options_read(&options, command->options, command->operands_min, command->operands_max,
+                      argc, argv))
+        return STATUS_INPUT;
+    if (options.help) {
+        print_help(command);
+        return STATUS_DONE;
+    }
+    return command->run(&options);
+}
+
+/*
+ * What was printed must have arrived: a full disk behind a redirection is an error like any other. A reader who has
+ * seen enough (`takt plan | head`) needs no message.
+ */
+static enum command_status flush_stdout(enum command_status status)
+{
+    if (fflush(stdout) == 0 && ferror(stdout) == 0)
+        return status;
+    if (errno == EPIPE)
+        return STATUS_ENVIRONMENT;
+    message_command_error("standard output cannot be written");
+    return STATUS_ENVIRONMENT;
+}
+
+enum command_status command_main(int argc, char **argv)
+{
+    const struct command *command;
+
+    interrupt_catch();
+    if (argc < 2) {
+        print_usage(stderr);
+        return STATUS_INPUT;
+    }
+    if (strcmp(argv[1], "--version") == 0) {
+        (void)printf("takt %s\n", TAKT_VERSION);
+        return flush_stdout(STATUS_DONE);
+    }
+    if (strcmp(argv[1], "help") == 0 || strcmp(argv[1], "--help") == 0 ||
+        strcmp(argv[1], "-h") == 0)
+        return flush_stdout(help(argc, argv));
+    command = find_command(argv[1]);
+    return command != NULL ? flush_stdout(run_command(command, argc - 1, argv + 1)) : STATUS_INPUT;
+}

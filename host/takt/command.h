@@ -1,0 +1,40 @@
+/*
+ * Sub-commands, in the manner of git.
+ */
+#ifndef TAKT_HOST_COMMAND_H
+#define TAKT_HOST_COMMAND_H
+
+#include "takt/options.h"
+
+#include <stddef.h>
+
+/* Exit status. */
+enum command_status {
+    STATUS_DONE = 0,         /* and every check held */
+    STATUS_FAILED = 1,       /* the run finished and a check failed */
+    STATUS_INPUT = 2,        /* the user's input is wrong; a message says what */
+    STATUS_ENVIRONMENT = 3,  /* the machine takt runs on refused something */
+    STATUS_INTERRUPTED = 130 /* by Ctrl-C */
+};
+
+struct command {
+    const char *name;
+    const char *usage;   /* what follows the name: "PROGRAM [options]" */
+    const char *summary; /* one line */
+    const char *help;    /* paragraphs and examples below the options */
+    const struct option_row *options;
+    unsigned operands_min, operands_max;
+    enum command_status (*run)(const struct options *options);
+};
+
+extern const struct command command_run;
+extern const struct command command_plan;
+extern const struct command command_check;
+extern const struct command command_canon;
+extern const struct command command_trace;
+extern const struct command command_machine;
+
+/* Finds and runs the sub-command of a command line. Returns the exit status. */
+enum command_status command_main(int argc, char **argv);
+
+#endif

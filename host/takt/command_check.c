@@ -1,0 +1,69 @@
+#include "takt/command.h"
+#include "takt/planner.h"
+#include "takt/session.h"
+
+#include <stdio.h>
+
+/* Errors that are printed before the rest is given up: after so many the file is hardly a part program. */
+#define CHECK_ERRORS_MAX 100
+
+static void ignore_segment(void *context, const struct segment *segment)
+{
+    (void)context;
+    (void)segment;
+}
+
+static enum command_status plan(const struct session *session, const struct session_totals *found)
+{
+    struct planner_totals totals;
+    enum command_status status = planner_walk(session, ignore_segment, NULL, &totals);
+
+    if (status == STATUS_DONE && !session->options->quiet)
+        (void)printf("%s: no errors, %u warning%s; %u moves, %.3f mm, %.3f s\n",
+                     session->program.name, found->warnings, found->warnings == 1 ? "" : "s",
+                     (unsigned)totals.motions, totals.length_mm,
+                     (double)totals.cycles * 1e-6 * (double)session->setup.machine.cycle_us);
+    return status;
+}
+
+static enum command_status command_check_execute(const struct options *options)
+{
+    static struct session session;
+    struct session_totals totals;
+    enum command_status status = session_open(&session, options);
+
+    if (status == STATUS_DONE) {
+        status = session_check(&session, CHECK_ERRORS_MAX, &totals);
+        if (status == STATUS_INPUT)
+            (void)fprintf(stderr, "%s: %u error%s%s\n", session.program.name, totals.errors,
+                          totals.errors == 1 ? "" : "s",
+                          totals.errors == CHECK_ERRORS_MAX ? "; the rest was not read" : "");
+    }
+    if (status == STATUS_DONE)
+        status = plan(&session, &totals);
+    session_close(&session);
+    return status;
+}
+
+static const struct option_row rows[] = {
+    OPTIONS_PROGRAM,
+    {"quiet", OPTION_FLAG, offsetof(struct options, quiet), NULL, "errors and warnings alone"},
+    OPTIONS_END,
+};
+
+const struct command command_check = {
+    .name = "check",
+    .usage = "PROGRAM [options]",
+    .summary = "find all errors of a part program without moving anything",
+    .help = "Reads the whole program and goes on after errors; a line with an error has no effect "
+            "on later ones.\n"
+            "A program without errors is planned too. Exit status 2 when there is an error.\n"
+            "\n"
+            "Examples:\n"
+            "  takt check part.ngc\n"
+            "  takt check part.ngc --machine mill3.ini --tools tools.tbl\n",
+    .options = rows,
+    .operands_min = 1,
+    .operands_max = 1,
+    .run = command_check_execute,
+};

@@ -1,0 +1,203 @@
+#include "takt/judge.h"
+
+#include "base/fnv.h"
+#include "base/maths.h"
+#include "takt/judge_curve.h"
+
+#include <string.h>
+
+/* Cycles from the one that begins a block on in which its joint shows, when no cycle ended at the joint. */
+#define JUDGE_JOINT_CYCLES 2
+
+void judge_init(struct judge *j, const struct machine *machine,
+                const struct program_config *program, const struct source *source)
+{
+    memset(j, 0, sizeof *j);
+    program_open(&j->program, program, source);
+    j->rate_hz = 1e6 / (double)machine->cycle_us;
+    j->block.end = program->start;
+    j->block.landed = true;
+    j->cmd = program->start;
+    j->figures.digest = FNV_START;
+    for (unsigned i = 0; i < JUDGE_HISTORY; i++)
+        j->sent[i] = program->start;
+    for (unsigned i = 0; i < AXIS_COUNT; i++) {
+        if (machine->axis[i].present)
+            j->axis[j->axes++] =
+                (struct judge_axis){.axis = (enum axis)i, .x = program->start.at[i]};
+    }
+}
+
+static void raise_to(double *largest, double value)
+{
+    if (value > *largest)
+        *largest = value;
+}
+
+/* The next motion of the judge's own reading. False: there is none. */
+static bool next_motion(struct judge *j)
+{
+    struct move move = {0};
+    struct diagnostic diagnostic;
+    struct point start = j->block.end;
+
+    while (!j->program_ended) {
+        j->program_ended = program_next(&j->program, &move, &diagnostic) != PROGRAM_MOVE;
+        if (!j->program_ended && move_is_motion(&move))
+            break;
+    }
+    if (j->program_ended)
+        return false;
+    j->block = (struct judge_block){.number = j->block.number + 1, .end = move.end, .landed = true};
+    j->block.has_length = move_curve(&move, &start, &j->block.curve);
+    return true;
+}
+
+static double length_of(const struct judge_block *block)
+{
+    return block->has_length && !curve_is_rotary(&block->curve) ? block->curve.length_mm : 0;
+}
+
+/* The block is left: has its end been hit? */
+static void leave_block(struct judge *j)
+{
+    const struct judge_block *block = &j->block;
+
+    j->figures.path_length_mm += length_of(block);
+    if (!block->landed)
+        raise_to(&j->figures.landing_error_mm,
+                 block->passed ? block->passed_mm : judge_distance(&j->cmd, &block->end));
+}
+
+/* A block in which no cycle ended: its evaluated path must end where the program says. */
+static void pass_block(struct judge *j)
+{
+    struct point end;
+
+    if (!j->block.has_length)
+        return;
+    curve_point(&j->block.curve, j->block.curve.length_mm, &end);
+    raise_to(&j->figures.landing_error_mm, judge_distance(&end, &j->block.end));
+    j->figures.path_length_mm += length_of(&j->block);
+}
+
+/* What the executed path comes to at the end of its profile. */
+static double evaluate_end(const struct segment *segment, const struct point *end)
+{
+    struct profile_state state;
+    struct point p;
+
+    profile_evaluate(&segment->profile, segment->profile.duration_s, &state);
+    curve_point(&segment->curve, state.s_mm, &p);
+    return judge_distance(&p, end);
+}
+
+static void enter_block(struct judge *j, const struct cycle_record *record,
+                        const struct segment *segment)
+{
+    leave_block(j);
+    j->joint_near = j->block.landed ? 1 : JUDGE_JOINT_CYCLES;
+    j->step_inside = j->block.landed;
+    while (j->block.number < record->block) {
+        if (!next_motion(j)) {
+            j->strayed = true;
+            return;
+        }
+        if (j->block.number < record->block)
+            pass_block(j);
+    }
+    j->figures.blocks = j->block.number;
+    j->block.landed = false;
+    j->block.passed = segment->end == JOINT_PASSED;
+    if (j->block.passed)
+        j->block.passed_mm = evaluate_end(segment, &j->block.end);
+}
+
+static void judge_path(struct judge *j, const struct cycle_record *record)
+{
+    double error;
+
+    if (!j->block.has_length) {
+        raise_to(&j->figures.path_error_mm, judge_distance(&record->cmd, &j->block.end));
+        return;
+    }
+    error = judge_curve_distance(&j->block.curve, &record->cmd, &j->block.fraction);
+    raise_to(&j->figures.path_error_mm, error);
+    if (j->step_inside)
+        raise_to(&j->figures.chord_error_mm,
+                 judge_curve_chord_error(&j->block.curve, &j->cmd, &record->cmd));
+    if (record->landed) {
+        raise_to(&j->figures.landing_error_mm, judge_distance(&record->cmd, &j->block.end));
+        j->block.landed = true;
+    }
+    j->step_inside = true;
+}
+
+/* Feed step at a joint: change of the distance between setpoints from one cycle to the next. */
+static void judge_feed(struct judge *j, const struct cycle_record *record)
+{
+    double feed = judge_distance(&record->cmd, &j->cmd) * j->rate_hz;
+
+    if (j->joint_near > 0) {
+        raise_to(&j->figures.joint_feed_step_mm_s, maths_abs(feed - j->feed_mm_s));
+        j->joint_near--;
+    }
+    j->feed_mm_s = feed;
+}
+
+static void judge_axes(struct judge *j, const struct cycle_record *record)
+{
+    const struct point *expected = &j->sent[(j->figures.cycles + 1) % JUDGE_HISTORY];
+
+    for (unsigned i = 0; i < j->axes; i++) {
+        struct judge_axis *axis = &j->axis[i];
+        double x = record->set.at[axis->axis];
+        double v = (x - axis->x) * j->rate_hz;
+        double a = (v - axis->v) * j->rate_hz;
+
+        raise_to(&j->figures.velocity_mm_s[axis->axis], maths_abs(v));
+        raise_to(&j->figures.acceleration_mm_s2[axis->axis], maths_abs(a));
+        raise_to(&j->figures.jerk_mm_s3[axis->axis], maths_abs((a - axis->a) * j->rate_hz));
+        raise_to(&j->figures.following_error_mm[axis->axis],
+                 maths_abs(expected->at[axis->axis] - record->act.at[axis->axis]));
+        j->figures.digest = fnv_add_double(j->figures.digest, x);
+        axis->x = x;
+        axis->v = v;
+        axis->a = a;
+    }
+}
+
+void judge_add(struct judge *j, const struct cycle_record *record, const struct segment *segment)
+{
+    if (record->block != j->block.number && !j->strayed)
+        enter_block(j, record, segment);
+    j->sent[j->figures.cycles % JUDGE_HISTORY] = record->set;
+    judge_path(j, record);
+    judge_feed(j, record);
+    judge_axes(j, record);
+    raise_to(&j->figures.correction_mm, judge_distance(&record->cmd, &record->set));
+    j->cmd = record->cmd;
+    j->figures.cycles++;
+}
+
+void judge_finish(struct judge *j, bool completed)
+{
+    if (completed) {
+        j->block.passed = false; /* nothing follows that it could be passed into */
+        leave_block(j);
+    } else {
+        j->figures.path_length_mm += j->block.fraction * length_of(&j->block);
+    }
+}
+
+int judge_get_missing(const struct judge *j)
+{
+    struct judge copy = *j;
+    int missing = 0;
+
+    if (j->strayed)
+        return -1;
+    while (next_motion(&copy))
+        missing += copy.block.has_length ? 1 : 0;
+    return missing;
+}

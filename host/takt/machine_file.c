@@ -1,0 +1,309 @@
+#include "takt/machine_file.h"
+
+#include "takt/machine_keys.h"
+#include "takt/message.h"
+#include "takt/text.h"
+
+#include <ini.h>
+#include <stdint.h>
+#include <string.h>
+
+#define MACHINE_FILE_WORD_MAX 63
+
+/* Where reading is. inih calls back for lines it has asked for, one line at a time. */
+struct machine_reader {
+    struct machine_setup *setup;
+    const struct text *text;
+    size_t position;
+    uint32_t line;
+    const char *current; /* the line, in text */
+    size_t length;
+    unsigned errors;
+    bool axes_named;
+    bool place_known; /* the section this line stands in is known */
+    struct machine_place place;
+    uint32_t set_in_line[MACHINE_KEYS_MAX][AXIS_COUNT]; /* 0: not yet */
+};
+
+/* Column of the first character from offset on that is no space. */
+static uint32_t column_of(const struct machine_reader *r, size_t offset)
+{
+    while (offset < r->length && (r->current[offset] == ' ' || r->current[offset] == '\t'))
+        offset++;
+    return (uint32_t)offset + 1;
+}
+
+static void reader_error(struct machine_reader *r, size_t offset, const char *text)
+{
+    message_error(r->text->name, r->line, column_of(r, offset), "%s", text);
+    r->errors++;
+}
+
+/* "axis X" is word "axis" and instance "X". */
+static void split_section(const char *section, char word[], char instance[])
+{
+    size_t first = strspn(section, " \t");
+    size_t length = strcspn(section + first, " \t");
+    const char *rest = section + first + length;
+
+    rest += strspn(rest, " \t");
+    (void)snprintf(word, MACHINE_FILE_WORD_MAX + 1, "%.*s", (int)length, section + first);
+    (void)snprintf(instance, MACHINE_FILE_WORD_MAX + 1, "%.*s", (int)strcspn(rest, " \t"), rest);
+}
+
+static void forget_default_axes(struct machine_reader *r)
+{
+    for (unsigned i = 0; i < AXIS_COUNT && !r->axes_named; i++)
+        r->setup->machine.axis[i].present = false;
+    r->axes_named = true;
+}
+
+/* inih tells of a section with its first key only; an axis without keys has the default ones all the same. False: the
+ * line is no section, as has been reported. */
+static bool reader_enter_section(struct machine_reader *r, size_t offset)
+{
+    char section[MACHINE_FILE_WORD_MAX + 1], word[MACHINE_FILE_WORD_MAX + 1],
+        instance[MACHINE_FILE_WORD_MAX + 1];
+    const char *start = r->current + offset + 1;
+    const char *end = memchr(start, ']', r->length - offset - 1);
+    struct machine_problem wrong;
+
+    r->place_known = false;
+    if (end == NULL) {
+        reader_error(r, offset, "a ']' is missing");
+        return false;
+    }
+    (void)snprintf(section, sizeof section, "%.*s", (int)(end - start), start);
+    split_section(section, word, instance);
+    if (strcmp(word, machine_section_names[SECTION_AXIS]) == 0)
+        forget_default_axes(r);
+    r->place_known = machine_section_find(r->setup, word, instance, &r->place, &wrong);
+    if (!r->place_known)
+        reader_error(r, offset + 1, wrong.text);
+    return true;
+}
+
+static bool is_plain(const char *line, size_t length)
+{
+    for (size_t i = 0; i < length; i++) {
+        if ((unsigned char)line[i] < ' ' && line[i] != '\t')
+            return false;
+    }
+    return true;
+}
+
+/*
+ * fgets for inih: the next line, without leading spaces, because inih takes an indented line as the continuation of
+ * the value before.
+ */
+static char *reader_next_line(char *buffer, int size, void *context)
+{
+    struct machine_reader *r = context;
+    size_t offset = 0;
+
+    if (!text_next_line(r->text, &r->position, &r->current, &r->length))
+        return NULL;
+    r->line++;
+    buffer[0] = '\0';
+    if (!is_plain(r->current, r->length)) {
+        reader_error(r, 0, "this is no text: it holds control characters");
+        return buffer;
+    }
+    offset = column_of(r, 0) - 1;
+    if (r->length - offset >= (size_t)size) {
+        reader_error(r, 0, "the line is too long");
+        return buffer;
+    }
+    if (offset < r->length && r->current[offset] == '[' && !reader_enter_section(r, offset))
+        return buffer;
+    memcpy(buffer, r->current + offset, r->length - offset);
+    buffer[r->length - offset] = '\0';
+    return buffer;
+}
+
+static bool reader_is_new(struct machine_reader *r, const struct machine_key *key)
+{
+    uint32_t *line = &r->set_in_line[key - machine_keys][r->place.index];
+    char text[MACHINE_FILE_WORD_MAX + 64];
+
+    if (*line != 0) {
+        (void)snprintf(text, sizeof text, "%s is given twice; first in line %u", key->name,
+                       (unsigned)*line);
+        reader_error(r, 0, text);
+        return false;
+    }
+    *line = r->line;
+    return true;
+}
+
+static int reader_take(void *context, const char *section, const char *name, const char *value)
+{
+    struct machine_reader *r = context;
+    const struct machine_key *key;
+    struct machine_problem wrong;
+    size_t value_offset = 0;
+
+    if (section[0] == '\0') {
+        reader_error(r, 0, "a key stands before the first [section]");
+        return 1;
+    }
+    if (!r->place_known)
+        return 1; /* reported with the section */
+    key = machine_key_find(r->setup, r->place, name, &wrong);
+    if (key == NULL) {
+        reader_error(r, 0, wrong.text);
+        return 1;
+    }
+    while (value_offset < r->length && r->current[value_offset] != '=' &&
+           r->current[value_offset] != ':')
+        value_offset++;
+    if (reader_is_new(r, key) && !machine_key_set(r->setup, r->place, key, value, &wrong))
+        reader_error(r, value_offset + 1, wrong.text);
+    return 1;
+}
+
+/* Paths in a machine file count from its folder. False: the result would be too long. */
+static bool resolve_path(char *path, const char *machine_file)
+{
+    const char *slash = strrchr(machine_file, '/');
+    size_t folder = slash != NULL ? (size_t)(slash - machine_file) + 1 : 0;
+    size_t length = strlen(path);
+
+    if (length == 0 || path[0] == '/')
+        return true;
+    if (folder + length > MACHINE_SETUP_PATH_MAX)
+        return false;
+    memmove(path + folder, path, length + 1);
+    memcpy(path, machine_file, folder);
+    return true;
+}
+
+bool machine_file_read(struct machine_setup *setup, const char *path)
+{
+    struct text text;
+    struct machine_reader reader = {.setup = setup, .text = &text};
+    int bad_line;
+
+    if (!text_read(&text, path))
+        return false;
+    bad_line = ini_parse_stream(reader_next_line, &reader, reader_take, &reader);
+    if (bad_line > 0) {
+        message_error(text.name, (uint32_t)bad_line, 1, "neither a [section] nor key = value");
+        reader.errors++;
+    }
+    if (!resolve_path(setup->tool_table, path) || !resolve_path(setup->parameter_file, path)) {
+        message_error(text.name, 0, 0, "tool_table or parameter_file: the path is too long");
+        reader.errors++;
+    }
+    text_free(&text);
+    return reader.errors == 0;
+}
+
+/* The parts of "axis.X.key" or "bus.key". False: there are not two or three. */
+static bool split_assignment(const char *assignment, char word[], char instance[], char key[],
+                             const char **value)
+{
+    size_t name = strcspn(assignment, "=");
+    size_t first = strcspn(assignment, ".=");
+    size_t last = name;
+
+    while (last > first && assignment[last] != '.')
+        last--;
+    if (assignment[name] != '=' || first == name)
+        return false;
+    (void)snprintf(word, MACHINE_FILE_WORD_MAX + 1, "%.*s", (int)first, assignment);
+    (void)snprintf(instance, MACHINE_FILE_WORD_MAX + 1, "%.*s",
+                   last > first ? (int)(last - first - 1) : 0, assignment + first + 1);
+    (void)snprintf(key, MACHINE_FILE_WORD_MAX + 1, "%.*s", (int)(name - last - 1),
+                   assignment + last + 1);
+    *value = assignment + name + 1;
+    return true;
+}
+
+bool machine_file_assign(struct machine_setup *setup, const char *assignment)
+{
+    char word[MACHINE_FILE_WORD_MAX + 1], instance[MACHINE_FILE_WORD_MAX + 1],
+        name[MACHINE_FILE_WORD_MAX + 1];
+    struct machine_problem wrong;
+    struct machine_place place;
+    const struct machine_key *key;
+    const char *value;
+
+    if (!split_assignment(assignment, word, instance, name, &value)) {
+        message_command_error(
+            "--set %s: expected SECTION.KEY=VALUE, such as axis.X.max_jerk_mm_s3=20000",
+            assignment);
+        return false;
+    }
+    if (machine_section_find(setup, word, instance, &place, &wrong)) {
+        key = machine_key_find(setup, place, name, &wrong);
+        if (key != NULL && machine_key_set(setup, place, key, value, &wrong))
+            return true;
+    }
+    message_command_error("--set %s: %s", assignment, wrong.text);
+    return false;
+}
+
+bool machine_file_load(struct machine_setup *setup, const struct options *options)
+{
+    const char *wrong;
+
+    machine_setup_set_default(setup);
+    if (options->machine != NULL && !machine_file_read(setup, options->machine))
+        return false;
+    for (unsigned i = 0; i < options->set.count; i++) {
+        if (!machine_file_assign(setup, options->set.item[i]))
+            return false;
+    }
+    wrong = machine_setup_check(setup);
+    if (wrong == NULL)
+        return true;
+    if (options->machine != NULL)
+        message_error(options->machine, 0, 0, "%s", wrong);
+    else
+        message_command_error("%s", wrong);
+    return false;
+}
+
+static void write_section(FILE *file, const struct machine_setup *setup, struct machine_place place)
+{
+    for (size_t i = 0; i < machine_keys_count; i++) {
+        const struct machine_key *key = &machine_keys[i];
+        char name[MACHINE_KEY_NAME_MAX + 1], value[MACHINE_SETUP_PATH_MAX + 1];
+
+        if (key->section != place.section)
+            continue;
+        machine_key_name(setup, place, key, name);
+        machine_key_get(setup, place, key, value, sizeof value);
+        (void)fprintf(file, "# %s\n%s = %s\n", key->meaning, name, value);
+    }
+}
+
+static void write_places_of_axes(FILE *file, const struct machine_setup *setup,
+                                 enum machine_section section)
+{
+    for (unsigned i = 0; i < AXIS_COUNT; i++) {
+        if (!setup->machine.axis[i].present)
+            continue;
+        if (section == SECTION_AXIS)
+            (void)fprintf(file, "\n[axis %c]\n", AXIS_LETTERS[i]);
+        else
+            (void)fprintf(file, "\n[drive %u]\n", (unsigned)setup->machine.axis[i].drive_node);
+        write_section(file, setup, (struct machine_place){section, i});
+    }
+}
+
+void machine_file_write(FILE *file, const struct machine_setup *setup)
+{
+    static const enum machine_section single[] = {SECTION_MACHINE, SECTION_SPINDLE, SECTION_BUS};
+
+    (void)fputs("# A machine, every key spelled out. Keys that are left out have the values of the "
+                "built-in mill.\n",
+                file);
+    for (size_t i = 0; i < sizeof single / sizeof single[0]; i++) {
+        (void)fprintf(file, "\n[%s]\n", machine_section_names[single[i]]);
+        write_section(file, setup, (struct machine_place){single[i], 0});
+    }
+    write_places_of_axes(file, setup, SECTION_AXIS);
+    write_places_of_axes(file, setup, SECTION_DRIVE);
+}

@@ -1,0 +1,140 @@
+#include "takt/machine_setup.h"
+
+#include "base/maths.h"
+#include "bus/bus.h"
+
+#include <stdarg.h>
+#include <stdint.h>
+#include <stdio.h>
+
+#define DEGREE (MATHS_PI / 180.0)
+
+#define FRAME_SYNC     0 /* bytes of data */
+#define FRAME_TARGETS  8 /* of two drives */
+#define FRAME_TARGET   4
+#define FRAME_FEEDBACK 6 /* statusword and position of a drive */
+
+static const struct machine_axis rotary_default = {
+    .rotary = true,
+    .max_velocity_mm_s = 180.0 * DEGREE,
+    .max_acceleration_mm_s2 = 1800.0 * DEGREE,
+    .max_jerk_mm_s3 = 90000.0 * DEGREE,
+    .travel_min_mm = -3600.0 * DEGREE,
+    .travel_max_mm = 3600.0 * DEGREE,
+    .increments_per_mm = 100000.0 * (1.0 / DEGREE), /* as a file's 100000 per degree is read */
+    .following_error_max_mm = 2.0 * DEGREE,
+};
+
+static void set_rotary(struct machine_setup *setup, unsigned axis)
+{
+    setup->machine.axis[axis] = rotary_default;
+    setup->machine.axis[axis].drive_node = (uint8_t)(axis + 1);
+    setup->drive[axis].travel_per_revolution_mm = 10.0 * DEGREE;
+    setup->drive[axis].quick_stop_deceleration_mm_s2 = 1800.0 * DEGREE;
+    setup->drive[axis].following_error_window_mm = 5.0 * DEGREE;
+}
+
+void machine_setup_set_default(struct machine_setup *setup)
+{
+    *setup = (struct machine_setup){0};
+    machine_set_default(&setup->machine);
+    for (unsigned i = 0; i < AXIS_COUNT; i++) {
+        drive_plant_set_default(&setup->drive[i]);
+        if (i >= AXIS_LINEAR_COUNT)
+            set_rotary(setup, i);
+    }
+}
+
+__attribute__((format(printf, 1, 2))) static const char *problem(const char *format, ...)
+{
+    static char text[256];
+    va_list arguments;
+
+    va_start(arguments, format);
+    (void)vsnprintf(text, sizeof text, format, arguments);
+    va_end(arguments);
+    return text;
+}
+
+static const char *check_axis(const struct machine_axis *axis, char letter)
+{
+    double farthest = maths_max(maths_abs(axis->travel_min_mm), maths_abs(axis->travel_max_mm));
+
+    if (axis->travel_min_mm >= axis->travel_max_mm)
+        return problem("axis %c: its travel ends before it begins", letter);
+    if (axis->travel_min_mm > 0 || axis->travel_max_mm < 0)
+        return problem("axis %c: its travel must include 0, where the drives start", letter);
+    if (farthest * axis->increments_per_mm > (double)INT32_MAX)
+        return problem("axis %c: at %.9g increments/%s its travel does not fit a drive's 32 bits",
+                       letter,
+                       axis->rotary ? axis->increments_per_mm * DEGREE : axis->increments_per_mm,
+                       axis->rotary ? "deg" : "mm");
+    return NULL;
+}
+
+static const char *check_node(const struct machine *machine, unsigned axis)
+{
+    for (unsigned i = 0; i < axis; i++) {
+        if (machine->axis[i].present &&
+            machine->axis[i].drive_node == machine->axis[axis].drive_node)
+            return problem("axes %c and %c have the same drive_node %u", AXIS_LETTERS[i],
+                           AXIS_LETTERS[axis], (unsigned)machine->axis[axis].drive_node);
+    }
+    return NULL;
+}
+
+static const char *check_drive(const struct machine_setup *setup, unsigned axis)
+{
+    const char *field = drive_plant_check(&setup->drive[axis]);
+
+    if (field == NULL)
+        return NULL;
+    return problem("drive %u: %s is out of range", (unsigned)setup->machine.axis[axis].drive_node,
+                   field);
+}
+
+static const char *check_bus(const struct machine *machine)
+{
+    double load = machine_setup_predict_load_percent(machine);
+
+    if (load <= 100)
+        return NULL;
+    return problem("the bus cannot carry a cycle: load %.1f %% at %u bit/s and %u us", load,
+                   (unsigned)machine->can_bitrate, (unsigned)machine->cycle_us);
+}
+
+const char *machine_setup_check(const struct machine_setup *setup)
+{
+    const char *wrong = NULL;
+
+    if (machine_axes(&setup->machine) == 0)
+        return "the machine has no axis";
+    for (unsigned i = 0; i < AXIS_COUNT && wrong == NULL; i++) {
+        if (!setup->machine.axis[i].present)
+            continue;
+        wrong = check_axis(&setup->machine.axis[i], AXIS_LETTERS[i]);
+        if (wrong == NULL)
+            wrong = check_node(&setup->machine, i);
+        if (wrong == NULL)
+            wrong = check_drive(setup, i);
+    }
+    return wrong != NULL ? wrong : check_bus(&setup->machine);
+}
+
+double machine_setup_predict_load_percent(const struct machine *machine)
+{
+    uint8_t length[1 + 2 * AXIS_COUNT] = {FRAME_SYNC};
+    unsigned frames = 1, drives = 0;
+
+    for (unsigned i = 0; i < AXIS_COUNT; i++) {
+        if (machine->axis[i].present) {
+            drives++;
+            length[frames++] = FRAME_FEEDBACK;
+        }
+    }
+    for (unsigned i = 0; i < drives / 2; i++)
+        length[frames++] = FRAME_TARGETS;
+    if (drives % 2 != 0)
+        length[frames++] = FRAME_TARGET;
+    return bus_predict_load_percent(machine->can_bitrate, machine->cycle_us, length, frames);
+}

@@ -1,0 +1,268 @@
+/* Reading and writing of what machine_keys.c lists. */
+#include "takt/machine_keys.h"
+
+#include "base/maths.h"
+#include "takt/message.h"
+#include "takt/suggest.h"
+
+#include <ctype.h>
+#include <math.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define DEGREE (MATHS_PI / 180.0)
+
+__attribute__((format(printf, 2, 3))) static void say(struct machine_problem *wrong,
+                                                      const char *format, ...)
+{
+    va_list arguments;
+
+    va_start(arguments, format);
+    (void)vsnprintf(wrong->text, sizeof wrong->text, format, arguments);
+    va_end(arguments);
+}
+
+static bool find_axis(struct machine_setup *setup, const char *instance, unsigned *index,
+                      struct machine_problem *wrong)
+{
+    const char *letter =
+        strlen(instance) == 1 ? strchr(AXIS_LETTERS, toupper((unsigned char)instance[0])) : NULL;
+
+    if (letter == NULL) {
+        say(wrong, "there is no axis '%.40s': takt has X Y Z A B C", instance);
+        return false;
+    }
+    *index = (unsigned)(letter - AXIS_LETTERS);
+    setup->machine.axis[*index].present = true;
+    return true;
+}
+
+static bool find_drive(const struct machine_setup *setup, const char *instance, unsigned *index,
+                       struct machine_problem *wrong)
+{
+    char *end;
+    unsigned long node = strtoul(instance, &end, 10);
+
+    for (unsigned i = 0; i < AXIS_COUNT && end != instance && *end == '\0'; i++) {
+        if (setup->machine.axis[i].present && setup->machine.axis[i].drive_node == node) {
+            *index = i;
+            return true;
+        }
+    }
+    say(wrong, "no axis has drive_node '%.40s'; a drive's section comes after its axis", instance);
+    return false;
+}
+
+static bool find_word(const char *word, enum machine_section *section,
+                      struct machine_problem *wrong)
+{
+    for (unsigned i = 0; i < SECTION_COUNT; i++) {
+        if (strcmp(word, machine_section_names[i]) == 0) {
+            *section = (enum machine_section)i;
+            return true;
+        }
+    }
+    say(wrong, "unknown section '%.40s'%s", word,
+        message_did_you_mean("", suggest_word(word, machine_section_names, SECTION_COUNT)));
+    return false;
+}
+
+bool machine_section_find(struct machine_setup *setup, const char *word, const char *instance,
+                          struct machine_place *place, struct machine_problem *wrong)
+{
+    *place = (struct machine_place){0};
+    if (!find_word(word, &place->section, wrong))
+        return false;
+    if (place->section == SECTION_AXIS)
+        return find_axis(setup, instance, &place->index, wrong);
+    if (place->section == SECTION_DRIVE)
+        return find_drive(setup, instance, &place->index, wrong);
+    if (instance[0] == '\0')
+        return true;
+    say(wrong, "there is only one section '%s': '%.40s' is too much", word, instance);
+    return false;
+}
+
+static bool is_rotary(const struct machine_setup *setup, struct machine_place place)
+{
+    return (place.section == SECTION_AXIS || place.section == SECTION_DRIVE) &&
+           setup->machine.axis[place.index].rotary;
+}
+
+void machine_key_name(const struct machine_setup *setup, struct machine_place place,
+                      const struct machine_key *key, char name[MACHINE_KEY_NAME_MAX + 1])
+{
+    const char *unit = strstr(key->name, "_mm");
+
+    if (key->scale == SCALE_NONE || unit == NULL || !is_rotary(setup, place))
+        (void)snprintf(name, MACHINE_KEY_NAME_MAX + 1, "%s", key->name);
+    else
+        (void)snprintf(name, MACHINE_KEY_NAME_MAX + 1, "%.*s_deg%s", (int)(unit - key->name),
+                       key->name, unit + 3);
+}
+
+const struct machine_key *machine_key_find(const struct machine_setup *setup,
+                                           struct machine_place place, const char *name,
+                                           struct machine_problem *wrong)
+{
+    char names[MACHINE_KEYS_MAX][MACHINE_KEY_NAME_MAX + 1];
+    const char *words[MACHINE_KEYS_MAX];
+    unsigned count = 0;
+
+    for (size_t i = 0; i < machine_keys_count; i++) {
+        if (machine_keys[i].section != place.section)
+            continue;
+        machine_key_name(setup, place, &machine_keys[i], names[count]);
+        if (strcmp(name, names[count]) == 0)
+            return &machine_keys[i];
+        words[count] = names[count];
+        count++;
+    }
+    say(wrong, "unknown key '%.60s' in section '%s'%s", name, machine_section_names[place.section],
+        message_did_you_mean("", suggest_word(name, words, count)));
+    return NULL;
+}
+
+/* Value in the setup per value in the file. */
+static double scale_of(const struct machine_setup *setup, struct machine_place place,
+                       const struct machine_key *key)
+{
+    if (key->scale == SCALE_NONE || !is_rotary(setup, place))
+        return 1.0;
+    return key->scale == SCALE_LENGTH ? DEGREE : 1.0 / DEGREE;
+}
+
+static const void *field_of(const struct machine_setup *setup, struct machine_place place,
+                            const struct machine_key *key)
+{
+    const void *base = setup;
+
+    if (place.section == SECTION_AXIS)
+        base = &setup->machine.axis[place.index];
+    else if (place.section == SECTION_DRIVE)
+        base = &setup->drive[place.index];
+    return (const char *)base + key->offset;
+}
+
+static bool read_number(const struct machine_key *key, const char *value, double *number,
+                        struct machine_problem *wrong)
+{
+    char *end;
+
+    *number = strtod(value, &end);
+    if (end == value || *end != '\0' || !isfinite(*number)) {
+        say(wrong, "%s: a number is expected, not '%.60s'", key->name, value);
+        return false;
+    }
+    if (*number < key->min || *number > key->max || (key->above_min && *number <= key->min)) {
+        say(wrong, "%s: %s is out of range: it must be %s %.10g and at most %.10g", key->name,
+            value, key->above_min ? "above" : "at least", key->min, key->max);
+        return false;
+    }
+    return true;
+}
+
+static bool read_count(const struct machine_key *key, const char *value, double *number,
+                       struct machine_problem *wrong)
+{
+    if (!read_number(key, value, number, wrong))
+        return false;
+    if (*number == floor(*number))
+        return true;
+    say(wrong, "%s: a whole number is expected, not %s", key->name, value);
+    return false;
+}
+
+static bool read_axis_type(const struct machine_setup *setup, struct machine_place place,
+                           const char *value, struct machine_problem *wrong)
+{
+    const char *expected = is_rotary(setup, place) ? "rotary" : "linear";
+
+    if (strcmp(value, expected) == 0)
+        return true;
+    say(wrong, "type: axis %c is %s, not '%.40s'", AXIS_LETTERS[place.index], expected, value);
+    return false;
+}
+
+static bool read_text(const struct machine_key *key, const char *value, char *field,
+                      struct machine_problem *wrong)
+{
+    if (strlen(value) >= key->size) {
+        say(wrong, "%s: longer than %zu characters", key->name, key->size - 1);
+        return false;
+    }
+    (void)snprintf(field, key->size, "%s", value);
+    return true;
+}
+
+bool machine_key_set(struct machine_setup *setup, struct machine_place place,
+                     const struct machine_key *key, const char *value,
+                     struct machine_problem *wrong)
+{
+    void *field = (char *)setup + ((const char *)field_of(setup, place, key) - (const char *)setup);
+    double number = 0;
+
+    switch (key->type) {
+    case KEY_AXIS_TYPE:
+        return read_axis_type(setup, place, value, wrong);
+    case KEY_TEXT:
+        return read_text(key, value, field, wrong);
+    case KEY_DOUBLE:
+        if (!read_number(key, value, &number, wrong))
+            return false;
+        *(double *)field = number * scale_of(setup, place, key);
+        return true;
+    case KEY_UINT32:
+        if (!read_count(key, value, &number, wrong))
+            return false;
+        *(uint32_t *)field = (uint32_t)number;
+        return true;
+    case KEY_UINT8:
+        if (!read_count(key, value, &number, wrong))
+            return false;
+        *(uint8_t *)field = (uint8_t)number;
+        return true;
+    }
+    return false;
+}
+
+/*
+ * The shortest decimal number that, read and scaled, gives the same bits; the nearest if rounding lets none. No
+ * exponent for numbers people read without one.
+ */
+static void write_number(double value, double scale, char *text, size_t size)
+{
+    bool plain = fabs(value / scale) >= 1e-4 && fabs(value / scale) < 1e15;
+
+    for (int digits = 1; digits <= 17; digits++) {
+        (void)snprintf(text, size, "%.*g", digits, value / scale);
+        if (strtod(text, NULL) * scale == value && !(plain && strchr(text, 'e') != NULL))
+            return;
+    }
+}
+
+void machine_key_get(const struct machine_setup *setup, struct machine_place place,
+                     const struct machine_key *key, char *text, size_t size)
+{
+    const void *field = field_of(setup, place, key);
+
+    switch (key->type) {
+    case KEY_AXIS_TYPE:
+        (void)snprintf(text, size, "%s", is_rotary(setup, place) ? "rotary" : "linear");
+        break;
+    case KEY_TEXT:
+        (void)snprintf(text, size, "%s", (const char *)field);
+        break;
+    case KEY_DOUBLE:
+        write_number(*(const double *)field, scale_of(setup, place, key), text, size);
+        break;
+    case KEY_UINT32:
+        (void)snprintf(text, size, "%u", (unsigned)*(const uint32_t *)field);
+        break;
+    case KEY_UINT8:
+        (void)snprintf(text, size, "%u", (unsigned)*(const uint8_t *)field);
+        break;
+    }
+}

@@ -1,0 +1,32 @@
+/*
+ * What users read when something is wrong, always on stderr:
+ *
+ *     FILE:LINE:COLUMN: error: TEXT        0:0 when it is about the file as a whole
+ *     takt run: error: TEXT                about the command line or the environment
+ */
+#ifndef TAKT_HOST_MESSAGE_H
+#define TAKT_HOST_MESSAGE_H
+
+#include "base/error.h"
+#include "takt/text.h"
+
+#include <stdint.h>
+
+/* The sub-command, for messages about the command line. */
+void message_set_command(const char *name);
+
+__attribute__((format(printf, 4, 5))) void message_error(const char *file, uint32_t line,
+                                                         uint32_t column, const char *format, ...);
+__attribute__((format(printf, 4, 5))) void
+message_warning(const char *file, uint32_t line, uint32_t column, const char *format, ...);
+/* About the command line, or what the machine it runs on refuses. */
+__attribute__((format(printf, 1, 2))) void message_command_error(const char *format, ...);
+
+/* "; did you mean PREFIXWORD?", or "" when word is NULL: for the end of a message. Valid until the next call. */
+const char *message_did_you_mean(const char *prefix, const char *word);
+
+/* Errors and warnings of a part program, with the line they are about and a caret under the column. */
+void message_program_error(const struct text *program, const struct diagnostic *diagnostic);
+void message_program_warning(const struct text *program, const struct diagnostic *diagnostic);
+
+#endif

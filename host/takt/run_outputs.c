@@ -1,0 +1,229 @@
+#define _POSIX_C_SOURCE 200809L
+
+#include "takt/run_outputs.h"
+
+#include "takt/message.h"
+
+#include <errno.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+
+static const char *const option_names[RUN_OUTPUT_COUNT] = {"trace", "bus-log", "report",
+                                                           "json",  "junit",   "save-parameters"};
+
+/* Both exist and are the same, whatever links lead to them. */
+static bool is_same_file(const char *a, const char *b)
+{
+    struct stat first, second;
+
+    if (a == NULL || b == NULL)
+        return false;
+    if (stat(a, &first) != 0 || stat(b, &second) != 0)
+        return strcmp(a, b) == 0;
+    return S_ISREG(first.st_mode) && first.st_dev == second.st_dev && first.st_ino == second.st_ino;
+}
+
+static bool check_inputs(const struct run_outputs *o, const struct session *session, unsigned i)
+{
+    const struct options *options = session->options;
+    const char *inputs[] = {options->operand[0], options->machine, options->tools,
+                            i == RUN_PARAMETERS ? NULL : session->parameter_path};
+
+    for (size_t k = 0; k < sizeof inputs / sizeof inputs[0]; k++) {
+        if (inputs[k] != NULL && strcmp(o->path[i], "-") != 0 &&
+            is_same_file(o->path[i], inputs[k])) {
+            message_command_error("--%s would overwrite %s, which is read", option_names[i],
+                                  inputs[k]);
+            return false;
+        }
+    }
+    return true;
+}
+
+static bool check_pairs(const struct run_outputs *o, unsigned i)
+{
+    for (unsigned k = 0; k < i; k++) {
+        if (o->path[k] != NULL &&
+            (strcmp(o->path[k], o->path[i]) == 0 || is_same_file(o->path[k], o->path[i]))) {
+            message_command_error("--%s and --%s name the same file", option_names[k],
+                                  option_names[i]);
+            return false;
+        }
+    }
+    return true;
+}
+
+bool run_outputs_plan(struct run_outputs *o, const struct session *session)
+{
+    const struct options *options = session->options;
+
+    *o = (struct run_outputs){
+        .path = {options->trace, options->bus_log, options->report, options->json, options->junit}};
+    if (options->save_parameters) {
+        o->path[RUN_PARAMETERS] = session->parameter_path;
+        if (session->parameter_path == NULL) {
+            message_command_error(
+                "--save-parameters needs --parameters, or parameter_file in the machine file");
+            return false;
+        }
+    }
+    for (unsigned i = 0; i < RUN_OUTPUT_COUNT; i++) {
+        if (o->path[i] != NULL && (!check_inputs(o, session, i) || !check_pairs(o, i)))
+            return false;
+    }
+    o->each_cycle = options->trace != NULL || options->bus_log != NULL || options->report != NULL;
+    return true;
+}
+
+bool run_outputs_use_stdout(const struct run_outputs *o)
+{
+    for (unsigned i = 0; i < RUN_OUTPUT_COUNT; i++) {
+        if (o->path[i] != NULL && strcmp(o->path[i], "-") == 0)
+            return true;
+    }
+    return false;
+}
+
+static bool open_bus_log(struct run_outputs *o, struct simulation *simulation)
+{
+    o->bus_log = malloc(sizeof *o->bus_log);
+    o->frames = malloc(sizeof *o->frames);
+    if (o->bus_log == NULL || o->frames == NULL)
+        return false;
+    candump_init(o->bus_log, o->file[RUN_BUS_LOG].stream, "can0");
+    frame_buffer_attach(o->frames, &simulation->bus, o->bus_log);
+    return true;
+}
+
+static bool open_trace(struct run_outputs *o, const struct machine *machine)
+{
+    o->trace = malloc(sizeof *o->trace);
+    if (o->trace == NULL)
+        return false;
+    trace_writer_init(o->trace, o->file[RUN_TRACE].stream, machine_axes(machine),
+                      1e-6 * (double)machine->cycle_us);
+    return true;
+}
+
+static bool open_report(struct run_outputs *o, const struct machine *machine)
+{
+    struct plan_limits limits;
+
+    controller_plan_limits(machine, &limits);
+    o->report = report_open(&limits);
+    return o->report != NULL;
+}
+
+static bool open_writers(struct run_outputs *o, const struct machine *machine,
+                         struct simulation *simulation)
+{
+    return (o->path[RUN_TRACE] == NULL || open_trace(o, machine)) &&
+           (o->path[RUN_BUS_LOG] == NULL || open_bus_log(o, simulation)) &&
+           (o->path[RUN_REPORT] == NULL || open_report(o, machine));
+}
+
+bool run_outputs_open(struct run_outputs *o, const struct session *session,
+                      struct simulation *simulation)
+{
+    for (unsigned i = 0; i < RUN_OUTPUT_COUNT; i++) {
+        if (o->path[i] != NULL && !output_file_open(&o->file[i], o->path[i])) {
+            run_outputs_close(o);
+            return false;
+        }
+    }
+    if (open_writers(o, &session->setup.machine, simulation))
+        return true;
+    message_command_error("out of memory");
+    run_outputs_close(o);
+    return false;
+}
+
+void run_outputs_add(struct run_outputs *o, const struct cycle_record *record,
+                     const struct segment *segment)
+{
+    if (o->frames != NULL)
+        frame_buffer_write(o->frames);
+    if (record == NULL)
+        return;
+    if (o->trace != NULL)
+        trace_writer_add(o->trace, record);
+    if (o->report != NULL)
+        report_add(o->report, record, segment->move.kind == MOVE_RAPID);
+}
+
+bool run_outputs_failed(const struct run_outputs *o)
+{
+    return (o->trace != NULL && o->trace->failed) || (o->bus_log != NULL && o->bus_log->failed);
+}
+
+void run_outputs_drop(struct run_outputs *o, enum run_output which)
+{
+    output_file_discard(&o->file[which]);
+    o->path[which] = NULL;
+}
+
+/* False: out of memory, or errno says what the report could not do. */
+static bool write_end(struct run_outputs *o, const struct summary *summary,
+                      const struct parameter_file *parameters)
+{
+    char *json = summary_json(summary);
+    bool good = json != NULL;
+
+    if (good && o->path[RUN_JSON] != NULL)
+        (void)fprintf(o->file[RUN_JSON].stream, "%s\n", json);
+    if (good && o->report != NULL)
+        good = report_write(o->report, o->file[RUN_REPORT].stream, json) == 0;
+    free(json);
+    if (o->path[RUN_JUNIT] != NULL)
+        summary_write_junit(o->file[RUN_JUNIT].stream, summary);
+    if (o->path[RUN_PARAMETERS] != NULL)
+        parameter_file_write(o->file[RUN_PARAMETERS].stream, parameters);
+    return good;
+}
+
+bool run_outputs_commit(struct run_outputs *o, const struct summary *summary,
+                        const struct parameter_file *parameters)
+{
+    bool good = write_end(o, summary, parameters);
+
+    if (o->trace != NULL)
+        good = trace_writer_flush(o->trace) && good;
+    if (o->bus_log != NULL)
+        good = candump_flush(o->bus_log) && good;
+    if (!good) {
+        message_command_error("the output files cannot be written: %s",
+                              errno != 0 ? strerror(errno) : "out of memory");
+        return false;
+    }
+    for (unsigned i = 0; i < RUN_OUTPUT_COUNT; i++) {
+        if (o->path[i] != NULL && !output_file_commit(&o->file[i]))
+            return false;
+    }
+    return true;
+}
+
+void run_outputs_list(const struct run_outputs *o, FILE *stream)
+{
+    static const char *const labels[RUN_OUTPUT_COUNT] = {"trace", "bus log", "report",
+                                                         "JSON",  "JUnit",   "parameters"};
+
+    for (unsigned i = 0; i < RUN_OUTPUT_COUNT; i++) {
+        if (o->path[i] != NULL)
+            (void)fprintf(stream, "  %-13s %s\n", labels[i], o->path[i]);
+    }
+}
+
+void run_outputs_close(struct run_outputs *o)
+{
+    for (unsigned i = 0; i < RUN_OUTPUT_COUNT; i++)
+        output_file_discard(&o->file[i]);
+    free(o->trace);
+    free(o->bus_log);
+    free(o->frames);
+    report_close(o->report);
+    o->trace = NULL;
+    o->bus_log = NULL;
+    o->frames = NULL;
+    o->report = NULL;
+}

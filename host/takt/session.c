@@ -1,0 +1,124 @@
+#include "takt/session.h"
+
+#include "takt/interrupt.h"
+#include "takt/machine_file.h"
+#include "takt/message.h"
+
+#include <stdio.h>
+
+/* Moves between two looks at Ctrl-C. */
+#define SESSION_INTERRUPT_MOVES 4096
+
+/* Warnings that are printed; others are counted. */
+#define SESSION_WARNINGS_MAX 20
+
+static bool open_tables(struct session *s)
+{
+    const char *tools = s->options->tools;
+    const char *parameters = s->options->parameters;
+
+    if (tools == NULL && s->setup.tool_table[0] != '\0')
+        tools = s->setup.tool_table;
+    if (parameters == NULL && s->setup.parameter_file[0] != '\0')
+        parameters = s->setup.parameter_file;
+    s->parameter_path = parameters;
+    if (tools != NULL && !tool_file_read(&s->tools, tools))
+        return false;
+    return parameters == NULL || parameter_file_read(&s->parameters, parameters);
+}
+
+enum command_status session_open(struct session *s, const struct options *options)
+{
+    *s = (struct session){.options = options};
+    parameters_clear(&s->parameters.values);
+    if (!machine_file_load(&s->setup, options) || !open_tables(s))
+        return STATUS_INPUT;
+    return text_read(&s->program, options->operand[0]) ? STATUS_DONE : STATUS_INPUT;
+}
+
+void session_close(struct session *s)
+{
+    text_free(&s->program);
+    tool_file_close(&s->tools);
+}
+
+void session_begin_reading(const struct session *s, struct session_reading *reading,
+                           struct program_config *config, struct source *source)
+{
+    struct controller_config controller = {
+        .machine = &s->setup.machine,
+        .tools = &s->tools.table,
+        .parameters = &reading->parameters,
+        .exact_path = s->options->exact_path,
+        .block_delete = s->options->block_delete,
+    };
+
+    reading->parameters = s->parameters.values;
+    controller_program_config(&controller, config);
+    source_open_text(source, &reading->text, s->program.bytes, s->program.length);
+}
+
+static void print_warnings(const struct session *s, struct program *program,
+                           struct session_totals *totals)
+{
+    struct diagnostic warning;
+
+    while (program_warning(program, &warning)) {
+        if (totals->warnings++ < SESSION_WARNINGS_MAX)
+            message_program_warning(&s->program, &warning);
+    }
+}
+
+static void count_move(struct session_totals *totals, const struct move *move, struct point *at)
+{
+    struct curve curve;
+
+    totals->moves++;
+    if (!move_is_motion(move))
+        return;
+    totals->motions++;
+    if (move_curve(move, at, &curve))
+        totals->last = totals->motions;
+    *at = move->end;
+}
+
+/* False: no more is to be read. */
+static bool check_move(const struct session *s, struct program *program, unsigned errors_max,
+                       struct session_totals *totals, struct point *at)
+{
+    struct diagnostic error;
+    struct move move;
+    enum program_result result = program_next(program, &move, &error);
+
+    print_warnings(s, program, totals);
+    if (result == PROGRAM_MOVE)
+        count_move(totals, &move, at);
+    if (result != PROGRAM_ERROR)
+        return result == PROGRAM_MOVE;
+    message_program_error(&s->program, &error);
+    totals->errors++;
+    return totals->errors < errors_max;
+}
+
+enum command_status session_check(const struct session *s, unsigned errors_max,
+                                  struct session_totals *totals)
+{
+    struct session_reading reading;
+    struct program_config config;
+    struct source source;
+    struct point at;
+    unsigned moves = 0;
+
+    session_begin_reading(s, &reading, &config, &source);
+    program_open(&reading.program, &config, &source);
+    at = config.start;
+    *totals = (struct session_totals){0};
+    while (check_move(s, &reading.program, errors_max, totals, &at)) {
+        if (++moves % SESSION_INTERRUPT_MOVES == 0 && interrupt_asked())
+            return STATUS_INTERRUPTED;
+    }
+    if (totals->warnings > SESSION_WARNINGS_MAX)
+        message_warning(s->program.name, 0, 0, "%u more warnings",
+                        totals->warnings - SESSION_WARNINGS_MAX);
+    return totals->errors == 0 ? STATUS_DONE : STATUS_INPUT;
+}

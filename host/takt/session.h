@@ -1,0 +1,60 @@
+/*
+ * What every command on a part program begins with: the machine, the program's text, tools and parameters, and the
+ * first reading that finds all errors before anything moves or any file is written.
+ */
+#ifndef TAKT_HOST_SESSION_H
+#define TAKT_HOST_SESSION_H
+
+#include "controller/controller.h"
+#include "program/program.h"
+#include "takt/command.h"
+#include "takt/machine_setup.h"
+#include "takt/options.h"
+#include "takt/parameter_file.h"
+#include "takt/text.h"
+#include "takt/tool_file.h"
+
+#include <stdbool.h>
+#include <stdint.h>
+
+struct session {
+    const struct options *options;
+    struct machine_setup setup;
+    struct text program;
+    struct tool_file tools;
+    const char *parameter_path; /* NULL: none */
+    struct parameter_file parameters;
+};
+
+/* Reads everything the options name; the first operand is the program. STATUS_DONE, or STATUS_INPUT after messages;
+ * session_close is due in either case. */
+enum command_status session_open(struct session *s, const struct options *options);
+void session_close(struct session *s);
+
+/* One reading of the program: struct program and what belongs to it. It must not be moved once begun. */
+struct session_reading {
+    struct program program;
+    struct parameters parameters; /* its own copy, as they were before the program */
+    struct source_text text;
+};
+
+/* The configuration of a reading: sources and parameters are its own. */
+void session_begin_reading(const struct session *s, struct session_reading *reading,
+                           struct program_config *config, struct source *source);
+
+struct session_totals {
+    uint32_t moves;   /* of all kinds */
+    uint32_t motions; /* that move axes */
+    uint32_t last;    /* number of the last motion that has a length; 0: none */
+    unsigned errors;
+    unsigned warnings;
+};
+
+/*
+ * Reads the whole program, prints up to errors_max errors and the first warnings. STATUS_DONE, STATUS_INPUT when there was
+ * an error, STATUS_INTERRUPTED.
+ */
+enum command_status session_check(const struct session *s, unsigned errors_max,
+                                  struct session_totals *totals);
+
+#endif

@@ -1,0 +1,131 @@
+#include "takt/summary.h"
+
+#include "base/maths.h"
+#include "takt/axis_unit.h"
+
+/* Above the largest chord error a machine allows: rounding of the planner's and the judge's formula. */
+#define SUMMARY_CHORD_ROOM_MM 1e-6
+
+const char *summary_outcome_name(enum summary_outcome outcome)
+{
+    static const char *const names[] = {"completed", "stopped", "faulted"};
+
+    return names[outcome];
+}
+
+double summary_program_time_s(const struct summary *summary)
+{
+    return (double)summary->figures.cycles * summary->cycle_s;
+}
+
+double summary_realtime_ratio(const struct summary *summary)
+{
+    return summary->wall_time_s > 0 ? summary_program_time_s(summary) / summary->wall_time_s : 0;
+}
+
+bool summary_held(const struct summary *summary)
+{
+    for (unsigned i = 0; i < summary->checks; i++) {
+        if (!summary->check[i].held)
+            return false;
+    }
+    return true;
+}
+
+/* axis: index, or AXIS_COUNT for a check that is not of an axis. */
+static void add_check(struct summary *summary, const char *name, unsigned axis, const char *unit,
+                      double value, double limit)
+{
+    struct summary_check *check = &summary->check[summary->checks++];
+
+    if (axis < AXIS_COUNT)
+        (void)snprintf(check->name, sizeof check->name, "%s.%c", name, AXIS_LETTERS[axis]);
+    else
+        (void)snprintf(check->name, sizeof check->name, "%s", name);
+    check->unit = unit;
+    check->value = value;
+    check->limit = limit;
+    check->held = value <= limit;
+}
+
+static void check_axis(struct summary *summary, unsigned i)
+{
+    static const char *const units[2][3] = {{"mm/s", "mm/s2", "mm/s3"},
+                                            {"deg/s", "deg/s2", "deg/s3"}};
+    const char *const *unit = units[axis_unit_is_rotary(i) ? 1 : 0];
+    const struct machine_axis *axis = &summary->machine->axis[i];
+    const struct judge_figures *figures = &summary->figures;
+    double ratio = axis_unit_ratio(i);
+
+    add_check(summary, "velocity", i, unit[0], figures->velocity_mm_s[i] * ratio,
+              axis->max_velocity_mm_s * ratio * JUDGE_VELOCITY_RATIO);
+    add_check(summary, "acceleration", i, unit[1], figures->acceleration_mm_s2[i] * ratio,
+              axis->max_acceleration_mm_s2 * ratio * JUDGE_ACCELERATION_RATIO);
+    add_check(summary, "jerk", i, unit[2], figures->jerk_mm_s3[i] * ratio,
+              axis->max_jerk_mm_s3 * ratio * JUDGE_JERK_RATIO);
+    if (axis->following_error_max_mm > 0)
+        add_check(summary, "following", i, axis_unit_name(i),
+                  figures->following_error_mm[i] * ratio, axis->following_error_max_mm * ratio);
+}
+
+static void check_path(struct summary *summary)
+{
+    const struct judge_figures *figures = &summary->figures;
+
+    add_check(summary, "landing", AXIS_COUNT, "mm", figures->landing_error_mm,
+              JUDGE_LANDING_MAX_MM);
+    add_check(summary, "path", AXIS_COUNT, "mm", figures->path_error_mm,
+              JUDGE_PATH_MAX_MM + figures->chord_error_mm);
+    add_check(summary, "chord", AXIS_COUNT, "mm", figures->chord_error_mm,
+              1.0 / summary->machine->resolution_per_mm + SUMMARY_CHORD_ROOM_MM);
+}
+
+/* After a complete run nothing may be missing; a run that ended early may only not have done what is not there. */
+static void check_blocks(struct summary *summary, const struct summary_source *source)
+{
+    double missing = source->judge->strayed ? 1 : 0;
+
+    if (source->outcome == OUTCOME_COMPLETED && !source->judge->strayed)
+        missing = maths_abs((double)source->totals->last - (double)summary->figures.blocks);
+    add_check(summary, "blocks_missing", AXIS_COUNT, "", missing, 0);
+}
+
+static void set_cost(struct summary *summary, const struct cycle_cost *cost)
+{
+    summary->cost_measured = cost->count > 0;
+    if (!summary->cost_measured)
+        return;
+    summary->cost_min_ns = (double)cost->min_ns;
+    summary->cost_mean_ns = (double)cost->sum_ns / (double)cost->count;
+    summary->cost_p99_ns = cycle_cost_get_p99_ns(cost);
+    summary->cost_max_ns = (double)cost->max_ns;
+}
+
+void summary_set(struct summary *summary, const struct summary_source *source)
+{
+    const struct simulation *simulation = source->simulation;
+    const struct machine *machine = &source->session->setup.machine;
+
+    *summary = (struct summary){
+        .program = source->session->program.name,
+        .machine = machine,
+        .outcome = source->outcome,
+        .cycle_s = 1e-6 * (double)machine->cycle_us,
+        .wall_time_s = source->wall_time_s,
+        .figures = source->judge->figures,
+        .bus_frames = simulation->bus.counts.frames,
+        .bus_load_percent = bus_load_percent(&simulation->bus),
+        .bus_predicted_percent = machine_setup_predict_load_percent(machine),
+    };
+    if (source->outcome == OUTCOME_FAULTED)
+        diagnostic_text(controller_get_fault(&simulation->controller), summary->fault);
+    set_cost(summary, &simulation->cost);
+    for (unsigned i = 0; i < AXIS_COUNT; i++) {
+        if (machine->axis[i].present)
+            check_axis(summary, i);
+    }
+    check_path(summary);
+    check_blocks(summary, source);
+    add_check(summary, "bus_load", AXIS_COUNT, "%", summary->bus_load_percent, 100);
+    add_check(summary, "fault", AXIS_COUNT, "", source->outcome == OUTCOME_FAULTED ? 1 : 0, 0);
+}

@@ -1,0 +1,65 @@
+/*
+ * What a run comes to: figures, checks, and their three forms: JSON (summary.schema.json), JUnit, text.
+ */
+#ifndef TAKT_HOST_SUMMARY_H
+#define TAKT_HOST_SUMMARY_H
+
+#include "base/error.h"
+#include "takt/judge.h"
+#include "takt/session.h"
+#include "takt/simulation.h"
+
+#include <stdbool.h>
+#include <stdio.h>
+
+enum summary_outcome { OUTCOME_COMPLETED, OUTCOME_STOPPED, OUTCOME_FAULTED };
+
+#define SUMMARY_CHECK_NAME_MAX 31
+#define SUMMARY_CHECKS_MAX     (4 * AXIS_COUNT + 8)
+
+struct summary_check {
+    char name[SUMMARY_CHECK_NAME_MAX + 1];
+    const char *unit;
+    bool held; /* value <= limit */
+    double value, limit;
+};
+
+struct summary {
+    const char *program;
+    const struct machine *machine;
+    enum summary_outcome outcome;
+    char fault[DIAGNOSTIC_TEXT_MAX]; /* OUTCOME_FAULTED */
+    double cycle_s;
+    double wall_time_s;
+    struct judge_figures figures;
+    uint64_t bus_frames;
+    double bus_load_percent;
+    double bus_predicted_percent;
+    bool cost_measured;
+    double cost_min_ns, cost_mean_ns, cost_p99_ns, cost_max_ns;
+    unsigned checks;
+    struct summary_check check[SUMMARY_CHECKS_MAX];
+};
+
+/* What a run leaves behind. All of it must outlive the summary. */
+struct summary_source {
+    const struct session *session;
+    const struct session_totals *totals;
+    const struct simulation *simulation;
+    const struct judge *judge; /* finished */
+    enum summary_outcome outcome;
+    double wall_time_s;
+};
+
+void summary_set(struct summary *summary, const struct summary_source *source);
+bool summary_held(const struct summary *summary);
+const char *summary_outcome_name(enum summary_outcome outcome);
+double summary_program_time_s(const struct summary *summary);
+double summary_realtime_ratio(const struct summary *summary); /* 0: no time has passed */
+
+/* Zero-terminated, the caller frees it with free(); NULL: out of memory. */
+char *summary_json(const struct summary *summary);
+void summary_write_junit(FILE *stream, const struct summary *summary);
+void summary_write_text(FILE *stream, const struct summary *summary);
+
+#endif

@@ -1,0 +1,63 @@
+/* The summary as JUnit XML, as CI servers read it: one case a check. */
+#include "takt/summary.h"
+
+static void write_escaped(FILE *stream, const char *text)
+{
+    for (; *text != '\0'; text++) {
+        switch (*text) {
+        case '&':
+            (void)fputs("&amp;", stream);
+            break;
+        case '<':
+            (void)fputs("&lt;", stream);
+            break;
+        case '>':
+            (void)fputs("&gt;", stream);
+            break;
+        case '"':
+            (void)fputs("&quot;", stream);
+            break;
+        default:
+            /* XML 1.0 has no other control characters, and a file name need not be UTF-8. */
+            (void)fputc(*text >= ' ' && *text <= '~' ? *text : '?', stream);
+            break;
+        }
+    }
+}
+
+static unsigned count_failures(const struct summary *summary)
+{
+    unsigned failures = 0;
+
+    for (unsigned i = 0; i < summary->checks; i++)
+        failures += summary->check[i].held ? 0 : 1;
+    return failures;
+}
+
+static void write_case(FILE *stream, const struct summary *summary,
+                       const struct summary_check *check)
+{
+    (void)fputs("  <testcase classname=\"", stream);
+    write_escaped(stream, summary->program);
+    (void)fprintf(stream, "\" name=\"%s\" time=\"0\"", check->name);
+    if (check->held) {
+        (void)fputs("/>\n", stream);
+        return;
+    }
+    (void)fprintf(stream, ">\n    <failure message=\"%.9g %s is above %.9g %s\">", check->value,
+                  check->unit, check->limit, check->unit);
+    write_escaped(stream, summary->fault);
+    (void)fputs("</failure>\n  </testcase>\n", stream);
+}
+
+void summary_write_junit(FILE *stream, const struct summary *summary)
+{
+    (void)fputs("<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuite name=\"takt run ", stream);
+    write_escaped(stream, summary->program);
+    (void)fprintf(stream,
+                  "\" tests=\"%u\" failures=\"%u\" errors=\"0\" skipped=\"0\" time=\"%.3f\">\n",
+                  summary->checks, count_failures(summary), summary->wall_time_s);
+    for (unsigned i = 0; i < summary->checks; i++)
+        write_case(stream, summary, &summary->check[i]);
+    (void)fputs("</testsuite>\n", stream);
+}

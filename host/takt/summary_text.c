@@ -1,0 +1,103 @@
+/* The summary as people read it. */
+#include "takt/axis_unit.h"
+#include "takt/summary.h"
+
+#include <inttypes.h>
+
+/* 0:01:23.456 */
+static void write_time(FILE *stream, double time_s)
+{
+    uint64_t ms = (uint64_t)(time_s * 1000.0 + 0.5);
+
+    (void)fprintf(stream, "%" PRIu64 ":%02u:%02u.%03u", ms / 3600000, (unsigned)(ms / 60000 % 60),
+                  (unsigned)(ms / 1000 % 60), (unsigned)(ms % 1000));
+}
+
+static void write_head(FILE *stream, const struct summary *summary)
+{
+    const struct judge_figures *figures = &summary->figures;
+
+    (void)fprintf(stream, "%s on %s: %s\n", summary->program, summary->machine->name,
+                  summary_outcome_name(summary->outcome));
+    if (summary->outcome == OUTCOME_FAULTED)
+        (void)fprintf(stream, "  fault         %s\n", summary->fault);
+    (void)fputs("  program time  ", stream);
+    write_time(stream, summary_program_time_s(summary));
+    (void)fprintf(stream, "   (%" PRIu64 " cycles of %g ms)\n", figures->cycles,
+                  summary->cycle_s * 1000);
+    (void)fprintf(stream, "  wall time     %.3f s, %.0f x real time", summary->wall_time_s,
+                  summary_realtime_ratio(summary));
+    if (summary->cost_measured)
+        (void)fprintf(stream, "; a control cycle takes %.2f us (99 %%: %.2f, max: %.2f)",
+                      summary->cost_mean_ns / 1000, summary->cost_p99_ns / 1000,
+                      summary->cost_max_ns / 1000);
+    (void)fprintf(stream, "\n  path          %.3f mm in %u moves\n", figures->path_length_mm,
+                  (unsigned)figures->blocks);
+}
+
+static void write_peak(FILE *stream, double value, double limit, double ratio)
+{
+    (void)fprintf(stream, "  %10.3f /%9.7g %5.1f %%", value * ratio, limit * ratio,
+                  100 * value / limit);
+}
+
+static void write_axis(FILE *stream, const struct summary *summary, unsigned i)
+{
+    const struct machine_axis *axis = &summary->machine->axis[i];
+    const struct judge_figures *figures = &summary->figures;
+    double ratio = axis_unit_ratio(i);
+
+    (void)fprintf(stream, "  %c (%s)%*s", AXIS_LETTERS[i], axis_unit_name(i),
+                  axis_unit_is_rotary(i) ? 0 : 1, "");
+    write_peak(stream, figures->velocity_mm_s[i], axis->max_velocity_mm_s, ratio);
+    write_peak(stream, figures->acceleration_mm_s2[i], axis->max_acceleration_mm_s2, ratio);
+    write_peak(stream, figures->jerk_mm_s3[i], axis->max_jerk_mm_s3, ratio);
+    (void)fprintf(stream, "  %9.6f\n", figures->following_error_mm[i] * ratio);
+}
+
+static void write_axes(FILE *stream, const struct summary *summary)
+{
+    (void)fprintf(stream, "\n  %-7s  %-28s  %-28s  %-28s  %s\n", "axis",
+                  "peak velocity / limit [1/s]", "acceleration [1/s2]", "jerk [1/s3]", "lag");
+    for (unsigned i = 0; i < AXIS_COUNT; i++) {
+        if (summary->machine->axis[i].present)
+            write_axis(stream, summary, i);
+    }
+}
+
+static void write_path(FILE *stream, const struct summary *summary)
+{
+    const struct judge_figures *figures = &summary->figures;
+
+    (void)fprintf(stream, "\n  landing error %.3g mm   path error %.3g mm   chord error %.3g mm\n",
+                  figures->landing_error_mm, figures->path_error_mm, figures->chord_error_mm);
+    (void)fprintf(stream, "  feed step     %.3g mm/s at most at a joint\n",
+                  figures->joint_feed_step_mm_s);
+    (void)fprintf(stream, "  bus           %" PRIu64 " frames, load %.1f %% (worst case %.1f %%)\n",
+                  summary->bus_frames, summary->bus_load_percent, summary->bus_predicted_percent);
+}
+
+static void write_checks(FILE *stream, const struct summary *summary)
+{
+    unsigned held = 0;
+
+    for (unsigned i = 0; i < summary->checks; i++)
+        held += summary->check[i].held ? 1 : 0;
+    (void)fprintf(stream, "  checks        %u of %u held\n", held, summary->checks);
+    for (unsigned i = 0; i < summary->checks; i++) {
+        const struct summary_check *check = &summary->check[i];
+
+        if (!check->held)
+            (void)fprintf(stream, "    FAILED      %s: %.9g %s, limit %.9g %s\n", check->name,
+                          check->value, check->unit, check->limit, check->unit);
+    }
+}
+
+void summary_write_text(FILE *stream, const struct summary *summary)
+{
+    write_head(stream, summary);
+    write_axes(stream, summary);
+    write_path(stream, summary);
+    write_checks(stream, summary);
+    (void)fprintf(stream, "  digest        %016" PRIx64 "\n", summary->figures.digest);
+}

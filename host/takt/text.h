@@ -1,0 +1,30 @@
+/*
+ * A whole text in memory: a part program, a machine file, a table, a trace.
+ */
+#ifndef TAKT_HOST_TEXT_H
+#define TAKT_HOST_TEXT_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+struct text {
+    const char *name; /* for messages: the path, or "<stdin>". Not owned */
+    char *bytes;      /* owned; a zero follows the last byte */
+    size_t length;
+};
+
+/* Reads path, "-" for standard input. False after a message: it cannot be opened or read. */
+bool text_read(struct text *text, const char *path);
+void text_free(struct text *text);
+
+/* Line from 1, without its end; *length is 0 and the result empty when there is no such line. */
+const char *text_line(const struct text *text, uint32_t line, size_t *length);
+
+/*
+ * Reads text line by line: true and the next line without its end ("\n" or "\r\n") while there is one.
+ * *position starts at 0 and belongs to this function.
+ */
+bool text_next_line(const struct text *text, size_t *position, const char **line, size_t *length);
+
+#endif

@@ -1,0 +1,299 @@
+/*
+ * The whole loop: master, embedded bus, three virtual drives.
+ */
+#include "base/fnv.h"
+#include "bus/bus.h"
+#include "canopen/nmt.h"
+#include "drive/drives.h"
+#include "drives/virtual_drives.h"
+#include "unity.h"
+
+#include <math.h>
+#include <string.h>
+
+#define DRIVES         3
+#define CYCLE_NS       1000000u
+#define CYCLE_S        1e-3
+#define CYCLES         2000
+#define LATENCY_TRIALS 6
+
+static struct bus bus;
+static struct virtual_drives set;
+static struct drives master;
+static struct can_port port;
+static bool always_quiet; /* since the start every frame has ended within its cycle */
+
+static void init_loop(unsigned count, uint32_t bitrate, double start_mm)
+{
+    struct virtual_drives_config virtual;
+    struct drives_config config = {
+        .count = count, .start_timeout_cycles = 100, .answer_timeout_cycles = 2};
+    virtual_drives_set_default(&virtual, count);
+    for (unsigned i = 0; i < count; i++) {
+        virtual.drive[i].start_mm = start_mm;
+        config.axis[i] = (struct drives_config_axis){(enum axis)(AXIS_X + (int)i),
+                                                     virtual.drive[i].node, 1e5, 1.0};
+    }
+    TEST_ASSERT_TRUE(bus_init(&bus, bitrate));
+    port = bus_attach(&bus, NULL);
+    virtual_drives_init(&set, &bus, &virtual);
+    drives_init(&master, &config);
+}
+
+void setUp(void)
+{
+    init_loop(DRIVES, 1000000, 0);
+}
+
+void tearDown(void)
+{
+}
+
+/* The first half of a cycle: after it the master knows whether it is running. */
+static enum drives_state begin_cycle(void)
+{
+    drives_receive(&master, &port);
+    return drives_get_state(&master);
+}
+
+static void end_cycle(const struct point *setpoint)
+{
+    drives_sync(&master, &port);
+    drives_send(&master, &port, setpoint);
+    bus_run_until(&bus, bus_now_ns(&bus) + CYCLE_NS);
+    always_quiet = always_quiet && bus_is_quiet(&bus);
+    virtual_drives_step(&set, CYCLE_NS);
+}
+
+static void cycle(const struct point *setpoint)
+{
+    (void)begin_cycle();
+    end_cycle(setpoint);
+}
+
+static void start(const struct point *setpoint)
+{
+    while (begin_cycle() == DRIVES_STARTING)
+        end_cycle(setpoint);
+    TEST_ASSERT_EQUAL_INT(DRIVES_ENABLED, drives_get_state(&master));
+    end_cycle(setpoint);
+    always_quiet = true;
+}
+
+/*
+ * Out by 32 mm and to rest, by the law of the machine: 50,000 mm/s3, 1000 mm/s2, 100 mm/s. Jerk
+ * phases of 20 ms, acceleration 80 ms, constant velocity 200 ms.
+ */
+static double jerk_at(unsigned k)
+{
+    if (k < 20 || (k >= 420 && k < 440))
+        return 50000;
+    if ((k >= 100 && k < 120) || (k >= 320 && k < 340))
+        return -50000;
+    return 0;
+}
+
+static void make_ramp(double ramp_mm[CYCLES])
+{
+    double x = 0, v = 0, a = 0, t = CYCLE_S;
+    for (unsigned k = 0; k < CYCLES; k++) {
+        double j = jerk_at(k);
+        ramp_mm[k] = x;
+        x += v * t + a * t * t / 2 + j * t * t * t / 6;
+        v += a * t + j * t * t / 2;
+        a += j * t;
+    }
+}
+
+static double set_mm[CYCLES], actual_mm[CYCLES];
+
+/* Runs set_mm on all axes; actual_mm[k]: what X's drive has reported by cycle k. */
+static void run_program(void)
+{
+    struct point setpoint = {{0}}, actual;
+    start(&setpoint);
+    for (unsigned k = 0; k < CYCLES; k++) {
+        TEST_ASSERT_EQUAL_INT(DRIVES_ENABLED, begin_cycle());
+        drives_get_actual(&master, &actual);
+        actual_mm[k] = actual.at[AXIS_X];
+        for (unsigned axis = 0; axis < DRIVES; axis++)
+            setpoint.at[axis] = set_mm[k];
+        end_cycle(&setpoint);
+    }
+}
+
+/* Largest |set[k - latency] - actual[k]| for k from first to last. */
+static double following_mm(unsigned latency, unsigned first, unsigned last)
+{
+    double largest_mm = 0;
+    for (unsigned k = first; k < last; k++)
+        largest_mm = fmax(largest_mm, fabs(set_mm[k - latency] - actual_mm[k]));
+    return largest_mm;
+}
+
+static void test_drives_are_enabled_within_20_cycles_and_do_not_move(void)
+{
+    static const struct point nowhere = {{1, 1, 1, 1, 1, 1}};
+    struct point here = {{0}}, actual;
+    init_loop(DRIVES, 1000000, -7.5);
+    unsigned cycles = 0;
+    while (begin_cycle() == DRIVES_STARTING && cycles++ < 100)
+        end_cycle(&nowhere);
+    TEST_ASSERT_EQUAL_INT(DRIVES_ENABLED, drives_get_state(&master));
+    TEST_ASSERT_TRUE(cycles < 20);
+    drives_get_actual(&master, &here);
+    for (unsigned i = 0; i < 100; i++) {
+        end_cycle(&here);
+        (void)begin_cycle();
+    }
+    drives_get_actual(&master, &actual);
+    for (unsigned axis = 0; axis < DRIVES; axis++)
+        TEST_ASSERT_TRUE(fabs(actual.at[axis] + 7.5) < 2e-5);
+}
+
+/* At 100 mm/s a wrong latency shows as 0.1 mm a cycle. */
+static void test_the_latency_is_the_one_at_which_report_and_setpoint_agree(void)
+{
+    make_ramp(set_mm);
+    run_program();
+    for (unsigned latency = 0; latency < LATENCY_TRIALS; latency++) {
+        double error_mm = following_mm(latency, 200, 320);
+        double expected_mm = 0.1 * fabs((double)latency - DRIVES_LATENCY_CYCLES);
+        TEST_ASSERT_TRUE(fabs(error_mm - expected_mm) < 0.005);
+    }
+}
+
+static void test_following_error_stays_below_50_micrometres_in_ramps_at_the_machine_limits(void)
+{
+    make_ramp(set_mm);
+    run_program();
+    TEST_ASSERT_TRUE(following_mm(DRIVES_LATENCY_CYCLES, 10, CYCLES) < 0.05);
+    TEST_ASSERT_TRUE(following_mm(DRIVES_LATENCY_CYCLES, 250, 320) < 0.005);
+    TEST_ASSERT_TRUE(following_mm(DRIVES_LATENCY_CYCLES, 1500, CYCLES) < 0.0001);
+    TEST_ASSERT_TRUE(fabs(actual_mm[CYCLES - 1] - 32) < 0.0001);
+}
+
+static void make_sine(void)
+{
+    for (unsigned k = 0; k < CYCLES; k++)
+        set_mm[k] = 10 * (1 - cos(6.283185307179586 * k / 1000));
+}
+
+static void test_a_sine_is_followed(void)
+{
+    make_sine();
+    run_program();
+    TEST_ASSERT_TRUE(following_mm(DRIVES_LATENCY_CYCLES, 10, CYCLES) < 0.05);
+}
+
+static uint64_t digest_of_run(void)
+{
+    uint64_t digest = FNV_START;
+    make_sine();
+    run_program();
+    for (unsigned k = 0; k < CYCLES; k++)
+        digest = fnv_add_double(digest, actual_mm[k]);
+    return digest;
+}
+
+static void test_two_runs_report_the_same_positions_bit_for_bit(void)
+{
+    uint64_t first = digest_of_run();
+    setUp();
+    uint64_t second = digest_of_run();
+    TEST_ASSERT_TRUE(first == second);
+    TEST_ASSERT_TRUE(first != FNV_START);
+}
+
+static void assert_fits(unsigned count)
+{
+    uint8_t length[DRIVES_CYCLE_FRAMES_MAX];
+    struct point setpoint = {{0}};
+    unsigned frames = drives_cycle_frames(count, length);
+    double predicted = bus_predict_load_percent(1000000, 1000, length, frames);
+    init_loop(count, 1000000, 0);
+    start(&setpoint);
+    for (unsigned k = 0; k < CYCLES; k++) {
+        for (unsigned axis = 0; axis < count; axis++)
+            setpoint.at[axis] = sin(0.001 * k);
+        uint64_t before_ns = bus.counts.busy_ns;
+        cycle(&setpoint);
+        double observed = 100.0 * (double)(bus.counts.busy_ns - before_ns) / CYCLE_NS;
+        TEST_ASSERT_TRUE(observed <= predicted);
+    }
+    TEST_ASSERT_TRUE(always_quiet);
+    TEST_ASSERT_EQUAL_INT(DRIVES_ENABLED, drives_get_state(&master));
+    TEST_ASSERT_TRUE(bus.counts.refused == 0);
+    TEST_ASSERT_TRUE(bus.counts.receive_lost == 0);
+}
+
+static void test_one_to_four_axes_fit_into_every_cycle_and_never_load_more_than_predicted(void)
+{
+    for (unsigned count = 1; count <= 4; count++)
+        assert_fits(count);
+}
+
+static void test_a_drive_that_trips_stops_the_others_and_names_its_axis(void)
+{
+    struct point setpoint = {{0}};
+    start(&setpoint);
+    setpoint.at[AXIS_Y] = 10;
+    for (unsigned i = 0; i < 200; i++)
+        cycle(&setpoint);
+    const struct diagnostic *fault = drives_get_fault(&master);
+    TEST_ASSERT_EQUAL_INT(DRIVES_FAULTED, drives_get_state(&master));
+    TEST_ASSERT_EQUAL_INT(TAKT_ERROR_DRIVE_FAULT, fault->code);
+    TEST_ASSERT_EQUAL_INT('Y', fault->word[0]);
+    TEST_ASSERT_TRUE(fault->value == 0x8611);
+    TEST_ASSERT_EQUAL_INT(CIA402_SWITCH_ON_DISABLED, virtual_drive_get_state(&set.drive[0]));
+    TEST_ASSERT_EQUAL_INT(CIA402_FAULT, virtual_drive_get_state(&set.drive[1]));
+    TEST_ASSERT_EQUAL_INT(CIA402_SWITCH_ON_DISABLED, virtual_drive_get_state(&set.drive[2]));
+}
+
+static void test_a_moving_machine_stops_when_one_node_is_stopped(void)
+{
+    struct point setpoint = {{0}};
+    struct can_frame stop;
+    struct can_port stranger = bus_attach(&bus, NULL);
+    make_ramp(set_mm);
+    start(&setpoint);
+    for (unsigned k = 0; k < 250; k++) {
+        setpoint.at[AXIS_X] = setpoint.at[AXIS_Z] = set_mm[k];
+        cycle(&setpoint);
+    }
+    nmt_write_command(&stop, NMT_STOP, 2);
+    TEST_ASSERT_TRUE(stranger.send(stranger.context, &stop));
+    for (unsigned k = 250; k < 450; k++) {
+        setpoint.at[AXIS_X] = setpoint.at[AXIS_Z] = set_mm[k];
+        cycle(&setpoint);
+    }
+    TEST_ASSERT_EQUAL_INT(TAKT_ERROR_DRIVE_SILENT, drives_get_fault(&master)->code);
+    TEST_ASSERT_EQUAL_INT('Y', drives_get_fault(&master)->word[0]);
+    for (unsigned i = 0; i < DRIVES; i++)
+        TEST_ASSERT_EQUAL_INT(CIA402_SWITCH_ON_DISABLED, virtual_drive_get_state(&set.drive[i]));
+    TEST_ASSERT_TRUE(virtual_drive_get_position_mm(&set.drive[0]) < set_mm[250] + 4);
+}
+
+static void test_a_bus_too_slow_for_the_cycle_does_not_go_unnoticed(void)
+{
+    static const struct point nowhere = {{0}};
+    init_loop(DRIVES, 125000, 0);
+    for (unsigned i = 0; i < 1000; i++)
+        cycle(&nowhere);
+    TEST_ASSERT_EQUAL_INT(DRIVES_FAULTED, drives_get_state(&master));
+}
+
+int main(void)
+{
+    UNITY_BEGIN();
+    RUN_TEST(test_drives_are_enabled_within_20_cycles_and_do_not_move);
+    RUN_TEST(test_the_latency_is_the_one_at_which_report_and_setpoint_agree);
+    RUN_TEST(test_following_error_stays_below_50_micrometres_in_ramps_at_the_machine_limits);
+    RUN_TEST(test_a_sine_is_followed);
+    RUN_TEST(test_two_runs_report_the_same_positions_bit_for_bit);
+    RUN_TEST(test_one_to_four_axes_fit_into_every_cycle_and_never_load_more_than_predicted);
+    RUN_TEST(test_a_drive_that_trips_stops_the_others_and_names_its_axis);
+    RUN_TEST(test_a_moving_machine_stops_when_one_node_is_stopped);
+    RUN_TEST(test_a_bus_too_slow_for_the_cycle_does_not_go_unnoticed);
+    return UNITY_END();
+}

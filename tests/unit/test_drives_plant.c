@@ -1,0 +1,227 @@
+#include "drives/drive_plant.h"
+#include "unity.h"
+
+#include <math.h>
+
+#define CYCLE_NS 1000000u
+#define CYCLE_S  1e-3
+
+static struct drive_plant_config config;
+static struct drive_plant plant;
+
+void setUp(void)
+{
+    drive_plant_set_default(&config);
+    TEST_ASSERT_NULL(drive_plant_check(&config));
+    drive_plant_init(&plant, &config, 0);
+}
+
+void tearDown(void)
+{
+}
+
+static void follow_for(unsigned cycles, double velocity_mm_s)
+{
+    for (unsigned i = 0; i < cycles; i++)
+        drive_plant_follow(&plant, plant.command_mm + velocity_mm_s * CYCLE_S, CYCLE_NS);
+}
+
+static void test_a_plant_at_rest_stays_exactly_where_it_is(void)
+{
+    follow_for(1000, 0);
+    TEST_ASSERT_TRUE(plant.position_mm == 0);
+    TEST_ASSERT_TRUE(plant.velocity_mm_s == 0);
+    TEST_ASSERT_TRUE(drive_plant_following_error_mm(&plant) == 0);
+}
+
+/*
+ * Speed up by 1000 mm/s2, then 100 mm/s: the largest error of the ramp, and that of the last tenth
+ * of a second.
+ */
+static void measure_ramp(double *ramp_mm, double *constant_mm)
+{
+    *ramp_mm = *constant_mm = 0;
+    for (unsigned k = 1; k <= 1000; k++) {
+        follow_for(1, k < 100 ? k : 100);
+        double error_mm = fabs(drive_plant_following_error_mm(&plant));
+        *ramp_mm = fmax(*ramp_mm, error_mm);
+        if (k > 900)
+            *constant_mm = fmax(*constant_mm, error_mm);
+    }
+}
+
+static void test_following_error_is_micrometres_at_constant_velocity_and_below_50_in_ramps(void)
+{
+    double ramp_mm, constant_mm;
+    measure_ramp(&ramp_mm, &constant_mm);
+    TEST_ASSERT_TRUE(constant_mm < 0.005);
+    TEST_ASSERT_TRUE(ramp_mm < 0.05);
+    TEST_ASSERT_TRUE(ramp_mm > 0.001);
+}
+
+/* Without feed-forward a position loop lags by velocity / Kv. */
+static void test_without_feed_forward_the_lag_is_velocity_by_gain(void)
+{
+    double ramp_mm, constant_mm;
+    config.velocity_feed_forward_ratio = 0;
+    drive_plant_init(&plant, &config, 0);
+    measure_ramp(&ramp_mm, &constant_mm);
+    TEST_ASSERT_TRUE(fabs(constant_mm - 100 / config.position_gain_per_s) < 0.001);
+}
+
+/* Against friction a proportional velocity loop alone needs an error:  Kp Kv e = (b / J) v. */
+static void test_without_integral_part_friction_leaves_the_error_of_its_formula(void)
+{
+    double ramp_mm, constant_mm;
+    config.velocity_integral_time_s = 0;
+    drive_plant_init(&plant, &config, 0);
+    measure_ramp(&ramp_mm, &constant_mm);
+    double friction_mm_s2 = 100 * config.viscous_friction_nm_s_per_rad / config.inertia_kg_m2;
+    double expected_mm = friction_mm_s2 / (6.283185307179586 * config.velocity_bandwidth_hz) /
+                         config.position_gain_per_s;
+    TEST_ASSERT_TRUE(fabs(constant_mm - expected_mm) < 0.01 * expected_mm);
+}
+
+/* Angular acceleration is torque by inertia; a turn is one lead. */
+static void test_the_torque_limit_bounds_the_acceleration(void)
+{
+    double limit_mm_s2 = config.torque_max_nm / config.inertia_kg_m2 *
+                         config.travel_per_revolution_mm / 6.283185307179586;
+    drive_plant_follow(&plant, 10, CYCLE_NS);
+    double reached_mm_s2 = plant.velocity_mm_s / CYCLE_S;
+    TEST_ASSERT_TRUE(reached_mm_s2 <= limit_mm_s2 * (1 + 1e-12));
+    TEST_ASSERT_TRUE(reached_mm_s2 > 0.99 * limit_mm_s2);
+}
+
+static void test_a_step_settles_at_its_end_and_does_not_overshoot_much(void)
+{
+    double highest_mm = 0;
+    drive_plant_follow(&plant, 0.1, CYCLE_NS);
+    for (unsigned i = 0; i < 1000; i++) {
+        follow_for(1, 0);
+        highest_mm = fmax(highest_mm, plant.position_mm);
+    }
+    TEST_ASSERT_TRUE(fabs(plant.position_mm - 0.1) < 1e-4);
+    TEST_ASSERT_TRUE(highest_mm < 0.15);
+}
+
+static void test_the_encoder_reports_whole_steps_of_its_own(void)
+{
+    config.encoder_counts_per_revolution = 1000;
+    drive_plant_init(&plant, &config, 0.1234);
+    for (unsigned i = 0; i < 500; i++) {
+        follow_for(1, 37.7);
+        double steps = plant.measured_mm / 0.01;
+        TEST_ASSERT_TRUE(fabs(steps - round(steps)) < 1e-6);
+        TEST_ASSERT_TRUE(fabs(plant.measured_mm - plant.position_mm) <= 0.005 + 1e-9);
+    }
+}
+
+static void test_without_encoder_steps_the_position_itself_is_measured(void)
+{
+    config.encoder_counts_per_revolution = 0;
+    drive_plant_init(&plant, &config, 0.123456789);
+    follow_for(100, 12.3);
+    TEST_ASSERT_TRUE(plant.measured_mm == plant.position_mm);
+}
+
+static void test_braking_stops_with_the_quick_stop_deceleration_and_then_stands(void)
+{
+    unsigned cycles = 0;
+    follow_for(500, 100);
+    double from_mm = plant.position_mm;
+    drive_plant_begin_brake(&plant);
+    while (!drive_plant_brake(&plant, CYCLE_NS))
+        TEST_ASSERT_TRUE(++cycles < 200);
+    double way_mm = plant.position_mm - from_mm;
+    double expected_mm = 100.0 * 100.0 / 2 / config.quick_stop_deceleration_mm_s2;
+    TEST_ASSERT_TRUE(fabs(way_mm - expected_mm) < 0.01);
+    TEST_ASSERT_TRUE(cycles >= 49);
+    TEST_ASSERT_TRUE(fabs(plant.velocity_mm_s) < 0.02);
+}
+
+static void test_braking_begins_at_the_motor_however_far_the_command_was(void)
+{
+    unsigned cycles = 0;
+    drive_plant_follow(&plant, 1000, CYCLE_NS);
+    drive_plant_begin_brake(&plant);
+    TEST_ASSERT_TRUE(drive_plant_following_error_mm(&plant) == 0);
+    while (!drive_plant_brake(&plant, CYCLE_NS))
+        TEST_ASSERT_TRUE(++cycles < 200);
+    TEST_ASSERT_TRUE(plant.position_mm < 0.5);
+}
+
+static void test_without_torque_friction_stops_the_motor_and_the_command_stays_with_it(void)
+{
+    follow_for(500, 100);
+    double from_mm = plant.position_mm, velocity_mm_s = plant.velocity_mm_s;
+    for (unsigned i = 0; i < 10000; i++) {
+        drive_plant_coast(&plant, CYCLE_NS);
+        TEST_ASSERT_TRUE(drive_plant_following_error_mm(&plant) == 0);
+    }
+    /* v dx = -v J / b dv: it runs out over v J / b */
+    double way_mm = velocity_mm_s * config.inertia_kg_m2 / config.viscous_friction_nm_s_per_rad;
+    TEST_ASSERT_TRUE(plant.velocity_mm_s == 0);
+    TEST_ASSERT_TRUE(fabs(plant.position_mm - from_mm - way_mm) < 0.01 * way_mm);
+}
+
+/* A long cycle has more steps of the same length, so the motor stays as stable as in short ones. */
+static void test_any_cycle_from_100_us_to_10_ms_follows(void)
+{
+    static const uint32_t cycles_ns[] = {100000, 250000, 333000, 1000000, 2000000, 10000000};
+    for (unsigned i = 0; i < sizeof cycles_ns / sizeof cycles_ns[0]; i++) {
+        drive_plant_init(&plant, &config, 0);
+        for (uint32_t time_ns = 0; time_ns < 1000000000; time_ns += cycles_ns[i]) {
+            double command_mm = 5 * (1 - cos(6e-9 * time_ns));
+            drive_plant_follow(&plant, command_mm, cycles_ns[i]);
+            TEST_ASSERT_TRUE(fabs(drive_plant_following_error_mm(&plant)) < 0.05);
+        }
+    }
+}
+
+static void assert_wrong(const char *field)
+{
+    const char *found = drive_plant_check(&config);
+    TEST_ASSERT_NOT_NULL(found);
+    TEST_ASSERT_EQUAL_STRING(field, found);
+    drive_plant_set_default(&config);
+}
+
+static void test_a_field_out_of_range_is_named(void)
+{
+    config.travel_per_revolution_mm = 0;
+    assert_wrong("travel_per_revolution_mm");
+    config.inertia_kg_m2 = -1;
+    assert_wrong("inertia_kg_m2");
+    config.torque_max_nm = (double)INFINITY;
+    assert_wrong("torque_max_nm");
+    config.velocity_feed_forward_ratio = 1.01;
+    assert_wrong("velocity_feed_forward_ratio");
+    config.position_gain_per_s = (double)NAN;
+    assert_wrong("position_gain_per_s");
+    config.loop_period_us = 0;
+    assert_wrong("loop_period_us");
+    config.velocity_bandwidth_hz = 1000;
+    assert_wrong("loop_period_us");
+    config.quick_stop_deceleration_mm_s2 = 0;
+    assert_wrong("quick_stop_deceleration_mm_s2");
+}
+
+int main(void)
+{
+    UNITY_BEGIN();
+    RUN_TEST(test_a_plant_at_rest_stays_exactly_where_it_is);
+    RUN_TEST(test_following_error_is_micrometres_at_constant_velocity_and_below_50_in_ramps);
+    RUN_TEST(test_without_feed_forward_the_lag_is_velocity_by_gain);
+    RUN_TEST(test_without_integral_part_friction_leaves_the_error_of_its_formula);
+    RUN_TEST(test_the_torque_limit_bounds_the_acceleration);
+    RUN_TEST(test_a_step_settles_at_its_end_and_does_not_overshoot_much);
+    RUN_TEST(test_the_encoder_reports_whole_steps_of_its_own);
+    RUN_TEST(test_without_encoder_steps_the_position_itself_is_measured);
+    RUN_TEST(test_braking_stops_with_the_quick_stop_deceleration_and_then_stands);
+    RUN_TEST(test_braking_begins_at_the_motor_however_far_the_command_was);
+    RUN_TEST(test_without_torque_friction_stops_the_motor_and_the_command_stays_with_it);
+    RUN_TEST(test_any_cycle_from_100_us_to_10_ms_follows);
+    RUN_TEST(test_a_field_out_of_range_is_named);
+    return UNITY_END();
+}
