@@ -1,3 +1,4 @@
+# shellcheck shell=bash
 # Sourced by host/run and tests/run: finds out what is missing, installs it, configures and builds.
 #
 # Messages go to standard error. What cannot be had ends the script with status 3, as `takt` itself does.
@@ -5,7 +6,7 @@
 TAKT_ROOT=$(cd "$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")/.." && pwd -P)
 TAKT_BUILD=$TAKT_ROOT/build
 SETUP_QUIET=${SETUP_QUIET:-}
-SETUP_APT_INSTALL="apt-get install --yes --no-install-recommends"
+SETUP_APT_INSTALL=(apt-get install --yes --no-install-recommends)
 
 # Packages found missing so far.
 setup_missing=()
@@ -67,14 +68,13 @@ setup_is_listed() {
 # Prints the one line that installs the given packages.
 setup_apt_line() {
     setup_is_listed "$@" || printf 'apt-get update && '
-    printf '%s %s\n' "$SETUP_APT_INSTALL" "$*"
+    printf '%s %s\n' "${SETUP_APT_INSTALL[*]}" "$*"
 }
 
 setup_apt_get() {
     # Lists that are there may still be out of date: on failure the update is made up for.
-    # shellcheck disable=SC2086 # the command is several words
-    setup_is_listed "$@" && setup_as_root $SETUP_APT_INSTALL "$@" && return
-    setup_as_root apt-get update && setup_as_root $SETUP_APT_INSTALL "$@"
+    setup_is_listed "$@" && setup_as_root "${SETUP_APT_INSTALL[@]}" "$@" && return
+    setup_as_root apt-get update && setup_as_root "${SETUP_APT_INSTALL[@]}" "$@"
 }
 
 # Installs what is missing; ends the script if that cannot be done.
@@ -116,12 +116,12 @@ setup_install_optional() {
     done
 }
 
-# setup_logged NAME COMMAND...: COMMAND writes to build/NAME.log, which is shown if it fails.
+# setup_logged NAME COMMAND...: COMMAND writes to build/NAME.log, whose end is shown if it fails.
 setup_logged() {
     local log=$TAKT_BUILD/$1.log
     shift
     if ! "$@" >"$log" 2>&1; then
-        cat "$log" >&2
+        tail -n 60 "$log" >&2
         setup_fail "failed: $* (log: $log)"
     fi
 }
@@ -167,7 +167,7 @@ setup_configure() {
     setup_say "configuring and building in $folder"
     (
         cd "$TAKT_ROOT"
-        setup_logged "configure-$1" cmake --preset "$1" -DTAKT_TESTS="$tests"
+        setup_logged "configure-$1" cmake --no-warn-unused-cli --preset "$1" -DTAKT_TESTS="$tests"
     ) || exit
     [[ $SETUP_QUIET ]] || sed -n '/^CMake Warning/,/^$/p' "$TAKT_BUILD/configure-$1.log" >&2
 }

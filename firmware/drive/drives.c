@@ -71,6 +71,8 @@ void drives_get_actual(const struct drives *d, struct point *actual)
 unsigned drives_cycle_frames(unsigned count, uint8_t length[DRIVES_CYCLE_FRAMES_MAX])
 {
     unsigned frames = 0;
+    if (count > AXIS_COUNT)
+        count = AXIS_COUNT;
     length[frames++] = 0;
     for (unsigned i = 0; i < count; i += 2)
         length[frames++] = i + 1 < count ? 8 : 4;

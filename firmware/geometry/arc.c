@@ -77,18 +77,28 @@ static double arc_length(const struct curve *c, double constant_squared)
     return 0.5 * sum;
 }
 
-/* Angle from start to end in the sense of turning, one to turns full turns when they coincide. */
+/*
+ * Angle from start to end in the sense of turning. When they coincide it is a whole turn and the little that the end's
+ * angle differs from the start's, of either sign: the end is hit, however small the radius.
+ */
 static double arc_sweep(double from_rad, double to_rad, bool clockwise, bool closed, unsigned turns)
 {
     double sweep = clockwise ? from_rad - to_rad : to_rad - from_rad;
 
-    if (closed) {
-        sweep = MATHS_TWO_PI;
-    } else if (sweep <= 0.0) {
+    if (sweep <= 0.0) {
+        sweep += MATHS_TWO_PI;
+    }
+    if (closed && sweep < MATHS_PI) {
         sweep += MATHS_TWO_PI;
     }
     sweep += MATHS_TWO_PI * (double)(turns - 1U);
     return clockwise ? -sweep : sweep;
+}
+
+/* f' L - 1 at an end of the arc. f' L <= 3 at both ends keeps the cubic monotone (Fritsch and Carlson 1980). */
+static double bend(const struct curve *c, double constant_squared, double f)
+{
+    return maths_min(2.0, c->length_mm / speed(c, constant_squared, f) - 1.0);
 }
 
 static void set_length(struct curve *c)
@@ -99,8 +109,8 @@ static void set_length(struct curve *c)
         c->length_mm = speed(c, constant_squared, 0.0);
     } else {
         c->length_mm = arc_length(c, constant_squared);
-        c->arc.bend_start = c->length_mm / speed(c, constant_squared, 0.0) - 1.0;
-        c->arc.bend_end = c->length_mm / speed(c, constant_squared, 1.0) - 1.0;
+        c->arc.bend_start = bend(c, constant_squared, 0.0);
+        c->arc.bend_end = bend(c, constant_squared, 1.0);
     }
 }
 
@@ -145,7 +155,7 @@ bool curve_set_arc(struct curve *c, const struct point *start, const struct poin
     }
     set_length(c);
     set_slope(c);
-    return true;
+    return c->length_mm >= CURVE_LENGTH_MIN_MM;
 }
 
 static void arc_locate(const struct curve *c, double s_mm, struct arc_state *a)
@@ -217,14 +227,20 @@ void arc_curvature(const struct curve *c, double s_mm, struct point *k)
  *     |x''|  <= (R w + 2 d) w F1^2 + (R w + d) F2
  *     |x'''| <= (R w + 3 d) w^2 F1^3 + 3 (R w + 2 d) w F1 F2 + (R w + d) F3
  * and outside it the same with (R w + ...) replaced by the axis's travel and w by 0.
+ *
+ * The part of x'' along the path is d|x'|/ds, and d|dx/df|/df = radius w^2 d / |dx/df| <= w d; of the three terms of
+ * x''' the last lies along the path, and d3x/df3 = -3 d w^2 (cos, sin) - radius w^3 (-sin, cos) has at most 4 d w^2
+ * across it:
+ *     along  <= w d F1^2 + (R w + d) F2
+ *     across <= 4 d w^2 F1^3 + 3 (R w + 2 d) w F1 F2
  */
 void arc_bound(const struct curve *c, struct curve_bounds *b)
 {
-    const double bend = maths_abs(c->arc.bend_start) + maths_abs(c->arc.bend_end);
+    const double bends = maths_abs(c->arc.bend_start) + maths_abs(c->arc.bend_end);
     const double inverse = 1.0 / c->length_mm;
-    const double f1 = (1.0 + bend) * inverse;
-    const double f2 = 4.0 * bend * inverse * inverse;
-    const double f3 = 6.0 * bend * inverse * inverse * inverse;
+    const double f1 = (1.0 + bends) * inverse;
+    const double f2 = 4.0 * bends * inverse * inverse;
+    const double f3 = 6.0 * bends * inverse * inverse * inverse;
     const double w = maths_abs(c->arc.sweep_rad);
     const double d = maths_abs(c->arc.radius_change_mm);
     const double rw =
@@ -246,4 +262,6 @@ void arc_bound(const struct curve *c, struct curve_bounds *b)
     b->second[c->arc.first] = b->second[c->arc.second] = second;
     b->third[c->arc.first] = b->third[c->arc.second] = third;
     b->radius_min_mm = 1.0 / second;
+    b->second_along = w * d * f1 * f1 + (rw + d) * f2;
+    b->third_across = 4.0 * d * w * w * f1 * f1 * f1 + 3.0 * (rw + 2.0 * d) * w * f1 * f2;
 }

@@ -8,15 +8,7 @@
 
 bool curve_is_rotary(const struct curve *c)
 {
-    if (c->kind == CURVE_ARC) {
-        return false;
-    }
-    for (int i = 0; i < AXIS_LINEAR_COUNT; i++) {
-        if (c->slope.at[i] != 0.0) {
-            return false;
-        }
-    }
-    return true;
+    return c->rotary;
 }
 
 void curve_point(const struct curve *c, double s_mm, struct point *p)

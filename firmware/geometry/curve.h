@@ -1,7 +1,7 @@
 /*
  * A piece of path, told by its arc length.
  *
- * The path length s counts millimetres along X, Y, Z if any of them moves; else radians along A, B, C.
+ * The path length s counts millimetres along X, Y, Z if they move by CURVE_LENGTH_MIN_MM; else radians along A, B, C.
  * Points, first and second derivatives by s are closed forms; nothing here knows time.
  */
 #ifndef TAKT_GEOMETRY_CURVE_H
@@ -10,6 +10,9 @@
 #include "base/point.h"
 
 #include <stdbool.h>
+
+/* Less than this is rounding of coordinates: no motion. */
+#define CURVE_LENGTH_MIN_MM 1e-9
 
 enum curve_kind { CURVE_LINE, CURVE_ARC };
 
@@ -34,6 +37,7 @@ struct curve_arc {
 
 struct curve {
     enum curve_kind kind;
+    bool rotary;      /* the length counts radians: no linear axis moves, but for rounding */
     double length_mm; /* > 0 */
     struct point start, end;
     struct point
@@ -47,17 +51,20 @@ struct curve_bounds {
     double second[AXIS_COUNT]; /* max |d2x_i/ds2|, 1/mm */
     double third[AXIS_COUNT];  /* max |d3x_i/ds3|, 1/mm2 */
     double radius_min_mm;      /* smallest radius of curvature; 0: straight */
+    /* An arc's plane: how far from a circle's. Both are 0 for a circle. */
+    double second_along; /* max part of d2x/ds2 along the path, 1/mm */
+    double third_across; /* max part of d3x/ds3 across it, 1/mm2 */
 };
 
 /*
- * Line from start to end. False when both are the same point (no length): *c is then not usable.
+ * Line from start to end. False when it is shorter than CURVE_LENGTH_MIN_MM (or so many rad): *c is then not usable.
  */
 bool curve_set_line(struct curve *c, const struct point *start, const struct point *end);
 
 /*
  * Arc or helix from start to end about centre_mm (absolute, first and second axis of the plane), turns >= 1:
  * a full circle when start and end coincide in the plane. Radii at start and end may differ: the radius then
- * changes linearly with the angle. False when either radius is 0.
+ * changes linearly with the angle. False when either radius is 0 or the arc is shorter than CURVE_LENGTH_MIN_MM.
  */
 bool curve_set_arc(struct curve *c, const struct point *start, const struct point *end,
                    enum plane plane, const double centre_mm[2], bool clockwise, unsigned turns);

@@ -27,10 +27,11 @@ bool curve_set_line(struct curve *c, const struct point *start, const struct poi
         delta.at[i] = end->at[i] - start->at[i];
     }
     c->length_mm = length_over(&delta, 0, AXIS_LINEAR_COUNT);
-    if (c->length_mm == 0.0) {
+    if (c->length_mm < CURVE_LENGTH_MIN_MM) {
+        c->rotary = true;
         c->length_mm = length_over(&delta, AXIS_LINEAR_COUNT, AXIS_COUNT);
     }
-    if (c->length_mm == 0.0) {
+    if (c->length_mm < CURVE_LENGTH_MIN_MM) {
         return false;
     }
     for (int i = 0; i < AXIS_COUNT; i++) {

@@ -26,7 +26,7 @@ struct motion {
     double cycle_s;
     uint64_t cycles; /* made so far */
     struct point at; /* last commanded position */
-    uint32_t passed; /* cycles made inside the segment being executed */
+    uint64_t passed; /* cycles made inside the segment being executed */
     uint32_t first;
     uint32_t count;
     struct segment queue[MOTION_QUEUE_MAX];

@@ -25,7 +25,7 @@
 /* A joint that uses a share of the jerk uses at most this part of it of the acceleration (joint.c). */
 #define ACCELERATION_PER_SHARE 0.2
 
-/* An axis outside the plane of a spiral arc accelerates a little at constant feed; it keeps this part for that. */
+/* An axis outside the plane of an arc of two radii accelerates a little at constant feed: at most this part. */
 #define SPIRAL_PART 0.1
 
 /* A block lasts at least cycle / CYCLE_BLOCKS_MAX, so that a cycle passes a bounded number of joints. */
@@ -34,8 +34,8 @@
 /* Ramp to a third of the feed against ramp to a stop, rounded up: see block_start_feed. */
 #define RAMP_DETOUR 1.09
 
-/* Rounding of lengths that were made equal by solving for feeds that differ in their last digits. */
-#define LENGTH_SLACK_MM 1e-10
+/* Feeds solved for so that a ramp fills its block are rounded: by less than this part of them. */
+#define FEED_SLACK 2e-15
 
 #define BISECTIONS 60
 
@@ -130,13 +130,23 @@ double block_start_feed(const struct block *b)
                      ramp_reach(b->feed_end_mm_s, b->length_mm, &b->ramp));
 }
 
+/*
+ * Does the ramp down fit? Judged by feeds, not by length: a change of feed by one unit in the last place takes a length
+ * of 2 v sqrt(ulp(v)/j), which at a high feed and a low jerk is any part of a short block.
+ */
+static bool fits_down(const struct block *b, double start_mm_s, double end_mm_s)
+{
+    const double from = maths_max(end_mm_s, start_mm_s * (1.0 - FEED_SLACK));
+
+    return ramp_length(from, end_mm_s, &b->ramp) <= b->length_mm * (1.0 + FEED_SLACK);
+}
+
 double block_end_feed(const struct block *b, double start_mm_s)
 {
     double high = maths_min(b->feed_end_mm_s, ramp_reach(start_mm_s, b->length_mm, &b->ramp));
     double low = 0.0;
 
-    if (high >= start_mm_s ||
-        ramp_length(start_mm_s, high, &b->ramp) <= b->length_mm + LENGTH_SLACK_MM) {
+    if (high >= start_mm_s || fits_down(b, start_mm_s, high)) {
         return high;
     }
     for (int i = 0; i < BISECTIONS; i++) {
@@ -151,32 +161,36 @@ double block_end_feed(const struct block *b, double start_mm_s)
     return low;
 }
 
-/* Limits of one axis that moves straight (or, beside a spiral arc, nearly so) along the path. */
+/*
+ * Limits of one axis that moves straight along the path, or, beside an arc of two radii, nearly so: with
+ * u = second v^2 / A and w = (third v^3 + 3 second v a) / J it keeps u <= SPIRAL_PART and both terms of w <= SPIRAL_PART / 2
+ * at the highest feed v, and leaves 1 - 2u and 1 - 2w to a and j. The factor 2 = 1 / (1 - BLOCK_SHARE_MAX): what joints
+ * take is taken from a and j alone.
+ */
 static void limit_line_axis(struct block_shape *shape, struct ceiling *c,
                             const struct curve_bounds *bounds, const struct plan_limits *limits,
                             int i)
 {
-    const double a = limits->acceleration_mm_s2[i];
-    const double j = limits->jerk_mm_s3[i];
-    const double part = bounds->second[i] > 0.0 ? 1.0 - 2.0 * SPIRAL_PART : 1.0;
+    const double second = bounds->second[i];
+    double a = limits->acceleration_mm_s2[i];
+    double j = limits->jerk_mm_s3[i];
 
+    if (second > 0.0) {
+        const double part_j = 0.5 * SPIRAL_PART * j;
+
+        ceiling_lower(c, maths_sqrt(SPIRAL_PART * a / second), GOVERNOR_ACCELERATION);
+        ceiling_lower(c, maths_cbrt(part_j / bounds->third[i]), GOVERNOR_JERK);
+        const double v = c->feed_mm_s;
+        const double path_a =
+            maths_min((a - 2.0 * second * v * v) / bounds->first[i], part_j / (3.0 * second * v));
+
+        a = path_a * bounds->first[i];
+        j -= 2.0 * (bounds->third[i] * v * v * v + 3.0 * second * v * path_a);
+    }
     if (bounds->first[i] > 0.0) {
-        shape->line_a_mm_s2 = maths_min(shape->line_a_mm_s2, part * a / bounds->first[i]);
-        shape->line_j_mm_s3 = maths_min(shape->line_j_mm_s3, part * j / bounds->first[i]);
+        shape->line_a_mm_s2 = maths_min(shape->line_a_mm_s2, a / bounds->first[i]);
+        shape->line_j_mm_s3 = maths_min(shape->line_j_mm_s3, j / bounds->first[i]);
     }
-    if (bounds->second[i] > 0.0) {
-        ceiling_lower(c, maths_sqrt(SPIRAL_PART * a / bounds->second[i]), GOVERNOR_ACCELERATION);
-        ceiling_lower(c,
-                      maths_cbrt(SPIRAL_PART * j / maths_max(bounds->third[i], bounds->second[i])),
-                      GOVERNOR_JERK);
-    }
-}
-
-/* Largest radius change per radian turned, as a part of the radius: how far from normal an arc's x_ss may be. */
-static double spiral_ratio(const struct curve *curve)
-{
-    return maths_abs(curve->arc.radius_change_mm) /
-           (curve->arc.radius_start_mm * maths_abs(curve->arc.sweep_rad));
 }
 
 /* Chord error: v = (2/cycle) sqrt(2 R d - d^2) (cycle-frequency page, (3) turned round); R <= d needs none. */
@@ -188,21 +202,27 @@ static double chord_feed(double radius_mm, double chord_mm, double cycle_s)
     return 2.0 / cycle_s * maths_sqrt(chord_mm * (2.0 * radius_mm - chord_mm));
 }
 
+/*
+ * On an arc of two radii x_ss and x_sss are not quite normal to the path and along it. What the formulas at the top
+ * miss is at most along (second v^2) in acceleration, and along (3 second v a) + across (third v^3) in jerk.
+ */
 static void limit_arc_plane(struct block_shape *shape, struct ceiling *c, const struct curve *curve,
                             const struct curve_bounds *bounds, const struct plan_limits *limits)
 {
     const int first = curve->arc.first;
     const int second = curve->arc.second;
-    const double spiral = spiral_ratio(curve);
+    const double along = bounds->second_along / bounds->second[first];
+    const double across = bounds->third_across / bounds->third[first];
 
     shape->first = bounds->first[first];
     shape->second = bounds->second[first];
     shape->third = bounds->third[first];
     shape->plane_a_mm_s2 =
         maths_min(limits->acceleration_mm_s2[first], limits->acceleration_mm_s2[second]) /
-        (1.0 + spiral);
+        (1.0 + ARC_ACCELERATION * along);
     shape->plane_j_mm_s3 =
-        maths_min(limits->jerk_mm_s3[first], limits->jerk_mm_s3[second]) / (1.0 + 3.0 * spiral);
+        maths_min(limits->jerk_mm_s3[first], limits->jerk_mm_s3[second]) /
+        (1.0 + RAMP_NORMAL * along + ARC_JERK * across);
     ceiling_lower(c, chord_feed(bounds->radius_min_mm, limits->chord_error_max_mm, limits->cycle_s),
                   GOVERNOR_CHORD);
 }
@@ -228,6 +248,8 @@ void block_set_motion(struct block *b, const struct move *move, const struct cur
         if (bounds.first[i] > 0.0) {
             ceiling_lower(&c, limits->velocity_mm_s[i] / bounds.first[i], GOVERNOR_VELOCITY);
         }
+    }
+    for (int i = 0; i < AXIS_COUNT; i++) {
         if (curve->kind != CURVE_ARC || (i != curve->arc.first && i != curve->arc.second)) {
             limit_line_axis(&b->shape, &c, &bounds, limits, i);
         }

@@ -22,11 +22,28 @@
 /* A duration this close to a whole number of cycles, in cycles, is one. */
 #define CYCLE_SLACK 1e-9
 
+/* Up to here every integer is a double. */
+#define CYCLES_MAX 9007199254740992.0
+
+static double ramps_length(const struct block *b, const struct diagram *d)
+{
+    return ramp_length(d->feed_start_mm_s, d->feed_cruise_mm_s, &b->ramp) +
+           ramp_length(d->feed_cruise_mm_s, d->feed_end_mm_s, &b->ramp);
+}
+
 /* Length left for cruising between the ramps; negative: they do not fit. */
 static double cruise_length(const struct block *b, const struct diagram *d)
 {
-    return b->length_mm - ramp_length(d->feed_start_mm_s, d->feed_cruise_mm_s, &b->ramp) -
-           ramp_length(d->feed_cruise_mm_s, d->feed_end_mm_s, &b->ramp);
+    return b->length_mm - ramps_length(b, d);
+}
+
+/*
+ * Ramps that fill their block are a little longer than it, by the rounding of their feeds (block.c, FEED_SLACK). Run k
+ * times as long, k = L / length of the ramps, they keep their feeds and end at L: a / k, j / k^2.
+ */
+static double ramps_time_ratio(const struct block *b, const struct diagram *d)
+{
+    return maths_min(1.0, b->length_mm / ramps_length(b, d));
 }
 
 struct diagram diagram_fastest(const struct block *b, double start_mm_s, double end_mm_s)
@@ -58,17 +75,28 @@ struct diagram diagram_fastest(const struct block *b, double start_mm_s, double 
 double diagram_duration(const struct block *b, const struct diagram *d)
 {
     const double cruise_mm = maths_max(0.0, cruise_length(b, d));
+    const double ramps_s =
+        ramp_duration(maths_abs(d->feed_cruise_mm_s - d->feed_start_mm_s), &b->ramp) +
+        ramp_duration(maths_abs(d->feed_cruise_mm_s - d->feed_end_mm_s), &b->ramp);
 
-    return ramp_duration(maths_abs(d->feed_cruise_mm_s - d->feed_start_mm_s), &b->ramp) +
-           ramp_duration(maths_abs(d->feed_cruise_mm_s - d->feed_end_mm_s), &b->ramp) +
-           cruise_mm / d->feed_cruise_mm_s;
+    return ramps_s * ramps_time_ratio(b, d) + cruise_mm / d->feed_cruise_mm_s;
+}
+
+/* A count of cycles >= 0 as an integer. No program lasts as long as the largest: 2^53 cycles are 28,000 years. */
+static uint64_t whole_cycles(double cycles)
+{
+    return (uint64_t)maths_clamp(cycles, 0.0, CYCLES_MAX);
 }
 
 /* Cycles up to and including the first at or after the end. */
-static uint32_t cycles_to_end(double duration_s, double phase_s, double cycle_s)
+static uint64_t cycles_to_end(double duration_s, double phase_s, double cycle_s)
 {
-    return (uint32_t)maths_max(0.0, maths_ceil((duration_s - phase_s) / cycle_s - CYCLE_SLACK)) +
-           1U;
+    return whole_cycles(maths_ceil((duration_s - phase_s) / cycle_s - CYCLE_SLACK)) + 1U;
+}
+
+uint64_t diagram_wait(double duration_s, double cycle_s)
+{
+    return whole_cycles(maths_ceil(duration_s / cycle_s - CYCLE_SLACK));
 }
 
 struct diagram_cycles diagram_pass(double duration_s, double phase_s, double cycle_s)
@@ -76,10 +104,10 @@ struct diagram_cycles diagram_pass(double duration_s, double phase_s, double cyc
     struct diagram_cycles c = {0, phase_s, phase_s - duration_s};
 
     if (duration_s >= phase_s) {
-        c.count = (uint32_t)((duration_s - phase_s) / cycle_s) + 1U;
+        c.count = whole_cycles((duration_s - phase_s) / cycle_s) + 1U;
         c.next_s = phase_s + (double)c.count * cycle_s - duration_s;
     }
-    c.next_s = maths_clamp(c.next_s, CYCLE_SLACK * cycle_s, cycle_s);
+    c.next_s = maths_clamp(c.next_s, 0.0, cycle_s);
     return c;
 }
 
@@ -132,7 +160,7 @@ static void stretch_end(const struct block *b, struct diagram *d, double target_
 
 bool diagram_land(const struct block *b, struct diagram *d, double phase_s, double cycle_s)
 {
-    const uint32_t cycles = cycles_to_end(diagram_duration(b, d), phase_s, cycle_s);
+    const uint64_t cycles = cycles_to_end(diagram_duration(b, d), phase_s, cycle_s);
     const double target_s = phase_s + (double)(cycles - 1U) * cycle_s;
     const struct diagram slowest = diagram_slowest(d->feed_start_mm_s, d->feed_end_mm_s);
     struct diagram stop;
@@ -153,6 +181,8 @@ bool diagram_land(const struct block *b, struct diagram *d, double phase_s, doub
 void diagram_expand(const struct block *b, const struct diagram *d, struct profile *p)
 {
     const double cruise_mm = maths_max(0.0, cruise_length(b, d));
+    const double k = ramps_time_ratio(b, d);
+    const struct ramp_limits ramp = {b->ramp.a_mm_s2 / k, b->ramp.j_mm_s3 / (k * k)};
     double s;
 
     p->duration_s = 0.0;
@@ -160,11 +190,11 @@ void diagram_expand(const struct block *b, const struct diagram *d, struct profi
     p->feed_start_mm_s = d->feed_start_mm_s;
     p->feed_cruise_mm_s = d->feed_cruise_mm_s;
     p->feed_end_mm_s = d->feed_end_mm_s;
-    s = ramp_append(p, 0.0, d->feed_start_mm_s, d->feed_cruise_mm_s, &b->ramp);
+    s = ramp_append(p, 0.0, d->feed_start_mm_s, d->feed_cruise_mm_s, &ramp);
     if (cruise_mm > 0.0) {
         const struct profile_state at = {s, d->feed_cruise_mm_s, 0.0};
 
         s = profile_append(p, at, cruise_mm / d->feed_cruise_mm_s, 0.0).s_mm;
     }
-    ramp_append(p, s, d->feed_cruise_mm_s, d->feed_end_mm_s, &b->ramp);
+    ramp_append(p, s, d->feed_cruise_mm_s, d->feed_end_mm_s, &ramp);
 }

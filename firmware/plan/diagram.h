@@ -19,9 +19,9 @@ struct diagram {
 
 /* The cycles of a segment: cycle i is first_s + i * cycle after its start. */
 struct diagram_cycles {
-    uint32_t count;
+    uint64_t count;
     double first_s;
-    double next_s; /* from the segment's end to the next cycle after it, 0 < next <= cycle */
+    double next_s; /* from the segment's end to the next cycle after it, 0 <= next <= cycle */
 };
 
 /*
@@ -35,9 +35,12 @@ double diagram_duration(const struct block *b, const struct diagram *d);
 
 /*
  * Passes b: nothing is changed, the end lies between two cycles. phase_s: from the start of b to the first cycle,
- * 0 < phase <= cycle.
+ * 0 <= phase <= cycle.
  */
 struct diagram_cycles diagram_pass(double duration_s, double phase_s, double cycle_s);
+
+/* Whole cycles of a wait, rounded up. */
+uint64_t diagram_wait(double duration_s, double cycle_s);
 
 /* Comes to rest: the end is held until the next cycle. */
 struct diagram_cycles diagram_rest(double duration_s, double phase_s, double cycle_s);

@@ -17,6 +17,7 @@
  * block beside a joint at its ceiling, a joint may use f of the share. If several fall into three cycles, each block
  * between them, of time D_b, bounds f by D_b / (6 cycles) for the joints at its two ends, and the D_b add up to less than three
  * cycles: the sum of all f is below 1. That needs the ceilings of short blocks to agree with d, so they are lowered.
+ * A block's share is the largest of (what a joint takes) / f, so that what all joints take together is at most that.
  *
  * Rejected: one fixed corner feed (wrong for every other cycle time and angle); using the limit in full at each joint
  * (two joints in three cycles then break it, seen as jerk of 1.4 times the limit on chains of 0.1 mm blocks).
@@ -105,12 +106,20 @@ static double crowded_feed(const struct joint_steps *steps, double reach_mm_s)
     return v;
 }
 
-/* Part of the limits a joint at feed v takes, as a share of jerk. */
-static double joint_share(const struct joint_steps *steps, double v, double reach_mm_s)
+/* 1/f: how many times shorter than JOINT_CYCLES_APART the shorter block beside a joint lasts at its ceiling. */
+static double joint_crowding(const struct block *before, const struct block *after, double apart_s)
+{
+    const double rate_per_s = maths_max(block_top_feed(before) / before->length_mm,
+                                        block_top_feed(after) / after->length_mm);
+
+    return maths_max(1.0, apart_s * rate_per_s);
+}
+
+/* Share of jerk for a joint at feed v: the part of the limits it takes, over f. */
+static double joint_share(const struct joint_steps *steps, double v, double crowding)
 {
     const double jerk = steps->p_s_mm * v + steps->q_s2_mm2 * v * v;
     const double acceleration = steps->r_s_mm * v * (BLOCK_SHARE_MAX / JOINT_ACCELERATION);
-    const double crowding = maths_max(1.0, v / reach_mm_s);
 
     return maths_min(BLOCK_SHARE_MAX, maths_max(jerk, acceleration) * crowding);
 }
@@ -183,6 +192,6 @@ void joint_form(struct block *before, const struct curve *before_curve, struct b
     }
     block_cap_feed(before, ceiling, GOVERNOR_SHORT);
     block_cap_feed(after, short_ceiling(after, v, shorter_mm, apart_s), GOVERNOR_SHORT);
-    joint_pass(before, after, v, joint_share(&steps, maths_min(v, top), reach_mm_s),
+    joint_pass(before, after, v, joint_share(&steps, maths_min(v, top), joint_crowding(before, after, apart_s)),
                limits->cycle_s);
 }

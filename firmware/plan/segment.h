@@ -37,9 +37,9 @@ struct segment {
     /*
      * Control cycles that end inside the segment: cycle i (from 0) is first_s + i * cycle after its start. A landed
      * segment ends with a cycle at its very end; a short one that is passed may have none. For anything but motion:
-     * cycles to rest, 0 for a mere event such as a spindle command.
+     * cycles to rest, 0 for a mere event such as a spindle command (1 for each that follows WINDOW_INSTANT_MAX others).
      */
-    uint32_t cycles;
+    uint64_t cycles;
     double first_s;
     /* motion alone */
     struct curve curve;

@@ -19,9 +19,6 @@
 #include <assert.h>
 #include <string.h>
 
-/* Motions shorter than this have no length: rounding of coordinates. */
-#define WINDOW_LENGTH_MIN_MM 1e-9
-
 void window_init(struct window *w, const struct plan_limits *limits, uint32_t capacity,
                  const struct point *start)
 {
@@ -132,7 +129,7 @@ void window_push(struct window *w, const struct move *move)
         return;
     }
     w->motions++;
-    if (move_curve(move, &w->end, &curve) && curve.length_mm >= WINDOW_LENGTH_MIN_MM) {
+    if (move_curve(move, &w->end, &curve)) {
         push_motion(w, move, &curve);
     }
 }
@@ -143,13 +140,21 @@ void window_finish(struct window *w)
     w->finished = true;
 }
 
-static void take_wait(const struct window *w, const struct block *b, struct segment *segment)
+/*
+ * An event takes no cycle. But one cycle passes only so many segments (motion.h), so of many events in a row some rest
+ * for a cycle.
+ */
+static void take_wait(struct window *w, const struct block *b, struct segment *segment)
 {
-    const double cycles = b->move.dwell_s / w->limits.cycle_s;
-
     segment->end = JOINT_STOP;
     segment->first_s = w->limits.cycle_s;
-    segment->cycles = b->move.kind == MOVE_DWELL ? (uint32_t)maths_ceil(cycles - 1e-9) : 0;
+    if (b->move.kind == MOVE_DWELL) {
+        segment->cycles = diagram_wait(b->move.dwell_s, w->limits.cycle_s);
+    }
+    if (segment->cycles == 0 && w->instant == WINDOW_INSTANT_MAX && b->move.kind != MOVE_END) {
+        segment->cycles = 1;
+    }
+    w->instant = segment->cycles == 0 ? w->instant + 1 : 0;
 }
 
 /* The governor to show: a block that never reaches its ceiling is governed by its ramps. */
@@ -183,6 +188,7 @@ static void take_motion(struct window *w, const struct block *b, struct segment 
     w->feed_mm_s = d.feed_end_mm_s;
     move_curve(&b->move, &w->taken, &segment->curve);
     w->taken = b->move.end;
+    w->instant = 0; /* a wait comes only after a stop, and a stop has a cycle */
 }
 
 void window_take(struct window *w, struct segment *segment)

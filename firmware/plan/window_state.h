@@ -12,6 +12,9 @@
 
 #define WINDOW_BLOCKS_MAX 256
 
+/* Waits without a cycle in a row. With the short blocks after them (8 a cycle) they are fewer than MOTION_QUEUE_MAX. */
+#define WINDOW_INSTANT_MAX 4
+
 struct window {
     struct plan_limits limits;
     uint32_t capacity;
@@ -24,7 +27,8 @@ struct window {
     struct point end;      /* where everything pushed ends */
     struct point taken;    /* where everything taken ends */
     double feed_mm_s;      /* at the end of everything taken */
-    double phase_s;        /* from that end to the next control cycle, 0 < phase <= cycle */
+    double phase_s;        /* from that end to the next control cycle, 0 <= phase <= cycle */
+    uint32_t instant;      /* waits without a cycle taken in a row */
     struct block block[WINDOW_BLOCKS_MAX];
 };
 

@@ -48,10 +48,11 @@ static double remainder_of(double x, double y)
     while (step <= x * 0.5) {
         step += step;
     }
-    for (; step >= y; step *= 0.5) {
+    while (step >= y) {
         if (x >= step) {
             x -= step;
         }
+        step *= 0.5;
     }
     return x;
 }

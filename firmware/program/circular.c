@@ -50,6 +50,15 @@ static double distance(const double a[2], const double b[2])
     return maths_sqrt(x * x + y * y);
 }
 
+/* About a letter that is not on the line, at the arc's code. */
+static bool missing(struct program *p, enum takt_error code, const char *letter)
+{
+    const unsigned begin = p->words.code_span[STEP_MOTION].begin;
+
+    diagnostic_set(&p->error, code, p->lexer.line, p->lexer.column[begin], letter, 1, 0.0);
+    return false;
+}
+
 /* One coordinate of the centre from its word. */
 static bool centre_coordinate(struct program *p, enum axis axis, double *centre_mm)
 {
@@ -64,8 +73,7 @@ static bool centre_coordinate(struct program *p, enum axis axis, double *centre_
     if (!words_has(p, letter)) {
         const char name = (char)(letter - 'a' + 'A');
 
-        diagnostic_set(&p->error, TAKT_ERROR_ARC_CENTRE_PARTIAL, p->lexer.line, 0, &name, 1, 0.0);
-        return false;
+        return missing(p, TAKT_ERROR_ARC_CENTRE_PARTIAL, &name);
     }
     *centre_mm =
         word_mm + m->system_offset.at[axis] + m->axis_offset.at[axis] + m->tool_offset.at[axis];
@@ -138,9 +146,7 @@ static bool check_words(struct program *p, const struct circle *c)
     if ((p->config.axes & plane_axes) != plane_axes) {
         const bool first = (p->config.axes & (1U << c->first)) == 0;
 
-        diagnostic_set(&p->error, TAKT_ERROR_AXIS_MISSING, p->lexer.line, 0,
-                       &AXIS_LETTERS[first ? c->first : c->second], 1, 0.0);
-        return false;
+        return missing(p, TAKT_ERROR_AXIS_MISSING, &AXIS_LETTERS[first ? c->first : c->second]);
     }
     if (words_has(p, centre_letter(other))) {
         return report_error_letter(p, TAKT_ERROR_WORD_UNUSED, centre_letter(other), 0.0);

@@ -102,13 +102,6 @@ void coordinates_open(struct program *p)
     }
 }
 
-/* Stores a value that follows from a code; the code is named when there is no room. */
-static bool store(struct program *p, enum step step, unsigned number, double value)
-{
-    return parameters_set(p->config.parameters, number, value) ||
-           report_error_code(p, TAKT_ERROR_PARAMETERS_FULL, step, 0.0);
-}
-
 /* The system in use already is not loaded again, as in LinuxCNC. */
 bool coordinates_select(struct program *p, const struct program_code *code)
 {
@@ -122,7 +115,7 @@ bool coordinates_select(struct program *p, const struct program_code *code)
     if (system != p->modes.system) {
         load_system(p, system);
     }
-    return store(p, code->step, PARAMETER_SYSTEM, system);
+    return words_store(p, code->step, PARAMETER_SYSTEM, system);
 }
 
 bool coordinates_set_axis_offset(struct program *p, const struct program_code *code)
@@ -138,29 +131,29 @@ bool coordinates_set_axis_offset(struct program *p, const struct program_code *c
             m->axis_offset.at[i] =
                 m->at.at[i] - m->system_offset.at[i] - m->tool_offset.at[i] - value;
         }
-        if (!store(p, code->step, PARAMETER_AXIS_OFFSET + i,
-                   coordinates_to_parameter(m->axis_offset.at[i], i))) {
+        if (!words_store(p, code->step, PARAMETER_AXIS_OFFSET + i,
+                         coordinates_to_parameter(m->axis_offset.at[i], i))) {
             return false;
         }
     }
-    return store(p, code->step, PARAMETER_AXIS_APPLIED, 1.0);
+    return words_store(p, code->step, PARAMETER_AXIS_APPLIED, 1.0);
 }
 
 bool coordinates_cancel_axis_offset(struct program *p, const struct program_code *code)
 {
     memset(&p->modes.axis_offset, 0, sizeof(p->modes.axis_offset));
     for (enum axis i = AXIS_X; code->argument == 1 && i < AXIS_COUNT; i++) {
-        if (!store(p, code->step, PARAMETER_AXIS_OFFSET + i, 0.0)) {
+        if (!words_store(p, code->step, PARAMETER_AXIS_OFFSET + i, 0.0)) {
             return false;
         }
     }
-    return store(p, code->step, PARAMETER_AXIS_APPLIED, 0.0);
+    return words_store(p, code->step, PARAMETER_AXIS_APPLIED, 0.0);
 }
 
 bool coordinates_restore_axis_offset(struct program *p, const struct program_code *code)
 {
     point_from_parameters(p, PARAMETER_AXIS_OFFSET, &p->modes.axis_offset);
-    return store(p, code->step, PARAMETER_AXIS_APPLIED, 1.0);
+    return words_store(p, code->step, PARAMETER_AXIS_APPLIED, 1.0);
 }
 
 /* H, or else the tool in the spindle. An unknown tool other than "no tool" is worth a warning. */

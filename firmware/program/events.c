@@ -106,8 +106,8 @@ bool events_stop(struct program *p, const struct program_code *code)
 /* The next program starts in G54 again. */
 bool events_end(struct program *p, const struct program_code *code)
 {
-    if (!parameters_set(p->config.parameters, PARAMETER_SYSTEM, 1.0)) {
-        return report_error_code(p, TAKT_ERROR_PARAMETERS_FULL, code->step, 0.0);
+    if (!words_store(p, code->step, PARAMETER_SYSTEM, 1.0)) {
+        return false;
     }
     emit_event(p, MOVE_END);
     p->phase = PROGRAM_ENDED;

@@ -151,7 +151,7 @@ static const double *find_named(struct program *p, const struct program_referenc
 
 static bool read_parameter(struct program *p, double *value)
 {
-    struct program_reference reference;
+    struct program_reference reference = {0};
 
     p->lexer.at++;
     if (!expression_read_reference(p, &reference)) {
@@ -190,7 +190,7 @@ static bool read_atan(struct program *p, double *value)
 /* EXISTS[#<name>]: 1 when it has been set; numbered parameters always exist. */
 static bool read_exists(struct program *p, double *value)
 {
-    struct program_reference reference;
+    struct program_reference reference = {0};
 
     if (!lexer_accept(&p->lexer, '[')) {
         return missing_here(p, TAKT_ERROR_BRACKET_EXPECTED);

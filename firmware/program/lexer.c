@@ -62,8 +62,11 @@ static void fail_unprintable(const struct program_lexer *l, struct scan *s,
 
 static void append(struct program_lexer *l, char c, uint32_t column)
 {
+    if (c >= 'A' && c <= 'Z') {
+        c = (char)(c - 'A' + 'a');
+    }
     l->column[l->length] = (uint16_t)column;
-    l->text[l->length++] = c >= 'A' && c <= 'Z' ? (char)(c - 'A' + 'a') : c;
+    l->text[l->length++] = c;
 }
 
 static void scan_comment(const struct program_lexer *l, struct scan *s, struct diagnostic *error,

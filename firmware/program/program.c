@@ -40,7 +40,7 @@ static bool run_steps(struct program *p)
     return true;
 }
 
-/* A line with an error moves nothing and changes no mode. */
+/* A line with an error moves nothing and changes no mode and no parameter. */
 static bool run_line(struct program *p)
 {
     const struct program_modes before = p->modes;

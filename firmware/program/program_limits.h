@@ -5,7 +5,7 @@
 #ifndef TAKT_PROGRAM_LIMITS_H
 #define TAKT_PROGRAM_LIMITS_H
 
-#define PROGRAM_MEMORY_MAX (24 * 1024)
+#define PROGRAM_MEMORY_MAX 24576
 
 /* Characters of a line, comments included, its end not (LinuxCNC's limit). */
 #define PROGRAM_LINE_MAX 256
@@ -17,6 +17,8 @@
 #define PROGRAM_WARNINGS_MAX 4
 /* '#... = ...' on one line. */
 #define PROGRAM_ASSIGNMENTS_MAX 16
+/* Parameters the codes of one line set: G92 seven, a coordinate system and M2 one each. */
+#define PROGRAM_STORES_MAX 9
 /* Values inside values: brackets, functions, parameters of parameters. Bounds the recursion. */
 #define PROGRAM_NESTING_MAX 16
 

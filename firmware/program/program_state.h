@@ -49,7 +49,8 @@ struct program_words {
     struct program_span code_span[STEP_COUNT];
     unsigned assignments;
     uint16_t names_before; /* names known before the line */
-    struct program_assignment assignment[PROGRAM_ASSIGNMENTS_MAX];
+    /* Done ones hold the value from before. */
+    struct program_assignment assignment[PROGRAM_ASSIGNMENTS_MAX + PROGRAM_STORES_MAX];
 };
 
 /* Named parameters. */

@@ -7,6 +7,8 @@
 #include "program/report.h"
 #include "program/system_parameters.h"
 
+#include <assert.h>
+
 /* Letters that take a value now or, for U V W, are refused by name. */
 #define LETTERS_KNOWN                                                                              \
     (LETTERS_AXES | LETTERS_CENTRE | LETTER_BIT('f') | LETTER_BIT('h') | LETTER_BIT('p') |         \
@@ -180,15 +182,16 @@ static bool skip_line_number(struct program *p)
 /* The first of some letters, as they stand on the line; one of them is given. */
 static char first_given(const struct program *p, uint32_t letters)
 {
+    static const char all[] = "abcdefghijklmnopqrstuvwxyz";
     unsigned first = PROGRAM_LINE_MAX + 1;
-    char result = 'x';
+    char result = all[0];
 
-    for (char letter = 'a'; letter <= 'z'; letter++) {
-        const unsigned begin = p->words.span[LETTER_INDEX(letter)].begin;
+    for (unsigned i = 0; i < sizeof(all) - 1; i++) {
+        const unsigned begin = p->words.span[i].begin;
 
-        if ((p->words.given & letters & LETTER_BIT(letter)) != 0 && begin < first) {
+        if ((p->words.given & letters & (UINT32_C(1) << i)) != 0 && begin < first) {
             first = begin;
-            result = letter;
+            result = all[i];
         }
     }
     return result;
@@ -329,6 +332,22 @@ bool words_assign(struct program *p)
             return report_error(p, TAKT_ERROR_PARAMETERS_FULL, span, 0.0);
         }
     }
+    return true;
+}
+
+bool words_store(struct program *p, enum step step, unsigned number, double value)
+{
+    struct program_words *w = &p->words;
+
+    assert(w->assignments < PROGRAM_ASSIGNMENTS_MAX + PROGRAM_STORES_MAX);
+    struct program_assignment *a = &w->assignment[w->assignments];
+
+    a->reference.number = (uint16_t)number;
+    a->value = value;
+    if (!swap_numbered(p, a)) {
+        return report_error_code(p, TAKT_ERROR_PARAMETERS_FULL, step, 0.0);
+    }
+    w->assignments++;
     return true;
 }
 

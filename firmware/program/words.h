@@ -15,6 +15,10 @@ bool words_read(struct program *p);
  * line, so that words_take_back can undo it. False: no room, p->error is set, nothing is changed.
  */
 bool words_assign(struct program *p);
+
+/* Sets a parameter because the code of a step says so; words_take_back undoes this too. */
+bool words_store(struct program *p, enum step step, unsigned number, double value);
+
 void words_take_back(struct program *p);
 
 static inline bool words_has(const struct program *p, char letter)

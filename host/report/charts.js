@@ -60,7 +60,7 @@ function followingScale(axes) {
 }
 
 function followingLimit(axis) {
-  const check = (runSummary.checks || []).find((candidate) => candidate.name === `following.${axis.name}`);
+  const check = findCheck(`following.${axis.name}`);
   return check && check.limit;
 }
 
@@ -229,7 +229,7 @@ function setWindow(start_s, end_s) {
   timeView.start_s = start_s;
   timeView.end_s = end_s;
   for (const chart of timeView.charts) {
-    const [shown] = [chart.plot.layout.xaxis.range];
+    const shown = chart.plot.layout.xaxis.range;
     if (shown[0] !== start_s || shown[1] !== end_s) Plotly.relayout(chart.plot, { "xaxis.range": [start_s, end_s] });
   }
   showCursor();

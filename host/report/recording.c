@@ -54,7 +54,7 @@ static double feed_edge_ratio(const struct recording *rec, const struct cycle_re
 
 /* v_k = (x_k - x_(k-1)) / tau, a_k = (v_k - v_(k-1)) / tau, j_k = (a_k - a_(k-1)) / tau */
 static void axis_difference(struct axis_history *axis, double set, double cycle_s,
-                            unsigned consecutive, float value[AXIS_SERIES_COUNT])
+                            uint64_t consecutive, float value[AXIS_SERIES_COUNT])
 {
     const double velocity = (set - axis->set) / cycle_s;
     const double acceleration = (velocity - axis->velocity) / cycle_s;
@@ -65,6 +65,16 @@ static void axis_difference(struct axis_history *axis, double set, double cycle_
     axis->set = set;
     axis->velocity = velocity;
     axis->acceleration = acceleration;
+}
+
+/* The position a drive reports answers the setpoint of DRIVES_LATENCY_CYCLES before. */
+static float axis_following(const struct recording *rec, const struct axis_history *axis,
+                            const struct cycle_record *record)
+{
+    const struct point *answered = &rec->sent[record->cycle % DRIVES_LATENCY_CYCLES];
+    if (rec->consecutive < DRIVES_LATENCY_CYCLES)
+        return NAN;
+    return (float)((answered->at[axis->axis] - record->act.at[axis->axis]) * axis->edge_ratio);
 }
 
 static void recording_add_series(struct recording *rec, const struct cycle_record *record,
@@ -79,7 +89,7 @@ static void recording_add_series(struct recording *rec, const struct cycle_recor
         const double set = record->set.at[axis->axis];
         float *of_axis = value + recording_axis_series(i, AXIS_VELOCITY);
         axis_difference(axis, set, rec->limits.cycle_s, rec->consecutive, of_axis);
-        of_axis[AXIS_FOLLOWING] = (float)((set - record->act.at[axis->axis]) * axis->edge_ratio);
+        of_axis[AXIS_FOLLOWING] = axis_following(rec, axis, record);
     }
     thin_add(&rec->thin, cycle, value);
 }
@@ -105,6 +115,7 @@ void recording_add(struct recording *rec, const struct cycle_record *record, boo
     recording_add_series(rec, record, (uint32_t)cycle);
     recording_add_trail(rec, record, (uint32_t)cycle, rapid);
     memcpy(rec->linear_mm, record->cmd.at, sizeof rec->linear_mm);
-    rec->consecutive += rec->consecutive < AXIS_JERK + 1;
+    rec->sent[record->cycle % DRIVES_LATENCY_CYCLES] = record->set;
+    rec->consecutive++;
     rec->cycles = cycle + 1;
 }

@@ -5,6 +5,7 @@
 #ifndef TAKT_REPORT_RECORDING_H
 #define TAKT_REPORT_RECORDING_H
 
+#include "drive/drives.h"
 #include "motion/cycle_record.h"
 #include "plan/limits.h"
 #include "report/thin.h"
@@ -34,10 +35,10 @@ struct recording {
     struct axis_history axis[AXIS_COUNT];
     bool has_rotary;
     uint64_t first_cycle;
-    uint64_t cycles; /* recorded */
-    unsigned
-        consecutive; /* cycles without a gap up to the last one, counted to 3: what may be differenced */
-    double linear_mm[AXIS_LINEAR_COUNT]; /* cmd of the cycle before */
+    uint64_t cycles;                          /* recorded */
+    uint64_t consecutive;                     /* cycles without a gap up to the last one */
+    double linear_mm[AXIS_LINEAR_COUNT];      /* cmd of the cycle before */
+    struct point sent[DRIVES_LATENCY_CYCLES]; /* set of the last cycles: a ring */
     struct thin thin;
     struct trail trail;
 };

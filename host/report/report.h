@@ -7,7 +7,7 @@
  *     error = report_write(r, file, summary_json);
  *     report_close(r);
  *
- * Memory (about 4 MB) and file (at most 10 MB) are bounded however long the run is; equal records and an equal summary
+ * Memory (about 6 MB) and file (at most 10 MB) are bounded however long the run is; equal records and an equal summary
  * make equal bytes.
  */
 #ifndef TAKT_REPORT_REPORT_H
@@ -28,7 +28,8 @@ void report_close(struct report *r);
 
 /*
  * The next cycle. rapid: it belongs to a rapid move. Velocity, acceleration and jerk are differences of the setpoints
- * sent over one cycle, so the first cycles have none. Cycles from the 2^32nd on are left out.
+ * sent over one cycle, so the first cycles have none; the following error compares with the setpoint the drives
+ * answered, DRIVES_LATENCY_CYCLES before. Cycles from the 2^32nd on are left out.
  */
 void report_add(struct report *r, const struct cycle_record *record, bool rapid);
 

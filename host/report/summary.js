@@ -36,6 +36,11 @@ function formatNumber(value, digits = 5) {
   return value.toLocaleString("en", { maximumSignificantDigits: Math.max(digits, whole) }).replace("-", "−");
 }
 
+/* Below what the trace resolves, the digits are rounding. */
+function atLeast(value, least) {
+  return value > 0 && value < least ? `< ${formatNumber(least)}` : value;
+}
+
 function formatDuration(seconds) {
   if (seconds < 60) return [formatNumber(seconds, 5), "s"];
   const whole = Math.floor(seconds / 60);
@@ -114,28 +119,28 @@ function showFigures() {
   if (typeof runSummary.program_time_s === "number") add("Program time", ...formatDuration(runSummary.program_time_s));
   add("Path length", runSummary.path_length_mm, "mm");
   add("Blocks", runSummary.blocks, "");
-  add("Control cycles", runSummary.cycles, `of ${formatNumber(runData.cycle_s * 1e3)} ms`);
-  add("Path error", runSummary.path_error_max_mm, "mm");
+  add(`Cycles of ${formatNumber(runData.cycle_s * 1e3)} ms`, runSummary.cycles, "");
+  add("Path error", atLeast(runSummary.path_error_max_mm, 1e-9), "mm");
   add("Bus load", runSummary.bus ? runSummary.bus.load_percent : null, "%");
   add("Real time ratio", runSummary.realtime_ratio, "×");
 }
 
 /* ---- tables ---- */
 
-function bar(ratio) {
+function bar(ratio, broken) {
   const width = `width:${Math.min(100, 100 * ratio).toFixed(1)}%`;
   const percent = formatNumber(100 * ratio, 4);
   return element("div", { class: "bar", title: `${percent} % of the limit` },
-    element("i", { style: width, class: ratio > 1 ? "over" : "" }));
+    element("i", { style: width, class: broken ? "over" : "" }));
 }
 
-/* A value beside its limit, with a bar for how much of the limit is used. */
-function measured(value, unit, limit) {
+/* A value beside its limit, with a bar for how much of the limit is used. check: the one that judged it, if any. */
+function measured(value, unit, limit, check) {
   if (typeof value !== "number") return [element("span", { class: "unit" }, "not measured")];
   const text = [formatNumber(value, 6) + " "];
   if (typeof limit !== "number") return [...text, element("span", { class: "unit" }, unit)];
   text.push(element("span", { class: "of" }, `of ${formatNumber(limit, 6)} ${unit}`));
-  if (limit > 0) text.push(bar(Math.abs(value) / limit));
+  if (limit > 0) text.push(bar(Math.abs(value) / limit, check && check.held === false));
   return text;
 }
 
@@ -145,18 +150,22 @@ function axisMaximum(axis, quantity) {
   return key === undefined ? null : axis[key];
 }
 
+function findCheck(name) {
+  return (runSummary.checks || []).find((check) => check.name === name);
+}
+
 function showAxes() {
   const rows = (runSummary.axes || []).map((axis) => {
     const machine = runData.axes.find((candidate) => candidate.name === axis.name) || { limit: {} };
     const units = axisUnits(machine);
-    const check = (runSummary.checks || []).find((candidate) => candidate.name === `following.${axis.name}`) || {};
-    const cells = ["velocity", "acceleration", "jerk"].map((quantity) =>
-      element("td", {}, ...measured(axisMaximum(axis, quantity), units[quantity], machine.limit[quantity])));
-    cells.push(element("td", {}, ...measured(axisMaximum(axis, "following_error"), units.following, check.limit)));
+    const cells = ["velocity", "acceleration", "jerk"].map((quantity) => element("td", {},
+      ...measured(axisMaximum(axis, quantity), units[quantity], machine.limit[quantity], findCheck(`${quantity}.${axis.name}`))));
+    const following = findCheck(`following.${axis.name}`);
+    cells.push(element("td", {},
+      ...measured(axisMaximum(axis, "following_error"), units.following, following && following.limit, following)));
     return element("tr", {}, element("th", { scope: "row" }, axis.name), ...cells);
   });
-  const heads = ["Axis", "Velocity", "Acceleration", "Jerk", "Following error"];
-  fillTable("axes", heads, rows);
+  fillTable("axes", ["Axis", "Velocity", "Acceleration", "Jerk", "Following error"], rows);
 }
 
 function showChecks() {
@@ -165,7 +174,7 @@ function showChecks() {
   fillTable("checks", ["Check", "Result", "Value beside limit"], checks.map((check) => {
     const [tone, word] = check.held === true ? ["good", "✓ held"] : check.held === false ? ["bad", "✗ broken"] : ["", "not measured"];
     return element("tr", {}, element("th", { scope: "row" }, check.name), element("td", { class: tone }, word),
-      element("td", {}, ...measured(check.value, "", check.limit)));
+      element("td", {}, ...measured(check.value, "", check.limit, check)));
   }));
 }
 
@@ -174,20 +183,20 @@ function fillTable(id, heads, rows) {
   document.getElementById(id).append(element("thead", {}, head), element("tbody", {}, ...rows));
 }
 
-/* Everything that is neither a list nor empty, nested names joined by a space. */
-function summaryRows(object, prefix) {
+/* Everything that is not a list; nested names are joined by a space, and the unit of the outer name holds inside. */
+function summaryRows(object, outerName, outerUnit) {
   return Object.entries(object).flatMap(([field, value]) => {
+    const [inner, unit] = splitUnit(field);
+    const name = `${outerName} ${inner.replaceAll("_", " ")}`.trim();
     if (Array.isArray(value)) return [];
-    if (value !== null && typeof value === "object") return summaryRows(value, `${prefix}${field} `);
-    const [name, unit] = splitUnit(field);
-    const label = (prefix + name).replaceAll("_", " ");
-    return [summaryRow(label[0].toUpperCase() + label.slice(1), value, unit)];
+    if (value !== null && typeof value === "object") return summaryRows(value, name, unit);
+    return [summaryRow(name[0].toUpperCase() + name.slice(1), value, unit || outerUnit)];
   });
 }
 
 function summaryRow(label, value, unit) {
   const row = element("tr", {}, element("th", { scope: "row" }, label));
-  if (value === null) row.append(element("td", { class: "unit" }, element("span", { class: "unit" }, "not measured")));
+  if (value === null) row.append(element("td", {}, element("span", { class: "unit" }, label === "Fault" ? "none" : "not measured")));
   else if (typeof value === "number") row.append(element("td", {}, formatNumber(value, 9), " ", element("span", { class: "unit" }, unit)));
   else row.append(element("td", { class: "code" }, String(value)));
   return row;
@@ -198,7 +207,7 @@ function showSummary() {
   showFigures();
   showAxes();
   showChecks();
-  document.getElementById("summary").append(element("tbody", {}, ...summaryRows(runSummary, "")));
+  document.getElementById("summary").append(element("tbody", {}, ...summaryRows(runSummary, "", "")));
   const width = runData.width_cycles;
   document.getElementById("bucket").textContent = width === 1 ? "cycle" : `${width} cycles`;
 }

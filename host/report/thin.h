@@ -12,7 +12,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-#define THIN_BUCKETS_MAX 4096
+#define THIN_BUCKETS_MAX 8192
 /* Points one series can come to: two a bucket, and the bucket being filled. */
 #define THIN_POINTS_MAX (2 * THIN_BUCKETS_MAX + 2)
 

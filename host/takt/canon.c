@@ -4,6 +4,8 @@
 #include "base/maths.h"
 
 #include <assert.h>
+#include <inttypes.h>
+#include <stdio.h>
 #include <string.h>
 
 #define PLACES             6
@@ -24,20 +26,23 @@ static void add_text(struct line *l, const char *text)
     l->length += length;
 }
 
-static void add_number(struct line *l, double value, unsigned places)
+static void add_word(struct line *l, char letter, double value)
 {
+    const char word[] = {' ', letter, '\0'};
     char number[DECIMAL_TEXT_MAX + 1];
 
-    number[decimal_write(number, value, places)] = '\0';
+    number[decimal_write(number, value, PLACES)] = '\0';
+    add_text(l, word);
     add_text(l, number);
 }
 
-static void add_word(struct line *l, char letter, double value, unsigned places)
+static void add_whole(struct line *l, const char *before, uint32_t value)
 {
-    const char word[] = {' ', letter, '\0'};
+    char number[16];
 
-    add_text(l, word);
-    add_number(l, value, places);
+    (void)snprintf(number, sizeof(number), "%" PRIu32, value);
+    add_text(l, before);
+    add_text(l, number);
 }
 
 static void add_axes(struct line *l, unsigned axes, const struct point *point)
@@ -46,7 +51,7 @@ static void add_axes(struct line *l, unsigned axes, const struct point *point)
         if ((axes & (1U << i)) != 0) {
             const double scale = i < AXIS_LINEAR_COUNT ? 1.0 : DEGREES_PER_RAD;
 
-            add_word(l, AXIS_LETTERS[i], point->at[i] * scale, PLACES);
+            add_word(l, AXIS_LETTERS[i], point->at[i] * scale);
         }
     }
 }
@@ -62,9 +67,9 @@ static void add_arc(struct line *l, const struct move *move, const struct point 
     centre.at[first] = move->centre_mm[0];
     centre.at[second] = move->centre_mm[1];
     for (unsigned i = 0; i < AXIS_LINEAR_COUNT; i++) {
-        add_word(l, (char)('I' + (char)i), centre.at[i], PLACES);
+        add_word(l, (char)('I' + (char)i), centre.at[i]);
     }
-    add_word(l, 'P', move->turns, 0);
+    add_whole(l, " P", move->turns);
     add_text(l, planes[move->plane]);
 }
 
@@ -79,7 +84,7 @@ static void add_feed(struct line *l, const struct move *move, const struct point
 {
     const double scale = is_rotary_only(move, at) ? DEGREES_PER_RAD : 1.0;
 
-    add_word(l, 'F', move->feed_mm_s * SECONDS_PER_MINUTE * scale, PLACES);
+    add_word(l, 'F', move->feed_mm_s * SECONDS_PER_MINUTE * scale);
 }
 
 static void add_spindle(struct line *l, const struct move *move)
@@ -89,7 +94,7 @@ static void add_spindle(struct line *l, const struct move *move)
         return;
     }
     add_text(l, move->direction == SPINDLE_CW ? "spindle_cw" : "spindle_ccw");
-    add_word(l, 'S', move->speed_rpm, PLACES);
+    add_word(l, 'S', move->speed_rpm);
 }
 
 static const char *coolant_name(const struct move *move)
@@ -104,14 +109,14 @@ static void add_event(struct line *l, const struct move *move)
 {
     if (move->kind == MOVE_DWELL) {
         add_text(l, "dwell");
-        add_word(l, 'P', move->dwell_s, PLACES);
+        add_word(l, 'P', move->dwell_s);
     } else if (move->kind == MOVE_SPINDLE) {
         add_spindle(l, move);
     } else if (move->kind == MOVE_COOLANT) {
         add_text(l, coolant_name(move));
     } else if (move->kind == MOVE_TOOL) {
         add_text(l, move->tool_change ? "tool_change" : "tool_prepare");
-        add_word(l, 'T', move->tool, 0);
+        add_whole(l, " T", move->tool);
     } else if (move->kind == MOVE_STOP) {
         add_text(l, move->optional ? "optional_stop" : "stop");
     } else {
@@ -136,9 +141,10 @@ static void add_motion(struct line *l, const struct move *move, unsigned axes,
 
 size_t canon_format(const struct move *move, unsigned axes, const struct point *at, char *text)
 {
-    struct line l = {text, 0};
+    struct line l = {.length = 0};
 
-    add_number(&l, move->line, 0);
+    l.text = text;
+    add_whole(&l, "", move->line);
     add_text(&l, " ");
     if (move_is_motion(move)) {
         add_motion(&l, move, axes, at);

@@ -165,7 +165,7 @@ static enum command_status plan_into(const struct session *session, struct outpu
     if (status != STATUS_DONE)
         return status;
     print_totals(&print, &totals);
-    if (json->stream != NULL && !output_file_commit(json))
+    if (json->stream != NULL && !(output_file_finish(json) && output_file_place(json)))
         return STATUS_ENVIRONMENT;
     return STATUS_DONE;
 }

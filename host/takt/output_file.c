@@ -78,10 +78,13 @@ static bool output_file_close(struct output_file *file)
     return good;
 }
 
-bool output_file_commit(struct output_file *file)
+bool output_file_finish(struct output_file *file)
 {
-    if (!output_file_close(file))
-        return output_file_fail(file, "cannot be written");
+    return output_file_close(file) || output_file_fail(file, "cannot be written");
+}
+
+bool output_file_place(struct output_file *file)
+{
     if (file->aside[0] != '\0' && rename(file->aside, file->path) != 0)
         return output_file_fail(file, "cannot be put in place");
     file->aside[0] = '\0';

@@ -1,5 +1,6 @@
 /*
- * An output file that is whole or not there: written beside its place, then renamed.
+ * An output file that is whole or not there: written beside its place, then renamed. Finish all files of a
+ * command before the first is placed, so that all are there or none.
  *
  * "-" is standard output, and things that are no regular file (/dev/null, a pipe) are written straight.
  */
@@ -20,9 +21,10 @@ struct output_file {
 
 /* False after a message: it cannot be created. */
 bool output_file_open(struct output_file *file, const char *path);
-/* Ends the file and puts it in its place. False after a message: not everything could be written; nothing is left
- * in its place. */
-bool output_file_commit(struct output_file *file);
+/* Ends the file. False after a message: not everything could be written; it is given up. */
+bool output_file_finish(struct output_file *file);
+/* Puts a finished file in its place. False after a message: nothing has changed there. */
+bool output_file_place(struct output_file *file);
 /* Gives it up: no trace is left. Nothing happens when it is not open. */
 void output_file_discard(struct output_file *file);
 

@@ -77,10 +77,23 @@ static bool is_kept(const struct parameter_file *file, unsigned number)
            parameters_get(&file->values, number) != 0;
 }
 
+/* With as few digits as give the same bits when read. */
+static void write_value(FILE *stream, unsigned number, double value)
+{
+    char text[32];
+
+    for (int digits = 15; digits <= 17; digits++) {
+        (void)snprintf(text, sizeof text, "%.*g", digits, value);
+        if (strtod(text, NULL) == value)
+            break;
+    }
+    (void)fprintf(stream, "%u\t%s\n", number, text);
+}
+
 void parameter_file_write(FILE *stream, const struct parameter_file *file)
 {
     for (unsigned number = 1; number <= PARAMETER_NUMBER_MAX; number++) {
         if (is_kept(file, number))
-            (void)fprintf(stream, "%u\t%.17g\n", number, parameters_get(&file->values, number));
+            write_value(stream, number, parameters_get(&file->values, number));
     }
 }

@@ -110,6 +110,8 @@ static bool open_report(struct run_outputs *o, const struct machine *machine)
 {
     struct plan_limits limits;
 
+    if (report_get_plots_missing() != NULL)
+        (void)fprintf(stderr, "takt run: warning: %s\n", report_get_plots_missing());
     controller_plan_limits(machine, &limits);
     o->report = report_open(&limits);
     return o->report != NULL;
@@ -182,6 +184,24 @@ static bool write_end(struct run_outputs *o, const struct summary *summary,
     return good;
 }
 
+static bool finish_files(struct run_outputs *o)
+{
+    for (unsigned i = 0; i < RUN_OUTPUT_COUNT; i++) {
+        if (o->path[i] != NULL && !output_file_finish(&o->file[i]))
+            return false;
+    }
+    return true;
+}
+
+static bool place_files(struct run_outputs *o)
+{
+    for (unsigned i = 0; i < RUN_OUTPUT_COUNT; i++) {
+        if (o->path[i] != NULL && !output_file_place(&o->file[i]))
+            return false;
+    }
+    return true;
+}
+
 bool run_outputs_commit(struct run_outputs *o, const struct summary *summary,
                         const struct parameter_file *parameters)
 {
@@ -196,11 +216,7 @@ bool run_outputs_commit(struct run_outputs *o, const struct summary *summary,
                               errno != 0 ? strerror(errno) : "out of memory");
         return false;
     }
-    for (unsigned i = 0; i < RUN_OUTPUT_COUNT; i++) {
-        if (o->path[i] != NULL && !output_file_commit(&o->file[i]))
-            return false;
-    }
-    return true;
+    return finish_files(o) && place_files(o);
 }
 
 void run_outputs_list(const struct run_outputs *o, FILE *stream)

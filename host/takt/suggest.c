@@ -47,7 +47,7 @@ static const unsigned *distance_rows(unsigned rows[3][SUGGEST_WORD_MAX + 1], con
 
 unsigned suggest_distance(const char *a, const char *b)
 {
-    unsigned rows[3][SUGGEST_WORD_MAX + 1];
+    unsigned rows[3][SUGGEST_WORD_MAX + 1] = {{0}};
 
     return distance_rows(rows, a, b)[strlen(b)];
 }
@@ -55,7 +55,7 @@ unsigned suggest_distance(const char *a, const char *b)
 /* Distance to the nearest beginning of b, and one more: a whole word is better. */
 static unsigned beginning_distance(const char *a, const char *b)
 {
-    unsigned rows[3][SUGGEST_WORD_MAX + 1];
+    unsigned rows[3][SUGGEST_WORD_MAX + 1] = {{0}};
     const unsigned *last = distance_rows(rows, a, b);
     unsigned least = last[0];
 

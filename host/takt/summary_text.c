@@ -86,10 +86,11 @@ static void write_checks(FILE *stream, const struct summary *summary)
     (void)fprintf(stream, "  checks        %u of %u held\n", held, summary->checks);
     for (unsigned i = 0; i < summary->checks; i++) {
         const struct summary_check *check = &summary->check[i];
+        const char *space = check->unit[0] != '\0' ? " " : "";
 
         if (!check->held)
-            (void)fprintf(stream, "    FAILED      %s: %.9g %s, limit %.9g %s\n", check->name,
-                          check->value, check->unit, check->limit, check->unit);
+            (void)fprintf(stream, "    FAILED      %s: %.9g%s%s, limit %.9g%s%s\n", check->name,
+                          check->value, space, check->unit, check->limit, space, check->unit);
     }
 }
 

@@ -15,7 +15,7 @@ static bool text_grow(struct text *text, size_t *room)
 
     if (*room - text->length > TEXT_CHUNK)
         return true;
-    *room = *room * 2 + 2 * TEXT_CHUNK;
+    *room = *room * 2 + (size_t)2 * TEXT_CHUNK;
     bytes = realloc(text->bytes, *room);
     if (bytes == NULL)
         return false;

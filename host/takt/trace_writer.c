@@ -6,7 +6,7 @@
 #include <stdarg.h>
 
 /* Numbers of a row: cycle, time, block, line, feed, override, limiter, and three of every axis. */
-#define TRACE_ROW_MAX ((7 + 3 * AXIS_COUNT) * (DECIMAL_TEXT_MAX + 1))
+#define TRACE_ROW_MAX ((size_t)(7 + 3 * AXIS_COUNT) * (DECIMAL_TEXT_MAX + 1))
 
 #define TRACE_PLACES_POSITION 9
 #define TRACE_PLACES_TIME     6

@@ -221,8 +221,14 @@ def compare(gcode, takt, program, folder):
     return True
 
 
+def compare_all(gcode, takt, programs):
+    with tempfile.TemporaryDirectory() as folder:
+        give_tools(folder)
+        return all([compare(gcode, takt, program, folder) for program in programs])
+
+
 def main(arguments):
-    if len(arguments) < 3:
+    if len(arguments) < 2:
         print(__doc__)
         return 1
     try:
@@ -230,12 +236,8 @@ def main(arguments):
     except ImportError as error:
         print(f"LinuxCNC's Python module gcode is not installed: {error}")
         return SKIPPED
-    takt, *programs = arguments[1:]
-    with tempfile.TemporaryDirectory() as folder:
-        give_tools(folder)
-        verdicts = [compare(gcode, takt, program, folder) for program in programs]
-    return 0 if all(verdicts) else 1
+    return 0 if compare_all(gcode, arguments[0], arguments[1:]) else 1
 
 
 if __name__ == "__main__":
-    sys.exit(main(sys.argv))
+    sys.exit(main(sys.argv[1:]))

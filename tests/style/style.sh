@@ -1,7 +1,8 @@
+# shellcheck shell=bash
 # Sourced by the checks of this folder.
 export LC_ALL=C
 
-cd "${TAKT_SOURCE:?set by CTest to the root of the repository}"
+cd "${TAKT_SOURCE:?set by CTest to the root of the repository}" || exit
 
 # Prints our C sources and headers, one a line.
 c_files() {

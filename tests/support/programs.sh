@@ -1,3 +1,4 @@
+# shellcheck shell=bash
 # Sourced by test scripts that run real part programs.
 #
 # They are other people's work and not part of this repository: TAKT_PROGRAMS names their folder, else the folder
@@ -10,6 +11,7 @@ programs_or_skip() {
         echo "no real programs: TAKT_PROGRAMS is not set and ../shared/programs does not exist"
         exit 77
     fi
+    PROGRAMS=$(cd "$PROGRAMS" && pwd)
 }
 
 # programs_need FILE...: ends the test as skipped if one of these programs is missing.

@@ -98,6 +98,18 @@ static void test_rotary_axes_follow_the_length_of_the_linear_ones(void)
     TEST_ASSERT_DOUBLE_WITHIN(1e-15, 0.25, p.at[AXIS_A]);
 }
 
+static void test_rounding_of_linear_axes_does_not_hide_a_turn(void)
+{
+    const struct point start = at(0.0, 0.0, 0.0);
+    struct point end = at(1e-13, 0.0, 0.0);
+    struct curve c;
+
+    end.at[AXIS_A] = 1.5;
+    TEST_ASSERT_TRUE(curve_set_line(&c, &start, &end));
+    TEST_ASSERT_TRUE(curve_is_rotary(&c));
+    TEST_ASSERT_DOUBLE_WITHIN(1e-15, 1.5, c.length_mm);
+}
+
 static void test_a_quarter_circle_has_a_quarter_of_the_circumference(void)
 {
     const struct curve c = arc_of(at(10.0, 0.0, 0.0), at(0.0, 10.0, 0.0), 0.0, 0.0, false, 1);
@@ -195,6 +207,24 @@ static void test_an_arc_starts_and_ends_where_it_was_told(void)
     }
 }
 
+static void test_an_arc_that_closes_but_for_rounding_ends_where_it_was_told(void)
+{
+    static const double off_mm[] = {-9e-8, -1e-12, 1e-12, 9e-8};
+
+    for (int i = 0; i < 8; i++) {
+        const double radius = 0.002;
+        const double y = off_mm[i / 2];
+        const double x = maths_sqrt(radius * radius - y * y);
+        const struct curve c =
+            arc_of(at(radius, 0.0, 0.0), at(x, y, 0.0), 0.0, 0.0, i % 2 != 0, 1);
+        struct point p;
+
+        TEST_ASSERT_DOUBLE_WITHIN(1e-3, 1.0, c.length_mm / (radius * MATHS_TWO_PI));
+        curve_point(&c, c.length_mm, &p);
+        TEST_ASSERT_DOUBLE_WITHIN(1e-17, 0.0, distance(&p, &c.end));
+    }
+}
+
 static void test_steps_of_equal_length_are_equally_far_apart(void)
 {
     for (unsigned i = 0; i < ARCS; i++) {
@@ -282,6 +312,7 @@ int main(void)
     RUN_TEST(test_a_line_without_length_is_refused);
     RUN_TEST(test_a_line_of_rotary_axes_alone_is_measured_in_radians);
     RUN_TEST(test_rotary_axes_follow_the_length_of_the_linear_ones);
+    RUN_TEST(test_rounding_of_linear_axes_does_not_hide_a_turn);
     RUN_TEST(test_a_quarter_circle_has_a_quarter_of_the_circumference);
     RUN_TEST(test_the_other_direction_takes_the_rest_of_the_circle);
     RUN_TEST(test_equal_ends_make_a_full_circle_and_turns_add_to_it);
@@ -289,6 +320,7 @@ int main(void)
     RUN_TEST(test_every_plane_turns_from_its_first_axis_to_its_second);
     RUN_TEST(test_an_arc_of_radius_zero_is_refused);
     RUN_TEST(test_an_arc_starts_and_ends_where_it_was_told);
+    RUN_TEST(test_an_arc_that_closes_but_for_rounding_ends_where_it_was_told);
     RUN_TEST(test_steps_of_equal_length_are_equally_far_apart);
     RUN_TEST(test_tangent_and_curvature_are_the_derivatives_of_the_point);
     RUN_TEST(test_bounds_hold_everywhere_on_the_curve);

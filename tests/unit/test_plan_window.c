@@ -179,7 +179,7 @@ static void test_a_line_into_an_arc_slows_to_what_the_step_of_curvature_allows_a
     TEST_ASSERT_EQUAL(JOINT_REDUCED, segment.end);
     TEST_ASSERT_TRUE(segment.profile.feed_end_mm_s <= joint * (1.0 + 1e-12));
     TEST_ASSERT_TRUE(segment.profile.feed_end_mm_s > 0.9 * joint);
-    TEST_ASSERT_DOUBLE_WITHIN(1e-12, segment.first_s + (segment.cycles - 1) * CYCLE_S,
+    TEST_ASSERT_DOUBLE_WITHIN(1e-12, segment.first_s + (double)(segment.cycles - 1) * CYCLE_S,
                               segment.profile.duration_s);
 }
 
@@ -291,6 +291,58 @@ static void test_a_dwell_stops_before_and_rests_whole_cycles(void)
     TEST_ASSERT_EQUAL(11, segment.cycles);
 }
 
+/*
+ * A long ramp down through a short block: there the feed changes by less than a thousand units in its last place, and
+ * the length of such a ramp is as uncertain.
+ */
+static void test_a_short_block_inside_a_long_ramp_is_passed_at_speed(void)
+{
+    struct plan_limits gentle = mill;
+
+    gentle.velocity_mm_s[AXIS_X] = 835.345;
+    gentle.jerk_mm_s3[AXIS_X] = 14.7596;
+    window_init(&window, &gentle, WINDOW_BLOCKS_MAX, &position);
+    push(move_to(9928.59923, 0, 376.223654));
+    push(move_to(9928.59923 + 0.0708575466, 0, 501.605215));
+    push(move_to(9928.59923 + 0.0708575466 + 1499.36618, 0, 128.921969));
+    window_finish(&window);
+    take();
+    take();
+    struct profile_state end;
+
+    profile_evaluate(&segment.profile, segment.profile.duration_s, &end);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-12, segment.curve.length_mm, end.s_mm);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-2, segment.profile.feed_start_mm_s, segment.profile.feed_end_mm_s);
+    TEST_ASSERT_TRUE(segment.profile.feed_end_mm_s > 128.0);
+}
+
+/* 2 m at 1e-5 mm/s: 2e11 cycles. */
+static void test_a_block_may_last_more_cycles_than_32_bits_count(void)
+{
+    push(move_to(2000, 0, 1e-5));
+    window_finish(&window);
+    take();
+    TEST_ASSERT_DOUBLE_WITHIN(1e-9, 1.0, (double)segment.cycles / 2e11);
+}
+
+static void test_of_many_events_in_a_row_one_in_five_takes_a_cycle(void)
+{
+    struct move event;
+    uint64_t cycles = 0;
+
+    memset(&event, 0, sizeof(event));
+    event.kind = MOVE_COOLANT;
+    for (int i = 0; i < 20; i++) {
+        push(event);
+    }
+    window_finish(&window);
+    for (int i = 1; i <= 20; i++) {
+        take();
+        cycles += segment.cycles;
+        TEST_ASSERT_EQUAL(i / 5, cycles);
+    }
+}
+
 static void test_linear_and_rotary_paths_do_not_run_into_each_other(void)
 {
     struct plan_limits four = mill;
@@ -326,6 +378,9 @@ int main(void)
     RUN_TEST(test_each_segment_begins_where_the_one_before_ended);
     RUN_TEST(test_a_motion_without_length_is_counted_and_dropped);
     RUN_TEST(test_a_dwell_stops_before_and_rests_whole_cycles);
+    RUN_TEST(test_a_short_block_inside_a_long_ramp_is_passed_at_speed);
+    RUN_TEST(test_a_block_may_last_more_cycles_than_32_bits_count);
+    RUN_TEST(test_of_many_events_in_a_row_one_in_five_takes_a_cycle);
     RUN_TEST(test_linear_and_rotary_paths_do_not_run_into_each_other);
     return UNITY_END();
 }

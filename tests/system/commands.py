@@ -1,0 +1,81 @@
+"""The command line: help, suggestions, and the commands that only read."""
+
+import re
+
+import takt_test as t
+
+COMMANDS = "run", "plan", "check", "canon", "trace", "machine"
+PROGRAM = t.write("part.ngc", "F600\nG1 X10\nG2 X20 I5\nG4 P0.5\nG0 Z5\nM2\n")
+
+status, out, _ = t.run("help")
+t.check(status == 0 and all(f"\n  {name} " in out for name in COMMANDS), "help lists the commands", out)
+for name in COMMANDS:
+    status, out, _ = t.run("help", name)
+    t.check(status == 0 and out.startswith(f"usage: takt {name}") and "Examples:" in out, f"help {name}", out)
+    t.check(t.run(name, "--help")[1] == out, f"{name} --help says the same")
+t.check(re.fullmatch(r"takt \d+\.\d+\.\d+\n", t.run("--version")[1]), "--version")
+
+for words, said in (
+    ([], "usage"),
+    (["rum"], "did you mean run?"),
+    (["serve"], "run "),
+    (["run"], "file name is missing"),
+    (["run", PROGRAM, "more"], "one argument too many"),
+    (["run", PROGRAM, "--jsno", "x"], "did you mean --json?"),
+    (["run", PROGRAM, "--t", "x"], "--tools or --trace"),
+    (["run", PROGRAM, "--json"], "needs a value"),
+    (["run", PROGRAM, "--quiet=1"], "takes no value"),
+    (["run", PROGRAM, "--until", "soon"], "number"),
+    (["run", PROGRAM, "--json", "a", "--json", "b"], "twice"),
+    (["run", PROGRAM, "-x"], "-x"),
+    (["run", PROGRAM, "--save-parameters"], "--parameters"),
+):
+    status, out, err = t.run(*words)
+    t.check(status == 2 and out == "" and said in err, f"takt {' '.join(words)}: refused", status, err)
+
+# plan: a line of 10 mm from rest to rest at 10 mm/s takes 1 + 2 sqrt(10/50000) s.
+status, out, _ = t.run("plan", PROGRAM)
+rows = out.splitlines()
+t.check(status == 0 and rows[-1].startswith("3 moves, 30.707963 mm"), "plan's totals", rows[-1])
+t.check(rows[1].split()[:4] == ["1", "2", "feed", "10.000000"], "plan's rows", rows[1])
+status, out, _ = t.run("plan", PROGRAM, "--json", "-")
+plan = t.json.loads(out)
+kinds = [block["kind"] for block in plan["blocks"]]
+t.check(kinds == ["feed", "arc_cw", "dwell", "rapid", "end"], "plan's kinds", kinds)
+t.check(plan["blocks"][2]["time_s"] == 0.5, "the dwell's time", plan["blocks"][2])
+t.check(abs(plan["blocks"][0]["feed_cruise_mm_min"] - 600) < 1e-6, "the programmed feed is reached", plan["blocks"][0])
+t.check(plan["blocks"][0]["governor"] == "program" and plan["blocks"][3]["end"] == "stop", "why and how", plan["blocks"])
+run_cycles = t.json.loads(t.run("run", PROGRAM, "--json", "-", "--quiet")[1])["cycles"]
+t.check(plan["totals"]["cycles"] == run_cycles, "the plan takes as long as the run", plan["totals"], run_cycles)
+
+status, out, _ = t.run("check", PROGRAM)
+t.check(status == 0 and "no errors" in out and "30.708 mm" in out, "check", out)
+status, out, _ = t.run("canon", PROGRAM)
+t.check(out.splitlines()[1] == "3 arc_cw X20.000000 Y0.000000 Z0.000000 I15.000000 J0.000000 K0.000000 P1 G17 F600.000000", "canon", out)
+
+# trace: limits of one, differences of two.
+t.run("run", PROGRAM, "--trace", "a.csv", "--quiet")
+t.run("run", PROGRAM, "--trace", "b.csv", "--quiet", "--set", "axis.X.max_jerk_mm_s3=40000")
+status, out, _ = t.run("trace", "a.csv")
+t.check(status == 0 and "X jerk" in out, "a trace within its limits", out)
+status, out, _ = t.run("trace", "a.csv", "--set", "axis.X.max_jerk_mm_s3=40000")
+t.check(status == 1 and re.search(r"X jerk .* BROKEN in \d+ cycles, first in cycle \d+, block 1, line 2", out), "a limit broken", out)
+status, out, _ = t.run("trace", "a.csv", "a.csv")
+t.check(status == 0 and out.startswith("equal: "), "a trace equals itself", out)
+status, out, _ = t.run("trace", "a.csv", "b.csv")
+t.check(status == 1 and re.search(r"set_X_mm +differs in \d+ rows: first by", out), "traces that differ", out)
+rows = open("a.csv").read().splitlines()
+columns = rows[50].split(",")
+columns[8] = f"{float(columns[8]) + 1e-4:.9f}"
+t.write("c.csv", "\n".join(rows[:50] + [",".join(columns)] + rows[51:]) + "\n")
+status, out, _ = t.run("trace", "a.csv", "c.csv")
+t.check(status == 1 and re.search(r"set_X_mm +differs in 1 rows: first by 0\.0001 in cycle 49", out), "one setpoint off", out)
+t.check(t.run("trace", "a.csv", "c.csv", "--tolerance", "2e-4")[0] == 0, "a tolerance")
+t.check(t.run("trace", "c.csv")[0] == 1, "one setpoint 1e-4 mm off is 3e5 mm/s3 of jerk")
+t.write("short.csv", "\n".join(rows[:100]) + "\n")
+status, out, _ = t.run("trace", "a.csv", "short.csv")
+t.check(status == 1 and "more rows" in out, "a shorter trace", out)
+status, _, err = t.run("trace", t.write("bad.csv", "\n".join(rows[:5]) + "\n1,2,x\n"))
+t.check(status == 2 and err.startswith("bad.csv:6:5: error: "), "a broken trace", err)
+t.check(t.run("trace", t.write("no.csv", "a,b\n1,2\n"))[0] == 2, "no trace at all")
+t.finish()

@@ -1,0 +1,156 @@
+"""What the system tests share: running the command, reading what it wrote, telling failures."""
+
+import csv
+import json
+import math
+import os
+import subprocess
+import sys
+
+TAKT = os.environ["TAKT"]
+SOURCE = os.environ["TAKT_SOURCE"]
+OWN_PROGRAMS = os.path.join(SOURCE, "tests", "programs")
+EXAMPLES = os.path.join(SOURCE, "host", "examples")
+
+failures = []
+
+
+def check(condition, claim, *details):
+    """Notes a failed claim and goes on: one run shows all that is wrong."""
+    if not condition:
+        failures.append(claim)
+        print("FAILED:", claim, *details)
+    return bool(condition)
+
+
+def finish():
+    if failures:
+        print(len(failures), "claims failed")
+        sys.exit(1)
+    sys.exit(0)
+
+
+def skip(reason):
+    print(reason)
+    sys.exit(77)
+
+
+def run(*arguments, text=None, environment=None):
+    """Runs takt; returns status, stdout, stderr."""
+    done = subprocess.run([TAKT, *arguments], input=text, capture_output=True, env=environment, check=False)
+    return done.returncode, done.stdout.decode("utf-8", "replace"), done.stderr.decode("utf-8", "replace")
+
+
+def write(path, text):
+    mode = "wb" if isinstance(text, bytes) else "w"
+    with open(path, mode) as file:
+        file.write(text)
+    return path
+
+
+def real_programs(*names):
+    """Paths of real part programs, or the test is skipped."""
+    folder = os.environ.get("TAKT_PROGRAMS") or os.path.join(SOURCE, "..", "shared", "programs")
+    if not os.path.isdir(folder):
+        skip("no real programs: TAKT_PROGRAMS is not set and ../shared/programs does not exist")
+    paths = [os.path.join(folder, name) for name in names]
+    for path in paths:
+        if not os.path.exists(path):
+            skip("no program " + path)
+    return paths
+
+
+def read_trace(path):
+    """Columns of a trace by name, as lists of numbers."""
+    with open(path, newline="") as file:
+        rows = csv.reader(file)
+        names = next(rows)
+        columns = list(zip(*(map(float, row) for row in rows)))
+    return dict(zip(names, columns))
+
+
+def peaks(positions, cycle_s, start=0.0):
+    """Largest velocity, acceleration and jerk by differences; at rest at start before the first cycle."""
+    x, v, a = start, 0.0, 0.0
+    most = [0.0, 0.0, 0.0]
+    for position in positions:
+        velocity = (position - x) / cycle_s
+        acceleration = (velocity - v) / cycle_s
+        jerk = (acceleration - a) / cycle_s
+        most = [max(most[0], abs(velocity)), max(most[1], abs(acceleration)), max(most[2], abs(jerk))]
+        x, v, a = position, velocity, acceleration
+    return most
+
+
+class Move:
+    """A motion as `takt canon` prints it."""
+
+    def __init__(self, line, start):
+        words = line.split()
+        self.line = int(words[0])
+        self.kind = words[1]
+        self.start = start
+        values = {word[0]: word[1:] for word in words[2:]}
+        self.end = tuple(float(values[axis]) for axis in "XYZ")
+        if self.is_arc():
+            self.centre = tuple(float(values[axis]) for axis in "IJK")
+            self.turns = int(float(values["P"]))
+            self.plane = {"G17": (0, 1, 2), "G18": (2, 0, 1), "G19": (1, 2, 0)}["G" + values["G"]]
+            self.set_arc()
+
+    def is_arc(self):
+        return self.kind.startswith("arc")
+
+    def set_arc(self):
+        first, second, _ = self.plane
+        at = [self.start[first] - self.centre[first], self.start[second] - self.centre[second]]
+        to = [self.end[first] - self.centre[first], self.end[second] - self.centre[second]]
+        self.angle = math.atan2(at[1], at[0])
+        self.radii = math.hypot(*at), math.hypot(*to)
+        sign = 1 if self.kind == "arc_ccw" else -1
+        sweep = sign * (math.atan2(to[1], to[0]) - self.angle) % (2 * math.pi)
+        # Six decimals of the ends leave a full circle a little open, either way.
+        if sweep < 1e-5:
+            sweep += 2 * math.pi
+        self.sweep = sign * (sweep + 2 * math.pi * (self.turns - 1))
+
+    def distance(self, point, near):
+        """Distance of a point from the curve, and where on it (0 ... 1), near the place given."""
+        return self.arc_distance(point, near) if self.is_arc() else self.line_distance(point)
+
+    def line_distance(self, point):
+        way = [e - s for e, s in zip(self.end, self.start)]
+        off = [p - s for p, s in zip(point, self.start)]
+        square = sum(w * w for w in way)
+        place = min(1.0, max(0.0, sum(o * w for o, w in zip(off, way)) / square)) if square > 0 else 0.0
+        return math.dist(off, [place * w for w in way]), place
+
+    def arc_distance(self, point, near):
+        first, second, third = self.plane
+        at = point[first] - self.centre[first], point[second] - self.centre[second]
+        turn = 2 * math.pi / abs(self.sweep)
+        place = (math.atan2(at[1], at[0]) - self.angle) / self.sweep
+        place += turn * round((near - place) / turn)
+        place = min(1.0, max(0.0, place))
+        angle = self.angle + place * self.sweep
+        radius = self.radii[0] + place * (self.radii[1] - self.radii[0])
+        along = self.start[third] + place * (self.end[third] - self.start[third])
+        wanted = radius * math.cos(angle), radius * math.sin(angle), along
+        return math.dist((at[0], at[1], point[third]), wanted), place
+
+
+def canon(program, *options):
+    """The motions of a program, in order; block n of a trace is element n - 1."""
+    status, out, err = run("canon", program, *options)
+    check(status == 0, "canon reads " + program, err)
+    moves, at = [], (0.0, 0.0, 0.0)
+    for line in out.splitlines():
+        if line.split()[1] in ("rapid", "feed", "arc_cw", "arc_ccw"):
+            moves.append(Move(line, at))
+            at = moves[-1].end
+    return moves
+
+
+def load_json(path):
+    with open(path) as file:
+        return json.load(file)

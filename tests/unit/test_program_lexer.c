@@ -1,0 +1,286 @@
+/* firmware/program/lexer.h: lines, columns, comments, and lines that cannot be read. */
+#include "program/lexer.h"
+
+#include "unity.h"
+
+#include <string.h>
+
+#define LONG_LINE_LENGTH 1000000
+
+static struct program_lexer lexer;
+static struct source_text context;
+static struct diagnostic diagnostic;
+
+void setUp(void)
+{
+}
+
+void tearDown(void)
+{
+}
+
+static void open_bytes(const char *bytes, size_t length)
+{
+    struct source source;
+
+    source_open_text(&source, &context, bytes, length);
+    lexer_open(&lexer, &source);
+}
+
+static void open_text(const char *text)
+{
+    open_bytes(text, strlen(text));
+}
+
+static void expect_line(uint32_t line, const char *text)
+{
+    TEST_ASSERT_EQUAL_INT(LEXER_LINE, lexer_next_line(&lexer, &diagnostic));
+    TEST_ASSERT_EQUAL_UINT32(line, lexer.line);
+    TEST_ASSERT_EQUAL_STRING(text, lexer.text);
+    TEST_ASSERT_EQUAL_UINT(strlen(text), lexer.length);
+}
+
+static void expect_error(enum takt_error code, uint32_t line, uint32_t column)
+{
+    TEST_ASSERT_EQUAL_INT(LEXER_ERROR, lexer_next_line(&lexer, &diagnostic));
+    TEST_ASSERT_EQUAL_INT(code, diagnostic.code);
+    TEST_ASSERT_EQUAL_UINT32(line, diagnostic.line);
+    TEST_ASSERT_EQUAL_UINT32(column, diagnostic.column);
+}
+
+static void expect_end(void)
+{
+    TEST_ASSERT_EQUAL_INT(LEXER_END, lexer_next_line(&lexer, &diagnostic));
+}
+
+static void test_spaces_and_case_do_not_count(void)
+{
+    open_text("G 01\tX - 1 . 5Yz");
+    expect_line(1, "g01x-1.5yz");
+    expect_end();
+}
+
+static void test_columns_are_those_of_the_text(void)
+{
+    open_text("  G1 (comment) X2");
+    expect_line(1, "g1x2");
+    TEST_ASSERT_EQUAL_UINT(3, lexer.column[0]);
+    TEST_ASSERT_EQUAL_UINT(4, lexer.column[1]);
+    TEST_ASSERT_EQUAL_UINT(16, lexer.column[2]);
+    TEST_ASSERT_EQUAL_UINT(17, lexer.column[3]);
+    TEST_ASSERT_EQUAL_UINT(18, lexer.column[4]);
+}
+
+static void test_comments_are_left_out(void)
+{
+    open_text("g0(a;b)x1;rest ( of it\n;\n()\n( \xc3\xa4\xff )y2");
+    expect_line(1, "g0x1");
+    expect_line(2, "");
+    expect_line(3, "");
+    expect_line(4, "y2");
+    expect_end();
+}
+
+static void test_lines_end_with_lf_or_crlf_or_the_text(void)
+{
+    open_text("a\r\nb\n\n\r\nc");
+    expect_line(1, "a");
+    expect_line(2, "b");
+    expect_line(3, "");
+    expect_line(4, "");
+    expect_line(5, "c");
+    expect_end();
+    expect_end();
+}
+
+static void test_an_empty_text_has_no_line(void)
+{
+    open_text("");
+    expect_end();
+}
+
+static void test_an_unclosed_comment_is_found_where_it_opens(void)
+{
+    open_text("x1 (open\ny2");
+    expect_error(TAKT_ERROR_COMMENT_UNCLOSED, 1, 4);
+    expect_line(2, "y2");
+}
+
+static void test_comments_do_not_nest(void)
+{
+    open_text("(a(b))\ny2");
+    expect_error(TAKT_ERROR_COMMENT_NESTED, 1, 3);
+    expect_line(2, "y2");
+}
+
+static void test_a_line_of_the_largest_length_is_read(void)
+{
+    char text[PROGRAM_LINE_MAX + 3];
+
+    memset(text, 'X', PROGRAM_LINE_MAX);
+    memcpy(text + PROGRAM_LINE_MAX, "\r\n", 3);
+    open_text(text);
+    TEST_ASSERT_EQUAL_INT(LEXER_LINE, lexer_next_line(&lexer, &diagnostic));
+    TEST_ASSERT_EQUAL_UINT(PROGRAM_LINE_MAX, lexer.length);
+    TEST_ASSERT_EQUAL_INT('x', lexer.text[PROGRAM_LINE_MAX - 1]);
+    TEST_ASSERT_EQUAL_INT('\0', lexer.text[PROGRAM_LINE_MAX]);
+}
+
+static void test_one_character_more_is_too_long(void)
+{
+    char text[PROGRAM_LINE_MAX + 4];
+
+    memset(text, ' ', sizeof(text));
+    memcpy(text + PROGRAM_LINE_MAX + 1, "\nY", 3);
+    open_text(text);
+    expect_error(TAKT_ERROR_LINE_TOO_LONG, 1, PROGRAM_LINE_MAX + 1);
+    TEST_ASSERT_EQUAL_DOUBLE(PROGRAM_LINE_MAX, diagnostic.value);
+    expect_line(2, "y");
+}
+
+/* "x1", then length times 'X', then "y2", without ever holding them. */
+struct generated {
+    size_t at, length;
+};
+
+static char generated_byte(const struct generated *g)
+{
+    static const char before[] = "x1\n";
+    static const char after[] = "\ny2";
+
+    if (g->at < 3) {
+        return before[g->at];
+    }
+    if (g->at < 3 + g->length) {
+        return 'X';
+    }
+    return after[g->at - 3 - g->length];
+}
+
+static long generated_read(void *user, char *buffer, size_t size)
+{
+    struct generated *g = user;
+    size_t count = 0;
+
+    for (; count < size && g->at < g->length + 6; count++) {
+        buffer[count] = generated_byte(g);
+        g->at++;
+    }
+    return count > 0 ? (long)count : SOURCE_END;
+}
+
+static void test_a_line_of_a_megabyte_is_passed_over(void)
+{
+    struct generated text = {0, LONG_LINE_LENGTH};
+    const struct source source = {generated_read, NULL, &text};
+
+    lexer_open(&lexer, &source);
+    expect_line(1, "x1");
+    expect_error(TAKT_ERROR_LINE_TOO_LONG, 2, PROGRAM_LINE_MAX + 1);
+    expect_line(3, "y2");
+    expect_end();
+}
+
+static void test_bytes_that_are_no_text_are_told_by_their_code(void)
+{
+    open_bytes("g0 \x00\x01", 5);
+    expect_error(TAKT_ERROR_CHARACTER_UNKNOWN, 1, 4);
+    TEST_ASSERT_EQUAL_STRING("0x00", diagnostic.word);
+    open_bytes("\xfe\n1", 3);
+    expect_error(TAKT_ERROR_CHARACTER_UNKNOWN, 1, 1);
+    TEST_ASSERT_EQUAL_STRING("0xfe", diagnostic.word);
+    expect_line(2, "1");
+}
+
+static void test_only_the_first_fault_of_a_line_is_told(void)
+{
+    open_text("\x01 \x02 (open");
+    expect_error(TAKT_ERROR_CHARACTER_UNKNOWN, 1, 1);
+    expect_end();
+}
+
+static long read_one_byte(void *user, char *buffer, size_t size)
+{
+    struct source_text *text = user;
+
+    if (text->position == text->length || size == 0) {
+        return SOURCE_END;
+    }
+    buffer[0] = text->text[text->position++];
+    return 1;
+}
+
+static void test_it_does_not_matter_how_the_source_cuts_the_text(void)
+{
+    static const char text[] = "G0 X1\n(c) Y2\n\nZ3";
+    const struct source source = {read_one_byte, NULL, &context};
+
+    open_text(text);
+    lexer_open(&lexer, &source);
+    expect_line(1, "g0x1");
+    expect_line(2, "y2");
+    expect_line(3, "");
+    expect_line(4, "z3");
+    expect_end();
+}
+
+/* Two bytes, then nothing any more. */
+static long read_and_fail(void *user, char *buffer, size_t size)
+{
+    int *calls = user;
+
+    (void)size;
+    if ((*calls)++ > 0) {
+        return SOURCE_ERROR;
+    }
+    buffer[0] = 'g';
+    buffer[1] = '0';
+    return 2;
+}
+
+static void test_a_source_that_fails_is_told(void)
+{
+    int calls = 0;
+    const struct source source = {read_and_fail, NULL, &calls};
+
+    lexer_open(&lexer, &source);
+    TEST_ASSERT_EQUAL_INT(LEXER_UNREADABLE, lexer_next_line(&lexer, &diagnostic));
+    TEST_ASSERT_EQUAL_INT(TAKT_ERROR_SOURCE_UNREADABLE, diagnostic.code);
+    TEST_ASSERT_EQUAL_UINT32(1, diagnostic.line);
+}
+
+static void test_a_text_source_can_be_set_back(void)
+{
+    struct source source;
+    char byte;
+
+    source_open_text(&source, &context, "ab", 2);
+    TEST_ASSERT_EQUAL_INT(1, source.read(source.context, &byte, 1));
+    TEST_ASSERT_TRUE(source.seek(source.context, 0));
+    TEST_ASSERT_EQUAL_INT(1, source.read(source.context, &byte, 1));
+    TEST_ASSERT_EQUAL_INT('a', byte);
+    TEST_ASSERT_TRUE(source.seek(source.context, 2));
+    TEST_ASSERT_EQUAL_INT(SOURCE_END, source.read(source.context, &byte, 1));
+    TEST_ASSERT_FALSE(source.seek(source.context, 3));
+}
+
+int main(void)
+{
+    UNITY_BEGIN();
+    RUN_TEST(test_spaces_and_case_do_not_count);
+    RUN_TEST(test_columns_are_those_of_the_text);
+    RUN_TEST(test_comments_are_left_out);
+    RUN_TEST(test_lines_end_with_lf_or_crlf_or_the_text);
+    RUN_TEST(test_an_empty_text_has_no_line);
+    RUN_TEST(test_an_unclosed_comment_is_found_where_it_opens);
+    RUN_TEST(test_comments_do_not_nest);
+    RUN_TEST(test_a_line_of_the_largest_length_is_read);
+    RUN_TEST(test_one_character_more_is_too_long);
+    RUN_TEST(test_a_line_of_a_megabyte_is_passed_over);
+    RUN_TEST(test_bytes_that_are_no_text_are_told_by_their_code);
+    RUN_TEST(test_only_the_first_fault_of_a_line_is_told);
+    RUN_TEST(test_it_does_not_matter_how_the_source_cuts_the_text);
+    RUN_TEST(test_a_source_that_fails_is_told);
+    RUN_TEST(test_a_text_source_can_be_set_back);
+    return UNITY_END();
+}

@@ -1,0 +1,179 @@
+#define _XOPEN_SOURCE 700 /* mkstemp, mkdtemp */
+
+#include "takt/machine_file.h"
+#include "takt/machine_keys.h"
+#include "unity.h"
+
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#define DEGREE (3.14159265358979323846 / 180.0)
+
+static struct machine_setup setup, again;
+static char path[32];
+
+void setUp(void)
+{
+    int descriptor;
+
+    machine_setup_set_default(&setup);
+    (void)snprintf(path, sizeof path, "/tmp/takt-machine-XXXXXX");
+    descriptor = mkstemp(path);
+    TEST_ASSERT_GREATER_OR_EQUAL(0, descriptor);
+    (void)close(descriptor);
+}
+
+void tearDown(void)
+{
+    (void)unlink(path);
+}
+
+static bool read_text(const char *text)
+{
+    FILE *file = fopen(path, "wb");
+
+    TEST_ASSERT_NOT_NULL(file);
+    (void)fputs(text, file);
+    (void)fclose(file);
+    return machine_file_read(&setup, path);
+}
+
+/* Every field that a file can set: comparing memory would compare padding. */
+static void expect_same_values(void)
+{
+    char a[MACHINE_SETUP_PATH_MAX + 1], b[MACHINE_SETUP_PATH_MAX + 1];
+
+    for (size_t k = 0; k < machine_keys_count; k++) {
+        const struct machine_key *key = &machine_keys[k];
+
+        for (unsigned i = 0; i < AXIS_COUNT; i++) {
+            struct machine_place place = {key->section, i};
+
+            machine_key_get(&setup, place, key, a, sizeof a);
+            machine_key_get(&again, place, key, b, sizeof b);
+            if (setup.machine.axis[i].present)
+                TEST_ASSERT_EQUAL_STRING_MESSAGE(a, b, key->name);
+        }
+    }
+    TEST_ASSERT_EQUAL_UINT(machine_axes(&setup.machine), machine_axes(&again.machine));
+}
+
+static void test_a_machine_that_is_written_reads_as_the_same_machine(void)
+{
+    FILE *file = fopen(path, "wb");
+
+    TEST_ASSERT_NOT_NULL(file);
+    TEST_ASSERT_TRUE(machine_file_assign(&setup, "axis.B.max_velocity_deg_s=33.3"));
+    TEST_ASSERT_TRUE(machine_file_assign(&setup, "axis.B.increments_per_deg=12345.6"));
+    TEST_ASSERT_TRUE(machine_file_assign(&setup, "axis.Z.drive_node=77"));
+    TEST_ASSERT_TRUE(machine_file_assign(&setup, "drive.77.inertia_kg_m2=0.1"));
+    TEST_ASSERT_TRUE(machine_file_assign(&setup, "machine.name=a mill"));
+    machine_file_write(file, &setup);
+    (void)fclose(file);
+    machine_setup_set_default(&again);
+    TEST_ASSERT_TRUE(machine_file_read(&again, path));
+    expect_same_values();
+    TEST_ASSERT_EQUAL_STRING("a mill", again.machine.name);
+    TEST_ASSERT_TRUE(setup.machine.axis[AXIS_B].max_velocity_mm_s ==
+                     again.machine.axis[AXIS_B].max_velocity_mm_s);
+}
+
+static void test_the_default_machine_is_that_of_the_controller(void)
+{
+    struct machine machine;
+
+    machine_set_default(&machine);
+    TEST_ASSERT_NULL(machine_setup_check(&setup));
+    TEST_ASSERT_EQUAL_UINT(7, machine_axes(&setup.machine));
+    for (unsigned i = 0; i < AXIS_LINEAR_COUNT; i++)
+        TEST_ASSERT_EQUAL_MEMORY(&machine.axis[i], &setup.machine.axis[i], sizeof machine.axis[i]);
+}
+
+static void test_a_file_that_names_axes_has_no_others(void)
+{
+    TEST_ASSERT_TRUE(read_text("[axis Y]\n[axis C]\n"));
+    TEST_ASSERT_EQUAL_UINT(1u << AXIS_Y | 1u << AXIS_C, machine_axes(&setup.machine));
+    TEST_ASSERT_EQUAL_DOUBLE(100, setup.machine.axis[AXIS_Y].max_velocity_mm_s);
+}
+
+static void test_a_file_that_names_no_axis_keeps_the_default_ones(void)
+{
+    TEST_ASSERT_TRUE(read_text("[spindle]\nmax_rpm = 6000\n"));
+    TEST_ASSERT_EQUAL_UINT(7, machine_axes(&setup.machine));
+    TEST_ASSERT_EQUAL_DOUBLE(6000, setup.machine.spindle_max_rpm);
+}
+
+static void test_rotary_values_are_degrees_outside_and_radians_inside(void)
+{
+    TEST_ASSERT_TRUE(
+        read_text("[axis A]\nmax_velocity_deg_s = 180\nincrements_per_deg = 1000\n[drive 4]\n"
+                  "travel_per_revolution_deg = 3\n"));
+    TEST_ASSERT_EQUAL_DOUBLE(180 * DEGREE, setup.machine.axis[AXIS_A].max_velocity_mm_s);
+    TEST_ASSERT_EQUAL_DOUBLE(1000 / DEGREE, setup.machine.axis[AXIS_A].increments_per_mm);
+    TEST_ASSERT_EQUAL_DOUBLE(3 * DEGREE, setup.drive[AXIS_A].travel_per_revolution_mm);
+}
+
+static void test_a_refused_value_changes_nothing(void)
+{
+    TEST_ASSERT_FALSE(machine_file_assign(&setup, "axis.X.max_jerk_mm_s3=-1"));
+    TEST_ASSERT_FALSE(machine_file_assign(&setup, "axis.X.max_jerk_mm_s3=1e999"));
+    TEST_ASSERT_FALSE(machine_file_assign(&setup, "axis.X.max_jerk_mm_s3=nan"));
+    TEST_ASSERT_FALSE(machine_file_assign(&setup, "axis.X.max_jerk_mm_s3="));
+    TEST_ASSERT_EQUAL_DOUBLE(50000, setup.machine.axis[AXIS_X].max_jerk_mm_s3);
+    TEST_ASSERT_TRUE(machine_file_assign(&setup, "axis.X.max_jerk_mm_s3=20000"));
+    TEST_ASSERT_EQUAL_DOUBLE(20000, setup.machine.axis[AXIS_X].max_jerk_mm_s3);
+}
+
+static void test_every_key_refuses_what_is_below_and_above_its_range(void)
+{
+    struct machine_problem wrong;
+    char text[64];
+
+    for (size_t k = 0; k < machine_keys_count; k++) {
+        const struct machine_key *key = &machine_keys[k];
+        struct machine_place place = {key->section, 0};
+
+        if (key->type == KEY_TEXT || key->type == KEY_AXIS_TYPE)
+            continue;
+        (void)snprintf(text, sizeof text, "%.17g", key->min - 1);
+        TEST_ASSERT_FALSE_MESSAGE(machine_key_set(&setup, place, key, text, &wrong), key->name);
+        (void)snprintf(text, sizeof text, "%.17g", key->max + 1);
+        TEST_ASSERT_FALSE_MESSAGE(machine_key_set(&setup, place, key, text, &wrong), key->name);
+        (void)snprintf(text, sizeof text, "%.17g", key->max);
+        TEST_ASSERT_TRUE_MESSAGE(machine_key_set(&setup, place, key, text, &wrong), key->name);
+    }
+}
+
+static void test_the_checks_of_the_whole_machine(void)
+{
+    setup.machine.axis[AXIS_Y].drive_node = 1;
+    TEST_ASSERT_NOT_NULL(strstr(machine_setup_check(&setup), "same drive_node 1"));
+    machine_setup_set_default(&setup);
+    setup.machine.axis[AXIS_X].travel_min_mm = 1;
+    TEST_ASSERT_NOT_NULL(strstr(machine_setup_check(&setup), "axis X"));
+    machine_setup_set_default(&setup);
+    setup.machine.cycle_us = 250;
+    TEST_ASSERT_NOT_NULL(strstr(machine_setup_check(&setup), "bus cannot carry"));
+}
+
+/* SYNC 55, three TPDOs of 6 bytes 3 * 115, a pair of targets 135, one target 95: 630 bits of 1000. */
+static void test_the_predicted_load_of_three_axes_is_63_percent(void)
+{
+    TEST_ASSERT_EQUAL_DOUBLE(63, machine_setup_predict_load_percent(&setup.machine));
+}
+
+int main(void)
+{
+    UNITY_BEGIN();
+    RUN_TEST(test_a_machine_that_is_written_reads_as_the_same_machine);
+    RUN_TEST(test_the_default_machine_is_that_of_the_controller);
+    RUN_TEST(test_a_file_that_names_axes_has_no_others);
+    RUN_TEST(test_a_file_that_names_no_axis_keeps_the_default_ones);
+    RUN_TEST(test_rotary_values_are_degrees_outside_and_radians_inside);
+    RUN_TEST(test_a_refused_value_changes_nothing);
+    RUN_TEST(test_every_key_refuses_what_is_below_and_above_its_range);
+    RUN_TEST(test_the_checks_of_the_whole_machine);
+    RUN_TEST(test_the_predicted_load_of_three_axes_is_63_percent);
+    return UNITY_END();
+}
