@@ -10,6 +10,8 @@ SETUP_APT_INSTALL=(apt-get install --yes --no-install-recommends)
 
 # Packages found missing so far.
 setup_missing=()
+# Not empty: something was installed, so what CMake found out before may no longer hold.
+setup_stale=
 
 setup_say() {
     [[ $SETUP_QUIET ]] || printf 'takt: %s\n' "$*" >&2
@@ -90,6 +92,7 @@ setup_install() {
     fi
     printf 'takt: installing %s\n' "${setup_missing[*]}" >&2
     setup_logged install setup_apt_get "${setup_missing[@]}"
+    setup_stale=yes
     setup_missing=()
 }
 
@@ -112,6 +115,8 @@ setup_install_optional() {
             setup_say "this distribution has no package $package"
         elif setup_say "installing $package" && ! setup_apt_get "$package" >"$TAKT_BUILD/install.log" 2>&1; then
             setup_say "$package could not be installed; see $TAKT_BUILD/install.log"
+        else
+            setup_stale=yes
         fi
     done
 }
@@ -148,7 +153,7 @@ setup_cached() {
 
 # setup_configure PRESET TESTS: TESTS is ON, or OFF if the takt command alone is enough.
 setup_configure() {
-    local folder=$TAKT_BUILD/$1 tests=$2 home
+    local folder=$TAKT_BUILD/$1 tests=$2 stale=$setup_stale home
     local -x CMAKE_GENERATOR=${CMAKE_GENERATOR:-}
 
     home=$(setup_cached "$folder" CMAKE_HOME_DIRECTORY)
@@ -156,9 +161,13 @@ setup_configure() {
         rm -rf "$folder" # the repository has moved
     fi
     if [[ -e $folder/build.ninja || -e $folder/Makefile ]]; then
-        if [[ $tests == OFF || $(setup_cached "$folder" TAKT_TESTS) == ON ]]; then
-            return
+        # Tests once configured stay so.
+        if [[ $(setup_cached "$folder" TAKT_TESTS) == ON ]]; then
+            tests=ON
+        elif [[ $tests == ON ]]; then
+            stale=yes
         fi
+        [[ $stale ]] || return 0
     fi
     if [[ -z $(setup_cached "$folder" CMAKE_GENERATOR) && -z $CMAKE_GENERATOR ]] && command -v ninja >/dev/null; then
         CMAKE_GENERATOR=Ninja

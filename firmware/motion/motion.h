@@ -13,7 +13,10 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-/* Segments ahead of the cycle: more than the blocks one cycle can pass (8, by the planner's ceiling for short blocks). */
+/*
+ * Segments ahead of the cycle: more than one cycle can pass, which is the blocks that begin or end in it (9, by the
+ * planner's ceiling for short blocks) and WINDOW_INSTANT_MAX events.
+ */
 #define MOTION_QUEUE_MAX 16
 
 enum motion_result {

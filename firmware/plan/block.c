@@ -220,9 +220,8 @@ static void limit_arc_plane(struct block_shape *shape, struct ceiling *c, const 
     shape->plane_a_mm_s2 =
         maths_min(limits->acceleration_mm_s2[first], limits->acceleration_mm_s2[second]) /
         (1.0 + ARC_ACCELERATION * along);
-    shape->plane_j_mm_s3 =
-        maths_min(limits->jerk_mm_s3[first], limits->jerk_mm_s3[second]) /
-        (1.0 + RAMP_NORMAL * along + ARC_JERK * across);
+    shape->plane_j_mm_s3 = maths_min(limits->jerk_mm_s3[first], limits->jerk_mm_s3[second]) /
+                           (1.0 + RAMP_NORMAL * along + ARC_JERK * across);
     ceiling_lower(c, chord_feed(bounds->radius_min_mm, limits->chord_error_max_mm, limits->cycle_s),
                   GOVERNOR_CHORD);
 }

@@ -43,7 +43,9 @@ static double cruise_length(const struct block *b, const struct diagram *d)
  */
 static double ramps_time_ratio(const struct block *b, const struct diagram *d)
 {
-    return maths_min(1.0, b->length_mm / ramps_length(b, d));
+    const double ramps_mm = ramps_length(b, d);
+
+    return ramps_mm > b->length_mm ? b->length_mm / ramps_mm : 1.0;
 }
 
 struct diagram diagram_fastest(const struct block *b, double start_mm_s, double end_mm_s)

@@ -192,6 +192,7 @@ void joint_form(struct block *before, const struct curve *before_curve, struct b
     }
     block_cap_feed(before, ceiling, GOVERNOR_SHORT);
     block_cap_feed(after, short_ceiling(after, v, shorter_mm, apart_s), GOVERNOR_SHORT);
-    joint_pass(before, after, v, joint_share(&steps, maths_min(v, top), joint_crowding(before, after, apart_s)),
+    joint_pass(before, after, v,
+               joint_share(&steps, maths_min(v, top), joint_crowding(before, after, apart_s)),
                limits->cycle_s);
 }

@@ -31,20 +31,25 @@ void emit_prepare(const struct program *p, enum move_kind kind, const struct poi
     m->tolerance_mm = p->modes.path == PATH_BLEND ? p->modes.tolerance_mm : 0.0;
 }
 
-/* F counts along X Y Z, unless only A B C move. */
+/* F counts along X Y Z, unless only A B C move: the same rule as the length of a curve. */
 static bool moves_rotary_only(const struct program *p, const struct move *m)
 {
+    double linear_squared = 0.0;
     bool rotary = false;
 
+    if (m->kind == MOVE_ARC_CW || m->kind == MOVE_ARC_CCW) {
+        return false;
+    }
     for (unsigned i = 0; i < AXIS_COUNT; i++) {
-        if (m->end.at[i] != p->modes.at.at[i]) {
-            if (i < AXIS_LINEAR_COUNT) {
-                return false;
-            }
-            rotary = true;
+        const double delta = m->end.at[i] - p->modes.at.at[i];
+
+        if (i < AXIS_LINEAR_COUNT) {
+            linear_squared += delta * delta;
+        } else {
+            rotary = rotary || delta != 0.0;
         }
     }
-    return rotary;
+    return rotary && linear_squared < CURVE_LENGTH_MIN_MM * CURVE_LENGTH_MIN_MM;
 }
 
 /*

@@ -2,6 +2,7 @@
 
 #include "base/maths.h"
 #include "bus/bus.h"
+#include "drive/drives.h"
 
 #include <stdarg.h>
 #include <stdint.h>
@@ -9,10 +10,13 @@
 
 #define DEGREE (MATHS_PI / 180.0)
 
-#define FRAME_SYNC     0 /* bytes of data */
-#define FRAME_TARGETS  8 /* of two drives */
-#define FRAME_TARGET   4
-#define FRAME_FEEDBACK 6 /* statusword and position of a drive */
+/*
+ * Setpoints are doubles: X mm from zero they are rounded, and differences over a cycle t turn that into noise of up to
+ * 4.5e-16 X / t^2 in acceleration and 9e-16 X / t^3 in jerk. The limits are kept to 1e-4 and 1e-3 of themselves, so
+ * they must stand that far above the noise.
+ */
+#define ROUNDING_ACCELERATION 5e-12
+#define ROUNDING_JERK         1e-12
 
 static const struct machine_axis rotary_default = {
     .rotary = true,
@@ -72,6 +76,21 @@ static const char *check_axis(const struct machine_axis *axis, char letter)
     return NULL;
 }
 
+static const char *check_limits(const struct machine_axis *axis, char letter, double cycle_s)
+{
+    double farthest = maths_max(maths_abs(axis->travel_min_mm), maths_abs(axis->travel_max_mm));
+    double acceleration = ROUNDING_ACCELERATION * farthest / (cycle_s * cycle_s);
+    double jerk = ROUNDING_JERK * farthest / (cycle_s * cycle_s * cycle_s);
+
+    if (axis->max_acceleration_mm_s2 < acceleration)
+        return problem("axis %c: its acceleration is too low for so short a cycle: at least %.3g",
+                       letter, acceleration);
+    if (axis->max_jerk_mm_s3 < jerk)
+        return problem("axis %c: its jerk is too low for so short a cycle: at least %.3g", letter,
+                       jerk);
+    return NULL;
+}
+
 static const char *check_node(const struct machine *machine, unsigned axis)
 {
     for (unsigned i = 0; i < axis; i++) {
@@ -114,6 +133,9 @@ const char *machine_setup_check(const struct machine_setup *setup)
             continue;
         wrong = check_axis(&setup->machine.axis[i], AXIS_LETTERS[i]);
         if (wrong == NULL)
+            wrong = check_limits(&setup->machine.axis[i], AXIS_LETTERS[i],
+                                 1e-6 * (double)setup->machine.cycle_us);
+        if (wrong == NULL)
             wrong = check_node(&setup->machine, i);
         if (wrong == NULL)
             wrong = check_drive(setup, i);
@@ -123,18 +145,13 @@ const char *machine_setup_check(const struct machine_setup *setup)
 
 double machine_setup_predict_load_percent(const struct machine *machine)
 {
-    uint8_t length[1 + 2 * AXIS_COUNT] = {FRAME_SYNC};
-    unsigned frames = 1, drives = 0;
+    uint8_t length[DRIVES_CYCLE_FRAMES_MAX];
+    unsigned drives = 0;
 
     for (unsigned i = 0; i < AXIS_COUNT; i++) {
-        if (machine->axis[i].present) {
+        if (machine->axis[i].present)
             drives++;
-            length[frames++] = FRAME_FEEDBACK;
-        }
     }
-    for (unsigned i = 0; i < drives / 2; i++)
-        length[frames++] = FRAME_TARGETS;
-    if (drives % 2 != 0)
-        length[frames++] = FRAME_TARGET;
-    return bus_predict_load_percent(machine->can_bitrate, machine->cycle_us, length, frames);
+    return bus_predict_load_percent(machine->can_bitrate, machine->cycle_us, length,
+                                    drives_cycle_frames(drives, length));
 }

@@ -215,8 +215,7 @@ static void test_an_arc_that_closes_but_for_rounding_ends_where_it_was_told(void
         const double radius = 0.002;
         const double y = off_mm[i / 2];
         const double x = maths_sqrt(radius * radius - y * y);
-        const struct curve c =
-            arc_of(at(radius, 0.0, 0.0), at(x, y, 0.0), 0.0, 0.0, i % 2 != 0, 1);
+        const struct curve c = arc_of(at(radius, 0.0, 0.0), at(x, y, 0.0), 0.0, 0.0, i % 2 != 0, 1);
         struct point p;
 
         TEST_ASSERT_DOUBLE_WITHIN(1e-3, 1.0, c.length_mm / (radius * MATHS_TWO_PI));
@@ -289,6 +288,66 @@ static void test_bounds_hold_everywhere_on_the_curve(void)
     }
 }
 
+/* Small radii may differ much and still be within an interpreter's tolerance. */
+static void test_an_arc_of_two_very_different_radii_never_turns_back(void)
+{
+    static const double ratios[] = {0.02, 0.1, 10.0, 50.0};
+
+    for (int i = 0; i < 4; i++) {
+        const struct curve c =
+            arc_of(at(0.002, 0.0, 0.0), at(0.0, 0.002 * ratios[i], 0.001), 0.0, 0.0, false, 1);
+        double last = 0.0;
+
+        for (int k = 1; k <= 1000; k++) {
+            struct point p;
+
+            curve_point(&c, c.length_mm * k * 1e-3, &p);
+            TEST_ASSERT_TRUE(p.at[AXIS_Z] > last);
+            last = p.at[AXIS_Z];
+        }
+        TEST_ASSERT_DOUBLE_WITHIN(1e-16, 0.001, last);
+    }
+}
+
+static double along(const struct point *a, const struct point *b)
+{
+    return a->at[AXIS_X] * b->at[AXIS_X] + a->at[AXIS_Y] * b->at[AXIS_Y];
+}
+
+/* Third derivatives by differences of second ones. */
+static void test_bounds_of_an_arc_of_two_radii_tell_how_far_it_is_from_a_circle(void)
+{
+    static const double ratios[] = {0.5, 0.999, 1.001, 2.0};
+
+    for (int i = 0; i < 4; i++) {
+        const struct curve c =
+            arc_of(at(2.0, 0.0, 0.0), at(0.0, 2.0 * ratios[i], 0.0), 0.0, 0.0, false, 1);
+        const double h = c.length_mm * 1e-5;
+        struct curve_bounds b;
+
+        curve_bound(&c, &b);
+        TEST_ASSERT_TRUE(b.second_along <= 10.0 * maths_abs(ratios[i] - 1.0) * b.second[AXIS_X]);
+        for (int k = 1; k < 100; k++) {
+            const double s = c.length_mm * k * 0.01;
+            struct point t, k0, k1, third, normal;
+
+            curve_tangent(&c, s, &t);
+            curve_curvature(&c, s - h, &k0);
+            curve_curvature(&c, s + h, &k1);
+            for (int axis = 0; axis < AXIS_COUNT; axis++) {
+                third.at[axis] = (k1.at[axis] - k0.at[axis]) / (2.0 * h);
+            }
+            curve_curvature(&c, s, &k0);
+            normal = at(-t.at[AXIS_Y], t.at[AXIS_X], 0.0);
+            const double size = maths_sqrt(along(&t, &t));
+
+            TEST_ASSERT_TRUE(maths_abs(along(&k0, &t)) <= b.second_along * size * (1.0 + 1e-9));
+            TEST_ASSERT_TRUE(maths_abs(along(&third, &normal)) <=
+                             b.third_across * size + 1e-7 * b.third[AXIS_X]);
+        }
+    }
+}
+
 static void test_an_arc_of_two_radii_changes_its_radius_linearly_with_the_angle(void)
 {
     const struct curve c = arc_number(4);
@@ -324,6 +383,8 @@ int main(void)
     RUN_TEST(test_steps_of_equal_length_are_equally_far_apart);
     RUN_TEST(test_tangent_and_curvature_are_the_derivatives_of_the_point);
     RUN_TEST(test_bounds_hold_everywhere_on_the_curve);
+    RUN_TEST(test_an_arc_of_two_very_different_radii_never_turns_back);
+    RUN_TEST(test_bounds_of_an_arc_of_two_radii_tell_how_far_it_is_from_a_circle);
     RUN_TEST(test_an_arc_of_two_radii_changes_its_radius_linearly_with_the_angle);
     return UNITY_END();
 }

@@ -175,10 +175,22 @@ static void test_axes_the_machine_does_not_have_are_refused_by_name(void)
     }
 }
 
+/* 0.1 + 0.2 - 0.3 is not 0: a difference that has no length must not turn degrees per minute into mm. */
+static void test_the_rounding_of_linear_axes_does_not_change_the_unit_of_feed(void)
+{
+    struct move move;
+
+    reader_open(&reader, "G0 X0.3\nG1 X[0.1+0.2] A90 F180\n");
+    (void)reader_next(&reader, MOVE_RAPID);
+    move = reader_next(&reader, MOVE_FEED);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-12, MATHS_PI / 60.0, move.feed_mm_s);
+}
+
 int main(void)
 {
     UNITY_BEGIN();
     RUN_TEST(test_rotary_words_are_degrees);
+    RUN_TEST(test_the_rounding_of_linear_axes_does_not_change_the_unit_of_feed);
     RUN_TEST(test_offsets_add_up);
     RUN_TEST(test_an_axis_without_a_word_stays_exactly_where_it_is);
     RUN_TEST(test_selecting_a_system_moves_nothing_and_is_remembered);

@@ -157,10 +157,27 @@ static void test_the_checks_of_the_whole_machine(void)
     TEST_ASSERT_NOT_NULL(strstr(machine_setup_check(&setup), "bus cannot carry"));
 }
 
-/* SYNC 55, three TPDOs of 6 bytes 3 * 115, a pair of targets 135, one target 95: 630 bits of 1000. */
-static void test_the_predicted_load_of_three_axes_is_63_percent(void)
+/* 500 mm from zero, a cycle of 0.1 ms: doubles are too coarse for a jerk below 500 mm/s3. */
+static void test_limits_below_the_rounding_of_setpoints_are_refused(void)
 {
-    TEST_ASSERT_EQUAL_DOUBLE(63, machine_setup_predict_load_percent(&setup.machine));
+    setup.machine.cycle_us = 100;
+    setup.machine.can_bitrate = 10000000;
+    setup.machine.axis[AXIS_Y].max_jerk_mm_s3 = 499;
+    TEST_ASSERT_NOT_NULL(strstr(machine_setup_check(&setup), "axis Y: its jerk is too low"));
+    setup.machine.axis[AXIS_Y].max_jerk_mm_s3 = 501;
+    TEST_ASSERT_NULL(machine_setup_check(&setup));
+    setup.machine.axis[AXIS_Z].max_acceleration_mm_s2 = 0.24;
+    TEST_ASSERT_NOT_NULL(
+        strstr(machine_setup_check(&setup), "axis Z: its acceleration is too low"));
+}
+
+/*
+ * SYNC 55, three TPDO1 of 6 bytes 3 * 115, a pair of targets 135, one target 95, a TPDO2 now and then 115: 745 bits
+ * of 1000.
+ */
+static void test_the_predicted_load_of_three_axes_is_74_5_percent(void)
+{
+    TEST_ASSERT_EQUAL_DOUBLE(74.5, machine_setup_predict_load_percent(&setup.machine));
 }
 
 int main(void)
@@ -174,6 +191,7 @@ int main(void)
     RUN_TEST(test_a_refused_value_changes_nothing);
     RUN_TEST(test_every_key_refuses_what_is_below_and_above_its_range);
     RUN_TEST(test_the_checks_of_the_whole_machine);
-    RUN_TEST(test_the_predicted_load_of_three_axes_is_63_percent);
+    RUN_TEST(test_limits_below_the_rounding_of_setpoints_are_refused);
+    RUN_TEST(test_the_predicted_load_of_three_axes_is_74_5_percent);
     return UNITY_END();
 }
