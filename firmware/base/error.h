@@ -47,6 +47,31 @@
     X(PARAMETER_READ_ONLY, "the parameter '%w' cannot be set by a program")                        \
     X(PARAMETERS_FULL, "no room for the parameter '%w'")                                           \
     X(ASSIGNMENTS_TOO_MANY, "more than %v assignments on one line")                                \
+    /* flow of a program */                                                                        \
+    X(OWORD_LABEL, "'%w' needs a whole number, or a <name> of up to %v characters")                \
+    X(OWORD_UNKNOWN, "there is no O-word '%w'")                                                    \
+    X(OWORD_ALONE, "'%w' must stand alone on its line")                                            \
+    X(OWORD_UNMATCHED, "'%w' belongs to no open block of its kind and label")                      \
+    X(OWORD_CROSSED, "'%w' stands inside another block, opened in line %v and not closed")         \
+    X(OWORD_LABEL_USED, "'%w' has the label of an open block, of line %v")                         \
+    X(OWORD_UNCLOSED, "'%w' is not closed")                                                        \
+    X(OWORD_TOO_DEEP, "'%w' is nested deeper than %v blocks")                                      \
+    X(SUB_UNKNOWN, "'%w' finds no such subroutine in this program")                                \
+    X(SUB_DEFINED_TWICE, "'%w' has been defined already, in line %v")                              \
+    X(SUB_NESTED, "'%w' begins inside another subroutine")                                         \
+    X(SUB_NOT_INSIDE, "'%w' is not inside its subroutine")                                         \
+    X(SUB_STYLE,                                                                                   \
+      "'%w' mixes O... sub, which goes with call, and a bare O..., which goes with M98")           \
+    X(SUBS_TOO_MANY, "'%w' is more than the %v subroutines a program can have")                    \
+    X(CALL_TOO_DEEP, "'%w' is a call inside more than %v others")                                  \
+    X(CALL_ARGUMENTS, "'%w' has more than %v arguments")                                           \
+    X(CALL_P_MISSING, "'%w' needs P, the number of the program to call")                           \
+    X(JUMP_BACK, "'%w' has to go back in the text, which a stream cannot")                         \
+    X(CIRCLE, "the program runs in a circle: %v lines without a move")                             \
+    X(MODES_NOT_SAVED, "'%w' finds no saved modes: no M70 or M73 in this call")                    \
+    X(FROM_LINE_MISSED, "the program never comes to line %v")                                      \
+    X(FROM_LINE_PROBE, "what this probing move finds is not known to a start at line %v")          \
+    X(FROM_LINE_CUTTER, "line %v is inside a compensated contour: start before its G41 or G42")    \
     /* motion */                                                                                   \
     X(ARC_ENDPOINT, "the arc's end is %v mm off its circle")                                       \
     X(FEED_MISSING, "a cutting move needs a feed: no F has been given")                            \
@@ -59,8 +84,40 @@
     X(ARC_RADIUS_SMALL, "the arc's radius is %v mm too short to reach its end")                    \
     X(ARC_CLOSED, "an arc with R cannot end where it starts: give I J K for a full circle")        \
     X(MACHINE_COORDINATES, "'%w' works only with G0 or G1 and G90")                                \
-    X(ROTATION_UNSUPPORTED,                                                                        \
-      "the coordinate system '%w' is rotated by %v degrees, which is not supported")               \
+    X(ARC_TILTED, "'%w' works only in G17 while the coordinate system is rotated (by %v degrees)") \
+    X(SPINDLE_STANDS, "'%w' needs a turning spindle: M3 or M4, and S above 0")                     \
+    X(SPINDLE_WRONG_WAY, "'%w' needs the spindle to turn the other way")                           \
+    X(SPINDLE_FOLLOWED, "'%w' moves at the commanded spindle speed: the spindle is not measured")  \
+    X(WORD_MISSING, "this code needs the word '%w'")                                               \
+    X(WORD_ZERO, "'%w' must not be 0")                                                             \
+    X(WORD_NOT_POSITIVE, "'%w' must be above 0: %v")                                               \
+    X(FEED_MODE_UNFIT, "'%w' does not work in this feed mode: use G94")                            \
+    X(CYCLE_UPSIDE_DOWN, "the bottom of '%w' is %v mm above its R")                                \
+    X(CYCLE_TOO_LONG, "'%w' would repeat itself more than %v times")                               \
+    X(THREAD_DEPTH, "the depth of the thread, '%w', must be above that of the first cut, J")       \
+    X(SPLINE_UNSUPPORTED, "'%w': splines are not supported; use lines and arcs")                   \
+    X(INVOLUTE_START, "the start is %v mm inside the involute's base circle")                      \
+    X(INVOLUTE_END, "the end is %v mm off the involute")                                           \
+    X(INVOLUTE_CLOSED, "start and end are equally far from the centre of the involute '%w'")       \
+    X(INVOLUTE_UNPLANNED, "involutes can be read and printed, but not yet run or planned")         \
+    X(PROBE_NO_WAY, "the probing move '%w' ends where it starts")                                  \
+    X(PROBE_NO_CONTACT, "the probing move ended without the probe's answer")                       \
+    X(SETTING_MISSING, "'%w' has no word to set anything")                                         \
+    X(TOOL_ABSENT, "tool %v is not in the tool table")                                             \
+    X(TOOL_CHANGES_FULL, "a program can change the values of %v tools at most")                    \
+    X(CUTTER_REPEATED, "'%w': cutter compensation is on already; G40 comes first")                 \
+    X(CUTTER_DIAMETER, "'%w' needs D, the diameter of the tool")                                   \
+    X(CUTTER_ORIENTATION, "'%w': compensation for lathe tools (orientation %v) is not supported")  \
+    X(CUTTER_ON, "'%w' is not possible while cutter compensation is on")                           \
+    X(CUTTER_EXIT_ARC, "the first move after cutter compensation must be straight, not '%w'")      \
+    X(OFFSET_ENTRY_SHORT,                                                                          \
+      "the entry move is too short for the tool's radius: it must be more than %v mm longer")      \
+    X(OFFSET_ENTRY_ARC, "no arc leads from here to the compensated end of the entry move")         \
+    X(OFFSET_ARC_SMALL,                                                                            \
+      "the tool does not fit into the arc: its radius would have to be more than %v mm larger")    \
+    X(OFFSET_GOUGE, "the tool does not fit here: it would cut %v mm into the contour")             \
+    X(OFFSET_LEFT_OUT, "this move is left out: the tool, radius %v mm, does not get there")        \
+    X(OFFSET_CROWDED, "more than %v commands between two moves of a compensated contour")          \
     X(DWELL_MISSING, "'%w' needs P, the seconds to wait")                                          \
     X(TOOL_MISSING, "'%w' needs a tool: no T has been given")                                      \
     X(TOOL_UNKNOWN, "tool %v is not in the tool table: its length counts as 0")                    \

@@ -8,6 +8,8 @@
 #ifndef TAKT_BASE_POINT_H
 #define TAKT_BASE_POINT_H
 
+#include <stdbool.h>
+
 enum axis { AXIS_X, AXIS_Y, AXIS_Z, AXIS_A, AXIS_B, AXIS_C, AXIS_COUNT };
 
 #define AXIS_LINEAR_COUNT 3
@@ -17,5 +19,16 @@ enum axis { AXIS_X, AXIS_Y, AXIS_Z, AXIS_A, AXIS_B, AXIS_C, AXIS_COUNT };
 struct point {
     double at[AXIS_COUNT];
 };
+
+/* Every coordinate the same, to the last bit but for the sign of 0. */
+static inline bool point_is_same(const struct point *a, const struct point *b)
+{
+    for (int i = 0; i < AXIS_COUNT; i++) {
+        if (a->at[i] != b->at[i]) {
+            return false;
+        }
+    }
+    return true;
+}
 
 #endif

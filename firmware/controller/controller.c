@@ -65,6 +65,8 @@ void controller_program_config(const struct controller_config *config,
     program->spindle_max_rpm = machine->spindle_max_rpm;
     program->exact_path = config->exact_path;
     program->block_delete = config->block_delete;
+    program->from_line = config->from_line;
+    program->sharp_corners = machine->sharp_corners;
     program->tools = config->tools;
     program->parameters = config->parameters;
 }
@@ -81,6 +83,7 @@ void controller_init(struct controller *c, const struct controller_config *confi
     c->state = CONTROLLER_STARTING;
     controller_program_config(config, &program);
     program_open(&c->program, &program, &config->source);
+    offset_open(&c->offset, &program);
     controller_plan_limits(&c->machine, &limits);
     window_init(&c->window, &limits, c->machine.look_ahead_blocks, &program.start);
     motion_init(&c->motion, limits.cycle_s, &program.start);
@@ -88,15 +91,43 @@ void controller_init(struct controller *c, const struct controller_config *confi
     drives_init(&c->drives, &drives);
 }
 
+/*
+ * What ends the program after this move. Nothing answers for a probe here, so a probing move that must make contact
+ * fails at its end.
+ */
+static enum takt_error trouble_of(const struct move *move)
+{
+    if (move_is_involute(move)) {
+        return TAKT_ERROR_INVOLUTE_UNPLANNED;
+    }
+    if (move->kind == MOVE_PROBE && !move->probe_optional) {
+        return TAKT_ERROR_PROBE_NO_CONTACT;
+    }
+    return TAKT_OK;
+}
+
+/* A move has been read: into the window with it, unless it cannot be planned. */
+static void take_move(struct controller *c, const struct move *move)
+{
+    const enum takt_error trouble = trouble_of(move);
+
+    c->program_error.code = TAKT_OK;
+    if (trouble != TAKT_ERROR_INVOLUTE_UNPLANNED) {
+        window_push(&c->window, move);
+    }
+    if (trouble != TAKT_OK) {
+        diagnostic_set(&c->program_error, trouble, move->line, 0, "", 0, 0.0);
+    }
+    c->program_ended = trouble != TAKT_OK || move->kind == MOVE_END;
+}
+
 /* One move from the program into the window. */
 static void read_move(struct controller *c)
 {
     struct move move;
 
-    if (program_next(&c->program, &move, &c->program_error) == PROGRAM_MOVE) {
-        c->program_error.code = TAKT_OK;
-        window_push(&c->window, &move);
-        c->program_ended = move.kind == MOVE_END;
+    if (offset_next(&c->offset, &c->program, &move, &c->program_error) == PROGRAM_MOVE) {
+        take_move(c, &move);
     } else {
         c->program_ended = true;
     }

@@ -35,6 +35,7 @@ struct controller_config {
     struct parameters *parameters;  /* never NULL; read and written. Must outlive the controller */
     bool exact_path;                /* every G64 is treated as G61 */
     bool block_delete;              /* skip lines that begin with '/' */
+    uint32_t from_line;             /* start in the middle, at this line; 0: at the beginning */
 };
 
 enum controller_state {

@@ -6,6 +6,7 @@
 
 #include "drive/drives.h"
 #include "motion/motion.h"
+#include "offset/offset.h"
 #include "plan/window.h"
 
 struct controller {
@@ -20,6 +21,7 @@ struct controller {
     struct point setpoint;
     struct cycle_record record;
     struct program program;
+    struct offset offset;
     struct window window;
     struct motion motion;
     struct drives drives;

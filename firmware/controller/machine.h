@@ -35,6 +35,7 @@ struct machine {
     double
         resolution_per_mm; /* position increments of the controller per mm: chord error and reports */
     double path_tolerance_mm;   /* G64 without P; 0: exact path */
+    uint32_t sharp_corners;     /* 1: cutter compensation does not round outer corners */
     uint32_t look_ahead_blocks; /* 1 ... MACHINE_LOOK_AHEAD_MAX */
     struct machine_axis axis[AXIS_COUNT];
     double spindle_max_rpm;

@@ -132,6 +132,9 @@ void window_push(struct window *w, const struct move *move)
     if (move_curve(move, &w->end, &curve)) {
         push_motion(w, move, &curve);
     }
+    if (move->kind == MOVE_PROBE || move->kind == MOVE_TAP) {
+        window_close(w);
+    }
 }
 
 void window_finish(struct window *w)

@@ -59,25 +59,48 @@ static bool missing(struct program *p, enum takt_error code, const char *letter)
     return false;
 }
 
-/* One coordinate of the centre from its word. */
-static bool centre_coordinate(struct program *p, enum axis axis, double *centre_mm)
+/* The word of one coordinate of the centre, mm. */
+static bool centre_word(struct program *p, enum axis axis, double *word_mm)
 {
     const char letter = centre_letter(axis);
-    const struct program_modes *m = &p->modes;
-    const double word_mm = words_has(p, letter) ? words_value(p, letter) * m->unit_mm : 0.0;
+    const char name = (char)(letter - 'a' + 'A');
 
-    if (!m->centre_absolute) {
-        *centre_mm = m->at.at[axis] + word_mm;
-        return true;
-    }
-    if (!words_has(p, letter)) {
-        const char name = (char)(letter - 'a' + 'A');
-
+    *word_mm = words_has(p, letter) ? words_value(p, letter) * p->modes.unit_mm : 0.0;
+    if (p->modes.centre_absolute && !words_has(p, letter)) {
         return missing(p, TAKT_ERROR_ARC_CENTRE_PARTIAL, &name);
     }
-    *centre_mm =
-        word_mm + m->system_offset.at[axis] + m->axis_offset.at[axis] + m->tool_offset.at[axis];
     return true;
+}
+
+bool circular_centre(struct program *p, enum axis first, enum axis second, double centre_mm[2])
+{
+    const struct program_modes *m = &p->modes;
+    const enum axis axis[2] = {first, second};
+    double word_mm[2];
+
+    if (m->turn.degrees != 0.0 && m->plane != PLANE_XY) {
+        return report_error_code(p, TAKT_ERROR_ARC_TILTED, STEP_MOTION, m->turn.degrees);
+    }
+    if (!centre_word(p, first, &word_mm[0]) || !centre_word(p, second, &word_mm[1])) {
+        return false;
+    }
+    for (unsigned i = 0; m->centre_absolute && i < 2; i++) {
+        word_mm[i] += m->axis_offset.at[axis[i]];
+    }
+    if (m->plane == PLANE_XY) {
+        coordinates_turn(&m->turn, &word_mm[0], &word_mm[1]);
+    }
+    for (unsigned i = 0; i < 2; i++) {
+        centre_mm[i] = word_mm[i] + (m->centre_absolute
+                                         ? m->system_offset.at[axis[i]] + m->tool_offset.at[axis[i]]
+                                         : m->at.at[axis[i]]);
+    }
+    return true;
+}
+
+double circular_slack_mm(const struct program *p)
+{
+    return p->modes.unit_mm == 1.0 ? OFF_CIRCLE_MAX_MM : OFF_CIRCLE_MAX_INCH * p->modes.unit_mm;
 }
 
 static bool check_radii(struct program *p, const struct circle *c)
@@ -85,8 +108,7 @@ static bool check_radii(struct program *p, const struct circle *c)
     const double start_mm = distance(c->start_mm, c->centre_mm);
     const double end_mm = distance(c->end_mm, c->centre_mm);
     const double off_mm = maths_abs(start_mm - end_mm);
-    const double always_mm =
-        p->modes.unit_mm == 1.0 ? OFF_CIRCLE_MAX_MM : OFF_CIRCLE_MAX_INCH * p->modes.unit_mm;
+    const double always_mm = circular_slack_mm(p);
     const double ratio_mm = OFF_CIRCLE_MAX_RATIO * maths_max(start_mm, end_mm);
 
     if (start_mm < RADIUS_SLACK_MM || end_mm < RADIUS_SLACK_MM) {
@@ -100,8 +122,7 @@ static bool check_radii(struct program *p, const struct circle *c)
 
 static bool centre_from_offsets(struct program *p, struct circle *c)
 {
-    return centre_coordinate(p, c->first, &c->centre_mm[0]) &&
-           centre_coordinate(p, c->second, &c->centre_mm[1]) && check_radii(p, c);
+    return circular_centre(p, c->first, c->second, c->centre_mm) && check_radii(p, c);
 }
 
 /* sqrt(R^2 - h^2), 0 when R is as good as h. */
@@ -136,20 +157,32 @@ static bool centre_from_radius(struct program *p, struct circle *c, bool clockwi
     return true;
 }
 
-/* The offset of the axis that is not in the plane has no meaning. */
-static bool check_words(struct program *p, const struct circle *c)
+/* The machine has the axes of the plane. The centre's word of the axis across it has no meaning. */
+bool circular_check_plane(struct program *p, enum axis first, enum axis second)
 {
-    const enum axis other = (enum axis)(AXIS_X + AXIS_Y + AXIS_Z - c->first - c->second);
-    const unsigned plane_axes = (1U << c->first) | (1U << c->second);
-    const bool offsets = (p->words.given & LETTERS_CENTRE) != 0;
+    const enum axis other = (enum axis)(AXIS_X + AXIS_Y + AXIS_Z - first - second);
+    const unsigned plane_axes = (1U << first) | (1U << second);
 
     if ((p->config.axes & plane_axes) != plane_axes) {
-        const bool first = (p->config.axes & (1U << c->first)) == 0;
+        const bool first_missing = (p->config.axes & (1U << first)) == 0;
 
-        return missing(p, TAKT_ERROR_AXIS_MISSING, &AXIS_LETTERS[first ? c->first : c->second]);
+        return missing(p, TAKT_ERROR_AXIS_MISSING, &AXIS_LETTERS[first_missing ? first : second]);
+    }
+    if (p->modes.cutter_left) {
+        return report_error_code(p, TAKT_ERROR_CUTTER_EXIT_ARC, STEP_MOTION, 0.0);
     }
     if (words_has(p, centre_letter(other))) {
         return report_error_letter(p, TAKT_ERROR_WORD_UNUSED, centre_letter(other), 0.0);
+    }
+    return true;
+}
+
+static bool check_words(struct program *p, const struct circle *c)
+{
+    const bool offsets = (p->words.given & LETTERS_CENTRE) != 0;
+
+    if (!circular_check_plane(p, c->first, c->second)) {
+        return false;
     }
     if (words_has(p, 'r') && offsets) {
         return report_error_letter(p, TAKT_ERROR_ARC_CENTRE_TWICE, 'r', 0.0);

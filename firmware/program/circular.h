@@ -6,6 +6,14 @@
 
 #include "program/program.h"
 
+/*
+ * For involutes too: the centre from its words, machine coordinates; how far a point may be off the curve; what must
+ * hold of the plane and its words. False: p->error is set.
+ */
+bool circular_centre(struct program *p, enum axis first, enum axis second, double centre_mm[2]);
+double circular_slack_mm(const struct program *p);
+bool circular_check_plane(struct program *p, enum axis first, enum axis second);
+
 /* G2, G3; argument: MOVE_ARC_CW or MOVE_ARC_CCW */
 bool circular_move(struct program *p, const struct program_code *code);
 

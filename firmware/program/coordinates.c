@@ -2,6 +2,8 @@
 
 #include "base/maths.h"
 #include "program/report.h"
+#include "program/straight.h"
+#include "program/tool_values.h"
 #include "program/words.h"
 
 #include <string.h>
@@ -14,7 +16,7 @@ static bool is_rotary(enum axis axis)
     return axis >= AXIS_LINEAR_COUNT;
 }
 
-static char letter_of(enum axis axis)
+char coordinates_letter(enum axis axis)
 {
     return (char)(AXIS_LETTERS[axis] - 'A' + 'a');
 }
@@ -36,28 +38,116 @@ double coordinates_from_parameter(double value, enum axis axis)
     return is_rotary(axis) ? value * RAD_PER_DEGREE : value;
 }
 
+void coordinates_set_turn(struct program_turn *turn, double degrees)
+{
+    turn->degrees = degrees;
+    maths_sincos(degrees * RAD_PER_DEGREE, &turn->sine, &turn->cosine);
+}
+
+void coordinates_turn(const struct program_turn *turn, double *x, double *y)
+{
+    const double x_before = *x;
+
+    if (turn->degrees != 0.0) {
+        *x = x_before * turn->cosine - *y * turn->sine;
+        *y = x_before * turn->sine + *y * turn->cosine;
+    }
+}
+
+void coordinates_turn_back(const struct program_turn *turn, double *x, double *y)
+{
+    const struct program_turn back = {-turn->degrees, -turn->sine, turn->cosine};
+
+    coordinates_turn(&back, x, y);
+}
+
+/* work = T^-1 (machine - system - tool) - axis offset */
+void coordinates_work_of(const struct program *p, const struct point *machine, struct point *work)
+{
+    const struct program_modes *m = &p->modes;
+
+    for (enum axis i = AXIS_X; i < AXIS_COUNT; i++) {
+        work->at[i] = machine->at[i] - offset_of(p, i);
+    }
+    if (m->turn.degrees != 0.0) {
+        for (enum axis i = AXIS_X; i <= AXIS_Y; i++) {
+            work->at[i] += m->axis_offset.at[i];
+        }
+        coordinates_turn_back(&m->turn, &work->at[AXIS_X], &work->at[AXIS_Y]);
+        for (enum axis i = AXIS_X; i <= AXIS_Y; i++) {
+            work->at[i] -= m->axis_offset.at[i];
+        }
+    }
+}
+
+void coordinates_machine_of(const struct program *p, const struct point *work,
+                            struct point *machine)
+{
+    const struct program_modes *m = &p->modes;
+    struct point from;
+    double x = work->at[AXIS_X] + m->axis_offset.at[AXIS_X];
+    double y = work->at[AXIS_Y] + m->axis_offset.at[AXIS_Y];
+
+    coordinates_work_of(p, &m->at, &from);
+    *machine = m->at;
+    for (enum axis i = AXIS_X; i < AXIS_COUNT; i++) {
+        if (work->at[i] != from.at[i]) {
+            machine->at[i] = work->at[i] + offset_of(p, i);
+        }
+    }
+    if (m->turn.degrees != 0.0 &&
+        (work->at[AXIS_X] != from.at[AXIS_X] || work->at[AXIS_Y] != from.at[AXIS_Y])) {
+        coordinates_turn(&m->turn, &x, &y);
+        machine->at[AXIS_X] = x + m->system_offset.at[AXIS_X] + m->tool_offset.at[AXIS_X];
+        machine->at[AXIS_Y] = y + m->system_offset.at[AXIS_Y] + m->tool_offset.at[AXIS_Y];
+    }
+}
+
 double coordinates_work(const struct program *p, enum axis axis)
 {
-    const double work = p->modes.at.at[axis] - offset_of(p, axis);
+    struct point work;
 
-    return is_rotary(axis) ? work * DEGREES_PER_RAD : work / p->modes.unit_mm;
+    coordinates_work_of(p, &p->modes.at, &work);
+    return is_rotary(axis) ? work.at[axis] * DEGREES_PER_RAD : work.at[axis] / p->modes.unit_mm;
 }
 
 bool coordinates_word(const struct program *p, enum axis axis, double *value)
 {
-    const char letter = letter_of(axis);
+    const char letter = coordinates_letter(axis);
 
     if (!words_has(p, letter)) {
         return false;
     }
     *value = words_value(p, letter) * (is_rotary(axis) ? RAD_PER_DEGREE : p->modes.unit_mm);
+    if (axis == AXIS_X && p->modes.diameter) {
+        *value *= 0.5;
+    }
     return true;
+}
+
+/* The same through work coordinates: with a rotation a word moves both X and Y. */
+static void rotated_end(const struct program *p, struct point *end)
+{
+    struct point work;
+    double value;
+
+    coordinates_work_of(p, &p->modes.at, &work);
+    for (enum axis i = AXIS_X; i < AXIS_COUNT; i++) {
+        if (coordinates_word(p, i, &value)) {
+            work.at[i] = p->modes.incremental ? work.at[i] + value : value;
+        }
+    }
+    coordinates_machine_of(p, &work, end);
 }
 
 void coordinates_end(const struct program *p, struct point *end)
 {
     double value;
 
+    if (p->modes.turn.degrees != 0.0 && !words_has_step(p, STEP_MACHINE)) {
+        rotated_end(p, end);
+        return;
+    }
     *end = p->modes.at;
     for (enum axis i = AXIS_X; i < AXIS_COUNT; i++) {
         if (!coordinates_word(p, i, &value)) {
@@ -83,12 +173,26 @@ static void point_from_parameters(const struct program *p, unsigned first, struc
     }
 }
 
-static void load_system(struct program *p, unsigned system)
+double coordinates_system_offset(const struct program *p, unsigned system, enum axis axis)
 {
-    const unsigned further = (system - 1) * PARAMETER_SYSTEM_STRIDE;
+    const unsigned first = PARAMETER_SYSTEM_OFFSET + (system - 1) * PARAMETER_SYSTEM_STRIDE;
 
+    return coordinates_from_parameter(parameters_get(p->config.parameters, first + axis), axis);
+}
+
+double coordinates_system_degrees(const struct program *p, unsigned system)
+{
+    return parameters_get(p->config.parameters,
+                          PARAMETER_SYSTEM_ROTATE + (system - 1) * PARAMETER_SYSTEM_STRIDE);
+}
+
+void coordinates_load_system(struct program *p, unsigned system)
+{
     p->modes.system = (uint8_t)system;
-    point_from_parameters(p, PARAMETER_SYSTEM_OFFSET + further, &p->modes.system_offset);
+    for (enum axis i = AXIS_X; i < AXIS_COUNT; i++) {
+        p->modes.system_offset.at[i] = coordinates_system_offset(p, system, i);
+    }
+    coordinates_set_turn(&p->modes.turn, coordinates_system_degrees(p, system));
 }
 
 void coordinates_open(struct program *p)
@@ -96,7 +200,10 @@ void coordinates_open(struct program *p)
     const double system = parameters_get(p->config.parameters, PARAMETER_SYSTEM);
     const bool known = system >= 1.0 && system <= COORDINATES_SYSTEMS;
 
-    load_system(p, known ? (unsigned)system : 1U);
+    if (!known) {
+        (void)parameters_set(p->config.parameters, PARAMETER_SYSTEM, 1.0);
+    }
+    coordinates_load_system(p, known ? (unsigned)system : 1U);
     if (parameters_get(p->config.parameters, PARAMETER_AXIS_APPLIED) != 0.0) {
         point_from_parameters(p, PARAMETER_AXIS_OFFSET, &p->modes.axis_offset);
     }
@@ -106,30 +213,28 @@ void coordinates_open(struct program *p)
 bool coordinates_select(struct program *p, const struct program_code *code)
 {
     const unsigned system = (unsigned)code->argument;
-    const unsigned further = (system - 1) * PARAMETER_SYSTEM_STRIDE;
-    const double rotation = parameters_get(p->config.parameters, PARAMETER_SYSTEM_ROTATE + further);
 
-    if (rotation != 0.0) {
-        return report_error_code(p, TAKT_ERROR_ROTATION_UNSUPPORTED, code->step, rotation);
-    }
     if (system != p->modes.system) {
-        load_system(p, system);
+        coordinates_load_system(p, system);
     }
     return words_store(p, code->step, PARAMETER_SYSTEM, system);
 }
 
+/* G92: the current position gets the coordinates of the words. G52: the words are the offset. */
 bool coordinates_set_axis_offset(struct program *p, const struct program_code *code)
 {
     struct program_modes *m = &p->modes;
+    struct point work;
     double value;
 
     if ((p->words.given & LETTERS_AXES) == 0) {
         return report_error_code(p, TAKT_ERROR_AXIS_WORD_MISSING, code->step, 0.0);
     }
+    coordinates_work_of(p, &m->at, &work);
     for (enum axis i = AXIS_X; i < AXIS_COUNT; i++) {
         if (coordinates_word(p, i, &value)) {
             m->axis_offset.at[i] =
-                m->at.at[i] - m->system_offset.at[i] - m->tool_offset.at[i] - value;
+                code->argument == 1 ? value : work.at[i] + m->axis_offset.at[i] - value;
         }
         if (!words_store(p, code->step, PARAMETER_AXIS_OFFSET + i,
                          coordinates_to_parameter(m->axis_offset.at[i], i))) {
@@ -156,8 +261,11 @@ bool coordinates_restore_axis_offset(struct program *p, const struct program_cod
     return words_store(p, code->step, PARAMETER_AXIS_APPLIED, 1.0);
 }
 
-/* H, or else the tool in the spindle. An unknown tool other than "no tool" is worth a warning. */
-bool coordinates_use_tool(struct program *p, const struct program_code *code)
+/*
+ * The offset of tool H, or else of the one in the spindle, which H0 names too. An unknown tool other than "no tool" is
+ * worth a warning.
+ */
+static bool offset_of_tool(struct program *p, const struct program_code *code, struct point *offset)
 {
     uint32_t number = p->modes.tool_current;
     struct program_span span = p->words.code_span[code->step];
@@ -167,16 +275,52 @@ bool coordinates_use_tool(struct program *p, const struct program_code *code)
             return false;
         }
         span = p->words.span[LETTER_INDEX('h')];
+        number = number == 0 ? p->modes.tool_current : number;
     }
-    const struct tool *tool = tool_table_find(p->config.tools, number);
+    const struct tool *tool = tool_values_find(p, number);
 
     if (tool != NULL) {
-        p->modes.tool_offset = tool->offset;
+        *offset = tool->offset;
         return true;
     }
-    memset(&p->modes.tool_offset, 0, sizeof(p->modes.tool_offset));
+    memset(offset, 0, sizeof(*offset));
     if (number != 0) {
         report_warning(p, TAKT_ERROR_TOOL_UNKNOWN, span, number);
+    }
+    return true;
+}
+
+bool coordinates_use_tool(struct program *p, const struct program_code *code)
+{
+    return offset_of_tool(p, code, &p->modes.tool_offset);
+}
+
+bool coordinates_set_tool_offset(struct program *p, const struct program_code *code)
+{
+    (void)code;
+    for (enum axis i = AXIS_X; i < AXIS_COUNT; i++) {
+        (void)coordinates_word(p, i, &p->modes.tool_offset.at[i]);
+    }
+    return true;
+}
+
+bool coordinates_add_tool_offset(struct program *p, const struct program_code *code)
+{
+    const bool axes = (p->words.given & LETTERS_AXES) != 0;
+    struct point offset = {{0.0}};
+
+    if (words_has(p, 'h') && axes) {
+        return report_error_letter(p, TAKT_ERROR_WORD_UNUSED, 'h', 0.0);
+    }
+    if (!words_has(p, 'h') && !axes) {
+        return report_error_code(p, TAKT_ERROR_SETTING_MISSING, code->step, 0.0);
+    }
+    if (words_has(p, 'h') && !offset_of_tool(p, code, &offset)) {
+        return false;
+    }
+    for (enum axis i = AXIS_X; i < AXIS_COUNT; i++) {
+        (void)coordinates_word(p, i, &offset.at[i]);
+        p->modes.tool_offset.at[i] += offset.at[i];
     }
     return true;
 }
@@ -188,10 +332,10 @@ bool coordinates_drop_tool(struct program *p, const struct program_code *code)
     return true;
 }
 
-/* G0 or G1: they use the axis words and nothing else. */
+/* G0 or G1. */
 static bool is_straight(const struct program *p)
 {
-    return words_has_step(p, STEP_MOTION) && p->words.code[STEP_MOTION]->words == LETTERS_AXES;
+    return words_has_step(p, STEP_MOTION) && p->words.code[STEP_MOTION]->run == straight_move;
 }
 
 bool coordinates_use_machine(struct program *p, const struct program_code *code)

@@ -1,10 +1,10 @@
 /*
  * Coordinates: from what a word says to machine positions and back.
  *
- *     machine = work + offset of the coordinate system (G54 ...) + axis offset (G92) + tool offset (G43)
+ *     machine = T (work + axis offset (G92)) + offset of the coordinate system (G54 ...) + tool offset (G43)
  *
- * axis by axis, in mm and rad. The machine position is what the interpreter keeps; changing an offset moves
- * nothing.
+ * in mm and rad; T turns X and Y by the rotation of the coordinate system (G10 L2 R). The machine position is what
+ * the interpreter keeps; changing an offset moves nothing.
  */
 #ifndef TAKT_PROGRAM_COORDINATES_H
 #define TAKT_PROGRAM_COORDINATES_H
@@ -16,6 +16,30 @@
 
 /* Work coordinate of the current position, in the program's units: degrees, and mm or inch. */
 double coordinates_work(const struct program *p, enum axis axis);
+
+/* The machine position, in work coordinates: mm and rad. */
+void coordinates_work_of(const struct program *p, const struct point *machine, struct point *work);
+
+/* The machine position of work. An axis that is where it is already keeps its position to the last bit. */
+void coordinates_machine_of(const struct program *p, const struct point *work,
+                            struct point *machine);
+
+/* Turns x and y by the rotation of the coordinate system, or back. */
+void coordinates_turn(const struct program_turn *turn, double *x, double *y);
+void coordinates_turn_back(const struct program_turn *turn, double *x, double *y);
+
+/* The rotation by so many degrees. */
+void coordinates_set_turn(struct program_turn *turn, double degrees);
+
+/* Loads coordinate system 1 ... 9 from the parameters. */
+void coordinates_load_system(struct program *p, unsigned system);
+
+/* Offset, or rotation, of a coordinate system as the parameters hold it; mm, rad; degrees. */
+double coordinates_system_offset(const struct program *p, unsigned system, enum axis axis);
+double coordinates_system_degrees(const struct program *p, unsigned system);
+
+/* The letter of an axis, in lower case. */
+char coordinates_letter(enum axis axis);
 
 /* The word of an axis: true and its value in mm or rad, when it is given. */
 bool coordinates_word(const struct program *p, enum axis axis, double *value);
@@ -32,7 +56,7 @@ void coordinates_open(struct program *p);
 
 /* G54 ... G59.3; argument: 1 ... 9 */
 bool coordinates_select(struct program *p, const struct program_code *code);
-/* G92 */
+/* G92 (argument 0), G52 (1) */
 bool coordinates_set_axis_offset(struct program *p, const struct program_code *code);
 /* G92.1 (argument 1: parameters too) and G92.2 */
 bool coordinates_cancel_axis_offset(struct program *p, const struct program_code *code);
@@ -40,6 +64,9 @@ bool coordinates_cancel_axis_offset(struct program *p, const struct program_code
 bool coordinates_restore_axis_offset(struct program *p, const struct program_code *code);
 /* G43 and G49 */
 bool coordinates_use_tool(struct program *p, const struct program_code *code);
+/* G43.1: the axis words are the tool offset. G43.2: H or the axis words add to it. */
+bool coordinates_set_tool_offset(struct program *p, const struct program_code *code);
+bool coordinates_add_tool_offset(struct program *p, const struct program_code *code);
 bool coordinates_drop_tool(struct program *p, const struct program_code *code);
 /* G53: the axis words of this line are machine coordinates. */
 bool coordinates_use_machine(struct program *p, const struct program_code *code);

@@ -1,5 +1,9 @@
 #include "program/emit.h"
 
+#include "base/maths.h"
+#include "program/coordinates.h"
+#include "program/cutter.h"
+#include "program/cycles.h"
 #include "program/report.h"
 #include "program/travel.h"
 #include "program/words.h"
@@ -8,6 +12,9 @@
 #include <string.h>
 
 #define SECONDS_PER_MINUTE 60.0
+
+/* Of a surface speed whose maximum is not given: above any spindle's. */
+#define RPM_MAX 1e6
 
 struct move *emit_event(struct program *p, enum move_kind kind)
 {
@@ -20,6 +27,21 @@ struct move *emit_event(struct program *p, enum move_kind kind)
     return m;
 }
 
+bool emit_take(struct program *p, struct move *move)
+{
+    if (cycles_next(p, move)) {
+        return true;
+    }
+    if (p->queue_count == 0) {
+        return false;
+    }
+    *move = p->queue[p->queue_first];
+    p->queue_first = (p->queue_first + 1) % PROGRAM_QUEUE_MAX;
+    p->queue_count--;
+    cycles_count_queued(p);
+    return true;
+}
+
 void emit_prepare(const struct program *p, enum move_kind kind, const struct point *end,
                   struct move *m)
 {
@@ -28,7 +50,11 @@ void emit_prepare(const struct program *p, enum move_kind kind, const struct poi
     m->line = p->lexer.line;
     m->end = *end;
     m->path = p->modes.path;
-    m->tolerance_mm = p->modes.path == PATH_BLEND ? p->modes.tolerance_mm : 0.0;
+    m->overrides = p->modes.overrides;
+    if (m->path == PATH_BLEND) {
+        m->tolerance_mm = p->modes.tolerance_mm;
+        m->merge_mm = p->modes.merge_mm;
+    }
 }
 
 /* F counts along X Y Z, unless only A B C move: the same rule as the length of a curve. */
@@ -64,13 +90,61 @@ static double inverse_time_feed(const struct program *p, const struct move *m)
     return move_curve(m, &p->modes.at, &curve) ? curve.length_mm * rate_per_s : rate_per_s;
 }
 
-static bool set_feed(struct program *p, struct move *m)
+/*
+ * Constant surface speed v at the distance x of the tool from the spindle's axis:
+ *
+ *     speed = v / (2 pi |x|),   not above its maximum
+ */
+static double surface_rpm(const struct program *p)
 {
+    const double x_mm = maths_abs(coordinates_work(p, AXIS_X)) * p->modes.unit_mm;
+    const double max_rpm = p->modes.surface_max_rpm != 0.0 ? p->modes.surface_max_rpm : RPM_MAX;
+    const double turn_mm = MATHS_TWO_PI * x_mm;
+    const double mm_min = p->modes.surface_mm_s * SECONDS_PER_MINUTE;
+
+    return mm_min < max_rpm * turn_mm ? mm_min / turn_mm : max_rpm;
+}
+
+/* The commanded speed; 0 when the spindle stands. */
+static double spindle_rpm(const struct program *p)
+{
+    if (p->modes.direction == SPINDLE_OFF) {
+        return 0.0;
+    }
+    return p->modes.surface_speed ? surface_rpm(p) : p->modes.speed_rpm;
+}
+
+/* feed = feed per revolution * speed */
+static bool follow_spindle(struct program *p, struct move *m)
+{
+    const struct program_span span = p->words.code_span[STEP_MOTION];
+    const double rpm = spindle_rpm(p);
+
+    if (!(rpm > 0.0)) {
+        return report_error(p, TAKT_ERROR_SPINDLE_STANDS, span, 0.0);
+    }
+    if (!p->spindle_followed) {
+        report_warning(p, TAKT_ERROR_SPINDLE_FOLLOWED, span, 0.0);
+        p->spindle_followed = true;
+    }
+    m->feed_mm_s = m->feed_rev_mm * rpm / SECONDS_PER_MINUTE;
+    return true;
+}
+
+bool emit_set_feed(struct program *p, struct move *m)
+{
+    if (p->modes.per_revolution && m->feed_rev_mm == 0.0) {
+        m->feed_rev_mm = moves_rotary_only(p, m) ? p->modes.feed_rev_rad : p->modes.feed_rev_mm;
+        m->feed_mm_s = m->feed_rev_mm;
+    }
+    if (m->feed_rev_mm != 0.0) {
+        return follow_spindle(p, m);
+    }
     if (p->modes.inverse_time) {
         m->feed_mm_s = inverse_time_feed(p, m);
     } else if (moves_rotary_only(p, m)) {
         m->feed_mm_s = p->modes.feed_rad_s;
-    } else {
+    } else if (!p->modes.per_revolution) {
         m->feed_mm_s = p->modes.feed_mm_s;
     }
     return m->feed_mm_s > 0.0 || report_error_code(p, TAKT_ERROR_FEED_MISSING, STEP_MOTION, 0.0);
@@ -78,7 +152,8 @@ static bool set_feed(struct program *p, struct move *m)
 
 bool emit_motion(struct program *p, struct move *m)
 {
-    if (!travel_check(p, m) || (m->kind != MOVE_RAPID && !set_feed(p, m))) {
+    cutter_apply(p, m);
+    if (!travel_check(p, m) || (m->kind != MOVE_RAPID && !emit_set_feed(p, m))) {
         return false;
     }
     *emit_event(p, m->kind) = *m;

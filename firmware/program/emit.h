@@ -13,6 +13,15 @@ struct move *emit_event(struct program *p, enum move_kind kind);
 void emit_prepare(const struct program *p, enum move_kind kind, const struct point *end,
                   struct move *m);
 
+/* The next move of the queue, or of the cycle under way, into *move. False: there is none. */
+bool emit_take(struct program *p, struct move *move);
+
+/*
+ * Gives a cutting motion from the current position its feed: of F, or where feed_rev_mm is set already, of the
+ * spindle. False: p->error is set.
+ */
+bool emit_set_feed(struct program *p, struct move *m);
+
 /*
  * Gives a cutting motion its feed and queues it when it stays inside the travel; the position is then its end.
  * False: p->error is set.

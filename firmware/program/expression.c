@@ -5,6 +5,7 @@
 #include "program/calculation.h"
 #include "program/lexer.h"
 #include "program/names.h"
+#include "program/predefined.h"
 #include "program/report.h"
 #include "program/system_parameters.h"
 
@@ -143,10 +144,18 @@ bool expression_read_reference(struct program *p, struct program_reference *refe
     return true;
 }
 
-static const double *find_named(struct program *p, const struct program_reference *reference)
+/* False when nothing of that name is known. */
+static bool find_named(struct program *p, const struct program_reference *reference, double *value)
 {
-    return names_find(&p->names, p->lexer.text + reference->span.begin,
-                      (size_t)(reference->span.end - reference->span.begin));
+    const char *name = p->lexer.text + reference->span.begin;
+    const size_t length = (size_t)(reference->span.end - reference->span.begin);
+    const double *named = names_find(&p->names, name, length);
+
+    if (named == NULL) {
+        return predefined_get(p, name, length, value);
+    }
+    *value = *named;
+    return true;
 }
 
 static bool read_parameter(struct program *p, double *value)
@@ -161,13 +170,8 @@ static bool read_parameter(struct program *p, double *value)
         *value = system_parameter_get(p, reference.number);
         return true;
     }
-    const double *named = find_named(p, &reference);
-
-    if (named == NULL) {
-        return report_error(p, TAKT_ERROR_PARAMETER_UNDEFINED, reference.span, 0.0);
-    }
-    *value = *named;
-    return true;
+    return find_named(p, &reference, value) ||
+           report_error(p, TAKT_ERROR_PARAMETER_UNDEFINED, reference.span, 0.0);
 }
 
 static bool read_atan(struct program *p, double *value)
@@ -187,14 +191,12 @@ static bool read_atan(struct program *p, double *value)
     return true;
 }
 
-/* EXISTS[#<name>]: 1 when it has been set; numbered parameters always exist. */
+/* EXISTS[#<name>], from its bracket on: 1 when it has been set; numbered parameters always exist. */
 static bool read_exists(struct program *p, double *value)
 {
     struct program_reference reference = {0};
 
-    if (!lexer_accept(&p->lexer, '[')) {
-        return missing_here(p, TAKT_ERROR_BRACKET_EXPECTED);
-    }
+    p->lexer.at++;
     if (!lexer_accept(&p->lexer, '#')) {
         return missing_here(p, TAKT_ERROR_NUMBER_EXPECTED);
     }
@@ -204,7 +206,7 @@ static bool read_exists(struct program *p, double *value)
     if (!lexer_accept(&p->lexer, ']')) {
         return missing_here(p, TAKT_ERROR_BRACKET_UNCLOSED);
     }
-    *value = reference.number != 0 || find_named(p, &reference) != NULL ? 1.0 : 0.0;
+    *value = reference.number != 0 || find_named(p, &reference, value) ? 1.0 : 0.0;
     return true;
 }
 
@@ -220,6 +222,9 @@ static bool read_function(struct program *p, double *value)
     l->at = (uint16_t)(begin + function->length);
     const struct program_span span = span_from(p, begin);
 
+    if (l->text[l->at] != '[') {
+        return report_error(p, TAKT_ERROR_BRACKET_EXPECTED, span, 0.0);
+    }
     if (function->apply == NULL) {
         return function->name[0] == 'a' ? read_atan(p, value) : read_exists(p, value);
     }

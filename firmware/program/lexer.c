@@ -13,6 +13,7 @@ void lexer_open(struct program_lexer *l, const struct source *source)
     l->source = *source;
     l->input_at = 0;
     l->input_length = 0;
+    l->input_offset = 0;
     l->line = 0;
     l->at = 0;
     l->length = 0;
@@ -26,6 +27,7 @@ static int next_byte(struct program_lexer *l)
     if (l->input_at == l->input_length) {
         const long count = l->source.read(l->source.context, l->input, sizeof(l->input));
 
+        l->input_offset += l->input_length;
         l->input_at = 0;
         l->input_length = 0;
         if (count <= 0) {
@@ -122,6 +124,8 @@ static void close_line(struct program_lexer *l, struct scan *s, struct diagnosti
 enum lexer_result lexer_next_line(struct program_lexer *l, struct diagnostic *error)
 {
     struct scan s = {0};
+
+    l->line_offset = l->input_offset + l->input_at;
     int c = next_byte(l);
 
     if (c == SOURCE_END) {
@@ -141,6 +145,43 @@ enum lexer_result lexer_next_line(struct program_lexer *l, struct diagnostic *er
     }
     close_line(l, &s, error);
     return s.failed ? LEXER_ERROR : LEXER_LINE;
+}
+
+struct program_place lexer_place(const struct program_lexer *l)
+{
+    return (struct program_place){l->input_offset + l->input_at, l->line};
+}
+
+struct program_place lexer_this_line(const struct program_lexer *l)
+{
+    return (struct program_place){l->line_offset, l->line - 1};
+}
+
+bool lexer_can_seek(const struct program_lexer *l)
+{
+    return l->source.seek != NULL;
+}
+
+/* Short jumps stay inside what has been read already. */
+bool lexer_seek(struct program_lexer *l, const struct program_place *place)
+{
+    const uint64_t offset = place->offset;
+
+    if (!lexer_can_seek(l)) {
+        return false;
+    }
+    if (offset >= l->input_offset && offset <= l->input_offset + l->input_length) {
+        l->input_at = (size_t)(offset - l->input_offset);
+    } else {
+        if (!l->source.seek(l->source.context, offset)) {
+            return false;
+        }
+        l->input_offset = offset;
+        l->input_at = 0;
+        l->input_length = 0;
+    }
+    l->line = place->line;
+    return true;
 }
 
 bool lexer_accept(struct program_lexer *l, char c)

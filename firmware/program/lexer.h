@@ -16,6 +16,17 @@ void lexer_open(struct program_lexer *l, const struct source *source);
  */
 enum lexer_result lexer_next_line(struct program_lexer *l, struct diagnostic *error);
 
+/* Where the line after the current one begins. */
+struct program_place lexer_place(const struct program_lexer *l);
+
+/* Where the current line begins. */
+struct program_place lexer_this_line(const struct program_lexer *l);
+
+bool lexer_can_seek(const struct program_lexer *l);
+
+/* Goes on at a place lexer_place gave. False: the source cannot go there. */
+bool lexer_seek(struct program_lexer *l, const struct program_place *place);
+
 /* True and past it, when the line goes on with c. */
 bool lexer_accept(struct program_lexer *l, char c);
 

@@ -18,17 +18,24 @@ void modes_open(struct program *p)
     p->modes.plane = PLANE_XY;
     p->modes.path = PATH_EXACT;
     p->modes.direction = SPINDLE_OFF;
+    p->modes.retract_to_r = true;
+    p->modes.overrides = OVERRIDE_FEED | OVERRIDE_SPINDLE | OVERRIDE_HOLD;
 }
 
 /* An F of the other mode means nothing in this one. */
 bool modes_set_feed_mode(struct program *p, const struct program_code *code)
 {
-    const bool inverse_time = code->argument == 1;
+    struct program_modes *m = &p->modes;
+    const bool inverse_time = code->argument == FEED_INVERSE_TIME;
+    const bool per_revolution = code->argument == FEED_PER_REVOLUTION;
 
-    if (inverse_time != p->modes.inverse_time) {
-        p->modes.inverse_time = inverse_time;
-        p->modes.feed_mm_s = 0.0;
-        p->modes.feed_rad_s = 0.0;
+    if (inverse_time != m->inverse_time || per_revolution != m->per_revolution) {
+        m->inverse_time = inverse_time;
+        m->per_revolution = per_revolution;
+        m->feed_mm_s = 0.0;
+        m->feed_rad_s = 0.0;
+        m->feed_rev_mm = 0.0;
+        m->feed_rev_rad = 0.0;
     }
     return true;
 }
@@ -42,7 +49,10 @@ bool modes_set_feed(struct program *p, const struct program_code *code)
     if (feed < 0.0) {
         return report_error_letter(p, TAKT_ERROR_WORD_NEGATIVE, 'f', feed);
     }
-    if (!p->modes.inverse_time) {
+    if (p->modes.per_revolution) {
+        p->modes.feed_rev_mm = feed * p->modes.unit_mm;
+        p->modes.feed_rev_rad = feed * RAD_PER_DEGREE;
+    } else if (!p->modes.inverse_time) {
         p->modes.feed_mm_s = feed * p->modes.unit_mm / SECONDS_PER_MINUTE;
         p->modes.feed_rad_s = feed * RAD_PER_DEGREE / SECONDS_PER_MINUTE;
     }
@@ -59,6 +69,15 @@ bool modes_set_units(struct program *p, const struct program_code *code)
 {
     p->modes.unit_mm = code->argument == 1 ? MM_PER_INCH : 1.0;
     return true;
+}
+
+/* Q, or else P: how far short moves may be off the line that replaces them. */
+static bool set_merge(struct program *p)
+{
+    const double merge = words_has(p, 'q') ? words_value(p, 'q') : 0.0;
+
+    p->modes.merge_mm = words_has(p, 'q') ? merge * p->modes.unit_mm : p->modes.tolerance_mm;
+    return merge >= 0.0 || report_error_letter(p, TAKT_ERROR_WORD_NEGATIVE, 'q', merge);
 }
 
 static bool set_tolerance(struct program *p)
@@ -82,7 +101,7 @@ bool modes_set_path(struct program *p, const struct program_code *code)
     if (p->config.exact_path) {
         p->modes.path = PATH_EXACT;
     }
-    return set_tolerance(p);
+    return set_tolerance(p) && set_merge(p);
 }
 
 bool modes_set_distance(struct program *p, const struct program_code *code)
@@ -95,6 +114,41 @@ bool modes_set_centre(struct program *p, const struct program_code *code)
 {
     p->modes.centre_absolute = code->argument == 1;
     return true;
+}
+
+bool modes_set_diameter(struct program *p, const struct program_code *code)
+{
+    p->modes.diameter = code->argument == 1;
+    return true;
+}
+
+bool modes_set_retract(struct program *p, const struct program_code *code)
+{
+    p->modes.retract_to_r = code->argument == 1;
+    return true;
+}
+
+static void switch_overrides(struct program *p, unsigned which, bool on)
+{
+    p->modes.overrides = on ? p->modes.overrides | which : p->modes.overrides & ~which;
+}
+
+bool modes_set_overrides(struct program *p, const struct program_code *code)
+{
+    switch_overrides(p, OVERRIDE_FEED | OVERRIDE_SPINDLE, code->argument == 1);
+    return true;
+}
+
+/* On without P, and with any P but 0. */
+bool modes_set_override(struct program *p, const struct program_code *code)
+{
+    switch_overrides(p, (unsigned)code->argument, !words_has(p, 'p') || words_value(p, 'p') != 0.0);
+    return true;
+}
+
+bool modes_refuse_spline(struct program *p, const struct program_code *code)
+{
+    return report_error_code(p, TAKT_ERROR_SPLINE_UNSUPPORTED, code->step, 0.0);
 }
 
 bool modes_accept(struct program *p, const struct program_code *code)

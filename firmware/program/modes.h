@@ -9,7 +9,8 @@
 /* The state a program starts in: G17 G21 G40 G49 G61 G80 G90 G91.1 G94, no F, no S, no tool. */
 void modes_open(struct program *p);
 
-/* G93 (argument 1), G94 (0) */
+/* G93, G94, G95; argument: enum feed_mode */
+enum feed_mode { FEED_PER_MINUTE, FEED_INVERSE_TIME, FEED_PER_REVOLUTION };
 bool modes_set_feed_mode(struct program *p, const struct program_code *code);
 /* F */
 bool modes_set_feed(struct program *p, const struct program_code *code);
@@ -23,7 +24,17 @@ bool modes_set_path(struct program *p, const struct program_code *code);
 bool modes_set_distance(struct program *p, const struct program_code *code);
 /* G90.1 (argument 1: absolute), G91.1 (0) */
 bool modes_set_centre(struct program *p, const struct program_code *code);
-/* Codes that are understood and change nothing here: G40, M48, M49. */
+/* G7 (argument 1: X words are diameters), G8 (0) */
+bool modes_set_diameter(struct program *p, const struct program_code *code);
+/* G98 (argument 0: cycles retract to where they started), G99 (1: to R) */
+bool modes_set_retract(struct program *p, const struct program_code *code);
+/* M48 (argument 1), M49 (0) */
+bool modes_set_overrides(struct program *p, const struct program_code *code);
+/* M50 to M53; argument: OVERRIDE_... */
+bool modes_set_override(struct program *p, const struct program_code *code);
+/* G5 and its kind */
+bool modes_refuse_spline(struct program *p, const struct program_code *code);
+/* Codes that are understood and change nothing here: G40. */
 bool modes_accept(struct program *p, const struct program_code *code);
 
 #endif

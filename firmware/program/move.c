@@ -2,7 +2,7 @@
 
 bool move_curve(const struct move *m, const struct point *start, struct curve *c)
 {
-    if (m->kind == MOVE_ARC_CW || m->kind == MOVE_ARC_CCW) {
+    if (move_is_arc(m)) {
         return curve_set_arc(c, start, &m->end, m->plane, m->centre_mm, m->kind == MOVE_ARC_CW,
                              m->turns);
     }

@@ -17,11 +17,20 @@ enum move_kind {
     MOVE_FEED,
     MOVE_ARC_CW,
     MOVE_ARC_CCW,
+    MOVE_INVOLUTE_CW,
+    MOVE_INVOLUTE_CCW,
+    MOVE_THREAD,  /* a line whose feed follows the spindle: G33, G76 */
+    MOVE_TAP,     /* the same into the hole; the spindle turns back at its end: G33.1 */
+    MOVE_TAP_OUT, /* and back out, the spindle turning the other way; then as before again */
+    MOVE_PROBE,   /* a line that ends early when the probe answers: G38 */
     /* in between: the axes stand while these happen */
     MOVE_DWELL,
     MOVE_SPINDLE,
+    MOVE_ORIENT, /* the spindle stops at an angle */
     MOVE_COOLANT,
     MOVE_TOOL,
+    MOVE_OUTPUT, /* a digital or analogue output changes: M62 to M65, M67, M68 */
+    MOVE_INPUT,  /* waits for an input, or only reads it: M66 */
     MOVE_STOP,
     MOVE_END
 };
@@ -30,31 +39,79 @@ enum move_path { PATH_EXACT /* G61 */, PATH_EXACT_STOP /* G61.1 */, PATH_BLEND /
 
 enum spindle_direction { SPINDLE_OFF, SPINDLE_CW, SPINDLE_CCW };
 
+/* Which side of the programmed path the tool is on, looking along it, the plane seen from its third axis. */
+enum cutter_side { CUTTER_OFF, CUTTER_LEFT /* G41 */, CUTTER_RIGHT /* G42 */ };
+
+/* The way the spindle turns to the angle of MOVE_ORIENT. */
+enum orient_way { ORIENT_SHORTEST, ORIENT_CW, ORIENT_CCW };
+
+/* What MOVE_INPUT waits for. */
+enum input_wait { INPUT_READ, INPUT_RISE, INPUT_FALL, INPUT_HIGH, INPUT_LOW };
+
+/* Overrides a motion obeys: bits of struct move, overrides. */
+#define OVERRIDE_FEED     1U /* M48, M50 P1 */
+#define OVERRIDE_SPINDLE  2U /* M48, M51 P1 */
+#define OVERRIDE_ADAPTIVE 4U /* M52 P1 */
+#define OVERRIDE_HOLD     8U /* M53 P1: the operator may hold the feed */
+
 struct move {
     enum move_kind kind;
     uint32_t line;
-    /* motion: MOVE_RAPID to MOVE_ARC_CCW */
+    /* motion: MOVE_RAPID to MOVE_PROBE */
     struct point end;
     double
         feed_mm_s; /* along the path; 0 for a rapid: as fast as the axes allow. rad/s when only A B C move */
+    double feed_rev_mm; /* not 0: the feed follows the spindle, so much (mm, or rad) per revolution;
+                           feed_mm_s is what that comes to at the commanded speed */
+    unsigned overrides; /* OVERRIDE_... */
     enum move_path path;
     double tolerance_mm; /* PATH_BLEND: largest distance from the programmed path; 0: exact */
-    enum plane plane;    /* arcs */
-    double centre_mm[2]; /* arcs: absolute, first and second axis of the plane */
+    double merge_mm;     /* PATH_BLEND: within this, short moves may become one (G64 Q) */
+    enum plane plane;    /* arcs, involutes and whatever is compensated */
+    /* Not CUTTER_OFF: end and centre are the programmed ones, the room offset moves them by the radius */
+    enum cutter_side cutter_side;
+    double cutter_radius_mm; /* > 0 */
+    bool cutter_entry;       /* nothing has moved in the plane yet since compensation is on */
+    double centre_mm[2]; /* arcs, and the base circle of involutes: absolute, first and second axis
+                            of the plane */
     uint32_t turns;      /* arcs: 1 = less than or exactly one turn */
+    double base_radius_mm; /* involutes: of the base circle */
+    double speed_ratio;    /* MOVE_TAP_OUT: speed of the spindle relative to the way in, >= 1 */
+    bool probe_away;       /* MOVE_PROBE: ends when contact is lost (G38.4, G38.5), else made */
+    bool probe_optional;   /* MOVE_PROBE: to reach the end is no error (G38.3, G38.5) */
     /* in between */
     double dwell_s;                   /* MOVE_DWELL */
     enum spindle_direction direction; /* MOVE_SPINDLE */
-    double speed_rpm;                 /* MOVE_SPINDLE */
+    double speed_rpm;                 /* MOVE_SPINDLE; with surface_mm_s the highest, 0: any */
+    double surface_mm_s;              /* MOVE_SPINDLE: not 0: constant surface speed (G96) */
+    double orient_rad;                /* MOVE_ORIENT */
+    enum orient_way orient_way;       /* MOVE_ORIENT */
+    double timeout_s;                 /* MOVE_ORIENT, MOVE_INPUT: 0: none given */
     bool mist, flood;                 /* MOVE_COOLANT: state after it */
     uint32_t tool;                    /* MOVE_TOOL: number */
     bool tool_change;                 /* MOVE_TOOL: M6, else T alone (prepare) */
+    bool tool_loaded;                 /* MOVE_TOOL: M61, it is in the spindle already */
+    uint32_t channel;                 /* MOVE_OUTPUT, MOVE_INPUT: number of the output or input */
+    bool analogue;                    /* MOVE_OUTPUT, MOVE_INPUT */
+    bool with_motion;                 /* MOVE_OUTPUT: M62, M63, M67 */
+    double output;                    /* MOVE_OUTPUT: 0 or 1; any value of an analogue one */
+    enum input_wait input_wait;       /* MOVE_INPUT */
     bool optional;                    /* MOVE_STOP: M1 */
 };
 
 static inline bool move_is_motion(const struct move *m)
 {
-    return m->kind <= MOVE_ARC_CCW;
+    return m->kind <= MOVE_PROBE;
+}
+
+static inline bool move_is_arc(const struct move *m)
+{
+    return m->kind == MOVE_ARC_CW || m->kind == MOVE_ARC_CCW;
+}
+
+static inline bool move_is_involute(const struct move *m)
+{
+    return m->kind == MOVE_INVOLUTE_CW || m->kind == MOVE_INVOLUTE_CCW;
 }
 
 /* The geometry of a motion that starts at start. False when it has no length. */

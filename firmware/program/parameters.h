@@ -14,6 +14,8 @@
 #include <stdint.h>
 
 /* Numbers with a meaning; those of axes are the first of six: X Y Z A B C. */
+#define PARAMETER_PROBE         5061 /* G38: where the probe answered, in work coordinates */
+#define PARAMETER_PROBE_CONTACT 5070 /* 1: the last G38 ended by the probe's answer */
 #define PARAMETER_REFERENCE_1   5161 /* G28: machine position */
 #define PARAMETER_REFERENCE_2   5181 /* G30: machine position */
 #define PARAMETER_AXIS_APPLIED  5210 /* 1 while the offsets of G92 are in effect */
@@ -22,9 +24,13 @@
 #define PARAMETER_SYSTEM_OFFSET 5221 /* G54; PARAMETER_SYSTEM_STRIDE further for each next system */
 #define PARAMETER_SYSTEM_ROTATE 5230 /* G54: rotation about Z, degrees; stride as above */
 #define PARAMETER_SYSTEM_STRIDE 20
-#define PARAMETER_TOOL_NUMBER   5400 /* tool in the spindle; computed, as are the next three */
+#define PARAMETER_INPUT         5399 /* what M66 read */
+#define PARAMETER_TOOL_NUMBER   5400 /* tool in the spindle; computed, as are the others of it */
 #define PARAMETER_TOOL_OFFSET   5401 /* its length offsets, six axes */
 #define PARAMETER_TOOL_DIAMETER 5410
+#define PARAMETER_TOOL_FRONT    5411 /* angle, degrees */
+#define PARAMETER_TOOL_BACK     5412
+#define PARAMETER_TOOL_SIDE     5413 /* orientation: 0 to 9 */
 #define PARAMETER_POSITION      5420 /* work coordinates in the program's units, six axes */
 
 struct parameters {

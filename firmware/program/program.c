@@ -1,9 +1,14 @@
 #include "program/program.h"
 
+#include "program/approach.h"
 #include "program/coordinates.h"
+#include "program/cutter.h"
+#include "program/cycles.h"
 #include "program/emit.h"
+#include "program/flow.h"
 #include "program/lexer.h"
 #include "program/modes.h"
+#include "program/tool_values.h"
 #include "program/words.h"
 
 #include <assert.h>
@@ -18,21 +23,32 @@ void program_open(struct program *p, const struct program_config *config,
     p->config = *config;
     lexer_open(&p->lexer, source);
     p->names.count = 0;
+    p->names.call = 0;
     p->queue_first = 0;
     p->queue_count = 0;
     p->warnings = 0;
     p->phase = PROGRAM_AT_START;
+    p->tools.count = 0;
+    p->spindle_followed = false;
+    cycles_open(p);
     modes_open(p);
     coordinates_open(p);
+    flow_open(p);
+    approach_open(p);
 }
 
-static bool run_steps(struct program *p)
+static bool run_step(struct program *p, const struct program_code *code,
+                     const struct program_modes *before)
+{
+    cycles_see(p, code);
+    return cutter_allows(p, code) && code->run(p, code) && cutter_allows_change(p, code, before);
+}
+
+static bool run_steps(struct program *p, const struct program_modes *before)
 {
     for (unsigned step = 0; step < STEP_COUNT; step++) {
         if (words_has_step(p, (enum step)step)) {
-            const struct program_code *code = p->words.code[step];
-
-            if (!code->run(p, code)) {
+            if (!run_step(p, p->words.code[step], before)) {
                 return false;
             }
         }
@@ -45,22 +61,34 @@ static bool run_line(struct program *p)
 {
     const struct program_modes before = p->modes;
 
+    tool_values_begin_line(p);
     if (!words_read(p)) {
         return false;
     }
-    if (words_assign(p) && run_steps(p)) {
+    if (words_assign(p) && run_steps(p, &before)) {
         return true;
     }
     words_take_back(p);
+    tool_values_take_back(p);
+    cycles_open(p);
     p->modes = before;
     p->queue_count = 0;
     return false;
 }
 
-static void end(struct program *p)
+/* The last line, unless a subroutine was looked for in vain: then the text goes on behind the call. */
+static bool end_text(struct program *p)
 {
-    emit_event(p, MOVE_END);
-    p->phase = PROGRAM_ENDED;
+    const bool searching = p->flow.skip == SKIP_TO_SUB;
+    const bool good = flow_end_of_text(p);
+
+    if (good) {
+        emit_event(p, MOVE_END);
+    }
+    if (!searching) {
+        p->phase = PROGRAM_ENDED;
+    }
+    return good;
 }
 
 /* A line of '%' alone opens a program when it is the first that says something, else it ends it. */
@@ -80,26 +108,47 @@ static bool take_line(struct program *p)
 
     p->phase = PROGRAM_IN_TEXT;
     if (is_percent(l)) {
-        if (!first) {
-            end(p);
-        }
-        return true;
+        return first || end_text(p);
     }
     if (lexer_accept(l, '/') && p->config.block_delete) {
         return true;
     }
-    return run_line(p);
+    if (oword_begins(p)) {
+        return flow_take(p);
+    }
+    return flow_is_skipping(p) || run_line(p);
+}
+
+/* The line to start at waits until the way to it has been fetched. */
+static bool take_or_approach(struct program *p)
+{
+    bool good;
+
+    if (!approach_begins(p, &good)) {
+        return take_line(p);
+    }
+    p->approach.holds_line = true;
+    return good;
 }
 
 /* Reads one line; false: p->error is set. */
-static bool advance(struct program *p)
+static bool read_line(struct program *p)
 {
-    switch (lexer_next_line(&p->lexer, &p->error)) {
-    case LEXER_LINE:
+    if (p->approach.holds_line) {
+        p->approach.holds_line = false;
         return take_line(p);
+    }
+    const enum lexer_result result = lexer_next_line(&p->lexer, &p->error);
+
+    if (result != LEXER_END && !flow_count_line(p)) {
+        p->phase = PROGRAM_ENDED;
+        return false;
+    }
+    switch (result) {
+    case LEXER_LINE:
+        return take_or_approach(p);
     case LEXER_END:
-        end(p);
-        return true;
+        return end_text(p);
     case LEXER_UNREADABLE:
         p->phase = PROGRAM_ENDED;
         return false;
@@ -109,10 +158,27 @@ static bool advance(struct program *p)
     return false;
 }
 
+/* One step further; false: p->error is set. */
+static bool advance(struct program *p)
+{
+    const bool good = read_line(p);
+
+    if (!good) {
+        flow_fail(p);
+    }
+    if (p->approach.pending) {
+        return approach_drop(p) && good;
+    }
+    if (p->queue_count > 0 || p->cycle.code != NULL) {
+        p->flow.lines_again = 0;
+    }
+    return good;
+}
+
 enum program_result program_next(struct program *p, struct move *move,
                                  struct diagnostic *diagnostic)
 {
-    while (p->queue_count == 0) {
+    while (!emit_take(p, move)) {
         if (p->phase == PROGRAM_ENDED) {
             return PROGRAM_END;
         }
@@ -121,9 +187,6 @@ enum program_result program_next(struct program *p, struct move *move,
             return PROGRAM_ERROR;
         }
     }
-    *move = p->queue[p->queue_first];
-    p->queue_first = (p->queue_first + 1) % PROGRAM_QUEUE_MAX;
-    p->queue_count--;
     return PROGRAM_MOVE;
 }
 

@@ -27,8 +27,10 @@ struct program_config {
     struct point start;             /* machine position the program starts at */
     double path_tolerance_mm;       /* G64 without P: this tolerance; 0 = exact */
     double spindle_max_rpm;         /* 0: no limit */
+    uint32_t from_line;             /* start in the middle, at this line; 0: at the beginning */
     bool exact_path;                /* treat every G64 as G61 */
     bool block_delete;              /* skip lines that begin with '/' */
+    bool sharp_corners;             /* for the room offset: outer corners are not rounded */
     const struct tool_table *tools; /* may be NULL: empty table */
     struct parameters *parameters;  /* numbered parameters, read and written; never NULL */
 };
@@ -48,6 +50,13 @@ void program_open(struct program *p, const struct program_config *config,
  */
 enum program_result program_next(struct program *p, struct move *move,
                                  struct diagnostic *diagnostic);
+
+/*
+ * After the caller has run a MOVE_PROBE: where the probe answered, or the motion ended without an answer (contact
+ * false), machine coordinates. Called before the next move is asked for; without it the program goes on as if the
+ * motion had ended at its programmed end without contact.
+ */
+void program_set_probe(struct program *p, const struct point *at, bool contact);
 
 /*
  * Warnings since the last call (words read and ignored, H of an unknown tool): true and *diagnostic while there

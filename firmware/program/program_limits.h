@@ -5,7 +5,7 @@
 #ifndef TAKT_PROGRAM_LIMITS_H
 #define TAKT_PROGRAM_LIMITS_H
 
-#define PROGRAM_MEMORY_MAX 24576
+#define PROGRAM_MEMORY_MAX 32768
 
 /* Characters of a line, comments included, its end not (LinuxCNC's limit). */
 #define PROGRAM_LINE_MAX 256
@@ -13,12 +13,18 @@
 #define PROGRAM_INPUT_MAX 512
 /* Moves one line can make: S T M6 (two) M3 M8 G4 G28 (two) M2 are ten. */
 #define PROGRAM_QUEUE_MAX 12
+/* Tools whose values a program can change by G10. */
+#define PROGRAM_TOOL_CHANGES_MAX 16
+/* L of a cycle, pecks of a hole, passes of a thread: what goes beyond is a mistake. */
+#define PROGRAM_REPEATS_MAX 10000
+/* Highest number of an input or output. */
+#define PROGRAM_CHANNEL_MAX 63
 /* Warnings kept until they are fetched. */
 #define PROGRAM_WARNINGS_MAX 4
 /* '#... = ...' on one line. */
 #define PROGRAM_ASSIGNMENTS_MAX 16
-/* Parameters the codes of one line set: G92 seven, a coordinate system and M2 one each. */
-#define PROGRAM_STORES_MAX 9
+/* Parameters the codes of one line set: G28.1 six, G92.1 and G38 seven, M66, a coordinate system and M2 one each. */
+#define PROGRAM_STORES_MAX 23
 /* Values inside values: brackets, functions, parameters of parameters. Bounds the recursion. */
 #define PROGRAM_NESTING_MAX 16
 
@@ -31,6 +37,21 @@
 /* Named parameters, and the characters of a name. */
 #define PROGRAM_NAMES_MAX 96
 #define PROGRAM_NAME_MAX  31
+
+/* Open IF, WHILE, DO and REPEAT blocks, in all calls together. */
+#define PROGRAM_BLOCKS_MAX 24
+/* Calls inside calls. */
+#define PROGRAM_CALLS_MAX 10
+/* Subroutines and numbered programs of one text. */
+#define PROGRAM_SUBS_MAX 48
+/* Largest number of an O-word. */
+#define PROGRAM_LABEL_MAX 99999999
+/* Lines read again without a move in between, until the program is taken to run in a circle. Fuzzing has less time. */
+#ifndef PROGRAM_CIRCLE_LINES_MAX
+#define PROGRAM_CIRCLE_LINES_MAX 1000000
+#endif
+/* Feed at which --from-line comes down when no F is known there. */
+#define PROGRAM_APPROACH_FEED_MM_MIN 100.0
 
 /* Largest P of an arc, and largest tool number of T and H. */
 #define PROGRAM_TURNS_MAX 1000000

@@ -19,6 +19,8 @@ struct program_lexer {
     struct source source;
     char input[PROGRAM_INPUT_MAX];
     size_t input_at, input_length;
+    uint64_t input_offset;                 /* of input in the text */
+    uint64_t line_offset;                  /* of the current line */
     uint32_t line;                         /* number of the current line, from 1 */
     uint16_t at;                           /* next character to read */
     uint16_t length;                       /* of text */
@@ -53,24 +55,56 @@ struct program_words {
     struct program_assignment assignment[PROGRAM_ASSIGNMENTS_MAX + PROGRAM_STORES_MAX];
 };
 
-/* Named parameters. */
+/* Named parameters. Those that begin with '_' are global, others belong to the call they were set in. */
 struct program_names {
     uint16_t count;
+    uint8_t call; /* the current one: 0 outside subroutines */
+    uint8_t of_call[PROGRAM_NAMES_MAX];
     char text[PROGRAM_NAMES_MAX][PROGRAM_NAME_MAX + 1];
     double value[PROGRAM_NAMES_MAX];
 };
 
+/* A rotation of X and Y. */
+struct program_turn {
+    double degrees; /* 0: none */
+    double sine, cosine;
+};
+
+/* What a cycle leaves for the next one of its kind: work coordinates and lengths in mm, seconds. */
+struct program_cycle_words {
+    double retract_mm;  /* R */
+    double bottom_mm;   /* Z, or the axis across the plane */
+    double peck_mm;     /* Q */
+    double dwell_s;     /* P */
+    double aside_mm[2]; /* G87: first and second axis of the plane */
+    double middle_mm;   /* G87: the axis across it */
+    double initial_mm;  /* the height across the plane before the first cycle in a row */
+    bool initial_known;
+};
+
 /* Everything one line leaves for the next; a line with an error leaves it as it was. */
 struct program_modes {
-    struct point at;                   /* machine position after the last move */
-    struct point system_offset;        /* G54 ... G59.3 */
-    struct point axis_offset;          /* G92 */
-    struct point tool_offset;          /* G43 */
-    const struct program_code *motion; /* G0, G1, G2, G3, or NULL after G80 */
-    double unit_mm;                    /* G20: 25.4, G21: 1 */
-    double feed_mm_s, feed_rad_s;      /* the last F, along X Y Z and along A B C; 0: none */
-    double tolerance_mm;               /* G64 */
-    double speed_rpm;                  /* S */
+    struct point at;            /* machine position after the last move */
+    struct point system_offset; /* G54 ... G59.3 */
+    struct point axis_offset;   /* G92 */
+    struct point tool_offset;   /* G43 */
+    struct program_turn turn;   /* of the coordinate system */
+    struct program_cycle_words cycle;
+    const struct program_code *motion;      /* G0, G1, G2, G3, or NULL after G80 */
+    double unit_mm;                         /* G20: 25.4, G21: 1 */
+    double feed_mm_s, feed_rad_s;           /* the last F, along X Y Z and along A B C; 0: none */
+    double feed_rev_mm, feed_rev_rad;       /* the same with G95, per revolution */
+    double tolerance_mm;                    /* G64 P */
+    double merge_mm;                        /* G64 Q */
+    double speed_rpm;                       /* S with G97 */
+    double surface_mm_s;                    /* S with G96 */
+    double surface_max_rpm;                 /* D of G96; 0: any */
+    unsigned overrides;                     /* OVERRIDE_... */
+    const struct program_code *cutter_code; /* G41, G42, G41.1, G42.1; NULL: G40 */
+    double cutter_radius_mm;                /* 0: compensation is on and moves nothing */
+    enum cutter_side cutter_side;
+    bool cutter_moved; /* since compensation is on */
+    bool cutter_left;  /* G40 was the last to happen: no arc may follow */
     enum plane plane;
     enum move_path path;
     enum spindle_direction direction;
@@ -80,8 +114,142 @@ struct program_modes {
     bool incremental;     /* G91 */
     bool centre_absolute; /* G90.1 */
     bool inverse_time;    /* G93 */
+    bool per_revolution;  /* G95 */
+    bool diameter;        /* G7 */
+    bool surface_speed;   /* G96 */
+    bool retract_to_r;    /* G99 */
     bool mist, flood;
     uint8_t system; /* 1: G54 ... 9: G59.3 */
+};
+
+/* A place to go to: the beginning of the line after line. */
+struct program_place {
+    uint64_t offset;
+    uint32_t line;
+};
+
+/* What names an O-word: a number's digits or a name without '<' and '>'. */
+struct program_label {
+    char text[PROGRAM_NAME_MAX + 1];
+};
+
+/* An IF, WHILE, DO or REPEAT that has been entered and not been left. */
+struct program_block {
+    struct program_label label;
+    struct program_place again; /* where the next round begins */
+    uint32_t left;              /* REPEAT: rounds to come */
+    uint32_t line;
+    uint16_t column;
+    uint8_t kind; /* enum oword_kind */
+    bool done;    /* IF: a branch has been taken; loops: their end leaves them */
+};
+
+/* A subroutine, or with M98 a numbered program. */
+struct program_sub {
+    struct program_label label;
+    struct program_place body;
+    bool numbered;
+    bool visited; /* since the first error */
+};
+
+/* What M70 and M73 save. */
+struct program_saved {
+    struct point tool_offset;
+    double unit_mm, feed_mm_s, feed_rad_s, feed_rev_mm, feed_rev_rad, tolerance_mm, merge_mm;
+    double speed_rpm, surface_mm_s, surface_max_rpm;
+    unsigned overrides;
+    enum plane plane;
+    enum move_path path;
+    enum spindle_direction direction;
+    bool incremental, centre_absolute, inverse_time, per_revolution, diameter, retract_to_r;
+    bool surface_speed, mist, flood;
+    uint8_t system;
+};
+
+/* A call; the first is the main program. */
+struct program_frame {
+    struct program_place back;
+    double local[PARAMETERS_LOCAL]; /* the caller's #1 ... #30 */
+    struct program_saved saved;
+    bool is_saved, restores; /* M70 or M73; M73 */
+    bool numbered;           /* M98 */
+    uint8_t sub;
+    uint8_t blocks; /* of its callers */
+    uint32_t times; /* M98 L: runs to come */
+    /* The call itself, for messages. */
+    uint32_t line;
+    uint16_t column;
+};
+
+/* Lines are passed over up to ... */
+enum program_skip {
+    SKIP_NOTHING,
+    SKIP_TO_BRANCH, /* ELSEIF, ELSE or ENDIF of the innermost block */
+    SKIP_TO_END,    /* the end of the innermost block */
+    SKIP_TO_ENDSUB, /* the end of a definition */
+    SKIP_TO_SUB     /* a subroutine further down */
+};
+
+/* Where the program stands among its O-words. */
+struct program_flow {
+    enum program_skip skip;
+    struct program_label skip_label; /* SKIP_TO_ENDSUB, SKIP_TO_SUB */
+    uint32_t skip_line;              /* SKIP_TO_ENDSUB: of the definition */
+    uint16_t skip_column;
+    uint8_t blocks, subs, calls;
+    bool all_seen; /* the text has been read to its end */
+    bool
+        failed; /* there has been an error: nothing is repeated any more, so that it is told once */
+    bool value_returned;
+    double value;
+    struct program_place furthest; /* everything before it has been read */
+    uint32_t lines_again;          /* lines read again since the last move */
+    struct program_block block[PROGRAM_BLOCKS_MAX];
+    struct program_sub sub[PROGRAM_SUBS_MAX];
+    struct program_frame frame[PROGRAM_CALLS_MAX + 1];
+};
+
+/* The way to the line that --from-line starts at. */
+struct program_approach {
+    bool pending;     /* the line has not been reached: moves are dropped */
+    bool holds_line;  /* the lexer holds it while the approach is fetched */
+    double height_mm; /* highest Z of what was dropped */
+    struct point at;  /* where that ended */
+};
+
+/* Tools whose values the program has changed (G10). */
+struct program_tools {
+    struct tool tool[PROGRAM_TOOL_CHANGES_MAX];
+    unsigned count;
+    struct tool before; /* of the tool the current line has changed */
+    int changed;        /* its index; -1: none */
+    unsigned count_before;
+};
+
+/*
+ * A drilling cycle or G76 under way: its moves are made one by one as they are fetched. The line it is on has been
+ * checked and done; lengths are in mm, positions work coordinates.
+ */
+struct program_cycle {
+    const struct program_code *code; /* NULL: none */
+    unsigned before;                 /* moves in the queue that come first */
+    struct move feed;                /* its cutting moves, but for their ends */
+    enum axis axis[3];               /* first and second of the plane, the one across */
+    double hole_mm[2], step_mm[2];   /* the current hole; from one to the next */
+    double start_mm, retract_mm, clear_mm, bottom_mm, middle_mm; /* across the plane */
+    double aside_mm[2], peck_mm, dwell_s;
+    double depth_mm; /* the current peck's */
+    uint32_t repeats;
+    unsigned stage, substage;
+    bool first;
+    struct program_thread {
+        double start_mm[3], end_mm[3]; /* X, Y, Z */
+        double side, depth_mm, first_mm, cut_mm, last_mm, height_mm, degression;
+        double slope; /* of the cuts: Z per depth */
+        double taper_mm, pitch_mm, taper_pitch_mm, length_end_mm;
+        uint32_t pass, springs;
+        bool taper_in, taper_out;
+    } thread;
 };
 
 enum program_phase { PROGRAM_AT_START, PROGRAM_IN_TEXT, PROGRAM_ENDED };
@@ -92,11 +260,16 @@ struct program {
     struct program_words words;
     struct program_modes modes;
     struct program_names names;
+    struct program_flow flow;
+    struct program_approach approach;
+    struct program_tools tools;
+    struct program_cycle cycle;
     struct move queue[PROGRAM_QUEUE_MAX]; /* made by the current line, not yet fetched */
     unsigned queue_first, queue_count;
     struct diagnostic error;
     struct diagnostic warning[PROGRAM_WARNINGS_MAX];
     unsigned warnings;
+    bool spindle_followed; /* that the spindle is not measured has been said */
     enum program_phase phase;
 };
 

@@ -43,6 +43,15 @@ bool report_error_letter(struct program *p, enum takt_error code, char letter, d
     return report_error(p, code, p->words.span[LETTER_INDEX(letter)], value);
 }
 
+bool report_missing(struct program *p, enum step step, char letter)
+{
+    const char name = capital(letter);
+
+    diagnostic_set(&p->error, TAKT_ERROR_WORD_MISSING, p->lexer.line,
+                   p->lexer.column[p->words.code_span[step].begin], &name, 1, 0.0);
+    return false;
+}
+
 void report_warning(struct program *p, enum takt_error code, struct program_span span, double value)
 {
     if (p->warnings < PROGRAM_WARNINGS_MAX) {

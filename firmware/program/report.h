@@ -16,6 +16,9 @@ bool report_error_at(struct program *p, enum takt_error code, unsigned at, doubl
 bool report_error_code(struct program *p, enum takt_error code, enum step step, double value);
 bool report_error_letter(struct program *p, enum takt_error code, char letter, double value);
 
+/* About a word that the code of a step needs and the line does not have; letter in lower case. */
+bool report_missing(struct program *p, enum step step, char letter);
+
 /* Adds a warning, for program_warning; dropped when there are too many. */
 void report_warning(struct program *p, enum takt_error code, struct program_span span,
                     double value);

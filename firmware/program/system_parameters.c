@@ -1,6 +1,7 @@
 #include "program/system_parameters.h"
 
 #include "program/coordinates.h"
+#include "program/tool_values.h"
 
 static bool is_position(unsigned number)
 {
@@ -9,7 +10,7 @@ static bool is_position(unsigned number)
 
 static bool is_tool(unsigned number)
 {
-    return number >= PARAMETER_TOOL_NUMBER && number <= PARAMETER_TOOL_DIAMETER;
+    return number >= PARAMETER_TOOL_NUMBER && number <= PARAMETER_TOOL_SIDE;
 }
 
 bool system_parameter_is_read_only(unsigned number)
@@ -19,7 +20,7 @@ bool system_parameter_is_read_only(unsigned number)
 
 static double tool_parameter(const struct program *p, unsigned number)
 {
-    const struct tool *tool = tool_table_find(p->config.tools, p->modes.tool_current);
+    const struct tool *tool = tool_values_find(p, p->modes.tool_current);
 
     if (number == PARAMETER_TOOL_NUMBER) {
         return p->modes.tool_current;
@@ -27,13 +28,23 @@ static double tool_parameter(const struct program *p, unsigned number)
     if (tool == NULL) {
         return 0.0;
     }
-    if (number == PARAMETER_TOOL_DIAMETER) {
-        return tool->diameter_mm;
-    }
     const unsigned axis = number - PARAMETER_TOOL_OFFSET;
 
-    return axis < AXIS_COUNT ? coordinates_to_parameter(tool->offset.at[axis], (enum axis)axis)
-                             : 0.0;
+    if (axis < AXIS_COUNT) {
+        return coordinates_to_parameter(tool->offset.at[axis], (enum axis)axis);
+    }
+    switch (number) {
+    case PARAMETER_TOOL_DIAMETER:
+        return tool->diameter_mm;
+    case PARAMETER_TOOL_FRONT:
+        return tool->front_angle_deg;
+    case PARAMETER_TOOL_BACK:
+        return tool->back_angle_deg;
+    case PARAMETER_TOOL_SIDE:
+        return tool->orientation;
+    default:
+        return 0.0;
+    }
 }
 
 double system_parameter_get(const struct program *p, unsigned number)

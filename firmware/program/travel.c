@@ -8,32 +8,22 @@
 /* A coordinate may exceed a limit by this: rounding, below anything a machine resolves. */
 #define TRAVEL_SLACK 1e-6
 
-/* The axis's word, or the code that moves it when it has none. */
-static bool outside(struct program *p, unsigned axis, double value)
-{
-    const char letter = (char)(AXIS_LETTERS[axis] - 'A' + 'a');
-    const struct program_span span = words_has(p, letter) ? p->words.span[LETTER_INDEX(letter)]
-                                     : words_has_step(p, STEP_MOTION)
-                                         ? p->words.code_span[STEP_MOTION]
-                                         : p->words.code_span[STEP_REFERENCE];
-
-    diagnostic_set(&p->error, TAKT_ERROR_TRAVEL_EXCEEDED, p->lexer.line,
-                   p->lexer.column[span.begin], &AXIS_LETTERS[axis], 1,
-                   coordinates_to_parameter(value, (enum axis)axis));
-    return false;
-}
+/* Looks for a coordinate outside. */
+struct travel {
+    const struct program_config *config;
+    struct travel_excess *excess;
+};
 
 /* Written so that a coordinate that is no number fails. */
-static bool check_axis(struct program *p, unsigned axis, double value)
+static bool check_axis(const struct travel *t, unsigned axis, double value)
 {
-    if ((p->config.axes & (1U << axis)) == 0) {
+    if ((t->config->axes & (1U << axis)) == 0 ||
+        (value >= t->config->travel_min[axis] - TRAVEL_SLACK &&
+         value <= t->config->travel_max[axis] + TRAVEL_SLACK)) {
         return true;
     }
-    if (value >= p->config.travel_min[axis] - TRAVEL_SLACK &&
-        value <= p->config.travel_max[axis] + TRAVEL_SLACK) {
-        return true;
-    }
-    return outside(p, axis, value);
+    *t->excess = (struct travel_excess){(enum axis)axis, value};
+    return false;
 }
 
 /*
@@ -44,7 +34,7 @@ static bool check_axis(struct program *p, unsigned axis, double value)
  *     turned = (quarter pi/2 - angle_start) mod 2 pi, in the sense of turning
  *     radius = radius_start + radius_change turned / |sweep|
  */
-static bool check_quarter(struct program *p, const struct curve_arc *arc, unsigned quarter)
+static bool check_quarter(const struct travel *t, const struct curve_arc *arc, unsigned quarter)
 {
     const double sign = quarter < 2 ? 1.0 : -1.0;
     const unsigned in_plane = quarter % 2;
@@ -63,31 +53,58 @@ static bool check_quarter(struct program *p, const struct curve_arc *arc, unsign
     const double first_mm = arc->radius_start_mm + arc->radius_change_mm * turned / sweep;
     const double last_mm = arc->radius_start_mm + arc->radius_change_mm * last / sweep;
 
-    return check_axis(p, axis, arc->centre_mm[in_plane] + sign * first_mm) &&
-           check_axis(p, axis, arc->centre_mm[in_plane] + sign * last_mm);
+    return check_axis(t, axis, arc->centre_mm[in_plane] + sign * first_mm) &&
+           check_axis(t, axis, arc->centre_mm[in_plane] + sign * last_mm);
 }
 
-static bool check_arc(struct program *p, const struct move *m)
+static bool check_arc(const struct travel *t, const struct point *start, const struct move *m)
 {
     struct curve curve;
 
-    if (!move_curve(m, &p->modes.at, &curve)) {
+    if (!move_curve(m, start, &curve)) {
         return true;
     }
     for (unsigned quarter = 0; quarter < 4; quarter++) {
-        if (!check_quarter(p, &curve.arc, quarter)) {
+        if (!check_quarter(t, &curve.arc, quarter)) {
             return false;
         }
     }
     return true;
 }
 
-bool travel_check(struct program *p, const struct move *m)
+bool travel_holds(const struct program_config *config, const struct point *start,
+                  const struct move *m, struct travel_excess *excess)
 {
-    for (unsigned axis = 0; axis < AXIS_COUNT; axis++) {
-        if (!check_axis(p, axis, m->end.at[axis])) {
+    const struct travel t = {config, excess};
+
+    for (unsigned i = 0; i < AXIS_COUNT; i++) {
+        if (!check_axis(&t, i, m->end.at[i])) {
             return false;
         }
     }
-    return m->kind == MOVE_RAPID || m->kind == MOVE_FEED || check_arc(p, m);
+    return !move_is_arc(m) || check_arc(&t, start, m);
+}
+
+/* The axis's word, or the code that moves it when it has none. */
+static struct program_span span_of(const struct program *p, enum axis axis)
+{
+    const char letter = (char)(AXIS_LETTERS[axis] - 'A' + 'a');
+
+    if (words_has(p, letter)) {
+        return p->words.span[LETTER_INDEX(letter)];
+    }
+    return p->words.code_span[words_has_step(p, STEP_MOTION) ? STEP_MOTION : STEP_REFERENCE];
+}
+
+bool travel_check(struct program *p, const struct move *m)
+{
+    struct travel_excess excess;
+
+    if (m->cutter_side != CUTTER_OFF || travel_holds(&p->config, &p->modes.at, m, &excess)) {
+        return true;
+    }
+    diagnostic_set(&p->error, TAKT_ERROR_TRAVEL_EXCEEDED, p->lexer.line,
+                   p->lexer.column[span_of(p, excess.axis).begin], &AXIS_LETTERS[excess.axis], 1,
+                   coordinates_to_parameter(excess.value, excess.axis));
+    return false;
 }

@@ -6,7 +6,20 @@
 
 #include "program/program.h"
 
-/* False: p->error names the axis and the coordinate (mm or degrees). */
+/* Where a motion leaves the travel: mm or rad. */
+struct travel_excess {
+    enum axis axis;
+    double value;
+};
+
+/* Does a motion from start stay inside? False: *excess says where not. */
+bool travel_holds(const struct program_config *config, const struct point *start,
+                  const struct move *m, struct travel_excess *excess);
+
+/*
+ * The same for a motion from the current position; a compensated one is looked at when its way is known. False:
+ * p->error names the axis and the coordinate (mm or degrees).
+ */
 bool travel_check(struct program *p, const struct move *m);
 
 #endif

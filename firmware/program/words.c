@@ -1,9 +1,11 @@
 #include "program/words.h"
 
 #include "base/maths.h"
+#include "program/circular.h"
 #include "program/expression.h"
 #include "program/lexer.h"
 #include "program/names.h"
+#include "program/predefined.h"
 #include "program/report.h"
 #include "program/system_parameters.h"
 
@@ -11,8 +13,9 @@
 
 /* Letters that take a value now or, for U V W, are refused by name. */
 #define LETTERS_KNOWN                                                                              \
-    (LETTERS_AXES | LETTERS_CENTRE | LETTER_BIT('f') | LETTER_BIT('h') | LETTER_BIT('p') |         \
-     LETTER_BIT('q') | LETTER_BIT('r') | LETTER_BIT('s') | LETTER_BIT('t'))
+    (LETTERS_AXES | LETTERS_CENTRE | LETTER_BIT('d') | LETTER_BIT('e') | LETTER_BIT('f') |         \
+     LETTER_BIT('h') | LETTER_BIT('l') | LETTER_BIT('p') | LETTER_BIT('q') | LETTER_BIT('r') |     \
+     LETTER_BIT('s') | LETTER_BIT('t'))
 #define LETTERS_NO_AXIS (LETTER_BIT('u') | LETTER_BIT('v') | LETTER_BIT('w'))
 
 /* Largest difference of a code's number times ten from a whole number. */
@@ -132,6 +135,17 @@ static bool read_value(struct program *p, char letter, unsigned begin)
     return true;
 }
 
+static bool is_read_only(const struct program *p, const struct program_reference *reference)
+{
+    const char *name = p->lexer.text + reference->span.begin;
+    double ignored;
+
+    if (reference->number != 0) {
+        return system_parameter_is_read_only(reference->number);
+    }
+    return predefined_get(p, name, (size_t)(reference->span.end - reference->span.begin), &ignored);
+}
+
 static bool read_assignment(struct program *p, unsigned begin)
 {
     struct program_words *w = &p->words;
@@ -144,7 +158,7 @@ static bool read_assignment(struct program *p, unsigned begin)
     if (!expression_read_reference(p, &a->reference)) {
         return false;
     }
-    if (a->reference.number != 0 && system_parameter_is_read_only(a->reference.number)) {
+    if (is_read_only(p, &a->reference)) {
         return report_error(p, TAKT_ERROR_PARAMETER_READ_ONLY, a->reference.span, 0.0);
     }
     if (!lexer_accept(&p->lexer, '=')) {
@@ -215,7 +229,7 @@ static uint32_t motion_letters(const struct program *p)
 {
     const struct program_code *motion = p->modes.motion;
 
-    if (motion != NULL && (motion->words & LETTERS_CENTRE) != 0) {
+    if (motion != NULL && motion->run == circular_move) {
         return LETTERS_AXES | LETTERS_CENTRE;
     }
     return LETTERS_AXES;

@@ -11,6 +11,7 @@
 #define PLACES             6
 #define DEGREES_PER_RAD    (180.0 / MATHS_PI)
 #define SECONDS_PER_MINUTE 60.0
+#define MM_PER_M           1000.0
 
 struct line {
     char *text;
@@ -69,7 +70,11 @@ static void add_arc(struct line *l, const struct move *move, const struct point 
     for (unsigned i = 0; i < AXIS_LINEAR_COUNT; i++) {
         add_word(l, (char)('I' + (char)i), centre.at[i]);
     }
-    add_whole(l, " P", move->turns);
+    if (move_is_arc(move)) {
+        add_whole(l, " P", move->turns);
+    } else {
+        add_word(l, 'R', move->base_radius_mm);
+    }
     add_text(l, planes[move->plane]);
 }
 
@@ -84,6 +89,11 @@ static void add_feed(struct line *l, const struct move *move, const struct point
 {
     const double scale = is_rotary_only(move, at) ? DEGREES_PER_RAD : 1.0;
 
+    if (move->feed_rev_mm != 0.0) {
+        add_word(l, 'F', move->feed_rev_mm * scale);
+        add_text(l, "rev");
+        return;
+    }
     add_word(l, 'F', move->feed_mm_s * SECONDS_PER_MINUTE * scale);
 }
 
@@ -94,7 +104,47 @@ static void add_spindle(struct line *l, const struct move *move)
         return;
     }
     add_text(l, move->direction == SPINDLE_CW ? "spindle_cw" : "spindle_ccw");
-    add_word(l, 'S', move->speed_rpm);
+    if (move->surface_mm_s != 0.0) {
+        add_word(l, 'V', move->surface_mm_s * SECONDS_PER_MINUTE / MM_PER_M);
+    }
+    if (move->surface_mm_s == 0.0 || move->speed_rpm != 0.0) {
+        add_word(l, 'S', move->speed_rpm);
+    }
+}
+
+static void add_orient(struct line *l, const struct move *move)
+{
+    add_text(l, "spindle_orient");
+    add_word(l, 'R', move->orient_rad * DEGREES_PER_RAD);
+    add_whole(l, " P", (uint32_t)move->orient_way);
+    if (move->timeout_s != 0.0) {
+        add_word(l, 'Q', move->timeout_s);
+    }
+}
+
+static void add_tool(struct line *l, const struct move *move)
+{
+    const char *change = move->tool_loaded ? "tool_loaded" : "tool_change";
+
+    add_text(l, move->tool_change || move->tool_loaded ? change : "tool_prepare");
+    add_whole(l, " T", move->tool);
+}
+
+static void add_output(struct line *l, const struct move *move)
+{
+    add_text(l, move->with_motion ? "output_with_motion" : "output");
+    add_whole(l, move->analogue ? " E" : " P", move->channel);
+    add_word(l, 'Q', move->output);
+}
+
+static void add_input(struct line *l, const struct move *move)
+{
+    add_text(l, "input");
+    add_whole(l, move->analogue ? " E" : " P", move->channel);
+    add_whole(l, " L", (uint32_t)move->input_wait);
+    if (move->timeout_s != 0.0) {
+        add_word(l, 'Q', move->timeout_s);
+    }
 }
 
 static const char *coolant_name(const struct move *move)
@@ -115,8 +165,13 @@ static void add_event(struct line *l, const struct move *move)
     } else if (move->kind == MOVE_COOLANT) {
         add_text(l, coolant_name(move));
     } else if (move->kind == MOVE_TOOL) {
-        add_text(l, move->tool_change ? "tool_change" : "tool_prepare");
-        add_whole(l, " T", move->tool);
+        add_tool(l, move);
+    } else if (move->kind == MOVE_ORIENT) {
+        add_orient(l, move);
+    } else if (move->kind == MOVE_OUTPUT) {
+        add_output(l, move);
+    } else if (move->kind == MOVE_INPUT) {
+        add_input(l, move);
     } else if (move->kind == MOVE_STOP) {
         add_text(l, move->optional ? "optional_stop" : "stop");
     } else {
@@ -127,15 +182,23 @@ static void add_event(struct line *l, const struct move *move)
 static void add_motion(struct line *l, const struct move *move, unsigned axes,
                        const struct point *at)
 {
-    static const char *const kinds[] = {"rapid", "feed", "arc_cw", "arc_ccw"};
+    static const char *const kinds[] = {"rapid",       "feed",         "arc_cw", "arc_ccw",
+                                        "involute_cw", "involute_ccw", "thread", "tap",
+                                        "tap_out",     "probe"};
 
     add_text(l, kinds[move->kind]);
     add_axes(l, axes, &move->end);
-    if (move->kind == MOVE_ARC_CW || move->kind == MOVE_ARC_CCW) {
+    if (move_is_arc(move) || move_is_involute(move)) {
         add_arc(l, move, at);
     }
     if (move->kind != MOVE_RAPID) {
         add_feed(l, move, at);
+    }
+    if (move->kind == MOVE_TAP_OUT) {
+        add_word(l, 'S', move->speed_ratio);
+    }
+    if (move->kind == MOVE_PROBE) {
+        add_whole(l, " G38.", 2U + (move->probe_optional ? 1U : 0U) + (move->probe_away ? 2U : 0U));
     }
 }
 

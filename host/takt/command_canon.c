@@ -16,8 +16,9 @@ static enum command_status print_moves(const struct session *session)
 
     session_begin_reading(session, &reading, &config, &source);
     program_open(&reading.program, &config, &source);
+    offset_open(&reading.offset, &config);
     at = config.start;
-    while (program_next(&reading.program, &move, &diagnostic) == PROGRAM_MOVE &&
+    while (offset_next(&reading.offset, &reading.program, &move, &diagnostic) == PROGRAM_MOVE &&
            !interrupt_asked()) {
         char text[CANON_TEXT_MAX];
 
@@ -35,6 +36,7 @@ static enum command_status command_canon_execute(const struct options *options)
     struct session_totals totals;
     enum command_status status = session_open(&session, options);
 
+    session.prints_only = true;
     if (status == STATUS_DONE)
         status = session_check(&session, 1, &totals);
     if (status == STATUS_DONE)

@@ -18,8 +18,10 @@ struct plan_print {
 
 static const char *kind_name(enum move_kind kind)
 {
-    static const char *const names[] = {"rapid",   "feed",    "arc_cw", "arc_ccw", "dwell",
-                                        "spindle", "coolant", "tool",   "stop",    "end"};
+    static const char *const names[] = {
+        "rapid", "feed",    "arc_cw", "arc_ccw", "involute_cw", "involute_ccw", "thread",
+        "tap",   "tap_out", "probe",  "dwell",   "spindle",     "orient",       "coolant",
+        "tool",  "output",  "input",  "stop",    "end"};
 
     return names[kind];
 }

@@ -14,6 +14,7 @@ void judge_init(struct judge *j, const struct machine *machine,
 {
     memset(j, 0, sizeof *j);
     program_open(&j->program, program, source);
+    offset_open(&j->offset, program);
     j->rate_hz = 1e6 / (double)machine->cycle_us;
     j->block.end = program->start;
     j->block.landed = true;
@@ -42,7 +43,7 @@ static bool next_motion(struct judge *j)
     struct point start = j->block.end;
 
     while (!j->program_ended) {
-        j->program_ended = program_next(&j->program, &move, &diagnostic) != PROGRAM_MOVE;
+        j->program_ended = offset_next(&j->offset, &j->program, &move, &diagnostic) != PROGRAM_MOVE;
         if (!j->program_ended && move_is_motion(&move))
             break;
     }

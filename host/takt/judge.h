@@ -16,6 +16,7 @@
 #include "controller/machine.h"
 #include "drive/drives.h"
 #include "motion/cycle_record.h"
+#include "offset/offset.h"
 #include "plan/segment.h"
 #include "program/program.h"
 
@@ -69,7 +70,8 @@ struct judge_axis {
 
 struct judge {
     struct program program; /* the judge's own reading */
-    bool strayed;           /* the run executes motions the program does not have */
+    struct offset offset;
+    bool strayed; /* the run executes motions the program does not have */
     bool program_ended;
     struct judge_block block;
     double rate_hz; /* 1 / cycle time */

@@ -39,6 +39,8 @@ const struct machine_key machine_keys[] = {
          "of G64 without P; 0: exact path"),
     COUNT(SECTION_MACHINE, "look_ahead_blocks", KEY_UINT32, IN_SETUP(machine.look_ahead_blocks), 1,
           MACHINE_LOOK_AHEAD_MAX, "blocks planned ahead"),
+    COUNT(SECTION_MACHINE, "sharp_corners", KEY_UINT32, IN_SETUP(machine.sharp_corners), 0, 1,
+          "outer corners of compensated contours (G41, G42): 1 sharp, 0 rounded"),
     TEXT(SECTION_MACHINE, "tool_table", IN_SETUP(tool_table), MACHINE_SETUP_PATH_MAX + 1,
          "LinuxCNC .tbl file; relative to this file's folder; empty: no tools"),
     TEXT(SECTION_MACHINE, "parameter_file", IN_SETUP(parameter_file), MACHINE_SETUP_PATH_MAX + 1,

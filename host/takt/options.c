@@ -64,6 +64,19 @@ static bool options_set_number(const struct option_row *row, double *field, cons
     return true;
 }
 
+static bool options_set_line(const struct option_row *row, uint32_t *field, const char *value)
+{
+    char *end;
+    double line = strtod(value, &end);
+
+    if (end == value || *end != '\0' || !(line >= 1 && line <= UINT32_MAX) || line != floor(line)) {
+        message_command_error("--%s %s: the number of a line is expected", row->name, value);
+        return false;
+    }
+    *field = (uint32_t)line;
+    return true;
+}
+
 static bool options_set(struct options *options, const struct option_row *row, const char *value)
 {
     void *field = options_field(options, row);
@@ -78,6 +91,8 @@ static bool options_set(struct options *options, const struct option_row *row, c
         return options_set_list(row, field, value);
     case OPTION_NUMBER:
         return options_set_number(row, field, value);
+    case OPTION_LINE:
+        return options_set_line(row, field, value);
     }
     return false;
 }
@@ -133,7 +148,8 @@ static void options_fill_table(const struct option_row *rows, struct option *tab
     static const int has_value[] = {[OPTION_FLAG] = no_argument,
                                     [OPTION_TEXT] = required_argument,
                                     [OPTION_LIST] = required_argument,
-                                    [OPTION_NUMBER] = required_argument};
+                                    [OPTION_NUMBER] = required_argument,
+                                    [OPTION_LINE] = required_argument};
     unsigned count = options_count(rows);
 
     for (unsigned i = 0; i < count; i++)

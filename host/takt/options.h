@@ -6,6 +6,7 @@
 
 #include <stdbool.h>
 #include <stddef.h>
+#include <stdint.h>
 
 #define OPTION_LIST_MAX    64
 #define OPTION_OPERAND_MAX 2
@@ -27,6 +28,7 @@ struct options {
     const char *parameters;
     bool exact_path;
     bool block_delete;
+    uint32_t from_line; /* 0: from the beginning */
     bool save_parameters;
     double until_s;   /* 0: to the end */
     double tolerance; /* of `takt trace`; 0: equal */
@@ -39,10 +41,11 @@ struct options {
 };
 
 enum option_kind {
-    OPTION_FLAG,  /* bool */
-    OPTION_TEXT,  /* const char *, given once */
-    OPTION_LIST,  /* struct option_list, may be repeated */
-    OPTION_NUMBER /* double, >= 0 */
+    OPTION_FLAG,   /* bool */
+    OPTION_TEXT,   /* const char *, given once */
+    OPTION_LIST,   /* struct option_list, may be repeated */
+    OPTION_NUMBER, /* double, >= 0 */
+    OPTION_LINE    /* uint32_t, >= 1 */
 };
 
 struct option_row {
@@ -68,6 +71,8 @@ struct option_row {
          "tool table, LinuxCNC's .tbl"},                                                           \
         {"parameters", OPTION_TEXT, offsetof(struct options, parameters), "FILE",                  \
          "parameters, LinuxCNC's .var"},                                                           \
+        {"from-line", OPTION_LINE, offsetof(struct options, from_line), "N",                       \
+         "start in the middle: all modes as there, and a safe way to it"},                         \
         {"exact-path", OPTION_FLAG, offsetof(struct options, exact_path), NULL,                    \
          "treat every G64 as G61"},                                                                \
     {                                                                                              \

@@ -20,6 +20,7 @@ static void start_planner(struct planner *p, const struct session *s)
 
     session_begin_reading(s, &p->reading, &config, &source);
     program_open(&p->reading.program, &config, &source);
+    offset_open(&p->reading.offset, &config);
     controller_plan_limits(&s->setup.machine, &limits);
     window_init(&p->window, &limits, s->setup.machine.look_ahead_blocks, &config.start);
 }
@@ -30,7 +31,8 @@ static void fill_window(struct planner *p)
     struct move move;
 
     while (!p->ended && window_has_room(&p->window)) {
-        if (program_next(&p->reading.program, &move, &diagnostic) == PROGRAM_MOVE) {
+        if (offset_next(&p->reading.offset, &p->reading.program, &move, &diagnostic) ==
+            PROGRAM_MOVE) {
             window_push(&p->window, &move);
         } else {
             p->ended = true;

@@ -51,6 +51,7 @@ void session_begin_reading(const struct session *s, struct session_reading *read
         .parameters = &reading->parameters,
         .exact_path = s->options->exact_path,
         .block_delete = s->options->block_delete,
+        .from_line = s->options->from_line,
     };
 
     reading->parameters = s->parameters.values;
@@ -58,12 +59,13 @@ void session_begin_reading(const struct session *s, struct session_reading *read
     source_open_text(source, &reading->text, s->program.bytes, s->program.length);
 }
 
-static void print_warnings(const struct session *s, struct program *program,
+static void print_warnings(const struct session *s, struct session_reading *reading,
                            struct session_totals *totals)
 {
     struct diagnostic warning;
 
-    while (program_warning(program, &warning)) {
+    while (program_warning(&reading->program, &warning) ||
+           offset_warning(&reading->offset, &warning)) {
         if (totals->warnings++ < SESSION_WARNINGS_MAX)
             message_program_warning(&s->program, &warning);
     }
@@ -83,14 +85,18 @@ static void count_move(struct session_totals *totals, const struct move *move, s
 }
 
 /* False: no more is to be read. */
-static bool check_move(const struct session *s, struct program *program, unsigned errors_max,
-                       struct session_totals *totals, struct point *at)
+static bool check_move(const struct session *s, struct session_reading *reading,
+                       unsigned errors_max, struct session_totals *totals, struct point *at)
 {
     struct diagnostic error;
     struct move move;
-    enum program_result result = program_next(program, &move, &error);
+    enum program_result result = offset_next(&reading->offset, &reading->program, &move, &error);
 
-    print_warnings(s, program, totals);
+    print_warnings(s, reading, totals);
+    if (result == PROGRAM_MOVE && move_is_involute(&move) && !s->prints_only) {
+        diagnostic_set(&error, TAKT_ERROR_INVOLUTE_UNPLANNED, move.line, 0, "", 0, 0.0);
+        result = PROGRAM_ERROR;
+    }
     if (result == PROGRAM_MOVE)
         count_move(totals, &move, at);
     if (result != PROGRAM_ERROR)
@@ -111,9 +117,10 @@ enum command_status session_check(const struct session *s, unsigned errors_max,
 
     session_begin_reading(s, &reading, &config, &source);
     program_open(&reading.program, &config, &source);
+    offset_open(&reading.offset, &config);
     at = config.start;
     *totals = (struct session_totals){0};
-    while (check_move(s, &reading.program, errors_max, totals, &at)) {
+    while (check_move(s, &reading, errors_max, totals, &at)) {
         if (++moves % SESSION_INTERRUPT_MOVES == 0 && interrupt_asked())
             return STATUS_INTERRUPTED;
     }

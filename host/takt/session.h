@@ -6,6 +6,7 @@
 #define TAKT_HOST_SESSION_H
 
 #include "controller/controller.h"
+#include "offset/offset.h"
 #include "program/program.h"
 #include "takt/command.h"
 #include "takt/machine_setup.h"
@@ -24,6 +25,7 @@ struct session {
     struct tool_file tools;
     const char *parameter_path; /* NULL: none */
     struct parameter_file parameters;
+    bool prints_only; /* set it to take moves that can be printed but not planned yet */
 };
 
 /* Reads everything the options name; the first operand is the program. STATUS_DONE, or STATUS_INPUT after messages;
@@ -34,6 +36,7 @@ void session_close(struct session *s);
 /* One reading of the program: struct program and what belongs to it. It must not be moved once begun. */
 struct session_reading {
     struct program program;
+    struct offset offset;
     struct parameters parameters; /* its own copy, as they were before the program */
     struct source_text text;
 };

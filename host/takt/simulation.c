@@ -31,6 +31,7 @@ static void start_controller(struct simulation *s, const struct session *session
         .parameters = &s->parameters,
         .exact_path = session->options->exact_path,
         .block_delete = session->options->block_delete,
+        .from_line = session->options->from_line,
     };
 
     s->parameters = session->parameters.values;

@@ -10,7 +10,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define TOOL_LINE_MAX 255
+#define TOOL_LINE_MAX        255
+#define TOOL_ORIENTATION_MAX 9
 
 struct tool_reader {
     const struct text *text;
@@ -46,6 +47,12 @@ static bool set_word(struct tool *tool, char letter, double value)
         tool->diameter_mm = value;
     if (letter == 'T')
         tool->number = (uint32_t)value;
+    if (letter == 'I')
+        tool->front_angle_deg = value;
+    if (letter == 'J')
+        tool->back_angle_deg = value;
+    if (letter == 'Q')
+        tool->orientation = (unsigned)value;
     return strchr("TDPIJQUVW", letter) != NULL;
 }
 
@@ -64,6 +71,10 @@ static bool read_word(struct tool_reader *r, const char *line, size_t *offset, s
     }
     if (letter == 'T' && (value < 0 || value > PROGRAM_TOOL_MAX || value != floor(value))) {
         tool_error(r, *offset, "a tool number is a whole number from 0 to 99999");
+        return false;
+    }
+    if (letter == 'Q' && (value < 0 || value > TOOL_ORIENTATION_MAX || value != floor(value))) {
+        tool_error(r, *offset, "a tool's orientation is a whole number from 0 to 9");
         return false;
     }
     if (!set_word(tool, letter, value)) {

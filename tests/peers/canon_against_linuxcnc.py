@@ -1,175 +1,70 @@
 #!/usr/bin/python3
 """Compares `takt canon` with LinuxCNC's own interpreter, move by move.
 
-    canon_against_linuxcnc.py TAKT PROGRAM...
+    canon_against_linuxcnc.py TAKT PROGRAM...     programs both must read the same way
+    canon_against_linuxcnc.py TAKT --goldens      the goldens of this repository
+    canon_against_linuxcnc.py --show PROGRAM...   what LinuxCNC makes of them, as NAME.linuxcnc has it
 
-TAKT is the takt executable, with its built-in machine. LinuxCNC is asked through its Python module gcode (Debian
-package linuxcnc-uspace), which hands over every canonical call as doubles, in inches and in work coordinates; the
-offsets are added here. Moves without length are left out on both sides, since the two need not agree on them.
+What must agree: the order and kind of the moves, their ends and the centres of arcs to 1e-6 mm or degrees, plane,
+direction and turns of arcs, and feeds to 1e-6 of themselves. Moves without length are left out on both sides, since
+the two need not agree on them.
 
-What must agree: the order and kind of the moves, their ends and the centres of arcs to 1e-6 mm, plane, direction
-and turns of arcs, and feeds outside inverse time mode to 1e-6 of themselves.
+A golden is a NAME.canon, which must agree, or a NAME.error, which LinuxCNC must refuse on the same line. Where takt
+differs on purpose, NAME.linuxcnc says what LinuxCNC does; that must be so, and must be another thing than what takt
+does, and a table of differences, in firmware/program/README.md or firmware/offset/README.md, must name NAME. Nor may
+the tables name anything else.
 
 Exit status: 0 all agree, 1 something differs, 77 LinuxCNC's module is not installed.
 """
-import ctypes
+import glob
 import os
 import re
+import shutil
 import subprocess
 import sys
 import tempfile
 
+import linuxcnc
+
 SKIPPED = 77
-MM_PER_INCH = 25.4
+SOURCE = os.environ.get("TAKT_SOURCE") or os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..")
+GOLDENS = os.path.join(SOURCE, "tests", "golden")
+DIFFERENCES = [os.path.join(SOURCE, "firmware", room, "README.md") for room in ("program", "offset")]
+DIFFERENCES_TITLE = "## Where it differs from LinuxCNC"
 TOLERANCE_MM = 1e-6
-# Tools LinuxCNC is told of, all without length, as an empty tool table is to takt.
-TOOLS = 99
-AXES = "XYZ"
-INVERSE_TIME = 930
-# LinuxCNC's number of a plane -> its axes in order, the axis across, and the word.
-PLANES = {1: ((0, 1), 2, "G17"), 2: ((1, 2), 0, "G19"), 3: ((2, 0), 1, "G18")}
+TOLERANCE_FEED = 1e-6
+MOTIONS = "rapid|feed|arc_cw|arc_ccw|thread|tap|probe"
+# What LinuxCNC's module makes of a thread is a feed, without saying that it follows the spindle.
+KINDS = {"thread": "feed"}
 
 
-class Move:
-    """One motion: kind, end in mm, feed in mm/min or None, and for arcs centre, plane and turns."""
-
-    def __init__(self, line, kind, end, feed=None, centre=None, plane=None, turns=None):
-        self.line = line
-        self.kind = kind
-        self.end = end
-        self.feed = feed
-        self.centre = centre
-        self.plane = plane
-        self.turns = turns
-
-    def __str__(self):
-        text = f"{self.kind} " + " ".join(f"{a}{v:.9f}" for a, v in zip(AXES, self.end))
-        if self.centre:
-            text += f" centre {self.centre[0]:.9f} {self.centre[1]:.9f} {self.plane} P{self.turns}"
-        return text if self.feed is None else text + f" F{self.feed:.6f}"
-
-
-class Canon:
-    """The canonical calls of LinuxCNC, gathered as moves."""
-
-    def __init__(self, parameter_file):
-        self.parameter_file = parameter_file
-        self.moves = []
-        self.line = 0
-        self.inverse_time = False
-        self.plane = 1
-        self.feed = None
-        self.offsets = {"g5x": (0.0,) * 3, "g92": (0.0,) * 3, "tool": (0.0,) * 3}
-        self.end = (0.0,) * 3
-
-    def machine(self, axis, inches):
-        return MM_PER_INCH * (inches + sum(offset[axis] for offset in self.offsets.values()))
-
-    def add(self, kind, inches, **arc):
-        feed = None if kind == "rapid" or self.inverse_time else self.feed
-        end = tuple(self.machine(axis, value) for axis, value in enumerate(inches))
-        self.moves.append(Move(self.line, kind, end, feed, **arc))
-
-    def next_line(self, state):
-        self.line = state.sequence_number
-        self.inverse_time = state.feed_mode == INVERSE_TIME
-
-    def straight_traverse(self, x, y, z, *_):
-        self.add("rapid", (x, y, z))
-
-    def straight_feed(self, x, y, z, *_):
-        self.add("feed", (x, y, z))
-
-    def arc_feed(self, first_end, second_end, first_centre, second_centre, turns, across_end, *_):
-        (first, second), across, plane = PLANES[self.plane]
-        end = [0.0] * 3
-        end[first], end[second], end[across] = first_end, second_end, across_end
-        centre = (self.machine(first, first_centre), self.machine(second, second_centre))
-        kind = "arc_ccw" if turns > 0 else "arc_cw"
-        self.add(kind, end, centre=centre, plane=plane, turns=abs(turns))
-
-    def set_plane(self, plane):
-        self.plane = plane
-
-    def set_feed_rate(self, inches_per_minute):
-        self.feed = inches_per_minute * MM_PER_INCH
-
-    def set_g5x_offset(self, _, x, y, z, *__):
-        self.offsets["g5x"] = (x, y, z)
-
-    def set_g92_offset(self, x, y, z, *_):
-        self.offsets["g92"] = (x, y, z)
-
-    def tool_offset(self, x, y, z, *_):
-        self.offsets["tool"] = (x, y, z)
-
-    def get_tool(self, pocket):
-        return (pocket,) + (0.0,) * 12 + (0,)
-
-    def get_external_length_units(self):
-        return 1.0
-
-    def get_external_angular_units(self):
-        return 1.0
-
-    def get_axis_mask(self):
-        return 7
-
-    def get_block_delete(self):
-        return 0
-
-    def check_abort(self):
-        return False
-
-    def ignore(self, *_):
-        pass
-
-    set_xy_rotation = comment = message = dwell = change_tool = set_traverse_rate = ignore
-    set_feed_mode = user_defined_function = ignore
-
-
-def give_tools(folder):
-    """LinuxCNC 2.9 keeps its tool table in a file mapped from the home folder, which its main program makes."""
-    os.environ["HOME"] = folder
-    table = os.path.join(folder, "tool.tbl")
-    with open(table, "w") as text:
-        for number in range(1, TOOLS + 1):
-            text.write(f"T{number} P{number} Z0\n")
-    library = ctypes.CDLL("libtooldata.so.0")
-    library["_Z17tool_mmap_creatorPK13EMC_TOOL_STATi"](None, 0)
-    library["_Z13tooldata_initb"](False)
-    library["_Z13tooldata_loadPKcPPc"](table.encode(), None)
-
-
-def linuxcnc_moves(gcode, program, folder):
-    parameters = os.path.join(folder, "parameters.var")
-    open(parameters, "w").close()
-    canon = Canon(parameters)
-    result, line = gcode.parse(program, canon, "G21", "G61")
-    if result > gcode.MIN_ERROR:
-        raise ValueError(f"LinuxCNC refuses line {line}: {gcode.strerror(result)}")
-    return canon.moves
+class Refused(Exception):
+    """takt does not take the program."""
 
 
 def takt_move(line, kind, words):
-    value = {word[0]: float(word[1:]) for word in words if word[0] != "G"}
-    end = tuple(value[axis] for axis in AXES)
+    value = {word[0]: word[1:] for word in words if word[0] != "G"}
+    end = [float(value.get(axis, 0.0)) for axis in linuxcnc.AXES]
+    feed = value.get("F", "rev")
+    feed = None if feed.endswith("rev") or kind in ("thread", "tap", "probe") else float(feed)
+    kind = KINDS.get(kind, kind)
     if not kind.startswith("arc"):
-        return Move(line, kind, end, value.get("F"))
+        return linuxcnc.Move(line, kind, end, feed)
     plane = next(word for word in words if word[0] == "G")
-    axes = next(axes for axes, _, name in PLANES.values() if name == plane)
-    centre = tuple(value["IJK"[axis]] for axis in axes)
-    return Move(line, kind, end, value["F"], centre, plane, int(value["P"]))
+    axes = next(axes for axes, _, name in linuxcnc.PLANES.values() if name == plane)
+    centre = tuple(float(value["IJK"[axis]]) for axis in axes)
+    return linuxcnc.Move(line, kind, end, feed, centre, plane, int(value["P"]))
 
 
-def takt_moves(takt, program):
-    run = subprocess.run([takt, "canon", program], capture_output=True, text=True)
+def takt_moves(takt, program, options=()):
+    run = subprocess.run([takt, "canon", program, *options], capture_output=True, text=True, errors="replace")
     if run.returncode != 0:
-        raise ValueError(f"takt ends with status {run.returncode}: {run.stderr.strip()}")
+        errors = [line for line in run.stderr.splitlines() if ": error: " in line]
+        raise Refused(errors[0] if errors else run.stderr.strip())
     moves = []
     for text in run.stdout.splitlines():
         line, kind, *words = text.split()
-        if re.fullmatch("rapid|feed|arc_cw|arc_ccw", kind):
+        if re.fullmatch(MOTIONS, kind):
             moves.append(takt_move(int(line), kind, words))
     return moves
 
@@ -179,7 +74,7 @@ def distance(a, b):
 
 
 def with_length(moves):
-    at = (0.0,) * 3
+    at = (0.0,) * len(linuxcnc.AXES)
     kept = []
     for move in moves:
         if move.centre or distance(move.end, at) > TOLERANCE_MM:
@@ -188,43 +83,228 @@ def with_length(moves):
     return kept
 
 
-def difference(ours, theirs):
+class Largest:
+    """The largest differences found on the way."""
+
+    def __init__(self):
+        self.end = self.centre = self.feed = 0.0
+
+    def __str__(self):
+        return f"{self.end:8.1e} {self.centre:8.1e} {self.feed:8.1e}"
+
+
+def difference(ours, theirs, largest):
     """What differs between two moves, or None."""
     if (ours.kind, ours.plane, ours.turns) != (theirs.kind, theirs.plane, theirs.turns):
         return "kind"
-    if distance(ours.end, theirs.end) > TOLERANCE_MM:
-        return f"end by {distance(ours.end, theirs.end):.3g} mm"
-    if ours.centre and distance(ours.centre, theirs.centre) > TOLERANCE_MM:
-        return f"centre by {distance(ours.centre, theirs.centre):.3g} mm"
-    if theirs.feed is not None and abs(ours.feed - theirs.feed) > 1e-6 * theirs.feed + 1e-6:
-        return "feed"
+    end = distance(ours.end, theirs.end)
+    largest.end = max(largest.end, end)
+    if end > TOLERANCE_MM:
+        return f"end by {end:.3g} mm"
+    if ours.centre:
+        centre = distance(ours.centre, theirs.centre)
+        largest.centre = max(largest.centre, centre)
+        if centre > TOLERANCE_MM:
+            return f"centre by {centre:.3g} mm"
+    if ours.feed is not None and theirs.feed is not None:
+        feed = abs(ours.feed - theirs.feed)
+        largest.feed = max(largest.feed, feed)
+        if feed > TOLERANCE_FEED * (theirs.feed + 1.0):
+            return f"feed by {feed:.3g}"
     return None
 
 
-def compare(gcode, takt, program, folder):
-    """Prints the verdict on one program; True when all its moves agree."""
+def compare_moves(program, ours, theirs):
+    """The verdict on two lists of moves: None, or what differs; and the largest differences."""
+    largest = Largest()
+    for our, their in zip(ours, theirs):
+        what = difference(our, their, largest)
+        if what:
+            axes = linuxcnc.AXES
+            text = f"{program}:{our.line}: {what}\n  takt     {our.words(axes)}"
+            return text + f"\n  LinuxCNC {their.words(axes)} (line {their.line})", largest
+    if len(ours) != len(theirs):
+        return f"{program}: {len(ours)} moves, LinuxCNC makes {len(theirs)}", largest
+    return None, largest
+
+
+def counts(moves):
+    kinds = [move.kind for move in moves]
+    arcs = sum(kind.startswith("arc") for kind in kinds)
+    others = sum(kind in ("tap", "probe") for kind in kinds)
+    return f"{len(moves):6} {kinds.count('rapid'):6} {kinds.count('feed'):6} {arcs:6} {others:6}"
+
+
+HEADING = f"{'moves':>6} {'rapid':>6} {'feed':>6} {'arcs':>6} {'other':>6}   end mm   centre     feed"
+
+
+def compare_program(takt, program, name):
+    """A program both must read the same way."""
     try:
         ours = with_length(takt_moves(takt, program))
-        theirs = with_length(linuxcnc_moves(gcode, program, folder))
-    except ValueError as error:
-        print(f"{program}: {error}")
+        theirs = with_length(linuxcnc.moves(program))
+    except (Refused, linuxcnc.Refused) as refusal:
+        who = "takt" if isinstance(refusal, Refused) else f"LinuxCNC, line {refusal.line}"
+        print(f"{name}: {who}: {refusal}")
         return False
-    for our, their in zip(ours, theirs):
-        what = difference(our, their)
+    what, largest = compare_moves(program, ours, theirs)
+    print(what or f"{counts(ours)} {largest}  {name}")
+    return what is None
+
+
+def compare_programs(takt, programs):
+    """All of them; and a table of what was compared."""
+    common = os.path.commonpath([os.path.dirname(program) for program in programs])
+    print(f"{HEADING}  of {len(programs)} programs")
+    return all([compare_program(takt, program, os.path.relpath(program, common)) for program in programs])
+
+
+class Golden:
+    """One program of tests/golden with what belongs to it."""
+
+    def __init__(self, path):
+        self.path = path
+        self.name = os.path.basename(path)[: -len(".ngc")]
+        self.is_error = os.path.exists(self.file("error"))
+        self.options = self.read("options").split()
+
+    def file(self, kind):
+        return os.path.join(GOLDENS, f"{self.name}.{kind}")
+
+    def read(self, kind):
+        if not os.path.exists(self.file(kind)):
+            return ""
+        with open(self.file(kind)) as file:
+            return file.read()
+
+    def option(self, name):
+        """The file an option names, or None."""
+        return os.path.join(GOLDENS, self.options[self.options.index(name) + 1]) if name in self.options else None
+
+    def theirs(self):
+        """LinuxCNC's answer: moves, or the refusal."""
+        options = {"six_axes": "mill6.ini" in self.options, "block_delete": "--block-delete" in self.options}
+        for key in ("tools", "parameters"):
+            if f"--{key}" in self.options:
+                options[key] = self.option(f"--{key}")
+        with tempfile.TemporaryDirectory() as folder:
+            try:
+                return with_length(linuxcnc.moves(self.with_end(folder), options))
+            except linuxcnc.Refused as refusal:
+                return refusal
+
+    def with_end(self, folder):
+        """LinuxCNC refuses a program without end. One that is to be refused anyway gets one, so that it is for the
+        reason in question."""
+        if not self.is_error:
+            return self.path
+        path = os.path.join(folder, os.path.basename(self.path))
+        shutil.copy(self.path, path)
+        with open(path, "a") as file:
+            file.write("\nM2\n")
+        return path
+
+    def ours(self, takt):
+        folder = os.getcwd()
+        os.chdir(GOLDENS)
+        try:
+            return with_length(takt_moves(takt, self.name + ".ngc", self.options))
+        finally:
+            os.chdir(folder)
+
+    def axes(self):
+        return linuxcnc.AXES if "mill6.ini" in self.options else "XYZ"
+
+
+def as_text(theirs, axes):
+    """LinuxCNC's answer as NAME.linuxcnc has it."""
+    if isinstance(theirs, linuxcnc.Refused):
+        # Some messages name the file by its whole path.
+        message = re.sub(r"file:\S*/", "file:", theirs.message)
+        return f"{theirs.line} refused: {message}\n"
+    return "".join(f"{move.line} {move.words(axes)}\n" for move in theirs) or "no moves\n"
+
+
+def judge(golden, theirs, takt):
+    """What is wrong when takt and LinuxCNC ought to agree on a golden, or None."""
+    if golden.is_error:
+        line = int(golden.read("error").split(":")[0])
+        if not isinstance(theirs, linuxcnc.Refused):
+            return f"{golden.name}: refused by takt on line {line}, not by LinuxCNC"
+        # An error that LinuxCNC finds while reading a line is said to be of the next one.
+        if theirs.line not in (None, line, line + 1):
+            return f"{golden.name}: refused by takt on line {line}, by LinuxCNC on {theirs.line}: {theirs}"
+        return None
+    if isinstance(theirs, linuxcnc.Refused):
+        return f"{golden.name}: LinuxCNC refuses line {theirs.line}: {theirs}"
+    try:
+        return compare_moves(golden.name, golden.ours(takt), theirs)[0]
+    except Refused as refusal:
+        return f"{golden.name}: takt: {refusal}"
+
+
+def check_golden(golden, takt, totals):
+    theirs = golden.theirs()
+    what = judge(golden, theirs, takt)
+    expected = golden.read("linuxcnc")
+    if not expected:
         if what:
-            print(f"{program}:{our.line}: {what}\n  takt     {our}\n  LinuxCNC {their} (line {their.line})")
+            print(what)
             return False
-    if len(ours) != len(theirs):
-        print(f"{program}: {len(ours)} moves, LinuxCNC makes {len(theirs)}")
-        return False
-    print(f"{program}: {len(ours)} moves agree")
+        totals["refused by both" if golden.is_error else "with the same moves"] += 1
+        return True
+    found = as_text(theirs, golden.axes())
+    if what is None:
+        print(f"{golden.name}: no difference any more, but {golden.name}.linuxcnc exists")
+    elif found != expected:
+        print(f"{golden.name}.linuxcnc: found instead\n{found}", end="")
+    totals["different on purpose"] += 1
+    return what is not None and found == expected
+
+
+def differences_listed(path):
+    """Names in the last column of a table of differences, row by row."""
+    with open(path) as file:
+        section = file.read().partition(DIFFERENCES_TITLE)[2].partition("\n## ")[0]
+    rows = [line for line in section.splitlines() if line.startswith("|")][2:]
+    return [re.findall(r"`(\w+)`", row.rstrip("| ").rpartition("|")[2]) for row in rows]
+
+
+def check_differences(goldens):
+    """The tables and the .linuxcnc files name each other."""
+    listed = set()
+    good = True
+    for path in DIFFERENCES:
+        for number, names in enumerate(differences_listed(path), 1):
+            listed.update(names)
+            if not names:
+                print(f"{path}: row {number} of the table of differences names no golden")
+                good = False
+    existing = {golden.name for golden in goldens if os.path.exists(golden.file("linuxcnc"))}
+    for name in sorted(listed ^ existing):
+        where = "has no .linuxcnc file" if name in listed else "is in no table of differences"
+        print(f"{name} {where}")
+        good = False
+    return good
+
+
+def all_goldens():
+    return [Golden(path) for path in sorted(glob.glob(os.path.join(GOLDENS, "*.ngc")))]
+
+
+def compare_goldens(takt):
+    goldens = all_goldens()
+    totals = {"with the same moves": 0, "refused by both": 0, "different on purpose": 0}
+    good = all([check_golden(golden, takt, totals) for golden in goldens])
+    print(f"{len(goldens)} goldens: " + ", ".join(f"{count} {what}" for what, count in totals.items()))
+    return check_differences(goldens) and good
+
+
+def show(programs):
+    for program in programs:
+        golden = Golden(os.path.abspath(program))
+        print(as_text(golden.theirs(), golden.axes()), end="")
     return True
-
-
-def compare_all(gcode, takt, programs):
-    with tempfile.TemporaryDirectory() as folder:
-        give_tools(folder)
-        return all([compare(gcode, takt, program, folder) for program in programs])
 
 
 def main(arguments):
@@ -232,11 +312,17 @@ def main(arguments):
         print(__doc__)
         return 1
     try:
-        import gcode
+        import gcode  # noqa: F401: loaded here once, used in the processes that are forked
     except ImportError as error:
         print(f"LinuxCNC's Python module gcode is not installed: {error}")
         return SKIPPED
-    return 0 if compare_all(gcode, arguments[0], arguments[1:]) else 1
+    if arguments[0] == "--show":
+        good = show(arguments[1:])
+    elif arguments[1] == "--goldens":
+        good = compare_goldens(arguments[0])
+    else:
+        good = compare_programs(arguments[0], arguments[1:])
+    return 0 if good else 1
 
 
 if __name__ == "__main__":

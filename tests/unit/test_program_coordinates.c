@@ -55,11 +55,34 @@ static void test_selecting_a_system_moves_nothing_and_is_remembered(void)
     TEST_ASSERT_EQUAL_DOUBLE(1.0, parameters_get(&reader.parameters, PARAMETER_SYSTEM));
 }
 
-static void test_a_rotated_system_is_refused(void)
+/* cos 30 degrees = sqrt(3) / 2, sin 30 degrees = 1 / 2 */
+static void test_a_rotated_system_turns_x_and_y(void)
 {
-    reader_open(&reader, "#5250=30\nG55");
-    reader_expect_error(&reader, TAKT_ERROR_ROTATION_UNSUPPORTED);
-    TEST_ASSERT_EQUAL_STRING("G55", reader.diagnostic.word);
+    reader_open(&reader,
+                "#5250=30 #5241=1\nG55\nG0 X10 Y0 Z2\nG91 Y4\nG53 G90 X0 Y0\nX#5420 Y#5421");
+    (void)reader_expect(&reader, MOVE_RAPID, 1.0 + 5.0 * maths_sqrt(3.0), 5.0, 2.0);
+    (void)reader_expect(&reader, MOVE_RAPID, 5.0 * maths_sqrt(3.0) - 1.0,
+                        5.0 + 2.0 * maths_sqrt(3.0), 2.0);
+    (void)reader_expect(&reader, MOVE_RAPID, 0.0, 0.0, 2.0);
+    (void)reader_expect(&reader, MOVE_RAPID, 0.0, 0.0, 2.0);
+    reader_expect_end(&reader);
+}
+
+static void test_an_axis_that_is_not_named_keeps_its_position_in_a_rotated_system(void)
+{
+    reader_open(&reader, "G0 X0.1 Y0.7\nG10 L2 P1 R33\nG0 Z1");
+    const struct point before = reader_next(&reader, MOVE_RAPID).end;
+    const struct point after = reader_next(&reader, MOVE_RAPID).end;
+
+    TEST_ASSERT_TRUE(before.at[AXIS_X] == after.at[AXIS_X]);
+    TEST_ASSERT_TRUE(before.at[AXIS_Y] == after.at[AXIS_Y]);
+}
+
+static void test_an_arc_across_a_rotated_plane_is_refused(void)
+{
+    reader_open(&reader, "G10 L2 P1 R30\nG18 F100\nG2 X10 I5");
+    reader_expect_error(&reader, TAKT_ERROR_ARC_TILTED);
+    TEST_ASSERT_EQUAL_STRING("G2", reader.diagnostic.word);
     TEST_ASSERT_EQUAL_DOUBLE(30.0, reader.diagnostic.value);
 }
 
@@ -127,7 +150,7 @@ static void test_tool_length_is_that_of_h_or_of_the_tool_in_the_spindle(void)
     (void)reader_next(&reader, MOVE_TOOL);
     (void)reader_expect(&reader, MOVE_RAPID, 0.0, 0.0, 40.0);
     (void)reader_expect(&reader, MOVE_RAPID, 0.0, 0.0, 100.0);
-    (void)reader_expect(&reader, MOVE_RAPID, 0.0, 0.0, 0.0);
+    (void)reader_expect(&reader, MOVE_RAPID, 0.0, 0.0, 40.0);
     (void)reader_expect(&reader, MOVE_RAPID, 0.0, 0.0, 2.0);
     TEST_ASSERT_FALSE(program_warning(&reader.program, &reader.diagnostic));
 }
@@ -194,7 +217,9 @@ int main(void)
     RUN_TEST(test_offsets_add_up);
     RUN_TEST(test_an_axis_without_a_word_stays_exactly_where_it_is);
     RUN_TEST(test_selecting_a_system_moves_nothing_and_is_remembered);
-    RUN_TEST(test_a_rotated_system_is_refused);
+    RUN_TEST(test_a_rotated_system_turns_x_and_y);
+    RUN_TEST(test_an_axis_that_is_not_named_keeps_its_position_in_a_rotated_system);
+    RUN_TEST(test_an_arc_across_a_rotated_plane_is_refused);
     RUN_TEST(test_axis_offsets_outlive_the_program);
     RUN_TEST(test_suspended_axis_offsets_can_be_restored_cancelled_ones_not);
     RUN_TEST(test_axis_offsets_need_an_axis);

@@ -176,10 +176,10 @@ static void test_missing_pieces(void)
     check_error("#", TAKT_ERROR_NUMBER_EXPECTED, 1, "#");
     check_error("[1+2", TAKT_ERROR_BRACKET_UNCLOSED, 4, "2");
     check_error("[1 2 nor 3]", TAKT_ERROR_OPERATOR_EXPECTED, 4, "2");
-    check_error("SQRT 4", TAKT_ERROR_BRACKET_EXPECTED, 4, "T");
+    check_error("SQRT 4", TAKT_ERROR_BRACKET_EXPECTED, 1, "SQRT");
     check_error("ATAN[1]", TAKT_ERROR_SLASH_EXPECTED, 7, "]");
     check_error("ATAN[1]/2", TAKT_ERROR_BRACKET_EXPECTED, 8, "/");
-    check_error("EXISTS 5", TAKT_ERROR_BRACKET_EXPECTED, 6, "S");
+    check_error("EXISTS 5", TAKT_ERROR_BRACKET_EXPECTED, 1, "EXISTS");
     check_error("EXISTS[5]", TAKT_ERROR_NUMBER_EXPECTED, 7, "[");
     check_error("EXISTS[#5", TAKT_ERROR_BRACKET_UNCLOSED, 9, "5");
 }

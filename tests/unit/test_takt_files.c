@@ -54,7 +54,7 @@ static void test_a_tool_table_is_read_as_linuxcnc_writes_it(void)
     struct tool_file file;
     const struct tool *tool;
 
-    put("T1 P1 X+0.0 Z+50.8 A90 D+6.35 I0 J0 Q0 ;1/4 inch end mill\n\n; a comment\r\nt20 p3 "
+    put("T1 P1 X+0.0 Z+50.8 A90 D+6.35 I10 J-20.5 Q3 ;1/4 inch end mill\n\n; a comment\r\nt20 p3 "
         "z-1.5\r\n");
     TEST_ASSERT_TRUE(tool_file_read(&file, path));
     TEST_ASSERT_EQUAL_UINT(2, file.table.count);
@@ -62,6 +62,9 @@ static void test_a_tool_table_is_read_as_linuxcnc_writes_it(void)
     TEST_ASSERT_NOT_NULL(tool);
     TEST_ASSERT_EQUAL_DOUBLE(50.8, tool->offset.at[AXIS_Z]);
     TEST_ASSERT_EQUAL_DOUBLE(6.35, tool->diameter_mm);
+    TEST_ASSERT_EQUAL_DOUBLE(10.0, tool->front_angle_deg);
+    TEST_ASSERT_EQUAL_DOUBLE(-20.5, tool->back_angle_deg);
+    TEST_ASSERT_EQUAL_UINT(3, tool->orientation);
     TEST_ASSERT_EQUAL_DOUBLE(3.14159265358979323846 / 2, tool->offset.at[AXIS_A]);
     TEST_ASSERT_EQUAL_DOUBLE(-1.5, tool_table_find(&file.table, 20)->offset.at[AXIS_Z]);
     tool_file_close(&file);
@@ -69,9 +72,9 @@ static void test_a_tool_table_is_read_as_linuxcnc_writes_it(void)
 
 static void test_a_tool_table_with_a_mistake_is_refused(void)
 {
-    static const char *const bad[] = {"T1 Z\n",         "Z5\n",    "T1.5 Z1\n",
-                                      "T1 Z1\nT1 Z2\n", "T1 R5\n", "T-1 Z1\n",
-                                      "T1 Znan\n",      "5\n",     "T1 Z1 extra\n"};
+    static const char *const bad[] = {"T1 Z\n",        "Z5\n",     "T1.5 Z1\n", "T1 Z1\nT1 Z2\n",
+                                      "T1 R5\n",       "T-1 Z1\n", "T1 Znan\n", "5\n",
+                                      "T1 Z1 extra\n", "T1 Q10\n", "T1 Q-1\n",  "T1 Q0.5\n"};
     struct tool_file file;
 
     for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++) {

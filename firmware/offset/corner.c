@@ -1,0 +1,211 @@
+/*
+ * Corners. With the directions t before and u behind a corner V, and the tool at the distance d to the left:
+ *
+ *     angle = atan2(t x u, t . u)       > 0: the path turns left, so with d > 0 this is an inner corner
+ *
+ * Around an outer corner the tool's centre goes from V + d n(t) to V + d n(u), n the normal to the left, on a circle
+ * about V, or along tangents to this circle: then the tips stand off by d / cos(angle / 2 k), k = 1, or 2 for turns of
+ * more than 90 degrees.
+ */
+#include "offset/corner.h"
+
+#include "base/maths.h"
+
+#include <string.h>
+
+#define TIPS_MAX 2
+
+struct corner {
+    double vertex[2];
+    double before[2]; /* direction, length 1 */
+    double angle_rad;
+    double left_mm;
+};
+
+static bool is_inner(double angle_rad, double left_mm)
+{
+    return angle_rad * left_mm > 0.0;
+}
+
+/*
+ * Where a way returns along itself the directions alone do not tell which side the tool is on: of the two ways, seen
+ * from the corner, the one behind it is to the left of the one before when bend before + bend behind > 0. Then the path
+ * has turned right. Both must say "outer"; if the directions differ by rounding alone, the bends decide.
+ */
+static bool cusp_is_inner(double bend, double left_mm, double angle_rad)
+{
+    const double off_rad = MATHS_PI - maths_abs(angle_rad);
+
+    if (bend == 0.0) {
+        return off_rad > OFFSET_CUSP_SURE_RAD && is_inner(angle_rad, left_mm);
+    }
+    return bend * left_mm < 0.0 || (off_rad > OFFSET_CUSP_SURE_RAD && is_inner(angle_rad, left_mm));
+}
+
+static double cusp_angle(const struct offset *o, const struct offset_item *next, double left_mm,
+                         double angle_rad)
+{
+    const double bend = planar_bend_to(&o->last) + planar_bend_from(&next->wanted);
+    const bool inner = cusp_is_inner(bend, left_mm, angle_rad);
+
+    if (inner == is_inner(angle_rad, left_mm)) {
+        return angle_rad;
+    }
+    return angle_rad > 0.0 ? angle_rad - MATHS_TWO_PI : angle_rad + MATHS_TWO_PI;
+}
+
+static struct corner corner_between(const struct offset *o, const struct offset_item *next,
+                                    double left_mm)
+{
+    struct corner c = {.left_mm = left_mm};
+    double behind[2];
+
+    memcpy(c.vertex, next->wanted.from, sizeof(c.vertex));
+    planar_tangent_to(&o->last, c.before);
+    planar_tangent_from(&next->wanted, behind);
+    c.angle_rad = maths_atan2(planar_turn(c.before, behind), planar_dot(c.before, behind));
+    if (maths_abs(c.angle_rad) > MATHS_PI - OFFSET_CUSP_RAD) {
+        c.angle_rad = cusp_angle(o, next, left_mm, c.angle_rad);
+    }
+    return c;
+}
+
+/* The point beside the vertex, at a distance to the left of the way before it turned by an angle. */
+static void point_beside(const struct corner *c, double angle_rad, double left_mm, double point[2])
+{
+    double sine;
+    double cosine;
+
+    maths_sincos(angle_rad, &sine, &cosine);
+    point[0] = c->vertex[0] - left_mm * (c->before[1] * cosine + c->before[0] * sine);
+    point[1] = c->vertex[1] + left_mm * (c->before[0] * cosine - c->before[1] * sine);
+}
+
+/* How far the tip of a sharp corner is from the circle: |d| (1 / cos(angle / 2) - 1) */
+static double tip_mm(const struct corner *c)
+{
+    return maths_abs(c->left_mm) * (1.0 / maths_cos(0.5 * c->angle_rad) - 1.0);
+}
+
+static bool is_blunt(const struct corner *c)
+{
+    return maths_abs(c->angle_rad) < MATHS_HALF_PI && tip_mm(c) < OFFSET_BLUNT_MM;
+}
+
+/*
+ * A corner so blunt that one point serves both ways: where they cross, or, when they only touch, between their ends.
+ * False when there is not enough of one of them.
+ */
+static bool turn_blunt(struct offset *o, const struct offset_item *next, const struct corner *c)
+{
+    struct offset_item *k = contour_newest(o);
+    struct offset_item joined = *next;
+    const double near_mm = 2.0 * maths_abs(c->left_mm * c->angle_rad) + OFFSET_BLUNT_MM;
+    double points[2][2];
+    double point[2];
+    unsigned count;
+
+    point_beside(c, 0.5 * c->angle_rad, c->left_mm, point);
+    if (o->gap || k == NULL) {
+        return false;
+    }
+    count = planar_cross(&k->way, &next->way, points);
+    for (unsigned i = 0; i < count; i++) {
+        if (planar_between(points[i], point) < near_mm) {
+            memcpy(point, points[i], sizeof(point));
+            break;
+        }
+    }
+    const double end_mm = planar_place_near_to(&k->way, point);
+    const double begin_mm = planar_place_near_from(&next->way, point);
+
+    if (end_mm <= 0.0 || begin_mm >= planar_length(&next->way)) {
+        return false;
+    }
+    planar_end_at(&k->way, end_mm, point);
+    planar_begin_at(&joined.way, begin_mm, point);
+    contour_continue(o, &joined);
+    return true;
+}
+
+/* A corner is part of the way behind it, but the axis across the plane stays. */
+static struct offset_item corner_piece(const struct offset *o, const struct offset_item *next)
+{
+    struct offset_item piece = {.kind = OFFSET_CORNER, .move = next->move, .wanted = o->last};
+
+    for (enum axis i = AXIS_X; i < AXIS_LINEAR_COUNT; i++) {
+        piece.move.end.at[i] = o->wanted_at.at[i];
+    }
+    if (move_is_arc(&piece.move)) {
+        piece.move.kind = MOVE_FEED;
+    }
+    return piece;
+}
+
+static void turn_round(struct offset *o, struct offset_item *piece, const struct corner *c)
+{
+    double from[2];
+    double to[2];
+
+    point_beside(c, 0.0, c->left_mm, from);
+    point_beside(c, c->angle_rad, c->left_mm, to);
+    planar_set_arc(&piece->way, from, to, c->vertex, c->angle_rad > 0.0 ? 1.0 : -1.0, 1);
+    piece->way.sweep_rad = maths_abs(c->angle_rad);
+    piece->move.kind = c->angle_rad > 0.0 ? MOVE_ARC_CCW : MOVE_ARC_CW;
+    contour_continue(o, piece);
+}
+
+static void turn_sharp(struct offset *o, struct offset_item *piece, const struct corner *c)
+{
+    const unsigned tips = maths_abs(c->angle_rad) > MATHS_HALF_PI * (1.0 + 1e-9) ? TIPS_MAX : 1;
+    const double half_rad = 0.5 * c->angle_rad / tips;
+    const double tip_left_mm = c->left_mm / maths_cos(half_rad);
+    double from[2];
+    double to[2];
+
+    point_beside(c, 0.0, c->left_mm, from);
+    for (unsigned i = 0; i <= tips; i++) {
+        if (i < tips) {
+            point_beside(c, (2 * i + 1) * half_rad, tip_left_mm, to);
+        } else {
+            point_beside(c, c->angle_rad, c->left_mm, to);
+        }
+        if (planar_set_line(&piece->way, from, to)) {
+            contour_continue(o, piece);
+        }
+        memcpy(from, to, sizeof(from));
+    }
+}
+
+/*
+ * A rapid has no feed for an arc and nothing to cut: it goes around corners in lines. Behind a gap tips are not tried:
+ * one may stand out of what is swallowed while the circle does not.
+ */
+static void turn_outside(struct offset *o, const struct offset_item *next, const struct corner *c)
+{
+    struct offset_item piece = corner_piece(o, next);
+    const bool rapid = piece.move.kind == MOVE_RAPID;
+
+    if (!o->gap && (o->sharp_corners || rapid)) {
+        turn_sharp(o, &piece, c);
+    } else if (!rapid) {
+        turn_round(o, &piece, c);
+    }
+}
+
+void corner_turn(struct offset *o, const struct offset_item *next, double left_mm)
+{
+    const struct corner c = corner_between(o, next, left_mm);
+
+    if (is_blunt(&c) && turn_blunt(o, next, &c)) {
+        return;
+    }
+    if (is_inner(c.angle_rad, left_mm)) {
+        contour_continue_inside(o, next);
+        return;
+    }
+    if (c.angle_rad != 0.0) {
+        turn_outside(o, next, &c);
+    }
+    contour_continue(o, next);
+}

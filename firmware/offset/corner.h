@@ -1,0 +1,15 @@
+/*
+ * Where two programmed ways meet.
+ */
+#ifndef TAKT_OFFSET_CORNER_H
+#define TAKT_OFFSET_CORNER_H
+
+#include "offset/contour.h"
+
+/*
+ * Goes on from the contour's last programmed way to the next one: around an outer corner, through an inner one, or
+ * straight on. left_mm: the radius, negative on the right side.
+ */
+void corner_turn(struct offset *o, const struct offset_item *next, double left_mm);
+
+#endif

@@ -1,0 +1,421 @@
+#include "offset/offset.h"
+
+#include "base/maths.h"
+#include "offset/contour.h"
+#include "offset/corner.h"
+#include "program/travel.h"
+
+#include <string.h>
+
+/* An arc shorter than this might be taken for a full circle: it is gone as a line. */
+#define ARC_MIN_MM 1e-6
+/* Start and end of an arc closer than this are one point (as in the room geometry). */
+#define ARC_CLOSED_MM 1e-7
+/* Below this cosine no arc leads from the tool to the end of an entry arc. */
+#define ENTRY_COSINE_MIN 1e-4
+#define DEGREES_PER_RAD  (180.0 / MATHS_PI)
+
+void offset_open(struct offset *o, const struct program_config *config)
+{
+    memset(o, 0, sizeof(*o));
+    o->sharp_corners = config->sharp_corners;
+    o->wanted_at = config->start;
+    o->at = config->start;
+}
+
+bool offset_warning(struct offset *o, struct diagnostic *diagnostic)
+{
+    if (o->warnings == 0) {
+        return false;
+    }
+    *diagnostic = o->warning[0];
+    o->warnings--;
+    for (unsigned i = 0; i < o->warnings; i++) {
+        o->warning[i] = o->warning[i + 1];
+    }
+    return true;
+}
+
+static bool is_compensated(const struct move *m)
+{
+    return move_is_motion(m) && m->cutter_side != CUTTER_OFF;
+}
+
+static double left_of(const struct move *m)
+{
+    return m->cutter_side == CUTTER_LEFT ? m->cutter_radius_mm : -m->cutter_radius_mm;
+}
+
+static bool fail(struct diagnostic *d, enum takt_error code, uint32_t line, double value)
+{
+    diagnostic_set(d, code, line, 0, "", 0, value);
+    return false;
+}
+
+static void in_plane(enum plane plane, const struct point *p, double result[2])
+{
+    enum axis first;
+    enum axis second;
+
+    plane_axes(plane, &first, &second);
+    result[0] = p->at[first];
+    result[1] = p->at[second];
+}
+
+/* The programmed way in the plane. False: there is none. */
+static bool set_wanted(const struct offset *o, const struct move *m, struct planar *wanted)
+{
+    double from[2];
+    double to[2];
+
+    in_plane(m->plane, &o->wanted_at, from);
+    in_plane(m->plane, &m->end, to);
+    if (!move_is_arc(m)) {
+        return planar_set_line(wanted, from, to);
+    }
+    planar_set_arc(wanted, from, to, m->centre_mm, m->kind == MOVE_ARC_CCW ? 1.0 : -1.0, m->turns);
+    return true;
+}
+
+static bool moves_across(const struct offset *o, const struct move *m)
+{
+    enum axis first;
+    enum axis second;
+
+    plane_axes(m->plane, &first, &second);
+    for (enum axis i = AXIS_X; i < AXIS_COUNT; i++) {
+        if (i != first && i != second && m->end.at[i] != o->wanted_at.at[i]) {
+            return true;
+        }
+    }
+    return false;
+}
+
+/*
+ * An entry arc starts at the tool, C, and ends at A beside the programmed end, in its direction: its centre is on the
+ * line from A towards the programmed centre, u, and as far from C as from A.
+ *
+ *     |A B| = |C - A|^2 / (2 (C - A) . u)
+ */
+static bool bend_entry(struct offset_item *entry)
+{
+    struct planar *way = &entry->way;
+    const double *c = entry->wanted.from;
+    const double to_tool[2] = {c[0] - way->to[0], c[1] - way->to[1]};
+    const double radius = planar_between(way->centre, way->to);
+    const double u[2] = {(way->centre[0] - way->to[0]) / radius,
+                         (way->centre[1] - way->to[1]) / radius};
+    const double towards = planar_dot(to_tool, u);
+    const double distance = planar_between(c, way->to);
+
+    if (towards < ENTRY_COSINE_MIN * distance) {
+        return false;
+    }
+    const double new_radius = 0.5 * distance * distance / towards;
+    const double centre[2] = {way->to[0] + new_radius * u[0], way->to[1] + new_radius * u[1]};
+    const double to[2] = {way->to[0], way->to[1]};
+
+    planar_set_arc(way, c, to, centre, way->sense, 1);
+    return true;
+}
+
+static bool enter(struct offset *o, struct offset_item *entry, struct diagnostic *d)
+{
+    const double distance = planar_between(entry->wanted.from, entry->wanted.to);
+    const double lack_mm = entry->move.cutter_radius_mm - distance;
+
+    if (lack_mm >= 0.0) {
+        return fail(d, TAKT_ERROR_OFFSET_ENTRY_SHORT, entry->move.line, lack_mm);
+    }
+    if (entry->wanted.arc && !bend_entry(entry)) {
+        return fail(d, TAKT_ERROR_OFFSET_ENTRY_ARC, entry->move.line, 0.0);
+    }
+    entry->entry = true;
+    o->started = true;
+    o->broken = false;
+    contour_continue(o, entry);
+    return true;
+}
+
+static bool take_way(struct offset *o, struct offset_item *way, struct diagnostic *d)
+{
+    const double left_mm = left_of(&way->move);
+    double lack_mm;
+
+    if (!planar_offset(&way->wanted, left_mm, &way->way, &lack_mm)) {
+        return fail(d, TAKT_ERROR_OFFSET_ARC_SMALL, way->move.line, lack_mm);
+    }
+    if (!o->started) {
+        return enter(o, way, d);
+    }
+    corner_turn(o, way, left_mm);
+    return true;
+}
+
+/* A compensated motion. */
+static bool take_motion(struct offset *o, const struct move *m, struct diagnostic *d)
+{
+    struct offset_item item = {.kind = OFFSET_WAY, .move = *m};
+
+    if (!set_wanted(o, m, &item.wanted)) {
+        contour_add(o, o->started ? OFFSET_STANDING : OFFSET_COMMAND, m);
+    } else {
+        item.across = moves_across(o, m);
+        if (!take_way(o, &item, d)) {
+            return false;
+        }
+        o->last = item.wanted;
+    }
+    o->wanted_at = m->end;
+    return true;
+}
+
+/* What is left of a broken contour is read over. */
+static bool is_dropped(struct offset *o, const struct move *m)
+{
+    const bool dropped = o->broken && is_compensated(m) && !m->cutter_entry;
+
+    if (dropped) {
+        o->wanted_at = m->end;
+    }
+    o->broken = dropped || (o->broken && !move_is_motion(m));
+    return dropped;
+}
+
+/* No more comes to the contour. A gap that is still open then is a place the tool does not fit into. */
+static bool close_contour(struct offset *o, struct diagnostic *d)
+{
+    o->closed = true;
+    return !o->gap || fail(d, TAKT_ERROR_OFFSET_GOUGE, o->gouge_line, o->gouge_mm);
+}
+
+static bool ends_contour(const struct offset *o, const struct move *m)
+{
+    const bool leaves = move_is_motion(m) && (!is_compensated(m) || m->cutter_entry);
+
+    return o->started && (leaves || m->kind == MOVE_END);
+}
+
+static bool take(struct offset *o, const struct move *m, struct diagnostic *d)
+{
+    if (is_dropped(o, m)) {
+        return true;
+    }
+    if (ends_contour(o, m)) {
+        o->waiting = *m;
+        o->is_waiting = true;
+        return close_contour(o, d);
+    }
+    if (is_compensated(m)) {
+        return take_motion(o, m, d);
+    }
+    contour_add(o, OFFSET_COMMAND, m);
+    if (move_is_motion(m)) {
+        o->wanted_at = m->end;
+    }
+    return true;
+}
+
+/* The contour is forgotten, but not what comes after it. */
+static void give_up(struct offset *o)
+{
+    o->count = 0;
+    o->ways = 0;
+    o->started = false;
+    o->gap = false;
+    o->broken = true;
+    o->closed = o->is_waiting || o->is_held;
+}
+
+/* The oldest item is as it will be. */
+static bool is_ready(struct offset *o)
+{
+    if (o->count == 0) {
+        return false;
+    }
+    return contour_item(o, 0)->kind < OFFSET_CORNER || o->closed || o->ways > OFFSET_LOOK_AHEAD;
+}
+
+/* Turns begun: curve_set_arc adds one turn less than these to the angle from start to end. */
+static uint32_t turns_of(const struct planar *way)
+{
+    const double whole = maths_round(way->sweep_rad / MATHS_TWO_PI);
+    const double rest_mm = maths_abs(way->sweep_rad - whole * MATHS_TWO_PI) * way->radius_to;
+
+    if (whole >= 1.0 && rest_mm <= ARC_CLOSED_MM) {
+        return (uint32_t)whole;
+    }
+    return (uint32_t)maths_floor(way->sweep_rad / MATHS_TWO_PI) + 1;
+}
+
+static void set_arc(struct move *m, const struct planar *way)
+{
+    if (planar_length(way) < ARC_MIN_MM) {
+        m->kind = MOVE_FEED;
+        return;
+    }
+    m->centre_mm[0] = way->centre[0];
+    m->centre_mm[1] = way->centre[1];
+    m->turns = turns_of(way);
+}
+
+/* An item as a move of the tool's centre. */
+static void finish_move(const struct offset *o, const struct offset_item *i, struct move *m)
+{
+    enum axis first;
+    enum axis second;
+
+    *m = i->move;
+    m->cutter_side = CUTTER_OFF;
+    if (i->kind == OFFSET_COMMAND) {
+        return;
+    }
+    plane_axes(m->plane, &first, &second);
+    m->end.at[first] = i->kind == OFFSET_STANDING ? o->at.at[first] : i->way.to[0];
+    m->end.at[second] = i->kind == OFFSET_STANDING ? o->at.at[second] : i->way.to[1];
+    if (move_is_arc(m)) {
+        set_arc(m, &i->way);
+    }
+}
+
+/* The travel of what has been compensated; the program has looked at everything else. */
+static bool check_travel(const struct offset *o, const struct program *p, const struct move *m,
+                         struct diagnostic *d)
+{
+    struct travel_excess excess;
+
+    if (travel_holds(&p->config, &o->at, m, &excess)) {
+        return true;
+    }
+    diagnostic_set(d, TAKT_ERROR_TRAVEL_EXCEEDED, m->line, 0, &AXIS_LETTERS[excess.axis], 1,
+                   excess.axis < AXIS_LINEAR_COUNT ? excess.value : excess.value * DEGREES_PER_RAD);
+    return false;
+}
+
+static bool give_out(struct offset *o, const struct program *p, struct move *move,
+                     struct diagnostic *d)
+{
+    struct offset_item *i = contour_item(o, 0);
+    const bool checked = i->kind != OFFSET_COMMAND || is_compensated(&i->move);
+
+    finish_move(o, i, move);
+    contour_drop_first(o);
+    if (checked && !check_travel(o, p, move, d)) {
+        return false;
+    }
+    if (move_is_motion(move)) {
+        o->at = move->end;
+    }
+    return true;
+}
+
+/* After the last of a contour: goes on with what has been put off. */
+static bool go_on(struct offset *o, struct diagnostic *d)
+{
+    o->closed = false;
+    o->started = false;
+    if (o->is_waiting) {
+        o->is_waiting = false;
+        return take(o, &o->waiting, d);
+    }
+    if (o->is_held) {
+        o->is_held = false;
+        o->broken = true;
+        *d = o->held;
+        return false;
+    }
+    return true;
+}
+
+/* An error of the program comes after everything before it. */
+static bool put_off(struct offset *o, const struct diagnostic *error)
+{
+    if (o->gap) {
+        give_up(o);
+    }
+    o->held = *error;
+    o->is_held = true;
+    o->closed = true;
+    return true;
+}
+
+static bool has_room(const struct offset *o, struct diagnostic *d)
+{
+    if (o->count + OFFSET_ITEMS_ADDED <= OFFSET_ITEMS_MAX) {
+        return true;
+    }
+    if (o->gap) {
+        return fail(d, TAKT_ERROR_OFFSET_GOUGE, o->gouge_line, o->gouge_mm);
+    }
+    return fail(d, TAKT_ERROR_OFFSET_CROWDED, o->item[o->first].move.line,
+                OFFSET_ITEMS_MAX - OFFSET_LOOK_AHEAD - OFFSET_ITEMS_ADDED);
+}
+
+/* Reads one more move. PROGRAM_MOVE: it has been taken. */
+static enum program_result read_on(struct offset *o, struct program *p, struct diagnostic *d)
+{
+    struct move m;
+
+    if (!has_room(o, d)) {
+        return PROGRAM_ERROR;
+    }
+    switch (program_next(p, &m, d)) {
+    case PROGRAM_MOVE:
+        return take(o, &m, d) ? PROGRAM_MOVE : PROGRAM_ERROR;
+    case PROGRAM_ERROR:
+        (void)put_off(o, d);
+        return PROGRAM_MOVE;
+    case PROGRAM_END:
+        break;
+    }
+    return PROGRAM_END;
+}
+
+/* Nothing is kept back: what is not compensated goes through. PROGRAM_MOVE and *taken: it does not. */
+static enum program_result pass_through(struct offset *o, struct program *p, struct move *move,
+                                        struct diagnostic *d, bool *taken)
+{
+    const enum program_result result = program_next(p, move, d);
+
+    if (result != PROGRAM_MOVE) {
+        return result;
+    }
+    if (is_compensated(move)) {
+        *taken = true;
+        return take(o, move, d) ? PROGRAM_MOVE : PROGRAM_ERROR;
+    }
+    if (move_is_motion(move)) {
+        o->broken = false;
+        o->wanted_at = move->end;
+        o->at = move->end;
+    }
+    return PROGRAM_MOVE;
+}
+
+enum program_result offset_next(struct offset *o, struct program *p, struct move *move,
+                                struct diagnostic *diagnostic)
+{
+    enum program_result result = PROGRAM_MOVE;
+    bool taken = false;
+
+    if (o->count == 0 && !o->started && !o->closed) {
+        result = pass_through(o, p, move, diagnostic, &taken);
+        if (!taken) {
+            return result;
+        }
+    }
+    while (result == PROGRAM_MOVE && !is_ready(o)) {
+        if (o->closed) {
+            result = go_on(o, diagnostic) ? PROGRAM_MOVE : PROGRAM_ERROR;
+        } else {
+            result = read_on(o, p, diagnostic);
+        }
+    }
+    if (result == PROGRAM_MOVE && !give_out(o, p, move, diagnostic)) {
+        result = PROGRAM_ERROR;
+    }
+    if (result == PROGRAM_ERROR) {
+        give_up(o);
+    }
+    return result;
+}

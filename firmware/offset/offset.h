@@ -1,0 +1,28 @@
+/*
+ * Cutter-radius compensation: programmed moves in, moves of the tool's centre out.
+ *
+ *     program_next -> [ way | corner | way | ... ] -> offset_next
+ *
+ * Moves without compensation pass unchanged and undelayed. The caller owns struct offset and reads the program through
+ * it alone.
+ */
+#ifndef TAKT_OFFSET_OFFSET_H
+#define TAKT_OFFSET_OFFSET_H
+
+#include "offset/offset_state.h"
+#include "program/program.h"
+
+/* Makes o ready for a program just opened with config. */
+void offset_open(struct offset *o, const struct program_config *config);
+
+/*
+ * The next move, with the contract of program_next: after PROGRAM_ERROR reading may go on; what is left of a contour
+ * with an error is dropped.
+ */
+enum program_result offset_next(struct offset *o, struct program *p, struct move *move,
+                                struct diagnostic *diagnostic);
+
+/* Warnings since the last call: true and *diagnostic while there are any; those of the program come elsewhere. */
+bool offset_warning(struct offset *o, struct diagnostic *diagnostic);
+
+#endif

@@ -1,0 +1,25 @@
+/*
+ * Every fixed size of the compensation. struct offset takes about OFFSET_ITEMS_MAX * 700 bytes.
+ */
+#ifndef TAKT_OFFSET_LIMITS_H
+#define TAKT_OFFSET_LIMITS_H
+
+/* Pieces of way, corners included, that may still change: so far back an inner corner can reach. */
+#define OFFSET_LOOK_AHEAD 16
+/* Everything kept: those pieces, pieces an inner corner has swallowed, and commands in between. */
+#define OFFSET_ITEMS_MAX 48
+/* What one move can add: an outer corner of three lines, and its way. */
+#define OFFSET_ITEMS_ADDED 4
+/* Warnings kept until they are fetched. */
+#define OFFSET_WARNINGS_MAX 4
+
+/* By this much of the radius the tool may cut into the contour: rounding, below anything a machine resolves. */
+#define OFFSET_GOUGE_MM 1e-9
+/* Outer corners whose tip is nearer than this to the arc around them stay sharp: they would be specks. */
+#define OFFSET_BLUNT_MM 1e-6
+/* Near a turn of 180 degrees by this angle, the bends of both ways decide whether a corner is an inner one. */
+#define OFFSET_CUSP_RAD 0.05
+/* Nearer than this they alone decide: the directions of a programmed cusp differ by its rounding. */
+#define OFFSET_CUSP_SURE_RAD 1e-3
+
+#endif

@@ -1,0 +1,81 @@
+/*
+ * A piece of contour in its plane: a line or an arc, with the operations compensation needs. Coordinates are the first
+ * and second axis of the plane, mm. Left is left of the way when the third axis points at the observer.
+ */
+#ifndef TAKT_OFFSET_PLANAR_H
+#define TAKT_OFFSET_PLANAR_H
+
+#include <stdbool.h>
+
+struct planar {
+    bool arc;
+    double from[2], to[2];
+    /* arcs: */
+    double centre[2];
+    double sense;                  /* 1 counter-clockwise, -1 clockwise */
+    double radius_from, radius_to; /* differ when an end is not exactly on the circle */
+    double sweep_rad;              /* > 0, also more than a turn */
+};
+
+/* A line; false when it has no length. */
+bool planar_set_line(struct planar *c, const double from[2], const double to[2]);
+
+/* An arc about centre; from = to is a full circle. turns: as in struct move. */
+void planar_set_arc(struct planar *c, const double from[2], const double to[2],
+                    const double centre[2], double sense, unsigned turns);
+
+/* Direction of the way at its ends, length 1. */
+void planar_tangent_from(const struct planar *c, double tangent[2]);
+void planar_tangent_to(const struct planar *c, double tangent[2]);
+
+/* How the way bends at its ends: 1 / radius, to the left > 0; a line: 0. */
+double planar_bend_from(const struct planar *c);
+double planar_bend_to(const struct planar *c);
+
+/*
+ * The same piece moved left by left_mm, which may be negative. False when an arc would have no radius left; *lack_mm
+ * is then how much its radius is too small.
+ */
+bool planar_offset(const struct planar *c, double left_mm, struct planar *result, double *lack_mm);
+
+double planar_length(const struct planar *c);
+
+/*
+ * Where a point of the way's line or circle lies on it, in mm from its start: negative before it. On an arc the place
+ * nearest to its middle, so of places a turn apart one is chosen.
+ */
+double planar_place(const struct planar *c, const double point[2]);
+
+/* The same, on an arc of more than half a turn the place that belongs to its end, or to its start. */
+double planar_place_near_to(const struct planar *c, const double point[2]);
+double planar_place_near_from(const struct planar *c, const double point[2]);
+
+/* Lets the way end, or begin, at that place, whose point is given. */
+void planar_end_at(struct planar *c, double place_mm, const double point[2]);
+void planar_begin_at(struct planar *c, double place_mm, const double point[2]);
+
+/*
+ * Where the lines or circles of two ways cross, no matter how long the ways are: 0 to 2 points. Of an arc with two
+ * radii the circle of its end counts for a, that of its start for b.
+ */
+unsigned planar_cross(const struct planar *a, const struct planar *b, double points[2][2]);
+
+/* Smallest distance of two ways, and of a point from a way. */
+double planar_distance(const struct planar *a, const struct planar *b);
+double planar_distance_point(const struct planar *c, const double point[2]);
+
+static inline double planar_dot(const double a[2], const double b[2])
+{
+    return a[0] * b[0] + a[1] * b[1];
+}
+
+/* > 0: b points to the left of a */
+static inline double planar_turn(const double a[2], const double b[2])
+{
+    return a[0] * b[1] - a[1] * b[0];
+}
+
+/* Distance of two points. */
+double planar_between(const double a[2], const double b[2]);
+
+#endif

@@ -1,0 +1,166 @@
+#include "program/approach.h"
+
+#include "base/maths.h"
+#include "program/coordinates.h"
+#include "program/emit.h"
+#include "program/events.h"
+#include "program/flow.h"
+#include "program/travel.h"
+
+#define SECONDS_PER_MINUTE 60.0
+
+void approach_open(struct program *p)
+{
+    p->approach.pending = p->config.from_line > 0;
+    p->approach.holds_line = false;
+    p->approach.at = p->config.start;
+    p->approach.height_mm = p->config.start.at[AXIS_Z];
+}
+
+/* No curve goes further up than this: from its end, or from its centre by its radius. */
+static double highest(const struct move *m, const struct point *start)
+{
+    double height_mm = m->end.at[AXIS_Z];
+    struct curve curve;
+    enum axis first;
+    enum axis second;
+
+    plane_axes(m->plane, &first, &second);
+    if (!move_is_arc(m) || (first != AXIS_Z && second != AXIS_Z) || !move_curve(m, start, &curve)) {
+        return height_mm;
+    }
+    const struct curve_arc *arc = &curve.arc;
+    const double radius_mm = arc->radius_start_mm + maths_max(arc->radius_change_mm, 0.0);
+
+    return arc->centre_mm[first == AXIS_Z ? 0 : 1] + radius_mm;
+}
+
+static bool has_z(const struct program *p)
+{
+    return (p->config.axes & (1U << AXIS_Z)) != 0;
+}
+
+/* Nobody can start there. */
+static bool give_up(struct program *p, enum takt_error code, uint32_t line)
+{
+    p->approach.pending = false;
+    p->phase = PROGRAM_ENDED;
+    p->queue_count = 0;
+    diagnostic_set(&p->error, code, line, 0, "", 0, p->config.from_line);
+    return false;
+}
+
+bool approach_drop(struct program *p)
+{
+    struct program_approach *a = &p->approach;
+    struct move m;
+
+    while (emit_take(p, &m)) {
+        if (m.kind == MOVE_PROBE) {
+            return give_up(p, TAKT_ERROR_FROM_LINE_PROBE, m.line);
+        }
+        if (move_is_motion(&m)) {
+            a->height_mm = maths_max(a->height_mm, highest(&m, &a->at));
+            a->at = m.end;
+        }
+    }
+    if (p->phase != PROGRAM_ENDED) {
+        return true;
+    }
+    return give_up(p, TAKT_ERROR_FROM_LINE_MISSED, 0);
+}
+
+/* Exactly, and to rest at the end. */
+static void go(struct program *p, enum move_kind kind, struct point *at, const struct point *end)
+{
+    if (point_is_same(at, end)) {
+        return;
+    }
+    struct move *m = emit_event(p, kind);
+
+    m->end = *end;
+    m->path = PATH_EXACT_STOP;
+    *at = *end;
+}
+
+static void bring_tool(struct program *p)
+{
+    const struct program_modes *m = &p->modes;
+
+    if (m->tool_current != 0) {
+        emit_event(p, MOVE_TOOL)->tool = m->tool_current;
+        struct move *change = emit_event(p, MOVE_TOOL);
+
+        change->tool = m->tool_current;
+        change->tool_change = true;
+    }
+    if (m->tool_is_selected && m->tool_selected != m->tool_current) {
+        emit_event(p, MOVE_TOOL)->tool = m->tool_selected;
+    }
+}
+
+static double feed_down(const struct program *p)
+{
+    return p->modes.feed_mm_s > 0.0 ? p->modes.feed_mm_s
+                                    : PROGRAM_APPROACH_FEED_MM_MIN / SECONDS_PER_MINUTE;
+}
+
+static void queue_approach(struct program *p)
+{
+    struct point at = p->config.start;
+    struct point next = at;
+
+    next.at[AXIS_Z] =
+        has_z(p) ? maths_min(p->approach.height_mm, p->config.travel_max[AXIS_Z]) : at.at[AXIS_Z];
+    const double height_mm = next.at[AXIS_Z];
+
+    go(p, MOVE_RAPID, &at, &next);
+    bring_tool(p);
+    next = p->modes.at;
+    next.at[AXIS_Z] = height_mm;
+    go(p, MOVE_RAPID, &at, &next);
+    if (p->modes.direction != SPINDLE_OFF) {
+        events_tell_spindle(p);
+    }
+    if (p->modes.mist || p->modes.flood) {
+        events_tell_coolant(p);
+    }
+    const unsigned before = p->queue_count;
+
+    go(p, MOVE_FEED, &at, &p->modes.at);
+    if (p->queue_count > before) {
+        p->queue[(p->queue_first + before) % PROGRAM_QUEUE_MAX].feed_mm_s = feed_down(p);
+    }
+}
+
+/* Behind a compensated contour the programmed place may be out of the travel. */
+static bool is_within_travel(struct program *p)
+{
+    struct move m;
+    struct travel_excess excess;
+
+    emit_prepare(p, MOVE_RAPID, &p->modes.at, &m);
+    if (travel_holds(&p->config, &p->config.start, &m, &excess)) {
+        return true;
+    }
+    (void)give_up(p, TAKT_ERROR_TRAVEL_EXCEEDED, p->lexer.line);
+    diagnostic_set(&p->error, TAKT_ERROR_TRAVEL_EXCEEDED, p->lexer.line, 0,
+                   &AXIS_LETTERS[excess.axis], 1,
+                   coordinates_to_parameter(excess.value, excess.axis));
+    return false;
+}
+
+bool approach_begins(struct program *p, bool *good)
+{
+    if (!p->approach.pending || p->lexer.line != p->config.from_line || flow_is_skipping(p)) {
+        return false;
+    }
+    p->approach.pending = false;
+    *good = (p->modes.cutter_side == CUTTER_OFF ||
+             give_up(p, TAKT_ERROR_FROM_LINE_CUTTER, p->lexer.line)) &&
+            is_within_travel(p);
+    if (*good) {
+        queue_approach(p);
+    }
+    return true;
+}

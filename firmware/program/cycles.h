@@ -1,0 +1,53 @@
+/*
+ * Drilling and boring cycles: G73, G74, G81 to G89.
+ *
+ * Every cycle goes at rapid over the hole and down to R, does what its script in cycles.c says, and ends at the clear
+ * height: R with G99, with G98 the height before the first of a row of cycles if that is above R. With L it is done so
+ * often, with G91 each time a step further. Its moves are made while they are fetched, so that no number of holes and
+ * pecks needs room; the line has been checked as a whole before.
+ */
+#ifndef TAKT_PROGRAM_CYCLES_H
+#define TAKT_PROGRAM_CYCLES_H
+
+#include "program/program.h"
+
+/* argument: enum cycle */
+enum cycle {
+    CYCLE_CHIP_BREAK, /* G73 */
+    CYCLE_TAP_LEFT,   /* G74 */
+    CYCLE_DRILL,      /* G81 */
+    CYCLE_DRILL_WAIT, /* G82 */
+    CYCLE_PECK,       /* G83 */
+    CYCLE_TAP,        /* G84 */
+    CYCLE_REAM,       /* G85 */
+    CYCLE_BORE_STOP,  /* G86 */
+    CYCLE_BORE_BACK,  /* G87 */
+    CYCLE_BORE_PAUSE, /* G88 */
+    CYCLE_BORE_WAIT,  /* G89 */
+    CYCLE_COUNT
+};
+bool cycles_start(struct program *p, const struct program_code *code);
+
+/* The words all of them take. */
+#define WORDS_CYCLE (LETTERS_LINEAR | LETTER_BIT('r') | LETTER_BIT('l'))
+
+/* No cycle is under way. */
+void cycles_open(struct program *p);
+
+/* A code is about to act: any other motion ends a row of cycles. */
+void cycles_see(struct program *p, const struct program_code *code);
+
+/* The next move of the cycle under way, when it is its turn; false: there is none. */
+bool cycles_next(struct program *p, struct move *move);
+
+/* A move of the queue has been fetched. */
+void cycles_count_queued(struct program *p);
+
+/* For G76: a straight move of the cycle to work coordinates; false: it has no length. */
+bool cycles_move(struct program *p, enum move_kind kind, const struct point *work,
+                 struct move *move);
+
+/* Would the machine leave its travel there? False: p->error is set. */
+bool cycles_check_travel(struct program *p, const struct point *work);
+
+#endif

@@ -1,0 +1,113 @@
+#include "program/involute.h"
+
+#include "base/maths.h"
+#include "program/circular.h"
+#include "program/coordinates.h"
+#include "program/emit.h"
+#include "program/report.h"
+#include "program/words.h"
+
+/* Relative to the centre. */
+struct polar {
+    double radius_mm, angle_rad;
+};
+
+static struct polar polar_of(const struct point *point, enum axis first, enum axis second,
+                             const double centre_mm[2])
+{
+    const double x = point->at[first] - centre_mm[0];
+    const double y = point->at[second] - centre_mm[1];
+
+    return (struct polar){maths_sqrt(x * x + y * y), maths_atan2(y, x)};
+}
+
+/* inv = phi - atan phi, phi = sqrt((d/r)^2 - 1); 0 inside the base circle. */
+static double unrolled_rad(double distance_mm, double radius_mm)
+{
+    const double ratio = distance_mm / radius_mm;
+
+    if (ratio <= 1.0) {
+        return 0.0;
+    }
+    const double phi = maths_sqrt((ratio - 1.0) * (ratio + 1.0));
+
+    return phi - maths_atan2(phi, 1.0);
+}
+
+/* Distance of the end from the involute through the start, between neighbouring turns at most. */
+static double deviation_mm(const struct polar *start, const struct polar *end, double radius_mm,
+                           bool clockwise)
+{
+    const double needed = maths_abs(unrolled_rad(end->radius_mm, radius_mm) -
+                                    unrolled_rad(start->radius_mm, radius_mm));
+    const double turned = (end->angle_rad - start->angle_rad) * (clockwise ? -1.0 : 1.0);
+    const double off = turned - needed;
+
+    return radius_mm * maths_abs(off - MATHS_TWO_PI * maths_round(off / MATHS_TWO_PI));
+}
+
+static bool check_ends(struct program *p, const struct move *m, const struct polar *start,
+                       const struct polar *end)
+{
+    const double slack_mm = circular_slack_mm(p);
+    const double radius_mm = m->base_radius_mm;
+
+    if (start->radius_mm < radius_mm - slack_mm) {
+        return report_error_code(p, TAKT_ERROR_INVOLUTE_START, STEP_MOTION,
+                                 radius_mm - start->radius_mm);
+    }
+    if (end->radius_mm < radius_mm - slack_mm) {
+        return report_error_code(p, TAKT_ERROR_INVOLUTE_END, STEP_MOTION,
+                                 radius_mm - end->radius_mm);
+    }
+    if (maths_abs(end->radius_mm - start->radius_mm) <= slack_mm) {
+        return report_error_code(p, TAKT_ERROR_INVOLUTE_CLOSED, STEP_MOTION, 0.0);
+    }
+    const double off_mm = deviation_mm(start, end, radius_mm, m->kind == MOVE_INVOLUTE_CW);
+
+    return off_mm <= slack_mm || report_error_code(p, TAKT_ERROR_INVOLUTE_END, STEP_MOTION, off_mm);
+}
+
+static bool check_words(struct program *p, const struct program_code *code, enum axis first,
+                        enum axis second)
+{
+    if (!circular_check_plane(p, first, second)) {
+        return false;
+    }
+    if ((p->words.given & LETTERS_CENTRE) == 0) {
+        return report_missing(p, code->step, (char)('i' + (int)first));
+    }
+    if (!words_has(p, 'r')) {
+        return report_missing(p, code->step, 'r');
+    }
+    return words_value(p, 'r') > 0.0 ||
+           report_error_letter(p, TAKT_ERROR_WORD_NOT_POSITIVE, 'r', words_value(p, 'r'));
+}
+
+bool involute_move(struct program *p, const struct program_code *code)
+{
+    enum axis first;
+    enum axis second;
+    struct point end;
+    struct move m;
+
+    plane_axes(p->modes.plane, &first, &second);
+    if (!check_words(p, code, first, second)) {
+        return false;
+    }
+    coordinates_end(p, &end);
+    emit_prepare(p, (enum move_kind)code->argument, &end, &m);
+    m.plane = p->modes.plane;
+    m.base_radius_mm = words_value(p, 'r') * p->modes.unit_mm;
+    if (!circular_centre(p, first, second, m.centre_mm)) {
+        return false;
+    }
+    const struct polar from = polar_of(&p->modes.at, first, second, m.centre_mm);
+    const struct polar to = polar_of(&end, first, second, m.centre_mm);
+
+    if (!check_ends(p, &m, &from, &to)) {
+        return false;
+    }
+    p->modes.motion = code;
+    return emit_motion(p, &m);
+}

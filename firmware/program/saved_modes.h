@@ -1,0 +1,18 @@
+/*
+ * M70 to M73: modes saved and brought back, one set per call.
+ */
+#ifndef TAKT_PROGRAM_SAVED_MODES_H
+#define TAKT_PROGRAM_SAVED_MODES_H
+
+#include "program/program.h"
+
+/* M70 saves, M71 forgets, M72 brings back, M73 saves and brings back when the call ends; argument: 0 ... 3. */
+bool saved_modes_run_code(struct program *p, const struct program_code *code);
+
+/*
+ * Brings saved modes back, with a move for the spindle and one for the coolant if they change. False: nothing is
+ * changed, because a compensated contour is under way that could not go on.
+ */
+bool saved_modes_restore(struct program *p, const struct program_saved *saved);
+
+#endif

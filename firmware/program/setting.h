@@ -1,0 +1,17 @@
+/*
+ * G10: coordinate systems and tools set by the program. L says what:
+ *
+ *     L2   offset of coordinate system P, R: its rotation in degrees
+ *     L20  the same, such that the current position gets the coordinates of the words
+ *     L1   offsets of tool P, R: its radius, I J: front and back angle, Q: orientation
+ *     L10  the same, such that the current position, with the tool in use, gets the coordinates of the words
+ *     L11  the same in G59.3, without G92
+ */
+#ifndef TAKT_PROGRAM_SETTING_H
+#define TAKT_PROGRAM_SETTING_H
+
+#include "program/program.h"
+
+bool setting_run(struct program *p, const struct program_code *code);
+
+#endif

@@ -1,0 +1,145 @@
+/*
+ * firmware/controller/controller.h: what the cycle does when the background does not keep up, on three virtual drives.
+ */
+#include "bus/bus.h"
+#include "controller/controller.h"
+#include "drives/virtual_drives.h"
+
+#include "unity.h"
+
+#include <string.h>
+
+#define DRIVES 3U
+/* Fewer than the moves of the program below, with room to spare. */
+#define LOOK_AHEAD 8U
+#define CYCLE_US   1000U
+#define CYCLE_NS   1000000U
+#define CYCLES_MAX 20000U
+
+static struct controller controller;
+static struct bus bus;
+static struct virtual_drives drives;
+static struct parameters parameters;
+static struct source_text text;
+static uint64_t now_ns;
+
+static void start(const char *program)
+{
+    struct virtual_drives_config virtual;
+    struct machine machine;
+    struct controller_config config = {.machine = &machine, .parameters = &parameters};
+
+    virtual_drives_set_default(&virtual, DRIVES);
+    machine_set_default(&machine);
+    machine.look_ahead_blocks = LOOK_AHEAD;
+    TEST_ASSERT_TRUE(bus_init(&bus, machine.can_bitrate));
+    config.can = bus_attach(&bus, NULL);
+    virtual_drives_init(&drives, &bus, &virtual);
+    parameters_clear(&parameters);
+    source_open_text(&config.source, &text, program, strlen(program));
+    controller_init(&controller, &config);
+    now_ns = 0;
+}
+
+static void cycle(void)
+{
+    controller_cycle(&controller);
+    now_ns += CYCLE_NS;
+    bus_run_until(&bus, now_ns);
+    virtual_drives_step(&drives, CYCLE_NS);
+}
+
+/* The state in the end; with background called only until the program runs, or always. */
+static enum controller_state run(bool background_goes_on)
+{
+    enum controller_state state = CONTROLLER_STARTING;
+
+    for (unsigned i = 0; i < CYCLES_MAX && state < CONTROLLER_COMPLETED; i++) {
+        if (background_goes_on || state == CONTROLLER_STARTING) {
+            controller_background(&controller);
+        }
+        cycle();
+        state = controller_get_state(&controller);
+    }
+    return state;
+}
+
+void setUp(void)
+{
+}
+
+void tearDown(void)
+{
+}
+
+static const char many_moves[] =
+    "G21 F3000 G1 X1\nX2\nX3\nX4\nX5\nX6\nX7\nX8\nX9\nX10\nX11\nX12\nX13\nX14\nX15\nX16\nX17\nX18\n"
+    "X19\nX20\nX21\nX22\nX23\nX24\nX25\nX26\nX27\nX28\nX29\nX30\nX31\nX32\nX33\nX34\nX35\nX36\nX37"
+    "\n"
+    "X38\nX39\nX40\nX41\nX42\nX43\nX44\nX45\nX46\nX47\nX48\nX49\nX50\nX51\nX52\nX53\nX54\nX55\nM2"
+    "\n";
+
+static void test_a_program_runs_to_its_end_while_the_background_keeps_up(void)
+{
+    start(many_moves);
+    TEST_ASSERT_EQUAL_INT(CONTROLLER_COMPLETED, run(true));
+}
+
+static void test_a_background_that_stops_is_a_fault_and_not_a_silent_stop(void)
+{
+    start(many_moves);
+    TEST_ASSERT_EQUAL_INT(CONTROLLER_FAULTED, run(false));
+    TEST_ASSERT_EQUAL_INT(TAKT_ERROR_STARVED, controller_get_fault(&controller)->code);
+}
+
+static void test_an_error_of_the_program_is_the_fault_when_its_moves_are_done(void)
+{
+    start("G21 F3000 G1 X1\nX2\nX3 ?\nX4\n");
+    TEST_ASSERT_EQUAL_INT(CONTROLLER_FAULTED, run(true));
+    TEST_ASSERT_EQUAL_INT(TAKT_ERROR_CHARACTER_UNKNOWN, controller_get_fault(&controller)->code);
+    TEST_ASSERT_EQUAL_UINT32(3, controller_get_fault(&controller)->line);
+}
+
+static void expect_fault(const char *program, enum takt_error code, uint32_t line)
+{
+    start(program);
+    TEST_ASSERT_EQUAL_INT_MESSAGE(CONTROLLER_FAULTED, run(true), program);
+    TEST_ASSERT_EQUAL_INT_MESSAGE(code, controller_get_fault(&controller)->code, program);
+    TEST_ASSERT_EQUAL_UINT32_MESSAGE(line, controller_get_fault(&controller)->line, program);
+}
+
+static void test_probing_that_must_make_contact_fails_when_nothing_answers(void)
+{
+    expect_fault("F600 G0 X1\nG38.2 Z-2\nG0 X5\n", TAKT_ERROR_PROBE_NO_CONTACT, 2);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-9, -2.0, controller.setpoint.at[AXIS_Z]);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-9, 1.0, controller.setpoint.at[AXIS_X]);
+    expect_fault("F600\nG38.4 Z-2\n", TAKT_ERROR_PROBE_NO_CONTACT, 2);
+}
+
+static void test_probing_that_may_fail_goes_on(void)
+{
+    start("F600\nG38.3 Z-2\nG38.5 Z-1\nG0 X#5070 Y3\nM2\n");
+    TEST_ASSERT_EQUAL_INT(CONTROLLER_COMPLETED, run(true));
+    TEST_ASSERT_DOUBLE_WITHIN(1e-9, -1.0, controller.setpoint.at[AXIS_Z]);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-9, 3.0, controller.setpoint.at[AXIS_Y]);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-9, 0.0, controller.setpoint.at[AXIS_X]);
+}
+
+static void test_an_involute_is_not_run_as_something_else(void)
+{
+    expect_fault("F600 G0 X4\nG3.2 X6.283185307 Y4 I-4 R4\nG0 X5\n", TAKT_ERROR_INVOLUTE_UNPLANNED,
+                 2);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-9, 4.0, controller.setpoint.at[AXIS_X]);
+}
+
+int main(void)
+{
+    UNITY_BEGIN();
+    RUN_TEST(test_a_program_runs_to_its_end_while_the_background_keeps_up);
+    RUN_TEST(test_a_background_that_stops_is_a_fault_and_not_a_silent_stop);
+    RUN_TEST(test_an_error_of_the_program_is_the_fault_when_its_moves_are_done);
+    RUN_TEST(test_probing_that_must_make_contact_fails_when_nothing_answers);
+    RUN_TEST(test_probing_that_may_fail_goes_on);
+    RUN_TEST(test_an_involute_is_not_run_as_something_else);
+    return UNITY_END();
+}
