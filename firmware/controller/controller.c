@@ -204,8 +204,9 @@ static void complete_record(struct controller *c)
     c->setpoint = c->record.set;
 }
 
-void controller_cycle(struct controller *c)
+void controller_cycle(struct controller *c, const struct inputs *inputs)
 {
+    c->inputs = *inputs;
     c->has_record = false;
     drives_receive(&c->drives, &c->can);
     drives_sync(&c->drives, &c->can);
@@ -232,6 +233,11 @@ const struct diagnostic *controller_get_fault(const struct controller *c)
 const struct cycle_record *controller_get_record(const struct controller *c)
 {
     return c->has_record ? &c->record : NULL;
+}
+
+const struct outputs *controller_get_outputs(const struct controller *c)
+{
+    return &c->outputs;
 }
 
 const struct segment *controller_get_segment(const struct controller *c)

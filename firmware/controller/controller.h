@@ -7,7 +7,7 @@
  *     controller_init(&c, &config);
  *     while (controller_get_state(&c) < CONTROLLER_COMPLETED) {
  *         controller_background(&c);
- *         controller_cycle(&c);
+ *         controller_cycle(&c, &inputs);
  *         ... move the world by one cycle ...
  *     }
  *
@@ -20,6 +20,8 @@
 #include "controller/machine.h"
 #include "drive/drives.h"
 #include "hal/can.h"
+#include "hal/inputs.h"
+#include "hal/outputs.h"
 #include "motion/cycle_record.h"
 #include "plan/segment.h"
 #include "program/program.h"
@@ -49,7 +51,8 @@ enum controller_state {
 
 void controller_init(struct controller *c, const struct controller_config *config);
 void controller_background(struct controller *c);
-void controller_cycle(struct controller *c);
+/* One control cycle with what is known of the world at its start. */
+void controller_cycle(struct controller *c, const struct inputs *inputs);
 
 enum controller_state controller_get_state(const struct controller *c);
 /* What went wrong; meaningful in CONTROLLER_FAULTED. */
@@ -59,6 +62,8 @@ const struct diagnostic *controller_get_fault(const struct controller *c);
  * are numbered 0, 1, 2, ... without gaps.
  */
 const struct cycle_record *controller_get_record(const struct controller *c);
+/* The machine's outputs as the last cycle left them. Valid until the next cycle. */
+const struct outputs *controller_get_outputs(const struct controller *c);
 /* The segment the last program cycle executed; NULL as above. Valid until the next cycle. */
 const struct segment *controller_get_segment(const struct controller *c);
 

@@ -5,6 +5,8 @@
 #define TAKT_CONTROLLER_CONTROLLER_STATE_H
 
 #include "drive/drives.h"
+#include "hal/inputs.h"
+#include "hal/outputs.h"
 #include "motion/motion.h"
 #include "offset/offset.h"
 #include "plan/window.h"
@@ -17,7 +19,9 @@ struct controller {
     bool program_ended; /* nothing more comes from the program: its end or an error in it */
     bool has_record;
     struct diagnostic
-        program_error; /* TAKT_OK: none. Reported when everything before it has been done */
+        program_error;    /* TAKT_OK: none. Reported when everything before it has been done */
+    struct inputs inputs; /* of this cycle */
+    struct outputs outputs;
     struct point setpoint;
     struct cycle_record record;
     struct program program;

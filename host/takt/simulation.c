@@ -49,6 +49,7 @@ struct simulation *simulation_open(const struct session *session)
         return NULL;
     s->cycle_ns = session->setup.machine.cycle_us * 1000;
     s->cost.min_ns = UINT64_MAX;
+    s->inputs = inputs_idle();
     (void)bus_init(&s->bus,
                    session->setup.machine.can_bitrate); /* its range is checked with the machine */
     port = bus_attach(&s->bus, NULL);
@@ -80,7 +81,7 @@ static void measured_cycle(struct simulation *s)
 {
     uint64_t start_ns = stopwatch_now_ns();
 
-    controller_cycle(&s->controller);
+    controller_cycle(&s->controller, &s->inputs);
     cycle_cost_add(&s->cost, stopwatch_now_ns() - start_ns);
 }
 
@@ -90,7 +91,7 @@ void simulation_step(struct simulation *s)
     if (s->cycles % CYCLE_COST_EVERY == 0)
         measured_cycle(s);
     else
-        controller_cycle(&s->controller);
+        controller_cycle(&s->controller, &s->inputs);
     s->cycles++;
     bus_run_until(&s->bus, s->cycles * s->cycle_ns);
     virtual_drives_step(&s->drives, s->cycle_ns);

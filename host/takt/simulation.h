@@ -9,6 +9,7 @@
 #include "bus/bus.h"
 #include "controller/controller.h"
 #include "drives/virtual_drives.h"
+#include "hal/inputs.h"
 #include "takt/session.h"
 
 #include <stdbool.h>
@@ -32,7 +33,8 @@ struct simulation {
     struct controller controller;
     struct parameters parameters; /* what the program sets */
     struct source_text text;
-    uint64_t cycles; /* since power-on, drive start included */
+    struct inputs inputs; /* of the next cycle */
+    uint64_t cycles;      /* since power-on, drive start included */
     uint32_t cycle_ns;
     struct cycle_cost cost;
 };

@@ -43,7 +43,9 @@ static void start(const char *program)
 
 static void cycle(void)
 {
-    controller_cycle(&controller);
+    const struct inputs inputs = inputs_idle();
+
+    controller_cycle(&controller, &inputs);
     now_ns += CYCLE_NS;
     bus_run_until(&bus, now_ns);
     virtual_drives_step(&drives, CYCLE_NS);
