@@ -41,6 +41,15 @@ static void text_add_value(struct text *t, double value)
     text_add(t, digits, length);
 }
 
+/* Whole numbers below 2^32, as codes are written: with 4 digits or 8. */
+static void text_add_hex(struct text *t, double value)
+{
+    uint32_t bits = value > 0 && value <= (double)UINT32_MAX ? (uint32_t)value : 0;
+    unsigned digits = bits > UINT16_MAX ? 8 : 4;
+    while (digits-- > 0)
+        text_add(t, &"0123456789ABCDEF"[bits >> (4 * digits) & 15], 1);
+}
+
 static bool is_control(char c)
 {
     unsigned char byte = (unsigned char)c;
@@ -71,6 +80,8 @@ void diagnostic_set(struct diagnostic *d, enum takt_error code, uint32_t line, u
     d->line = line;
     d->column = column;
     d->value = value;
+    d->limit = 0.0;
+    d->meaning = NULL;
     for (size_t i = 0; i < length; i++) {
         d->word[i] = word[i];
         if (is_control(word[i]))
@@ -79,22 +90,55 @@ void diagnostic_set(struct diagnostic *d, enum takt_error code, uint32_t line, u
     d->word[length] = '\0';
 }
 
+void diagnostic_set_limit(struct diagnostic *d, double limit)
+{
+    d->limit = limit;
+}
+
+/* Of the axis the word begins with. */
+static const char *unit_of(const char *word)
+{
+    return word[0] >= 'A' && word[0] <= 'C' ? "degrees" : "mm";
+}
+
 #define TAKT_ERROR_TEXT(name, text) text,
 static const char *const TEMPLATE[TAKT_ERROR_TOTAL] = {TAKT_ERRORS(TAKT_ERROR_TEXT)};
 #undef TAKT_ERROR_TEXT
 
+/* What a percent sign with this letter stands for; false: it stands for itself. */
+static bool text_add_place(struct text *t, char letter, const struct diagnostic *d)
+{
+    switch (letter) {
+    case 'w':
+        text_add_string(t, d->word);
+        return true;
+    case 'v':
+        text_add_value(t, d->value);
+        return true;
+    case 'l':
+        text_add_value(t, d->limit);
+        return true;
+    case 'x':
+        text_add_hex(t, d->value);
+        return true;
+    case 'm':
+        text_add_string(t, d->meaning != NULL ? d->meaning : "?");
+        return true;
+    case 'u':
+        text_add_string(t, unit_of(d->word));
+        return true;
+    default:
+        return false;
+    }
+}
+
 static void text_add_template(struct text *t, const char *template, const struct diagnostic *d)
 {
     for (const char *c = template; *c != '\0'; c++) {
-        if (c[0] == '%' && c[1] == 'w')
-            text_add_string(t, d->word);
-        else if (c[0] == '%' && c[1] == 'v')
-            text_add_value(t, d->value);
-        else {
+        if (c[0] == '%' && text_add_place(t, c[1], d))
+            c++;
+        else
             text_add(t, c, 1);
-            continue;
-        }
-        c++;
     }
 }
 

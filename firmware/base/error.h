@@ -11,8 +11,8 @@
 
 /*
  * Every error: its name and its text. In a text, %w stands for the offending word, %v for the value, with up to
- * six decimals. The numbers are the order of this list, from -1 down; append at the end of a group, the numbers
- * are not stored anywhere.
+ * six decimals, %l for a second one, its limit, %u for the unit of the axis that is the word, %x for the value
+ * in hexadecimal and %m for its meaning. The numbers are the order of this list, from -1 down; append at the end of a group, the numbers are not stored anywhere.
  */
 #define TAKT_ERRORS(X)                                                                             \
     /* reading the text of a program */                                                            \
@@ -75,7 +75,7 @@
     /* motion */                                                                                   \
     X(ARC_ENDPOINT, "the arc's end is %v mm off its circle")                                       \
     X(FEED_MISSING, "a cutting move needs a feed: no F has been given")                            \
-    X(TRAVEL_EXCEEDED, "axis %w would leave its travel: %v")                                       \
+    X(TRAVEL_EXCEEDED, "axis %w would leave its travel: %v %u, limit %l %u")                       \
     X(MOTION_MODE_MISSING, "the word '%w' needs a motion code (G0, G1, G2 or G3)")                 \
     X(ARC_CENTRE_MISSING, "the arc's centre is missing: '%w' needs R, or I J K of its plane")      \
     X(ARC_CENTRE_TWICE, "the arc's centre is given twice: '%w' and I J K")                         \
@@ -98,23 +98,28 @@
     X(SPLINE_UNSUPPORTED, "'%w': splines are not supported; use lines and arcs")                   \
     X(INVOLUTE_START, "the start is %v mm inside the involute's base circle")                      \
     X(INVOLUTE_END, "the end is %v mm off the involute")                                           \
+    X(INVOLUTE_TURNS, "the base circle is too small: the involute would turn %v times")            \
     X(INVOLUTE_CLOSED, "start and end are equally far from the centre of the involute '%w'")       \
-    X(INVOLUTE_UNPLANNED, "involutes can be read and printed, but not yet run or planned")         \
     X(PROBE_NO_WAY, "the probing move '%w' ends where it starts")                                  \
-    X(PROBE_NO_CONTACT, "the probing move ended without the probe's answer")                       \
+    X(PROBE_NO_CONTACT, "the probing move ended without contact")                                  \
+    X(PROBE_NO_RELEASE, "the probing move ended without losing contact")                           \
+    X(PROBE_TOUCHES, "the probe is in contact already where the probing move begins")              \
+    X(PROBE_CLEAR, "the probe has no contact where the probing move away from it begins")          \
     X(SETTING_MISSING, "'%w' has no word to set anything")                                         \
     X(TOOL_ABSENT, "tool %v is not in the tool table")                                             \
     X(TOOL_CHANGES_FULL, "a program can change the values of %v tools at most")                    \
     X(CUTTER_REPEATED, "'%w': cutter compensation is on already; G40 comes first")                 \
     X(CUTTER_DIAMETER, "'%w' needs D, the diameter of the tool")                                   \
-    X(CUTTER_ORIENTATION, "'%w': compensation for lathe tools (orientation %v) is not supported")  \
+    X(CUTTER_ORIENTATION, "'%w': a lathe tool (orientation %v) is compensated in G18 only")        \
     X(CUTTER_ON, "'%w' is not possible while cutter compensation is on")                           \
     X(CUTTER_EXIT_ARC, "the first move after cutter compensation must be straight, not '%w'")      \
     X(OFFSET_ENTRY_SHORT,                                                                          \
       "the entry move is too short for the tool's radius: it must be more than %v mm longer")      \
     X(OFFSET_ENTRY_ARC, "no arc leads from here to the compensated end of the entry move")         \
+    X(OFFSET_ENTRY_INVOLUTE, "cutter compensation cannot begin with an involute")                  \
     X(OFFSET_ARC_SMALL,                                                                            \
       "the tool does not fit into the arc: its radius would have to be more than %v mm larger")    \
+    X(OFFSET_TURNS, "an involute of more than %v turns cannot be compensated")                     \
     X(OFFSET_GOUGE, "the tool does not fit here: it would cut %v mm into the contour")             \
     X(OFFSET_LEFT_OUT, "this move is left out: the tool, radius %v mm, does not get there")        \
     X(OFFSET_CROWDED, "more than %v commands between two moves of a compensated contour")          \
@@ -122,13 +127,68 @@
     X(TOOL_MISSING, "'%w' needs a tool: no T has been given")                                      \
     X(TOOL_UNKNOWN, "tool %v is not in the tool table: its length counts as 0")                    \
     X(SPINDLE_LIMITED, "'%w' is above the spindle's maximum of %v rev/min, which is used instead") \
+    /* correction tables */                                                                        \
+    X(TABLE_COLUMN_UNKNOWN,                                                                        \
+      "'%w' is no column of a table, such as X_mm, C_deg, KX_um or KY_up_um")                      \
+    X(TABLE_COLUMN_TWICE, "the column '%w' is given twice")                                        \
+    X(TABLE_COLUMN_ORDER, "the position '%w' stands behind a correction")                          \
+    X(TABLE_POSITIONS, "a table has 1 to %v columns of positions")                                 \
+    X(TABLE_OUTPUTS_MISSING, "the table has no column of corrections, such as KX_um")              \
+    X(TABLE_DIRECTION_ALONE, "the column '%w' needs that of the other direction beside it")        \
+    X(TABLE_DIRECTION_GRID, "'%w': directions of approach are for tables over one axis")           \
+    X(TABLE_ROTARY_SECOND, "a grid has one rotary axis at most, and '%w' is another")              \
+    X(TABLE_CELL_COUNT, "the row has %v cells, which is not one for each column")                  \
+    X(TABLE_NUMBER, "'%w' is not a number")                                                        \
+    X(TABLE_NOT_FINITE, "%w is not finite")                                                        \
+    X(TABLE_ORDER, "%w: positions must increase")                                                  \
+    X(TABLE_UNEVEN, "%w: a grid has even steps, and this one is off by a ratio of %v")             \
+    X(TABLE_POINT, "the point %w is expected here: points are missing, or in another order")       \
+    X(TABLE_POINTS_FEW, "the table has fewer than 2 points along %w")                              \
+    X(TABLE_POINTS_MANY, "the table has more than %v points along %w")                             \
+    X(TABLE_FULL, "the table has more than %v numbers")                                            \
+    X(TABLE_LARGE, "%w: a correction of %v mm (rad) is above the machine's maximum")               \
+    X(TABLE_STEEP, "%w: a slope of %v from the point before is above the machine's maximum")       \
+    X(TABLE_CHECKSUM, "the checksum is wrong: the table is damaged, or was changed by hand")       \
+    X(TABLE_AFTER_CHECKSUM, "the table goes on behind its checksum")                               \
+    X(TABLE_DAMAGED, "this is no stored correction table of this version")                         \
+    X(TABLE_TRIPLET, "three numbers are expected: nominal, forward, reverse")                      \
+    X(TABLE_KIND, "this needs a table over one axis; a volume one over two to four (here: %v)")    \
+    X(TABLE_PAIRS_MANY, "more than %v pairs of axes, or the points of '%w' find no room")          \
+    X(TABLE_PAIR_TWICE, "the correction '%w' is in two tables of the same axis")                   \
+    X(TABLE_RESERVE, "axis %w would need %v percent of its limits, more than has been reserved")   \
     /* machine and drives */                                                                       \
+    X(SPINDLE_SLOW, "the spindle has not reached its speed in time")                               \
     X(STARVED, "the planner could not keep up with the motion")                                    \
-    X(DRIVE_FAULT, "the drive of axis %w reports a fault")                                         \
-    X(DRIVE_SILENT, "the drive of axis %w does not answer")                                        \
-    X(DRIVE_FOLLOWING, "axis %w lags %v mm behind its setpoint")                                   \
-    X(DRIVE_RANGE, "%v mm is beyond the position range of the drive of axis %w")                   \
-    X(DRIVE_UNREACHABLE, "the bus refused the setpoint of axis %w")
+    X(DRIVE_FAULT, "the drive of axis %w reports %x: %m")                                          \
+    X(DRIVE_STATE, "the drive of axis %w has left operation: its state is '%m'")                   \
+    X(DRIVE_NOT_ENABLED, "the drive of axis %w does not get enabled: it stays in '%m'")            \
+    X(DRIVE_REBOOTED, "the drive of axis %w has started anew")                                     \
+    X(DRIVE_ABSENT, "the drive of axis %w has not booted within %v s")                             \
+    X(DRIVE_SILENT, "the drive of axis %w has sent no position for %v ms")                         \
+    X(DRIVE_HEARTBEAT, "the drive of axis %w has sent no heartbeat for %v ms")                     \
+    X(DRIVE_NMT, "the drive of axis %w is not operational any more, but %m")                       \
+    X(DRIVE_TYPE, "axis %w has no CiA 402 drive: the device type, object 1000, is %x")             \
+    X(DRIVE_IDENTITY, "axis %w has another drive than the machine file says: its %m is %x")        \
+    X(DRIVE_MODES, "the drive of axis %w has no %m mode: the modes, object 6502, are %x")          \
+    X(DRIVE_MODE, "the drive of axis %w does not take the mode %v")                                \
+    X(DRIVE_REFUSES, "the drive of axis %w refuses with abort code %x: %m")                        \
+    X(DRIVE_UNANSWERED, "the drive of axis %w does not answer within %v ms")                       \
+    X(DRIVE_FOLLOWING, "axis %w lags %v %u behind its setpoint")                                   \
+    X(DRIVE_HOMING, "the drive of axis %w reports an error while homing: statusword %x")           \
+    X(DRIVE_HOMING_SLOW, "homing of axis %w has not ended within %v s")                            \
+    X(DRIVE_RANGE, "%v %u is beyond the position range of the drive of axis %w")                   \
+    X(DRIVE_UNREACHABLE, "the bus refused the setpoint of axis %w")                                \
+    X(CYCLE_SLOW,                                                                                  \
+      "the control cycle of %v Hz is below the %l Hz the axes need: curves are driven slower")     \
+    X(STEP_RATE, "axis %w would need %v steps/s, more than its step drive takes")                  \
+    X(STEP_PORT, "the step output has no room for the pulses of a cycle")                          \
+    X(BUS_OVERLOAD, "the bus cannot carry a cycle: it takes %w at worst, %v percent")              \
+    /* operator and spindle */                                                                     \
+    X(EMERGENCY_STOP, "emergency stop")                                                            \
+    X(HOMING_STOPPED, "homing was stopped: the axes do not know where they are")                   \
+    X(PANEL_SILENT, "the panel in control has been silent for %v ms")                              \
+    X(SPINDLE_SILENT, "the spindle drive does not answer")                                         \
+    X(SPINDLE_TRIPPED, "the spindle drive has switched off")
 
 #define TAKT_ERROR_INDEX(name, text) TAKT_ERROR_INDEX_##name,
 enum takt_error_index { TAKT_ERRORS(TAKT_ERROR_INDEX) TAKT_ERROR_TOTAL };
@@ -148,6 +208,10 @@ struct diagnostic {
     uint32_t column; /* from 1; 0: the whole line */
     char word[DIAGNOSTIC_WORD_MAX + 1];
     double value;
+    union {                  /* by the text of the error: no text has both */
+        double limit;        /* of the value; 0: none */
+        const char *meaning; /* of the value, a constant; NULL: none */
+    };
 };
 
 /*
@@ -156,6 +220,9 @@ struct diagnostic {
  */
 void diagnostic_set(struct diagnostic *d, enum takt_error code, uint32_t line, uint32_t column,
                     const char *word, size_t word_length, double value);
+
+/* The same for an error whose text has a limit. */
+void diagnostic_set_limit(struct diagnostic *d, double limit);
 
 /*
  * The text of d without file, line and column ("the arc's end is 0.031 mm off its circle"), zero-terminated,

@@ -22,6 +22,21 @@ enum cia402_state cia402_state(uint16_t statusword)
     return CIA402_NOT_READY;
 }
 
+const char *cia402_state_text(enum cia402_state state)
+{
+    static const char *const names[] = {
+        [CIA402_NOT_READY] = "not ready to switch on",
+        [CIA402_SWITCH_ON_DISABLED] = "switch on disabled",
+        [CIA402_READY] = "ready to switch on",
+        [CIA402_SWITCHED_ON] = "switched on",
+        [CIA402_ENABLED] = "operation enabled",
+        [CIA402_QUICK_STOP] = "quick stop active",
+        [CIA402_FAULT_REACTION] = "fault reaction active",
+        [CIA402_FAULT] = "fault",
+    };
+    return names[state];
+}
+
 uint16_t cia402_statusword(enum cia402_state state)
 {
     return state_coding[state].value;

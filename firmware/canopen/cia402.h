@@ -26,8 +26,30 @@
 #define CIA402_TARGET_POSITION  PDO_MAPPED(0x607A, 0, 32)
 #define CIA402_FOLLOWING_ERROR  PDO_MAPPED(0x60F4, 0, 32)
 
-#define CIA402_MODE_NONE                 0
-#define CIA402_MODE_CYCLIC_SYNC_POSITION 8
+/* Objects that are not mapped. Unit of lengths: increments; of times: s. */
+#define CIA402_QUICK_STOP_OPTION    0x605A
+#define CIA402_SHUTDOWN_OPTION      0x605B
+#define CIA402_DISABLE_OPTION       0x605C
+#define CIA402_HALT_OPTION          0x605D
+#define CIA402_FAULT_OPTION         0x605E
+#define CIA402_CONNECTION_OPTION    0x6007 /* what to do when the connection is lost */
+#define CIA402_HOME_OFFSET          0x607C
+#define CIA402_HOMING_METHOD        0x6098
+#define CIA402_HOMING_SPEEDS        0x6099 /* 1: towards the switch, 2: towards the zero mark */
+#define CIA402_HOMING_ACCELERATION  0x609A
+#define CIA402_INTERPOLATION_PERIOD 0x60C2 /* 1: value, 2: power of ten of its unit in s */
+#define CIA402_SUPPORTED_MODES      0x6502 /* bit of mode n: n - 1 */
+
+/* Option codes: brake with the quick stop's deceleration, then "switch on disabled" or "fault". */
+#define CIA402_OPTION_QUICK_STOP_RAMP 2
+/* Of the connection option: quick stop. */
+#define CIA402_CONNECTION_QUICK_STOP 3
+
+#define CIA402_MODE_NONE                  0
+#define CIA402_MODE_PROFILE_POSITION      1
+#define CIA402_MODE_HOMING                6
+#define CIA402_MODE_INTERPOLATED_POSITION 7
+#define CIA402_MODE_CYCLIC_SYNC_POSITION  8
 
 enum cia402_state {
     CIA402_NOT_READY,
@@ -47,15 +69,28 @@ enum cia402_state {
 #define CIA402_SWITCH_ON        0x0007
 #define CIA402_ENABLE_OPERATION 0x000F
 #define CIA402_FAULT_RESET      0x0080 /* acts when bit 7 rises */
+#define CIA402_START_HOMING     0x0010 /* beside ENABLE_OPERATION, in homing mode: acts when it rises */
 
 /* Bits of the statusword beside the state. */
 #define CIA402_VOLTAGE_ENABLED  0x0010
 #define CIA402_REMOTE           0x0200
 #define CIA402_FOLLOWS_TARGET   0x1000 /* cyclic synchronous modes: the target is being followed */
 #define CIA402_FOLLOWING_FAILED 0x2000
+#define CIA402_TARGET_REACHED   0x0400 /* homing: idle or done, see also HOMING_ATTAINED */
+#define CIA402_HOMING_ATTAINED  0x1000 /* homing mode only */
+#define CIA402_HOMING_ERROR     0x2000 /* homing mode only */
 
 /* State that a statusword shows. A pattern CiA 402 does not define reads as CIA402_NOT_READY. */
 enum cia402_state cia402_state(uint16_t statusword);
+
+/* cia402_state(statusword) == CIA402_ENABLED, for every drive in every cycle. */
+static inline bool cia402_is_enabled(uint16_t statusword)
+{
+    return (statusword & 0x6F) == 0x27;
+}
+
+/* The state's name, "switched on". */
+const char *cia402_state_text(enum cia402_state state);
 
 /* The statusword's state bits (mask 0x6F). */
 uint16_t cia402_statusword(enum cia402_state state);

@@ -15,9 +15,15 @@
 #define EMCY_NONE            0x0000
 #define EMCY_PDO_LENGTH      0x8210 /* a PDO was shorter than its mapping; not processed */
 #define EMCY_FOLLOWING_ERROR 0x8611
+#define EMCY_HEARTBEAT       0x8130 /* one that is watched has stayed out */
+#define EMCY_SYNC            0x8700 /* SYNC has stayed out */
+#define EMCY_TEMPERATURE     0x4310 /* of the drive */
 
 /* Bits of the error register, object 1001. */
 #define EMCY_REGISTER_GENERIC       0x01
+#define EMCY_REGISTER_CURRENT       0x02
+#define EMCY_REGISTER_VOLTAGE       0x04
+#define EMCY_REGISTER_TEMPERATURE   0x08
 #define EMCY_REGISTER_COMMUNICATION 0x10
 #define EMCY_REGISTER_PROFILE       0x20 /* defined by the device profile: CiA 402 */
 
@@ -31,5 +37,11 @@ struct emcy {
 void emcy_write(struct can_frame *frame, const struct emcy *emcy);
 /* False: the frame is no emergency message. */
 bool emcy_read(const struct can_frame *frame, struct emcy *emcy);
+
+/*
+ * Meaning of an error code in a few words: the code itself where it is known, else the class it
+ * belongs to.
+ */
+const char *emcy_text(uint16_t code);
 
 #endif

@@ -1,11 +1,10 @@
 #include "controller/controller.h"
 
 #include "base/maths.h"
+#include "controller/controller_steps.h"
+#include "controller/outputs.h"
 
 #include <string.h>
-
-#define START_TIMEOUT_S  5.0
-#define ANSWER_TIMEOUT_S 0.02
 
 static double cycle_s(const struct machine *machine)
 {
@@ -17,6 +16,8 @@ void controller_plan_limits(const struct machine *machine, struct plan_limits *l
     memset(limits, 0, sizeof(*limits));
     limits->axes = machine_axes(machine);
     limits->cycle_s = cycle_s(machine);
+    limits->law = machine->law;
+    limits->landing = machine->landing;
     limits->chord_error_max_mm = 1.0 / machine->resolution_per_mm;
     for (int i = 0; i < AXIS_COUNT; i++) {
         limits->velocity_mm_s[i] = machine->axis[i].max_velocity_mm_s;
@@ -25,28 +26,34 @@ void controller_plan_limits(const struct machine *machine, struct plan_limits *l
     }
 }
 
-static uint32_t cycles_in(const struct machine *machine, double time_s)
+void controller_motion_bound(const struct machine *machine, struct motion_bound *most)
 {
-    return (uint32_t)maths_ceil(time_s / cycle_s(machine));
-}
-
-static void drives_config_set(struct drives_config *config, const struct machine *machine)
-{
-    memset(config, 0, sizeof(*config));
-    config->start_timeout_cycles = cycles_in(machine, START_TIMEOUT_S);
-    config->answer_timeout_cycles = cycles_in(machine, ANSWER_TIMEOUT_S);
+    memset(most, 0, sizeof(*most));
     for (int i = 0; i < AXIS_COUNT; i++) {
         const struct machine_axis *axis = &machine->axis[i];
 
         if (axis->present) {
-            config->axis[config->count] = (struct drives_config_axis){
-                .axis = (enum axis)i,
-                .node = axis->drive_node,
-                .increments_per_mm = axis->increments_per_mm,
-                .following_error_max_mm = axis->following_error_max_mm,
-            };
-            config->count++;
+            most->velocity_mm_s[i] = axis->max_velocity_mm_s;
+            most->acceleration_mm_s2[i] = axis->max_acceleration_mm_s2;
+            most->jerk_mm_s3[i] = axis->max_jerk_mm_s3;
+            most->farthest_mm[i] =
+                maths_max(maths_abs(axis->travel_min_mm), maths_abs(axis->travel_max_mm));
         }
+    }
+}
+
+void controller_reserve_correction(struct correction *correction, const struct machine *machine,
+                                   struct plan_limits *limits)
+{
+    struct motion_bound most;
+    struct need need;
+
+    controller_motion_bound(machine, &most);
+    correction_reserve(correction, &most, &need);
+    for (int i = 0; i < AXIS_COUNT; i++) {
+        limits->velocity_mm_s[i] -= need.velocity_mm_s[i];
+        limits->acceleration_mm_s2[i] -= need.acceleration_mm_s2[i];
+        limits->jerk_mm_s3[i] -= need.jerk_mm_s3[i];
     }
 }
 
@@ -67,8 +74,21 @@ void controller_program_config(const struct controller_config *config,
     program->block_delete = config->block_delete;
     program->from_line = config->from_line;
     program->sharp_corners = machine->sharp_corners;
+    program->correction_layers = CORRECTION_LAYERS_COUNT;
     program->tools = config->tools;
     program->parameters = config->parameters;
+    program->waits = true;
+}
+
+static void start_interpolator(struct controller *c)
+{
+    const struct interpolator_config config = {
+        .kind = (enum interpolator_kind)c->machine.interpolator,
+        .increment_mm = 1.0 / c->machine.resolution_per_mm,
+        .bits = INTERPOLATOR_BITS,
+    };
+
+    interpolator_init(&c->interpolator, &config);
 }
 
 void controller_init(struct controller *c, const struct controller_config *config)
@@ -81,73 +101,103 @@ void controller_init(struct controller *c, const struct controller_config *confi
     c->machine = *config->machine;
     c->can = config->can;
     c->state = CONTROLLER_STARTING;
+    c->single_block = config->single_block;
+    c->keeps_outputs = config->keeps_outputs;
     controller_program_config(config, &program);
     program_open(&c->program, &program, &config->source);
     offset_open(&c->offset, &program);
     controller_plan_limits(&c->machine, &limits);
-    window_init(&c->window, &limits, c->machine.look_ahead_blocks, &program.start);
-    motion_init(&c->motion, limits.cycle_s, &program.start);
-    drives_config_set(&drives, &c->machine);
+    correction_init(&c->correction, &c->machine.correction, limits.axes, limits.cycle_s,
+                    config->correction, &program.start);
+    controller_reserve_correction(&c->correction, &c->machine, &limits);
+    path_init(&c->path, &limits, &program.start);
+    motion_init(&c->motion, &c->path, &program.start, c->machine.override_proportional != 0);
+    spindle_watch_init(&c->spindle, limits.cycle_s, c->machine.spindle_load_limit_percent,
+                       c->machine.spindle_at_speed_s);
+    controller_drives_config(&c->machine, &drives);
     drives_init(&c->drives, &drives);
+    controller_steps_init(c, &config->step);
+    (void)controller_cycle_is_enough(&c->machine, &c->warning);
+    start_interpolator(c);
+    approach_init(&c->approach, &program.start);
 }
 
-/*
- * What ends the program after this move. Nothing answers for a probe here, so a probing move that must make contact
- * fails at its end.
- */
-static enum takt_error trouble_of(const struct move *move)
+/* A move has been read: onto the path with it. */
+static void take_move(struct controller *c, struct move *move)
 {
-    if (move_is_involute(move)) {
-        return TAKT_ERROR_INVOLUTE_UNPLANNED;
-    }
-    if (move->kind == MOVE_PROBE && !move->probe_optional) {
-        return TAKT_ERROR_PROBE_NO_CONTACT;
-    }
-    return TAKT_OK;
-}
-
-/* A move has been read: into the window with it, unless it cannot be planned. */
-static void take_move(struct controller *c, const struct move *move)
-{
-    const enum takt_error trouble = trouble_of(move);
-
     c->program_error.code = TAKT_OK;
-    if (trouble != TAKT_ERROR_INVOLUTE_UNPLANNED) {
-        window_push(&c->window, move);
+    if (c->single_block && move_is_motion(move)) {
+        move->path = PATH_EXACT_STOP;
     }
-    if (trouble != TAKT_OK) {
-        diagnostic_set(&c->program_error, trouble, move->line, 0, "", 0, 0.0);
-    }
-    c->program_ended = trouble != TAKT_OK || move->kind == MOVE_END;
+    path_push(&c->path, move);
+    controller_probe_ask(&c->probe, move, cycle_s(&c->machine));
+    c->program_ended = move->kind == MOVE_END;
 }
 
-/* One move from the program into the window. */
+/* One move from the program onto the path. */
 static void read_move(struct controller *c)
 {
     struct move move;
 
-    if (offset_next(&c->offset, &c->program, &move, &c->program_error) == PROGRAM_MOVE) {
+    switch (offset_next(&c->offset, &c->program, &move, &c->program_error)) {
+    case PROGRAM_MOVE:
         take_move(c, &move);
-    } else {
+        break;
+    case PROGRAM_WAIT:
+        c->program_waits = true;
+        break;
+    case PROGRAM_END:
+    case PROGRAM_ERROR:
         c->program_ended = true;
+        break;
     }
     if (c->program_ended) {
-        window_finish(&c->window);
+        path_finish(&c->path);
     }
 }
 
+/* What the program asked has been answered: it goes on from where the axes rest. */
+static void take_answer(struct controller *c)
+{
+    struct program_answer answer;
+    struct diagnostic error;
+
+    if (!controller_probe_take(&c->probe, &answer, &error)) {
+        return;
+    }
+    c->program_waits = false;
+    if (error.code != TAKT_OK) {
+        c->program_error = error;
+        c->program_ended = true;
+        path_finish(&c->path);
+        return;
+    }
+    offset_answer(&c->offset, &c->program, &answer);
+}
+
+static bool can_read(struct controller *c)
+{
+    return !c->program_ended && !c->program_waits && path_has_room(&c->path);
+}
+
+/* Reads more only when the look-ahead has become shorter by this part of it: a ceiling is then made for many blocks. */
+#define TOP_UP_PART 8
+
 void controller_background(struct controller *c)
 {
-    while (motion_has_room(&c->motion)) {
-        while (!c->program_ended && window_has_room(&c->window)) {
+    const uint32_t wanted = c->machine.look_ahead_blocks;
+
+    take_answer(c);
+    if (motion_wanted(&c->motion) == NULL) {
+        return;
+    }
+    path_go_on(&c->path);
+    if (motion_ahead(&c->motion) + wanted / TOP_UP_PART <= wanted) {
+        while (can_read(c) && motion_ahead(&c->motion) < wanted) {
             read_move(c);
         }
-        if (!window_is_ready(&c->window)) {
-            return;
-        }
-        window_take(&c->window, motion_next_slot(&c->motion));
-        motion_push(&c->motion);
     }
+    motion_build(&c->motion);
 }
 
 static void controller_fail(struct controller *c, const struct diagnostic *fault)
@@ -156,12 +206,29 @@ static void controller_fail(struct controller *c, const struct diagnostic *fault
     c->fault = *fault;
 }
 
-/* The queue ran dry: after a program error that is its end, else the background was too slow. */
-static void controller_starve(struct controller *c)
+/* Everything has been done, and no end of the program came: an error ended it. */
+static void controller_end_in_error(struct controller *c)
 {
-    struct diagnostic starved = {.code = TAKT_ERROR_STARVED};
+    controller_fail(c, &c->program_error);
+}
 
-    controller_fail(c, c->program_error.code != TAKT_OK ? &c->program_error : &starved);
+/* The drives hold where they stand; the program starts where it starts. */
+static void come_to_start(struct controller *c)
+{
+    struct point actual;
+
+    controller_get_actual(c, &actual);
+    if (approach_cycle(&c->approach, &c->machine, &actual, &c->setpoint)) {
+        c->state = CONTROLLER_RUNNING;
+    }
+}
+
+/* On the way to the start of the program there is no path to come to rest on. */
+static void brake_off_the_path(struct controller *c)
+{
+    if (c->state == CONTROLLER_STARTING) {
+        drives_stop_for(&c->drives, drives_get_fault(&c->drives));
+    }
 }
 
 static void follow_drives(struct controller *c)
@@ -171,7 +238,15 @@ static void follow_drives(struct controller *c)
         break;
     case DRIVES_ENABLED:
         if (c->state == CONTROLLER_STARTING) {
-            c->state = CONTROLLER_RUNNING;
+            come_to_start(c);
+        }
+        break;
+    case DRIVES_STOPPING:
+        brake_off_the_path(c);
+        break;
+    case DRIVES_BRAKING:
+        if (c->state < CONTROLLER_STOPPING) {
+            c->state = CONTROLLER_STOPPING;
         }
         break;
     case DRIVES_FAULTED:
@@ -180,28 +255,118 @@ static void follow_drives(struct controller *c)
     }
 }
 
+/* The spindle's speed and load. */
+static void follow_spindle(struct controller *c)
+{
+    const struct diagnostic slow = {.code = TAKT_ERROR_SPINDLE_SLOW};
+
+    if (c->state == CONTROLLER_RUNNING && !spindle_watch_cycle(&c->spindle, &c->inputs.spindle)) {
+        controller_fail(c, &slow);
+    }
+}
+
+static struct motion_operator operator_of(const struct controller *c)
+{
+    const struct inputs *in = &c->inputs;
+
+    return (struct motion_operator){
+        .feed_ratio = c->spindle.ratio *
+                      maths_clamp(0.01 * in->feed_override_percent, 0.0, BLOCK_OVERRIDE_MAX),
+        .rapid_ratio = maths_clamp(0.01 * in->rapid_override_percent, 0.0, 1.0),
+        .hold = in->feed_hold,
+        .stop = drives_get_state(&c->drives) == DRIVES_STOPPING,
+        .wait = c->spindle.waits,
+    };
+}
+
+/* Spindle, coolant and lines, as what has been passed in this cycle sets them. */
+static void follow_events(struct controller *c)
+{
+    for (uint32_t i = c->motion.passed_first; i != c->path.first; i++) {
+        outputs_apply(&c->outputs, &c->surface, &path_at(&c->path, i)->move);
+        spindle_watch_pass(&c->spindle, &path_at(&c->path, i)->move);
+    }
+    outputs_follow(&c->outputs, &c->surface, &c->record.cmd);
+}
+
+/* No cycle was made, but events may stand before the end, and the end is one. */
+static void end_program(struct controller *c)
+{
+    follow_events(c);
+    if (!c->keeps_outputs) {
+        outputs_apply(&c->outputs, &c->surface, &path_at(&c->path, c->path.first)->move);
+    }
+    c->state = CONTROLLER_COMPLETED;
+}
+
 static void follow_path(struct controller *c)
 {
-    switch (motion_cycle(&c->motion, &c->record)) {
+    const struct motion_operator asked = operator_of(c);
+
+    switch (motion_cycle(&c->motion, &asked, &c->record)) {
     case MOTION_CYCLE:
         c->has_record = true;
         break;
+    case MOTION_NOT_YET:
+        break;
     case MOTION_DONE:
-        c->state = CONTROLLER_COMPLETED;
+        end_program(c);
         break;
-    case MOTION_STARVED:
-        controller_starve(c);
+    case MOTION_EMPTY:
+        controller_end_in_error(c);
         break;
+    }
+}
+
+/* Where the axes are in the program's coordinates: what the drives report, without what correction has added. */
+static struct point uncorrected_actual(const struct controller *c)
+{
+    struct point actual;
+
+    controller_get_actual(c, &actual);
+    for (int i = 0; i < AXIS_COUNT; i++) {
+        actual.at[i] -= c->record.set.at[i] - c->record.cmd.at[i];
+    }
+    return actual;
+}
+
+/* What the program has asked of probe and inputs. */
+static void follow_probe(struct controller *c)
+{
+    const struct point actual = uncorrected_actual(c);
+
+    if (controller_probe_watch(&c->probe, &motion_block(&c->motion)->move, &c->inputs, &actual)) {
+        motion_end_here(&c->motion);
+    }
+    if (c->program_waits && motion_is_idle(&c->motion)) {
+        (void)controller_probe_rest(&c->probe, &c->inputs, &c->record.cmd, &actual);
+    }
+}
+
+/* What the machine's interpolator makes of the exact setpoint. */
+static void interpolate(struct controller *c)
+{
+    const struct block *block = motion_block(&c->motion);
+
+    if (block_is_motion(block)) {
+        interpolator_cycle(&c->interpolator, &block->curve, c->record.block, c->record.landed,
+                           &c->record.cmd);
     }
 }
 
 static void complete_record(struct controller *c)
 {
-    c->record.override_percent = 100.0;
-    c->record.limiter = 1.0;
-    c->record.set = c->record.cmd;
-    drives_get_actual(&c->drives, &c->record.act);
+    interpolate(c);
+    correction_cycle(&c->correction, &c->record.cmd, &motion_block(&c->motion)->move,
+                     &c->record.set);
+    controller_get_actual(c, &c->record.act);
     c->setpoint = c->record.set;
+}
+
+/* Nothing that stands behind the place in the program is done any more. */
+static bool rests_after_fault(const struct controller *c)
+{
+    return drives_get_state(&c->drives) == DRIVES_STOPPING && motion_rests(&c->motion);
 }
 
 void controller_cycle(struct controller *c, const struct inputs *inputs)
@@ -211,13 +376,17 @@ void controller_cycle(struct controller *c, const struct inputs *inputs)
     drives_receive(&c->drives, &c->can);
     drives_sync(&c->drives, &c->can);
     follow_drives(c);
-    if (c->state == CONTROLLER_RUNNING) {
+    follow_spindle(c);
+    if (c->state == CONTROLLER_RUNNING && !rests_after_fault(c)) {
         follow_path(c);
     }
     if (c->has_record) {
+        follow_events(c);
         complete_record(c);
+        follow_probe(c);
     }
     drives_send(&c->drives, &c->can, &c->setpoint);
+    controller_steps_cycle(c);
 }
 
 enum controller_state controller_get_state(const struct controller *c)
@@ -235,12 +404,44 @@ const struct cycle_record *controller_get_record(const struct controller *c)
     return c->has_record ? &c->record : NULL;
 }
 
+const struct diagnostic *controller_get_warning(const struct controller *c)
+{
+    return &c->warning;
+}
+
+const struct interpolator_errors *controller_get_interpolator_errors(const struct controller *c)
+{
+    return interpolator_get_errors(&c->interpolator);
+}
+
+struct correction *controller_get_correction(struct controller *c)
+{
+    return &c->correction;
+}
+
+void controller_get_actual(const struct controller *c, struct point *actual)
+{
+    drives_get_actual(&c->drives, actual);
+    steps_get_actual(&c->steps, actual);
+}
+
+uint32_t controller_get_answers(const struct controller *c, struct program_answer *last)
+{
+    *last = c->probe.taken;
+    return c->probe.answers;
+}
+
+uint64_t controller_get_late(const struct controller *c)
+{
+    return c->motion.late;
+}
+
 const struct outputs *controller_get_outputs(const struct controller *c)
 {
     return &c->outputs;
 }
 
-const struct segment *controller_get_segment(const struct controller *c)
+const struct block *controller_get_block(const struct controller *c)
 {
-    return c->has_record ? motion_segment(&c->motion) : NULL;
+    return c->has_record ? motion_block(&c->motion) : NULL;
 }

@@ -16,14 +16,17 @@
 #ifndef TAKT_CONTROLLER_CONTROLLER_H
 #define TAKT_CONTROLLER_CONTROLLER_H
 
+#include "accuracy/cycle_frequency.h"
 #include "base/error.h"
 #include "controller/machine.h"
+#include "correction/correction.h"
 #include "drive/drives.h"
 #include "hal/can.h"
 #include "hal/inputs.h"
 #include "hal/outputs.h"
+#include "hal/step.h"
 #include "motion/cycle_record.h"
-#include "plan/segment.h"
+#include "plan/block.h"
 #include "program/program.h"
 
 #include <stdbool.h>
@@ -33,16 +36,21 @@ struct controller_config {
     const struct machine *machine;  /* copied */
     struct source source;           /* text of the program; its context stays the caller's */
     struct can_port can;            /* the drives' bus */
+    struct step_port step;          /* pulses; not used by a machine without step drives */
     const struct tool_table *tools; /* NULL: empty. Must outlive the controller */
     struct parameters *parameters;  /* never NULL; read and written. Must outlive the controller */
-    bool exact_path;                /* every G64 is treated as G61 */
-    bool block_delete;              /* skip lines that begin with '/' */
-    uint32_t from_line;             /* start in the middle, at this line; 0: at the beginning */
+    const struct correction_tables *correction; /* NULL: no tables; see correction_init */
+    bool exact_path;                            /* every G64 is treated as G61 */
+    bool block_delete;                          /* skip lines that begin with '/' */
+    bool single_block;                          /* every motion ends at rest */
+    bool keeps_outputs; /* the end of the program leaves spindle and coolant as they are */
+    uint32_t from_line; /* start in the middle, at this line; 0: at the beginning */
 };
 
 enum controller_state {
     CONTROLLER_STARTING, /* drives are being enabled; no program cycle yet */
     CONTROLLER_RUNNING,  /* a program cycle each call */
+    CONTROLLER_STOPPING, /* after a fault of a drive: the drives brake; no program cycle any more */
     CONTROLLER_COMPLETED,
     CONTROLLER_FAULTED /* see controller_get_fault */
 };
@@ -62,13 +70,53 @@ const struct diagnostic *controller_get_fault(const struct controller *c);
  * are numbered 0, 1, 2, ... without gaps.
  */
 const struct cycle_record *controller_get_record(const struct controller *c);
+/* Where the axes are by what the drives have reported last. */
+void controller_get_actual(const struct controller *c, struct point *actual);
+/* How many questions of the program (G38, M66) have been answered, and the last answer. */
+uint32_t controller_get_answers(const struct controller *c, struct program_answer *last);
+/* Exchanges with the background that it was too late for: the axes then come to rest where the path is known to. */
+uint64_t controller_get_late(const struct controller *c);
 /* The machine's outputs as the last cycle left them. Valid until the next cycle. */
 const struct outputs *controller_get_outputs(const struct controller *c);
-/* The segment the last program cycle executed; NULL as above. Valid until the next cycle. */
-const struct segment *controller_get_segment(const struct controller *c);
+/* The block the last program cycle executed; NULL as above. Valid until the next cycle. */
+const struct block *controller_get_block(const struct controller *c);
+
+/*
+ * The frequency that circles in the planes of a machine's linear axes need, and what governs it; 0 Hz without two such
+ * axes. limits: of the plane that needs most; may be NULL.
+ */
+void controller_cycle_need(const struct machine *machine, struct cycle_need *need,
+                           struct cycle_limits *limits);
+
+/*
+ * Compares the machine's control cycle with the frequency at which the fastest circle its linear axes can drive keeps the
+ * chord error of one increment. False: it is slower, and the planner limits the feed of curves instead; *warning says so.
+ */
+bool controller_cycle_is_enough(const struct machine *machine, struct diagnostic *warning);
+
+/*
+ * What the controller has to say about its machine at the start: TAKT_OK, or CYCLE_SLOW.
+ */
+const struct diagnostic *controller_get_warning(const struct controller *c);
+
+/* What the machine's interpolator erred by so far; all 0 for the exact one. */
+const struct interpolator_errors *controller_get_interpolator_errors(const struct controller *c);
 
 /* The planner's limits that follow from a machine: what controller_init itself uses. */
 void controller_plan_limits(const struct machine *machine, struct plan_limits *limits);
+
+/* Takes from the limits what correction needs of the axes: what controller_init itself uses. */
+void controller_reserve_correction(struct correction *correction, const struct machine *machine,
+                                   struct plan_limits *limits);
+
+/* The most the machine's axes do before correction. */
+void controller_motion_bound(const struct machine *machine, struct motion_bound *most);
+
+/* Position-error correction, to switch layers, tell temperatures and load tables between two cycles. */
+struct correction *controller_get_correction(struct controller *c);
+
+/* The drives that follow from a machine: what controller_init itself uses. */
+void controller_drives_config(const struct machine *machine, struct drives_config *config);
 
 /* The program configuration that follows from a machine: what controller_init itself uses. */
 void controller_program_config(const struct controller_config *config,

@@ -4,31 +4,50 @@
 #ifndef TAKT_CONTROLLER_CONTROLLER_STATE_H
 #define TAKT_CONTROLLER_CONTROLLER_STATE_H
 
+#include "classic/interpolator.h"
+#include "controller/approach.h"
+#include "controller/controller_probe.h"
+#include "controller/outputs.h"
+#include "controller/spindle_watch.h"
+#include "correction/correction.h"
 #include "drive/drives.h"
 #include "hal/inputs.h"
 #include "hal/outputs.h"
 #include "motion/motion.h"
 #include "offset/offset.h"
-#include "plan/window.h"
+#include "plan/path.h"
+#include "step/steps.h"
 
 struct controller {
     struct machine machine;
     struct can_port can;
     enum controller_state state;
     struct diagnostic fault;
-    bool program_ended; /* nothing more comes from the program: its end or an error in it */
+    struct diagnostic warning; /* TAKT_OK: none */
+    bool single_block;         /* every motion ends at rest */
+    bool keeps_outputs;        /* the end of the program leaves spindle and coolant as they are */
+    bool program_waits;        /* for an answer: what it asked (G38, M66) is being done */
+    bool program_ended;        /* nothing more comes from the program: its end or an error in it */
     bool has_record;
     struct diagnostic
         program_error;    /* TAKT_OK: none. Reported when everything before it has been done */
     struct inputs inputs; /* of this cycle */
     struct outputs outputs;
+    struct spindle_watch spindle;
+    struct outputs_surface surface; /* G96 */
     struct point setpoint;
     struct cycle_record record;
     struct program program;
     struct offset offset;
-    struct window window;
+    struct path path;
     struct motion motion;
+    struct correction correction;
+    struct interpolator interpolator;
     struct drives drives;
+    struct step_port step_port;
+    struct steps steps;
+    struct controller_probe probe;
+    struct approach approach;
 };
 
 #endif

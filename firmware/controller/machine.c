@@ -13,6 +13,9 @@ void machine_set_default(struct machine *machine)
     machine->look_ahead_blocks = MACHINE_LOOK_AHEAD_MAX;
     machine->spindle_max_rpm = 24000.0;
     machine->can_bitrate = 1000000;
+    machine->heartbeat_ms = 100;
+    machine->controller_node = 127;
+    correction_settings_set_default(&machine->correction);
     for (int i = 0; i < AXIS_LINEAR_COUNT; i++) {
         machine->axis[i] = (struct machine_axis){
             .present = true,
@@ -24,6 +27,13 @@ void machine_set_default(struct machine *machine)
             .drive_node = (uint8_t)(i + 1),
             .increments_per_mm = 100000.0,
             .following_error_max_mm = 1.0,
+            .steps_per_mm = 1000.0,
+            .step_rate_max_hz = 200000.0,
+            .home_method = 37,
+            .home_velocity_mm_s = 20.0,
+            .home_zero_velocity_mm_s = 2.0,
+            .home_acceleration_mm_s2 = 500.0,
+            .home_timeout_s = 60.0,
         };
     }
 }

@@ -6,6 +6,8 @@
 #define TAKT_CONTROLLER_MACHINE_H
 
 #include "base/point.h"
+#include "correction/settings.h"
+#include "plan/limits.h"
 
 #include <stdbool.h>
 #include <stdint.h>
@@ -14,6 +16,9 @@
 
 /* Largest look-ahead, and the default. The window's memory is fixed at build. */
 #define MACHINE_LOOK_AHEAD_MAX 256
+
+/* How setpoints reach a drive. */
+enum machine_drive_type { MACHINE_DRIVE_CAN, MACHINE_DRIVE_STEP };
 
 /* For a rotary axis read rad where the name says mm. */
 struct machine_axis {
@@ -27,6 +32,24 @@ struct machine_axis {
     uint8_t drive_node;            /* CANopen node id 1 ... 127, one per axis */
     double increments_per_mm;      /* drive position units per mm (per rad) */
     double following_error_max_mm; /* alarm beyond this lag; 0: not watched */
+
+    uint32_t drive_type;     /* enum machine_drive_type */
+    double steps_per_mm;     /* step drive: > 0 */
+    double step_rate_max_hz; /* step drive: > 0 */
+
+    /* Object 1018 of its drive, checked at start. 0: whatever it is. */
+    uint32_t drive_vendor;
+    uint32_t drive_product;
+    uint32_t drive_revision;
+    uint32_t drive_serial;
+
+    uint8_t home_order;             /* 1 first; axes of an order together; 0: not homed at start */
+    uint8_t home_method;            /* CiA 402, object 6098: 1 ... 37 */
+    double home_velocity_mm_s;      /* towards the switch; > 0 */
+    double home_zero_velocity_mm_s; /* towards the zero mark; > 0 */
+    double home_acceleration_mm_s2; /* > 0 */
+    double home_offset_mm;          /* machine coordinate of its home */
+    double home_timeout_s;          /* > 0 */
 };
 
 struct machine {
@@ -34,12 +57,24 @@ struct machine {
     uint32_t cycle_us; /* control cycle, 100 ... 10000 */
     double
         resolution_per_mm; /* position increments of the controller per mm: chord error and reports */
-    double path_tolerance_mm;   /* G64 without P; 0: exact path */
-    uint32_t sharp_corners;     /* 1: cutter compensation does not round outer corners */
+    double path_tolerance_mm; /* G64 without P; 0: exact path */
+    uint32_t sharp_corners;   /* 1: cutter compensation does not round outer corners */
+    uint32_t
+        override_proportional; /* 1: the feed override scales the whole diagram, not the programmed feed alone */
+    enum law law;              /* of ramps */
+    enum landing landing;
     uint32_t look_ahead_blocks; /* 1 ... MACHINE_LOOK_AHEAD_MAX */
+    uint32_t interpolator;      /* enum interpolator_kind, classic/interpolator.h */
+    uint32_t step_form;         /* enum steps_form, step/steps.h */
     struct machine_axis axis[AXIS_COUNT];
     double spindle_max_rpm;
-    uint32_t can_bitrate; /* bit/s */
+    double spindle_load_limit_percent; /* beyond it the feed is lowered; 0: never */
+    double spindle_at_speed_s; /* longest wait for a commanded speed; 0: motion does not wait */
+    uint32_t can_bitrate;      /* bit/s */
+    uint32_t
+        heartbeat_ms; /* period of all heartbeats on the bus, up to 20,000; 0: there are none */
+    uint8_t controller_node; /* the controller's own node id, 1 ... 127, of no drive */
+    struct correction_settings correction;
 };
 
 /*
@@ -51,5 +86,16 @@ void machine_set_default(struct machine *machine);
 
 /* Bit i set: the machine has axis i. */
 unsigned machine_axes(const struct machine *machine);
+
+/* Does the machine have this axis, with a drive of the one kind or of the other? */
+static inline bool machine_axis_is_on_can(const struct machine_axis *axis)
+{
+    return axis->present && axis->drive_type == MACHINE_DRIVE_CAN;
+}
+
+static inline bool machine_axis_is_stepped(const struct machine_axis *axis)
+{
+    return axis->present && axis->drive_type == MACHINE_DRIVE_STEP;
+}
 
 #endif

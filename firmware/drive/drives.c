@@ -1,6 +1,9 @@
+#include "base/maths.h"
 #include "canopen/cia402.h"
+#include "canopen/emcy.h"
 #include "canopen/target_pdo.h"
 #include "drive/drives_private.h"
+#include "drive/word.h"
 
 #include <assert.h>
 #include <string.h>
@@ -8,42 +11,149 @@
 static_assert((DRIVES_HISTORY & (DRIVES_HISTORY - 1)) == 0, "the history is indexed by a mask");
 static_assert(DRIVES_HISTORY > DRIVES_LATENCY_CYCLES, "the history is as long as the latency");
 
-static void init_axis(struct drives *d, unsigned index, const uint8_t node[])
+#define DEGREES_PER_RAD (180.0 / MATHS_PI)
+
+static void init_axis(struct drives *d, unsigned index)
 {
     struct drives_axis *axis = &d->axis[index];
     struct pdo target;
-    target_pdo_set(&target, node, d->count, index);
+    target_pdo_set(&target, d->node, d->count, index);
     axis->target_cob_id = target.cob_id;
     axis->target_offset = (uint8_t)pdo_offset(&target.mapping, CIA402_TARGET_POSITION);
-    d->axis_of_node[node[index]] = (uint8_t)index;
+    axis->mode = CIA402_MODE_CYCLIC_SYNC_POSITION;
+    axis->reset_pending = true;
+    d->axis_of_node[d->node[index]] = (uint8_t)index;
+}
+
+static void take_times(struct drives *d, const struct drives_config *config)
+{
+    d->cycle_us = config->cycle_us;
+    d->heartbeat_ms = config->heartbeat_ms;
+    d->heartbeat_cycles = (uint32_t)config->heartbeat_ms * 1000 / config->cycle_us;
+    d->start_timeout_cycles = config->start_timeout_cycles;
+    d->answer_timeout_cycles = config->answer_timeout_cycles;
+    d->sdo_timeout_cycles = config->sdo_timeout_cycles;
+    d->stop_timeout_cycles = config->stop_timeout_cycles;
+    d->brake_timeout_cycles = config->brake_timeout_cycles;
+}
+
+static void check_load(struct drives *d, const struct drives_config *config)
+{
+    struct drives_load load;
+    if (drives_predict_load(config->count, config->bitrate, config->cycle_us, &load))
+        return;
+    d->state = DRIVES_FAULTED;
+    drives_set_overload(&load, &d->fault);
 }
 
 void drives_init(struct drives *d, const struct drives_config *config)
 {
-    uint8_t node[AXIS_COUNT];
-    assert(config->count >= 1 && config->count <= AXIS_COUNT);
+    assert(config->count <= AXIS_COUNT && config->cycle_us > 0);
     memset(d, 0, sizeof *d);
     memset(d->axis_of_node, AXIS_COUNT, sizeof d->axis_of_node);
     d->count = config->count;
-    d->start_timeout_cycles = config->start_timeout_cycles;
-    d->answer_timeout_cycles = config->answer_timeout_cycles;
-    d->nmt_start_pending = true;
+    d->controller_node = config->controller_node;
+    d->homed = config->homed;
+    take_times(d, config);
     for (unsigned i = 0; i < d->count; i++) {
         assert(config->axis[i].node >= NODE_MIN && config->axis[i].node <= NODE_MAX);
         d->axis[i].config = config->axis[i];
-        node[i] = config->axis[i].node;
+        d->node[i] = config->axis[i].node;
     }
     for (unsigned i = 0; i < d->count; i++)
-        init_axis(d, i, node);
+        init_axis(d, i);
+    if (d->count == 0)
+        d->state = DRIVES_ENABLED;
+    check_load(d, config);
 }
 
-void drives_raise(struct drives *d, unsigned index, enum takt_error error, double value)
+/* Setpoints that do not get through any more, or are none, cannot be followed to rest. */
+static bool cuts_off(enum takt_error error)
 {
-    if (d->state == DRIVES_FAULTED)
+    return error == TAKT_ERROR_DRIVE_RANGE || error == TAKT_ERROR_DRIVE_UNREACHABLE;
+}
+
+void drives_brake(struct drives *d)
+{
+    d->state = DRIVES_BRAKING;
+    d->stop_cycles = 0;
+    for (unsigned i = 0; i < d->count; i++)
+        d->axis[i].rest_cycles = 0;
+}
+
+static void leave_operation(struct drives *d, enum takt_error error)
+{
+    if (d->state == DRIVES_STARTING || d->stop_timeout_cycles == 0 || cuts_off(error)) {
+        drives_brake(d);
         return;
-    d->state = DRIVES_FAULTED;
+    }
+    d->state = DRIVES_STOPPING;
+    d->stop_cycles = 0;
+    d->rest_cycles = 0;
+}
+
+static void raise(struct drives *d, unsigned index, const struct word *word, enum takt_error error,
+                  double value, const char *meaning)
+{
+    if (d->state == DRIVES_STOPPING && cuts_off(error))
+        drives_brake(d);
+    if (d->state > DRIVES_ENABLED)
+        return;
     d->fault_axis = index;
-    diagnostic_set(&d->fault, error, 0, 0, &AXIS_LETTERS[d->axis[index].config.axis], 1, value);
+    diagnostic_set(&d->fault, error, 0, 0, word->text, word->length, value);
+    d->fault.meaning = meaning;
+    leave_operation(d, error);
+}
+
+/* "Y (node 2)". */
+static void name_axis(const struct drives *d, unsigned index, struct word *word)
+{
+    char letter[2] = {AXIS_LETTERS[d->axis[index].config.axis], '\0'};
+    word->length = 0;
+    word_add_text(word, letter);
+    word_add_text(word, " (node ");
+    word_add_number(word, d->node[index]);
+    word_add_text(word, ")");
+}
+
+/* A drive that is only warned of, or only without a heartbeat, still follows its setpoints. */
+static bool can_follow(const struct drives_axis *axis, enum takt_error error)
+{
+    return error == TAKT_ERROR_DRIVE_HEARTBEAT ||
+           (error == TAKT_ERROR_DRIVE_FAULT && cia402_is_enabled(axis->statusword));
+}
+
+void drives_raise(struct drives *d, unsigned index, enum takt_error error, double value,
+                  const char *meaning)
+{
+    struct word word;
+
+    d->axis[index].lost = d->axis[index].lost || !can_follow(&d->axis[index], error);
+    name_axis(d, index, &word);
+    raise(d, index, &word, error, value, meaning);
+}
+
+/* "Y (node 2), object 1600:01,". */
+void drives_raise_object(struct drives *d, unsigned index, uint32_t object, enum takt_error error,
+                         double value, const char *meaning)
+{
+    struct word word;
+    name_axis(d, index, &word);
+    word_add_text(&word, ", object ");
+    word_add_hex(&word, sdo_index(object), 4);
+    word_add_text(&word, ":");
+    word_add_hex(&word, sdo_sub(object), 2);
+    word_add_text(&word, ",");
+    raise(d, index, &word, error, value, meaning);
+}
+
+void drives_complete_fault(struct drives *d, unsigned index, uint16_t code)
+{
+    if (d->fault.code != TAKT_ERROR_DRIVE_FAULT || d->fault_axis != index || d->fault.value != 0 ||
+        code == EMCY_NONE)
+        return;
+    d->fault.value = code;
+    d->fault.meaning = emcy_text(code);
 }
 
 double drives_axis_actual_mm(const struct drives_axis *axis)
@@ -53,12 +163,32 @@ double drives_axis_actual_mm(const struct drives_axis *axis)
 
 bool drives_axis_is_enabled(const struct drives_axis *axis)
 {
-    return axis->heard && cia402_state(axis->statusword) == CIA402_ENABLED;
+    return axis->heard && cia402_is_enabled(axis->statusword);
+}
+
+bool drives_are_watched(const struct drives *d)
+{
+    return d->state == DRIVES_ENABLED || (d->state == DRIVES_STARTING && d->phase >= DRIVES_SELECT);
+}
+
+double drives_axis_shown(const struct drives_axis *axis, double value_mm)
+{
+    return axis->config.axis >= AXIS_LINEAR_COUNT ? value_mm * DEGREES_PER_RAD : value_mm;
+}
+
+double drives_cycles_ms(const struct drives *d, uint32_t cycles)
+{
+    return 1e-3 * (double)d->cycle_us * cycles;
 }
 
 enum drives_state drives_get_state(const struct drives *d)
 {
     return d->state;
+}
+
+bool drives_are_homed(const struct drives *d)
+{
+    return d->homed;
 }
 
 void drives_get_actual(const struct drives *d, struct point *actual)
@@ -68,21 +198,32 @@ void drives_get_actual(const struct drives *d, struct point *actual)
         actual->at[d->axis[i].config.axis] = drives_axis_actual_mm(&d->axis[i]);
 }
 
-unsigned drives_cycle_frames(unsigned count, uint8_t length[DRIVES_CYCLE_FRAMES_MAX])
-{
-    unsigned frames = 0;
-    if (count > AXIS_COUNT)
-        count = AXIS_COUNT;
-    length[frames++] = 0;
-    for (unsigned i = 0; i < count; i += 2)
-        length[frames++] = i + 1 < count ? 8 : 4;
-    for (unsigned i = 0; i < count; i++)
-        length[frames++] = DRIVES_STATUS_LENGTH;
-    length[frames++] = DRIVES_STATUS_LENGTH;
-    return frames;
-}
-
 const struct diagnostic *drives_get_fault(const struct drives *d)
 {
     return &d->fault;
+}
+
+void drives_stop_at_once(struct drives *d, enum takt_error reason)
+{
+    if (d->state > DRIVES_STOPPING)
+        return;
+    if (d->state < DRIVES_STOPPING)
+        diagnostic_set(&d->fault, reason, 0, 0, "", 0, 0);
+    drives_brake(d);
+}
+
+void drives_stop_for(struct drives *d, const struct diagnostic *fault)
+{
+    if (d->state > DRIVES_STOPPING)
+        return;
+    if (d->state < DRIVES_STOPPING)
+        d->fault = *fault;
+    drives_brake(d);
+}
+
+void drives_get_statuswords(const struct drives *d, uint16_t statusword[AXIS_COUNT])
+{
+    memset(statusword, 0, AXIS_COUNT * sizeof statusword[0]);
+    for (unsigned i = 0; i < d->count; i++)
+        statusword[d->axis[i].config.axis] = d->axis[i].statusword;
 }

@@ -5,7 +5,10 @@
  * Once a cycle, in this order:
  *     drives_receive   everything that has come since the last cycle
  *     drives_sync      SYNC: the drives latch the targets sent last cycle and sample their positions
- *     drives_send      controlwords that changed, and the targets of this cycle
+ *     drives_send      what the state asks for: requests, controlwords, the targets of this cycle
+ *
+ *     STARTING --all enabled and homed--> ENABLED --fault--> STOPPING --at rest, or too late--> BRAKING --> FAULTED
+ *         +------------------- fault -----------+----- fault that cuts setpoints off ------------^
  */
 #ifndef TAKT_DRIVE_DRIVES_H
 #define TAKT_DRIVE_DRIVES_H
@@ -24,40 +27,113 @@
  */
 #define DRIVES_LATENCY_CYCLES 3
 
-struct drives_config {
-    unsigned count; /* drives, 1 ... AXIS_COUNT */
-    struct drives_config_axis {
-        enum axis axis;
-        uint8_t node;                  /* CANopen node id, 1 ... 127 */
-        double increments_per_mm;      /* drive position units per mm or rad */
-        double following_error_max_mm; /* alarm beyond; 0: not watched */
-    } axis[AXIS_COUNT];
-    uint32_t start_timeout_cycles;  /* all drives must be enabled within; else DRIVE_SILENT */
-    uint32_t answer_timeout_cycles; /* a drive silent for longer is lost: DRIVE_SILENT */
+/* Object 1018 of a drive. 0: whatever it is. */
+struct drives_identity {
+    uint32_t vendor, product, revision, serial;
 };
 
-enum drives_state { DRIVES_STARTING, DRIVES_ENABLED, DRIVES_FAULTED };
+/* How a drive finds its zero (CiA 402, homing mode). For a rotary axis read rad where the name says mm. */
+struct drives_homing {
+    uint8_t order;  /* axes of order 1 first, all of an order at once; 0: this axis is not homed */
+    uint8_t method; /* object 6098 */
+    double velocity_mm_s;      /* 6099:01, towards the switch; > 0 */
+    double zero_mm_s;          /* 6099:02, towards the zero mark; > 0 */
+    double acceleration_mm_s2; /* 609A; > 0 */
+    double offset_mm;          /* position of the axis at its home; 607C is minus this */
+    uint32_t timeout_cycles;   /* DRIVE_HOMING_SLOW beyond */
+};
+
+struct drives_config_axis {
+    enum axis axis;
+    uint8_t node;                  /* CANopen node id, 1 ... 127 */
+    double increments_per_mm;      /* drive position units per mm or rad */
+    double following_error_max_mm; /* alarm beyond; 0: not watched */
+    struct drives_identity identity;
+    struct drives_homing homing;
+};
+
+struct drives_config {
+    unsigned count; /* drives, 0 ... AXIS_COUNT; none: enabled at once */
+    struct drives_config_axis axis[AXIS_COUNT];
+    bool homed; /* all axes have been homed since power-on: they are not homed again */
+    uint32_t cycle_us;
+    uint32_t bitrate;               /* of the bus, bit/s */
+    uint8_t controller_node;        /* our own node id, for the heartbeat; none of the drives' */
+    uint16_t heartbeat_ms;          /* period, of the drives and our own; 0: no heartbeats */
+    uint32_t start_timeout_cycles;  /* all drives must be enabled within, homing not counted */
+    uint32_t answer_timeout_cycles; /* a drive silent for longer is lost: DRIVE_SILENT */
+    uint32_t
+        sdo_timeout_cycles; /* for an answer to a request, which is repeated DRIVES_SDO_REPEATS times */
+    uint32_t
+        stop_timeout_cycles; /* how long STOPPING may last; 0: there is none, drives brake at once */
+    uint32_t
+        brake_timeout_cycles; /* how long BRAKING may last; then the drives count as faulted anyway */
+};
+
+#define DRIVES_SDO_REPEATS 2
+
+/* A drive that hears no heartbeat for so many periods takes its partner for lost; so do we. */
+#define DRIVES_HEARTBEATS_LOST 3
+
+enum drives_state {
+    DRIVES_STARTING, /* boot, check, configure, enable, home: drives hold where they stand */
+    DRIVES_ENABLED,  /* setpoints are followed */
+    DRIVES_STOPPING, /* a fault, but setpoints are still followed: bring them to rest on the path */
+    DRIVES_BRAKING,  /* every drive brakes by itself (quick stop); setpoints are ignored */
+    DRIVES_FAULTED   /* at rest, as far as can be known */
+};
 
 #include "drive/drives_state.h"
 
 void drives_init(struct drives *d, const struct drives_config *config);
 void drives_receive(struct drives *d, const struct can_port *port);
 void drives_sync(struct drives *d, const struct can_port *port);
-/* setpoint: of every axis, mm or rad. Ignored until the drives are enabled (they are held where they stand). */
+/*
+ * setpoint: of every axis, mm or rad. Followed in DRIVES_ENABLED and DRIVES_STOPPING. In DRIVES_STOPPING the caller
+ * lets it come to rest, on the path and within the limits; once it has rested the drives are switched off.
+ */
 void drives_send(struct drives *d, const struct can_port *port, const struct point *setpoint);
 
 enum drives_state drives_get_state(const struct drives *d);
 /* Last reported actual position of every axis, mm or rad; 0 for axes without a drive. */
 void drives_get_actual(const struct drives *d, struct point *actual);
+/* All axes that are to be homed have been: what the next configuration may say. */
+bool drives_are_homed(const struct drives *d);
+
+/* Last statusword (object 6041) of every axis; 0 for axes without a drive, or before it has reported. */
+void drives_get_statuswords(const struct drives *d, uint16_t statusword[AXIS_COUNT]);
+
+/*
+ * Every drive brakes by itself, from the next drives_send on, DRIVES_BRAKING; with this error, unless there has been
+ * one before.
+ */
+void drives_stop_at_once(struct drives *d, enum takt_error reason);
+/* The same for a fault that is not of these drives. */
+void drives_stop_for(struct drives *d, const struct diagnostic *fault);
+
+/* What went wrong; meaningful from DRIVES_STOPPING on. */
+const struct diagnostic *drives_get_fault(const struct drives *d);
+
 /*
  * Data lengths, in bytes, of the frames a cycle puts on the bus at most while nothing is wrong: SYNC, the targets, a
- * status per drive, and one of the status frames that drives send now and then. Returns their number. By them can be
- * told before the start whether the bus carries the cycle. count: drives, 1 ... AXIS_COUNT.
+ * status per drive, and of the frames that are sent now and then a TPDO2 and a heartbeat, since nodes send theirs in
+ * different cycles. Returns their number. count: drives, 1 ... AXIS_COUNT.
  */
-#define DRIVES_CYCLE_FRAMES_MAX (2 + AXIS_COUNT + (AXIS_COUNT + 1) / 2)
+#define DRIVES_CYCLE_FRAMES_MAX (3 + AXIS_COUNT + (AXIS_COUNT + 1) / 2)
 unsigned drives_cycle_frames(unsigned count, uint8_t length[DRIVES_CYCLE_FRAMES_MAX]);
 
-/* What went wrong; meaningful in DRIVES_FAULTED. */
-const struct diagnostic *drives_get_fault(const struct drives *d);
+/* What a cycle takes of the bus. */
+struct drives_load {
+    uint32_t bits;          /* of all frames of a cycle, each with worst-case stuffing */
+    uint32_t capacity_bits; /* of a cycle at the bitrate */
+    double percent;
+};
+
+/* True: the bus carries the cycle. count: drives. */
+bool drives_predict_load(unsigned count, uint32_t bitrate, uint32_t cycle_us,
+                         struct drives_load *load);
+
+/* BUS_OVERLOAD, with the figures, in words for *fault. */
+void drives_set_overload(const struct drives_load *load, struct diagnostic *fault);
 
 #endif

@@ -5,6 +5,8 @@
 #include "canopen/sync.h"
 #include "drive/drives_private.h"
 
+#include <stddef.h>
+
 #define INCREMENTS_MAX 2147483647.0
 
 /* RPDO1: controlword and mode of operation. */
@@ -23,12 +25,22 @@ void drives_sync(struct drives *d, const struct can_port *port)
     (void)send_frame(port, &frame);
 }
 
-static void send_nmt_start(struct drives *d, const struct can_port *port)
+static bool send_nmt(const struct can_port *port, enum nmt_command command, uint8_t node)
 {
     struct can_frame frame;
-    nmt_write_command(&frame, NMT_START, NMT_ALL_NODES);
+    nmt_write_command(&frame, command, node);
+    return send_frame(port, &frame);
+}
+
+/* A heartbeat that is refused is due again in the next cycle. */
+static void send_heartbeat(struct drives *d, const struct can_port *port)
+{
+    struct can_frame frame;
+    if (d->heartbeat_cycles == 0 || ++d->beat_cycles < d->heartbeat_cycles)
+        return;
+    nmt_write_heartbeat(&frame, d->controller_node, NMT_OPERATIONAL);
     if (send_frame(port, &frame))
-        d->nmt_start_pending = false;
+        d->beat_cycles = 0;
 }
 
 /* A controlword that is refused counts as not sent, and comes again in the next cycle. */
@@ -39,7 +51,7 @@ static void send_controlword(struct drives_axis *axis, const struct can_port *po
     frame.id = (uint16_t)(PDO_RPDO1_FUNCTION + axis->config.node);
     frame.length = CONTROL_LENGTH;
     little_endian_write16(frame.data, controlword);
-    frame.data[2] = CIA402_MODE_CYCLIC_SYNC_POSITION;
+    frame.data[2] = axis->mode;
     if (send_frame(port, &frame))
         axis->controlword = controlword;
 }
@@ -58,27 +70,91 @@ static void send_targets(struct drives *d, const struct can_port *port)
             continue;
         frame.id = axis->target_cob_id;
         frame.length = (uint8_t)(axis->target_offset + 4);
-        if (!send_frame(port, &frame) && d->state == DRIVES_ENABLED)
-            drives_raise(d, i, TAKT_ERROR_DRIVE_UNREACHABLE, 0);
+        if (!send_frame(port, &frame) && d->state != DRIVES_STARTING)
+            drives_raise(d, i, TAKT_ERROR_DRIVE_UNREACHABLE, 0, NULL);
     }
 }
 
+static void send_resets(struct drives *d, const struct can_port *port)
+{
+    for (unsigned i = 0; i < d->count; i++)
+        if (d->axis[i].reset_pending && send_nmt(port, NMT_RESET_COMMUNICATION, d->node[i]))
+            d->axis[i].reset_pending = false;
+}
+
+static void send_request(struct drives *d, const struct can_port *port)
+{
+    struct can_frame frame;
+    if (sdo_client_next(&d->sdo, &frame) && send_frame(port, &frame))
+        sdo_client_sent(&d->sdo);
+}
+
+/* The one with the highest node id that has not been started; NULL: none. */
+static struct drives_axis *next_to_start(struct drives *d)
+{
+    struct drives_axis *next = NULL;
+    for (unsigned i = 0; i < d->count; i++) {
+        struct drives_axis *axis = &d->axis[i];
+        if (!axis->started && (next == NULL || axis->config.node > next->config.node))
+            next = axis;
+    }
+    return next;
+}
+
 /*
- * A drive that is not enabled yet is told to be where it is, so that it does not jump when it is.
+ * One node a cycle, so that event timers run out in different cycles; from the highest id down, since there
+ * are drives whose first period is shorter by their id in ms. What a drive has sent before is history, and silence
+ * counts from now.
+ */
+static void send_start(struct drives *d, const struct can_port *port)
+{
+    struct drives_axis *axis = next_to_start(d);
+    if (axis == NULL)
+        return;
+    axis->started = send_nmt(port, NMT_START, axis->config.node);
+    axis->heard = false;
+    axis->silent_cycles = 0;
+    axis->heartbeat_cycles = 0;
+}
+
+/*
+ * A drive that does not follow setpoints is told to be where it is, so that it does not jump when it does.
  * One drive a cycle gets its controlword, in turn and repeatedly: the load stays that of a normal
  * cycle and a frame may get lost.
  */
-static void send_starting(struct drives *d, const struct can_port *port)
+static void send_enabling(struct drives *d, const struct can_port *port)
 {
     struct drives_axis *turn = &d->axis[d->cycle % d->count];
-    if (d->nmt_start_pending)
-        send_nmt_start(d, port);
-    if (turn->heard)
-        send_controlword(turn, port, cia402_step_to_enabled(cia402_state(turn->statusword)));
+    if (turn->heard) {
+        enum cia402_state state = cia402_state(turn->statusword);
+        uint16_t command = state == CIA402_ENABLED ? turn->command : 0;
+        send_controlword(turn, port, (uint16_t)(cia402_step_to_enabled(state) | command));
+    }
     for (unsigned i = 0; i < d->count; i++)
-        if (!drives_axis_is_enabled(&d->axis[i]))
+        if (!drives_axis_is_enabled(&d->axis[i]) || d->axis[i].mode == CIA402_MODE_HOMING)
             d->axis[i].target_inc = d->axis[i].actual_inc;
     send_targets(d, port);
+}
+
+static void send_starting(struct drives *d, const struct can_port *port)
+{
+    switch (d->phase) {
+    case DRIVES_BOOT:
+        send_resets(d, port);
+        break;
+    case DRIVES_CONFIGURE:
+        send_request(d, port);
+        break;
+    case DRIVES_START:
+        send_start(d, port);
+        break;
+    case DRIVES_ENABLE:
+    case DRIVES_SELECT:
+    case DRIVES_HOME:
+        send_request(d, port);
+        send_enabling(d, port);
+        break;
+    }
 }
 
 /* increments = round(setpoint increments_per_mm), half away from zero. NaN fails the comparison. */
@@ -89,7 +165,7 @@ static void set_target(struct drives *d, unsigned index, double set_mm)
     if (maths_abs(increments) <= INCREMENTS_MAX)
         axis->target_inc = (int32_t)increments;
     else
-        drives_raise(d, index, TAKT_ERROR_DRIVE_RANGE, set_mm);
+        drives_raise(d, index, TAKT_ERROR_DRIVE_RANGE, drives_axis_shown(axis, set_mm), NULL);
     axis->sent_mm[d->cycle & (DRIVES_HISTORY - 1)] = set_mm;
 }
 
@@ -98,31 +174,42 @@ static void send_operation(struct drives *d, const struct can_port *port,
 {
     for (unsigned i = 0; i < d->count; i++)
         set_target(d, i, setpoint->at[d->axis[i].config.axis]);
-    if (d->state == DRIVES_ENABLED)
+    if (d->state == DRIVES_STOPPING)
+        drives_watch_stop(d);
+    if (d->state == DRIVES_ENABLED || d->state == DRIVES_STOPPING)
         send_targets(d, port);
 }
 
-/* Drives whose axes have lost a companion leave the path: every one brakes by itself, at once. */
+/*
+ * All at once; then, one a cycle, again to those whose statusword does not show it, for a frame may get lost.
+ */
 static void send_quick_stop(struct drives *d, const struct can_port *port)
 {
-    for (unsigned i = 0; i < d->count; i++)
-        if (d->axis[i].controlword != CIA402_QUICK_STOP_NOW)
-            send_controlword(&d->axis[i], port, CIA402_QUICK_STOP_NOW);
+    unsigned turn = d->count > 0 ? d->cycle % d->count : 0;
+    for (unsigned i = 0; i < d->count; i++) {
+        struct drives_axis *axis = &d->axis[i];
+        bool is_told = axis->controlword == CIA402_QUICK_STOP_NOW;
+        if (!is_told || (i == turn && (drives_axis_is_enabled(axis) || axis->silent_cycles > 1)))
+            send_controlword(axis, port, CIA402_QUICK_STOP_NOW);
+    }
 }
 
 void drives_send(struct drives *d, const struct can_port *port, const struct point *setpoint)
 {
+    send_heartbeat(d, port);
     switch (d->state) {
     case DRIVES_STARTING:
         send_starting(d, port);
         break;
     case DRIVES_ENABLED:
+    case DRIVES_STOPPING:
         send_operation(d, port, setpoint);
         break;
+    case DRIVES_BRAKING:
     case DRIVES_FAULTED:
         break;
     }
-    if (d->state == DRIVES_FAULTED)
+    if (d->state == DRIVES_BRAKING || d->state == DRIVES_FAULTED)
         send_quick_stop(d, port);
     d->cycle++;
 }

@@ -264,4 +264,5 @@ void arc_bound(const struct curve *c, struct curve_bounds *b)
     b->radius_min_mm = 1.0 / second;
     b->second_along = w * d * f1 * f1 + (rw + d) * f2;
     b->third_across = 4.0 * d * w * w * f1 * f1 * f1 + 3.0 * (rw + 2.0 * d) * w * f1 * f2;
+    b->cusp_rad = 0.0;
 }

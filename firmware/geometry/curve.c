@@ -2,6 +2,7 @@
 #include "geometry/curve.h"
 
 #include "geometry/arc.h"
+#include "geometry/involute.h"
 #include "geometry/line.h"
 
 #include <string.h>
@@ -20,6 +21,9 @@ void curve_point(const struct curve *c, double s_mm, struct point *p)
     case CURVE_ARC:
         arc_point(c, s_mm, p);
         break;
+    case CURVE_INVOLUTE:
+        involute_point(c, s_mm, p);
+        break;
     }
 }
 
@@ -31,6 +35,9 @@ void curve_tangent(const struct curve *c, double s_mm, struct point *t)
         break;
     case CURVE_ARC:
         arc_tangent(c, s_mm, t);
+        break;
+    case CURVE_INVOLUTE:
+        involute_tangent(c, s_mm, t);
         break;
     }
 }
@@ -44,6 +51,9 @@ void curve_curvature(const struct curve *c, double s_mm, struct point *k)
     case CURVE_ARC:
         arc_curvature(c, s_mm, k);
         break;
+    case CURVE_INVOLUTE:
+        involute_curvature(c, s_mm, k);
+        break;
     }
 }
 
@@ -56,5 +66,49 @@ void curve_bound(const struct curve *c, struct curve_bounds *b)
     case CURVE_ARC:
         arc_bound(c, b);
         break;
+    case CURVE_INVOLUTE:
+        involute_bound(c, b);
+        break;
     }
+}
+
+double curve_piece_end(const struct curve *c, double from_mm)
+{
+    return c->kind == CURVE_INVOLUTE ? involute_piece_end(c, from_mm) : c->length_mm;
+}
+
+void curve_cut(const struct curve *c, double from_mm, double to_mm, struct curve *piece)
+{
+    if (c->kind == CURVE_INVOLUTE) {
+        involute_cut(c, from_mm, to_mm, piece);
+    } else {
+        *piece = *c;
+    }
+}
+
+bool curve_starts_at_cusp(const struct curve *c)
+{
+    return c->kind == CURVE_INVOLUTE && c->involute.cusp_start;
+}
+
+bool curve_ends_at_cusp(const struct curve *c)
+{
+    return c->kind == CURVE_INVOLUTE && c->involute.cusp_end;
+}
+
+bool curve_plane(const struct curve *c, enum axis *first, enum axis *second)
+{
+    switch (c->kind) {
+    case CURVE_LINE:
+        return false;
+    case CURVE_ARC:
+        *first = (enum axis)c->arc.first;
+        *second = (enum axis)c->arc.second;
+        return true;
+    case CURVE_INVOLUTE:
+        *first = (enum axis)c->involute.first;
+        *second = (enum axis)c->involute.second;
+        return true;
+    }
+    return false;
 }

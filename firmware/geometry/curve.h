@@ -14,9 +14,12 @@
 /* Less than this is rounding of coordinates: no motion. */
 #define CURVE_LENGTH_MIN_MM 1e-9
 
-enum curve_kind { CURVE_LINE, CURVE_ARC };
+/* An involute is unrolled by this at most, some 15,900 turns: up to there angles are exact (base/maths.h). */
+#define CURVE_UNROLLED_MAX_RAD 1e5
 
-/* The plane of an arc: its first and second axis in the sense of G17 (X, Y), G18 (Z, X), G19 (Y, Z). */
+enum curve_kind { CURVE_LINE, CURVE_ARC, CURVE_INVOLUTE };
+
+/* The plane of a bent curve: its first and second axis in the sense of G17 (X, Y), G18 (Z, X), G19 (Y, Z). */
 enum plane { PLANE_XY, PLANE_ZX, PLANE_YZ };
 
 /*
@@ -35,25 +38,52 @@ struct curve_arc {
     double bend_end;
 };
 
+/*
+ * The part of an involute that a line does not have (involute.c). The string is unrolled from the base circle by the
+ * angle phi; phi^2 is linear in s, and so is every axis outside the plane.
+ */
+struct curve_involute {
+    unsigned char first, second; /* axes of the plane */
+    bool outward;                /* phi grows along the curve */
+    bool cusp_start, cusp_end;   /* it starts, or ends, on the base circle or as good as there */
+    double centre_mm[2];         /* of the base circle */
+    double radius_mm;            /* of the base circle, > 0 */
+    double hand;                 /* 1: unrolled counter-clockwise, -1: clockwise */
+    double
+        heading_rad; /* of the curve on the base circle, away from it; also that point's angle there */
+    double square_start_rad2;   /* phi^2 at s = 0 */
+    double square_rate_rad2_mm; /* d phi^2 / d s */
+    double plane_ratio;         /* length in the plane / length, <= 1 */
+};
+
 struct curve {
     enum curve_kind kind;
     bool rotary;      /* the length counts radians: no linear axis moves, but for rounding */
     double length_mm; /* > 0 */
     struct point start, end;
     struct point
-        slope; /* d axis / d s of every axis (of an arc: d axis / d (f length)); 0 in an arc's plane */
-    struct curve_arc arc; /* kind CURVE_ARC alone */
+        slope; /* d axis / d s of every axis (of an arc: d axis / d (f length)); 0 in the plane of a bent curve */
+    union {
+        struct curve_arc arc;           /* kind CURVE_ARC alone */
+        struct curve_involute involute; /* kind CURVE_INVOLUTE alone */
+    };
 };
 
 /* How sharply a curve bends at most, for limits: bounds on derivatives by s, over the whole curve. */
 struct curve_bounds {
     double first[AXIS_COUNT];  /* max |dx_i/ds| */
     double second[AXIS_COUNT]; /* max |d2x_i/ds2|, 1/mm */
-    double third[AXIS_COUNT];  /* max |d3x_i/ds3|, 1/mm2 */
-    double radius_min_mm;      /* smallest radius of curvature; 0: straight */
-    /* An arc's plane: how far from a circle's. Both are 0 for a circle. */
+    double third
+        [AXIS_COUNT]; /* max |d3x_i/ds3|, 1/mm2; in an involute's plane its part along the path */
+    double radius_min_mm; /* smallest radius of curvature; 0: straight */
+    /* The plane of a bent curve: how far from a circle's. Both are 0 for a circle. */
     double second_along; /* max part of d2x/ds2 along the path, 1/mm */
     double third_across; /* max part of d3x/ds3 across it, 1/mm2 */
+    /*
+     * Not 0: an involute that starts or ends on its base circle, where it has no curvature that could be told; by how
+     * much its heading turns from there. second and third of its plane are infinite, see involute.h for what holds.
+     */
+    double cusp_rad;
 };
 
 /*
@@ -68,6 +98,36 @@ bool curve_set_line(struct curve *c, const struct point *start, const struct poi
  */
 bool curve_set_arc(struct curve *c, const struct point *start, const struct point *end,
                    enum plane plane, const double centre_mm[2], bool clockwise, unsigned turns);
+
+/*
+ * Involute of a circle from start to end, turning clockwise or not; every other axis moves in proportion to the length.
+ * centre_mm, base_radius_mm: the base circle. Start and end may be a little off the involute and even a little inside
+ * the base circle; the curve is then an involute through both that is nowhere farther off than they are (involute.c).
+ * False when both are equally far from the centre, one of them is in it, or farther than CURVE_UNROLLED_MAX_RAD times the
+ * radius, or both are inside the base circle, or the curve is shorter than CURVE_LENGTH_MIN_MM.
+ */
+bool curve_set_involute(struct curve *c, const struct point *start, const struct point *end,
+                        enum plane plane, const double centre_mm[2], double base_radius_mm,
+                        bool clockwise);
+
+/*
+ * Where the piece of c that begins at from_mm ends: within one piece the curvature changes by a bounded ratio, so that
+ * one limit of feed serves it. Only involutes have more than one piece.
+ */
+double curve_piece_end(const struct curve *c, double from_mm);
+
+/* The part of c between two places, 0 <= from < to <= length. Lines and arcs have one piece, themselves. */
+void curve_cut(const struct curve *c, double from_mm, double to_mm, struct curve *piece);
+
+/*
+ * True when it starts, or ends, on the base circle of an involute: the curvature there is infinite, and the axes must
+ * stand.
+ */
+bool curve_starts_at_cusp(const struct curve *c);
+bool curve_ends_at_cusp(const struct curve *c);
+
+/* The plane of a bent curve; false: a line. */
+bool curve_plane(const struct curve *c, enum axis *first, enum axis *second);
 
 /* True when s counts radians of rotary axes, because no linear axis moves. */
 bool curve_is_rotary(const struct curve *c);

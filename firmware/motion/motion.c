@@ -1,84 +1,369 @@
 #include "motion/motion.h"
 
-#include <assert.h>
+#include "base/maths.h"
+#include "plan/path_unit.h"
+
 #include <string.h>
 
-void motion_init(struct motion *m, double cycle_s, const struct point *start)
+/* A setpoint this close to the end of a landed block is on it: rounding of the lead point's positions, path units. */
+#define LANDED_UNITS 8.0
+
+/* Waits without a cycle, and blocks, that one cycle passes at most. */
+#define PASS_MAX 64
+
+void motion_init(struct motion *m, struct path *path, const struct point *start, bool proportional)
 {
     memset(m, 0, sizeof(*m));
-    m->cycle_s = cycle_s;
+    m->path = path;
+    m->cycle_s = path->limits.cycle_s;
     m->at = *start;
+    m->setpoint = path->position;
+    m->proportional = proportional;
+    lead_init(&m->lead, path->limits.law, path->position);
+    average_start(&m->average, path->limits.law, 1, path->position, 0);
+    m->rested = 1;
+    m->wanted = true;
+    m->request = (struct ceiling_request){.lead = m->lead.at,
+                                          .span = m->lead.span,
+                                          .cycles = 1,
+                                          .feed_ratio = 1.0,
+                                          .rapid_ratio = 1.0,
+                                          .proportional = proportional};
 }
 
-bool motion_has_room(const struct motion *m)
+static const struct block *first_block(const struct motion *m)
 {
-    return m->count < MOTION_QUEUE_MAX;
+    return path_at(m->path, m->path->first);
 }
 
-struct segment *motion_next_slot(struct motion *m)
+const struct block *motion_block(const struct motion *m)
 {
-    assert(motion_has_room(m));
-    return &m->queue[(m->first + m->count) % MOTION_QUEUE_MAX];
+    return path_at(m->path, m->current);
 }
 
-void motion_push(struct motion *m)
+/* -- background -- */
+
+const struct ceiling_request *motion_wanted(const struct motion *m)
 {
-    m->count++;
+    return m->wanted && !m->built ? &m->request : NULL;
 }
 
-const struct segment *motion_segment(const struct motion *m)
+uint32_t motion_ahead(struct motion *m)
 {
-    return &m->queue[m->first];
-}
-
-/* Leaves the segments whose cycles are over. False: none is left. */
-static bool advance(struct motion *m)
-{
-    while (m->count > 0 && motion_segment(m)->move.kind != MOVE_END &&
-           m->passed == motion_segment(m)->cycles) {
-        m->passed = 0;
-        m->first = (m->first + 1) % MOTION_QUEUE_MAX;
-        m->count--;
+    if ((int32_t)(m->request.first - m->ahead) > 0) {
+        m->ahead = m->request.first;
     }
-    return m->count > 0;
+    while (m->ahead != m->path->closed) {
+        const struct block *b = path_at(m->path, m->ahead);
+
+        if ((int64_t)(b->start + b->length - m->request.lead) > 0) {
+            break;
+        }
+        m->ahead++;
+    }
+    return m->path->closed == m->ahead ? 0 : m->path->closed - m->ahead - 1;
 }
 
-/* Where the segment's motion is in this cycle. */
-static void move_along(struct motion *m, const struct segment *s, struct cycle_record *record)
+/* Would a new ceiling be the one that is there? */
+static bool is_unchanged(const struct motion *m)
 {
-    struct profile_state state;
+    const struct ceiling *c = &m->ceiling[m->active];
 
-    record->landed = s->end != JOINT_PASSED && m->passed + 1 == s->cycles;
-    if (record->landed) {
-        m->at = s->curve.end;
-        record->feed_mm_s = s->profile.feed_end_mm_s;
+    return m->made_holds && c->complete && m->made_closed == m->path->closed &&
+           m->made.feed_ratio == m->request.feed_ratio &&
+           m->made.rapid_ratio == m->request.rapid_ratio;
+}
+
+void motion_build(struct motion *m)
+{
+    if (is_unchanged(m)) {
+        m->wanted = false;
         return;
     }
-    profile_evaluate(&s->profile, s->first_s + (double)m->passed * m->cycle_s, &state);
-    curve_point(&s->curve, state.s_mm, &m->at);
-    record->feed_mm_s = state.v_mm_s;
+    m->built_restarts = m->asked_restarts;
+    ceiling_build(&m->ceiling[1 - m->active], m->path, &m->request);
+    m->made = m->request;
+    m->made_closed = m->path->closed;
+    m->made_holds = true;
+    m->built = true;
 }
 
-enum motion_result motion_cycle(struct motion *m, struct cycle_record *record)
-{
-    const struct segment *s;
+/* -- exchange with the background -- */
 
-    if (!advance(m)) {
-        return MOTION_STARVED;
+static void take_ceiling(struct motion *m)
+{
+    m->made_holds = m->built_restarts == m->restarts &&
+                    lead_set_ceiling(&m->lead, &m->ceiling[1 - m->active], m->setpoint);
+    if (m->made_holds) {
+        m->active = 1 - m->active;
+        m->has_ceiling = true;
     }
-    s = motion_segment(m);
-    if (s->move.kind == MOVE_END) {
-        return MOTION_DONE;
+    m->built = false;
+}
+
+/* Where the ceiling ends that the lead point is under. */
+static uint64_t piece_leave(const struct motion *m)
+{
+    const struct lead *l = &m->lead;
+
+    if (l->ceiling == NULL || l->piece >= l->ceiling->count) {
+        return l->at;
     }
-    memset(record, 0, sizeof(*record));
-    if (move_is_motion(&s->move)) {
-        move_along(m, s, record);
+    return l->ceiling->origin + (uint64_t)l->ceiling->piece[l->piece].leave;
+}
+
+/* An override asked for while the lead point brakes waits for the next block (seed 003 section 2). 0 is a hold. */
+static void ask(struct motion *m, const struct motion_operator *wanted)
+{
+    const uint64_t leave = piece_leave(m);
+    const bool braking = m->lead.feed > 0.0 && m->lead.since_minus == 0;
+
+    if (!braking || leave != m->asked_leave) {
+        m->request.feed_ratio =
+            wanted->feed_ratio > 0.0 ? wanted->feed_ratio : m->request.feed_ratio;
+        m->request.rapid_ratio =
+            wanted->rapid_ratio > 0.0 ? wanted->rapid_ratio : m->request.rapid_ratio;
     }
+    m->asked_leave = leave;
+    m->asked_restarts = m->restarts;
+    m->request.first = m->path->first;
+    m->request.lead = m->lead.at;
+    m->request.span = m->lead.span;
+    m->request.cycles = m->lead.cycles;
+    m->path->kept = m->path->first;
+    m->wanted = true;
+}
+
+static void exchange(struct motion *m, const struct motion_operator *wanted)
+{
+    if (m->built) {
+        take_ceiling(m);
+    } else if (m->wanted) {
+        m->late++;
+    }
+    ask(m, wanted);
+}
+
+/* -- stops, and what happens at them -- */
+
+static bool is_wait_over(const struct motion *m, const struct block *b)
+{
+    const double cycles =
+        b->move.kind == MOVE_DWELL ? maths_ceil(b->move.dwell_s / m->cycle_s - 1e-9) : 0.0;
+
+    return (double)m->waited >= cycles;
+}
+
+/* Goes through what happens at rest. MOTION_CYCLE: the axes move on, or wait when *waits is set. */
+static enum motion_result serve(struct motion *m, bool *waits)
+{
+    *waits = true;
+    for (unsigned passed = 0; passed < PASS_MAX; passed++) {
+        if (m->done) {
+            path_pass(m->path);
+            m->done = false;
+        }
+        if (m->path->first == m->path->closed) {
+            return m->path->finished ? MOTION_EMPTY : MOTION_CYCLE;
+        }
+        const struct block *b = first_block(m);
+
+        m->current = m->path->first;
+        if (block_is_motion(b)) {
+            *waits = false;
+            return MOTION_CYCLE;
+        }
+        if (b->move.kind == MOVE_END) {
+            return MOTION_DONE;
+        }
+        if (!is_wait_over(m, b)) {
+            m->waited++;
+            m->rested++;
+            return MOTION_CYCLE;
+        }
+        m->waited = 0;
+        m->done = true;
+    }
+    return MOTION_CYCLE;
+}
+
+/* -- one setpoint -- */
+
+/* Does the operator hold where the lead point is? */
+static bool is_held(const struct motion *m, const struct motion_operator *wanted)
+{
+    const struct lead *l = &m->lead;
+
+    if (m->ending || wanted->stop) {
+        return true;
+    }
+    if (l->ceiling == NULL || l->piece >= l->ceiling->count) {
+        return wanted->hold;
+    }
+    const unsigned overrides = l->ceiling->piece[l->piece].overrides;
+
+    return (wanted->hold && (overrides & OVERRIDE_HOLD) != 0) ||
+           (!(wanted->feed_ratio > 0.0) && (overrides & OVERRIDE_FEED) != 0) ||
+           (!(wanted->rapid_ratio > 0.0) && (overrides & CEILING_RAPID) != 0);
+}
+
+/* The setpoint's distance from the start of its block, path units, after passing the blocks it has left. */
+static double find_block(struct motion *m)
+{
+    const struct block *b = first_block(m);
+    double local = (double)(int64_t)(m->lead.at - b->start) - m->lag;
+
+    for (unsigned passed = 0; passed < PASS_MAX && b->end != JOINT_STOP; passed++) {
+        if (local <= (double)b->length + LANDED_UNITS) {
+            break;
+        }
+        path_pass(m->path);
+        local -= (double)b->length;
+        b = first_block(m);
+    }
+    m->current = m->path->first;
+    m->setpoint = b->start + (uint64_t)maths_max(0.0, local);
+    return local;
+}
+
+static bool is_landing(const struct motion *m, const struct block *b)
+{
+    return b->end == JOINT_REDUCED ||
+           (b->end == JOINT_PASSED && m->path->limits.landing == LANDING_BLOCK);
+}
+
+static void place(struct motion *m, double local, struct cycle_record *record)
+{
+    const struct block *b = first_block(m);
+
+    if (local == 0.0) {
+        return;
+    }
+    if (maths_abs(local - (double)b->length) <= LANDED_UNITS) {
+        m->done = b->end == JOINT_STOP && m->lead.standing && m->lag == 0.0;
+        m->rested = 0;
+        record->landed = (m->done || is_landing(m, b)) && !b->continues;
+        m->at = b->curve.end;
+        return;
+    }
+    curve_point(&b->curve, maths_clamp(local / PATH_UNITS_PER_MM, 0.0, b->length_mm), &m->at);
+}
+
+/* The lead point moves and its average with it. */
+static void move_lead(struct motion *m, bool hold)
+{
+    struct lead_start start = {.at = m->lead.at};
+    double lag = m->lag;
+
+    if (lead_step(&m->lead, m->setpoint, hold, &start)) {
+        average_start(&m->average, m->path->limits.law, m->lead.cycles, start.at, start.step);
+        lag = average_lag(&m->average);
+    }
+    average_push(&m->average, m->lead.at);
+    m->lag = average_lag(&m->average);
+    m->feed = path_mm(start.at, m->lead.at) - (m->lag - lag) / PATH_UNITS_PER_MM;
+}
+
+/*
+ * May the stop be left? Not in the cycle that has passed something there: what an event asks to be waited for is known
+ * only after it.
+ */
+static bool may_leave(const struct motion *m, const struct motion_operator *wanted)
+{
+    return m->lead.standing && m->lead.at == first_block(m)->start && m->rested > 0 &&
+           m->passed_first == m->path->first && !wanted->wait;
+}
+
+/* The lead point, its average, the path there. */
+static void move_on(struct motion *m, const struct motion_operator *wanted,
+                    struct cycle_record *record)
+{
+    if (may_leave(m, wanted)) {
+        lead_release(&m->lead);
+    }
+    m->rested++;
+    move_lead(m, is_held(m, wanted));
+    place(m, find_block(m), record);
+}
+
+/* The axis velocity limiter: what an override above 100 % is cut down to. */
+static double limiter_of(const struct motion *m, const struct block *b)
+{
+    const double wanted = b->feed_program_mm_s * m->request.feed_ratio;
+
+    if (b->move.kind == MOVE_RAPID || m->request.feed_ratio <= 1.0) {
+        return 1.0;
+    }
+    return maths_min(1.0, b->feed_cap_mm_s / wanted);
+}
+
+/* At rest: what is left of the path is dropped. */
+static void end_path(struct motion *m)
+{
+    if (m->lead.feed > 0.0 || m->lag != 0.0) {
+        return;
+    }
+    path_restart(m->path, &m->at, m->lead.at);
+    lead_init(&m->lead, m->path->limits.law, m->lead.at);
+    m->setpoint = m->lead.at;
+    m->rested = 0;
+    m->done = false;
+    m->ending = false;
+    m->restarts++;
+}
+
+void motion_end_here(struct motion *m)
+{
+    m->ending = true;
+}
+
+bool motion_rests(const struct motion *m)
+{
+    return m->done || m->feed == 0.0;
+}
+
+bool motion_is_idle(const struct motion *m)
+{
+    return m->path->first == m->path->pushed && !m->ending;
+}
+
+static void fill_record(struct motion *m, const struct block *b, struct cycle_record *record)
+{
     record->cycle = m->cycles;
-    record->block = s->block;
-    record->line = s->move.line;
+    record->block = b->number;
+    record->line = b->move.line;
+    record->feed_mm_s = m->feed / m->cycle_s;
+    record->override_percent = 100.0 * m->request.feed_ratio;
+    record->limiter = block_is_motion(b) ? limiter_of(m, b) : 1.0;
     record->cmd = m->at;
     m->cycles++;
-    m->passed++;
+}
+
+enum motion_result motion_cycle(struct motion *m, const struct motion_operator *wanted,
+                                struct cycle_record *record)
+{
+    bool waits;
+
+    m->passed_first = m->path->first;
+    if (!m->has_ceiling && !m->built) {
+        return MOTION_NOT_YET;
+    }
+    if (!m->has_ceiling || m->cycles % MOTION_EXCHANGE_CYCLES == 0) {
+        exchange(m, wanted);
+    }
+    const enum motion_result result = serve(m, &waits);
+
+    if (result != MOTION_CYCLE) {
+        return result;
+    }
+    memset(record, 0, sizeof(*record));
+    m->feed = 0.0;
+    if (!waits) {
+        move_on(m, wanted, record);
+    }
+    if (m->ending) {
+        end_path(m);
+    }
+    fill_record(m, motion_block(m), record);
     return MOTION_CYCLE;
 }

@@ -1,50 +1,103 @@
 /*
- * The control cycle: planned segments in, one setpoint of every axis out, once a cycle.
+ * The control cycle: the path ahead and its feed ceiling in, one setpoint of every axis out, once a cycle.
  *
- * A short queue of segments stands between the planner, which works when there is time, and the cycle, which must not
- * wait. The cycle's cost is bounded: one evaluation of profile and curve, and at most MOTION_QUEUE_MAX segments passed.
+ *     lead point (lead.h) -> average (average.h) -> position on the path -> curve -> setpoint
+ *
+ * The cycle asks for a new ceiling every MOTION_EXCHANGE_CYCLES and takes the answer so many cycles later, so that every
+ * build makes the same setpoints as long as its background is not later than that.
  */
 #ifndef TAKT_MOTION_MOTION_H
 #define TAKT_MOTION_MOTION_H
 
+#include "motion/average.h"
 #include "motion/cycle_record.h"
-#include "plan/segment.h"
+#include "motion/lead.h"
+#include "plan/ceiling.h"
+#include "plan/path.h"
 
 #include <stdbool.h>
 #include <stdint.h>
 
-/*
- * Segments ahead of the cycle: more than one cycle can pass, which is the blocks that begin or end in it (9, by the
- * planner's ceiling for short blocks) and WINDOW_INSTANT_MAX events.
- */
-#define MOTION_QUEUE_MAX 16
+#define MOTION_EXCHANGE_CYCLES 16
 
 enum motion_result {
-    MOTION_CYCLE,  /* the record holds this cycle */
-    MOTION_DONE,   /* the segment that ends the program has been reached: no cycle was made */
-    MOTION_STARVED /* the queue is empty before the end: no cycle was made */
+    MOTION_CYCLE,   /* the record holds this cycle */
+    MOTION_DONE,    /* the end of the program has been reached: no cycle was made */
+    MOTION_NOT_YET, /* nothing has been planned yet: no cycle was made */
+    MOTION_EMPTY    /* everything has been done, but no end of program came: no cycle was made */
+};
+
+/* What the operator wants, in this cycle. */
+struct motion_operator {
+    double feed_ratio;  /* of programmed feeds, 0 ... BLOCK_OVERRIDE_MAX; 0 holds */
+    double rapid_ratio; /* 0 ... 1; 0 holds rapids */
+    bool hold;
+    bool stop; /* a hold that nothing in the program can switch off */
+    bool wait; /* does not leave a stop: the spindle has not reached its speed */
 };
 
 struct motion {
     double cycle_s;
-    uint64_t cycles; /* made so far */
-    struct point at; /* last commanded position */
-    uint64_t passed; /* cycles made inside the segment being executed */
-    uint32_t first;
-    uint32_t count;
-    struct segment queue[MOTION_QUEUE_MAX];
+    struct path *path;
+    uint64_t cycles;   /* made so far */
+    struct point at;   /* last commanded position */
+    uint64_t setpoint; /* where that is on the path, rounded down */
+    double feed;       /* mm/cycle, of the setpoint */
+    double lag;        /* of the setpoint behind the lead point, path units */
+    bool proportional;
+    bool done;        /* the oldest block: the next cycle passes it */
+    uint32_t current; /* the block of the last cycle */
+    uint32_t ahead;   /* the block of the lead point, when a ceiling was asked for */
+    uint64_t rested;  /* cycles at rest since the last stop was landed on */
+    uint64_t waited;  /* cycles of the wait that is being executed */
+    uint32_t
+        passed_first; /* the path's first before this cycle: blocks from there to first were passed in it */
+    uint64_t late; /* exchanges for which no ceiling was ready */
+    struct lead lead;
+    struct average average;
+    struct ceiling ceiling[2];
+    unsigned active;  /* the one in use */
+    bool has_ceiling; /* one is in use */
+    bool wanted;      /* the background is asked for one */
+    bool built;       /* and has made it */
+    struct ceiling_request request;
+    uint64_t asked_leave;        /* of the piece the lead point was in then */
+    struct ceiling_request made; /* what the last ceiling was made for, and of how many blocks */
+    uint32_t made_closed;
+    bool made_holds;   /* and it is the one in use, or will be */
+    uint32_t restarts; /* of the path, so that no ceiling of an old one is taken */
+    uint32_t asked_restarts;
+    uint32_t built_restarts;
+    bool ending; /* comes to rest where it is, and the rest of the path is dropped */
 };
 
-void motion_init(struct motion *m, double cycle_s, const struct point *start);
-bool motion_has_room(const struct motion *m);
-/* The segment to fill, followed by motion_push. Needs room. */
-struct segment *motion_next_slot(struct motion *m);
-void motion_push(struct motion *m);
+/* start: where the machine stands. The path is read here, and passed; it must outlive m. */
+void motion_init(struct motion *m, struct path *path, const struct point *start, bool proportional);
 
-/* One control cycle. Fills cycle, time, block, line, feed, cmd and landed of the record. */
-enum motion_result motion_cycle(struct motion *m, struct cycle_record *record);
+/* Background: what a ceiling is asked for; NULL: none is. */
+const struct ceiling_request *motion_wanted(const struct motion *m);
+/* Background: makes it, from all blocks pushed so far. Needs motion_wanted. */
+void motion_build(struct motion *m);
+/* Background: blocks that the path has beyond the lead point's, as that was when a ceiling was asked for. */
+uint32_t motion_ahead(struct motion *m);
 
-/* The segment the last cycle executed. Valid until the next cycle. */
-const struct segment *motion_segment(const struct motion *m);
+/* One control cycle. Fills everything of the record but set and act. */
+enum motion_result motion_cycle(struct motion *m, const struct motion_operator *wanted,
+                                struct cycle_record *record);
+
+/*
+ * The move that is executed ends where the axes come to rest from now on; all other blocks of the path are dropped. The
+ * path goes on from there.
+ */
+void motion_end_here(struct motion *m);
+
+/* Did the setpoint stand at the end of the last cycle? */
+bool motion_rests(const struct motion *m);
+
+/* Has everything on the path been done? */
+bool motion_is_idle(const struct motion *m);
+
+/* The block the last cycle executed. Valid until the next cycle. */
+const struct block *motion_block(const struct motion *m);
 
 #endif

@@ -13,6 +13,7 @@
 #include "offset/contour.h"
 
 #include "base/maths.h"
+#include "offset/nose.h"
 
 #include <assert.h>
 #include <string.h>
@@ -184,9 +185,11 @@ static double gouge_of(const struct planar *wanted, const struct planar *k, cons
 static struct planar real_way(const struct offset_item *i)
 {
     struct planar way = i->way;
+    double from[2];
 
     if (i->entry && !way.arc) {
-        (void)planar_set_line(&way, i->wanted.from, i->way.to);
+        nose_centre(&i->move, i->wanted.from, from);
+        (void)planar_set_line(&way, from, i->way.to);
     }
     return way;
 }

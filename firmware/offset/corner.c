@@ -93,33 +93,59 @@ static bool is_blunt(const struct corner *c)
 }
 
 /*
- * A corner so blunt that one point serves both ways: where they cross, or, when they only touch, between their ends.
- * False when there is not enough of one of them.
+ * Where two ways cross beside a blunt corner, into point, which holds the corner's middle; ways that only touch leave it
+ * there. A circle is crossed twice. With its programmed radius R, that of the tool's way r = R +- d and the corner's angle
+ * a, seen from where the circle is parallel to the other way, of a line:
+ *
+ *     crossings   +- a sqrt(R r)
+ *     middle      a (R + r) / 2
+ *
+ * So the nearer one is at most a d / 2 from the middle. At the other one the tool would cut the circle off.
+ */
+static void cross_beside(const struct planar *k, const struct planar *e, const struct corner *c,
+                         double point[2])
+{
+    const double middle[2] = {point[0], point[1]};
+    double nearest_mm = 2.0 * maths_abs(c->left_mm * c->angle_rad) + OFFSET_BLUNT_MM;
+    double points[2][2];
+    const unsigned count = planar_cross(k, e, points);
+
+    for (unsigned i = 0; i < count; i++) {
+        const double distance_mm = planar_between(points[i], middle);
+
+        if (distance_mm < nearest_mm) {
+            nearest_mm = distance_mm;
+            memcpy(point, points[i], sizeof(points[i]));
+        }
+    }
+}
+
+/* Does the corner's one point stand off so little that no arc about the vertex is needed? */
+static bool is_near_vertex(const struct corner *c, const double point[2])
+{
+    return is_inner(c->angle_rad, c->left_mm) ||
+           planar_between(point, c->vertex) - maths_abs(c->left_mm) < OFFSET_BLUNT_MM;
+}
+
+/*
+ * A corner so blunt that one point serves both ways. False when there is not enough of one of them, or when the point
+ * is too far out, as it can be beside a small circle.
  */
 static bool turn_blunt(struct offset *o, const struct offset_item *next, const struct corner *c)
 {
     struct offset_item *k = contour_newest(o);
     struct offset_item joined = *next;
-    const double near_mm = 2.0 * maths_abs(c->left_mm * c->angle_rad) + OFFSET_BLUNT_MM;
-    double points[2][2];
     double point[2];
-    unsigned count;
 
-    point_beside(c, 0.5 * c->angle_rad, c->left_mm, point);
     if (o->gap || k == NULL) {
         return false;
     }
-    count = planar_cross(&k->way, &next->way, points);
-    for (unsigned i = 0; i < count; i++) {
-        if (planar_between(points[i], point) < near_mm) {
-            memcpy(point, points[i], sizeof(point));
-            break;
-        }
-    }
+    point_beside(c, 0.5 * c->angle_rad, c->left_mm, point);
+    cross_beside(&k->way, &next->way, c, point);
     const double end_mm = planar_place_near_to(&k->way, point);
     const double begin_mm = planar_place_near_from(&next->way, point);
 
-    if (end_mm <= 0.0 || begin_mm >= planar_length(&next->way)) {
+    if (end_mm <= 0.0 || begin_mm >= planar_length(&next->way) || !is_near_vertex(c, point)) {
         return false;
     }
     planar_end_at(&k->way, end_mm, point);
@@ -136,7 +162,7 @@ static struct offset_item corner_piece(const struct offset *o, const struct offs
     for (enum axis i = AXIS_X; i < AXIS_LINEAR_COUNT; i++) {
         piece.move.end.at[i] = o->wanted_at.at[i];
     }
-    if (move_is_arc(&piece.move)) {
+    if (move_is_arc(&piece.move) || move_is_involute(&piece.move)) {
         piece.move.kind = MOVE_FEED;
     }
     return piece;

@@ -3,6 +3,7 @@
 #include "base/maths.h"
 #include "offset/contour.h"
 #include "offset/corner.h"
+#include "offset/nose.h"
 #include "program/travel.h"
 
 #include <string.h>
@@ -13,7 +14,6 @@
 #define ARC_CLOSED_MM 1e-7
 /* Below this cosine no arc leads from the tool to the end of an entry arc. */
 #define ENTRY_COSINE_MIN 1e-4
-#define DEGREES_PER_RAD  (180.0 / MATHS_PI)
 
 void offset_open(struct offset *o, const struct program_config *config)
 {
@@ -34,6 +34,16 @@ bool offset_warning(struct offset *o, struct diagnostic *diagnostic)
         o->warning[i] = o->warning[i + 1];
     }
     return true;
+}
+
+/* Probing moves are not compensated: where one has come to rest, whatever follows begins. */
+void offset_answer(struct offset *o, struct program *p, const struct program_answer *answer)
+{
+    if (p->question == QUESTION_PROBE) {
+        o->wanted_at = answer->rest_at;
+        o->at = answer->rest_at;
+    }
+    program_answer(p, answer);
 }
 
 static bool is_compensated(const struct move *m)
@@ -70,6 +80,10 @@ static bool set_wanted(const struct offset *o, const struct move *m, struct plan
 
     in_plane(m->plane, &o->wanted_at, from);
     in_plane(m->plane, &m->end, to);
+    if (move_is_involute(m)) {
+        return planar_set_involute(wanted, from, to, m->centre_mm, m->base_radius_mm,
+                                   m->kind == MOVE_INVOLUTE_CW);
+    }
     if (!move_is_arc(m)) {
         return planar_set_line(wanted, from, to);
     }
@@ -100,7 +114,9 @@ static bool moves_across(const struct offset *o, const struct move *m)
 static bool bend_entry(struct offset_item *entry)
 {
     struct planar *way = &entry->way;
-    const double *c = entry->wanted.from;
+    double c[2];
+
+    nose_centre(&entry->move, entry->wanted.from, c);
     const double to_tool[2] = {c[0] - way->to[0], c[1] - way->to[1]};
     const double radius = planar_between(way->centre, way->to);
     const double u[2] = {(way->centre[0] - way->to[0]) / radius,
@@ -127,6 +143,9 @@ static bool enter(struct offset *o, struct offset_item *entry, struct diagnostic
     if (lack_mm >= 0.0) {
         return fail(d, TAKT_ERROR_OFFSET_ENTRY_SHORT, entry->move.line, lack_mm);
     }
+    if (entry->wanted.involute) {
+        return fail(d, TAKT_ERROR_OFFSET_ENTRY_INVOLUTE, entry->move.line, 0.0);
+    }
     if (entry->wanted.arc && !bend_entry(entry)) {
         return fail(d, TAKT_ERROR_OFFSET_ENTRY_ARC, entry->move.line, 0.0);
     }
@@ -137,11 +156,20 @@ static bool enter(struct offset *o, struct offset_item *entry, struct diagnostic
     return true;
 }
 
+static bool turns_too_often(const struct planar *involute)
+{
+    return maths_max(involute->unrolled_from, involute->unrolled_to) >
+           OFFSET_TURNS_MAX * MATHS_TWO_PI;
+}
+
 static bool take_way(struct offset *o, struct offset_item *way, struct diagnostic *d)
 {
     const double left_mm = left_of(&way->move);
     double lack_mm;
 
+    if (way->wanted.involute && turns_too_often(&way->wanted)) {
+        return fail(d, TAKT_ERROR_OFFSET_TURNS, way->move.line, OFFSET_TURNS_MAX);
+    }
     if (!planar_offset(&way->wanted, left_mm, &way->way, &lack_mm)) {
         return fail(d, TAKT_ERROR_OFFSET_ARC_SMALL, way->move.line, lack_mm);
     }
@@ -248,33 +276,48 @@ static uint32_t turns_of(const struct planar *way)
     return (uint32_t)maths_floor(way->sweep_rad / MATHS_TWO_PI) + 1;
 }
 
-static void set_arc(struct move *m, const struct planar *way)
+static void set_arc(struct move *m, const struct planar *way, const double lead_mm[2])
 {
     if (planar_length(way) < ARC_MIN_MM) {
         m->kind = MOVE_FEED;
         return;
     }
-    m->centre_mm[0] = way->centre[0];
-    m->centre_mm[1] = way->centre[1];
+    m->centre_mm[0] = way->centre[0] + lead_mm[0];
+    m->centre_mm[1] = way->centre[1] + lead_mm[1];
     m->turns = turns_of(way);
 }
 
-/* An item as a move of the tool's centre. */
+static void set_involute(struct move *m, const struct planar *way, const double lead_mm[2])
+{
+    if (planar_length(way) < ARC_MIN_MM) {
+        m->kind = MOVE_FEED;
+        return;
+    }
+    m->centre_mm[0] = way->centre[0] + lead_mm[0];
+    m->centre_mm[1] = way->centre[1] + lead_mm[1];
+    m->base_radius_mm = way->base_mm;
+}
+
+/* An item as a move of the tool's centre, or of the point that a lathe tool is led by. */
 static void finish_move(const struct offset *o, const struct offset_item *i, struct move *m)
 {
     enum axis first;
     enum axis second;
+    double lead_mm[2];
 
     *m = i->move;
     m->cutter_side = CUTTER_OFF;
     if (i->kind == OFFSET_COMMAND) {
         return;
     }
+    nose_lead(m, lead_mm);
     plane_axes(m->plane, &first, &second);
-    m->end.at[first] = i->kind == OFFSET_STANDING ? o->at.at[first] : i->way.to[0];
-    m->end.at[second] = i->kind == OFFSET_STANDING ? o->at.at[second] : i->way.to[1];
+    m->end.at[first] = i->kind == OFFSET_STANDING ? o->at.at[first] : i->way.to[0] + lead_mm[0];
+    m->end.at[second] = i->kind == OFFSET_STANDING ? o->at.at[second] : i->way.to[1] + lead_mm[1];
     if (move_is_arc(m)) {
-        set_arc(m, &i->way);
+        set_arc(m, &i->way, lead_mm);
+    } else if (move_is_involute(m)) {
+        set_involute(m, &i->way, lead_mm);
     }
 }
 
@@ -287,8 +330,7 @@ static bool check_travel(const struct offset *o, const struct program *p, const 
     if (travel_holds(&p->config, &o->at, m, &excess)) {
         return true;
     }
-    diagnostic_set(d, TAKT_ERROR_TRAVEL_EXCEEDED, m->line, 0, &AXIS_LETTERS[excess.axis], 1,
-                   excess.axis < AXIS_LINEAR_COUNT ? excess.value : excess.value * DEGREES_PER_RAD);
+    travel_report(d, m->line, 0, &excess);
     return false;
 }
 
@@ -351,6 +393,15 @@ static bool has_room(const struct offset *o, struct diagnostic *d)
                 OFFSET_ITEMS_MAX - OFFSET_LOOK_AHEAD - OFFSET_ITEMS_ADDED);
 }
 
+/* The program waits until everything before it has been done: a contour, off by now, ends here. */
+static enum program_result before_wait(struct offset *o, struct diagnostic *d)
+{
+    if (o->count == 0) {
+        return PROGRAM_WAIT;
+    }
+    return close_contour(o, d) ? PROGRAM_MOVE : PROGRAM_ERROR;
+}
+
 /* Reads one more move. PROGRAM_MOVE: it has been taken. */
 static enum program_result read_on(struct offset *o, struct program *p, struct diagnostic *d)
 {
@@ -365,6 +416,8 @@ static enum program_result read_on(struct offset *o, struct program *p, struct d
     case PROGRAM_ERROR:
         (void)put_off(o, d);
         return PROGRAM_MOVE;
+    case PROGRAM_WAIT:
+        return before_wait(o, d);
     case PROGRAM_END:
         break;
     }

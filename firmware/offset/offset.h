@@ -17,10 +17,13 @@ void offset_open(struct offset *o, const struct program_config *config);
 
 /*
  * The next move, with the contract of program_next: after PROGRAM_ERROR reading may go on; what is left of a contour
- * with an error is dropped.
+ * with an error is dropped. PROGRAM_WAIT comes when everything before it has been given out.
  */
 enum program_result offset_next(struct offset *o, struct program *p, struct move *move,
                                 struct diagnostic *diagnostic);
+
+/* program_answer, of a program that is read through o. */
+void offset_answer(struct offset *o, struct program *p, const struct program_answer *answer);
 
 /* Warnings since the last call: true and *diagnostic while there are any; those of the program come elsewhere. */
 bool offset_warning(struct offset *o, struct diagnostic *diagnostic);

@@ -13,6 +13,9 @@
 /* Warnings kept until they are fetched. */
 #define OFFSET_WARNINGS_MAX 4
 
+/* Turns of a compensated involute: what looks for crossings and distances looks at each of them. */
+#define OFFSET_TURNS_MAX 1000
+
 /* By this much of the radius the tool may cut into the contour: rounding, below anything a machine resolves. */
 #define OFFSET_GOUGE_MM 1e-9
 /* Outer corners whose tip is nearer than this to the arc around them stay sharp: they would be specks. */

@@ -1,6 +1,8 @@
 #include "offset/planar.h"
 
 #include "base/maths.h"
+#include "geometry/involute.h"
+#include "offset/planar_involute.h"
 
 #include <string.h>
 
@@ -56,6 +58,27 @@ void planar_set_arc(struct planar *c, const double from[2], const double to[2],
     c->sweep_rad += MATHS_TWO_PI * ((double)turns - 1.0);
 }
 
+bool planar_set_involute(struct planar *c, const double from[2], const double to[2],
+                         const double centre[2], double base_mm, bool clockwise)
+{
+    const struct point start = {{from[0], from[1]}};
+    const struct point end = {{to[0], to[1]}};
+    struct curve curve;
+
+    (void)planar_set_line(c, from, to);
+    if (!curve_set_involute(&curve, &start, &end, PLANE_XY, centre, base_mm, clockwise)) {
+        return false;
+    }
+    c->involute = true;
+    memcpy(c->centre, curve.involute.centre_mm, sizeof(c->centre));
+    c->base_mm = curve.involute.radius_mm;
+    c->hand = curve.involute.hand;
+    c->heading_rad = curve.involute.heading_rad;
+    c->unrolled_from = involute_unrolled(&curve, 0.0);
+    c->unrolled_to = involute_unrolled(&curve, curve.length_mm);
+    return true;
+}
+
 /* A line's direction, or across the radius of an arc's point, in the sense of turning. */
 static void tangent(const struct planar *c, const double point[2], double result[2])
 {
@@ -73,21 +96,35 @@ static void tangent(const struct planar *c, const double point[2], double result
 
 void planar_tangent_from(const struct planar *c, double result[2])
 {
-    tangent(c, c->from, result);
+    if (c->involute) {
+        planar_involute_tangent(c, c->unrolled_from, result);
+    } else {
+        tangent(c, c->from, result);
+    }
 }
 
 void planar_tangent_to(const struct planar *c, double result[2])
 {
-    tangent(c, c->to, result);
+    if (c->involute) {
+        planar_involute_tangent(c, c->unrolled_to, result);
+    } else {
+        tangent(c, c->to, result);
+    }
 }
 
 double planar_bend_from(const struct planar *c)
 {
+    if (c->involute) {
+        return planar_involute_bend(c, c->unrolled_from);
+    }
     return c->arc ? c->sense / c->radius_from : 0.0;
 }
 
 double planar_bend_to(const struct planar *c)
 {
+    if (c->involute) {
+        return planar_involute_bend(c, c->unrolled_to);
+    }
     return c->arc ? c->sense / c->radius_to : 0.0;
 }
 
@@ -107,6 +144,10 @@ bool planar_offset(const struct planar *c, double left_mm, struct planar *result
     move_left(result->from, direction, left_mm);
     planar_tangent_to(c, direction);
     move_left(result->to, direction, left_mm);
+    if (c->involute) {
+        *lack_mm = -planar_involute_offset(result, left_mm);
+        return *lack_mm < -CLOSED_MM;
+    }
     if (!c->arc) {
         return true;
     }
@@ -118,6 +159,9 @@ bool planar_offset(const struct planar *c, double left_mm, struct planar *result
 
 double planar_length(const struct planar *c)
 {
+    if (c->involute) {
+        return planar_involute_length(c);
+    }
     return c->arc ? c->sweep_rad * 0.5 * (c->radius_from + c->radius_to)
                   : planar_between(c->from, c->to);
 }
@@ -130,6 +174,9 @@ static double nearest_turn(double angle_rad, double to_rad)
 
 static double place_near(const struct planar *c, const double point[2], double near_rad)
 {
+    if (c->involute) {
+        return planar_involute_place(c, point);
+    }
     if (!c->arc) {
         const double d[2] = {point[0] - c->from[0], point[1] - c->from[1]};
         double direction[2];
@@ -164,6 +211,9 @@ void planar_end_at(struct planar *c, double place_mm, const double point[2])
         c->sweep_rad = place_mm / (0.5 * (c->radius_from + c->radius_to));
         c->radius_to = planar_between(c->centre, point);
     }
+    if (c->involute) {
+        c->unrolled_to = planar_involute_unrolled(c, place_mm);
+    }
     memcpy(c->to, point, sizeof(c->to));
 }
 
@@ -172,6 +222,9 @@ void planar_begin_at(struct planar *c, double place_mm, const double point[2])
     if (c->arc) {
         c->sweep_rad -= place_mm / (0.5 * (c->radius_from + c->radius_to));
         c->radius_from = planar_between(c->centre, point);
+    }
+    if (c->involute) {
+        c->unrolled_from = planar_involute_unrolled(c, place_mm);
     }
     memcpy(c->from, point, sizeof(c->from));
 }

@@ -1,5 +1,5 @@
 /*
- * A piece of contour in its plane: a line or an arc, with the operations compensation needs. Coordinates are the first
+ * A piece of contour in its plane: a line, an arc or an involute, with the operations compensation needs. Coordinates are the first
  * and second axis of the plane, mm. Left is left of the way when the third axis points at the observer.
  */
 #ifndef TAKT_OFFSET_PLANAR_H
@@ -9,12 +9,19 @@
 
 struct planar {
     bool arc;
+    bool involute;
     double from[2], to[2];
+    double centre[2]; /* of an arc, or of an involute's base circle */
     /* arcs: */
-    double centre[2];
     double sense;                  /* 1 counter-clockwise, -1 clockwise */
     double radius_from, radius_to; /* differ when an end is not exactly on the circle */
     double sweep_rad;              /* > 0, also more than a turn */
+    /* involutes, as in struct curve_involute: */
+    double base_mm;
+    double hand;
+    double heading_rad;
+    double unrolled_from,
+        unrolled_to; /* at the ends; the way goes outward when the second is larger */
 };
 
 /* A line; false when it has no length. */
@@ -23,6 +30,10 @@ bool planar_set_line(struct planar *c, const double from[2], const double to[2])
 /* An arc about centre; from = to is a full circle. turns: as in struct move. */
 void planar_set_arc(struct planar *c, const double from[2], const double to[2],
                     const double centre[2], double sense, unsigned turns);
+
+/* An involute of the circle about centre with that radius; false when it has no length. */
+bool planar_set_involute(struct planar *c, const double from[2], const double to[2],
+                         const double centre[2], double base_mm, bool clockwise);
 
 /* Direction of the way at its ends, length 1. */
 void planar_tangent_from(const struct planar *c, double tangent[2]);
@@ -33,8 +44,8 @@ double planar_bend_from(const struct planar *c);
 double planar_bend_to(const struct planar *c);
 
 /*
- * The same piece moved left by left_mm, which may be negative. False when an arc would have no radius left; *lack_mm
- * is then how much its radius is too small.
+ * The same piece moved left by left_mm, which may be negative. False when an arc or an involute would have no radius
+ * left; *lack_mm is then how much its radius is too small.
  */
 bool planar_offset(const struct planar *c, double left_mm, struct planar *result, double *lack_mm);
 

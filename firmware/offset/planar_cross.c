@@ -7,7 +7,7 @@
  *                                              across = +- sqrt(R^2 - along^2)
  */
 #include "base/maths.h"
-#include "offset/planar.h"
+#include "offset/planar_involute.h"
 
 #include <string.h>
 
@@ -90,6 +90,12 @@ static unsigned cross_circles(const double c[2], double r, const double d[2], do
 
 unsigned planar_cross(const struct planar *a, const struct planar *b, double points[2][2])
 {
+    if (a->involute) {
+        return planar_involute_cross(a, b, b->radius_from, true, points);
+    }
+    if (b->involute) {
+        return planar_involute_cross(b, a, a->radius_to, false, points);
+    }
     if (!a->arc && !b->arc) {
         return cross_lines(a, b, points);
     }

@@ -1,9 +1,9 @@
 /*
  * Distances between ways. The nearest points of two ways are a crossing, an end of one of them, or, when an arc is
- * one of them, on the line through its centre at right angles to the other way.
+ * one of them, on the line through its centre at right angles to the other way. Involutes: planar_involute.c.
  */
 #include "base/maths.h"
-#include "offset/planar.h"
+#include "offset/planar_involute.h"
 
 #include <string.h>
 
@@ -48,6 +48,9 @@ double planar_distance_point(const struct planar *c, const double point[2])
     const double direction[2] = {point[0] - c->centre[0], point[1] - c->centre[1]};
     double nearest[2];
 
+    if (c->involute) {
+        return planar_involute_distance_point(c, point);
+    }
     if (!c->arc) {
         return distance_from_line(c, point);
     }
@@ -102,6 +105,20 @@ static double distance_inside(const struct planar *arc, const struct planar *oth
     return distance_along(arc, direction, other);
 }
 
+/* Where both have a common normal. */
+static double distance_across(const struct planar *a, const struct planar *b)
+{
+    if (a->involute) {
+        return planar_involute_distance(a, b);
+    }
+    if (b->involute) {
+        return planar_involute_distance(b, a);
+    }
+    const double smallest = a->arc ? distance_inside(a, b) : MATHS_INFINITY;
+
+    return b->arc ? maths_min(smallest, distance_inside(b, a)) : smallest;
+}
+
 double planar_distance(const struct planar *a, const struct planar *b)
 {
     if (do_cross(a, b)) {
@@ -111,11 +128,5 @@ double planar_distance(const struct planar *a, const struct planar *b)
 
     smallest = maths_min(smallest, planar_distance_point(b, a->from));
     smallest = maths_min(smallest, planar_distance_point(b, a->to));
-    if (a->arc) {
-        smallest = maths_min(smallest, distance_inside(a, b));
-    }
-    if (b->arc) {
-        smallest = maths_min(smallest, distance_inside(b, a));
-    }
-    return smallest;
+    return maths_min(smallest, distance_across(a, b));
 }

@@ -14,6 +14,8 @@
 #include "plan/block.h"
 
 #include "base/maths.h"
+#include "geometry/involute.h"
+#include "plan/path_unit.h"
 
 #include <string.h>
 
@@ -31,20 +33,12 @@
 /* A block lasts at least cycle / CYCLE_BLOCKS_MAX, so that a cycle passes a bounded number of joints. */
 #define CYCLE_BLOCKS_MAX 8.0
 
-/* Ramp to a third of the feed against ramp to a stop, rounded up: see block_start_feed. */
-#define RAMP_DETOUR 1.09
-
-/* Feeds solved for so that a ramp fills its block are rounded: by less than this part of them. */
-#define FEED_SLACK 2e-15
-
-#define BISECTIONS 60
-
-struct ceiling {
+struct bound {
     double feed_mm_s;
     enum governor governor;
 };
 
-static void ceiling_lower(struct ceiling *c, double feed_mm_s, enum governor governor)
+static void bound_lower(struct bound *c, double feed_mm_s, enum governor governor)
 {
     if (feed_mm_s < c->feed_mm_s) {
         c->feed_mm_s = feed_mm_s;
@@ -52,26 +46,27 @@ static void ceiling_lower(struct ceiling *c, double feed_mm_s, enum governor gov
     }
 }
 
-/* Cruise feed on the arc: second v^2 <= ARC_ACCELERATION A, third v^3 <= ARC_JERK J. */
-static struct ceiling block_ceiling(const struct block *b, double share)
+/* On an arc: second v^2 <= ARC_ACCELERATION A, third v^3 <= ARC_JERK J. */
+static struct bound block_ceiling(const struct block *b, double share, double program_mm_s)
 {
     const struct block_shape *shape = &b->shape;
-    struct ceiling c = {b->feed_cap_mm_s, b->governor};
+    struct bound c = {program_mm_s, GOVERNOR_PROGRAM};
 
+    bound_lower(&c, b->feed_cap_mm_s, b->cap);
     if (shape->first > 0.0) {
         const double a = shape->plane_a_mm_s2 * (1.0 - ACCELERATION_PER_SHARE * share);
         const double j = shape->plane_j_mm_s3 * (1.0 - share);
 
-        ceiling_lower(&c, maths_sqrt(ARC_ACCELERATION * a / shape->second), GOVERNOR_ACCELERATION);
-        ceiling_lower(&c, maths_cbrt(ARC_JERK * j / shape->third), GOVERNOR_JERK);
+        bound_lower(&c, maths_sqrt(ARC_ACCELERATION * a / shape->second), GOVERNOR_ACCELERATION);
+        bound_lower(&c, maths_cbrt(ARC_JERK * j / shape->third), GOVERNOR_JERK);
     }
     return c;
 }
 
 /* What an arc at feed v leaves for a ramp: the formulas at the top solved for a and j. */
-static void limit_arc_ramp(const struct block_shape *shape, double share, double v,
-                           struct ramp_limits *r)
+static void limit_arc_ramp(struct block *b, double share, double v)
 {
+    const struct block_shape *shape = &b->shape;
     const double a_max = shape->plane_a_mm_s2 * (1.0 - ACCELERATION_PER_SHARE * share);
     const double j_max = shape->plane_j_mm_s3 * (1.0 - share);
     const double normal = shape->second * v * v;
@@ -79,20 +74,19 @@ static void limit_arc_ramp(const struct block_shape *shape, double share, double
     const double turning = RAMP_NORMAL * j_max / (3.0 * shape->second * v);
     const double j = (RAMP_ALONG * j_max - shape->third * v * v * v) / shape->first;
 
-    r->a_mm_s2 = maths_min(r->a_mm_s2, maths_min(along, turning));
-    r->j_mm_s3 = maths_min(r->j_mm_s3, j);
+    b->a_mm_s2 = maths_min(b->a_mm_s2, maths_min(along, turning));
+    b->j_mm_s3 = maths_min(b->j_mm_s3, j);
 }
 
+/* Limits are found for the highest override, so that they hold while the feed is on its way to a lower one. */
 void block_set_share(struct block *b, double share)
 {
-    const struct ceiling c = block_ceiling(b, share);
-
     b->share = share;
-    b->feed_max_mm_s = c.feed_mm_s;
-    b->ramp.a_mm_s2 = b->shape.line_a_mm_s2 * (1.0 - ACCELERATION_PER_SHARE * share);
-    b->ramp.j_mm_s3 = b->shape.line_j_mm_s3 * (1.0 - share);
+    b->feed_max_mm_s = block_ceiling(b, share, BLOCK_OVERRIDE_MAX * b->feed_program_mm_s).feed_mm_s;
+    b->a_mm_s2 = b->shape.line_a_mm_s2 * (1.0 - ACCELERATION_PER_SHARE * share);
+    b->j_mm_s3 = b->shape.line_j_mm_s3 * (1.0 - share);
     if (b->shape.first > 0.0) {
-        limit_arc_ramp(&b->shape, share, b->feed_max_mm_s, &b->ramp);
+        limit_arc_ramp(b, share, b->feed_max_mm_s);
     }
 }
 
@@ -100,65 +94,19 @@ void block_cap_feed(struct block *b, double feed_mm_s, enum governor governor)
 {
     if (feed_mm_s < b->feed_cap_mm_s) {
         b->feed_cap_mm_s = feed_mm_s;
-        b->governor = governor;
+        b->cap = governor;
         block_set_share(b, b->share);
     }
 }
 
 double block_top_feed(const struct block *b)
 {
-    return block_ceiling(b, 0.0).feed_mm_s;
+    return block_ceiling(b, 0.0, BLOCK_OVERRIDE_MAX * b->feed_program_mm_s).feed_mm_s;
 }
 
-enum governor block_governor(const struct block *b)
+enum governor block_governor(const struct block *b, double program_mm_s)
 {
-    return block_ceiling(b, b->share).governor;
-}
-
-/*
- * A ramp down to m > 0 can be longer than the ramp to a stop: (v + m) sqrt(v - m) / sqrt(j) is largest at m = v/3, by
- * 4/3 sqrt(2/3) = 1.0887. So the highest start feed is that for the planned end or that for a stop, whichever is
- * higher; and where the end feed must be free to take any value, because it is used for landing or because it is not
- * known yet, the longest of all these ramps must fit.
- */
-double block_start_feed(const struct block *b)
-{
-    if (!b->closed || b->end == JOINT_REDUCED) {
-        return ramp_reach(0.0, b->length_mm / RAMP_DETOUR, &b->ramp);
-    }
-    return maths_max(ramp_reach(0.0, b->length_mm, &b->ramp),
-                     ramp_reach(b->feed_end_mm_s, b->length_mm, &b->ramp));
-}
-
-/*
- * Does the ramp down fit? Judged by feeds, not by length: a change of feed by one unit in the last place takes a length
- * of 2 v sqrt(ulp(v)/j), which at a high feed and a low jerk is any part of a short block.
- */
-static bool fits_down(const struct block *b, double start_mm_s, double end_mm_s)
-{
-    const double from = maths_max(end_mm_s, start_mm_s * (1.0 - FEED_SLACK));
-
-    return ramp_length(from, end_mm_s, &b->ramp) <= b->length_mm * (1.0 + FEED_SLACK);
-}
-
-double block_end_feed(const struct block *b, double start_mm_s)
-{
-    double high = maths_min(b->feed_end_mm_s, ramp_reach(start_mm_s, b->length_mm, &b->ramp));
-    double low = 0.0;
-
-    if (high >= start_mm_s || fits_down(b, start_mm_s, high)) {
-        return high;
-    }
-    for (int i = 0; i < BISECTIONS; i++) {
-        const double middle = 0.5 * (low + high);
-
-        if (ramp_length(start_mm_s, middle, &b->ramp) <= b->length_mm) {
-            low = middle;
-        } else {
-            high = middle;
-        }
-    }
-    return low;
+    return block_ceiling(b, b->share, program_mm_s).governor;
 }
 
 /*
@@ -167,7 +115,7 @@ double block_end_feed(const struct block *b, double start_mm_s)
  * at the highest feed v, and leaves 1 - 2u and 1 - 2w to a and j. The factor 2 = 1 / (1 - BLOCK_SHARE_MAX): what joints
  * take is taken from a and j alone.
  */
-static void limit_line_axis(struct block_shape *shape, struct ceiling *c,
+static void limit_line_axis(struct block_shape *shape, struct bound *c,
                             const struct curve_bounds *bounds, const struct plan_limits *limits,
                             int i)
 {
@@ -178,8 +126,8 @@ static void limit_line_axis(struct block_shape *shape, struct ceiling *c,
     if (second > 0.0) {
         const double part_j = 0.5 * SPIRAL_PART * j;
 
-        ceiling_lower(c, maths_sqrt(SPIRAL_PART * a / second), GOVERNOR_ACCELERATION);
-        ceiling_lower(c, maths_cbrt(part_j / bounds->third[i]), GOVERNOR_JERK);
+        bound_lower(c, maths_sqrt(SPIRAL_PART * a / second), GOVERNOR_ACCELERATION);
+        bound_lower(c, maths_cbrt(part_j / bounds->third[i]), GOVERNOR_JERK);
         const double v = c->feed_mm_s;
         const double path_a =
             maths_min((a - 2.0 * second * v * v) / bounds->first[i], part_j / (3.0 * second * v));
@@ -202,15 +150,28 @@ static double chord_feed(double radius_mm, double chord_mm, double cycle_s)
     return 2.0 / cycle_s * maths_sqrt(chord_mm * (2.0 * radius_mm - chord_mm));
 }
 
+/* On an involute the chord from its base circle is the worst: whichever of both rules allows more holds. */
+static double chord_ceiling(const struct curve *curve, const struct curve_bounds *bounds,
+                            const struct plan_limits *limits)
+{
+    const double chord_mm = limits->chord_error_max_mm;
+    const double round = chord_feed(bounds->radius_min_mm, chord_mm, limits->cycle_s);
+
+    if (curve->kind != CURVE_INVOLUTE) {
+        return round;
+    }
+    const double cusped = involute_step_max(curve, chord_mm) / limits->cycle_s;
+
+    return bounds->radius_min_mm <= chord_mm ? cusped : maths_max(cusped, round);
+}
+
 /*
  * On an arc of two radii x_ss and x_sss are not quite normal to the path and along it. What the formulas at the top
  * miss is at most along (second v^2) in acceleration, and along (3 second v a) + across (third v^3) in jerk.
  */
-static void limit_arc_plane(struct block_shape *shape, struct ceiling *c, const struct curve *curve,
-                            const struct curve_bounds *bounds, const struct plan_limits *limits)
+static void limit_bent_plane(struct block_shape *shape, enum axis first, enum axis second,
+                             const struct curve_bounds *bounds, const struct plan_limits *limits)
 {
-    const int first = curve->arc.first;
-    const int second = curve->arc.second;
     const double along = bounds->second_along / bounds->second[first];
     const double across = bounds->third_across / bounds->third[first];
 
@@ -222,43 +183,75 @@ static void limit_arc_plane(struct block_shape *shape, struct ceiling *c, const 
         (1.0 + ARC_ACCELERATION * along);
     shape->plane_j_mm_s3 = maths_min(limits->jerk_mm_s3[first], limits->jerk_mm_s3[second]) /
                            (1.0 + RAMP_NORMAL * along + ARC_JERK * across);
-    ceiling_lower(c, chord_feed(bounds->radius_min_mm, limits->chord_error_max_mm, limits->cycle_s),
-                  GOVERNOR_CHORD);
+}
+
+/*
+ * A piece that begins or ends on an involute's base circle is gone from or to rest: what bends there is bounded by what
+ * the ramp does (geometry/involute.h), so the plane's axes count like one that moves straight, with lower limits.
+ */
+static void limit_cusp_plane(struct block_shape *shape, enum axis first, enum axis second,
+                             const struct curve_bounds *bounds, const struct plan_limits *limits)
+{
+    const double a =
+        maths_min(limits->acceleration_mm_s2[first], limits->acceleration_mm_s2[second]);
+    const double j = maths_min(limits->jerk_mm_s3[first], limits->jerk_mm_s3[second]);
+    const double ratio = bounds->first[first];
+
+    shape->line_a_mm_s2 =
+        maths_min(shape->line_a_mm_s2, a / (ratio * involute_cusp_acceleration(bounds->cusp_rad)));
+    shape->line_j_mm_s3 =
+        maths_min(shape->line_j_mm_s3, j / (ratio * involute_cusp_jerk(bounds->cusp_rad)));
+}
+
+/* Limits of the axes, and for bent curves the chord error. */
+static void limit_axes(struct block_shape *shape, struct bound *c, const struct curve *curve,
+                       const struct plan_limits *limits)
+{
+    struct curve_bounds bounds;
+    enum axis first = AXIS_COUNT;
+    enum axis second = AXIS_COUNT;
+    const bool bent = curve_plane(curve, &first, &second);
+
+    curve_bound(curve, &bounds);
+    for (int i = 0; i < AXIS_COUNT; i++) {
+        if (bounds.first[i] > 0.0) {
+            bound_lower(c, limits->velocity_mm_s[i] / bounds.first[i], GOVERNOR_VELOCITY);
+        }
+    }
+    for (int i = 0; i < AXIS_COUNT; i++) {
+        if (i != (int)first && i != (int)second) {
+            limit_line_axis(shape, c, &bounds, limits, i);
+        }
+    }
+    if (bent && bounds.cusp_rad > 0.0) {
+        limit_cusp_plane(shape, first, second, &bounds, limits);
+    } else if (bent) {
+        limit_bent_plane(shape, first, second, &bounds, limits);
+    }
+    if (bent) {
+        bound_lower(c, chord_ceiling(curve, &bounds, limits), GOVERNOR_CHORD);
+    }
 }
 
 void block_set_motion(struct block *b, const struct move *move, const struct curve *curve,
                       const struct plan_limits *limits)
 {
-    struct curve_bounds bounds;
-    struct ceiling c = {move->feed_mm_s, GOVERNOR_PROGRAM};
+    struct bound c = {MATHS_INFINITY, GOVERNOR_VELOCITY};
 
-    if (move->kind == MOVE_RAPID) {
-        c = (struct ceiling){MATHS_INFINITY, GOVERNOR_VELOCITY};
-    }
     memset(b, 0, sizeof(*b));
     b->move = *move;
+    b->curve = *curve;
+    b->feed_program_mm_s = move->kind == MOVE_RAPID ? MATHS_INFINITY : move->feed_mm_s;
+    b->length = path_units(curve->length_mm);
     b->length_mm = curve->length_mm;
     b->rotary = curve_is_rotary(curve);
     b->end = JOINT_STOP;
     b->shape.line_a_mm_s2 = MATHS_INFINITY;
     b->shape.line_j_mm_s3 = MATHS_INFINITY;
-    curve_bound(curve, &bounds);
-    for (int i = 0; i < AXIS_COUNT; i++) {
-        if (bounds.first[i] > 0.0) {
-            ceiling_lower(&c, limits->velocity_mm_s[i] / bounds.first[i], GOVERNOR_VELOCITY);
-        }
-    }
-    for (int i = 0; i < AXIS_COUNT; i++) {
-        if (curve->kind != CURVE_ARC || (i != curve->arc.first && i != curve->arc.second)) {
-            limit_line_axis(&b->shape, &c, &bounds, limits, i);
-        }
-    }
-    if (curve->kind == CURVE_ARC) {
-        limit_arc_plane(&b->shape, &c, curve, &bounds, limits);
-    }
-    ceiling_lower(&c, CYCLE_BLOCKS_MAX * b->length_mm / limits->cycle_s, GOVERNOR_SHORT);
+    limit_axes(&b->shape, &c, curve, limits);
+    bound_lower(&c, CYCLE_BLOCKS_MAX * b->length_mm / limits->cycle_s, GOVERNOR_SHORT);
     b->feed_cap_mm_s = c.feed_mm_s;
-    b->governor = c.governor;
+    b->cap = c.governor;
     block_set_share(b, BLOCK_SHARE_MAX);
 }
 
@@ -267,5 +260,4 @@ void block_set_wait(struct block *b, const struct move *move)
     memset(b, 0, sizeof(*b));
     b->move = *move;
     b->end = JOINT_STOP;
-    b->closed = true;
 }

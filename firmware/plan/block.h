@@ -1,23 +1,36 @@
 /*
- * A block in the window: a move, and what is known of its feed.
+ * A block: a stretch of one curve, and the limits of the feed along it.
  *
- *    v |        ________ feed_max            rules of the diagram (seed 003 section 1):
- *      |       /        \                    1. never brake at the start: feed_max >= feed at the start
- *      |  ____/          \____               2. never accelerate at the end: feed_end <= feed_max
- *      |  start            end               3. acceleration is zero at both ends
- *      +-----------------------> s           4. the block is long enough for its ramps, else feeds come down
+ * Everything here is found once, when the block and its neighbours are known; what the operator does later (override)
+ * is applied where ceilings are made of blocks (ceiling.h).
  */
 #ifndef TAKT_PLAN_BLOCK_H
 #define TAKT_PLAN_BLOCK_H
 
 #include "geometry/curve.h"
 #include "plan/limits.h"
-#include "plan/ramp.h"
-#include "plan/segment.h"
 #include "program/move.h"
 
 #include <stdbool.h>
 #include <stdint.h>
+
+/* The limit that governs the feed of a block. */
+enum governor {
+    GOVERNOR_PROGRAM,      /* the programmed feed */
+    GOVERNOR_VELOCITY,     /* an axis's maximum velocity */
+    GOVERNOR_ACCELERATION, /* centripetal acceleration on an arc */
+    GOVERNOR_JERK,         /* jerk on an arc */
+    GOVERNOR_CHORD,        /* chord error on an arc */
+    GOVERNOR_SHORT,        /* block of about one cycle: changes of direction must not pile up */
+    GOVERNOR_RAMP /* no ceiling is reached: the block is passed while speeding up or slowing down */
+};
+
+/* What limits the feed at the end of a block. */
+enum joint_kind {
+    JOINT_PASSED,  /* full feed: the end is inside a span */
+    JOINT_REDUCED, /* the change of direction or curvature needs a lower feed: landed */
+    JOINT_STOP     /* rest: landed */
+};
 
 /*
  * How much of the axes' limits one unit of motion along the path needs, at most: from the curve's bounds.
@@ -35,59 +48,59 @@ struct block_shape {
 };
 
 struct block {
-    struct move move;
-    uint32_t number; /* of the motion, from 1 */
+    struct move move; /* the canonical move it came from */
+    uint32_t number;  /* of the motion, from 1; a wait has the number of the motion before it */
+    uint64_t start;   /* path position, path units (path_unit.h) */
+    uint64_t length;  /* path units; 0: a wait, the axes stand */
+    struct curve curve;
+    double from_mm; /* where on the move's curve it begins: not 0 for later pieces of it */
+    bool continues; /* another piece of the same move follows */
     double length_mm;
     bool rotary; /* the path is counted in rad: no linear axis moves */
     struct block_shape shape;
 
+    double feed_program_mm_s; /* as programmed; infinite for a rapid */
+    double feed_cap_mm_s;     /* axis velocities, chord error, joints */
+    enum governor cap;
     double
-        feed_cap_mm_s; /* cruise feed may not exceed: programmed feed, axis velocities, chord error, joints */
-    enum governor governor;
-    double feed_max_mm_s;    /* cruise feed ceiling with curvature and share taken into account */
-    struct ramp_limits ramp; /* along the path, what curvature and share leave */
+        feed_max_mm_s; /* feed_cap with curvature and share: never exceeded, whatever the override */
+    double a_mm_s2;    /* along the path, what curvature and share leave at that feed */
+    double j_mm_s3;
 
     enum joint_kind end;
-    bool closed;            /* what follows is known: end, share and joint feed are final */
     double share_start;     /* part of the jerk limit used by the joint at the start */
     double share;           /* part of the jerk limit left to both joints, 0 ... BLOCK_SHARE_MAX */
     double feed_joint_mm_s; /* highest feed at which the joint at the end may be passed */
-    double
-        feed_end_mm_s; /* planned feed at the end: the rest of the window can be stopped from it */
 };
 
 /* Part of the jerk limit that changes of direction and curvature at joints may use; ramps then have the rest. */
 #define BLOCK_SHARE_MAX 0.5
 
-/*
- * Fills b from a motion's curve. Its end is a stop until a joint is formed, and its share is the largest, so that what
- * comes later can only raise its limits: a plan once made stays possible.
- */
+/* The highest feed override: limits on arcs are found for the programmed feed times this. */
+#define BLOCK_OVERRIDE_MAX 1.2
+
+/* Fills b from a motion's curve. Its end is a stop until a joint is formed. */
 void block_set_motion(struct block *b, const struct move *move, const struct curve *curve,
                       const struct plan_limits *limits);
 
 /* Fills b with something that happens while the axes stand. */
 void block_set_wait(struct block *b, const struct move *move);
 
-/* Lowers the cruise feed to feed_mm_s, for the reason given; a higher value changes nothing. */
+/* Lowers the ceiling of the feed to feed_mm_s, for the reason given; a higher value changes nothing. */
 void block_cap_feed(struct block *b, double feed_mm_s, enum governor governor);
 
 /* Sets the share left to the joints and what follows from it. */
 void block_set_share(struct block *b, double share);
 
-/* Cruise feed if no joint took a share: the most this block will ever be allowed. */
+/* The most this block will ever be allowed: if no joint took a share. */
 double block_top_feed(const struct block *b);
 
-/* What governs the cruise feed. */
-enum governor block_governor(const struct block *b);
+/* What governs a feed ceiling of program_mm_s (programmed feed with the override) on this block. */
+enum governor block_governor(const struct block *b, double program_mm_s);
 
-/*
- * Highest feed at the block's start from which its planned end, or a lower one, can be reached. Never falls while the
- * plan of what follows improves.
- */
-double block_start_feed(const struct block *b);
-
-/* Highest end feed up to feed_end that start_mm_s reaches within the block. */
-double block_end_feed(const struct block *b, double start_mm_s);
+static inline bool block_is_motion(const struct block *b)
+{
+    return move_is_motion(&b->move);
+}
 
 #endif

@@ -126,7 +126,7 @@ static double joint_share(const struct joint_steps *steps, double v, double crow
 
 static bool is_short(const struct block *b, double cycle_s)
 {
-    return b->length_mm < JOINT_CYCLES_SPAN * cycle_s * b->feed_cap_mm_s;
+    return b->length_mm < JOINT_CYCLES_SPAN * cycle_s * block_top_feed(b);
 }
 
 /* A block beside a short one may share three cycles with joints it does not touch: it leaves the largest share. */
@@ -144,9 +144,7 @@ static double short_ceiling(const struct block *b, double v, double shorter_mm, 
 void joint_stop(struct block *b)
 {
     b->end = JOINT_STOP;
-    b->closed = true;
     b->feed_joint_mm_s = 0.0;
-    b->feed_end_mm_s = 0.0;
     block_set_share(b, b->share_start);
 }
 
@@ -155,16 +153,13 @@ static void joint_pass(struct block *before, struct block *after, double v, doub
 {
     const double top = maths_min(block_top_feed(before), block_top_feed(after));
 
-    before->closed = true;
     before->end = v >= top ? JOINT_PASSED : JOINT_REDUCED;
     before->feed_joint_mm_s = v;
     after->share_start = neighbour_share(share, before, cycle_s);
     block_set_share(before, maths_max(before->share_start, neighbour_share(share, after, cycle_s)));
 }
 
-void joint_form(struct block *before, const struct curve *before_curve, struct block *after,
-                const struct curve *after_curve, double start_mm_s,
-                const struct plan_limits *limits)
+void joint_form(struct block *before, struct block *after, const struct plan_limits *limits)
 {
     const double apart_s = JOINT_CYCLES_APART * limits->cycle_s;
     const double shorter_mm = maths_min(before->length_mm, after->length_mm);
@@ -175,7 +170,7 @@ void joint_form(struct block *before, const struct curve *before_curve, struct b
         joint_stop(before);
         return;
     }
-    joint_measure(before_curve, after_curve, limits, &steps);
+    joint_measure(&before->curve, &after->curve, limits, &steps);
     double v = alone_feed(&steps);
     const double top = maths_min(block_top_feed(before), block_top_feed(after));
 
@@ -183,14 +178,13 @@ void joint_form(struct block *before, const struct curve *before_curve, struct b
         v = crowded_feed(&steps, reach_mm_s);
     }
     const double worth_mm_s =
-        JOINT_STOP_CYCLES * before->ramp.j_mm_s3 * limits->cycle_s * limits->cycle_s;
-    const double ceiling = short_ceiling(before, v, shorter_mm, apart_s);
+        JOINT_STOP_CYCLES * before->j_mm_s3 * limits->cycle_s * limits->cycle_s;
 
-    if (v < maths_min(worth_mm_s, top) || ceiling < start_mm_s) {
+    if (v < maths_min(worth_mm_s, top)) {
         joint_stop(before);
         return;
     }
-    block_cap_feed(before, ceiling, GOVERNOR_SHORT);
+    block_cap_feed(before, short_ceiling(before, v, shorter_mm, apart_s), GOVERNOR_SHORT);
     block_cap_feed(after, short_ceiling(after, v, shorter_mm, apart_s), GOVERNOR_SHORT);
     joint_pass(before, after, v,
                joint_share(&steps, maths_min(v, top), joint_crowding(before, after, apart_s)),

@@ -4,18 +4,14 @@
 #ifndef TAKT_PLAN_JOINT_H
 #define TAKT_PLAN_JOINT_H
 
-#include "geometry/curve.h"
 #include "plan/block.h"
 #include "plan/limits.h"
 
 /*
  * Forms the joint between two motions that follow each other: sets before->end, feed_joint_mm_s, the share of both and,
- * for blocks of few cycles, their cruise ceiling. start_mm_s is the feed planned at the start of before: its
- * ceiling never falls below it.
+ * for blocks of few cycles, their ceiling.
  */
-void joint_form(struct block *before, const struct curve *before_curve, struct block *after,
-                const struct curve *after_curve, double start_mm_s,
-                const struct plan_limits *limits);
+void joint_form(struct block *before, struct block *after, const struct plan_limits *limits);
 
 /* The end of b is a stop for good: nothing joins it. */
 void joint_stop(struct block *b);

@@ -5,6 +5,13 @@
 #define TAKT_PLAN_LIMITS_H
 
 #include "base/point.h"
+#include "plan/law.h"
+
+/* Where a control cycle falls on the end of a block exactly. */
+enum landing {
+    LANDING_SPAN, /* where spans end: stops, and joints that need a lower feed */
+    LANDING_BLOCK /* at every block's end, as the source has it */
+};
 
 struct plan_limits {
     unsigned axes; /* bit i set: the machine has axis i */
@@ -14,6 +21,8 @@ struct plan_limits {
     double cycle_s; /* control cycle */
     double
         chord_error_max_mm; /* largest deviation of the chord between two cycles from the curve */
+    enum law law;
+    enum landing landing;
 };
 
 #endif

@@ -17,22 +17,25 @@ void approach_open(struct program *p)
     p->approach.height_mm = p->config.start.at[AXIS_Z];
 }
 
-/* No curve goes further up than this: from its end, or from its centre by its radius. */
+/* No curve goes further up than this: from its end, or from its centre by the distance of its farther end. */
 static double highest(const struct move *m, const struct point *start)
 {
-    double height_mm = m->end.at[AXIS_Z];
-    struct curve curve;
-    enum axis first;
-    enum axis second;
+    enum axis axis[2];
 
-    plane_axes(m->plane, &first, &second);
-    if (!move_is_arc(m) || (first != AXIS_Z && second != AXIS_Z) || !move_curve(m, start, &curve)) {
-        return height_mm;
+    plane_axes(m->plane, &axis[0], &axis[1]);
+    if (!(move_is_arc(m) || move_is_involute(m)) || (axis[0] != AXIS_Z && axis[1] != AXIS_Z)) {
+        return m->end.at[AXIS_Z];
     }
-    const struct curve_arc *arc = &curve.arc;
-    const double radius_mm = arc->radius_start_mm + maths_max(arc->radius_change_mm, 0.0);
+    double farthest = 0.0;
 
-    return arc->centre_mm[first == AXIS_Z ? 0 : 1] + radius_mm;
+    for (unsigned i = 0; i < 2; i++) {
+        const struct point *p = i == 0 ? start : &m->end;
+        const double x = p->at[axis[0]] - m->centre_mm[0];
+        const double y = p->at[axis[1]] - m->centre_mm[1];
+
+        farthest = maths_max(farthest, maths_sqrt(x * x + y * y));
+    }
+    return m->centre_mm[axis[0] == AXIS_Z ? 0 : 1] + farthest;
 }
 
 static bool has_z(const struct program *p)
@@ -144,9 +147,7 @@ static bool is_within_travel(struct program *p)
         return true;
     }
     (void)give_up(p, TAKT_ERROR_TRAVEL_EXCEEDED, p->lexer.line);
-    diagnostic_set(&p->error, TAKT_ERROR_TRAVEL_EXCEEDED, p->lexer.line, 0,
-                   &AXIS_LETTERS[excess.axis], 1,
-                   coordinates_to_parameter(excess.value, excess.axis));
+    travel_report(&p->error, p->lexer.line, 0, &excess);
     return false;
 }
 

@@ -6,8 +6,7 @@
 
 #include <string.h>
 
-/* Orientations of tools that are not for turning. */
-#define ORIENTATION_NONE   0
+/* Of a tool that is led by its centre, though it may be one for turning. */
 #define ORIENTATION_CENTRE 9
 
 static bool is_on(const struct program *p)
@@ -26,19 +25,34 @@ bool cutter_cancel(struct program *p, const struct program_code *code)
     return true;
 }
 
+/* What the plane has to do with it. span: what brought the orientation. */
+static bool check_plane(struct program *p, const struct program_code *code, uint32_t orientation,
+                        struct program_span span)
+{
+    const bool led_aside = orientation != 0 && orientation != ORIENTATION_CENTRE;
+
+    if (p->modes.turn.degrees != 0.0 && p->modes.plane != PLANE_XY) {
+        return report_error_code(p, TAKT_ERROR_ARC_TILTED, code->step, p->modes.turn.degrees);
+    }
+    return !led_aside || p->modes.plane == PLANE_ZX ||
+           report_error(p, TAKT_ERROR_CUTTER_ORIENTATION, span, orientation);
+}
+
 /* A negative diameter changes the side. */
-static bool turn_on(struct program *p, const struct program_code *code, double diameter_mm)
+static bool turn_on(struct program *p, const struct program_code *code, double diameter_mm,
+                    uint32_t orientation, struct program_span span)
 {
     const bool left = (code->argument == CUTTER_LEFT) == (diameter_mm >= 0.0);
 
     if (is_on(p)) {
         return report_error_code(p, TAKT_ERROR_CUTTER_REPEATED, code->step, 0.0);
     }
-    if (p->modes.turn.degrees != 0.0 && p->modes.plane != PLANE_XY) {
-        return report_error_code(p, TAKT_ERROR_ARC_TILTED, code->step, p->modes.turn.degrees);
+    if (!check_plane(p, code, orientation, span)) {
+        return false;
     }
     p->modes.cutter_side = left ? CUTTER_LEFT : CUTTER_RIGHT;
     p->modes.cutter_radius_mm = 0.5 * (diameter_mm < 0.0 ? -diameter_mm : diameter_mm);
+    p->modes.cutter_orientation = (uint8_t)orientation;
     p->modes.cutter_code = code;
     p->modes.cutter_moved = false;
     return true;
@@ -61,25 +75,28 @@ bool cutter_use_tool(struct program *p, const struct program_code *code)
     if (tool == NULL && number != 0) {
         return report_error(p, TAKT_ERROR_TOOL_ABSENT, span, number);
     }
-    if (tool != NULL && tool->orientation != ORIENTATION_NONE &&
-        tool->orientation != ORIENTATION_CENTRE) {
-        return report_error(p, TAKT_ERROR_CUTTER_ORIENTATION, span, tool->orientation);
-    }
-    return turn_on(p, code, tool == NULL ? 0.0 : tool->diameter_mm);
+    return tool == NULL ? turn_on(p, code, 0.0, 0, span)
+                        : turn_on(p, code, tool->diameter_mm, tool->orientation, span);
 }
 
 bool cutter_use_diameter(struct program *p, const struct program_code *code)
 {
+    uint32_t orientation = 0;
+
     if (!words_has(p, 'd')) {
         return report_error_code(p, TAKT_ERROR_CUTTER_DIAMETER, code->step, 0.0);
     }
-    return turn_on(p, code, words_value(p, 'd') * p->modes.unit_mm);
+    if (words_has(p, 'l') && !words_whole(p, 'l', 0.0, CUTTER_ORIENTATION_MAX, &orientation)) {
+        return false;
+    }
+    return turn_on(p, code, words_value(p, 'd') * p->modes.unit_mm, orientation,
+                   p->words.span[LETTER_INDEX('l')]);
 }
 
-/* Of the motions G0 to G3 alone can be compensated; G80 moves nothing. */
+/* Of the motions G0 to G3, G2.2 and G3.2 can be compensated; G80 moves nothing. */
 static bool is_compensable(const struct program_code *code)
 {
-    static const uint16_t numbers_x10[] = {0, 10, 20, 30, 800};
+    static const uint16_t numbers_x10[] = {0, 10, 20, 22, 30, 32, 800};
 
     for (unsigned i = 0; i < sizeof(numbers_x10) / sizeof(numbers_x10[0]); i++) {
         if (code->number_x10 == numbers_x10[i]) {
@@ -149,6 +166,7 @@ void cutter_apply(struct program *p, struct move *m)
     m->plane = p->modes.plane;
     m->cutter_side = p->modes.cutter_side;
     m->cutter_radius_mm = p->modes.cutter_radius_mm;
+    m->cutter_orientation = p->modes.cutter_orientation;
     m->cutter_entry = !p->modes.cutter_moved;
     p->modes.cutter_moved = p->modes.cutter_moved || moves_in_plane(p, m);
 }

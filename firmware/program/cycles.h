@@ -1,7 +1,7 @@
 /*
  * Drilling and boring cycles: G73, G74, G81 to G89.
  *
- * Every cycle goes at rapid over the hole and down to R, does what its script in cycles.c says, and ends at the clear
+ * Every cycle goes at rapid over the hole and down to R, does what its script in drilling.c says, and ends at the clear
  * height: R with G99, with G98 the height before the first of a row of cycles if that is above R. With L it is done so
  * often, with G91 each time a step further. Its moves are made while they are fetched, so that no number of holes and
  * pecks needs room; the line has been checked as a whole before.
@@ -11,14 +11,14 @@
 
 #include "program/program.h"
 
-/* argument: enum cycle */
+/* argument: enum cycle, or with CYCLE_LEFT the same with the spindle turning the other way */
+#define CYCLE_LEFT 0x10
 enum cycle {
     CYCLE_CHIP_BREAK, /* G73 */
-    CYCLE_TAP_LEFT,   /* G74 */
     CYCLE_DRILL,      /* G81 */
     CYCLE_DRILL_WAIT, /* G82 */
     CYCLE_PECK,       /* G83 */
-    CYCLE_TAP,        /* G84 */
+    CYCLE_TAP,        /* G84, and to the left G74 */
     CYCLE_REAM,       /* G85 */
     CYCLE_BORE_STOP,  /* G86 */
     CYCLE_BORE_BACK,  /* G87 */
@@ -27,6 +27,11 @@ enum cycle {
     CYCLE_COUNT
 };
 bool cycles_start(struct program *p, const struct program_code *code);
+
+static inline enum cycle cycles_kind(const struct program_code *code)
+{
+    return (enum cycle)(code->argument & ~CYCLE_LEFT);
+}
 
 /* The words all of them take. */
 #define WORDS_CYCLE (LETTERS_LINEAR | LETTER_BIT('r') | LETTER_BIT('l'))

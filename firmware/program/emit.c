@@ -16,6 +16,23 @@
 /* Of a surface speed whose maximum is not given: above any spindle's. */
 #define RPM_MAX 1e6
 
+/*
+ * What position-error correction goes by. The part's zero is the machine position of work coordinate 0, without tool:
+ *
+ *     system + T (axis offset)
+ */
+static void describe(const struct program *p, struct move *m)
+{
+    struct point axis_offset = p->modes.axis_offset;
+
+    coordinates_turn(&p->modes.turn, &axis_offset.at[AXIS_X], &axis_offset.at[AXIS_Y]);
+    for (unsigned i = 0; i < AXIS_LINEAR_COUNT; i++) {
+        m->work_mm[i] = (float)(p->modes.system_offset.at[i] + axis_offset.at[i]);
+        m->overhang_mm[i] = (float)p->modes.tool_offset.at[i];
+    }
+    m->correction_off = p->modes.correction_off;
+}
+
 struct move *emit_event(struct program *p, enum move_kind kind)
 {
     assert(p->queue_count < PROGRAM_QUEUE_MAX);
@@ -51,6 +68,8 @@ void emit_prepare(const struct program *p, enum move_kind kind, const struct poi
     m->end = *end;
     m->path = p->modes.path;
     m->overrides = p->modes.overrides;
+    m->tool = p->modes.tool_current;
+    describe(p, m);
     if (m->path == PATH_BLEND) {
         m->tolerance_mm = p->modes.tolerance_mm;
         m->merge_mm = p->modes.merge_mm;
@@ -153,6 +172,7 @@ bool emit_set_feed(struct program *p, struct move *m)
 bool emit_motion(struct program *p, struct move *m)
 {
     cutter_apply(p, m);
+    m->contour_side = (uint8_t)m->cutter_side;
     if (!travel_check(p, m) || (m->kind != MOVE_RAPID && !emit_set_feed(p, m))) {
         return false;
     }

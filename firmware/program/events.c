@@ -1,6 +1,7 @@
 #include "program/events.h"
 
 #include "base/maths.h"
+#include "program/coordinates.h"
 #include "program/emit.h"
 #include "program/report.h"
 #include "program/words.h"
@@ -11,6 +12,18 @@
 #define DEGREES_MAX        360.0
 #define RAD_PER_DEGREE     (MATHS_PI / 180.0)
 
+/* Machine position of X 0, about which a lathe's part turns. */
+static double axis_x_mm(const struct program *p)
+{
+    struct point work;
+    struct point machine;
+
+    coordinates_work_of(p, &p->modes.at, &work);
+    work.at[AXIS_X] = 0.0;
+    coordinates_machine_of(p, &work, &machine);
+    return machine.at[AXIS_X];
+}
+
 void events_spindle_move(const struct program *p, enum spindle_direction direction, struct move *m)
 {
     const struct program_modes *modes = &p->modes;
@@ -20,7 +33,10 @@ void events_spindle_move(const struct program *p, enum spindle_direction directi
         return;
     }
     m->speed_rpm = modes->surface_speed ? modes->surface_max_rpm : modes->speed_rpm;
-    m->surface_mm_s = modes->surface_speed ? modes->surface_mm_s : 0.0;
+    if (modes->surface_speed) {
+        m->surface_mm_s = modes->surface_mm_s;
+        m->surface_x_mm = axis_x_mm(p);
+    }
 }
 
 void events_tell_spindle(struct program *p)
@@ -171,9 +187,10 @@ bool events_set_output(struct program *p, const struct program_code *code)
 {
     const bool analogue = (code->argument & OUTPUT_ANALOGUE) != 0;
     const char letter = analogue ? 'e' : 'p';
+    const double highest = analogue ? PROGRAM_ANALOGUE_MAX : PROGRAM_DIGITAL_MAX;
     uint32_t channel;
 
-    if (lacks(p, code, letter) || !words_whole(p, letter, 0.0, PROGRAM_CHANNEL_MAX, &channel) ||
+    if (lacks(p, code, letter) || !words_whole(p, letter, 0.0, highest, &channel) ||
         (analogue && lacks(p, code, 'q'))) {
         return false;
     }
@@ -204,11 +221,12 @@ static bool read_wait(struct program *p, const struct program_code *code, uint32
            report_error_letter(p, TAKT_ERROR_WORD_NOT_POSITIVE, 'q', *timeout_s);
 }
 
-/* An input is 0 as long as nobody reads it (#5399). */
+/* The input is 0 (#5399) until program_answer says what it is. */
 bool events_read_input(struct program *p, const struct program_code *code)
 {
     const bool analogue = words_has(p, 'e');
     const char letter = analogue ? 'e' : 'p';
+    const double highest = analogue ? PROGRAM_ANALOGUE_MAX : PROGRAM_DIGITAL_MAX;
     uint32_t channel;
     uint32_t wait;
     double timeout_s;
@@ -216,7 +234,7 @@ bool events_read_input(struct program *p, const struct program_code *code)
     if (analogue && words_has(p, 'p')) {
         return report_error_letter(p, TAKT_ERROR_WORD_UNUSED, 'p', 0.0);
     }
-    if (lacks(p, code, letter) || !words_whole(p, letter, 0.0, PROGRAM_CHANNEL_MAX, &channel) ||
+    if (lacks(p, code, letter) || !words_whole(p, letter, 0.0, highest, &channel) ||
         !read_wait(p, code, &wait, &timeout_s)) {
         return false;
     }

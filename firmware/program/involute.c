@@ -7,6 +7,16 @@
 #include "program/report.h"
 #include "program/words.h"
 
+/* An end may be inside the base circle by this share of its radius at most: never at the centre. */
+#define INSIDE_MAX_RATIO 0.5
+
+/* Fewer than the room geometry can do, so that what compensation makes of it can be run too. */
+#define TURNS_MAX (0.5 * CURVE_UNROLLED_MAX_RAD / MATHS_TWO_PI)
+
+/* Ends whose distances from the centre differ by less, or by less than this share, are equally far. */
+#define CLOSED_MM    1e-6
+#define CLOSED_RATIO 1e-9
+
 /* Relative to the centre. */
 struct polar {
     double radius_mm, angle_rad;
@@ -51,17 +61,30 @@ static bool check_ends(struct program *p, const struct move *m, const struct pol
 {
     const double slack_mm = circular_slack_mm(p);
     const double radius_mm = m->base_radius_mm;
+    const double inside_mm = radius_mm - maths_min(slack_mm, INSIDE_MAX_RATIO * radius_mm);
 
-    if (start->radius_mm < radius_mm - slack_mm) {
+    if (start->radius_mm < inside_mm) {
         return report_error_code(p, TAKT_ERROR_INVOLUTE_START, STEP_MOTION,
                                  radius_mm - start->radius_mm);
     }
-    if (end->radius_mm < radius_mm - slack_mm) {
+    if (end->radius_mm < inside_mm) {
         return report_error_code(p, TAKT_ERROR_INVOLUTE_END, STEP_MOTION,
                                  radius_mm - end->radius_mm);
     }
-    if (maths_abs(end->radius_mm - start->radius_mm) <= slack_mm) {
+    const double far_mm = maths_max(start->radius_mm, end->radius_mm);
+
+    if (maths_abs(end->radius_mm - start->radius_mm) <=
+        maths_max(CLOSED_MM, CLOSED_RATIO * far_mm)) {
         return report_error_code(p, TAKT_ERROR_INVOLUTE_CLOSED, STEP_MOTION, 0.0);
+    }
+    if (far_mm <= radius_mm) {
+        return report_error_code(p, TAKT_ERROR_INVOLUTE_START, STEP_MOTION,
+                                 radius_mm - start->radius_mm);
+    }
+    const double turns = far_mm / radius_mm / MATHS_TWO_PI;
+
+    if (turns > TURNS_MAX) {
+        return report_error_letter(p, TAKT_ERROR_INVOLUTE_TURNS, 'r', maths_floor(turns));
     }
     const double off_mm = deviation_mm(start, end, radius_mm, m->kind == MOVE_INVOLUTE_CW);
 

@@ -10,7 +10,8 @@
  * Going outward the radius vector turns the way of the unrolling, going inward the other way. So a G3.2 outward and a
  * G2.2 inward lie on an involute unrolled counter-clockwise, the others on its mirror image, and between start and end
  * the vector turns, in the sense of the code, by |inv(end) - inv(start)|. Involutes of one circle that differ by the
- * angle e are r e apart everywhere, measured across them: so far is an end off the involute through the start.
+ * angle e are r e apart everywhere, measured across them: so far is an end off the involute through the start. What is
+ * then run goes through both ends (geometry/involute.c).
  */
 #ifndef TAKT_PROGRAM_INVOLUTE_H
 #define TAKT_PROGRAM_INVOLUTE_H

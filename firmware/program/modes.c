@@ -146,6 +146,24 @@ bool modes_set_override(struct program *p, const struct program_code *code)
     return true;
 }
 
+/* Layer P of position-error correction, from 1; without P all of them. */
+bool modes_set_correction(struct program *p, const struct program_code *code)
+{
+    const uint32_t layers = p->config.correction_layers;
+    uint32_t layer = 0;
+    unsigned which = (1U << layers) - 1U;
+
+    if (words_has(p, 'p')) {
+        if (!words_whole(p, 'p', 1.0, layers, &layer)) {
+            return false;
+        }
+        which = 1U << (layer - 1U);
+    }
+    p->modes.correction_off = (uint8_t)(code->argument == 1 ? p->modes.correction_off & ~which
+                                                            : p->modes.correction_off | which);
+    return true;
+}
+
 bool modes_refuse_spline(struct program *p, const struct program_code *code)
 {
     return report_error_code(p, TAKT_ERROR_SPLINE_UNSUPPORTED, code->step, 0.0);

@@ -6,5 +6,9 @@ bool move_curve(const struct move *m, const struct point *start, struct curve *c
         return curve_set_arc(c, start, &m->end, m->plane, m->centre_mm, m->kind == MOVE_ARC_CW,
                              m->turns);
     }
+    if (move_is_involute(m)) {
+        return curve_set_involute(c, start, &m->end, m->plane, m->centre_mm, m->base_radius_mm,
+                                  m->kind == MOVE_INVOLUTE_CW);
+    }
     return curve_set_line(c, start, &m->end);
 }

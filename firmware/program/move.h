@@ -42,6 +42,9 @@ enum spindle_direction { SPINDLE_OFF, SPINDLE_CW, SPINDLE_CCW };
 /* Which side of the programmed path the tool is on, looking along it, the plane seen from its third axis. */
 enum cutter_side { CUTTER_OFF, CUTTER_LEFT /* G41 */, CUTTER_RIGHT /* G42 */ };
 
+/* Highest orientation of a lathe tool. */
+#define CUTTER_ORIENTATION_MAX 9
+
 /* The way the spindle turns to the angle of MOVE_ORIENT. */
 enum orient_way { ORIENT_SHORTEST, ORIENT_CW, ORIENT_CCW };
 
@@ -71,32 +74,40 @@ struct move {
     /* Not CUTTER_OFF: end and centre are the programmed ones, the room offset moves them by the radius */
     enum cutter_side cutter_side;
     double cutter_radius_mm; /* > 0 */
-    bool cutter_entry;       /* nothing has moved in the plane yet since compensation is on */
+    uint8_t
+        cutter_orientation; /* 1 to 8: a lathe tool, led by a point beside its nose; in G18 alone */
+    bool cutter_entry;      /* nothing has moved in the plane yet since compensation is on */
+    /* what position-error correction goes by */
+    uint8_t correction_off;               /* bit i set: the program has switched layer i off */
+    uint8_t contour_side;                 /* enum cutter_side the contour was programmed with */
+    float work_mm[AXIS_LINEAR_COUNT];     /* zero of the part, machine coordinates */
+    float overhang_mm[AXIS_LINEAR_COUNT]; /* tool offset */
+    bool probe_away;     /* MOVE_PROBE: ends when contact is lost (G38.4, G38.5), else made */
+    bool probe_optional; /* MOVE_PROBE: to reach the end is no error (G38.3, G38.5) */
+    uint32_t turns;      /* arcs: 1 = less than or exactly one turn */
     double centre_mm[2]; /* arcs, and the base circle of involutes: absolute, first and second axis
                             of the plane */
-    uint32_t turns;      /* arcs: 1 = less than or exactly one turn */
     double base_radius_mm; /* involutes: of the base circle */
     double speed_ratio;    /* MOVE_TAP_OUT: speed of the spindle relative to the way in, >= 1 */
-    bool probe_away;       /* MOVE_PROBE: ends when contact is lost (G38.4, G38.5), else made */
-    bool probe_optional;   /* MOVE_PROBE: to reach the end is no error (G38.3, G38.5) */
     /* in between */
     double dwell_s;                   /* MOVE_DWELL */
     enum spindle_direction direction; /* MOVE_SPINDLE */
+    enum orient_way orient_way;       /* MOVE_ORIENT */
     double speed_rpm;                 /* MOVE_SPINDLE; with surface_mm_s the highest, 0: any */
     double surface_mm_s;              /* MOVE_SPINDLE: not 0: constant surface speed (G96) */
+    double surface_x_mm;              /* with surface_mm_s: machine X of the spindle's axis */
     double orient_rad;                /* MOVE_ORIENT */
-    enum orient_way orient_way;       /* MOVE_ORIENT */
     double timeout_s;                 /* MOVE_ORIENT, MOVE_INPUT: 0: none given */
     bool mist, flood;                 /* MOVE_COOLANT: state after it */
-    uint32_t tool;                    /* MOVE_TOOL: number */
     bool tool_change;                 /* MOVE_TOOL: M6, else T alone (prepare) */
     bool tool_loaded;                 /* MOVE_TOOL: M61, it is in the spindle already */
-    uint32_t channel;                 /* MOVE_OUTPUT, MOVE_INPUT: number of the output or input */
+    uint32_t tool;                    /* MOVE_TOOL: number; motion: of the tool in the spindle */
     bool analogue;                    /* MOVE_OUTPUT, MOVE_INPUT */
     bool with_motion;                 /* MOVE_OUTPUT: M62, M63, M67 */
+    bool optional;                    /* MOVE_STOP: M1 */
+    uint32_t channel;                 /* MOVE_OUTPUT, MOVE_INPUT: number of the output or input */
     double output;                    /* MOVE_OUTPUT: 0 or 1; any value of an analogue one */
     enum input_wait input_wait;       /* MOVE_INPUT */
-    bool optional;                    /* MOVE_STOP: M1 */
 };
 
 static inline bool move_is_motion(const struct move *m)

@@ -46,11 +46,13 @@ bool probe_move(struct program *p, const struct program_code *code)
     return emit_motion(p, &m) && store_result(p, code->step, 0.0);
 }
 
-void program_set_probe(struct program *p, const struct point *at, bool contact)
+void probe_take(struct program *p, const struct program_answer *answer)
 {
-    p->modes.at = *at;
+    p->modes.at = answer->contact_at;
     for (enum axis i = AXIS_X; i < AXIS_COUNT; i++) {
         (void)parameters_set(p->config.parameters, PARAMETER_PROBE + i, coordinates_work(p, i));
     }
-    (void)parameters_set(p->config.parameters, PARAMETER_PROBE_CONTACT, contact ? 1.0 : 0.0);
+    (void)parameters_set(p->config.parameters, PARAMETER_PROBE_CONTACT,
+                         answer->contact ? 1.0 : 0.0);
+    p->modes.at = answer->rest_at;
 }

@@ -8,6 +8,7 @@
 #include "program/flow.h"
 #include "program/lexer.h"
 #include "program/modes.h"
+#include "program/probe.h"
 #include "program/tool_values.h"
 #include "program/words.h"
 
@@ -28,6 +29,7 @@ void program_open(struct program *p, const struct program_config *config,
     p->queue_count = 0;
     p->warnings = 0;
     p->phase = PROGRAM_AT_START;
+    p->question = QUESTION_NONE;
     p->tools.count = 0;
     p->spindle_followed = false;
     cycles_open(p);
@@ -175,9 +177,21 @@ static bool advance(struct program *p)
     return good;
 }
 
+static enum program_question question_of(const struct move *move)
+{
+    if (move->kind == MOVE_PROBE) {
+        return QUESTION_PROBE;
+    }
+    return move->kind == MOVE_INPUT ? QUESTION_INPUT : QUESTION_NONE;
+}
+
 enum program_result program_next(struct program *p, struct move *move,
                                  struct diagnostic *diagnostic)
 {
+    if (p->question != QUESTION_NONE && p->config.waits) {
+        return PROGRAM_WAIT;
+    }
+    p->question = QUESTION_NONE;
     while (!emit_take(p, move)) {
         if (p->phase == PROGRAM_ENDED) {
             return PROGRAM_END;
@@ -187,7 +201,23 @@ enum program_result program_next(struct program *p, struct move *move,
             return PROGRAM_ERROR;
         }
     }
+    p->question = question_of(move);
     return PROGRAM_MOVE;
+}
+
+void program_answer(struct program *p, const struct program_answer *answer)
+{
+    switch (p->question) {
+    case QUESTION_PROBE:
+        probe_take(p, answer);
+        break;
+    case QUESTION_INPUT:
+        (void)parameters_set(p->config.parameters, PARAMETER_INPUT, answer->value);
+        break;
+    case QUESTION_NONE:
+        break;
+    }
+    p->question = QUESTION_NONE;
 }
 
 bool program_warning(struct program *p, struct diagnostic *diagnostic)

@@ -24,18 +24,36 @@ struct program_config {
     unsigned axes;                 /* bit i set: the machine has axis i (enum axis) */
     double travel_min[AXIS_COUNT]; /* machine coordinates, mm or rad */
     double travel_max[AXIS_COUNT];
-    struct point start;             /* machine position the program starts at */
-    double path_tolerance_mm;       /* G64 without P: this tolerance; 0 = exact */
-    double spindle_max_rpm;         /* 0: no limit */
-    uint32_t from_line;             /* start in the middle, at this line; 0: at the beginning */
-    bool exact_path;                /* treat every G64 as G61 */
-    bool block_delete;              /* skip lines that begin with '/' */
-    bool sharp_corners;             /* for the room offset: outer corners are not rounded */
+    struct point start;         /* machine position the program starts at */
+    double path_tolerance_mm;   /* G64 without P: this tolerance; 0 = exact */
+    double spindle_max_rpm;     /* 0: no limit */
+    uint32_t from_line;         /* start in the middle, at this line; 0: at the beginning */
+    uint32_t correction_layers; /* of position-error correction, for M120 and M121: 0 ... 8 */
+    bool exact_path;            /* treat every G64 as G61 */
+    bool block_delete;          /* skip lines that begin with '/' */
+    bool waits;                 /* PROGRAM_WAIT until program_answer; else no contact, input 0 */
+    bool sharp_corners;         /* for the room offset: outer corners are not rounded */
     const struct tool_table *tools; /* may be NULL: empty table */
     struct parameters *parameters;  /* numbered parameters, read and written; never NULL */
 };
 
-enum program_result { PROGRAM_MOVE, PROGRAM_END, PROGRAM_ERROR };
+enum program_result {
+    PROGRAM_MOVE,
+    PROGRAM_END,
+    PROGRAM_ERROR,
+    PROGRAM_WAIT /* nothing more is read until program_answer */
+};
+
+/* What #5399 is after M66 when its time is over. */
+#define PROGRAM_INPUT_TIMED_OUT (-1.0)
+
+/* What became of a MOVE_PROBE or a MOVE_INPUT; machine coordinates. */
+struct program_answer {
+    bool contact;            /* MOVE_PROBE: it ended by the probe */
+    struct point contact_at; /* MOVE_PROBE: where the probe answered; without contact, rest_at */
+    struct point rest_at;    /* MOVE_PROBE: where the axes came to rest */
+    double value; /* MOVE_INPUT: 0 or 1, any of an analogue one, or PROGRAM_INPUT_TIMED_OUT */
+};
 
 #include "program/program_state.h"
 
@@ -47,16 +65,16 @@ void program_open(struct program *p, const struct program_config *config,
  * The next canonical move into *move: PROGRAM_MOVE. After M2, M30 or the end of the text one MOVE_END comes, then
  * PROGRAM_END for ever. PROGRAM_ERROR: *diagnostic says what and where; reading may go on with the next line
  * (for `takt check`; modes are then as before the faulty line).
+ *
+ * What follows a MOVE_PROBE or a MOVE_INPUT may depend on what becomes of it. With config.waits PROGRAM_WAIT comes
+ * then, again and again, until program_answer; without, the program goes on as if the probing move had ended where it
+ * is programmed to, without contact, and the input were 0.
  */
 enum program_result program_next(struct program *p, struct move *move,
                                  struct diagnostic *diagnostic);
 
-/*
- * After the caller has run a MOVE_PROBE: where the probe answered, or the motion ended without an answer (contact
- * false), machine coordinates. Called before the next move is asked for; without it the program goes on as if the
- * motion had ended at its programmed end without contact.
- */
-void program_set_probe(struct program *p, const struct point *at, bool contact);
+/* After the caller has run a MOVE_PROBE or a MOVE_INPUT, before the next move is asked for. Else it does nothing. */
+void program_answer(struct program *p, const struct program_answer *answer);
 
 /*
  * Warnings since the last call (words read and ignored, H of an unknown tool): true and *diagnostic while there

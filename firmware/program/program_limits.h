@@ -17,8 +17,9 @@
 #define PROGRAM_TOOL_CHANGES_MAX 16
 /* L of a cycle, pecks of a hole, passes of a thread: what goes beyond is a mistake. */
 #define PROGRAM_REPEATS_MAX 10000
-/* Highest number of an input or output. */
-#define PROGRAM_CHANNEL_MAX 63
+/* Highest number of a digital and of an analogue input or output. */
+#define PROGRAM_DIGITAL_MAX  31
+#define PROGRAM_ANALOGUE_MAX 3
 /* Warnings kept until they are fetched. */
 #define PROGRAM_WARNINGS_MAX 4
 /* '#... = ...' on one line. */

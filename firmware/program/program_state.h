@@ -103,8 +103,10 @@ struct program_modes {
     const struct program_code *cutter_code; /* G41, G42, G41.1, G42.1; NULL: G40 */
     double cutter_radius_mm;                /* 0: compensation is on and moves nothing */
     enum cutter_side cutter_side;
-    bool cutter_moved; /* since compensation is on */
-    bool cutter_left;  /* G40 was the last to happen: no arc may follow */
+    uint8_t cutter_orientation;
+    uint8_t correction_off; /* M121: bit i set: layer i of correction is off */
+    bool cutter_moved;      /* since compensation is on */
+    bool cutter_left;       /* G40 was the last to happen: no arc may follow */
     enum plane plane;
     enum move_path path;
     enum spindle_direction direction;
@@ -252,6 +254,9 @@ struct program_cycle {
     } thread;
 };
 
+/* What the last move that was fetched asks of the world. */
+enum program_question { QUESTION_NONE, QUESTION_PROBE, QUESTION_INPUT };
+
 enum program_phase { PROGRAM_AT_START, PROGRAM_IN_TEXT, PROGRAM_ENDED };
 
 struct program {
@@ -271,6 +276,7 @@ struct program {
     unsigned warnings;
     bool spindle_followed; /* that the spindle is not measured has been said */
     enum program_phase phase;
+    enum program_question question; /* not answered yet */
 };
 
 #endif

@@ -5,7 +5,6 @@
 #include "program/tool_values.h"
 #include "program/words.h"
 
-#define ORIENTATION_MAX 9
 /* The coordinate system of L11: G59.3. */
 #define FIXTURE_SYSTEM 9
 
@@ -175,7 +174,7 @@ static bool run_tool(struct program *p, const struct program_code *code, enum wh
     uint32_t orientation = 0;
 
     if (!words_whole(p, 'p', 1.0, PROGRAM_TOOL_MAX, &number) ||
-        (words_has(p, 'q') && !words_whole(p, 'q', 0.0, ORIENTATION_MAX, &orientation))) {
+        (words_has(p, 'q') && !words_whole(p, 'q', 0.0, CUTTER_ORIENTATION_MAX, &orientation))) {
         return false;
     }
     if ((p->words.given & setting) == 0) {

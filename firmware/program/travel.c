@@ -1,6 +1,7 @@
 #include "program/travel.h"
 
 #include "base/maths.h"
+#include "geometry/involute.h"
 #include "program/coordinates.h"
 #include "program/report.h"
 #include "program/words.h"
@@ -17,12 +18,14 @@ struct travel {
 /* Written so that a coordinate that is no number fails. */
 static bool check_axis(const struct travel *t, unsigned axis, double value)
 {
+    const double low = t->config->travel_min[axis];
+    const double high = t->config->travel_max[axis];
+
     if ((t->config->axes & (1U << axis)) == 0 ||
-        (value >= t->config->travel_min[axis] - TRAVEL_SLACK &&
-         value <= t->config->travel_max[axis] + TRAVEL_SLACK)) {
+        (value >= low - TRAVEL_SLACK && value <= high + TRAVEL_SLACK)) {
         return true;
     }
-    *t->excess = (struct travel_excess){(enum axis)axis, value};
+    *t->excess = (struct travel_excess){(enum axis)axis, value, value < low ? low : high};
     return false;
 }
 
@@ -57,15 +60,32 @@ static bool check_quarter(const struct travel *t, const struct curve_arc *arc, u
            check_axis(t, axis, arc->centre_mm[in_plane] + sign * last_mm);
 }
 
-static bool check_arc(const struct travel *t, const struct point *start, const struct move *m)
+/* The outermost point of an involute in that direction: it lies where the curve runs across it. */
+static bool check_involute_quarter(const struct travel *t, const struct curve *c, unsigned quarter)
 {
-    struct curve curve;
+    const unsigned axis = quarter % 2 == 0 ? c->involute.second : c->involute.first;
+    struct point p;
+    double s_mm;
 
-    if (!move_curve(m, start, &curve)) {
+    if (!involute_extreme(c, quarter, &s_mm)) {
+        return true;
+    }
+    curve_point(c, s_mm, &p);
+    return check_axis(t, axis, p.at[axis]);
+}
+
+static bool check_bent(const struct travel *t, const struct point *start, const struct move *m)
+{
+    struct curve c;
+
+    if (!move_curve(m, start, &c)) {
         return true;
     }
     for (unsigned quarter = 0; quarter < 4; quarter++) {
-        if (!check_quarter(t, &curve.arc, quarter)) {
+        const bool holds = c.kind == CURVE_ARC ? check_quarter(t, &c.arc, quarter)
+                                               : check_involute_quarter(t, &c, quarter);
+
+        if (!holds) {
             return false;
         }
     }
@@ -82,7 +102,15 @@ bool travel_holds(const struct program_config *config, const struct point *start
             return false;
         }
     }
-    return !move_is_arc(m) || check_arc(&t, start, m);
+    return !(move_is_arc(m) || move_is_involute(m)) || check_bent(&t, start, m);
+}
+
+void travel_report(struct diagnostic *d, uint32_t line, uint32_t column,
+                   const struct travel_excess *excess)
+{
+    diagnostic_set(d, TAKT_ERROR_TRAVEL_EXCEEDED, line, column, &AXIS_LETTERS[excess->axis], 1,
+                   coordinates_to_parameter(excess->value, excess->axis));
+    diagnostic_set_limit(d, coordinates_to_parameter(excess->limit, excess->axis));
 }
 
 /* The axis's word, or the code that moves it when it has none. */
@@ -103,8 +131,7 @@ bool travel_check(struct program *p, const struct move *m)
     if (m->cutter_side != CUTTER_OFF || travel_holds(&p->config, &p->modes.at, m, &excess)) {
         return true;
     }
-    diagnostic_set(&p->error, TAKT_ERROR_TRAVEL_EXCEEDED, p->lexer.line,
-                   p->lexer.column[span_of(p, excess.axis).begin], &AXIS_LETTERS[excess.axis], 1,
-                   coordinates_to_parameter(excess.value, excess.axis));
+    travel_report(&p->error, p->lexer.line, p->lexer.column[span_of(p, excess.axis).begin],
+                  &excess);
     return false;
 }

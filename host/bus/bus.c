@@ -1,5 +1,7 @@
 #include "bus/bus.h"
 
+#include "bus/bus_private.h"
+
 #include <assert.h>
 #include <string.h>
 
@@ -13,6 +15,7 @@ bool bus_init(struct bus *bus, uint32_t bitrate)
         return false;
     memset(bus, 0, sizeof *bus);
     bus->bit_ns = (SECOND_NS + bitrate / 2) / bitrate;
+    bus->fault_from_ns = UINT64_MAX;
     frame_bits_init(&bus->tables);
     return true;
 }
@@ -21,27 +24,30 @@ bool bus_init(struct bus *bus, uint32_t bitrate)
  * Keeps bus->waiting in falling order. New frames mostly have high identifiers or few rivals, so
  * this is short.
  */
-static void insert_waiting(struct bus *bus, unsigned port, const struct can_frame *frame)
+void bus_insert_waiting(struct bus *bus, const struct bus_waiting *waiting)
 {
-    uint64_t order = (uint64_t)frame->id << 48 | bus->sent++;
     unsigned at = bus->waiting_count++;
-    for (; at > 0 && bus->waiting[at - 1].order < order; at--)
+    for (; at > 0 && bus->waiting[at - 1].order < waiting->order; at--)
         bus->waiting[at] = bus->waiting[at - 1];
-    bus->waiting[at].order = order;
-    bus->waiting[at].port = (uint16_t)port;
-    bus->waiting[at].frame = *frame;
+    bus->waiting[at] = *waiting;
+    bus->port[waiting->port].waiting++;
 }
 
 static bool port_send(void *context, const struct can_frame *frame)
 {
     struct bus_port *port = context;
     struct bus *bus = port->bus;
-    if (port->waiting == BUS_TRANSMIT_MAX || bus->waiting_count == BUS_WAITING_MAX) {
+    struct bus_waiting waiting = {.order = (uint64_t)frame->id << 48 | bus->sent,
+                                  .since_ns = bus->now_ns,
+                                  .port = (uint16_t)(port - bus->port),
+                                  .frame = *frame};
+    if (port->waiting == BUS_TRANSMIT_MAX || bus->waiting_count == BUS_WAITING_MAX ||
+        (bus_is_faulty(bus, bus->now_ns) && !bus_admit(bus, &waiting))) {
         bus->counts.refused++;
         return false;
     }
-    port->waiting++;
-    insert_waiting(bus, (unsigned)(port - bus->port), frame);
+    bus->sent++;
+    bus_insert_waiting(bus, &waiting);
     return true;
 }
 
@@ -69,18 +75,26 @@ void bus_observe(struct bus *bus, const struct bus_listener *listener)
     bus->observer = listener ? *listener : (struct bus_listener){0};
 }
 
+void bus_put_on_wire(struct bus *bus, unsigned index, uint64_t start_ns, unsigned bits)
+{
+    uint64_t space_ns = FRAME_BITS_INTERMISSION * bus->bit_ns;
+    bus->wire = bus->waiting[index];
+    for (bus->waiting_count--; index < bus->waiting_count; index++)
+        bus->waiting[index] = bus->waiting[index + 1];
+    bus->port[bus->wire.port].waiting--;
+    bus->frame_end_ns = start_ns + bits * bus->bit_ns;
+    bus->idle_ns = bus->frame_end_ns + space_ns;
+    bus->counts.busy_ns += bus->idle_ns - start_ns;
+    bus->on_wire = true;
+}
+
 /* The bus is free: the waiting frame with the lowest identifier takes it. */
 static void begin_frame(struct bus *bus)
 {
-    bus->wire = bus->waiting[--bus->waiting_count];
-    bus->port[bus->wire.port].waiting--;
+    unsigned winner = bus->waiting_count - 1;
     uint64_t start_ns = bus->idle_ns > bus->now_ns ? bus->idle_ns : bus->now_ns;
-    uint64_t frame_ns = frame_bits_count(&bus->tables, &bus->wire.frame) * bus->bit_ns;
-    uint64_t space_ns = FRAME_BITS_INTERMISSION * bus->bit_ns;
-    bus->frame_end_ns = start_ns + frame_ns;
-    bus->idle_ns = bus->frame_end_ns + space_ns;
-    bus->counts.busy_ns += frame_ns + space_ns;
-    bus->on_wire = true;
+    bus_put_on_wire(bus, winner, start_ns,
+                    frame_bits_count(&bus->tables, &bus->waiting[winner].frame));
 }
 
 static void collect(struct bus *bus, struct bus_port *port, const struct can_frame *frame)
@@ -92,7 +106,7 @@ static void collect(struct bus *bus, struct bus_port *port, const struct can_fra
     port->received[port->written++ & (BUS_RECEIVE_MAX - 1)] = *frame;
 }
 
-static void deliver(struct bus *bus, struct bus_port *port)
+void bus_deliver(struct bus *bus, struct bus_port *port)
 {
     if (port->listener.on_frame)
         port->listener.on_frame(port->listener.context, &bus->wire.frame, bus->now_ns);
@@ -100,21 +114,29 @@ static void deliver(struct bus *bus, struct bus_port *port)
         collect(bus, port, &bus->wire.frame);
 }
 
+void bus_count_frame(struct bus *bus)
+{
+    uint64_t response_ns = bus->now_ns - bus->wire.since_ns;
+    uint32_t *most_ns = &bus->response_max_ns[bus->wire.frame.id % BUS_ID_COUNT];
+    if (response_ns > *most_ns)
+        *most_ns = response_ns < UINT32_MAX ? (uint32_t)response_ns : UINT32_MAX;
+    bus->counts.frames++;
+    if (bus->observer.on_frame)
+        bus->observer.on_frame(bus->observer.context, &bus->wire.frame, bus->now_ns);
+}
+
 static void end_frame(struct bus *bus)
 {
     bus->now_ns = bus->frame_end_ns;
     bus->on_wire = false;
-    bus->counts.frames++;
-    if (bus->observer.on_frame)
-        bus->observer.on_frame(bus->observer.context, &bus->wire.frame, bus->now_ns);
+    bus_count_frame(bus);
     for (unsigned i = 0; i < bus->port_count; i++)
         if (i != bus->wire.port)
-            deliver(bus, &bus->port[i]);
+            bus_deliver(bus, &bus->port[i]);
 }
 
-void bus_run_until(struct bus *bus, uint64_t time_ns)
+static void run_clear(struct bus *bus, uint64_t time_ns)
 {
-    assert(time_ns >= bus->now_ns);
     while (bus->on_wire || bus->waiting_count > 0) {
         if (!bus->on_wire) {
             if (bus->idle_ns > time_ns)
@@ -128,6 +150,15 @@ void bus_run_until(struct bus *bus, uint64_t time_ns)
     bus->now_ns = time_ns;
 }
 
+void bus_run_until(struct bus *bus, uint64_t time_ns)
+{
+    assert(time_ns >= bus->now_ns);
+    if (bus_is_faulty(bus, time_ns))
+        bus_run_faulty(bus, time_ns);
+    else
+        run_clear(bus, time_ns);
+}
+
 uint64_t bus_now_ns(const struct bus *bus)
 {
     return bus->now_ns;
@@ -138,16 +169,17 @@ bool bus_is_quiet(const struct bus *bus)
     return !bus->on_wire && bus->waiting_count == 0;
 }
 
+uint32_t bus_get_response_max_ns(const struct bus *bus, unsigned id)
+{
+    return bus->response_max_ns[id];
+}
+
+void bus_clear_responses(struct bus *bus)
+{
+    memset(bus->response_max_ns, 0, sizeof bus->response_max_ns);
+}
+
 double bus_load_percent(const struct bus *bus)
 {
     return bus->now_ns ? 100.0 * (double)bus->counts.busy_ns / (double)bus->now_ns : 0;
-}
-
-double bus_predict_load_percent(uint32_t bitrate, uint32_t cycle_us, const uint8_t length[],
-                                unsigned count)
-{
-    unsigned bits = 0;
-    for (unsigned i = 0; i < count; i++)
-        bits += frame_bits_worst(length[i]);
-    return 100.0 * bits / ((double)bitrate * cycle_us * 1e-6);
 }

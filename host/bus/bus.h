@@ -16,6 +16,7 @@
 #ifndef TAKT_BUS_BUS_H
 #define TAKT_BUS_BUS_H
 
+#include "bus/bus_fault.h"
 #include "bus/frame_bits.h"
 #include "hal/can.h"
 
@@ -26,6 +27,9 @@
 #define BUS_TRANSMIT_MAX 32  /* frames a port may have waiting for the bus; more are refused */
 #define BUS_RECEIVE_MAX  256 /* frames a collecting port holds, a power of two; more are lost */
 #define BUS_WAITING_MAX  256 /* frames of all ports that may wait for the bus; more are refused */
+
+#define BUS_FAULTS_MAX 64
+#define BUS_ID_COUNT   2048
 
 #define BUS_BITRATE_MIN 10000
 #define BUS_BITRATE_MAX 1000000
@@ -45,21 +49,50 @@ struct bus_counts {
     uint64_t busy_ns;      /* bus occupied by them, intermission included */
     uint64_t refused;      /* send calls without room */
     uint64_t receive_lost; /* frames that a full receive queue could not hold */
+    /* What faults have done. */
+    uint64_t error_frames; /* frames broken off on the wire and sent again */
+    uint64_t dropped;      /* frames that ended and that nobody took */
+    uint64_t duplicated;   /* frames that were taken and sent again all the same */
+    uint64_t delayed;      /* frames whose sender was late */
+    uint64_t off_lost;     /* frames that waited at a port when it went off the bus */
 };
 
 /* A frame that waits for the bus. */
 struct bus_waiting {
-    uint64_t order; /* identifier, then the order of sending: the lowest wins arbitration */
+    uint64_t order;    /* identifier, then the order of sending: the lowest wins arbitration */
+    uint64_t since_ns; /* when it began to wait */
     uint16_t port;
+    bool is_repeat; /* it has been on the wire before */
     struct can_frame frame;
 };
+
+/* CAN fault confinement (ISO 11898-1). */
+enum bus_confinement { BUS_ACTIVE, BUS_PASSIVE, BUS_OFF };
 
 struct bus_port {
     struct bus *bus;
     struct bus_listener listener; /* without on_frame: received is filled */
     unsigned waiting;             /* frames in bus->waiting */
-    unsigned read, written;       /* count up; index modulo BUS_RECEIVE_MAX */
+    unsigned transmit_errors;     /* error counters of its controller */
+    unsigned receive_errors;
+    uint64_t off_until_ns;     /* off the bus by its own errors; 0: it is not */
+    uint64_t suspend_until_ns; /* error passive, it has just sent: others may go first */
+    unsigned read, written;    /* count up; index modulo BUS_RECEIVE_MAX */
     struct can_frame received[BUS_RECEIVE_MAX];
+};
+
+/* A fault and what has become of it. */
+struct bus_fault_state {
+    struct bus_fault fault;
+    uint64_t passed, struck; /* matching frames let through, and hit */
+    uint64_t random;
+    bool done; /* it will never do anything again */
+};
+
+/* What a fault has decided about the frame on the wire. */
+struct bus_verdict {
+    bool is_dropped, is_duplicated;
+    unsigned corrupt_bit; /* 0: none; the first bits, of arbitration, are never hit */
 };
 
 /* Private but for counts. */
@@ -73,14 +106,22 @@ struct bus {
     bool on_wire; /* a frame is being sent: it cannot be overtaken any more */
     uint64_t frame_end_ns;
     struct bus_waiting wire;
+    struct bus_verdict verdict; /* on it */
 
     unsigned waiting_count;
-    struct bus_waiting waiting[BUS_WAITING_MAX]; /* in falling order: the winner is the last */
+    /* In falling order: the winner is the last. One more: the frame on the wire may come back. */
+    struct bus_waiting waiting[BUS_WAITING_MAX + 1];
 
     unsigned port_count;
     struct bus_port port[BUS_PORT_MAX];
     struct bus_listener observer;
     struct frame_bits tables;
+
+    unsigned fault_count;
+    struct bus_fault_state fault[BUS_FAULTS_MAX];
+    uint64_t fault_from_ns; /* no fault does anything before */
+    bool is_unwell;         /* faults have left something behind: error counters, late frames */
+    uint32_t response_max_ns[BUS_ID_COUNT];
 };
 
 /*
@@ -104,6 +145,19 @@ void bus_observe(struct bus *bus, const struct bus_listener *listener);
  */
 void bus_run_until(struct bus *bus, uint64_t time_ns);
 
+/* Adds a fault; copied. False: there are BUS_FAULTS_MAX already. */
+bool bus_add_fault(struct bus *bus, const struct bus_fault *fault);
+
+/* State of a port's controller, by order of bus_attach. */
+enum bus_confinement bus_get_confinement(const struct bus *bus, unsigned port);
+
+/*
+ * Longest time from a send call to the end of the frame, of frames with this identifier, since
+ * bus_init or bus_clear_responses, ns; 0: none was sent. id: below BUS_ID_COUNT.
+ */
+uint32_t bus_get_response_max_ns(const struct bus *bus, unsigned id);
+void bus_clear_responses(struct bus *bus);
+
 /* Virtual time: within on_frame the end of that frame, else the time bus_run_until reached. */
 uint64_t bus_now_ns(const struct bus *bus);
 
@@ -112,12 +166,5 @@ bool bus_is_quiet(const struct bus *bus);
 
 /* Time the bus has been occupied, in percent of the time since bus_init; 0 at time 0. */
 double bus_load_percent(const struct bus *bus);
-
-/*
- * Load of frames with these data lengths (bytes), all of them sent once a cycle, with worst-case
- * stuffing: percent of the cycle. Above 100 the bus cannot carry them.
- */
-double bus_predict_load_percent(uint32_t bitrate, uint32_t cycle_us, const uint8_t length[],
-                                unsigned count);
 
 #endif

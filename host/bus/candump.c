@@ -1,14 +1,17 @@
 #include "bus/candump.h"
 
+#include "bus/hex.h"
+
 #include <string.h>
 
 #define SECONDS_DIGITS 10
 #define MICROS_DIGITS  6
+#define ERROR_FLAG     0x20000000u
 /*
  * "(" seconds "." micros ") " interface " " identifier "#" data "\n", and room for seconds of any
  * uint64_t
  */
-#define LINE_MAX_LENGTH (64 + CANDUMP_INTERFACE_MAX)
+#define LINE_MAX_LENGTH (64 + CANDUMP_INTERFACE_MAX + 2 * WIRE_DATA_MAX)
 
 void candump_init(struct candump *log, FILE *file, const char *interface)
 {
@@ -25,13 +28,6 @@ static char *put_decimal(char *text, uint64_t value, unsigned digits)
 {
     for (unsigned i = digits; i-- > 0; value /= 10)
         text[i] = (char)('0' + value % 10);
-    return text + digits;
-}
-
-static char *put_hex(char *text, unsigned value, unsigned digits)
-{
-    for (unsigned i = digits; i-- > 0; value >>= 4)
-        text[i] = "0123456789ABCDEF"[value & 15];
     return text + digits;
 }
 
@@ -54,21 +50,52 @@ static void write_buffer(struct candump *log)
     log->used = 0;
 }
 
-void candump_frame(void *context, const struct can_frame *frame, uint64_t time_ns)
+/* Everything before the identifier. */
+static char *begin_line(struct candump *log, uint64_t time_ns)
 {
-    struct candump *log = context;
     if (log->used + LINE_MAX_LENGTH > CANDUMP_BUFFER_SIZE)
         write_buffer(log);
     char *text = put_time(log->buffer + log->used, time_ns);
     memcpy(text, log->interface, log->interface_length);
     text += log->interface_length;
     *text++ = ' ';
-    text = put_hex(text, frame->id, 3);
-    *text++ = '#';
-    for (unsigned i = 0; i < frame->length; i++)
-        text = put_hex(text, frame->data[i], 2);
+    return text;
+}
+
+static void end_line(struct candump *log, char *text, const uint8_t *data, unsigned length)
+{
+    for (unsigned i = 0; i < length; i++)
+        text = hex_put(text, data[i], 2);
     *text++ = '\n';
     log->used = (size_t)(text - log->buffer);
+}
+
+void candump_frame(void *context, const struct can_frame *frame, uint64_t time_ns)
+{
+    struct candump *log = context;
+    char *text = hex_put(begin_line(log, time_ns), frame->id, 3);
+    *text++ = '#';
+    end_line(log, text, frame->data, frame->length);
+}
+
+void candump_wire(void *context, const struct wire_frame *frame, uint64_t time_ns)
+{
+    struct candump *log = context;
+    bool is_long = frame->flags & (WIRE_EXTENDED | WIRE_ERROR);
+    char *text = hex_put(begin_line(log, time_ns),
+                         frame->id | (frame->flags & WIRE_ERROR ? ERROR_FLAG : 0), is_long ? 8 : 3);
+    *text++ = '#';
+    if (frame->flags & WIRE_FD) {
+        *text++ = '#';
+        text = hex_put(
+            text,
+            (frame->flags & WIRE_RATE_SWITCH ? 1u : 0) | (frame->flags & WIRE_PASSIVE ? 2u : 0), 1);
+    }
+    if (frame->flags & WIRE_REMOTE) {
+        *text++ = 'R';
+        *text++ = (char)('0' + frame->length);
+    }
+    end_line(log, text, frame->data, frame->flags & WIRE_REMOTE ? 0 : frame->length);
 }
 
 bool candump_flush(struct candump *log)

@@ -5,6 +5,7 @@
 #define TAKT_BUS_CANDUMP_H
 
 #include "bus/bus.h"
+#include "bus/wire_frame.h"
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -30,6 +31,13 @@ void candump_init(struct candump *log, FILE *file, const char *interface);
 
 /* Adds one line. Has the form of a bus listener: (struct bus_listener){candump_frame, &log}. */
 void candump_frame(void *log, const struct can_frame *frame, uint64_t time_ns);
+
+/*
+ * The same for a frame of any kind, as a listener of a link: 29-bit identifiers have eight digits,
+ * "#R2" asks for two bytes, "##1DEADBEEF" is CAN FD with its flags (1 rate switch, 2 sender error
+ * passive), identifiers from 20000000 on are error messages of an interface.
+ */
+void candump_wire(void *log, const struct wire_frame *frame, uint64_t time_ns);
 
 /* Writes what is buffered and flushes the file. False: this or an earlier write has failed. */
 bool candump_flush(struct candump *log);

@@ -1,5 +1,5 @@
 /*
- * Length on the wire of a CAN frame with an 11-bit identifier, in bit times (ISO 11898-1).
+ * Length on the wire of a CAN frame, in bit times (ISO 11898-1).
  *
  * The transmitter stuffs: after five equal bits between start of frame and the last bit of the
  * checksum it inserts one of the other value. How many depends on every bit, checksum included, so
@@ -8,6 +8,7 @@
 #ifndef TAKT_BUS_FRAME_BITS_H
 #define TAKT_BUS_FRAME_BITS_H
 
+#include "bus/wire_frame.h"
 #include "hal/can.h"
 
 #include <stdint.h>
@@ -37,6 +38,22 @@ void frame_bits_init(struct frame_bits *tables);
  * CAN_DATA_MAX.
  */
 unsigned frame_bits_count(const struct frame_bits *tables, const struct can_frame *frame);
+
+/*
+ * The same for a frame of any kind: classical ones exactly, CAN FD ones at most, as if the nominal
+ * rate were used throughout.
+ */
+unsigned frame_bits_count_wire(const struct frame_bits *tables, const struct wire_frame *frame);
+
+/* Of a frame of 8 bytes with worst-case stuffing, without intermission. */
+#define FRAME_BITS_MAX 132
+
+/*
+ * The levels on the wire, bit by bit, stuffed bits included: 0 dominant, 1 recessive; as many as
+ * frame_bits_count says. Returns how many of them, from the start, obey stuffing.
+ */
+unsigned frame_bits_levels(const struct frame_bits *tables, const struct can_frame *frame,
+                           uint8_t level[FRAME_BITS_MAX]);
 
 /* Bit times with worst-case stuffing and intermission: 55 + 10 length. */
 unsigned frame_bits_worst(unsigned length);

@@ -1,77 +1,199 @@
 /*
- * CiA 301: what the drive does with frames and with time.
+ * CiA 301: what the node does with frames and with time.
  */
-#include "canopen/emcy.h"
 #include "canopen/node.h"
 #include "canopen/sync.h"
 #include "drives/virtual_drive_private.h"
 
 #include <string.h>
 
-#define MILLISECOND_NS 1000000u
-#define EVENT_NS       ((uint64_t)VIRTUAL_DRIVE_EVENT_MS * MILLISECOND_NS)
+#define MICROSECOND_NS 1000u
 
-/* A refused frame is lost, as in a node whose transmit buffers are full; the bus counts it. */
-static void send_frame(const struct virtual_drive *drive, const struct can_frame *frame)
+/* SYNC counts as lost after this many of its periods (object 1006). */
+#define SYNC_LOST_PERIODS 3
+
+/*
+ * A refused frame is lost, as in a node whose transmit buffers are full; the bus counts it. One that
+ * a scripted fault holds back counts as sent.
+ */
+bool virtual_drive_send(struct virtual_drive *drive, enum inject_mute kind,
+                        const struct can_frame *frame)
 {
-    (void)drive->port.send(drive->port.context, frame);
+    unsigned held_back = drive->faults.mute & (1u << kind | 1u << INJECT_MUTE_ALL);
+    if (held_back || drive->faults.is_hung)
+        return true;
+    return drive->port.send(drive->port.context, frame);
 }
 
-void virtual_drive_send_emergency(const struct virtual_drive *drive, uint16_t code,
-                                  uint8_t error_register)
+static bool send_sdo(void *context, const struct can_frame *frame)
 {
-    struct emcy emcy = {.node = drive->config.node, .code = code, .error_register = error_register};
-    struct can_frame frame;
-    if (drive->nmt != NMT_OPERATIONAL && drive->nmt != NMT_PREOPERATIONAL)
-        return;
-    emcy_write(&frame, &emcy);
-    send_frame(drive, &frame);
+    return virtual_drive_send(context, INJECT_MUTE_SDO, frame);
 }
 
-static void set_pdo(struct pdo *pdo, unsigned cob_id, uint8_t transmission, uint32_t first,
-                    uint32_t second)
+void virtual_drive_tell(const struct virtual_drive *drive, enum drive_event_kind kind,
+                        uint32_t first, uint32_t second)
 {
-    uint32_t objects[2] = {first, second};
-    pdo->cob_id = (uint16_t)cob_id;
-    pdo->transmission = transmission;
-    (void)pdo_map(&pdo->mapping, objects, 2);
+    const struct drive_event event = {.kind = kind,
+                                      .time_ns = drive->now_ns,
+                                      .node = drive->config.node,
+                                      .first = first,
+                                      .second = second};
+    if (drive->observer.on_event)
+        drive->observer.on_event(drive->observer.context, &event);
+}
+
+static void accept(struct virtual_drive *drive, unsigned id)
+{
+    drive->accepts[id >> 5] |= 1u << (id & 31);
+}
+
+void virtual_drive_set_filter(struct virtual_drive *drive)
+{
+    const struct drive_communication *c = &drive->objects.communication;
+    memset(drive->accepts, 0, sizeof drive->accepts);
+    accept(drive, NMT_COMMAND_COB_ID);
+    accept(drive, c->sync_cob_id);
+    accept(drive, SDO_REQUEST_FUNCTION + drive->config.node);
+    for (unsigned i = 0; i < DRIVE_CONSUMERS; i++)
+        if (c->consumer_heartbeat[i])
+            accept(drive, NMT_HEARTBEAT_FUNCTION + (c->consumer_heartbeat[i] >> 16 & NODE_ID_MASK));
+    for (unsigned i = 0; i < DRIVE_PDO_COUNT; i++)
+        if (drive->rpdo[i].is_valid)
+            accept(drive, drive->rpdo[i].cob_id);
+}
+
+static void set_target_pdo(struct virtual_drive *drive, const struct pdo *target)
+{
+    struct drive_communication *c = &drive->objects.communication;
+    c->rpdo[1].cob_id = target->cob_id;
+    c->rpdo[1].transmission = target->transmission;
+    c->rpdo_mapping[1].count = target->mapping.count;
+    for (unsigned i = 0; i < target->mapping.count; i++)
+        c->rpdo_mapping[1].entry[i] = target->mapping.object[i];
 }
 
 void virtual_drive_init(struct virtual_drive *drive, const struct virtual_drive_config *config,
                         const struct pdo *target, const struct can_port *port)
 {
-    unsigned node = config->node;
+    const struct sdo_server_owner owner = {.read = virtual_drive_read_sdo,
+                                           .may_write = virtual_drive_may_write_sdo,
+                                           .write = virtual_drive_write_sdo,
+                                           .send = send_sdo,
+                                           .context = drive};
     memset(drive, 0, sizeof *drive);
     drive->config = *config;
     drive->port = *port;
     drive->nmt = NMT_BOOTED;
-    set_pdo(&drive->rpdo[0], PDO_RPDO1_FUNCTION + node, PDO_EVENT, CIA402_CONTROLWORD, CIA402_MODE);
-    drive->rpdo[1] = *target;
-    set_pdo(&drive->tpdo[0], PDO_TPDO1_FUNCTION + node, PDO_EVERY_SYNC, CIA402_STATUSWORD,
-            CIA402_POSITION_ACTUAL);
-    set_pdo(&drive->tpdo[1], PDO_TPDO2_FUNCTION + node, PDO_EVENT, CIA402_ERROR_CODE,
-            CIA402_FOLLOWING_ERROR);
-    drive_plant_init(&drive->plant, &config->plant, config->start_mm);
+    drive_plant_init(&drive->plant, &config->plant);
+    sdo_server_init(&drive->sdo, config->node, &owner);
+    virtual_drive_init_objects(drive);
+    if (target)
+        set_target_pdo(drive, target);
+    drive->initial_communication = drive->stored_communication = drive->objects.communication;
+    drive->initial_settings = drive->stored_settings = drive->objects.settings;
+    virtual_drive_derive(drive);
+    drive->homing.is_homed = config->plant.absolute_encoder;
+    virtual_drive_update_pdos(drive);
     virtual_drive_reset_profile(drive);
+}
+
+void virtual_drive_observe(struct virtual_drive *drive, const struct drive_observer *observer)
+{
+    drive->observer = *observer;
+}
+
+void virtual_drive_set_eds(struct virtual_drive *drive, const char *eds, size_t length)
+{
+    drive->eds = eds;
+    drive->eds_length = length;
+}
+
+void virtual_drive_inject(struct virtual_drive *drive, const struct inject *script,
+                          const struct inject_clock *clock)
+{
+    drive->faults.script = script;
+    drive->faults.clock = clock;
+}
+
+void virtual_drive_look_soon(struct virtual_drive *drive)
+{
+    drive->due_ns = 0;
+}
+
+static void send_heartbeat(struct virtual_drive *drive, enum nmt_state state)
+{
+    struct can_frame frame;
+    nmt_write_heartbeat(&frame, drive->config.node, state);
+    (void)virtual_drive_send(drive, INJECT_MUTE_HEARTBEAT, &frame);
+}
+
+/* The first one comes at once. */
+void virtual_drive_restart_heartbeat(struct virtual_drive *drive)
+{
+    bool produces = drive->objects.communication.producer_heartbeat_ms != 0;
+    drive->heartbeat_ns = produces ? drive->now_ns : DRIVE_NEVER;
+    virtual_drive_look_soon(drive);
+}
+
+/* A heartbeat is watched from the first that comes (CiA 301, 7.2.8.3.2.2). */
+void virtual_drive_restart_consumer(struct virtual_drive *drive, unsigned i)
+{
+    drive->consumer_ns[i] = DRIVE_NEVER;
+    virtual_drive_set_filter(drive);
+    virtual_drive_look_soon(drive);
+}
+
+static void restart_communication(struct virtual_drive *drive)
+{
+    drive->communication_error = 0;
+    drive->emcy_count = 0;
+    drive->emcy_ns = 0;
+    drive->sync_lost_ns = DRIVE_NEVER;
+    sdo_server_reset(&drive->sdo);
+    virtual_drive_update_pdos(drive);
+    for (unsigned i = 0; i < DRIVE_CONSUMERS; i++)
+        virtual_drive_restart_consumer(drive, i);
+    virtual_drive_restart_heartbeat(drive);
+}
+
+static void enter_nmt_state(struct virtual_drive *drive, enum nmt_state next)
+{
+    if (next != drive->nmt)
+        virtual_drive_tell(drive, DRIVE_EVENT_NMT, (uint32_t)next, 0);
+    bool starts = next == NMT_OPERATIONAL && drive->nmt != NMT_OPERATIONAL;
+    drive->nmt = next;
+    if (starts)
+        virtual_drive_start_pdos(drive);
+    if (next != NMT_OPERATIONAL)
+        virtual_drive_lose_connection(drive);
 }
 
 void virtual_drive_boot(struct virtual_drive *drive)
 {
-    struct can_frame frame;
-    nmt_write_heartbeat(&frame, drive->config.node, NMT_BOOTED);
-    send_frame(drive, &frame);
+    drive->nmt = NMT_BOOTED;
+    restart_communication(drive);
+    send_heartbeat(drive, NMT_BOOTED);
+    virtual_drive_tell(drive, DRIVE_EVENT_BOOT, 0, 0);
     drive->nmt = NMT_PREOPERATIONAL;
 }
 
-/*
- * The nodes' event timers are shifted by a millisecond each, so that their frames do not come all
- * at once.
- */
-static void enter_operational(struct virtual_drive *drive)
+/* What has been set and not stored is forgotten. */
+static void reset(struct virtual_drive *drive, bool whole_node)
 {
-    drive->nmt = NMT_OPERATIONAL;
-    drive->event_ns = (uint64_t)drive->config.node * MILLISECOND_NS % EVENT_NS;
-    memset(drive->is_held, 0, sizeof drive->is_held);
+    virtual_drive_lose_connection(drive);
+    drive->objects.communication = drive->stored_communication;
+    if (whole_node) {
+        drive->objects.settings = drive->stored_settings;
+        virtual_drive_derive(drive);
+        virtual_drive_clear_history(drive);
+        virtual_drive_reset_profile(drive);
+    }
+    virtual_drive_boot(drive);
+}
+
+void virtual_drive_reboot(struct virtual_drive *drive)
+{
+    reset(drive, true);
 }
 
 static void take_nmt_command(struct virtual_drive *drive, const struct can_frame *frame)
@@ -82,95 +204,148 @@ static void take_nmt_command(struct virtual_drive *drive, const struct can_frame
         return;
     if (node != NMT_ALL_NODES && node != drive->config.node)
         return;
-    enum nmt_state next = nmt_next_state(command);
-    if (next == NMT_OPERATIONAL && drive->nmt != NMT_OPERATIONAL)
-        enter_operational(drive);
-    if (next != NMT_OPERATIONAL)
-        virtual_drive_lose_connection(drive);
-    if (command == NMT_RESET_NODE)
-        virtual_drive_reset_profile(drive);
-    drive->nmt = next;
-    if (next == NMT_BOOTED)
-        virtual_drive_boot(drive);
+    if (command == NMT_RESET_NODE || command == NMT_RESET_COMMUNICATION)
+        reset(drive, command == NMT_RESET_NODE);
+    else
+        enter_nmt_state(drive, nmt_next_state(command));
 }
 
-static void apply_rpdo(struct virtual_drive *drive, const struct pdo_mapping *mapping,
-                       const struct can_frame *frame)
+static void take_heartbeat(struct virtual_drive *drive, const struct can_frame *frame)
 {
-    uint32_t value[PDO_MAPPED_MAX];
-    pdo_unpack(mapping, frame->data, value);
-    for (unsigned i = 0; i < mapping->count; i++)
-        (void)virtual_drive_write_object(drive, mapping->object[i], value[i]);
-}
-
-static void take_rpdo(struct virtual_drive *drive, unsigned index, const struct can_frame *frame)
-{
-    const struct pdo *pdo = &drive->rpdo[index];
-    if (!pdo_fits(&pdo->mapping, frame)) {
-        virtual_drive_send_emergency(drive, EMCY_PDO_LENGTH,
-                                     EMCY_REGISTER_GENERIC | EMCY_REGISTER_COMMUNICATION);
-    } else if (pdo->transmission == PDO_EVERY_SYNC) {
-        drive->held[index] = *frame;
-        drive->is_held[index] = true;
-    } else {
-        apply_rpdo(drive, &pdo->mapping, frame);
+    uint8_t node;
+    enum nmt_state state;
+    if (!nmt_read_heartbeat(frame, &node, &state))
+        return;
+    for (unsigned i = 0; i < DRIVE_CONSUMERS; i++) {
+        uint32_t watched = drive->objects.communication.consumer_heartbeat[i];
+        if ((watched >> 16 & NODE_ID_MASK) != node || (watched & 0xFFFF) == 0)
+            continue;
+        drive->consumer_ns[i] = drive->now_ns + (uint64_t)(watched & 0xFFFF) * MILLISECOND_NS;
+        virtual_drive_look_soon(drive);
+        if (drive->communication_error == EMCY_HEARTBEAT)
+            virtual_drive_set_communication_error(drive, EMCY_NONE);
     }
-}
-
-static void send_tpdo(const struct virtual_drive *drive, const struct pdo *pdo)
-{
-    uint32_t value[PDO_MAPPED_MAX] = {0};
-    struct can_frame frame;
-    for (unsigned i = 0; i < pdo->mapping.count; i++)
-        (void)virtual_drive_read_object(drive, pdo->mapping.object[i], &value[i]);
-    pdo_pack(pdo, value, &frame);
-    send_frame(drive, &frame);
-}
-
-static void send_tpdos(const struct virtual_drive *drive, uint8_t transmission)
-{
-    for (unsigned i = 0; i < VIRTUAL_DRIVE_PDO_COUNT; i++)
-        if (drive->tpdo[i].transmission == transmission)
-            send_tpdo(drive, &drive->tpdo[i]);
 }
 
 /*
  * SYNC: what was received before it takes effect, and the synchronous TPDOs are sampled and sent.
  */
-static void take_sync(struct virtual_drive *drive)
+static void take_sync(struct virtual_drive *drive, const struct can_frame *frame)
 {
-    for (unsigned i = 0; i < VIRTUAL_DRIVE_PDO_COUNT; i++) {
-        if (drive->is_held[i])
-            apply_rpdo(drive, &drive->rpdo[i].mapping, &drive->held[i]);
-        drive->is_held[i] = false;
+    uint64_t period_ns = (uint64_t)drive->objects.communication.sync_period_us * MICROSECOND_NS;
+    if (frame->length > 1)
+        return;
+    if (drive->communication_error == EMCY_SYNC)
+        virtual_drive_set_communication_error(drive, EMCY_NONE);
+    if (period_ns != 0) {
+        if (drive->sync_lost_ns == DRIVE_NEVER)
+            virtual_drive_look_soon(drive);
+        drive->sync_lost_ns = drive->now_ns + SYNC_LOST_PERIODS * period_ns;
     }
-    send_tpdos(drive, PDO_EVERY_SYNC);
+    if (drive->nmt != NMT_OPERATIONAL)
+        return;
+    virtual_drive_apply_held(drive);
+    virtual_drive_send_synchronous(drive, frame);
+}
+
+static void take_other(struct virtual_drive *drive, const struct can_frame *frame)
+{
+    if (frame->id == NMT_COMMAND_COB_ID)
+        take_nmt_command(drive, frame);
+    else if (frame->id == SDO_REQUEST_FUNCTION + drive->config.node) {
+        if (drive->nmt != NMT_STOPPED)
+            sdo_server_take(&drive->sdo, frame);
+    } else {
+        take_heartbeat(drive, frame);
+    }
 }
 
 void virtual_drive_on_frame(struct virtual_drive *drive, const struct can_frame *frame)
 {
-    if (frame->id == NMT_COMMAND_COB_ID)
-        take_nmt_command(drive, frame);
-    if (drive->nmt != NMT_OPERATIONAL)
+    if (!(drive->accepts[frame->id >> 5 & 63] >> (frame->id & 31) & 1))
         return;
-    if (sync_is(frame))
-        take_sync(drive);
-    for (unsigned i = 0; i < VIRTUAL_DRIVE_PDO_COUNT; i++)
-        if (frame->id == drive->rpdo[i].cob_id)
-            take_rpdo(drive, i, frame);
+    if (drive->faults.is_hung || frame->id > NODE_FUNCTION_MASK + NODE_ID_MASK)
+        return;
+    if (frame->id == drive->objects.communication.sync_cob_id)
+        take_sync(drive, frame);
+    else if (node_function(frame->id) == SDO_REQUEST_FUNCTION || frame->id == NMT_COMMAND_COB_ID ||
+             node_function(frame->id) == NMT_HEARTBEAT_FUNCTION)
+        take_other(drive, frame);
+    else if (drive->nmt == NMT_OPERATIONAL)
+        virtual_drive_take_rpdo(drive, frame);
+}
+
+static uint64_t earlier(uint64_t a, uint64_t b)
+{
+    return a < b ? a : b;
+}
+
+static void watch_connection(struct virtual_drive *drive)
+{
+    if (drive->now_ns >= drive->sync_lost_ns) {
+        drive->sync_lost_ns = DRIVE_NEVER;
+        virtual_drive_set_communication_error(drive, EMCY_SYNC);
+    }
+    for (unsigned i = 0; i < DRIVE_CONSUMERS; i++) {
+        if (drive->now_ns < drive->consumer_ns[i])
+            continue;
+        drive->consumer_ns[i] = DRIVE_NEVER;
+        virtual_drive_set_communication_error(drive, EMCY_HEARTBEAT);
+    }
+}
+
+/* Everything that waits for a time; notes when the next of it comes. */
+static void run_timers(struct virtual_drive *drive)
+{
+    uint16_t heartbeat_ms = drive->objects.communication.producer_heartbeat_ms;
+    if (drive->now_ns >= drive->heartbeat_ns) {
+        send_heartbeat(drive, drive->nmt);
+        drive->heartbeat_ns = drive->now_ns + (uint64_t)heartbeat_ms * MILLISECOND_NS;
+    }
+    watch_connection(drive);
+    virtual_drive_send_waiting_emergencies(drive);
+    virtual_drive_send_due(drive);
+    drive->due_ns = earlier(drive->heartbeat_ns, virtual_drive_next_pdo_ns(drive));
+    drive->due_ns = earlier(drive->due_ns, drive->sync_lost_ns);
+    for (unsigned i = 0; i < DRIVE_CONSUMERS; i++)
+        drive->due_ns = earlier(drive->due_ns, drive->consumer_ns[i]);
+    if (drive->emcy_count > 0)
+        drive->due_ns = earlier(drive->due_ns, drive->emcy_ns);
+}
+
+/* Something that is an event may have changed. */
+static bool may_have_event(const struct virtual_drive *drive)
+{
+    const struct drive_process *p = &drive->objects.process;
+    return p->error_code != drive->seen_error_code || p->mode_display != drive->seen_mode ||
+           drive->watched & (DRIVE_GROUP_STATUS | DRIVE_GROUP_INPUTS);
 }
 
 void virtual_drive_step(struct virtual_drive *drive, uint32_t cycle_ns)
 {
+    if (drive->faults.script)
+        virtual_drive_run_faults(drive);
     virtual_drive_move(drive, cycle_ns);
-    drive->event_ns += cycle_ns;
-    if (drive->nmt != NMT_OPERATIONAL || drive->event_ns < EVENT_NS)
-        return;
-    drive->event_ns -= EVENT_NS;
-    send_tpdos(drive, PDO_EVENT);
+    drive->now_ns += cycle_ns;
+    if (may_have_event(drive))
+        virtual_drive_note_events(drive);
+    if (drive->now_ns >= drive->due_ns)
+        run_timers(drive);
+    if (drive->sdo.state == SDO_SERVER_SENDING)
+        sdo_server_go_on(&drive->sdo);
 }
 
 enum nmt_state virtual_drive_get_nmt_state(const struct virtual_drive *drive)
 {
     return drive->nmt;
+}
+
+uint32_t virtual_drive_get_sync_period_us(const struct virtual_drive *drive)
+{
+    return drive->objects.communication.sync_period_us;
+}
+
+bool virtual_drive_is_sync(const struct virtual_drive *drive, const struct can_frame *frame)
+{
+    return frame->id == drive->objects.communication.sync_cob_id && frame->length <= 1;
 }

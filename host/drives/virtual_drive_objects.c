@@ -1,72 +1,505 @@
 /*
- * The objects of the drive, by the entry that maps them into a PDO.
+ * The objects of the drive: what is computed when it is asked for, what a write sets off, and what
+ * may be written.
  */
-#include "canopen/emcy.h"
+#include "base/maths.h"
+#include "canopen/node.h"
 #include "drives/virtual_drive_private.h"
 
-static uint16_t statusword(const struct virtual_drive *drive)
+#include <string.h>
+
+#define SIGNATURE_SAVE 0x65766173u /* "save", the first letter in the lowest byte */
+#define SIGNATURE_LOAD 0x64616F6Cu /* "load" */
+
+#define NOT_WATCHED UINT32_MAX /* windows of position and following error */
+
+/* Turns of the motor per second, and per second squared, a drive starts with. */
+#define DEFAULT_PROFILE_TURNS_S       5.0
+#define DEFAULT_PROFILE_TURNS_S2      50.0
+#define DEFAULT_MAX_TURNS_S           50.0
+#define DEFAULT_HOMING_TURNS_S        2.0
+#define DEFAULT_HOMING_SLOW_TURNS_S   0.2
+#define DEFAULT_HOMING_TURNS_S2       20.0
+#define DEFAULT_POSITION_WINDOW_TURNS 1e-3
+#define DEFAULT_CYCLE_US              1000
+#define TORQUE_PER_RATED              1000.0
+
+static uint32_t unsigned_increments(const struct virtual_drive *drive, double value)
 {
-    unsigned word = cia402_statusword(drive->state) | CIA402_VOLTAGE_ENABLED;
-    if (drive->nmt == NMT_OPERATIONAL)
-        word |= CIA402_REMOTE;
-    if (drive->state == CIA402_ENABLED && drive->mode == CIA402_MODE_CYCLIC_SYNC_POSITION)
-        word |= CIA402_FOLLOWS_TARGET;
-    if (drive->error_code == EMCY_FOLLOWING_ERROR)
-        word |= CIA402_FOLLOWING_FAILED;
-    return (uint16_t)word;
+    double increments = maths_round(value * drive->increments_per_mm);
+    return (uint32_t)maths_clamp(increments, 0, (double)UINT32_MAX);
 }
 
-static uint32_t increments(const struct virtual_drive *drive, double position_mm)
+static int32_t signed_round(double value)
 {
-    return (uint32_t)virtual_drive_increments(drive, position_mm);
+    return (int32_t)maths_clamp(maths_round(value), (double)INT32_MIN, (double)INT32_MAX);
 }
 
-bool virtual_drive_read_object(const struct virtual_drive *drive, uint32_t object, uint32_t *value)
+/* The period as 60C2 tells it: the fewest microseconds that fit, exactly where they do. */
+static void set_interpolation_period(struct drive_settings *s, uint32_t cycle_us)
 {
-    switch (object) {
-    case CIA402_STATUSWORD:
-        *value = statusword(drive);
-        return true;
-    case CIA402_POSITION_ACTUAL:
-        *value = increments(drive, drive->plant.measured_mm);
-        return true;
-    case CIA402_FOLLOWING_ERROR:
-        *value = increments(drive, drive_plant_following_error_mm(&drive->plant));
-        return true;
-    case CIA402_FOLLOWING_WINDOW:
-        *value = increments(drive, drive->config.plant.following_error_window_mm);
-        return true;
-    case CIA402_TARGET_POSITION:
-        *value = (uint32_t)drive->target_inc;
-        return true;
-    case CIA402_CONTROLWORD:
-        *value = drive->controlword;
-        return true;
-    case CIA402_MODE:
-    case CIA402_MODE_DISPLAY:
-        *value = (uint8_t)drive->mode;
-        return true;
-    case CIA402_ERROR_CODE:
-        *value = drive->error_code;
-        return true;
-    default:
-        return false;
+    uint32_t period = cycle_us != 0 ? cycle_us : DEFAULT_CYCLE_US;
+    int8_t index = -6;
+    while (index < 0 && (period > UINT8_MAX || period % 10 == 0)) {
+        period = period / 10;
+        index++;
     }
+    s->interpolation_period = (uint8_t)period;
+    s->interpolation_index = index;
+}
+
+/* What the machine makes of the initial values: everything that is counted in increments. */
+void virtual_drive_init_objects(struct virtual_drive *drive)
+{
+    const struct drive_plant_config *plant = &drive->config.plant;
+    struct drive_objects *o = &drive->objects;
+    double turn_mm = plant->travel_per_revolution_mm;
+    object_table_set_initial(o, drive->config.node);
+    drive->increments_per_mm = drive->config.increments_per_mm;
+    o->identity.serial = drive->config.node;
+    o->identity.encoder_counts = plant->encoder_counts_per_revolution;
+    o->settings.following_window =
+        plant->following_error_window_mm > 0
+            ? unsigned_increments(drive, plant->following_error_window_mm)
+            : NOT_WATCHED;
+    o->settings.following_timeout_ms = (uint16_t)plant->following_error_timeout_ms;
+    o->settings.quick_stop_deceleration =
+        unsigned_increments(drive, plant->quick_stop_deceleration_mm_s2);
+    o->settings.position_window =
+        unsigned_increments(drive, DEFAULT_POSITION_WINDOW_TURNS * turn_mm);
+    o->settings.max_profile_velocity = unsigned_increments(drive, DEFAULT_MAX_TURNS_S * turn_mm);
+    o->settings.profile_velocity = unsigned_increments(drive, DEFAULT_PROFILE_TURNS_S * turn_mm);
+    o->settings.profile_acceleration =
+        unsigned_increments(drive, DEFAULT_PROFILE_TURNS_S2 * turn_mm);
+    o->settings.profile_deceleration = o->settings.profile_acceleration;
+    o->settings.homing_velocity[0] = unsigned_increments(drive, DEFAULT_HOMING_TURNS_S * turn_mm);
+    o->settings.homing_velocity[1] =
+        unsigned_increments(drive, DEFAULT_HOMING_SLOW_TURNS_S * turn_mm);
+    o->settings.homing_acceleration = unsigned_increments(drive, DEFAULT_HOMING_TURNS_S2 * turn_mm);
+    o->settings.feed_increments = unsigned_increments(drive, turn_mm);
+    set_interpolation_period(&o->settings, drive->config.cycle_us);
+}
+
+/*
+ * Increments are what objects 6091 and 6092 make of a turn of the motor:
+ *     increments/turn = feed / feed_shaft_turns * gear_shaft_turns / gear_motor_turns
+ * As they were at power-on they stand for what the machine says, which need not be a whole number.
+ */
+static void rescale(struct virtual_drive *drive)
+{
+    const struct drive_settings *s = &drive->objects.settings;
+    const struct drive_settings *initial = &drive->initial_settings;
+    double turn = (double)s->feed_increments / s->feed_shaft * s->gear_shaft / s->gear_motor;
+    bool is_initial = s->feed_increments == initial->feed_increments &&
+                      s->feed_shaft == initial->feed_shaft &&
+                      s->gear_motor == initial->gear_motor && s->gear_shaft == initial->gear_shaft;
+    drive->increments_per_mm = is_initial ? drive->config.increments_per_mm
+                                          : turn / drive->config.plant.travel_per_revolution_mm;
+}
+
+/* A value of the machine that its object could not hold is used as long as nobody has changed it. */
+static double in_mm(const struct virtual_drive *drive, uint32_t value, uint32_t initial,
+                    double machine)
+{
+    bool is_initial =
+        value == initial && drive->increments_per_mm == drive->config.increments_per_mm;
+    return is_initial ? machine : value / drive->increments_per_mm;
+}
+
+/* period = 60C2:01 10^60C2:02 seconds */
+static uint64_t interpolation_ns(const struct drive_settings *s)
+{
+    uint64_t ns = s->interpolation_period * UINT64_C(1000);
+    for (int exponent = -6; exponent < s->interpolation_index; exponent++)
+        ns *= 10;
+    return ns;
+}
+
+void virtual_drive_derive(struct virtual_drive *drive)
+{
+    const struct drive_settings *s = &drive->objects.settings;
+    const struct drive_settings *initial = &drive->initial_settings;
+    const struct drive_plant_config *plant = &drive->config.plant;
+    rescale(drive);
+    drive->interpolation_ns = interpolation_ns(s);
+    drive->following_window_mm = 0;
+    if (s->following_window != NOT_WATCHED)
+        drive->following_window_mm = in_mm(drive, s->following_window, initial->following_window,
+                                           plant->following_error_window_mm);
+    drive->quick_stop_mm_s2 =
+        in_mm(drive, s->quick_stop_deceleration, initial->quick_stop_deceleration,
+              plant->quick_stop_deceleration_mm_s2);
+}
+
+static int16_t torque(const struct virtual_drive *drive)
+{
+    double torque = maths_round(TORQUE_PER_RATED * drive_plant_torque_ratio(&drive->plant));
+    return (int16_t)maths_clamp(torque, INT16_MIN, INT16_MAX);
+}
+
+static void refresh_rest(struct virtual_drive *drive)
+{
+    const struct drive_plant *plant = &drive->plant;
+    struct drive_process *p = &drive->objects.process;
+    p->demand_position = virtual_drive_increments(drive, plant->command_mm - drive->origin_mm);
+    p->actual_internal = signed_round(plant->measured_mm * plant->encoder_steps_per_mm);
+    p->actual_velocity = signed_round(plant->measured_velocity_mm_s * drive->increments_per_mm);
+    p->actual_torque = torque(drive);
+}
+
+void virtual_drive_refresh(struct virtual_drive *drive, unsigned groups)
+{
+    struct drive_process *p = &drive->objects.process;
+    if (groups & DRIVE_GROUP_STATUS)
+        p->statusword = virtual_drive_statusword(drive);
+    if (groups & DRIVE_GROUP_POSITION)
+        p->actual_position = virtual_drive_increments(drive, virtual_drive_actual_mm(drive));
+    if (groups & DRIVE_GROUP_FOLLOWING)
+        p->following_error =
+            virtual_drive_increments(drive, drive_plant_following_error_mm(&drive->plant));
+    if (groups & DRIVE_GROUP_INPUTS)
+        p->digital_inputs = virtual_drive_inputs(drive);
+    if (groups & DRIVE_GROUP_REST)
+        refresh_rest(drive);
+}
+
+uint32_t virtual_drive_read_row(const struct virtual_drive *drive, const struct object_row *row)
+{
+    uint32_t value;
+    if (drive->faults.overrides > 0 && virtual_drive_overrides(drive, row, &value))
+        return value;
+    return object_read(row, &drive->objects);
+}
+
+/* The mode first: a controlword that comes with it is meant for it. */
+void virtual_drive_apply_touches(struct virtual_drive *drive, unsigned touches)
+{
+    if (touches & DRIVE_TOUCH_MODE)
+        virtual_drive_take_mode(drive, drive->objects.process.mode);
+    if (touches & DRIVE_TOUCH_CONTROLWORD)
+        virtual_drive_take_controlword(drive, drive->objects.process.controlword);
+}
+
+static uint32_t check_sync_id(uint32_t value)
+{
+    bool is_allowed = value == 0x80 || (value > 0x180 && value < 0x581);
+    return is_allowed ? SDO_ABORT_NONE : SDO_ABORT_VALUE;
+}
+
+static uint32_t check_emcy_id(const struct virtual_drive *drive, uint32_t value)
+{
+    uint32_t old = drive->objects.communication.emcy_cob_id;
+    uint32_t id = value & 0x7FFFFFFF;
+    if (id <= 0x80 || id > 0x7FF)
+        return SDO_ABORT_VALUE;
+    return !(old >> 31) && !(value >> 31) && value != old ? SDO_ABORT_VALUE : SDO_ABORT_NONE;
+}
+
+static uint32_t check_consumer(uint32_t value)
+{
+    return value >> 16 > NODE_MAX ? SDO_ABORT_VALUE : SDO_ABORT_NONE;
+}
+
+/* SYNC's counter must not change while SYNC has a period. */
+static uint32_t check_overflow(const struct virtual_drive *drive, uint32_t value)
+{
+    if (drive->objects.communication.sync_period_us != 0)
+        return SDO_ABORT_STATE;
+    return value == 1 ? SDO_ABORT_VALUE : SDO_ABORT_NONE;
+}
+
+/* 3 and 4 would be limits of current and voltage, 7 and 8 the same and staying. */
+static uint32_t check_quick_stop(uint32_t value)
+{
+    return value == 3 || value == 4 ? SDO_ABORT_VALUE : SDO_ABORT_NONE;
+}
+
+static uint32_t check_communication_write(const struct virtual_drive *drive,
+                                          const struct object_row *row, uint32_t value)
+{
+    switch (row->index) {
+    case 0x1005:
+        return check_sync_id(value);
+    case 0x1010:
+        return value == SIGNATURE_SAVE ? SDO_ABORT_NONE : SDO_ABORT_STORE;
+    case 0x1011:
+        return value == SIGNATURE_LOAD ? SDO_ABORT_NONE : SDO_ABORT_STORE;
+    case 0x1014:
+        return check_emcy_id(drive, value);
+    case 0x1016:
+        return check_consumer(value);
+    case 0x1019:
+        return check_overflow(drive, value);
+    default:
+        break;
+    }
+    if (row->index >= 0x1400 && row->index < 0x1C00)
+        return virtual_drive_check_pdo_write(drive, row, value);
+    return SDO_ABORT_NONE;
+}
+
+static uint32_t check_profile_write(const struct virtual_drive *drive, const struct object_row *row,
+                                    int64_t value)
+{
+    switch (row->index) {
+    case 0x605A:
+        return check_quick_stop((uint32_t)value);
+    case 0x6060:
+        return virtual_drive_has_mode((int8_t)value) ? SDO_ABORT_NONE : SDO_ABORT_VALUE;
+    case 0x6091:
+    case 0x6092:
+        return drive->state == CIA402_ENABLED ? SDO_ABORT_STATE : SDO_ABORT_NONE;
+    case 0x6098:
+        return virtual_drive_has_homing_method((int32_t)value) ? SDO_ABORT_NONE : SDO_ABORT_VALUE;
+    default:
+        return SDO_ABORT_NONE;
+    }
+}
+
+static uint32_t check_number(const struct virtual_drive *drive, const struct object_row *row,
+                             uint32_t raw)
+{
+    int64_t value = object_type_value((enum object_type)row->type, raw);
+    if (row->flags & OBJECT_LIMITED && value < row->min)
+        return SDO_ABORT_TOO_LOW;
+    if (row->flags & OBJECT_LIMITED && value > row->max)
+        return SDO_ABORT_TOO_HIGH;
+    return row->index < 0x2000 ? check_communication_write(drive, row, raw)
+                               : check_profile_write(drive, row, value);
+}
+
+/* Stored values are those a reset brings back; they live as long as the process. */
+static void store(struct virtual_drive *drive)
+{
+    drive->stored_communication = drive->objects.communication;
+    drive->stored_settings = drive->objects.settings;
+    drive->objects.process.store = 1;
+}
+
+static void restore(struct virtual_drive *drive)
+{
+    drive->stored_communication = drive->initial_communication;
+    drive->stored_settings = drive->initial_settings;
+    drive->objects.process.restore = 1;
+}
+
+static void follow_communication_write(struct virtual_drive *drive, const struct object_row *row)
+{
+    switch (row->index) {
+    case 0x1003:
+        virtual_drive_clear_history(drive);
+        break;
+    case 0x1005:
+        virtual_drive_set_filter(drive);
+        break;
+    case 0x1006:
+        drive->sync_lost_ns = DRIVE_NEVER;
+        break;
+    case 0x1010:
+        store(drive);
+        break;
+    case 0x1011:
+        restore(drive);
+        break;
+    case 0x1016:
+        virtual_drive_restart_consumer(drive, row->sub - 1u);
+        break;
+    case 0x1017:
+        virtual_drive_restart_heartbeat(drive);
+        break;
+    default:
+        if (row->index >= 0x1400 && row->index < 0x1C00)
+            virtual_drive_update_pdo(drive, row->index);
+        break;
+    }
+}
+
+static void follow_profile_write(struct virtual_drive *drive, const struct object_row *row)
+{
+    switch (row->index) {
+    case 0x6040:
+        virtual_drive_apply_touches(drive, DRIVE_TOUCH_CONTROLWORD);
+        break;
+    case 0x6060:
+        virtual_drive_apply_touches(drive, DRIVE_TOUCH_MODE);
+        break;
+    case 0x6091:
+    case 0x6092:
+        virtual_drive_derive(drive);
+        virtual_drive_hold(drive);
+        break;
+    case 0x6065:
+    case 0x6085:
+    case 0x60C2:
+        virtual_drive_derive(drive);
+        break;
+    default:
+        break;
+    }
+}
+
+static uint32_t write_number(struct virtual_drive *drive, const struct object_row *row,
+                             uint32_t value)
+{
+    uint32_t code = check_number(drive, row, value);
+    if (code != SDO_ABORT_NONE)
+        return code;
+    object_write(row, &drive->objects, value);
+    if (row->index < 0x2000)
+        follow_communication_write(drive, row);
+    else
+        follow_profile_write(drive, row);
+    return SDO_ABORT_NONE;
+}
+
+/* The label is a text, the notes are any bytes. */
+static uint32_t write_bytes(struct virtual_drive *drive, const struct object_row *row,
+                            const uint8_t *bytes, size_t length)
+{
+    struct drive_process *p = &drive->objects.process;
+    if (row->type == OBJECT_STRING) {
+        if (length >= DRIVE_LABEL_SIZE)
+            return SDO_ABORT_TOO_LONG;
+        memset(drive->objects.settings.label, 0, DRIVE_LABEL_SIZE);
+        memcpy(drive->objects.settings.label, bytes, length);
+        return SDO_ABORT_NONE;
+    }
+    if (length > DRIVE_NOTES_SIZE)
+        return SDO_ABORT_TOO_LONG;
+    memcpy(p->notes, bytes, length);
+    p->notes_length = (uint16_t)length;
+    return SDO_ABORT_NONE;
+}
+
+static uint32_t read_bytes(const struct virtual_drive *drive, const struct object_row *row,
+                           const uint8_t **bytes, size_t *length)
+{
+    const struct drive_objects *o = &drive->objects;
+    const char *text = row->flags & OBJECT_FIXED ? row->title : o->settings.label;
+    if (row->type == OBJECT_STRING) {
+        *bytes = (const uint8_t *)text;
+        *length = strlen(text);
+    } else if (row->flags & OBJECT_FIXED) {
+        *bytes = (const uint8_t *)drive->eds;
+        *length = drive->eds_length;
+        return drive->eds ? SDO_ABORT_NONE : SDO_ABORT_NO_DATA;
+    } else {
+        *bytes = (const uint8_t *)o->process.notes;
+        *length = o->process.notes_length;
+    }
+    return SDO_ABORT_NONE;
+}
+
+static uint32_t find(const struct virtual_drive *drive, uint32_t object,
+                     const struct object_row **row)
+{
+    bool has_index;
+    uint32_t code;
+    *row = object_table_find((uint16_t)(object >> 16), (uint8_t)(object >> 8), &has_index);
+    if (drive->faults.in_force && virtual_drive_aborts_sdo(drive, object, &code))
+        return code;
+    if (*row)
+        return SDO_ABORT_NONE;
+    return has_index ? SDO_ABORT_NO_SUB_INDEX : SDO_ABORT_NO_OBJECT;
+}
+
+static uint32_t tell_abort(const struct virtual_drive *drive, uint32_t object, uint32_t code)
+{
+    if (code != SDO_ABORT_NONE)
+        virtual_drive_tell(drive, DRIVE_EVENT_SDO_ABORT, object, code);
+    return code;
+}
+
+static uint32_t read_object(struct virtual_drive *drive, uint32_t object, uint8_t number[4],
+                            const uint8_t **bytes, size_t *length)
+{
+    const struct object_row *row;
+    uint32_t code = find(drive, object, &row);
+    if (code != SDO_ABORT_NONE)
+        return code;
+    if (row->access == OBJECT_WO)
+        return SDO_ABORT_WRITE_ONLY;
+    if (row->index == 0x1003 && row->sub > drive->objects.process.history_count)
+        return SDO_ABORT_NO_DATA;
+    *length = object_type_bytes((enum object_type)row->type);
+    if (*length == 0)
+        return read_bytes(drive, row, bytes, length);
+    virtual_drive_refresh(drive, DRIVE_GROUP_ALL);
+    uint32_t value = virtual_drive_read_row(drive, row);
+    for (unsigned i = 0; i < 4; i++)
+        number[i] = (uint8_t)(value >> 8 * i);
+    *bytes = number;
+    return SDO_ABORT_NONE;
+}
+
+uint32_t virtual_drive_read_sdo(void *drive, uint32_t object, uint8_t number[4],
+                                const uint8_t **bytes, size_t *length)
+{
+    return tell_abort(drive, object, read_object(drive, object, number, bytes, length));
+}
+
+static uint32_t may_write(const struct virtual_drive *drive, uint32_t object,
+                          const struct object_row **row)
+{
+    uint32_t code = find(drive, object, row);
+    if (code == SDO_ABORT_NONE && ((*row)->access == OBJECT_RO || (*row)->access == OBJECT_CONST))
+        return SDO_ABORT_READ_ONLY;
+    return code;
+}
+
+uint32_t virtual_drive_may_write_sdo(void *drive, uint32_t object)
+{
+    const struct object_row *row;
+    return tell_abort(drive, object, may_write(drive, object, &row));
+}
+
+static uint32_t write_object(struct virtual_drive *drive, uint32_t object, const uint8_t *bytes,
+                             size_t length)
+{
+    const struct object_row *row;
+    uint32_t value = 0;
+    uint32_t code = may_write(drive, object, &row);
+    if (code != SDO_ABORT_NONE)
+        return code;
+    unsigned width = object_type_bytes((enum object_type)row->type);
+    if (width == 0)
+        return write_bytes(drive, row, bytes, length);
+    if (length != width)
+        return length > width ? SDO_ABORT_TOO_LONG : SDO_ABORT_TOO_SHORT;
+    for (unsigned i = 0; i < width; i++)
+        value |= (uint32_t)bytes[i] << 8 * i;
+    return write_number(drive, row, value);
+}
+
+uint32_t virtual_drive_write_sdo(void *drive, uint32_t object, const uint8_t *bytes, size_t length)
+{
+    return tell_abort(drive, object, write_object(drive, object, bytes, length));
+}
+
+/* The number a mapping entry names, and NULL for anything else. */
+static const struct object_row *find_number(uint32_t object)
+{
+    bool has_index;
+    const struct object_row *row =
+        object_table_find((uint16_t)(object >> 16), (uint8_t)(object >> 8), &has_index);
+    unsigned bits = row ? 8 * object_type_bytes((enum object_type)row->type) : 0;
+    return bits != 0 && bits == (object & 0xFF) ? row : NULL;
+}
+
+bool virtual_drive_read_object(struct virtual_drive *drive, uint32_t object, uint32_t *value)
+{
+    const struct object_row *row = find_number(object);
+    if (!row)
+        return false;
+    virtual_drive_refresh(drive, DRIVE_GROUP_ALL);
+    *value = virtual_drive_read_row(drive, row);
+    return true;
 }
 
 bool virtual_drive_write_object(struct virtual_drive *drive, uint32_t object, uint32_t value)
 {
-    switch (object) {
-    case CIA402_CONTROLWORD:
-        virtual_drive_take_controlword(drive, (uint16_t)value);
-        return true;
-    case CIA402_MODE:
-        drive->mode = (int8_t)(uint8_t)value;
-        return true;
-    case CIA402_TARGET_POSITION:
-        drive->target_inc = (int32_t)value;
-        return true;
-    default:
+    const struct object_row *row = find_number(object);
+    if (!row || row->access == OBJECT_RO || row->access == OBJECT_CONST)
         return false;
-    }
+    return write_number(drive, row, value) == SDO_ABORT_NONE;
 }

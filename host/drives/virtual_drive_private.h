@@ -4,23 +4,139 @@
 #ifndef TAKT_DRIVES_VIRTUAL_DRIVE_PRIVATE_H
 #define TAKT_DRIVES_VIRTUAL_DRIVE_PRIVATE_H
 
+#include "canopen/emcy.h"
+#include "drives/object_table.h"
 #include "drives/virtual_drive.h"
 
-/* Position as the drive reports it: rounded to increments, held at the ends of the int32 range. */
-int32_t virtual_drive_increments(const struct virtual_drive *drive, double position_mm);
+#define DRIVE_NEVER    UINT64_MAX
+#define MILLISECOND_NS 1000000u
 
-/* The drive profile's share of a controlword, and of one cycle. */
+/* Groups of objects that are computed when they are asked for. */
+enum drive_group {
+    DRIVE_GROUP_STATUS = 1, /* 6041, 6061 */
+    DRIVE_GROUP_POSITION = 2,
+    DRIVE_GROUP_FOLLOWING = 4,
+    DRIVE_GROUP_ERROR = 8, /* 603F: always up to date; its change is an event */
+    DRIVE_GROUP_INPUTS = 16,
+    DRIVE_GROUP_MODE = 32, /* 6061: the same */
+    DRIVE_GROUP_REST = 64,
+    DRIVE_GROUP_ALL = 127
+};
+
+/* What a write to an object sets off. */
+enum drive_touch { DRIVE_TOUCH_CONTROLWORD = 1, DRIVE_TOUCH_MODE = 2 };
+
+/* Kinds of frames a drive sends, for faults that hold them back. */
+bool virtual_drive_send(struct virtual_drive *drive, enum inject_mute kind,
+                        const struct can_frame *frame);
+
+void virtual_drive_tell(const struct virtual_drive *drive, enum drive_event_kind kind,
+                        uint32_t first, uint32_t second);
+
+/* ---- virtual_drive.c: node ---- */
+
+/* Which frames are looked at, after an identifier has changed. */
+void virtual_drive_set_filter(struct virtual_drive *drive);
+/* Times have changed: look at all of them at the next step. */
+void virtual_drive_look_soon(struct virtual_drive *drive);
+void virtual_drive_restart_heartbeat(struct virtual_drive *drive);
+void virtual_drive_restart_consumer(struct virtual_drive *drive, unsigned i);
+
+/* As after NMT's reset of the node. */
+void virtual_drive_reboot(struct virtual_drive *drive);
+
+/* ---- virtual_drive_errors.c ---- */
+
+/* An error of the communication is there (8130, 8700), or all are gone (0). */
+void virtual_drive_set_communication_error(struct virtual_drive *drive, uint16_t code);
+/* Sends an emergency, notes it in the history. error_register: what it adds to 1001. */
+void virtual_drive_send_emergency(struct virtual_drive *drive, uint16_t code,
+                                  uint8_t error_register);
+void virtual_drive_send_waiting_emergencies(struct virtual_drive *drive);
+void virtual_drive_clear_history(struct virtual_drive *drive);
+
+/* ---- virtual_drive_pdo.c ---- */
+
+void virtual_drive_update_pdos(struct virtual_drive *drive);
+/* The one that this object, 1400 ... 1BFF, is about. */
+void virtual_drive_update_pdo(struct virtual_drive *drive, uint16_t index);
+void virtual_drive_start_pdos(struct virtual_drive *drive); /* operational has been entered */
+void virtual_drive_take_rpdo(struct virtual_drive *drive, const struct can_frame *frame);
+void virtual_drive_apply_held(struct virtual_drive *drive);
+void virtual_drive_send_synchronous(struct virtual_drive *drive, const struct can_frame *sync);
+/* Sends what an event or a timer has made due. */
+void virtual_drive_send_due(struct virtual_drive *drive);
+/* Notes the changes since the last call that are events. */
+void virtual_drive_note_events(struct virtual_drive *drive);
+uint64_t virtual_drive_next_pdo_ns(const struct virtual_drive *drive);
+/* Objects 1400 ... 1BFF: may they get this value now? */
+uint32_t virtual_drive_check_pdo_write(const struct virtual_drive *drive,
+                                       const struct object_row *row, uint32_t value);
+
+/* ---- virtual_drive_objects.c ---- */
+
+/* Brings the computed objects of these groups up to date. */
+void virtual_drive_refresh(struct virtual_drive *drive, unsigned groups);
+uint32_t virtual_drive_read_row(const struct virtual_drive *drive, const struct object_row *row);
+void virtual_drive_apply_touches(struct virtual_drive *drive, unsigned touches);
+void virtual_drive_init_objects(struct virtual_drive *drive);
+/* What the position loop needs, from the settings. */
+void virtual_drive_derive(struct virtual_drive *drive);
+uint32_t virtual_drive_read_sdo(void *drive, uint32_t object, uint8_t number[4],
+                                const uint8_t **bytes, size_t *length);
+uint32_t virtual_drive_may_write_sdo(void *drive, uint32_t object);
+uint32_t virtual_drive_write_sdo(void *drive, uint32_t object, const uint8_t *bytes, size_t length);
+
+/* ---- virtual_drive_profile.c: states ---- */
+
+uint16_t virtual_drive_statusword(const struct virtual_drive *drive);
 void virtual_drive_take_controlword(struct virtual_drive *drive, uint16_t controlword);
+void virtual_drive_take_mode(struct virtual_drive *drive, int8_t mode);
+bool virtual_drive_has_mode(int8_t mode);
 void virtual_drive_move(struct virtual_drive *drive, uint32_t cycle_ns);
-
-/* The connection to the controller is gone: an enabled drive stops quickly (object 6007 = 3). */
+/* The drive fails: emergency, fault reaction, fault. */
+void virtual_drive_fail(struct virtual_drive *drive, uint16_t code, uint8_t error_register);
+/* The connection to the controller is gone: object 6007 says what an enabled drive does. */
 void virtual_drive_lose_connection(struct virtual_drive *drive);
-
 /* Back to the state after power-on; the motor runs out without torque. */
 void virtual_drive_reset_profile(struct virtual_drive *drive);
 
-/* Tells the error code in an emergency message, in the states that have them. */
-void virtual_drive_send_emergency(const struct virtual_drive *drive, uint16_t code,
-                                  uint8_t error_register);
+/* ---- virtual_drive_modes.c: motion of the command while enabled ---- */
+
+/* Position as the drive reports it: rounded to increments, held at the ends of the int32 range. */
+int32_t virtual_drive_increments(const struct virtual_drive *drive, double position_mm);
+/* Where the encoder says the axis is, as a position of the drive. */
+double virtual_drive_actual_mm(const struct virtual_drive *drive);
+/* From now on the command stands, or slows down to stand, until there is a new one. */
+void virtual_drive_hold(struct virtual_drive *drive);
+void virtual_drive_take_mode_controlword(struct virtual_drive *drive, uint16_t before,
+                                         uint16_t controlword);
+uint16_t virtual_drive_mode_status(const struct virtual_drive *drive);
+/* One cycle with torque. */
+void virtual_drive_run_mode(struct virtual_drive *drive, uint32_t cycle_ns);
+/* One cycle of slowing down by deceleration. True: the command stands. */
+bool virtual_drive_slow(struct virtual_drive *drive, double deceleration_mm_s2, uint32_t cycle_ns);
+double virtual_drive_profile_deceleration_mm_s2(const struct virtual_drive *drive);
+/* Moves the command towards a velocity. */
+void virtual_drive_run_at(struct virtual_drive *drive, double velocity_mm_s,
+                          double acceleration_mm_s2, uint32_t cycle_ns);
+
+/* ---- virtual_drive_homing.c ---- */
+
+bool virtual_drive_has_homing_method(int32_t method);
+void virtual_drive_begin_homing(struct virtual_drive *drive);
+void virtual_drive_interrupt_homing(struct virtual_drive *drive);
+void virtual_drive_run_homing(struct virtual_drive *drive, uint32_t cycle_ns);
+uint32_t virtual_drive_inputs(const struct virtual_drive *drive); /* 60FD */
+
+/* ---- virtual_drive_faults.c ---- */
+
+/* Begins and ends the scripted faults whose time has come. */
+void virtual_drive_run_faults(struct virtual_drive *drive);
+/* True: an SDO request for this object is to be aborted with *code. */
+bool virtual_drive_aborts_sdo(const struct virtual_drive *drive, uint32_t object, uint32_t *code);
+/* True: the object shows *value, whatever it holds. */
+bool virtual_drive_overrides(const struct virtual_drive *drive, const struct object_row *row,
+                             uint32_t *value);
 
 #endif

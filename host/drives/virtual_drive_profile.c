@@ -2,97 +2,235 @@
  * CiA 402: what the controlword and the motor make of the drive's state.
  */
 #include "base/maths.h"
-#include "canopen/emcy.h"
 #include "drives/virtual_drive_private.h"
 
-#define INCREMENTS_MAX 2147483647.0
+/* Values of the option codes 6007 and 605A to 605E. */
+#define CONNECTION_FAULT           1
+#define CONNECTION_DISABLE_VOLTAGE 2
+#define CONNECTION_QUICK_STOP      3
+#define STOP_BY_DISABLING          0
+#define STOP_BY_PROFILE            1
+#define STOP_BY_QUICK_STOP         2
+#define QUICK_STOP_STAYS           5 /* this and above: the drive stays in "quick stop active" */
+#define QUICK_STOP_PROFILE_STAYS   5
 
-int32_t virtual_drive_increments(const struct virtual_drive *drive, double position_mm)
+#define CONTROL_HALT 0x0100
+
+#define STATUS_WARNING        0x0080
+#define STATUS_INTERNAL_LIMIT 0x0800
+
+/* EMCY 8100: the connection is lost, where 6007 says that this is a fault. */
+#define EMCY_CONNECTION 0x8100
+
+/* A warning comes before the fault of temperature. */
+#define TEMPERATURE_WARNING_K 10.0
+
+static bool is_hot(const struct virtual_drive *drive, double below_k)
 {
-    double increments = maths_round(position_mm * drive->config.increments_per_mm);
-    return (int32_t)maths_clamp(increments, -INCREMENTS_MAX, INCREMENTS_MAX);
+    double max_c = drive->config.plant.temperature_max_c;
+    return max_c > 0 && drive->plant.temperature_c > max_c - below_k;
 }
 
-/*
- * What the target of an earlier run was is forgotten: an enabled drive stands until it gets a new
- * one.
- */
-static void hold_here(struct virtual_drive *drive)
+uint16_t virtual_drive_statusword(const struct virtual_drive *drive)
 {
-    drive->target_inc = virtual_drive_increments(drive, drive->plant.measured_mm);
+    unsigned word = cia402_statusword(drive->state) | CIA402_VOLTAGE_ENABLED;
+    if (drive->nmt == NMT_OPERATIONAL)
+        word |= CIA402_REMOTE;
+    if (drive->objects.process.error_code == EMCY_FOLLOWING_ERROR)
+        word |= CIA402_FOLLOWING_FAILED;
+    if (is_hot(drive, TEMPERATURE_WARNING_K))
+        word |= STATUS_WARNING;
+    if (maths_abs(drive->plant.acceleration_mm_s2) >=
+        drive->plant.acceleration_max_mm_s2 * drive->plant.damage.torque_ratio)
+        word |= STATUS_INTERNAL_LIMIT;
+    return (uint16_t)(word | virtual_drive_mode_status(drive));
 }
 
 static void clear_fault(struct virtual_drive *drive)
 {
-    drive->error_code = EMCY_NONE;
-    drive->error_register = 0;
+    drive->objects.process.error_code = EMCY_NONE;
+    drive->objects.process.error_register = 0;
+    drive->communication_error = 0;
     virtual_drive_send_emergency(drive, EMCY_NONE, 0);
+}
+
+static double deceleration_of(const struct virtual_drive *drive, int16_t option)
+{
+    bool is_profile = option == STOP_BY_PROFILE || option == QUICK_STOP_PROFILE_STAYS;
+    return is_profile ? virtual_drive_profile_deceleration_mm_s2(drive) : drive->quick_stop_mm_s2;
 }
 
 static void enter_state(struct virtual_drive *drive, enum cia402_state state)
 {
+    const struct drive_settings *s = &drive->objects.settings;
+    if (state != drive->state)
+        virtual_drive_tell(drive, DRIVE_EVENT_STATE, (uint32_t)drive->state, (uint32_t)state);
+    if (state != CIA402_ENABLED)
+        virtual_drive_interrupt_homing(drive);
     drive->state = state;
+    drive->is_leaving = false;
+    drive->is_stopped = false;
     if (state == CIA402_ENABLED)
-        hold_here(drive);
-    if (state == CIA402_QUICK_STOP || state == CIA402_FAULT_REACTION)
-        drive_plant_begin_brake(&drive->plant);
+        virtual_drive_hold(drive);
+    if (state == CIA402_QUICK_STOP)
+        drive_plant_begin_brake(&drive->plant, deceleration_of(drive, s->quick_stop_option));
+    if (state == CIA402_FAULT_REACTION)
+        drive_plant_begin_brake(&drive->plant, deceleration_of(drive, s->fault_reaction_option));
+}
+
+/* "Shutdown" and "disable operation" may slow the axis down before they take effect. */
+static bool begins_to_leave(struct virtual_drive *drive, enum cia402_state after)
+{
+    const struct drive_settings *s = &drive->objects.settings;
+    int16_t option = STOP_BY_DISABLING;
+    if (after == CIA402_READY)
+        option = s->shutdown_option;
+    if (after == CIA402_SWITCHED_ON)
+        option = s->disable_option;
+    if (drive->state != CIA402_ENABLED || option == STOP_BY_DISABLING)
+        return false;
+    if (!drive->is_leaving)
+        drive->velocity_mm_s = drive->plant.command_velocity_mm_s;
+    drive->is_leaving = true;
+    drive->leaving_to = after;
+    return true;
+}
+
+/* "Enable operation" in "quick stop active", where that stays (transition 16). */
+static enum cia402_state next_state(const struct virtual_drive *drive, uint16_t controlword)
+{
+    enum cia402_state next = cia402_next_state(drive->state, controlword, drive->controlword);
+    bool enables =
+        (controlword & (CIA402_ENABLE_OPERATION | CIA402_FAULT_RESET)) == CIA402_ENABLE_OPERATION;
+    if (drive->state == CIA402_QUICK_STOP && enables &&
+        drive->objects.settings.quick_stop_option >= QUICK_STOP_STAYS)
+        return CIA402_ENABLED;
+    return next;
+}
+
+static void take_halt(struct virtual_drive *drive, uint16_t controlword)
+{
+    bool halts = controlword & CONTROL_HALT;
+    if (halts && !drive->is_halted)
+        drive->velocity_mm_s = drive->plant.command_velocity_mm_s;
+    drive->is_halted = halts;
 }
 
 void virtual_drive_take_controlword(struct virtual_drive *drive, uint16_t controlword)
 {
     enum cia402_state before = drive->state;
-    enum cia402_state after = cia402_next_state(before, controlword, drive->controlword);
+    enum cia402_state after = next_state(drive, controlword);
+    uint16_t previous = drive->controlword;
     drive->controlword = controlword;
-    if (after == before)
+    drive->objects.process.controlword = controlword;
+    take_halt(drive, controlword);
+    if (after != before && !begins_to_leave(drive, after)) {
+        enter_state(drive, after);
+        if (before == CIA402_FAULT)
+            clear_fault(drive);
+    } else if (after == CIA402_ENABLED && drive->is_leaving) {
+        drive->is_leaving = false;
+        virtual_drive_hold(drive);
+    }
+    virtual_drive_take_mode_controlword(drive, previous, controlword);
+}
+
+bool virtual_drive_has_mode(int8_t mode)
+{
+    return mode == CIA402_MODE_NONE || mode == CIA402_MODE_PROFILE_POSITION ||
+           mode == CIA402_MODE_HOMING || mode == CIA402_MODE_INTERPOLATED_POSITION ||
+           mode == CIA402_MODE_CYCLIC_SYNC_POSITION;
+}
+
+/* A mode the drive does not have is not taken: 6061 keeps showing the one before. */
+void virtual_drive_take_mode(struct virtual_drive *drive, int8_t mode)
+{
+    struct drive_process *p = &drive->objects.process;
+    p->mode = mode;
+    if (mode == p->mode_display || !virtual_drive_has_mode(mode))
         return;
-    enter_state(drive, after);
-    if (before == CIA402_FAULT)
-        clear_fault(drive);
+    virtual_drive_interrupt_homing(drive);
+    p->mode_display = mode;
+    virtual_drive_tell(drive, DRIVE_EVENT_MODE, (uint8_t)mode, 0);
+    virtual_drive_hold(drive);
 }
 
-static void fail(struct virtual_drive *drive, uint16_t code, uint8_t error_register)
+void virtual_drive_fail(struct virtual_drive *drive, uint16_t code, uint8_t error_register)
 {
+    struct drive_process *p = &drive->objects.process;
+    if (drive->state == CIA402_FAULT_REACTION || drive->state == CIA402_FAULT)
+        return;
     enter_state(drive, CIA402_FAULT_REACTION);
-    drive->error_code = code;
-    drive->error_register = error_register;
-    virtual_drive_send_emergency(drive, code, error_register);
+    p->error_code = code;
+    p->error_register |= error_register;
+    virtual_drive_send_emergency(drive, code, p->error_register);
 }
 
-/* Objects 6065 and 60F4. */
-static void check_following(struct virtual_drive *drive)
+/* Objects 6065 and 6066. */
+static void check_following(struct virtual_drive *drive, uint32_t cycle_ns)
 {
-    double window_mm = drive->config.plant.following_error_window_mm;
+    double window_mm = drive->following_window_mm;
     double error_mm = drive_plant_following_error_mm(&drive->plant);
-    if (window_mm > 0 && maths_abs(error_mm) > window_mm)
-        fail(drive, EMCY_FOLLOWING_ERROR, EMCY_REGISTER_GENERIC | EMCY_REGISTER_PROFILE);
+    if (!(window_mm > 0 && maths_abs(error_mm) > window_mm)) {
+        drive->following_ns = 0;
+        return;
+    }
+    uint64_t timeout_ns = (uint64_t)drive->objects.settings.following_timeout_ms * MILLISECOND_NS;
+    drive->following_ns += cycle_ns;
+    if (timeout_ns == 0 || drive->following_ns > timeout_ns)
+        virtual_drive_fail(drive, EMCY_FOLLOWING_ERROR,
+                           EMCY_REGISTER_GENERIC | EMCY_REGISTER_PROFILE);
 }
 
-/* In any other mode than cyclic synchronous position the drive stands where its command is. */
-static void follow(struct virtual_drive *drive, uint32_t cycle_ns)
+static void run_enabled(struct virtual_drive *drive, uint32_t cycle_ns)
 {
-    double command_mm = drive->plant.command_mm;
-    if (drive->mode == CIA402_MODE_CYCLIC_SYNC_POSITION)
-        command_mm = drive->target_inc / drive->config.increments_per_mm;
-    drive_plant_follow(&drive->plant, command_mm, cycle_ns);
-    check_following(drive);
+    if (drive->is_leaving) {
+        double deceleration_mm_s2 = virtual_drive_profile_deceleration_mm_s2(drive);
+        if (virtual_drive_slow(drive, deceleration_mm_s2, cycle_ns))
+            enter_state(drive, drive->leaving_to);
+    } else {
+        virtual_drive_run_mode(drive, cycle_ns);
+    }
+    check_following(drive, cycle_ns);
 }
 
-/*
- * Quick stop ends in "switch on disabled" (object 605A = 2), fault reaction in "fault" (605E = 2).
- */
+static void run_quick_stop(struct virtual_drive *drive, uint32_t cycle_ns)
+{
+    int16_t option = drive->objects.settings.quick_stop_option;
+    if (option == STOP_BY_DISABLING) {
+        enter_state(drive, CIA402_SWITCH_ON_DISABLED);
+        drive_plant_coast(&drive->plant, cycle_ns);
+    } else if (drive->is_stopped) {
+        drive_plant_follow(&drive->plant, drive->plant.command_mm, cycle_ns);
+    } else if (drive_plant_brake(&drive->plant, cycle_ns)) {
+        if (option >= QUICK_STOP_STAYS)
+            drive->is_stopped = true;
+        else
+            enter_state(drive, CIA402_SWITCH_ON_DISABLED);
+    }
+}
+
+static void run_fault_reaction(struct virtual_drive *drive, uint32_t cycle_ns)
+{
+    if (drive->objects.settings.fault_reaction_option == STOP_BY_DISABLING) {
+        enter_state(drive, CIA402_FAULT);
+        drive_plant_coast(&drive->plant, cycle_ns);
+    } else if (drive_plant_brake(&drive->plant, cycle_ns)) {
+        enter_state(drive, CIA402_FAULT);
+    }
+}
+
 void virtual_drive_move(struct virtual_drive *drive, uint32_t cycle_ns)
 {
     switch (drive->state) {
     case CIA402_ENABLED:
-        follow(drive, cycle_ns);
+        run_enabled(drive, cycle_ns);
         break;
     case CIA402_QUICK_STOP:
-        if (drive_plant_brake(&drive->plant, cycle_ns))
-            drive->state = CIA402_SWITCH_ON_DISABLED;
+        run_quick_stop(drive, cycle_ns);
         break;
     case CIA402_FAULT_REACTION:
-        if (drive_plant_brake(&drive->plant, cycle_ns))
-            drive->state = CIA402_FAULT;
+        run_fault_reaction(drive, cycle_ns);
         break;
     case CIA402_NOT_READY:
     case CIA402_SWITCH_ON_DISABLED:
@@ -102,22 +240,41 @@ void virtual_drive_move(struct virtual_drive *drive, uint32_t cycle_ns)
         drive_plant_coast(&drive->plant, cycle_ns);
         break;
     }
+    if (is_hot(drive, 0))
+        virtual_drive_fail(drive, EMCY_TEMPERATURE,
+                           EMCY_REGISTER_GENERIC | EMCY_REGISTER_TEMPERATURE);
 }
 
 void virtual_drive_lose_connection(struct virtual_drive *drive)
 {
-    if (drive->state == CIA402_ENABLED)
+    int16_t option = drive->objects.settings.abort_connection_option;
+    if (drive->state != CIA402_ENABLED)
+        return;
+    if (option == CONNECTION_FAULT)
+        virtual_drive_fail(drive, EMCY_CONNECTION,
+                           EMCY_REGISTER_GENERIC | EMCY_REGISTER_COMMUNICATION);
+    else if (option == CONNECTION_DISABLE_VOLTAGE)
+        enter_state(drive, CIA402_SWITCH_ON_DISABLED);
+    else if (option == CONNECTION_QUICK_STOP)
         enter_state(drive, CIA402_QUICK_STOP);
 }
 
 void virtual_drive_reset_profile(struct virtual_drive *drive)
 {
-    drive->state = CIA402_SWITCH_ON_DISABLED;
+    struct drive_process *p = &drive->objects.process;
+    if (drive->state != CIA402_SWITCH_ON_DISABLED)
+        enter_state(drive, CIA402_SWITCH_ON_DISABLED);
     drive->controlword = 0;
-    drive->mode = CIA402_MODE_NONE;
-    drive->error_code = EMCY_NONE;
-    drive->error_register = 0;
-    hold_here(drive);
+    drive->is_halted = false;
+    p->controlword = 0;
+    p->mode = CIA402_MODE_NONE;
+    p->mode_display = CIA402_MODE_NONE;
+    p->error_code = EMCY_NONE;
+    p->error_register = 0;
+    p->position_offset = 0;
+    p->velocity_offset = 0;
+    p->torque_offset = 0;
+    virtual_drive_hold(drive);
 }
 
 enum cia402_state virtual_drive_get_state(const struct virtual_drive *drive)
@@ -127,5 +284,5 @@ enum cia402_state virtual_drive_get_state(const struct virtual_drive *drive)
 
 double virtual_drive_get_position_mm(const struct virtual_drive *drive)
 {
-    return drive->plant.position_mm;
+    return drive_plant_table_mm(&drive->plant);
 }

@@ -4,6 +4,9 @@
 #include <assert.h>
 #include <string.h>
 
+/* Longer is no cycle: such drives keep their own time. */
+#define SYNC_PERIOD_MAX_US 1000000
+
 void virtual_drives_set_default(struct virtual_drives_config *config, unsigned count)
 {
     assert(count >= 1 && count <= VIRTUAL_DRIVES_MAX);
@@ -16,6 +19,14 @@ void virtual_drives_set_default(struct virtual_drives_config *config, unsigned c
     }
 }
 
+static void start(struct virtual_drives *set, const struct virtual_drives_config *config)
+{
+    assert(config->count <= VIRTUAL_DRIVES_MAX);
+    memset(set, 0, sizeof *set);
+    set->count = config->count;
+    set->clock.enabled_ns = INJECT_ALWAYS;
+}
+
 static void on_frame(void *context, const struct can_frame *frame, uint64_t time_ns)
 {
     (void)time_ns;
@@ -26,8 +37,7 @@ void virtual_drives_init(struct virtual_drives *set, struct bus *bus,
                          const struct virtual_drives_config *config)
 {
     uint8_t node[VIRTUAL_DRIVES_MAX];
-    assert(config->count >= 1 && config->count <= VIRTUAL_DRIVES_MAX);
-    set->count = config->count;
+    start(set, config);
     for (unsigned i = 0; i < set->count; i++)
         node[i] = config->drive[i].node;
     for (unsigned i = 0; i < set->count; i++) {
@@ -40,8 +50,121 @@ void virtual_drives_init(struct virtual_drives *set, struct bus *bus,
     }
 }
 
+/* What one drive says the others of this process hear, too; a bus gives it only to other processes. */
+static bool send_own(void *context, const struct can_frame *frame)
+{
+    const struct virtual_drives_port *way = context;
+    struct virtual_drives *set = way->set;
+    if (!set->port.send(set->port.context, frame))
+        return false;
+    if (set->own_count < VIRTUAL_DRIVES_OWN_FRAMES_MAX)
+        set->own[set->own_count++] = (struct virtual_drives_own){way->index, *frame};
+    return true;
+}
+
+static bool receive_nothing(void *context, struct can_frame *frame)
+{
+    (void)context;
+    (void)frame;
+    return false;
+}
+
+void virtual_drives_open(struct virtual_drives *set, const struct can_port *port,
+                         const struct virtual_drives_config *config)
+{
+    start(set, config);
+    set->port = *port;
+    for (unsigned i = 0; i < set->count; i++) {
+        set->way[i] = (struct virtual_drives_port){set, i};
+        const struct can_port own = {send_own, receive_nothing, &set->way[i]};
+        virtual_drive_init(&set->drive[i], &config->drive[i], NULL, &own);
+    }
+}
+
+/* Drives may answer each other; the round ends because no drive answers an answer. */
+static void hand_round(struct virtual_drives *set)
+{
+    for (unsigned n = 0; n < set->own_count; n++) {
+        const struct virtual_drives_own own = set->own[n];
+        for (unsigned i = 0; i < set->count; i++)
+            if (i != own.sender)
+                virtual_drive_on_frame(&set->drive[i], &own.frame);
+    }
+    set->own_count = 0;
+}
+
+void virtual_drives_boot(struct virtual_drives *set)
+{
+    for (unsigned i = 0; i < set->count; i++)
+        virtual_drive_boot(&set->drive[i]);
+    hand_round(set);
+}
+
+void virtual_drives_observe(struct virtual_drives *set, const struct drive_observer *observer)
+{
+    for (unsigned i = 0; i < set->count; i++)
+        virtual_drive_observe(&set->drive[i], observer);
+}
+
+void virtual_drives_inject(struct virtual_drives *set, const struct inject *script)
+{
+    for (unsigned i = 0; i < set->count; i++)
+        virtual_drive_inject(&set->drive[i], script, &set->clock);
+}
+
+void virtual_drives_take(struct virtual_drives *set, const struct can_frame *frame)
+{
+    for (unsigned i = 0; i < set->count; i++)
+        virtual_drive_on_frame(&set->drive[i], frame);
+    hand_round(set);
+}
+
+static bool all_enabled(const struct virtual_drives *set)
+{
+    for (unsigned i = 0; i < set->count; i++)
+        if (virtual_drive_get_state(&set->drive[i]) != CIA402_ENABLED)
+            return false;
+    return true;
+}
+
 void virtual_drives_step(struct virtual_drives *set, uint32_t cycle_ns)
 {
     for (unsigned i = 0; i < set->count; i++)
         virtual_drive_step(&set->drive[i], cycle_ns);
+    if (set->own_count > 0)
+        hand_round(set);
+    set->clock.now_ns += cycle_ns;
+    if (set->clock.enabled_ns == INJECT_ALWAYS && all_enabled(set))
+        set->clock.enabled_ns = set->clock.now_ns;
+}
+
+const struct inject_clock *virtual_drives_get_clock(const struct virtual_drives *set)
+{
+    return &set->clock;
+}
+
+/* The period of SYNC; 0: not all drives have been told the same. */
+static uint32_t sync_period_us(const struct virtual_drives *set)
+{
+    uint32_t period_us = virtual_drive_get_sync_period_us(&set->drive[0]);
+    for (unsigned i = 1; i < set->count; i++)
+        if (virtual_drive_get_sync_period_us(&set->drive[i]) != period_us)
+            return 0;
+    return period_us <= SYNC_PERIOD_MAX_US ? period_us : 0;
+}
+
+bool virtual_drives_follow_sync(const struct virtual_drives *set)
+{
+    return sync_period_us(set) != 0;
+}
+
+bool virtual_drives_take_by_sync(struct virtual_drives *set, const struct can_frame *frame)
+{
+    uint32_t period_us = sync_period_us(set);
+    bool is_sync = virtual_drive_is_sync(&set->drive[0], frame);
+    if (is_sync && period_us != 0 && set->has_sync)
+        virtual_drives_step(set, period_us * 1000);
+    virtual_drives_take(set, frame);
+    set->has_sync = period_us != 0 && (set->has_sync || is_sync);
+    return period_us != 0;
 }

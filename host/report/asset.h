@@ -16,6 +16,7 @@ extern const struct asset asset_style;
 extern const struct asset asset_summary;
 extern const struct asset asset_charts;
 extern const struct asset asset_path;
+extern const struct asset asset_map;
 extern const struct asset asset_start;
 extern const struct asset asset_plotly;
 

@@ -12,6 +12,7 @@ struct page {
     FILE *file;
     const struct recording *recording;
     const char *summary_json;
+    const char *map_json;
 };
 
 bool page_has_plots(void)
@@ -51,10 +52,13 @@ static bool page_fill(const struct page *page, const unsigned char *name, size_t
         const struct asset *asset;
     } place[] = {
         {"STYLE", &asset_style},   {"PLOTLY", &asset_plotly}, {"SUMMARY_SCRIPT", &asset_summary},
-        {"CHARTS", &asset_charts}, {"PATH", &asset_path},     {"START", &asset_start},
+        {"CHARTS", &asset_charts}, {"PATH", &asset_path},     {"MAP", &asset_map},
+        {"START", &asset_start},
     };
     if (place_is(name, length, "SUMMARY"))
         return write_summary(page->file, page->summary_json);
+    if (place_is(name, length, "MAP_DATA"))
+        return write_summary(page->file, page->map_json != NULL ? page->map_json : "null");
     if (place_is(name, length, "DATA"))
         return data_write(page->file, page->recording);
     for (size_t i = 0; i < sizeof place / sizeof place[0]; i++) {
@@ -73,9 +77,10 @@ static const unsigned char *find_mark(const unsigned char *text, const unsigned 
     return end - text >= 2 ? text : end;
 }
 
-bool page_write(FILE *file, const struct recording *rec, const char *summary_json)
+bool page_write(FILE *file, const struct recording *rec, const char *summary_json,
+                const char *map_json)
 {
-    const struct page page = {file, rec, summary_json};
+    const struct page page = {file, rec, summary_json, map_json};
     const unsigned char *text = asset_page.bytes;
     const unsigned char *end = text + asset_page.size;
     while (text < end) {

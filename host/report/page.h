@@ -12,7 +12,8 @@
 /* Was the plotting library built in? */
 bool page_has_plots(void);
 
-/* False: the file could not be written (errno may say why) or memory is short. */
-bool page_write(FILE *file, const struct recording *rec, const char *summary_json);
+/* map_json: NULL, none. False: the file could not be written (errno may say why) or memory is short. */
+bool page_write(FILE *file, const struct recording *rec, const char *summary_json,
+                const char *map_json);
 
 #endif

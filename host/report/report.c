@@ -8,11 +8,12 @@
 
 struct report {
     struct recording recording;
+    const char *map_json; /* NULL: none */
 };
 
 struct report *report_open(const struct plan_limits *limits)
 {
-    struct report *r = malloc(sizeof *r);
+    struct report *r = calloc(1, sizeof *r);
     if (r != NULL && !recording_open(&r->recording, limits)) {
         report_close(r);
         return NULL;
@@ -33,11 +34,16 @@ void report_add(struct report *r, const struct cycle_record *record, bool rapid)
     recording_add(&r->recording, record, rapid);
 }
 
+void report_set_map(struct report *r, const char *map_json)
+{
+    r->map_json = map_json;
+}
+
 int report_write(struct report *r, FILE *file, const char *summary_json)
 {
     trail_finish(&r->recording.trail);
     errno = 0;
-    if (page_write(file, &r->recording, summary_json) && fflush(file) == 0)
+    if (page_write(file, &r->recording, summary_json, r->map_json) && fflush(file) == 0)
         return 0;
     return errno != 0 ? errno : EIO;
 }

@@ -34,6 +34,12 @@ void report_close(struct report *r);
 void report_add(struct report *r, const struct cycle_record *record, bool rapid);
 
 /*
+ * The error of the tool's point over the working volume, as JSON: {"x": [...], "y": [...], "z": [...], "before": [[ex, ey,
+ * ez], ...], "after": [...]}, positions in mm, errors in um, x changing fastest, then y. It must outlive report_write.
+ */
+void report_set_map(struct report *r, const char *map_json);
+
+/*
  * Writes the page, to be called once, at the end. summary_json: the run's summary, zero-terminated, as `takt run --json`
  * writes it. 0 or an errno; the file is flushed and stays the caller's.
  */

@@ -1,5 +1,6 @@
 #include "takt/command.h"
 
+#include "inject/inject.h"
 #include "takt/interrupt.h"
 #include "takt/message.h"
 #include "takt/suggest.h"
@@ -9,7 +10,14 @@
 #include <string.h>
 
 static const struct command *const commands[] = {
-    &command_run, &command_plan, &command_check, &command_canon, &command_trace, &command_machine,
+    &command_run,       &command_plan,
+    &command_check,     &command_canon,
+    &command_trace,     &command_machine,
+    &command_serve,     &command_panel,
+    &command_bore,      &command_drives,
+    &command_calibrate, &command_correct,
+    &command_replay,    &command_cycle_frequency,
+    &command_precision,
 };
 
 #define COMMANDS (sizeof commands / sizeof commands[0])
@@ -18,10 +26,11 @@ static void print_usage(FILE *stream)
 {
     (void)fputs("usage: takt COMMAND [arguments]\n\ncommands:\n", stream);
     for (size_t i = 0; i < COMMANDS; i++)
-        (void)fprintf(stream, "  %-10s %s\n", commands[i]->name, commands[i]->summary);
-    (void)fputs("  help       explain a command\n"
+        (void)fprintf(stream, "  %-15s %s\n", commands[i]->name, commands[i]->summary);
+    (void)fputs("  help            explain a command\n"
                 "\n"
-                "takt help COMMAND shows options and examples, takt --version the version.\n",
+                "takt help COMMAND shows options and examples, takt help inject how faults are\n"
+                "scripted, takt --version the version.\n",
                 stream);
 }
 
@@ -55,6 +64,10 @@ static enum command_status help(int argc, char **argv)
 
     if (argc < 3) {
         print_usage(stdout);
+        return STATUS_DONE;
+    }
+    if (strcmp(argv[2], "inject") == 0) {
+        inject_write_help(stdout);
         return STATUS_DONE;
     }
     command = find_command(argv[2]);

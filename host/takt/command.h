@@ -33,6 +33,15 @@ extern const struct command command_check;
 extern const struct command command_canon;
 extern const struct command command_trace;
 extern const struct command command_machine;
+extern const struct command command_cycle_frequency;
+extern const struct command command_precision;
+extern const struct command command_calibrate;
+extern const struct command command_correct;
+extern const struct command command_serve;
+extern const struct command command_panel;
+extern const struct command command_drives;
+extern const struct command command_replay;
+extern const struct command command_bore;
 
 /* Finds and runs the sub-command of a command line. Returns the exit status. */
 enum command_status command_main(int argc, char **argv);

@@ -36,7 +36,6 @@ static enum command_status command_canon_execute(const struct options *options)
     struct session_totals totals;
     enum command_status status = session_open(&session, options);
 
-    session.prints_only = true;
     if (status == STATUS_DONE)
         status = session_check(&session, 1, &totals);
     if (status == STATUS_DONE)

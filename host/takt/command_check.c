@@ -7,22 +7,16 @@
 /* Errors that are printed before the rest is given up: after so many the file is hardly a part program. */
 #define CHECK_ERRORS_MAX 100
 
-static void ignore_segment(void *context, const struct segment *segment)
-{
-    (void)context;
-    (void)segment;
-}
-
-static enum command_status plan(const struct session *session, const struct session_totals *found)
+static enum command_status measure(const struct session *session,
+                                   const struct session_totals *found)
 {
     struct planner_totals totals;
-    enum command_status status = planner_walk(session, ignore_segment, NULL, &totals);
+    enum command_status status = planner_measure(session, &totals);
 
     if (status == STATUS_DONE && !session->options->quiet)
-        (void)printf("%s: no errors, %u warning%s; %u moves, %.3f mm, %.3f s\n",
-                     session->program.name, found->warnings, found->warnings == 1 ? "" : "s",
-                     (unsigned)totals.motions, totals.length_mm,
-                     (double)totals.cycles * 1e-6 * (double)session->setup.machine.cycle_us);
+        (void)printf("%s: no errors, %u warning%s; %u moves, %.3f mm\n", session->program.name,
+                     found->warnings, found->warnings == 1 ? "" : "s", (unsigned)totals.motions,
+                     totals.length_mm);
     return status;
 }
 
@@ -40,7 +34,7 @@ static enum command_status command_check_execute(const struct options *options)
                           totals.errors == CHECK_ERRORS_MAX ? "; the rest was not read" : "");
     }
     if (status == STATUS_DONE)
-        status = plan(&session, &totals);
+        status = measure(&session, &totals);
     session_close(&session);
     return status;
 }
@@ -57,7 +51,8 @@ const struct command command_check = {
     .summary = "find all errors of a part program without moving anything",
     .help = "Reads the whole program and goes on after errors; a line with an error has no effect "
             "on later ones.\n"
-            "A program without errors is planned too. Exit status 2 when there is an error.\n"
+            "Of a program without errors the path is measured; its time is shown by takt plan.\n"
+            "Exit status 2 when there is an error.\n"
             "\n"
             "Examples:\n"
             "  takt check part.ngc\n"

@@ -42,19 +42,19 @@ static const char *end_name(enum joint_kind end)
 }
 
 /* mm/s to mm/min; of a motion of rotary axes alone rad/s to deg/min. */
-static double shown_feed(const struct segment *segment, double feed_mm_s)
+static double shown_feed(const struct block *block, double feed_mm_s)
 {
-    return feed_mm_s * 60.0 * (curve_is_rotary(&segment->curve) ? 180.0 / MATHS_PI : 1.0);
+    return feed_mm_s * 60.0 * (block->rotary ? 180.0 / MATHS_PI : 1.0);
 }
 
-static double shown_length(const struct segment *segment)
+static double shown_length(const struct block *block)
 {
-    return segment->curve.length_mm * (curve_is_rotary(&segment->curve) ? 180.0 / MATHS_PI : 1.0);
+    return block->curve.length_mm * (block->rotary ? 180.0 / MATHS_PI : 1.0);
 }
 
-static const char *length_unit(const struct segment *segment)
+static const char *length_unit(const struct block *block)
 {
-    return curve_is_rotary(&segment->curve) ? "deg" : "mm";
+    return block->rotary ? "deg" : "mm";
 }
 
 static void table_head(FILE *stream)
@@ -63,60 +63,59 @@ static void table_head(FILE *stream)
                   "kind", "length", "F start", "F cruise", "F end", "end", "governor", "time [s]");
 }
 
-static void table_row(const struct plan_print *print, const struct segment *segment)
+static void table_row(const struct plan_print *print, const struct planned_block *planned)
 {
-    const struct profile *profile = &segment->profile;
+    const struct block *block = planned->block;
 
-    if (!move_is_motion(&segment->move)) {
-        (void)fprintf(print->table, "%7s %7u  %-8s %70s %10.6f\n", "-",
-                      (unsigned)segment->move.line, kind_name(segment->move.kind), "",
-                      (double)segment->cycles * print->cycle_s);
+    if (!move_is_motion(&block->move)) {
+        (void)fprintf(print->table, "%7s %7u  %-8s %70s %10.6f\n", "-", (unsigned)block->move.line,
+                      kind_name(block->move.kind), "", planned->time_s);
         return;
     }
     (void)fprintf(
         print->table, "%7u %7u  %-8s %10.6f %-3s %10.3f %10.3f %10.3f  %-8s %-13s %10.6f\n",
-        (unsigned)segment->block, (unsigned)segment->move.line, kind_name(segment->move.kind),
-        shown_length(segment), length_unit(segment), shown_feed(segment, profile->feed_start_mm_s),
-        shown_feed(segment, profile->feed_cruise_mm_s), shown_feed(segment, profile->feed_end_mm_s),
-        end_name(segment->end), governor_name(segment->governor), profile->duration_s);
+        (unsigned)block->number, (unsigned)block->move.line, kind_name(block->move.kind),
+        shown_length(block), length_unit(block), shown_feed(block, planned->feed_start_mm_s),
+        shown_feed(block, planned->feed_cruise_mm_s), shown_feed(block, planned->feed_end_mm_s),
+        end_name(block->end), governor_name(planned->governor), planned->time_s);
 }
 
-static void json_feeds(FILE *stream, const struct segment *segment)
+static void json_feeds(FILE *stream, const struct planned_block *planned)
 {
-    const struct profile *profile = &segment->profile;
-    const char *unit = length_unit(segment);
+    const struct block *block = planned->block;
+    const char *unit = length_unit(block);
 
     (void)fprintf(
         stream,
         ", \"length_%s\": %.17g, \"feed_start_%s_min\": %.17g, \"feed_cruise_%s_min\": %.17g, "
         "\"feed_end_%s_min\": %.17g, \"end\": \"%s\", \"governor\": \"%s\"",
-        unit, shown_length(segment), unit, shown_feed(segment, profile->feed_start_mm_s), unit,
-        shown_feed(segment, profile->feed_cruise_mm_s), unit,
-        shown_feed(segment, profile->feed_end_mm_s), end_name(segment->end),
-        governor_name(segment->governor));
+        unit, shown_length(block), unit, shown_feed(block, planned->feed_start_mm_s), unit,
+        shown_feed(block, planned->feed_cruise_mm_s), unit,
+        shown_feed(block, planned->feed_end_mm_s), end_name(block->end),
+        governor_name(planned->governor));
 }
 
-static void json_row(const struct plan_print *print, const struct segment *segment)
+static void json_row(const struct plan_print *print, const struct planned_block *planned)
 {
-    bool motion = move_is_motion(&segment->move);
+    const struct block *block = planned->block;
+    bool motion = move_is_motion(&block->move);
 
     (void)fprintf(print->json, "%s\n    {\"block\": %u, \"line\": %u, \"kind\": \"%s\"",
-                  print->any ? "," : "", (unsigned)segment->block, (unsigned)segment->move.line,
-                  kind_name(segment->move.kind));
+                  print->any ? "," : "", (unsigned)block->number, (unsigned)block->move.line,
+                  kind_name(block->move.kind));
     if (motion)
-        json_feeds(print->json, segment);
-    (void)fprintf(print->json, ", \"time_s\": %.17g}",
-                  motion ? segment->profile.duration_s : (double)segment->cycles * print->cycle_s);
+        json_feeds(print->json, planned);
+    (void)fprintf(print->json, ", \"time_s\": %.17g}", planned->time_s);
 }
 
-static void print_segment(void *context, const struct segment *segment)
+static void print_block(void *context, const struct planned_block *planned)
 {
     struct plan_print *print = context;
 
     if (print->table != NULL)
-        table_row(print, segment);
+        table_row(print, planned);
     if (print->json != NULL)
-        json_row(print, segment);
+        json_row(print, planned);
     print->any = true;
 }
 
@@ -163,7 +162,7 @@ static enum command_status plan_into(const struct session *session, struct outpu
     enum command_status status;
 
     print_heads(&print, session);
-    status = planner_walk(session, print_segment, &print, &totals);
+    status = planner_walk(session, print_block, &print, &totals);
     if (status != STATUS_DONE)
         return status;
     print_totals(&print, &totals);
@@ -205,7 +204,8 @@ const struct command command_plan = {
             "start, its highest\n"
             "feed and the feed at its end in mm/min, how it ends (passed at full feed, reduced for "
             "the joint, stop),\n"
-            "the limit that governs its feed, and its time.\n"
+            "the limit that governs its feed, and its time. An involute has a row for each piece "
+            "of it.\n"
             "\n"
             "Examples:\n"
             "  takt plan part.ngc\n"

@@ -1,4 +1,5 @@
 #include "takt/command.h"
+#include "takt/error_map.h"
 #include "takt/interrupt.h"
 #include "takt/judge.h"
 #include "takt/message.h"
@@ -19,6 +20,7 @@ struct run {
     struct session_totals totals;
     struct session_reading reading; /* the judge's */
     struct judge judge;
+    uint32_t answers; /* of the run that the judge has been told */
     struct simulation *simulation;
     struct run_outputs outputs;
     struct progress progress;
@@ -45,23 +47,36 @@ static void set_until(struct run *run)
         run->session.options->until_s > 0 && cycles < 1e18 ? (uint64_t)(cycles + 0.5) : UINT64_MAX;
 }
 
-/* One cycle of the world and of everybody who watches it. */
-static void run_cycle(struct run *run)
+/* At most one in a cycle. */
+static void tell_answers(struct run *run)
+{
+    struct program_answer answer;
+    uint32_t answers = controller_get_answers(&run->simulation->controller, &answer);
+
+    if (answers != run->answers)
+        judge_answer(&run->judge, &answer);
+    run->answers = answers;
+}
+
+/* One cycle of the world and of everybody who watches it. False: interrupted, or the bus is gone. */
+static bool run_cycle(struct run *run)
 {
     const struct cycle_record *record;
-    const struct segment *segment;
+    const struct block *block;
+    bool good = simulation_step(run->simulation);
 
-    simulation_step(run->simulation);
+    tell_answers(run);
     record = controller_get_record(&run->simulation->controller);
-    segment = controller_get_segment(&run->simulation->controller);
+    block = controller_get_block(&run->simulation->controller);
     if (record != NULL)
-        judge_add(&run->judge, record, segment);
+        judge_add(&run->judge, record, block);
     if (run->outputs.each_cycle) {
         uint64_t start_ns = stopwatch_now_ns();
 
-        run_outputs_add(&run->outputs, record, segment);
+        run_outputs_add(&run->outputs, record, block);
         run->wall_ns -= stopwatch_now_ns() - start_ns; /* writing is not the run's time */
     }
+    return good;
 }
 
 static void show_progress(struct run *run)
@@ -81,11 +96,11 @@ static bool run_loop(struct run *run)
     bool good = true;
 
     while (controller_get_state(controller) < CONTROLLER_COMPLETED && good) {
-        run_cycle(run);
+        good = run_cycle(run);
         if (run->judge.figures.cycles >= run->until_cycles)
             break;
         if (run->simulation->cycles % RUN_LOOK_CYCLES == 0) {
-            good = !interrupt_asked() && !run_outputs_failed(&run->outputs);
+            good = good && !interrupt_asked() && !run_outputs_failed(&run->outputs);
             show_progress(run);
         }
     }
@@ -133,6 +148,8 @@ static enum command_status finish(struct run *run)
     if (source.outcome != OUTCOME_COMPLETED)
         run_outputs_drop(&run->outputs,
                          RUN_PARAMETERS); /* the program is read ahead of what has been done */
+    if (run->session.options->report != NULL)
+        run_outputs_set_map(&run->outputs, error_map_json(&run->session, run->simulation));
     if (!run_outputs_commit(&run->outputs, &summary, &run->session.parameters))
         return STATUS_ENVIRONMENT;
     if (source.outcome == OUTCOME_FAULTED)
@@ -146,11 +163,10 @@ static enum command_status finish(struct run *run)
 
 static enum command_status simulate(struct run *run)
 {
-    run->simulation = simulation_open(&run->session);
-    if (run->simulation == NULL) {
-        message_command_error("out of memory");
-        return STATUS_ENVIRONMENT;
-    }
+    enum command_status status = simulation_open(&run->session, &run->simulation);
+
+    if (status != STATUS_DONE)
+        return status;
     if (!run_outputs_open(&run->outputs, &run->session, run->simulation))
         return STATUS_ENVIRONMENT;
     prepare_judge(run);
@@ -160,14 +176,25 @@ static enum command_status simulate(struct run *run)
         return finish(run);
     if (interrupt_asked())
         return STATUS_INTERRUPTED;
-    message_command_error("the output files cannot be written");
+    if (field_get_problem(&run->simulation->field) != NULL)
+        message_command_error("%s", field_get_problem(&run->simulation->field));
+    else
+        message_command_error("the output files cannot be written");
     return STATUS_ENVIRONMENT;
 }
 
 static enum command_status execute(struct run *run, const struct options *options)
 {
-    enum command_status status = session_open(&run->session, options);
+    struct field_options field = {
+        .bus = options->bus,
+        .drives = options->drives,
+        .is_paced = options->realtime,
+        .has_script = options->inject != NULL,
+    };
+    enum command_status status =
+        field_check_options(&field) ? session_open(&run->session, options) : STATUS_INPUT;
 
+    run->session.runs = true;
     if (status == STATUS_DONE && !run_outputs_plan(&run->outputs, &run->session))
         status = STATUS_INPUT;
     if (status == STATUS_DONE)
@@ -196,12 +223,29 @@ static enum command_status command_run_execute(const struct options *options)
 
 static const struct option_row rows[] = {
     OPTIONS_PROGRAM,
+    OPTIONS_DRIVEN,
     {"save-parameters", OPTION_FLAG, offsetof(struct options, save_parameters), NULL,
      "write the parameters back at the end"},
     {"until", OPTION_NUMBER, offsetof(struct options, until_s), "SECONDS",
      "stop at this time of the program"},
+    {"bus", OPTION_TEXT, offsetof(struct options, bus), "BUS",
+     "embedded (default), socketcan:IF, slcan:PATH, socketcand:HOST:PORT"},
+    {"drives", OPTION_TEXT, offsetof(struct options, drives), "WHERE",
+     "internal on the embedded bus, external on any other"},
+    {"realtime", OPTION_FLAG, offsetof(struct options, realtime), NULL,
+     "one cycle each cycle time of the clock, not as fast as it goes"},
     {"trace", OPTION_TEXT, offsetof(struct options, trace), "FILE.csv",
      "one row per control cycle"},
+    {"inject", OPTION_TEXT, offsetof(struct options, inject), "FILE",
+     "scripted faults of bus and drives; takt help inject explains them"},
+    {"probe", OPTION_TEXT, offsetof(struct options, probe), "FILE",
+     "what the probe touches, and inputs over time: box, ball, input; see host/probe"},
+    {"override", OPTION_TEXT, offsetof(struct options, override), "FILE",
+     "feed override over time: lines of seconds and per cent, 0 ... 120"},
+    {"rapid-override", OPTION_TEXT, offsetof(struct options, rapid_override), "FILE",
+     "the same of rapids, 0 ... 100"},
+    {"override-method", OPTION_TEXT, offsetof(struct options, override_method), "METHOD",
+     "adaptive (default) or proportional: see firmware/motion"},
     {"bus-log", OPTION_TEXT, offsetof(struct options, bus_log), "FILE",
      "every CAN frame, as candump -L writes it"},
     {"report", OPTION_TEXT, offsetof(struct options, report), "FILE.html",

@@ -42,21 +42,39 @@ static bool next_motion(struct judge *j)
     struct diagnostic diagnostic;
     struct point start = j->block.end;
 
+    enum program_result result = PROGRAM_END;
+
     while (!j->program_ended) {
-        j->program_ended = offset_next(&j->offset, &j->program, &move, &diagnostic) != PROGRAM_MOVE;
-        if (!j->program_ended && move_is_motion(&move))
+        result = offset_next(&j->offset, &j->program, &move, &diagnostic);
+        j->program_ended = result != PROGRAM_MOVE && result != PROGRAM_WAIT;
+        if (result != PROGRAM_MOVE || move_is_motion(&move))
             break;
     }
-    if (j->program_ended)
+    if (result != PROGRAM_MOVE)
         return false;
-    j->block = (struct judge_block){.number = j->block.number + 1, .end = move.end, .landed = true};
+    j->block = (struct judge_block){.number = j->block.number + 1,
+                                    .end = move.end,
+                                    .done = 1,
+                                    .landed = true,
+                                    .probing = move.kind == MOVE_PROBE};
     j->block.has_length = move_curve(&move, &start, &j->block.curve);
     return true;
 }
 
 static double length_of(const struct judge_block *block)
 {
-    return block->has_length && !curve_is_rotary(&block->curve) ? block->curve.length_mm : 0;
+    return block->has_length && !curve_is_rotary(&block->curve)
+               ? block->done * block->curve.length_mm
+               : 0;
+}
+
+/* A block whose end no cycle has seen: its evaluated path must end where the program says. */
+static double missed_end(const struct judge_block *block)
+{
+    struct point end;
+
+    curve_point(&block->curve, block->curve.length_mm, &end);
+    return judge_distance(&end, &block->end);
 }
 
 /* The block is left: has its end been hit? */
@@ -65,36 +83,43 @@ static void leave_block(struct judge *j)
     const struct judge_block *block = &j->block;
 
     j->figures.path_length_mm += length_of(block);
-    if (!block->landed)
+    if (block->landed)
+        return;
+    if (!block->ending && block->has_length)
+        raise_to(&j->figures.landing_error_mm, missed_end(block));
+    else
         raise_to(&j->figures.landing_error_mm,
                  block->passed ? block->passed_mm : judge_distance(&j->cmd, &block->end));
 }
 
-/* A block in which no cycle ended: its evaluated path must end where the program says. */
+/* A block in which no cycle ended. */
 static void pass_block(struct judge *j)
 {
-    struct point end;
-
     if (!j->block.has_length)
         return;
-    curve_point(&j->block.curve, j->block.curve.length_mm, &end);
-    raise_to(&j->figures.landing_error_mm, judge_distance(&end, &j->block.end));
+    raise_to(&j->figures.landing_error_mm, missed_end(&j->block));
     j->figures.path_length_mm += length_of(&j->block);
 }
 
-/* What the executed path comes to at the end of its profile. */
-static double evaluate_end(const struct segment *segment, const struct point *end)
+/* What the executed path comes to at the end of its block. */
+static double evaluate_end(const struct block *block, const struct point *end)
 {
-    struct profile_state state;
     struct point p;
 
-    profile_evaluate(&segment->profile, segment->profile.duration_s, &state);
-    curve_point(&segment->curve, state.s_mm, &p);
+    curve_point(&block->curve, block->length_mm, &p);
     return judge_distance(&p, end);
 }
 
-static void enter_block(struct judge *j, const struct cycle_record *record,
-                        const struct segment *segment)
+/* The block that leads to the block's end: of several pieces the last. */
+static void begin_ending(struct judge *j, const struct block *block)
+{
+    j->block.ending = true;
+    j->block.passed = block->end == JOINT_PASSED;
+    if (j->block.passed)
+        j->block.passed_mm = evaluate_end(block, &j->block.end);
+}
+
+static void enter_block(struct judge *j, const struct cycle_record *record)
 {
     leave_block(j);
     j->joint_near = j->block.landed ? 1 : JUDGE_JOINT_CYCLES;
@@ -109,9 +134,6 @@ static void enter_block(struct judge *j, const struct cycle_record *record,
     }
     j->figures.blocks = j->block.number;
     j->block.landed = false;
-    j->block.passed = segment->end == JOINT_PASSED;
-    if (j->block.passed)
-        j->block.passed_mm = evaluate_end(segment, &j->block.end);
 }
 
 static void judge_path(struct judge *j, const struct cycle_record *record)
@@ -168,10 +190,12 @@ static void judge_axes(struct judge *j, const struct cycle_record *record)
     }
 }
 
-void judge_add(struct judge *j, const struct cycle_record *record, const struct segment *segment)
+void judge_add(struct judge *j, const struct cycle_record *record, const struct block *block)
 {
     if (record->block != j->block.number && !j->strayed)
-        enter_block(j, record, segment);
+        enter_block(j, record);
+    if (!j->block.ending && !block->continues && !j->block.landed)
+        begin_ending(j, block);
     j->sent[j->figures.cycles % JUDGE_HISTORY] = record->set;
     judge_path(j, record);
     judge_feed(j, record);
@@ -179,6 +203,38 @@ void judge_add(struct judge *j, const struct cycle_record *record, const struct 
     raise_to(&j->figures.correction_mm, judge_distance(&record->cmd, &record->set));
     j->cmd = record->cmd;
     j->figures.cycles++;
+}
+
+/* A probing move may end early: where the axes have come to rest. That this is on its way has been seen by judge_path. */
+static void end_probing(struct judge *j, const struct point *rest_at)
+{
+    raise_to(&j->figures.landing_error_mm, judge_distance(&j->cmd, rest_at));
+    j->block.end = *rest_at;
+    j->block.done = j->block.fraction;
+    j->block.landed = true;
+    j->block.probing = false;
+}
+
+/* Nothing of it is left to be counted. */
+static void close_block(struct judge_block *block)
+{
+    block->done = 0;
+    block->landed = true;
+}
+
+void judge_answer(struct judge *j, const struct program_answer *answer)
+{
+    if (j->strayed)
+        return;
+    if (j->block.probing && j->block.has_length)
+        end_probing(j, &answer->rest_at);
+    leave_block(j);
+    close_block(&j->block);
+    while (next_motion(j)) {
+        pass_block(j);
+        close_block(&j->block);
+    }
+    offset_answer(&j->offset, &j->program, answer);
 }
 
 void judge_finish(struct judge *j, bool completed)

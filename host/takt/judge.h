@@ -17,7 +17,7 @@
 #include "drive/drives.h"
 #include "motion/cycle_record.h"
 #include "offset/offset.h"
-#include "plan/segment.h"
+#include "plan/block.h"
 #include "program/program.h"
 
 #include <stdbool.h>
@@ -55,8 +55,11 @@ struct judge_block {
     struct curve curve; /* when it has length */
     struct point end;
     double fraction;  /* of the block, where the last setpoint was */
+    double done;      /* share of it that is executed: 1, but of a probing move that ended early */
+    bool probing;     /* it may end early: judge_answer */
     bool landed;      /* a cycle has ended it exactly */
-    bool passed;      /* it is to be left without a cycle at its end */
+    bool ending;      /* its last piece is being executed */
+    bool passed;      /* then: it is to be left without a cycle at its end */
     double passed_mm; /* then: distance of the end of its evaluated path from its end */
 };
 
@@ -94,7 +97,13 @@ void judge_init(struct judge *j, const struct machine *machine,
                 const struct program_config *program, const struct source *source);
 
 /* The next cycle. segment: what it executed. */
-void judge_add(struct judge *j, const struct cycle_record *record, const struct segment *segment);
+void judge_add(struct judge *j, const struct cycle_record *record, const struct block *block);
+
+/*
+ * What the program of the run has been told (G38, M66), before the first cycle behind that. Everything read until then
+ * has been executed, but for the rest of a probing move.
+ */
+void judge_answer(struct judge *j, const struct program_answer *answer);
 
 /* After the last cycle. completed: the program claims to have been executed to its end. */
 void judge_finish(struct judge *j, bool completed);

@@ -1,6 +1,7 @@
 #include "takt/judge_curve.h"
 
 #include "base/maths.h"
+#include "geometry/involute.h"
 
 double judge_distance(const struct point *a, const struct point *b)
 {
@@ -64,9 +65,45 @@ static double arc_distance(const struct curve *c, const struct point *p, double 
     return maths_sqrt(sum);
 }
 
+/*
+ * The normals of an involute touch its base circle. So seen from p, unrolled by phi = sqrt((d / r)^2 - 1) with the string
+ * at the angle t = angle of p + h atan phi, the nearest point has the same t, and lies r |phi - h (t - heading)| away.
+ */
+static double involute_nearest(const struct curve *c, double x, double y)
+{
+    const struct curve_involute *i = &c->involute;
+    double ratio = maths_sqrt(x * x + y * y) / i->radius_mm;
+    double phi = ratio > 1 ? maths_sqrt((ratio - 1) * (ratio + 1)) : 0;
+    double string = maths_atan2(y, x) + i->hand * maths_atan2(phi, 1);
+    double on = i->hand * (string - i->heading_rad);
+
+    on += MATHS_TWO_PI * maths_round((phi - on) / MATHS_TWO_PI);
+    return maths_clamp(involute_place(c, maths_max(on, 0)), 0, c->length_mm);
+}
+
+static double involute_distance(const struct curve *c, const struct point *p, double *fraction)
+{
+    const struct curve_involute *i = &c->involute;
+    double s =
+        involute_nearest(c, p->at[i->first] - i->centre_mm[0], p->at[i->second] - i->centre_mm[1]);
+    struct point on;
+
+    *fraction = s / c->length_mm;
+    curve_point(c, s, &on);
+    return judge_distance(p, &on);
+}
+
 double judge_curve_distance(const struct curve *c, const struct point *p, double *fraction)
 {
-    return c->kind == CURVE_ARC ? arc_distance(c, p, fraction) : line_distance(c, p, fraction);
+    switch (c->kind) {
+    case CURVE_LINE:
+        return line_distance(c, p, fraction);
+    case CURVE_ARC:
+        return arc_distance(c, p, fraction);
+    case CURVE_INVOLUTE:
+        return involute_distance(c, p, fraction);
+    }
+    return MATHS_INFINITY;
 }
 
 /*
@@ -74,19 +111,61 @@ double judge_curve_distance(const struct curve *c, const struct point *p, double
  * h = (l^2 / 4) / (R + sqrt(R^2 - l^2 / 4)). Where the radius changes, R is its mean over the step: the chord's middle
  * then lies h off the curve, up to terms of third order.
  */
+static double arc_chord_error(const struct curve_arc *arc, const struct point *from,
+                              const struct point *to)
+{
+    double x0 = from->at[arc->first] - arc->centre_mm[0];
+    double y0 = from->at[arc->second] - arc->centre_mm[1];
+    double x1 = to->at[arc->first] - arc->centre_mm[0];
+    double y1 = to->at[arc->second] - arc->centre_mm[1];
+    double quarter = ((x1 - x0) * (x1 - x0) + (y1 - y0) * (y1 - y0)) / 4;
+    double radius = (maths_sqrt(x0 * x0 + y0 * y0) + maths_sqrt(x1 * x1 + y1 * y1)) / 2;
+
+    return quarter / (radius + maths_sqrt(maths_max(radius * radius - quarter, 0)));
+}
+
+/*
+ * An involute is farthest from a chord where it is parallel to it: at the headings of the chord and half a turn on. Of a
+ * step of more than a turn the last turn counts, the widest.
+ */
+static double involute_chord_error(const struct curve *c, const struct point *from,
+                                   const struct point *to)
+{
+    const struct curve_involute *i = &c->involute;
+    double off[2] = {to->at[i->first] - from->at[i->first],
+                     to->at[i->second] - from->at[i->second]};
+    double length = maths_sqrt(off[0] * off[0] + off[1] * off[1]);
+    double fraction = 0, begin, end, largest = 0;
+
+    (void)involute_distance(c, from, &fraction);
+    begin = involute_unrolled(c, fraction * c->length_mm);
+    (void)involute_distance(c, to, &fraction);
+    end = involute_unrolled(c, fraction * c->length_mm);
+    for (unsigned half = 0; half < 2; half++) {
+        double phi = i->hand * (maths_atan2(off[1], off[0]) - i->heading_rad) + half * MATHS_PI;
+        struct point p;
+
+        phi += MATHS_TWO_PI * maths_floor((maths_max(begin, end) - phi) / MATHS_TWO_PI);
+        if (length == 0 || phi <= maths_min(begin, end))
+            continue;
+        curve_point(c, involute_place(c, phi), &p);
+        largest = maths_max(largest, maths_abs((p.at[i->first] - from->at[i->first]) * off[1] -
+                                               (p.at[i->second] - from->at[i->second]) * off[0]) /
+                                         length);
+    }
+    return largest;
+}
+
 double judge_curve_chord_error(const struct curve *c, const struct point *from,
                                const struct point *to)
 {
-    const struct curve_arc *arc = &c->arc;
-    double x0, y0, x1, y1, quarter, radius;
-
-    if (c->kind != CURVE_ARC)
+    switch (c->kind) {
+    case CURVE_LINE:
         return 0;
-    x0 = from->at[arc->first] - arc->centre_mm[0];
-    y0 = from->at[arc->second] - arc->centre_mm[1];
-    x1 = to->at[arc->first] - arc->centre_mm[0];
-    y1 = to->at[arc->second] - arc->centre_mm[1];
-    quarter = ((x1 - x0) * (x1 - x0) + (y1 - y0) * (y1 - y0)) / 4;
-    radius = (maths_sqrt(x0 * x0 + y0 * y0) + maths_sqrt(x1 * x1 + y1 * y1)) / 2;
-    return quarter / (radius + maths_sqrt(maths_max(radius * radius - quarter, 0)));
+    case CURVE_ARC:
+        return arc_chord_error(&c->arc, from, to);
+    case CURVE_INVOLUTE:
+        return involute_chord_error(c, from, to);
+    }
+    return MATHS_INFINITY;
 }

@@ -178,6 +178,15 @@ static bool resolve_path(char *path, const char *machine_file)
     return true;
 }
 
+static bool resolve_tables(struct machine_setup *setup, const char *machine_file)
+{
+    bool fits = resolve_path(setup->volume_table, machine_file);
+
+    for (unsigned i = 0; i < AXIS_COUNT; i++)
+        fits = resolve_path(setup->axis_table[i], machine_file) && fits;
+    return fits;
+}
+
 bool machine_file_read(struct machine_setup *setup, const char *path)
 {
     struct text text;
@@ -193,6 +202,10 @@ bool machine_file_read(struct machine_setup *setup, const char *path)
     }
     if (!resolve_path(setup->tool_table, path) || !resolve_path(setup->parameter_file, path)) {
         message_error(text.name, 0, 0, "tool_table or parameter_file: the path is too long");
+        reader.errors++;
+    }
+    if (!resolve_tables(setup, path)) {
+        message_error(text.name, 0, 0, "[correction]: the path of a table is too long");
         reader.errors++;
     }
     text_free(&text);
@@ -244,6 +257,59 @@ bool machine_file_assign(struct machine_setup *setup, const char *assignment)
     return false;
 }
 
+/* An option that is short for --set of one key. False after a message in terms of the option. */
+static bool set_by_option(struct machine_setup *setup, struct machine_place place, const char *key,
+                          const char *option, const char *value, const char *given)
+{
+    struct machine_problem wrong;
+    const struct machine_key *found = machine_key_find(setup, place, key, &wrong);
+
+    if (found != NULL && machine_key_set(setup, place, found, value, &wrong))
+        return true;
+    message_command_error("--%s %s: %s", option, given, wrong.text);
+    return false;
+}
+
+/* "step" is for all axes, "X=step" for one. */
+static bool set_drive_type(struct machine_setup *setup, const char *given)
+{
+    const char *equals = strchr(given, '=');
+    const char *value = equals != NULL ? equals + 1 : given;
+    const char *letter = equals == given + 1 ? strchr(AXIS_LETTERS, given[0]) : NULL;
+
+    if (equals != NULL && (letter == NULL || !setup->machine.axis[letter - AXIS_LETTERS].present)) {
+        message_command_error("--drive-type %s: the machine has no axis '%.*s'", given,
+                              (int)(equals - given), given);
+        return false;
+    }
+    for (unsigned i = 0; i < AXIS_COUNT; i++) {
+        const struct machine_place place = {SECTION_AXIS, i};
+
+        if (letter != NULL && letter != &AXIS_LETTERS[i])
+            continue;
+        if (!set_by_option(setup, place, "drive_type", "drive-type", value, given))
+            return false;
+    }
+    return true;
+}
+
+static bool set_driven(struct machine_setup *setup, const struct options *options)
+{
+    const struct machine_place machine = {SECTION_MACHINE, 0};
+
+    for (unsigned i = 0; i < options->drive_type.count; i++) {
+        if (!set_drive_type(setup, options->drive_type.item[i]))
+            return false;
+    }
+    if (options->override_method != NULL &&
+        !set_by_option(setup, machine, "override_method", "override-method",
+                       options->override_method, options->override_method))
+        return false;
+    return options->interpolator == NULL ||
+           set_by_option(setup, machine, "interpolator", "interpolator", options->interpolator,
+                         options->interpolator);
+}
+
 bool machine_file_load(struct machine_setup *setup, const struct options *options)
 {
     const char *wrong;
@@ -255,6 +321,8 @@ bool machine_file_load(struct machine_setup *setup, const struct options *option
         if (!machine_file_assign(setup, options->set.item[i]))
             return false;
     }
+    if (!set_driven(setup, options))
+        return false;
     wrong = machine_setup_check(setup);
     if (wrong == NULL)
         return true;
@@ -287,6 +355,8 @@ static void write_places_of_axes(FILE *file, const struct machine_setup *setup,
             continue;
         if (section == SECTION_AXIS)
             (void)fprintf(file, "\n[axis %c]\n", AXIS_LETTERS[i]);
+        else if (section == SECTION_STEPPER)
+            (void)fprintf(file, "\n[stepper %c]\n", AXIS_LETTERS[i]);
         else
             (void)fprintf(file, "\n[drive %u]\n", (unsigned)setup->machine.axis[i].drive_node);
         write_section(file, setup, (struct machine_place){section, i});
@@ -295,7 +365,9 @@ static void write_places_of_axes(FILE *file, const struct machine_setup *setup,
 
 void machine_file_write(FILE *file, const struct machine_setup *setup)
 {
-    static const enum machine_section single[] = {SECTION_MACHINE, SECTION_SPINDLE, SECTION_BUS};
+    static const enum machine_section single[] = {SECTION_MACHINE,    SECTION_SPINDLE,
+                                                  SECTION_BUS,        SECTION_PANEL,
+                                                  SECTION_CORRECTION, SECTION_GEOMETRY};
 
     (void)fputs("# A machine, every key spelled out. Keys that are left out have the values of the "
                 "built-in mill.\n",
@@ -306,4 +378,5 @@ void machine_file_write(FILE *file, const struct machine_setup *setup)
     }
     write_places_of_axes(file, setup, SECTION_AXIS);
     write_places_of_axes(file, setup, SECTION_DRIVE);
+    write_places_of_axes(file, setup, SECTION_STEPPER);
 }

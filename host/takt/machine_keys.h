@@ -14,14 +14,41 @@ enum machine_section {
     SECTION_AXIS,
     SECTION_SPINDLE,
     SECTION_BUS,
+    SECTION_PANEL,
+    SECTION_CORRECTION,
+    SECTION_GEOMETRY,
     SECTION_DRIVE,
+    SECTION_STEPPER,
     SECTION_COUNT
 };
 
-enum machine_key_type { KEY_TEXT, KEY_UINT32, KEY_UINT8, KEY_DOUBLE, KEY_AXIS_TYPE };
+enum machine_key_type {
+    KEY_TEXT,
+    KEY_UINT32,
+    KEY_UINT8,
+    KEY_DOUBLE,
+    KEY_VECTOR /* size numbers */,
+    KEY_AXIS,
+    KEY_LAYERS,
+    KEY_AXIS_TYPE,
+    KEY_DRIVE_TYPE,
+    KEY_STEP_FORM,
+    KEY_LAW,
+    KEY_LANDING,
+    KEY_OVERRIDE_METHOD,
+    KEY_INTERPOLATOR /* words */
+};
 
 /* How a value in a file becomes one of the setup for a rotary axis, whose keys end in _deg instead of _mm. */
-enum machine_key_scale { SCALE_NONE, SCALE_LENGTH, SCALE_PER_LENGTH };
+enum machine_key_scale {
+    SCALE_NONE,
+    SCALE_LENGTH,
+    SCALE_PER_LENGTH,
+    /* for every axis: degrees, millionths, um/min */
+    SCALE_DEGREE,
+    SCALE_PPM,
+    SCALE_UM_MIN
+};
 
 struct machine_key {
     enum machine_section section;
@@ -29,21 +56,23 @@ struct machine_key {
     enum machine_key_type type;
     enum machine_key_scale scale;
     size_t
-        offset; /* SECTION_AXIS: in struct machine_axis; SECTION_DRIVE: in the drive; else in the setup */
+        offset; /* SECTION_AXIS: in struct machine_axis; SECTION_DRIVE: in the drive; SECTION_STEPPER: in the stepper; else in the setup */
     size_t size;     /* of a text, with its zero */
     double min, max; /* in the unit of the file */
     bool above_min;  /* min itself is not allowed */
     const char *meaning;
 };
 
+/* Numbers of a vector. */
+#define MACHINE_VECTOR_MAX   8
 #define MACHINE_KEY_NAME_MAX 47
-#define MACHINE_KEYS_MAX     64
+#define MACHINE_KEYS_MAX     256
 
 extern const struct machine_key machine_keys[];
 extern const size_t machine_keys_count;
 extern const char *const machine_section_names[SECTION_COUNT];
 
-/* A section in use. index: the axis, also of a drive; 0 for sections there is one of. */
+/* A section in use. index: the axis, also of a drive or stepper; 0 for sections there is one of. */
 struct machine_place {
     enum machine_section section;
     unsigned index;

@@ -1,7 +1,6 @@
 #include "takt/machine_setup.h"
 
 #include "base/maths.h"
-#include "bus/bus.h"
 #include "drive/drives.h"
 
 #include <stdarg.h>
@@ -10,6 +9,8 @@
 
 #define DEGREE (MATHS_PI / 180.0)
 
+#define SPINDLE_ANY_RPM 1e6
+
 /*
  * Setpoints are doubles: X mm from zero they are rounded, and differences over a cycle t turn that into noise of up to
  * 4.5e-16 X / t^2 in acceleration and 9e-16 X / t^3 in jerk. The limits are kept to 1e-4 and 1e-3 of themselves, so
@@ -17,6 +18,9 @@
  */
 #define ROUNDING_ACCELERATION 5e-12
 #define ROUNDING_JERK         1e-12
+
+/* Steps a second that a virtual stepping motor follows: more than the firmware asks of one. */
+#define STEPPER_RATE_HZ 500000.0
 
 static const struct machine_axis rotary_default = {
     .rotary = true,
@@ -27,6 +31,13 @@ static const struct machine_axis rotary_default = {
     .travel_max_mm = 3600.0 * DEGREE,
     .increments_per_mm = 100000.0 * (1.0 / DEGREE), /* as a file's 100000 per degree is read */
     .following_error_max_mm = 2.0 * DEGREE,
+    .steps_per_mm = 100.0 * (1.0 / DEGREE),
+    .step_rate_max_hz = 200000.0,
+    .home_method = 37,
+    .home_velocity_mm_s = 36.0 * DEGREE,
+    .home_zero_velocity_mm_s = 3.6 * DEGREE,
+    .home_acceleration_mm_s2 = 900.0 * DEGREE,
+    .home_timeout_s = 60.0,
 };
 
 static void set_rotary(struct machine_setup *setup, unsigned axis)
@@ -36,14 +47,22 @@ static void set_rotary(struct machine_setup *setup, unsigned axis)
     setup->drive[axis].travel_per_revolution_mm = 10.0 * DEGREE;
     setup->drive[axis].quick_stop_deceleration_mm_s2 = 1800.0 * DEGREE;
     setup->drive[axis].following_error_window_mm = 5.0 * DEGREE;
+    setup->drive[axis].pitch_error_period_mm = 10.0 * DEGREE;
+    setup->drive[axis].limit_switch_min_mm = -360000.0 * DEGREE;
+    setup->drive[axis].limit_switch_max_mm = 360000.0 * DEGREE;
 }
 
 void machine_setup_set_default(struct machine_setup *setup)
 {
     *setup = (struct machine_setup){0};
     machine_set_default(&setup->machine);
+    virtual_spindle_set_default(&setup->spindle);
+    setup->geometry.table_axis = AXIS_COUNT;
+    (void)snprintf(setup->panel.listen, sizeof setup->panel.listen, "127.0.0.1:1502");
     for (unsigned i = 0; i < AXIS_COUNT; i++) {
         drive_plant_set_default(&setup->drive[i]);
+        setup->stepper[i] =
+            (struct virtual_stepper_config){.has_encoder = 1, .rate_max_hz = STEPPER_RATE_HZ};
         if (i >= AXIS_LINEAR_COUNT)
             set_rotary(setup, i);
     }
@@ -91,6 +110,22 @@ static const char *check_limits(const struct machine_axis *axis, char letter, do
     return NULL;
 }
 
+static const char *check_steps(const struct machine_axis *axis, char letter)
+{
+    double rate_hz = axis->max_velocity_mm_s * axis->steps_per_mm;
+    double farthest = maths_max(maths_abs(axis->travel_min_mm), maths_abs(axis->travel_max_mm));
+
+    if (!machine_axis_is_stepped(axis))
+        return NULL;
+    if (rate_hz > axis->step_rate_max_hz * (1 + 1e-9))
+        return problem("axis %c: at max_velocity its steps come at %.9g Hz, above its "
+                       "step_rate_max_hz of %.9g; lower max_velocity or steps_per_%s",
+                       letter, rate_hz, axis->step_rate_max_hz, axis->rotary ? "deg" : "mm");
+    if (farthest * axis->steps_per_mm > (double)INT32_MAX)
+        return problem("axis %c: its travel does not fit 32 bits of steps", letter);
+    return NULL;
+}
+
 static const char *check_node(const struct machine *machine, unsigned axis)
 {
     for (unsigned i = 0; i < axis; i++) {
@@ -98,6 +133,24 @@ static const char *check_node(const struct machine *machine, unsigned axis)
             machine->axis[i].drive_node == machine->axis[axis].drive_node)
             return problem("axes %c and %c have the same drive_node %u", AXIS_LETTERS[i],
                            AXIS_LETTERS[axis], (unsigned)machine->axis[axis].drive_node);
+    }
+    return NULL;
+}
+
+static const char *check_home(const struct machine_axis *axis, char letter)
+{
+    if (maths_abs(axis->home_offset_mm) * axis->increments_per_mm <= (double)INT32_MAX)
+        return NULL;
+    return problem("axis %c: its home_offset_%s does not fit a drive's 32 bits", letter,
+                   axis->rotary ? "deg" : "mm");
+}
+
+static const char *check_controller_node(const struct machine *machine)
+{
+    for (unsigned i = 0; i < AXIS_COUNT; i++) {
+        if (machine->axis[i].present && machine->axis[i].drive_node == machine->controller_node)
+            return problem("controller_node %u is the drive_node of axis %c",
+                           (unsigned)machine->controller_node, AXIS_LETTERS[i]);
     }
     return NULL;
 }
@@ -112,14 +165,29 @@ static const char *check_drive(const struct machine_setup *setup, unsigned axis)
                    field);
 }
 
+static unsigned count_drives(const struct machine *machine)
+{
+    unsigned drives = 0;
+
+    for (unsigned i = 0; i < AXIS_COUNT; i++) {
+        if (machine_axis_is_on_can(&machine->axis[i]))
+            drives++;
+    }
+    return drives;
+}
+
 static const char *check_bus(const struct machine *machine)
 {
-    double load = machine_setup_predict_load_percent(machine);
+    struct drives_load load;
+    unsigned drives = count_drives(machine);
 
-    if (load <= 100)
+    if (drives_predict_load(drives, machine->can_bitrate, machine->cycle_us, &load))
         return NULL;
-    return problem("the bus cannot carry a cycle: load %.1f %% at %u bit/s and %u us", load,
-                   (unsigned)machine->can_bitrate, (unsigned)machine->cycle_us);
+    return problem(
+        "the bus cannot carry a cycle: %u drives take %u of %u bits at worst, load %.1f %%, at %u "
+        "bit/s and %u us",
+        drives, (unsigned)load.bits, (unsigned)load.capacity_bits, load.percent,
+        (unsigned)machine->can_bitrate, (unsigned)machine->cycle_us);
 }
 
 const char *machine_setup_check(const struct machine_setup *setup)
@@ -136,22 +204,36 @@ const char *machine_setup_check(const struct machine_setup *setup)
             wrong = check_limits(&setup->machine.axis[i], AXIS_LETTERS[i],
                                  1e-6 * (double)setup->machine.cycle_us);
         if (wrong == NULL)
+            wrong = check_steps(&setup->machine.axis[i], AXIS_LETTERS[i]);
+        if (wrong == NULL)
+            wrong = check_home(&setup->machine.axis[i], AXIS_LETTERS[i]);
+        if (wrong == NULL)
             wrong = check_node(&setup->machine, i);
         if (wrong == NULL)
             wrong = check_drive(setup, i);
     }
+    if (wrong == NULL)
+        wrong = check_controller_node(&setup->machine);
     return wrong != NULL ? wrong : check_bus(&setup->machine);
 }
 
 double machine_setup_predict_load_percent(const struct machine *machine)
 {
-    uint8_t length[DRIVES_CYCLE_FRAMES_MAX];
-    unsigned drives = 0;
+    struct drives_load load;
 
-    for (unsigned i = 0; i < AXIS_COUNT; i++) {
-        if (machine->axis[i].present)
-            drives++;
-    }
-    return bus_predict_load_percent(machine->can_bitrate, machine->cycle_us, length,
-                                    drives_cycle_frames(drives, length));
+    (void)drives_predict_load(count_drives(machine), machine->can_bitrate, machine->cycle_us,
+                              &load);
+    return load.percent;
+}
+
+/* A machine without a highest speed has a spindle that goes as fast as any. */
+struct virtual_spindle_config machine_setup_get_spindle(const struct machine_setup *setup)
+{
+    struct virtual_spindle_config config = setup->spindle;
+
+    if (setup->machine.spindle_max_rpm > 0)
+        config.max_rpm = setup->machine.spindle_max_rpm;
+    else
+        config.max_rpm = SPINDLE_ANY_RPM;
+    return config;
 }

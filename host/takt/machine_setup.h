@@ -5,17 +5,33 @@
 #define TAKT_HOST_MACHINE_SETUP_H
 
 #include "controller/machine.h"
+#include "deviation/deviation.h"
 #include "drives/drive_plant.h"
+#include "spindle/virtual_spindle.h"
+#include "stepper/virtual_steppers.h"
 
 #include <stdbool.h>
 
 #define MACHINE_SETUP_PATH_MAX 511
 
+/* How `takt serve` lets panels in. */
+struct panel_setup {
+    char listen[MACHINE_SETUP_PATH_MAX + 1]; /* HOST:PORT; empty: not on TCP */
+    char allow[MACHINE_SETUP_PATH_MAX + 1];  /* addresses, separated by commas; empty: everybody */
+    uint32_t password;                       /* 0: none */
+};
+
 struct machine_setup {
     struct machine machine;
     char tool_table[MACHINE_SETUP_PATH_MAX + 1];     /* empty: none */
     char parameter_file[MACHINE_SETUP_PATH_MAX + 1]; /* empty: none */
-    struct drive_plant_config drive[AXIS_COUNT];     /* of each axis */
+    char volume_table[MACHINE_SETUP_PATH_MAX + 1];   /* correction tables; empty: none */
+    char axis_table[AXIS_COUNT][MACHINE_SETUP_PATH_MAX + 1];
+    struct deviation_config geometry; /* how the virtual machine differs from a perfect one */
+    struct drive_plant_config drive[AXIS_COUNT];       /* of each axis */
+    struct virtual_stepper_config stepper[AXIS_COUNT]; /* of each axis, if it has a step drive */
+    struct virtual_spindle_config spindle;             /* see machine_setup_get_spindle */
+    struct panel_setup panel;
 };
 
 /* The built-in machine. Axes it does not have hold what they get when a file or --set adds them. */
@@ -26,6 +42,9 @@ void machine_setup_set_default(struct machine_setup *setup);
  * carry the cycle. NULL: good; else what is wrong, valid until the next call.
  */
 const char *machine_setup_check(const struct machine_setup *setup);
+
+/* The virtual spindle: its highest speed is the machine's. */
+struct virtual_spindle_config machine_setup_get_spindle(const struct machine_setup *setup);
 
 /* Bus load with worst-case stuffing of a cycle's frames, percent. */
 double machine_setup_predict_load_percent(const struct machine *machine);

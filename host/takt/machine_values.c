@@ -2,6 +2,7 @@
 #include "takt/machine_keys.h"
 
 #include "base/maths.h"
+#include "correction/correction.h"
 #include "takt/message.h"
 #include "takt/suggest.h"
 
@@ -24,8 +25,7 @@ __attribute__((format(printf, 2, 3))) static void say(struct machine_problem *wr
     va_end(arguments);
 }
 
-static bool find_axis(struct machine_setup *setup, const char *instance, unsigned *index,
-                      struct machine_problem *wrong)
+static bool find_letter(const char *instance, unsigned *index, struct machine_problem *wrong)
 {
     const char *letter =
         strlen(instance) == 1 ? strchr(AXIS_LETTERS, toupper((unsigned char)instance[0])) : NULL;
@@ -35,6 +35,14 @@ static bool find_axis(struct machine_setup *setup, const char *instance, unsigne
         return false;
     }
     *index = (unsigned)(letter - AXIS_LETTERS);
+    return true;
+}
+
+static bool find_axis(struct machine_setup *setup, const char *instance, unsigned *index,
+                      struct machine_problem *wrong)
+{
+    if (!find_letter(instance, index, wrong))
+        return false;
     setup->machine.axis[*index].present = true;
     return true;
 }
@@ -52,6 +60,19 @@ static bool find_drive(const struct machine_setup *setup, const char *instance, 
         }
     }
     say(wrong, "no axis has drive_node '%.40s'; a drive's section comes after its axis", instance);
+    return false;
+}
+
+/* Of an axis that is there: naming it here does not bring it into being. */
+static bool find_stepper(const struct machine_setup *setup, const char *instance, unsigned *index,
+                         struct machine_problem *wrong)
+{
+    if (!find_letter(instance, index, wrong))
+        return false;
+    if (setup->machine.axis[*index].present)
+        return true;
+    say(wrong, "the machine has no axis %c; a stepper's section comes after its axis",
+        AXIS_LETTERS[*index]);
     return false;
 }
 
@@ -77,6 +98,8 @@ bool machine_section_find(struct machine_setup *setup, const char *word, const c
         return false;
     if (place->section == SECTION_AXIS)
         return find_axis(setup, instance, &place->index, wrong);
+    if (place->section == SECTION_STEPPER)
+        return find_stepper(setup, instance, &place->index, wrong);
     if (place->section == SECTION_DRIVE)
         return find_drive(setup, instance, &place->index, wrong);
     if (instance[0] == '\0')
@@ -129,9 +152,21 @@ const struct machine_key *machine_key_find(const struct machine_setup *setup,
 static double scale_of(const struct machine_setup *setup, struct machine_place place,
                        const struct machine_key *key)
 {
-    if (key->scale == SCALE_NONE || !is_rotary(setup, place))
-        return 1.0;
-    return key->scale == SCALE_LENGTH ? DEGREE : 1.0 / DEGREE;
+    switch (key->scale) {
+    case SCALE_DEGREE:
+        return DEGREE;
+    case SCALE_PPM:
+        return 1e-6;
+    case SCALE_UM_MIN:
+        return 1e-3 / 60.0;
+    case SCALE_LENGTH:
+        return is_rotary(setup, place) ? DEGREE : 1.0;
+    case SCALE_PER_LENGTH:
+        return is_rotary(setup, place) ? 1.0 / DEGREE : 1.0;
+    case SCALE_NONE:
+        break;
+    }
+    return 1.0;
 }
 
 static const void *field_of(const struct machine_setup *setup, struct machine_place place,
@@ -143,6 +178,8 @@ static const void *field_of(const struct machine_setup *setup, struct machine_pl
         base = &setup->machine.axis[place.index];
     else if (place.section == SECTION_DRIVE)
         base = &setup->drive[place.index];
+    else if (place.section == SECTION_STEPPER)
+        base = &setup->stepper[place.index];
     return (const char *)base + key->offset;
 }
 
@@ -186,6 +223,131 @@ static bool read_axis_type(const struct machine_setup *setup, struct machine_pla
     return false;
 }
 
+/* The words of a key that has some, in the order of the enumeration they stand for. */
+static const char *const *words_of(const struct machine_key *key)
+{
+    static const char *const drive_types[] = {"can", "step", NULL};
+    static const char *const step_forms[] = {"even", "improved", "plain", NULL};
+    static const char *const interpolators[] = {"exact", "integrate", "rotate", NULL};
+    static const char *const laws[] = {"jerk", "smooth", "gentle", NULL};
+    static const char *const landings[] = {"span", "block", NULL};
+    static const char *const methods[] = {"adaptive", "proportional", NULL};
+
+    if (key->type == KEY_DRIVE_TYPE)
+        return drive_types;
+    if (key->type == KEY_LAW)
+        return laws;
+    if (key->type == KEY_LANDING)
+        return landings;
+    if (key->type == KEY_OVERRIDE_METHOD)
+        return methods;
+    return key->type == KEY_STEP_FORM ? step_forms : interpolators;
+}
+
+static bool read_word(const struct machine_key *key, const char *value, uint32_t *field,
+                      struct machine_problem *wrong)
+{
+    const char *const *words = words_of(key);
+    unsigned count = 0;
+
+    for (; words[count] != NULL; count++) {
+        if (strcmp(value, words[count]) == 0) {
+            *field = count;
+            return true;
+        }
+    }
+    if (count == 2)
+        say(wrong, "%s: %s or %s is expected, not '%.40s'", key->name, words[0], words[1], value);
+    else
+        say(wrong, "%s: %s, %s or %s is expected, not '%.40s'", key->name, words[0], words[1],
+            words[2], value);
+    return false;
+}
+
+/* Next number of a list: separated by spaces or commas. False: there is none. */
+static bool next_number(const char **value, double *number)
+{
+    char *end;
+
+    *value += strspn(*value, " \t,");
+    *number = strtod(*value, &end);
+    if (end == *value || (*end != '\0' && strchr(" \t,", *end) == NULL) || !isfinite(*number))
+        return false;
+    *value = end;
+    return true;
+}
+
+static bool read_vector(const struct machine_key *key, const char *value, double scale,
+                        double *field, struct machine_problem *wrong)
+{
+    double numbers[MACHINE_VECTOR_MAX];
+    const char *rest = value;
+    size_t count = 0;
+
+    while (count < key->size && next_number(&rest, &numbers[count])) {
+        if (numbers[count] < key->min || numbers[count] > key->max) {
+            say(wrong, "%s: %.10g is out of range: it must be at least %.10g and at most %.10g",
+                key->name, numbers[count], key->min, key->max);
+            return false;
+        }
+        count++;
+    }
+    rest += strspn(rest, " \t");
+    if (count < key->size || *rest != '\0') {
+        say(wrong, "%s: %zu numbers are expected, not '%.60s'", key->name, key->size, value);
+        return false;
+    }
+    for (size_t i = 0; i < count; i++)
+        field[i] = numbers[i] * scale;
+    return true;
+}
+
+/* A rotary axis, or none. */
+static bool read_axis(const struct machine_key *key, const char *value, uint32_t *field,
+                      struct machine_problem *wrong)
+{
+    const char *letter =
+        strlen(value) == 1 ? strchr(AXIS_LETTERS, toupper((unsigned char)value[0])) : NULL;
+
+    if (strcmp(value, "none") == 0) {
+        *field = AXIS_COUNT;
+        return true;
+    }
+    if (letter == NULL || letter - AXIS_LETTERS < AXIS_LINEAR_COUNT) {
+        say(wrong, "%s: A, B, C or none is expected, not '%.40s'", key->name, value);
+        return false;
+    }
+    *field = (uint32_t)(letter - AXIS_LETTERS);
+    return true;
+}
+
+/* Names of layers of correction. */
+static bool read_layers(const struct machine_key *key, const char *value, uint32_t *field,
+                        struct machine_problem *wrong)
+{
+    uint32_t layers = 0;
+
+    while (*(value += strspn(value, " \t,")) != '\0') {
+        size_t length = strcspn(value, " \t,");
+        unsigned i = 0;
+
+        while (
+            i < CORRECTION_LAYERS_COUNT &&
+            (strlen(correction_layer_name((enum correction_layer_number)i)) != length ||
+             strncmp(correction_layer_name((enum correction_layer_number)i), value, length) != 0))
+            i++;
+        if (i == CORRECTION_LAYERS_COUNT) {
+            say(wrong, "%s: there is no layer '%.*s': matrix setup axes volume thermal wear",
+                key->name, (int)(length < 40 ? length : 40), value);
+            return false;
+        }
+        layers |= 1U << i;
+        value += length;
+    }
+    *field = layers;
+    return true;
+}
+
 static bool read_text(const struct machine_key *key, const char *value, char *field,
                       struct machine_problem *wrong)
 {
@@ -207,6 +369,13 @@ bool machine_key_set(struct machine_setup *setup, struct machine_place place,
     switch (key->type) {
     case KEY_AXIS_TYPE:
         return read_axis_type(setup, place, value, wrong);
+    case KEY_DRIVE_TYPE:
+    case KEY_STEP_FORM:
+    case KEY_LAW:
+    case KEY_LANDING:
+    case KEY_OVERRIDE_METHOD:
+    case KEY_INTERPOLATOR:
+        return read_word(key, value, field, wrong);
     case KEY_TEXT:
         return read_text(key, value, field, wrong);
     case KEY_DOUBLE:
@@ -214,6 +383,12 @@ bool machine_key_set(struct machine_setup *setup, struct machine_place place,
             return false;
         *(double *)field = number * scale_of(setup, place, key);
         return true;
+    case KEY_VECTOR:
+        return read_vector(key, value, scale_of(setup, place, key), field, wrong);
+    case KEY_AXIS:
+        return read_axis(key, value, field, wrong);
+    case KEY_LAYERS:
+        return read_layers(key, value, field, wrong);
     case KEY_UINT32:
         if (!read_count(key, value, &number, wrong))
             return false;
@@ -243,6 +418,39 @@ static void write_number(double value, double scale, char *text, size_t size)
     }
 }
 
+static void write_vector(const double *numbers, size_t count, double scale, char *text, size_t size)
+{
+    size_t used = 0;
+
+    text[0] = '\0';
+    for (size_t i = 0; i < count && used + 2 < size; i++) {
+        if (i > 0)
+            text[used++] = ' ';
+        write_number(numbers[i], scale, text + used, size - used);
+        used = strlen(text);
+    }
+}
+
+static void write_layers(uint32_t layers, char *text, size_t size)
+{
+    size_t used = 0;
+
+    text[0] = '\0';
+    for (unsigned i = 0; i < CORRECTION_LAYERS_COUNT && used < size; i++) {
+        if ((layers & 1U << i) != 0)
+            used += (size_t)snprintf(text + used, size - used, "%s%s", used > 0 ? " " : "",
+                                     correction_layer_name((enum correction_layer_number)i));
+    }
+}
+
+static void write_axis_letter(uint32_t axis, char *text, size_t size)
+{
+    if (axis < AXIS_COUNT)
+        (void)snprintf(text, size, "%c", AXIS_LETTERS[axis]);
+    else
+        (void)snprintf(text, size, "none");
+}
+
 void machine_key_get(const struct machine_setup *setup, struct machine_place place,
                      const struct machine_key *key, char *text, size_t size)
 {
@@ -252,11 +460,28 @@ void machine_key_get(const struct machine_setup *setup, struct machine_place pla
     case KEY_AXIS_TYPE:
         (void)snprintf(text, size, "%s", is_rotary(setup, place) ? "rotary" : "linear");
         break;
+    case KEY_DRIVE_TYPE:
+    case KEY_STEP_FORM:
+    case KEY_LAW:
+    case KEY_LANDING:
+    case KEY_OVERRIDE_METHOD:
+    case KEY_INTERPOLATOR:
+        (void)snprintf(text, size, "%s", words_of(key)[*(const uint32_t *)field]);
+        break;
     case KEY_TEXT:
         (void)snprintf(text, size, "%s", (const char *)field);
         break;
     case KEY_DOUBLE:
         write_number(*(const double *)field, scale_of(setup, place, key), text, size);
+        break;
+    case KEY_VECTOR:
+        write_vector(field, key->size, scale_of(setup, place, key), text, size);
+        break;
+    case KEY_AXIS:
+        write_axis_letter(*(const uint32_t *)field, text, size);
+        break;
+    case KEY_LAYERS:
+        write_layers(*(const uint32_t *)field, text, size);
         break;
     case KEY_UINT32:
         (void)snprintf(text, size, "%u", (unsigned)*(const uint32_t *)field);

@@ -53,6 +53,17 @@ void message_command_error(const char *format, ...)
     va_end(arguments);
 }
 
+void message_command_warning(const char *format, ...)
+{
+    va_list arguments;
+
+    va_start(arguments, format);
+    (void)fprintf(stderr, "%s: warning: ", message_command);
+    (void)vfprintf(stderr, format, arguments);
+    (void)fputc('\n', stderr);
+    va_end(arguments);
+}
+
 const char *message_did_you_mean(const char *prefix, const char *word)
 {
     static char text[96];
@@ -64,17 +75,17 @@ const char *message_did_you_mean(const char *prefix, const char *word)
 }
 
 /* Bytes that a terminal would not print as one character are shown as a dot, so that the caret stays in place. */
-static void message_show_line(const struct text *program, uint32_t line, uint32_t column)
+static void message_show_line(const struct program_text *program, uint32_t line, uint32_t column)
 {
-    size_t length = 0;
-    const char *text = text_line(program, line, &length);
+    char text[MESSAGE_SHOWN_MAX];
     size_t at = column > 0 ? column - 1 : 0;
     size_t first = at > MESSAGE_SHOWN_BEFORE ? at - MESSAGE_SHOWN_BEFORE : 0;
+    size_t length = program_text_line(program, line, first, text, sizeof text);
 
     if (length == 0)
         return;
     (void)fputs("    ", stderr);
-    for (size_t i = first; i < length && i < first + MESSAGE_SHOWN_MAX; i++)
+    for (size_t i = 0; i < length; i++)
         (void)fputc(text[i] >= ' ' && text[i] <= '~' ? text[i]
                     : text[i] == '\t'                ? ' '
                                                      : '.',
@@ -84,7 +95,7 @@ static void message_show_line(const struct text *program, uint32_t line, uint32_
         (void)fprintf(stderr, "    %*s^\n", (int)(at - first), "");
 }
 
-static void message_diagnostic(const char *kind, const struct text *program,
+static void message_diagnostic(const char *kind, const struct program_text *program,
                                const struct diagnostic *diagnostic)
 {
     char text[DIAGNOSTIC_TEXT_MAX];
@@ -99,12 +110,23 @@ static void message_diagnostic(const char *kind, const struct text *program,
         message_show_line(program, diagnostic->line, diagnostic->column);
 }
 
-void message_program_error(const struct text *program, const struct diagnostic *diagnostic)
+void message_program_error(const struct program_text *program, const struct diagnostic *diagnostic)
 {
     message_diagnostic("error", program, diagnostic);
 }
 
-void message_program_warning(const struct text *program, const struct diagnostic *diagnostic)
+void message_program_warning(const struct program_text *program,
+                             const struct diagnostic *diagnostic)
 {
     message_diagnostic("warning", program, diagnostic);
+}
+
+void message_controller_warning(const struct controller *controller)
+{
+    char text[DIAGNOSTIC_TEXT_MAX];
+
+    if (controller_get_warning(controller)->code == TAKT_OK)
+        return;
+    (void)diagnostic_text(controller_get_warning(controller), text);
+    message_command_warning("%s", text);
 }

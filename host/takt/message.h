@@ -8,7 +8,8 @@
 #define TAKT_HOST_MESSAGE_H
 
 #include "base/error.h"
-#include "takt/text.h"
+#include "controller/controller.h"
+#include "takt/program_text.h"
 
 #include <stdint.h>
 
@@ -21,12 +22,17 @@ __attribute__((format(printf, 4, 5))) void
 message_warning(const char *file, uint32_t line, uint32_t column, const char *format, ...);
 /* About the command line, or what the machine it runs on refuses. */
 __attribute__((format(printf, 1, 2))) void message_command_error(const char *format, ...);
+__attribute__((format(printf, 1, 2))) void message_command_warning(const char *format, ...);
+
+/* What a controller has to say at its start, if it has. */
+void message_controller_warning(const struct controller *controller);
 
 /* "; did you mean PREFIXWORD?", or "" when word is NULL: for the end of a message. Valid until the next call. */
 const char *message_did_you_mean(const char *prefix, const char *word);
 
 /* Errors and warnings of a part program, with the line they are about and a caret under the column. */
-void message_program_error(const struct text *program, const struct diagnostic *diagnostic);
-void message_program_warning(const struct text *program, const struct diagnostic *diagnostic);
+void message_program_error(const struct program_text *program, const struct diagnostic *diagnostic);
+void message_program_warning(const struct program_text *program,
+                             const struct diagnostic *diagnostic);
 
 #endif

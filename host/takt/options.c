@@ -158,6 +158,16 @@ static void options_fill_table(const struct option_row *rows, struct option *tab
     table[count] = (struct option){0};
 }
 
+/* The row of --output, which -o is short for; NULL: the command has none. */
+static const struct option_row *options_find_output(const struct option_row *rows)
+{
+    for (; rows->name != NULL; rows++) {
+        if (strcmp(rows->name, "output") == 0)
+            return rows;
+    }
+    return NULL;
+}
+
 /* getopt's codes for what it cannot read; numbers from 0 are rows. */
 static bool options_take(struct options *options, const struct option_row *rows, int code,
                          char **argv)
@@ -170,6 +180,8 @@ static bool options_take(struct options *options, const struct option_row *rows,
         options->help = true;
         return true;
     }
+    if (code == 'o')
+        return options_set(options, options_find_output(rows), optarg);
     if (code != '?')
         return options_set(options, &rows[code], optarg);
     if (optopt > 0 && optopt < (int)options_count(rows))
@@ -208,13 +220,14 @@ bool options_read(struct options *options, const struct option_row *rows, unsign
                   unsigned operands_max, int argc, char **argv)
 {
     struct option table[OPTIONS_ROWS_MAX + 1];
+    const char *letters = options_find_output(rows) != NULL ? ":ho:" : ":h";
     int code;
 
     *options = (struct options){0};
     options_fill_table(rows, table);
     opterr = 0;
     optind = 0; /* start anew */
-    while ((code = getopt_long(argc, argv, ":h", table, NULL)) != -1) {
+    while ((code = getopt_long(argc, argv, letters, table, NULL)) != -1) {
         if (!options_take(options, rows, code, argv))
             return false;
     }

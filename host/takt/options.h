@@ -9,11 +9,51 @@
 #include <stdint.h>
 
 #define OPTION_LIST_MAX    64
-#define OPTION_OPERAND_MAX 2
+#define OPTION_OPERAND_MAX 34
 
 struct option_list {
     unsigned count;
     const char *item[OPTION_LIST_MAX];
+};
+
+/* Of `takt bore`: mm, mm/min, rpm; 0: not given. */
+struct option_bore {
+    const char *pass;
+    const char *as;
+    const char *start;
+    double hole, cutter, step, allowance;
+    double start_radius, start_length, turns;
+    double depth, depth_step, height;
+    double feed, plunge, spindle;
+    bool compare;
+};
+
+/* Of `takt serve` and `takt panel`. */
+struct option_panel {
+    const char *listen, *connect; /* HOST:PORT */
+    const char *serial;           /* PATH, or PATH,BAUD,PARITY */
+    const char *program;
+    const char *store;
+    const char *spindle; /* where its drive is; see `takt help serve` */
+    double unit;         /* on the serial line; 0: 1 */
+    double interval_s;   /* of `takt panel watch`; 0: its default */
+    double count;        /* of `takt panel watch`; 0: without end */
+    double timeout_s;
+    double password;
+};
+
+/* Of `takt cycle-frequency`: numbers as given, NULL: not. */
+struct option_frequency {
+    const char *feed_max, *acceleration, *jerk, *resolution, *tolerance, *frequency;
+    bool radius_table;
+    const char *svg, *html;
+};
+
+/* Of `takt calibrate` and `takt correct`. */
+struct option_correction {
+    const char *grid, *axis, *from, *to, *noise, *comp, *table;
+    double seed, comp_type;
+    bool filter;
 };
 
 /* Everything a command line may say; each sub-command offers a part. NULL: not given. Texts are argv's. */
@@ -26,13 +66,33 @@ struct options {
     struct option_list set;
     const char *tools;
     const char *parameters;
+    struct option_list drive_type; /* [AXIS=]can|step */
+    const char *interpolator;
     bool exact_path;
     bool block_delete;
     uint32_t from_line; /* 0: from the beginning */
     bool save_parameters;
-    double until_s;   /* 0: to the end */
-    double tolerance; /* of `takt trace`; 0: equal */
+    const char *probe;
+    const char *override;
+    const char *rapid_override;
+    const char *override_method;
+    double until_s;     /* 0: to the end */
+    double tolerance;   /* of `takt trace`; 0: equal. Of `takt bore`, mm; 0: its default */
+    const char *output; /* -o is short for --output */
+    struct option_bore bore;
+    struct option_frequency frequency;
+    struct option_correction correction;
+    struct option_panel panel;
     const char *trace;
+    const char *bus;    /* bus/link.h */
+    const char *drives; /* internal, external */
+    bool realtime;
+    const char *ids; /* of takt replay */
+    bool fast, fd;
+    const char *inject; /* scripted faults */
+    const char *nodes;  /* of `takt drives` */
+    const char *eds;
+    const char *log;
     const char *bus_log;
     const char *report;
     const char *json;
@@ -63,6 +123,15 @@ struct option_row {
     {                                                                                              \
         "set", OPTION_LIST, offsetof(struct options, set), "KEY=VALUE",                            \
             "override a key of the machine file: axis.X.max_jerk_mm_s3=20000"                      \
+    }
+
+/* How the machine's axes are driven: machine_file_load obeys them. */
+#define OPTIONS_DRIVEN                                                                             \
+    {"drive-type", OPTION_LIST, offsetof(struct options, drive_type), "[AXIS=]TYPE",               \
+     "can or step: drive of one axis, or of all"},                                                 \
+    {                                                                                              \
+        "interpolator", OPTION_TEXT, offsetof(struct options, interpolator), "NAME",               \
+            "exact (default), integrate or rotate"                                                 \
     }
 
 #define OPTIONS_PROGRAM                                                                            \

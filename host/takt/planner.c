@@ -1,6 +1,8 @@
 #include "takt/planner.h"
 
-#include "plan/window.h"
+#include "base/maths.h"
+#include "motion/motion.h"
+#include "plan/path_unit.h"
 #include "takt/interrupt.h"
 #include "takt/message.h"
 
@@ -8,9 +10,26 @@
 
 struct planner {
     struct session_reading reading;
-    struct window window;
+    struct path path;
+    struct motion motion;
+    uint32_t look_ahead;
+    double cycle_s;
     bool ended;
+    uint64_t cycles_before;       /* made before the last one */
+    struct planned_block planned; /* the block being passed */
+    double entered_s;             /* when its start was passed */
 };
+
+/* As the controller does. */
+static void reserve_for_correction(const struct session *s, const struct point *start,
+                                   struct plan_limits *limits)
+{
+    static struct correction correction;
+
+    correction_init(&correction, &s->setup.machine.correction, limits->axes, limits->cycle_s,
+                    s->correction, start);
+    controller_reserve_correction(&correction, &s->setup.machine, limits);
+}
 
 static void start_planner(struct planner *p, const struct session *s)
 {
@@ -22,57 +41,181 @@ static void start_planner(struct planner *p, const struct session *s)
     program_open(&p->reading.program, &config, &source);
     offset_open(&p->reading.offset, &config);
     controller_plan_limits(&s->setup.machine, &limits);
-    window_init(&p->window, &limits, s->setup.machine.look_ahead_blocks, &config.start);
+    reserve_for_correction(s, &config.start, &limits);
+    p->look_ahead = s->setup.machine.look_ahead_blocks;
+    p->cycle_s = limits.cycle_s;
+    path_init(&p->path, &limits, &config.start);
+    motion_init(&p->motion, &p->path, &config.start, false);
 }
 
-static void fill_window(struct planner *p)
+static void read_move(struct planner *p)
 {
     struct diagnostic diagnostic;
     struct move move;
 
-    while (!p->ended && window_has_room(&p->window)) {
-        if (offset_next(&p->reading.offset, &p->reading.program, &move, &diagnostic) ==
-            PROGRAM_MOVE) {
-            window_push(&p->window, &move);
-        } else {
-            p->ended = true;
-            window_finish(&p->window);
-        }
+    switch (offset_next(&p->reading.offset, &p->reading.program, &move, &diagnostic)) {
+    case PROGRAM_MOVE:
+        path_push(&p->path, &move);
+        break;
+    case PROGRAM_WAIT:
+        break; /* a plan takes it that a probing move reaches its end, and an input has come */
+    case PROGRAM_END:
+    case PROGRAM_ERROR:
+        p->ended = true;
+        path_finish(&p->path);
+        break;
     }
 }
 
-static void count_segment(struct planner_totals *totals, const struct segment *segment)
+static void fill_path(struct planner *p)
 {
-    totals->cycles += segment->cycles;
-    if (!move_is_motion(&segment->move))
+    if (motion_wanted(&p->motion) == NULL)
         return;
-    totals->motions++;
-    totals->stops += segment->end == JOINT_STOP ? 1 : 0;
-    if (!curve_is_rotary(&segment->curve))
-        totals->length_mm += segment->curve.length_mm;
+    path_go_on(&p->path);
+    while (!p->ended && path_has_room(&p->path) && motion_ahead(&p->motion) < p->look_ahead)
+        read_move(p);
+    motion_build(&p->motion);
+}
+
+static void count_block(struct planner_totals *totals, const struct block *block)
+{
+    if (!block_is_motion(block))
+        return;
+    totals->motions += block->continues ? 0 : 1;
+    totals->stops += block->end == JOINT_STOP ? 1 : 0;
+    if (!block->rotary)
+        totals->length_mm += block->length_mm;
+}
+
+/* A block that never reaches its ceiling is governed by its ramps. */
+static enum governor governor_of(const struct planned_block *planned)
+{
+    const struct ceiling_request program = {.feed_ratio = 1, .rapid_ratio = 1};
+    const double feed_mm_s = ceiling_block_feed(planned->block, &program);
+
+    if (planned->feed_cruise_mm_s < feed_mm_s * (1 - 1e-6))
+        return GOVERNOR_RAMP;
+    return block_governor(planned->block, planned->block->feed_program_mm_s);
+}
+
+/*
+ * When the end of a block was passed: within the last cycle, as if the setpoint went evenly; a stop and a wait are left
+ * as a cycle begins.
+ */
+static double passed_at(const struct planner *p, const struct block *block, double feed_mm_s)
+{
+    const double now_s = p->cycle_s * (double)p->motion.cycles;
+    const double beyond_mm = path_mm(block->start + block->length, p->motion.setpoint);
+
+    if (block->end == JOINT_STOP)
+        return p->cycle_s * (double)p->cycles_before;
+    if (!(feed_mm_s > 0))
+        return now_s;
+    return now_s - maths_clamp(beyond_mm / feed_mm_s, 0, p->cycle_s);
+}
+
+static void enter(struct planner *p, double feed_mm_s, double now_s)
+{
+    p->planned =
+        (struct planned_block){.feed_start_mm_s = feed_mm_s, .feed_cruise_mm_s = feed_mm_s};
+    p->entered_s = now_s;
+}
+
+/* Hands on one block that this cycle has passed. */
+static void leave(struct planner *p, const struct block *block, double feed_mm_s,
+                  void (*take)(void *context, const struct planned_block *planned), void *context)
+{
+    const double now_s = passed_at(p, block, feed_mm_s);
+
+    p->planned.block = block;
+    p->planned.feed_end_mm_s = block->end == JOINT_STOP ? 0 : feed_mm_s;
+    p->planned.time_s = maths_max(0, now_s - p->entered_s);
+    if (block_is_motion(block))
+        p->planned.governor = governor_of(&p->planned);
+    take(context, &p->planned);
+    enter(p, p->planned.feed_end_mm_s, now_s);
+}
+
+static enum motion_result step(struct planner *p, struct cycle_record *record)
+{
+    const struct motion_operator as_programmed = {.feed_ratio = 1, .rapid_ratio = 1};
+
+    fill_path(p);
+    p->cycles_before = p->motion.cycles;
+    return motion_cycle(&p->motion, &as_programmed, record);
+}
+
+static void walk(struct planner *p,
+                 void (*take)(void *context, const struct planned_block *planned), void *context,
+                 struct planner_totals *totals)
+{
+    struct cycle_record record = {0};
+    enum motion_result result = MOTION_CYCLE;
+
+    while ((result == MOTION_CYCLE || result == MOTION_NOT_YET) && !interrupt_asked()) {
+        result = step(p, &record);
+        for (uint32_t i = p->motion.passed_first; i != p->path.first; i++) {
+            count_block(totals, path_at(&p->path, i));
+            leave(p, path_at(&p->path, i), record.feed_mm_s, take, context);
+        }
+        p->planned.feed_cruise_mm_s = maths_max(p->planned.feed_cruise_mm_s, record.feed_mm_s);
+    }
+    if (result == MOTION_DONE) /* the end of the program itself is never passed */
+        leave(p, motion_block(&p->motion), 0, take, context);
+    totals->cycles = p->motion.cycles;
+}
+
+static void measure_path(struct planner *p, struct planner_totals *totals)
+{
+    struct path *path = &p->path;
+
+    do {
+        path_go_on(path);
+        while (!p->ended && path_has_room(path))
+            read_move(p);
+        for (; path->first != path->closed; path_pass(path))
+            count_block(totals, path_at(path, path->first));
+        path->kept = path->first;
+    } while ((!p->ended || path->first != path->pushed) && !interrupt_asked());
+}
+
+/* NULL, after a message: out of memory. The caller frees it. */
+static struct planner *begin_planner(const struct session *s, struct planner_totals *totals)
+{
+    struct planner *p = calloc(1, sizeof *p);
+
+    *totals = (struct planner_totals){0};
+    if (p == NULL)
+        message_command_error("out of memory");
+    else
+        start_planner(p, s);
+    return p;
+}
+
+static enum command_status end_planner(struct planner *p)
+{
+    free(p);
+    return interrupt_asked() ? STATUS_INTERRUPTED : STATUS_DONE;
 }
 
 enum command_status planner_walk(const struct session *s,
-                                 void (*take)(void *context, const struct segment *segment),
+                                 void (*take)(void *context, const struct planned_block *planned),
                                  void *context, struct planner_totals *totals)
 {
-    struct planner *p = calloc(1, sizeof *p);
-    struct segment segment;
+    struct planner *p = begin_planner(s, totals);
 
-    *totals = (struct planner_totals){0};
-    if (p == NULL) {
-        message_command_error("out of memory");
+    if (p == NULL)
         return STATUS_ENVIRONMENT;
-    }
-    start_planner(p, s);
-    for (;;) {
-        fill_window(p);
-        if (window_is_empty(&p->window) || interrupt_asked())
-            break;
-        window_take(&p->window, &segment);
-        count_segment(totals, &segment);
-        take(context, &segment);
-    }
-    free(p);
-    return interrupt_asked() ? STATUS_INTERRUPTED : STATUS_DONE;
+    walk(p, take, context, totals);
+    return end_planner(p);
+}
+
+enum command_status planner_measure(const struct session *s, struct planner_totals *totals)
+{
+    struct planner *p = begin_planner(s, totals);
+
+    if (p == NULL)
+        return STATUS_ENVIRONMENT;
+    measure_path(p, totals);
+    return end_planner(p);
 }

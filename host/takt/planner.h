@@ -1,14 +1,25 @@
 /*
- * Planning without moving: the program through the same window that the controller uses.
+ * Planning without a machine: the program through the same path, ceiling and motion that the controller uses, in virtual
+ * time, without drives.
  */
 #ifndef TAKT_HOST_PLANNER_H
 #define TAKT_HOST_PLANNER_H
 
-#include "plan/segment.h"
+#include "plan/block.h"
 #include "takt/command.h"
 #include "takt/session.h"
 
 #include <stdint.h>
+
+/* A block as it has been passed. */
+struct planned_block {
+    const struct block *block;
+    double feed_start_mm_s;
+    double feed_cruise_mm_s; /* the highest in it */
+    double feed_end_mm_s;
+    double time_s;
+    enum governor governor;
+};
 
 struct planner_totals {
     uint32_t motions; /* that have a length */
@@ -17,10 +28,13 @@ struct planner_totals {
     double length_mm; /* of motions of X Y Z */
 };
 
-/* Plans the whole program and calls take for every segment, in order. STATUS_DONE, STATUS_ENVIRONMENT after a message,
+/* Plans the whole program and calls take for every block, in order. STATUS_DONE, STATUS_ENVIRONMENT after a message,
  * STATUS_INTERRUPTED. The program has been checked. */
 enum command_status planner_walk(const struct session *s,
-                                 void (*take)(void *context, const struct segment *segment),
+                                 void (*take)(void *context, const struct planned_block *planned),
                                  void *context, struct planner_totals *totals);
+
+/* Puts the whole program on the path and moves nothing: totals without cycles. Status as of planner_walk. */
+enum command_status planner_measure(const struct session *s, struct planner_totals *totals);
 
 #endif

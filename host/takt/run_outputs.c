@@ -27,7 +27,7 @@ static bool is_same_file(const char *a, const char *b)
 static bool check_inputs(const struct run_outputs *o, const struct session *session, unsigned i)
 {
     const struct options *options = session->options;
-    const char *inputs[] = {options->operand[0], options->machine, options->tools,
+    const char *inputs[] = {options->operand[0], options->machine, options->tools, options->probe,
                             i == RUN_PARAMETERS ? NULL : session->parameter_path};
 
     for (size_t k = 0; k < sizeof inputs / sizeof inputs[0]; k++) {
@@ -88,11 +88,15 @@ bool run_outputs_use_stdout(const struct run_outputs *o)
 static bool open_bus_log(struct run_outputs *o, struct simulation *simulation)
 {
     o->bus_log = malloc(sizeof *o->bus_log);
-    o->frames = malloc(sizeof *o->frames);
+    o->frames = calloc(1, sizeof *o->frames);
     if (o->bus_log == NULL || o->frames == NULL)
         return false;
     candump_init(o->bus_log, o->file[RUN_BUS_LOG].stream, "can0");
-    frame_buffer_attach(o->frames, &simulation->bus, o->bus_log);
+    if (simulation->field.link != NULL)
+        field_observe_outside(&simulation->field,
+                              &(struct wire_listener){candump_wire, o->bus_log});
+    else
+        frame_buffer_attach(o->frames, &simulation->field.bus, o->bus_log);
     return true;
 }
 
@@ -142,7 +146,7 @@ bool run_outputs_open(struct run_outputs *o, const struct session *session,
 }
 
 void run_outputs_add(struct run_outputs *o, const struct cycle_record *record,
-                     const struct segment *segment)
+                     const struct block *block)
 {
     if (o->frames != NULL)
         frame_buffer_write(o->frames);
@@ -151,7 +155,7 @@ void run_outputs_add(struct run_outputs *o, const struct cycle_record *record,
     if (o->trace != NULL)
         trace_writer_add(o->trace, record);
     if (o->report != NULL)
-        report_add(o->report, record, segment->move.kind == MOVE_RAPID);
+        report_add(o->report, record, block->move.kind == MOVE_RAPID);
 }
 
 bool run_outputs_failed(const struct run_outputs *o)
@@ -165,6 +169,11 @@ void run_outputs_drop(struct run_outputs *o, enum run_output which)
     o->path[which] = NULL;
 }
 
+void run_outputs_set_map(struct run_outputs *o, char *map)
+{
+    o->map = map;
+}
+
 /* False: out of memory, or errno says what the report could not do. */
 static bool write_end(struct run_outputs *o, const struct summary *summary,
                       const struct parameter_file *parameters)
@@ -174,8 +183,10 @@ static bool write_end(struct run_outputs *o, const struct summary *summary,
 
     if (good && o->path[RUN_JSON] != NULL)
         (void)fprintf(o->file[RUN_JSON].stream, "%s\n", json);
-    if (good && o->report != NULL)
+    if (good && o->report != NULL) {
+        report_set_map(o->report, o->map);
         good = report_write(o->report, o->file[RUN_REPORT].stream, json) == 0;
+    }
     free(json);
     if (o->path[RUN_JUNIT] != NULL)
         summary_write_junit(o->file[RUN_JUNIT].stream, summary);
@@ -238,6 +249,8 @@ void run_outputs_close(struct run_outputs *o)
     free(o->bus_log);
     free(o->frames);
     report_close(o->report);
+    free(o->map);
+    o->map = NULL;
     o->trace = NULL;
     o->bus_log = NULL;
     o->frames = NULL;

@@ -34,6 +34,7 @@ struct run_outputs {
     struct candump *bus_log;
     struct frame_buffer *frames;
     struct report *report;
+    char *map;       /* error of the tool's point, as JSON; NULL: none. Owned */
     bool each_cycle; /* something is to be written every cycle */
 };
 
@@ -48,11 +49,13 @@ bool run_outputs_open(struct run_outputs *o, const struct session *session,
                       struct simulation *simulation);
 /* Frames since the last call, and the cycle if it was one of the program (record not NULL). */
 void run_outputs_add(struct run_outputs *o, const struct cycle_record *record,
-                     const struct segment *segment);
+                     const struct block *block);
 /* A write has failed; there is no use in going on. */
 bool run_outputs_failed(const struct run_outputs *o);
 /* One of them is not wanted after all. */
 void run_outputs_drop(struct run_outputs *o, enum run_output which);
+/* For the report, before run_outputs_commit: as error_map_json gives it; the text becomes the outputs'. */
+void run_outputs_set_map(struct run_outputs *o, char *map);
 /* Writes what comes at the end and puts all files in place. False after a message. */
 bool run_outputs_commit(struct run_outputs *o, const struct summary *summary,
                         const struct parameter_file *parameters);

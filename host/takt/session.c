@@ -1,10 +1,12 @@
 #include "takt/session.h"
 
+#include "takt/correction_file.h"
 #include "takt/interrupt.h"
 #include "takt/machine_file.h"
 #include "takt/message.h"
 
 #include <stdio.h>
+#include <stdlib.h>
 
 /* Moves between two looks at Ctrl-C. */
 #define SESSION_INTERRUPT_MOVES 4096
@@ -27,19 +29,29 @@ static bool open_tables(struct session *s)
     return parameters == NULL || parameter_file_read(&s->parameters, parameters);
 }
 
-enum command_status session_open(struct session *s, const struct options *options)
+enum command_status session_open_machine(struct session *s, const struct options *options)
 {
     *s = (struct session){.options = options};
     parameters_clear(&s->parameters.values);
-    if (!machine_file_load(&s->setup, options) || !open_tables(s))
+    return machine_file_load(&s->setup, options) && open_tables(s) &&
+                   correction_file_load(&s->correction, &s->setup)
+               ? STATUS_DONE
+               : STATUS_INPUT;
+}
+
+enum command_status session_open(struct session *s, const struct options *options)
+{
+    if (session_open_machine(s, options) != STATUS_DONE)
         return STATUS_INPUT;
-    return text_read(&s->program, options->operand[0]) ? STATUS_DONE : STATUS_INPUT;
+    return program_text_open(&s->program, options->operand[0]) ? STATUS_DONE : STATUS_INPUT;
 }
 
 void session_close(struct session *s)
 {
-    text_free(&s->program);
+    program_text_close(&s->program);
     tool_file_close(&s->tools);
+    free(s->correction);
+    s->correction = NULL;
 }
 
 void session_begin_reading(const struct session *s, struct session_reading *reading,
@@ -56,7 +68,8 @@ void session_begin_reading(const struct session *s, struct session_reading *read
 
     reading->parameters = s->parameters.values;
     controller_program_config(&controller, config);
-    source_open_text(source, &reading->text, s->program.bytes, s->program.length);
+    config->waits = config->waits && s->runs;
+    program_text_read(&s->program, &reading->text, source);
 }
 
 static void print_warnings(const struct session *s, struct session_reading *reading,
@@ -93,12 +106,9 @@ static bool check_move(const struct session *s, struct session_reading *reading,
     enum program_result result = offset_next(&reading->offset, &reading->program, &move, &error);
 
     print_warnings(s, reading, totals);
-    if (result == PROGRAM_MOVE && move_is_involute(&move) && !s->prints_only) {
-        diagnostic_set(&error, TAKT_ERROR_INVOLUTE_UNPLANNED, move.line, 0, "", 0, 0.0);
-        result = PROGRAM_ERROR;
-    }
     if (result == PROGRAM_MOVE)
         count_move(totals, &move, at);
+    totals->is_open = totals->is_open || result == PROGRAM_WAIT;
     if (result != PROGRAM_ERROR)
         return result == PROGRAM_MOVE;
     message_program_error(&s->program, &error);

@@ -6,13 +6,14 @@
 #define TAKT_HOST_SESSION_H
 
 #include "controller/controller.h"
+#include "correction/tables.h"
 #include "offset/offset.h"
 #include "program/program.h"
 #include "takt/command.h"
 #include "takt/machine_setup.h"
 #include "takt/options.h"
 #include "takt/parameter_file.h"
-#include "takt/text.h"
+#include "takt/program_text.h"
 #include "takt/tool_file.h"
 
 #include <stdbool.h>
@@ -21,16 +22,19 @@
 struct session {
     const struct options *options;
     struct machine_setup setup;
-    struct text program;
+    struct program_text program;
     struct tool_file tools;
     const char *parameter_path; /* NULL: none */
     struct parameter_file parameters;
-    bool prints_only; /* set it to take moves that can be printed but not planned yet */
+    bool runs; /* set it when the program is run: a check then ends at the first G38 or M66 */
+    struct correction_tables *correction; /* NULL: none */
 };
 
 /* Reads everything the options name; the first operand is the program. STATUS_DONE, or STATUS_INPUT after messages;
  * session_close is due in either case. */
 enum command_status session_open(struct session *s, const struct options *options);
+/* The same without a program. */
+enum command_status session_open_machine(struct session *s, const struct options *options);
 void session_close(struct session *s);
 
 /* One reading of the program: struct program and what belongs to it. It must not be moved once begun. */
@@ -38,7 +42,7 @@ struct session_reading {
     struct program program;
     struct offset offset;
     struct parameters parameters; /* its own copy, as they were before the program */
-    struct source_text text;
+    struct program_text_reader text;
 };
 
 /* The configuration of a reading: sources and parameters are its own. */
@@ -51,6 +55,7 @@ struct session_totals {
     uint32_t last;    /* number of the last motion that has a length; 0: none */
     unsigned errors;
     unsigned warnings;
+    bool is_open; /* only up to the first G38 or M66: what follows depends on what becomes of it */
 };
 
 /*

@@ -1,25 +1,16 @@
 #include "takt/simulation.h"
 
+#include "takt/cutting_feed.h"
+#include "takt/inject_file.h"
+#include "takt/message.h"
+#include "takt/probe_file.h"
 #include "takt/stopwatch.h"
 
 #include <stdlib.h>
 
-static void set_drives(struct virtual_drives_config *config, const struct machine_setup *setup)
-{
-    config->count = 0;
-    for (unsigned i = 0; i < AXIS_COUNT; i++) {
-        const struct machine_axis *axis = &setup->machine.axis[i];
-
-        if (!axis->present)
-            continue;
-        config->drive[config->count++] = (struct virtual_drive_config){
-            .node = axis->drive_node,
-            .increments_per_mm = axis->increments_per_mm,
-            .start_mm = 0,
-            .plant = setup->drive[i],
-        };
-    }
-}
+/* The panel's ranges. */
+#define FEED_PERCENT_MAX  120
+#define RAPID_PERCENT_MAX 100
 
 static void start_controller(struct simulation *s, const struct session *session,
                              struct can_port port)
@@ -27,7 +18,9 @@ static void start_controller(struct simulation *s, const struct session *session
     struct controller_config config = {
         .machine = &session->setup.machine,
         .can = port,
+        .step = field_get_step_port(&s->field),
         .tools = &session->tools.table,
+        .correction = session->correction,
         .parameters = &s->parameters,
         .exact_path = session->options->exact_path,
         .block_delete = session->options->block_delete,
@@ -35,46 +28,83 @@ static void start_controller(struct simulation *s, const struct session *session
     };
 
     s->parameters = session->parameters.values;
-    source_open_text(&config.source, &s->text, session->program.bytes, session->program.length);
+    program_text_read(&session->program, &s->text, &config.source);
     controller_init(&s->controller, &config);
+    message_controller_warning(&s->controller);
 }
 
-struct simulation *simulation_open(const struct session *session)
+static enum command_status load_faults(struct simulation *s, const struct session *session)
 {
-    struct simulation *s = calloc(1, sizeof *s);
-    struct virtual_drives_config drives;
-    struct can_port port;
+    const char *path = session->options->inject;
+    uint8_t nodes[AXIS_COUNT];
+    unsigned count = 0;
 
-    if (s == NULL)
-        return NULL;
-    s->cycle_ns = session->setup.machine.cycle_us * 1000;
-    s->cost.min_ns = UINT64_MAX;
+    for (unsigned i = 0; i < AXIS_COUNT; i++) {
+        if (machine_axis_is_on_can(&session->setup.machine.axis[i]))
+            nodes[count++] = session->setup.machine.axis[i].drive_node;
+    }
+    if (path == NULL || (inject_file_load(&s->script, path) &&
+                         inject_file_check_nodes(&s->script, path, nodes, count)))
+        return STATUS_DONE;
+    return STATUS_INPUT;
+}
+
+static void free_overrides(struct simulation *s)
+{
+    override_file_free(&s->feed_override);
+    override_file_free(&s->rapid_override);
+}
+
+enum command_status simulation_open(const struct session *session, struct simulation **opened)
+{
+    const struct options *options = session->options;
+    struct field_options field = {
+        .bus = options->bus, .drives = options->drives, .is_paced = options->realtime};
+    struct simulation *s = calloc(1, sizeof *s);
+    struct virtual_spindle_config spindle;
+    enum command_status status;
+
+    *opened = NULL;
+    if (s == NULL) {
+        message_command_error("out of memory");
+        return STATUS_ENVIRONMENT;
+    }
+    cycle_cost_init(&s->cost);
     s->inputs = inputs_idle();
-    (void)bus_init(&s->bus,
-                   session->setup.machine.can_bitrate); /* its range is checked with the machine */
-    port = bus_attach(&s->bus, NULL);
-    set_drives(&drives, &session->setup);
-    virtual_drives_init(&s->drives, &s->bus, &drives);
-    start_controller(s, session, port);
-    return s;
+    spindle = machine_setup_get_spindle(&session->setup);
+    virtual_spindle_init(&s->spindle, &spindle);
+    if (options->inject != NULL)
+        field.script = &s->script;
+    status = load_faults(s, session);
+    if (status == STATUS_DONE && !probe_file_load(&s->probe, options->probe))
+        status = STATUS_INPUT;
+    if (status == STATUS_DONE &&
+        !(override_file_load(&s->feed_override, options->override, FEED_PERCENT_MAX) &&
+          override_file_load(&s->rapid_override, options->rapid_override, RAPID_PERCENT_MAX)))
+        status = STATUS_INPUT;
+    if (status == STATUS_DONE)
+        status = field_open(&s->field, &session->setup, &field);
+    if (status != STATUS_DONE) {
+        free_overrides(s);
+        free(s);
+        return status;
+    }
+    start_controller(s, session, field_get_port(&s->field));
+    tool_point_init(&s->tool_point, &session->setup);
+    correction_watch_init(&s->correction, s->tool_point.cycle_s);
+    s->program = session->program.name;
+    s->tool_point.is_watched = s->tool_point.is_watched && s->field.link == NULL;
+    *opened = s;
+    return STATUS_DONE;
 }
 
 void simulation_close(struct simulation *s)
 {
+    if (s == NULL)
+        return;
+    field_close(&s->field);
+    free_overrides(s);
     free(s);
-}
-
-static void cycle_cost_add(struct cycle_cost *cost, uint64_t ns)
-{
-    uint64_t step = ns / CYCLE_COST_STEP_NS;
-
-    cost->count++;
-    cost->sum_ns += ns;
-    if (ns < cost->min_ns)
-        cost->min_ns = ns;
-    if (ns > cost->max_ns)
-        cost->max_ns = ns;
-    cost->steps[step < CYCLE_COST_STEPS ? step : CYCLE_COST_STEPS]++;
 }
 
 static void measured_cycle(struct simulation *s)
@@ -85,27 +115,71 @@ static void measured_cycle(struct simulation *s)
     cycle_cost_add(&s->cost, stopwatch_now_ns() - start_ns);
 }
 
-void simulation_step(struct simulation *s)
+/* What the machine meets where it is now. */
+static void set_inputs(struct simulation *s)
+{
+    const double cycle_s = 1e-6 * (double)s->controller.machine.cycle_us;
+    const double time_s = cycle_s * (double)(s->cycles - s->begun);
+    struct point at;
+
+    controller_get_actual(&s->controller, &at);
+    virtual_probe_set_inputs(&s->probe, time_s, &at, &s->inputs);
+    s->inputs.feed_override_percent = override_file_at(&s->feed_override, time_s);
+    s->inputs.rapid_override_percent = override_file_at(&s->rapid_override, time_s);
+}
+
+/* The world moves on; the controller hears of it what a temperature sensor says. */
+static void follow_tool_point(struct simulation *s)
+{
+    struct tool_point *t = &s->tool_point;
+
+    if (!t->is_watched)
+        return;
+    tool_point_follow(t, &s->field.drives, (double)s->cycles * t->cycle_s,
+                      controller_get_record(&s->controller), controller_get_block(&s->controller));
+    for (unsigned i = 0; i < AXIS_LINEAR_COUNT; i++)
+        correction_set_rise(controller_get_correction(&s->controller), (enum axis)i,
+                            deviation_sensor_k(&t->real));
+}
+
+static void watch_correction(struct simulation *s)
+{
+    const struct cycle_record *record = controller_get_record(&s->controller);
+
+    if (record != NULL)
+        correction_watch_add(&s->correction, controller_get_correction(&s->controller), record,
+                             s->program);
+}
+
+/* The spindle turns on by a cycle, and reports. */
+static void step_spindle(struct simulation *s)
+{
+    const double cycle_s = 1e-6 * (double)s->controller.machine.cycle_us;
+    const double cut_nm = virtual_spindle_cut_nm(&s->spindle, cutting_feed_mm_s(&s->controller));
+
+    s->inputs.spindle = virtual_spindle_step(
+        &s->spindle, cycle_s, controller_get_outputs(&s->controller)->spindle_speed_rpm, cut_nm);
+}
+
+bool simulation_step(struct simulation *s)
 {
     controller_background(&s->controller);
+    set_inputs(s);
     if (s->cycles % CYCLE_COST_EVERY == 0)
         measured_cycle(s);
     else
         controller_cycle(&s->controller, &s->inputs);
-    s->cycles++;
-    bus_run_until(&s->bus, s->cycles * s->cycle_ns);
-    virtual_drives_step(&s->drives, s->cycle_ns);
-}
-
-double cycle_cost_get_p99_ns(const struct cycle_cost *cost)
-{
-    uint64_t wanted = cost->count - cost->count / 100;
-    uint64_t seen = 0;
-
-    for (unsigned i = 0; i < CYCLE_COST_STEPS; i++) {
-        seen += cost->steps[i];
-        if (seen >= wanted)
-            return (double)(i + 1) * CYCLE_COST_STEP_NS;
+    step_spindle(s);
+    if (!s->has_begun && controller_get_record(&s->controller) != NULL) {
+        s->has_begun = true;
+        bus_clear_responses(&s->field.bus); /* booting drives are another matter than operation */
     }
-    return (double)cost->max_ns;
+    s->cycles++;
+    if (controller_get_state(&s->controller) == CONTROLLER_STARTING)
+        s->begun = s->cycles;
+    if (!field_end_cycle(&s->field))
+        return false;
+    follow_tool_point(s);
+    watch_correction(s);
+    return true;
 }

@@ -66,6 +66,9 @@ static void check_axis(struct summary *summary, unsigned i)
     if (axis->following_error_max_mm > 0)
         add_check(summary, "following", i, axis_unit_name(i),
                   figures->following_error_mm[i] * ratio, axis->following_error_max_mm * ratio);
+    if (machine_axis_is_stepped(axis))
+        add_check(summary, "missed_steps", i, "steps", (double)summary->steppers->axis[i].missed,
+                  0);
 }
 
 static void check_path(struct summary *summary)
@@ -86,7 +89,9 @@ static void check_blocks(struct summary *summary, const struct summary_source *s
     double missing = source->judge->strayed ? 1 : 0;
 
     if (source->outcome == OUTCOME_COMPLETED && !source->judge->strayed)
-        missing = maths_abs((double)source->totals->last - (double)summary->figures.blocks);
+        missing = source->totals->is_open
+                      ? maths_abs(judge_get_missing(source->judge))
+                      : maths_abs((double)source->totals->last - (double)summary->figures.blocks);
     add_check(summary, "blocks_missing", AXIS_COUNT, "", missing, 0);
 }
 
@@ -101,6 +106,32 @@ static void set_cost(struct summary *summary, const struct cycle_cost *cost)
     summary->cost_max_ns = (double)cost->max_ns;
 }
 
+/* Predicted and observed; what faults of the bus have done to frames is no fault of the prediction. */
+static void set_responses(struct summary *summary, const struct field *field)
+{
+    double nearest = 0;
+
+    bus_plan_set(&summary->bus_plan, summary->machine);
+    summary->responses_observed = field->link == NULL && summary->figures.cycles > 0;
+    if (!summary->responses_observed)
+        return;
+    bus_plan_get_observed(&summary->bus_plan, &field->bus, summary->response_ns);
+    for (unsigned i = 0; i < summary->bus_plan.count; i++)
+        nearest = maths_max(nearest, 100.0 * (double)summary->response_ns[i] /
+                                         (double)summary->bus_plan.worst_ns[i]);
+    if (field->bus.fault_count == 0)
+        add_check(summary, "bus_response", AXIS_COUNT, "%", nearest, 100);
+}
+
+static void set_pace(struct summary *summary, const struct field *field)
+{
+    summary->is_paced = field->is_paced;
+    if (!field->is_paced)
+        return;
+    pace_get_figures(&field->pace, &summary->pace);
+    summary->permission = field->permission;
+}
+
 void summary_set(struct summary *summary, const struct summary_source *source)
 {
     const struct simulation *simulation = source->simulation;
@@ -113,10 +144,15 @@ void summary_set(struct summary *summary, const struct summary_source *source)
         .cycle_s = 1e-6 * (double)machine->cycle_us,
         .wall_time_s = source->wall_time_s,
         .figures = source->judge->figures,
-        .bus_frames = simulation->bus.counts.frames,
-        .bus_load_percent = bus_load_percent(&simulation->bus),
+        .correction = simulation->correction,
+        .tool_point = simulation->tool_point,
+        .steppers = &simulation->field.steppers,
+        .interpolator = *controller_get_interpolator_errors(&simulation->controller),
+        .bus_frames = field_get_frames(&simulation->field),
+        .bus_load_percent = field_get_load_percent(&simulation->field),
         .bus_predicted_percent = machine_setup_predict_load_percent(machine),
     };
+    tool_point_finish(&summary->tool_point);
     if (source->outcome == OUTCOME_FAULTED)
         diagnostic_text(controller_get_fault(&simulation->controller), summary->fault);
     set_cost(summary, &simulation->cost);
@@ -127,5 +163,7 @@ void summary_set(struct summary *summary, const struct summary_source *source)
     check_path(summary);
     check_blocks(summary, source);
     add_check(summary, "bus_load", AXIS_COUNT, "%", summary->bus_load_percent, 100);
+    set_responses(summary, &simulation->field);
+    set_pace(summary, &simulation->field);
     add_check(summary, "fault", AXIS_COUNT, "", source->outcome == OUTCOME_FAULTED ? 1 : 0, 0);
 }

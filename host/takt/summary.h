@@ -5,6 +5,7 @@
 #define TAKT_HOST_SUMMARY_H
 
 #include "base/error.h"
+#include "takt/bus_plan.h"
 #include "takt/judge.h"
 #include "takt/session.h"
 #include "takt/simulation.h"
@@ -15,7 +16,7 @@
 enum summary_outcome { OUTCOME_COMPLETED, OUTCOME_STOPPED, OUTCOME_FAULTED };
 
 #define SUMMARY_CHECK_NAME_MAX 31
-#define SUMMARY_CHECKS_MAX     (4 * AXIS_COUNT + 8)
+#define SUMMARY_CHECKS_MAX     (5 * AXIS_COUNT + 8)
 
 struct summary_check {
     char name[SUMMARY_CHECK_NAME_MAX + 1];
@@ -32,9 +33,19 @@ struct summary {
     double cycle_s;
     double wall_time_s;
     struct judge_figures figures;
+    struct correction_watch correction;
+    struct tool_point tool_point;
+    const struct virtual_steppers *steppers;
+    struct interpolator_errors interpolator;
     uint64_t bus_frames;
     double bus_load_percent;
     double bus_predicted_percent;
+    bool responses_observed; /* by a program, and on the embedded bus */
+    struct bus_plan bus_plan;
+    uint64_t response_ns[BUS_PLAN_MAX]; /* observed, of the plan's messages */
+    bool is_paced;
+    struct pace_figures pace;
+    struct pace_permission permission;
     bool cost_measured;
     double cost_min_ns, cost_mean_ns, cost_p99_ns, cost_max_ns;
     unsigned checks;

@@ -1,6 +1,8 @@
 /* The summary as JSON: the fields and their order are those of README.md and summary.schema.json. */
 #include "takt/axis_unit.h"
 #include "takt/summary.h"
+#include "takt/summary_correction.h"
+#include "takt/summary_steps.h"
 
 #include <cjson/cJSON.h>
 #include <inttypes.h>
@@ -114,6 +116,27 @@ static void add_path(cJSON *root, const struct summary *summary)
     cJSON_AddNumberToObject(root, "correction_max_mm", figures->correction_mm);
 }
 
+/* observed_us: null on an outside bus, where nobody sees when a frame was given. */
+static void add_responses(cJSON *bus, const struct summary *summary)
+{
+    const struct bus_plan *plan = &summary->bus_plan;
+    cJSON *responses = cJSON_AddArrayToObject(bus, "responses");
+
+    for (unsigned i = 0; i < plan->count; i++) {
+        cJSON *object = cJSON_CreateObject();
+
+        cJSON_AddStringToObject(object, "name", plan->name[i]);
+        cJSON_AddNumberToObject(object, "id", plan->message[i].id);
+        cJSON_AddNumberToObject(object, "bytes", plan->message[i].length);
+        cJSON_AddNumberToObject(object, "predicted_us", 1e-3 * (double)plan->worst_ns[i]);
+        if (summary->responses_observed)
+            cJSON_AddNumberToObject(object, "observed_us", 1e-3 * (double)summary->response_ns[i]);
+        else
+            cJSON_AddNullToObject(object, "observed_us");
+        cJSON_AddItemToArray(responses, object);
+    }
+}
+
 static void add_bus(cJSON *root, const struct summary *summary)
 {
     cJSON *bus = cJSON_AddObjectToObject(root, "bus");
@@ -121,6 +144,25 @@ static void add_bus(cJSON *root, const struct summary *summary)
     cJSON_AddNumberToObject(bus, "frames", (double)summary->bus_frames);
     cJSON_AddNumberToObject(bus, "load_percent", summary->bus_load_percent);
     cJSON_AddNumberToObject(bus, "predicted_load_percent", summary->bus_predicted_percent);
+    add_responses(bus, summary);
+}
+
+static void add_pace(cJSON *root, const struct summary *summary)
+{
+    const struct pace_figures *figures = &summary->pace;
+    cJSON *pace;
+
+    if (!summary->is_paced) {
+        cJSON_AddNullToObject(root, "realtime");
+        return;
+    }
+    pace = cJSON_AddObjectToObject(root, "realtime");
+    cJSON_AddBoolToObject(pace, "fifo_priority", summary->permission.has_priority);
+    cJSON_AddBoolToObject(pace, "memory_locked", summary->permission.has_memory);
+    cJSON_AddNumberToObject(pace, "overruns", (double)figures->overruns);
+    cJSON_AddNumberToObject(pace, "lateness_mean_ns", figures->lateness_mean_ns);
+    cJSON_AddNumberToObject(pace, "lateness_p99_ns", figures->lateness_p99_ns);
+    cJSON_AddNumberToObject(pace, "lateness_max_ns", (double)figures->lateness_max_ns);
 }
 
 static void add_cost(cJSON *root, const struct summary *summary)
@@ -163,7 +205,10 @@ char *summary_json(const struct summary *summary)
     add_head(root, summary);
     add_axes(root, summary);
     add_path(root, summary);
+    summary_correction_add_json(root, summary);
+    summary_steps_add_json(root, summary);
     add_bus(root, summary);
+    add_pace(root, summary);
     add_cost(root, summary);
     add_checks(root, summary);
     (void)snprintf(digest, sizeof digest, "%016" PRIx64, summary->figures.digest);

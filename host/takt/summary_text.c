@@ -1,6 +1,8 @@
 /* The summary as people read it. */
 #include "takt/axis_unit.h"
 #include "takt/summary.h"
+#include "takt/summary_correction.h"
+#include "takt/summary_steps.h"
 
 #include <inttypes.h>
 
@@ -65,6 +67,38 @@ static void write_axes(FILE *stream, const struct summary *summary)
     }
 }
 
+/* The longest of the frames of a cycle, on an outside bus only predicted. */
+static void write_response(FILE *stream, const struct summary *summary)
+{
+    uint64_t predicted_ns = 0, observed_ns = 0;
+
+    for (unsigned i = 0; i < summary->bus_plan.count; i++) {
+        if (summary->bus_plan.worst_ns[i] > predicted_ns)
+            predicted_ns = summary->bus_plan.worst_ns[i];
+        if (summary->response_ns[i] > observed_ns)
+            observed_ns = summary->response_ns[i];
+    }
+    (void)fprintf(stream, "                longest response ");
+    if (summary->responses_observed)
+        (void)fprintf(stream, "%.0f us ", 1e-3 * (double)observed_ns);
+    (void)fprintf(stream, "(worst case %.0f us)\n", 1e-3 * (double)predicted_ns);
+}
+
+static void write_pace(FILE *stream, const struct summary *summary)
+{
+    const struct pace_figures *pace = &summary->pace;
+
+    if (!summary->is_paced)
+        return;
+    (void)fprintf(stream,
+                  "  real time     cycles begin %.1f us late (99 %%: %.0f, max: %.0f), %" PRIu64
+                  " overruns; %s priority, memory %s\n",
+                  1e-3 * pace->lateness_mean_ns, 1e-3 * pace->lateness_p99_ns,
+                  1e-3 * (double)pace->lateness_max_ns, pace->overruns,
+                  summary->permission.has_priority ? "real-time" : "normal",
+                  summary->permission.has_memory ? "locked" : "not locked");
+}
+
 static void write_path(FILE *stream, const struct summary *summary)
 {
     const struct judge_figures *figures = &summary->figures;
@@ -75,6 +109,9 @@ static void write_path(FILE *stream, const struct summary *summary)
                   figures->joint_feed_step_mm_s);
     (void)fprintf(stream, "  bus           %" PRIu64 " frames, load %.1f %% (worst case %.1f %%)\n",
                   summary->bus_frames, summary->bus_load_percent, summary->bus_predicted_percent);
+    write_response(stream, summary);
+    write_pace(stream, summary);
+    summary_steps_write_text(stream, summary);
 }
 
 static void write_checks(FILE *stream, const struct summary *summary)
@@ -99,6 +136,7 @@ void summary_write_text(FILE *stream, const struct summary *summary)
     write_head(stream, summary);
     write_axes(stream, summary);
     write_path(stream, summary);
+    summary_correction_write_text(stream, summary);
     write_checks(stream, summary);
     (void)fprintf(stream, "  digest        %016" PRIx64 "\n", summary->figures.digest);
 }

@@ -85,17 +85,3 @@ bool text_next_line(const struct text *text, size_t *position, const char **line
         (*length)--;
     return true;
 }
-
-const char *text_line(const struct text *text, uint32_t line, size_t *length)
-{
-    const char *found = "";
-    size_t position = 0;
-
-    for (uint32_t i = 0; i < line; i++) {
-        if (!text_next_line(text, &position, &found, length)) {
-            *length = 0;
-            return "";
-        }
-    }
-    return found;
-}

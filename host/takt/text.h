@@ -1,5 +1,5 @@
 /*
- * A whole text in memory: a part program, a machine file, a table, a trace.
+ * A whole text in memory: a machine file, a table, a trace.
  */
 #ifndef TAKT_HOST_TEXT_H
 #define TAKT_HOST_TEXT_H
@@ -17,9 +17,6 @@ struct text {
 /* Reads path, "-" for standard input. False after a message: it cannot be opened or read. */
 bool text_read(struct text *text, const char *path);
 void text_free(struct text *text);
-
-/* Line from 1, without its end; *length is 0 and the result empty when there is no such line. */
-const char *text_line(const struct text *text, uint32_t line, size_t *length);
 
 /*
  * Reads text line by line: true and the next line without its end ("\n" or "\r\n") while there is one.

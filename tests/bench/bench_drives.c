@@ -45,13 +45,25 @@ static void prepare_setpoints(void)
     }
 }
 
-static void init_master(void)
+/* heartbeat_ms: 0 for drives that have none. */
+static void init_master(uint16_t heartbeat_ms)
 {
     struct drives_config config = {
-        .count = DRIVES, .start_timeout_cycles = 1000, .answer_timeout_cycles = 3};
+        .count = DRIVES,
+        .cycle_us = 1000,
+        .bitrate = 1000000,
+        .controller_node = 127,
+        .heartbeat_ms = heartbeat_ms,
+        .start_timeout_cycles = 1000,
+        .answer_timeout_cycles = 3,
+        .sdo_timeout_cycles = 100,
+        .brake_timeout_cycles = 1000,
+    };
     for (unsigned i = 0; i < DRIVES; i++)
-        config.axis[i] =
-            (struct drives_config_axis){(enum axis)(AXIS_X + (int)i), (uint8_t)(i + 1), 1e5, 1.0};
+        config.axis[i] = (struct drives_config_axis){.axis = (enum axis)(AXIS_X + (int)i),
+                                                     .node = (uint8_t)(i + 1),
+                                                     .increments_per_mm = 1e5,
+                                                     .following_error_max_mm = 1.0};
     drives_init(&master, &config);
 }
 
@@ -64,14 +76,14 @@ static void loop_cycle(const struct point *point)
     virtual_drives_step(&set, CYCLE_NS);
 }
 
-static void init_loop(void)
+static void init_loop(uint16_t heartbeat_ms)
 {
     struct virtual_drives_config config;
     virtual_drives_set_default(&config, DRIVES);
     (void)bus_init(&bus, 1000000);
     port = bus_attach(&bus, NULL);
     virtual_drives_init(&set, &bus, &config);
-    init_master();
+    init_master(heartbeat_ms);
     while (drives_get_state(&master) == DRIVES_STARTING)
         loop_cycle(&setpoint[0]);
 }
@@ -82,11 +94,22 @@ static void run_loop(void)
         loop_cycle(&setpoint[k % AHEAD]);
 }
 
+/* Without a controller: neither SYNC (object 1006) nor its heartbeat (1016) is missed. */
+static void keep_enabled(void)
+{
+    for (unsigned i = 0; i < DRIVES; i++) {
+        (void)virtual_drive_write_object(&set.drive[i], PDO_MAPPED(0x1006, 0, 32), 0);
+        (void)virtual_drive_write_object(&set.drive[i], PDO_MAPPED(0x1016, 1, 32), 0);
+    }
+}
+
 static void run_steps(void)
 {
+    keep_enabled();
     for (unsigned k = 0; k < CYCLES; k++) {
         for (unsigned i = 0; i < DRIVES; i++)
-            set.drive[i].target_inc = (int32_t)(1e5 * setpoint[k % AHEAD].at[i]);
+            set.drive[i].objects.process.target_position =
+                (int32_t)(1e5 * setpoint[k % AHEAD].at[i]);
         virtual_drives_step(&set, CYCLE_NS);
     }
 }
@@ -127,10 +150,11 @@ static bool null_receive(void *context, struct can_frame *frame)
     return true;
 }
 
+/* Started with the virtual drives, then left alone with the port. */
 static void run_master(void)
 {
     struct can_port null = {.send = null_send, .receive = null_receive};
-    init_master();
+    init_loop(0);
     answers = 0;
     for (unsigned k = 0; k < CYCLES; k++) {
         null.context = &setpoint[(k + AHEAD - DRIVES_LATENCY_CYCLES) % AHEAD];
@@ -154,7 +178,7 @@ static double best_ns(void (*run)(void))
 int main(void)
 {
     prepare_setpoints();
-    init_loop();
+    init_loop(100);
     FILE *log = tmpfile();
     double loop = best_ns(run_loop);
     if (log) {

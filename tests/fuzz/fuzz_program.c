@@ -7,8 +7,8 @@
  * are read, so that one corpus serves for all.
  */
 #include "base/maths.h"
+#include "motion/motion.h"
 #include "offset/offset.h"
-#include "plan/window.h"
 #include "program/program.h"
 
 #include <stdio.h>
@@ -45,7 +45,13 @@ struct fuzz_source {
 static struct program program;
 static struct offset offset;
 static struct parameters parameters;
-static struct window window;
+/* A program may be slow: what its plan is run for at most. */
+#define ROOM_TRIES    20
+#define CYCLES_A_TRY  500
+#define CYCLES_AT_END 2000
+
+static struct path path;
+static struct motion motion;
 
 static void fail(const char *claim)
 {
@@ -97,20 +103,27 @@ static void check_diagnostic(const struct diagnostic *d)
     CHECK(diagnostic_text(d, text) > 0);
 }
 
-static void check_segment(const struct segment *segment)
+/* Runs what has been planned for so many cycles, or to its end. */
+static void run_cycles(unsigned cycles)
 {
-    struct profile_state end;
+    const struct motion_operator as_programmed = {.feed_ratio = 1.0, .rapid_ratio = 1.0};
+    struct cycle_record record;
 
-    if (!move_is_motion(&segment->move)) {
-        return;
+    for (unsigned i = 0; i < cycles; i++) {
+        if (motion_wanted(&motion) != NULL) {
+            path_go_on(&path);
+            motion_build(&motion);
+        }
+        if (motion_cycle(&motion, &as_programmed, &record) != MOTION_CYCLE) {
+            return;
+        }
+        for (unsigned axis = 0; axis < AXIS_COUNT; axis++) {
+            CHECK(maths_is_finite(record.cmd.at[axis]));
+        }
     }
-    CHECK(segment->curve.length_mm > 0.0);
-    CHECK(segment->profile.duration_s > 0.0 && maths_is_finite(segment->profile.duration_s));
-    profile_evaluate(&segment->profile, segment->profile.duration_s, &end);
-    CHECK(maths_abs(end.s_mm - segment->curve.length_mm) <= 1e-6 + 1e-9 * segment->curve.length_mm);
 }
 
-static void open_window(const struct program_config *config)
+static void open_path(const struct program_config *config)
 {
     struct plan_limits limits = {
         .axes = config->axes, .cycle_s = 0.001, .chord_error_max_mm = 0.001};
@@ -122,29 +135,24 @@ static void open_window(const struct program_config *config)
         limits.acceleration_mm_s2[axis] = 2000.0 * unit;
         limits.jerk_mm_s3[axis] = 50000.0 * unit;
     }
-    window_init(&window, &limits, 16, &config->start);
+    path_init(&path, &limits, &config->start);
+    motion_init(&motion, &path, &config->start, false);
 }
 
 static void plan_move(const struct move *move)
 {
-    struct segment segment;
-
-    while (!window_has_room(&window)) {
-        window_take(&window, &segment);
-        check_segment(&segment);
+    for (unsigned i = 0; i < ROOM_TRIES && !path_has_room(&path); i++) {
+        run_cycles(CYCLES_A_TRY);
     }
-    window_push(&window, move);
+    if (path_has_room(&path)) {
+        path_push(&path, move);
+    }
 }
 
 static void plan_rest(void)
 {
-    struct segment segment;
-
-    window_finish(&window);
-    while (!window_is_empty(&window)) {
-        window_take(&window, &segment);
-        check_segment(&segment);
-    }
+    path_finish(&path);
+    run_cycles(CYCLES_AT_END);
 }
 
 static void check_warnings(void)
@@ -156,38 +164,45 @@ static void check_warnings(void)
     }
 }
 
-/* A probe that answers half way, or never. */
-static void answer_probe(const struct move *move, const struct point *at)
+/* A probe that answers half way and comes to rest a little further, or never does; an input that is read, or not. */
+static void answer(const struct move *asked, const struct point *from)
 {
-    struct point contact;
+    struct program_answer a = {
+        .contact = asked->line % 2 == 0,
+        .contact_at = asked->end,
+        .rest_at = asked->end,
+        .value = asked->line % 2 == 0 ? 1.0 : PROGRAM_INPUT_TIMED_OUT,
+    };
 
-    for (unsigned axis = 0; axis < AXIS_COUNT; axis++) {
-        contact.at[axis] = 0.5 * (at->at[axis] + move->end.at[axis]);
+    for (unsigned axis = 0; a.contact && axis < AXIS_COUNT; axis++) {
+        a.contact_at.at[axis] = 0.5 * (from->at[axis] + asked->end.at[axis]);
+        a.rest_at.at[axis] = 0.4 * from->at[axis] + 0.6 * asked->end.at[axis];
     }
-    if (move->line % 2 == 0) {
-        program_set_probe(&program, &contact, true);
-    }
+    offset_answer(&offset, &program, &a);
 }
 
-/* False: nothing more is to be read. Involutes are not planned yet. */
-static bool take_move(const struct move *move, struct point *at)
+/* Where a motion leads, and what was asked of the world last. */
+struct course {
+    struct point from, at;
+    struct move asked;
+};
+
+static void take_move(const struct move *move, struct course *c)
 {
     check_move(move);
-    if (move_is_involute(move)) {
-        return false;
-    }
     plan_move(move);
-    if (move->kind == MOVE_PROBE) {
-        answer_probe(move, at);
-    }
     if (move_is_motion(move)) {
-        *at = move->end;
+        c->from = c->at;
+        c->at = move->end;
     }
-    return true;
+    if (move->kind == MOVE_PROBE || move->kind == MOVE_INPUT) {
+        c->asked = *move;
+    }
 }
 
 static void read_program(struct point at)
 {
+    struct course course = {.from = at, .at = at};
     struct diagnostic error;
     struct move move;
     enum program_result result;
@@ -199,10 +214,11 @@ static void read_program(struct point at)
         if (result == PROGRAM_ERROR) {
             check_diagnostic(&error);
             errors++;
-        } else if (take_move(&move, &at)) {
-            moves++;
+        } else if (result == PROGRAM_WAIT) {
+            answer(&course.asked, &course.from);
         } else {
-            break;
+            take_move(&move, &course);
+            moves++;
         }
         check_warnings();
     }
@@ -265,6 +281,7 @@ static void set_config(struct program_config *config, uint32_t *choice)
     config->exact_path = choose(choice);
     config->sharp_corners = choose(choice);
     config->path_tolerance_mm = choose(choice) ? 0.1 : 0.0;
+    config->waits = choose(choice);
     if (choose(choice) && choose(choice) && choose(choice)) {
         config->from_line = 1U + *choice % 20U;
     }
@@ -284,7 +301,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     source_open_text(&text.source, &text.text, (const char *)data, size);
     program_open(&program, &config, &source);
     offset_open(&offset, &config);
-    open_window(&config);
+    open_path(&config);
     read_program(config.start);
     return 0;
 }

@@ -141,6 +141,10 @@ class TaktStory(Story):
                 self.add(f"{what} {value['P']} {float(value['Q']):.0f}")
 
 
+# M100 to M199 are programs of the user in LinuxCNC, and rs274 has none: takt's own switches of correction.
+OF_THE_USER = ("M120", "M121")
+
+
 def table_in_inches(path):
     """rs274 by itself counts in inches."""
     lines = []
@@ -190,6 +194,9 @@ def takt_story(takt, golden):
 
 def compare(takt, golden, totals):
     theirs, reason = linuxcnc_story(golden)
+    if theirs is None and any(reason.endswith(code) for code in OF_THE_USER):
+        totals["with codes that LinuxCNC leaves to its user"] += 1
+        return True
     if theirs is None:
         print(f"{golden.name}: rs274 does not read it: {reason}")
         totals["not read by rs274"] += 1
@@ -214,7 +221,7 @@ def main(arguments):
         print("rs274 is not installed (Debian: linuxcnc-uspace)")
         return SKIPPED
     goldens = [golden for golden in canon.all_goldens() if not golden.is_error and not golden.read("linuxcnc")]
-    totals = {"with the same events": 0, "not read by rs274": 0}
+    totals = {"with the same events": 0, "with codes that LinuxCNC leaves to its user": 0, "not read by rs274": 0}
     good = all([compare(arguments[0], golden, totals) for golden in goldens])
     print(f"{len(goldens)} goldens: " + ", ".join(f"{count} {what}" for what, count in totals.items()))
     return 0 if good else 1

@@ -8,7 +8,7 @@
  */
 #include "base/maths.h"
 #include "motion/motion.h"
-#include "plan/window.h"
+#include "plan/path.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -18,6 +18,9 @@
 #define AXES    3
 #define SEEDS   25
 #define MOVES   300
+
+/* A chain that lasts longer stands still for ever. */
+#define CYCLES_MAX 3000000
 
 enum family {
     FAMILY_CORNERS,
@@ -32,12 +35,26 @@ enum family {
 };
 
 static const struct plan_limits machines[] = {
-    {7, {100, 100, 100}, {1000, 1000, 1000}, {50000, 50000, 50000}, CYCLE_S, 1e-3},
-    {7, {100, 60, 20}, {1000, 400, 2000}, {50000, 8000, 200000}, CYCLE_S, 1e-3},
-    {7, {500, 500, 500}, {200, 5000, 5000}, {1e6, 1e6, 1e5}, CYCLE_S, 1e-2},
+    {7,
+     {100, 100, 100},
+     {1000, 1000, 1000},
+     {50000, 50000, 50000},
+     CYCLE_S,
+     1e-3,
+     LAW_JERK,
+     LANDING_SPAN},
+    {7,
+     {100, 60, 20},
+     {1000, 400, 2000},
+     {50000, 8000, 200000},
+     CYCLE_S,
+     1e-3,
+     LAW_JERK,
+     LANDING_SPAN},
+    {7, {500, 500, 500}, {200, 5000, 5000}, {1e6, 1e6, 1e5}, CYCLE_S, 1e-2, LAW_JERK, LANDING_SPAN},
 };
 
-static struct window window;
+static struct path path;
 static struct motion motion;
 static struct point at; /* end of the moves made so far */
 static double heading_rad;
@@ -140,28 +157,26 @@ static void push_next(enum family family, unsigned number)
 
     if (number < MOVES) {
         m = move_of(family, number);
+        m.overrides = OVERRIDE_FEED | OVERRIDE_HOLD;
         at = m.end;
-        window_push(&window, &m);
+        path_push(&path, &m);
         return;
     }
     memset(&m, 0, sizeof(m));
     m.kind = MOVE_END;
-    window_push(&window, &m);
-    window_finish(&window);
+    path_push(&path, &m);
+    path_finish(&path);
 }
 
-static void fill_queue(enum family family, unsigned *pushed)
+static void plan(enum family family, uint32_t look_ahead, unsigned *pushed)
 {
-    while (motion_has_room(&motion)) {
-        while (!window.finished && window_has_room(&window)) {
-            push_next(family, (*pushed)++);
-        }
-        if (!window_is_ready(&window)) {
-            return;
-        }
-        window_take(&window, motion_next_slot(&motion));
-        motion_push(&motion);
+    if (motion_wanted(&motion) == NULL) {
+        return;
     }
+    while (!path.finished && path_has_room(&path) && motion_ahead(&motion) < look_ahead) {
+        push_next(family, (*pushed)++);
+    }
+    motion_build(&motion);
 }
 
 static void judge_axis(const struct plan_limits *limits, int axis, double x)
@@ -185,7 +200,7 @@ static void judge(const struct plan_limits *limits, const struct cycle_record *r
     for (int axis = 0; axis < AXES; axis++) {
         judge_axis(limits, axis, record->cmd.at[axis]);
         if (record->landed) {
-            const double off = record->cmd.at[axis] - motion_segment(&motion)->move.end.at[axis];
+            const double off = record->cmd.at[axis] - motion_block(&motion)->move.end.at[axis];
 
             seen.landing_mm = maths_max(seen.landing_mm, maths_abs(off));
         }
@@ -195,6 +210,7 @@ static void judge(const struct plan_limits *limits, const struct cycle_record *r
 static void run_chain(enum family family, uint64_t chain_seed, const struct plan_limits *limits,
                       uint32_t look_ahead)
 {
+    const struct motion_operator asked = {.feed_ratio = 1.0, .rapid_ratio = 1.0};
     struct cycle_record record;
     unsigned pushed = 0;
     enum motion_result result;
@@ -203,12 +219,12 @@ static void run_chain(enum family family, uint64_t chain_seed, const struct plan
     heading_rad = 0.0;
     memset(&at, 0, sizeof(at));
     memset(&seen, 0, sizeof(seen));
-    window_init(&window, limits, look_ahead, &at);
-    motion_init(&motion, CYCLE_S, &at);
+    path_init(&path, limits, &at);
+    motion_init(&motion, &path, &at, false);
     for (;;) {
-        fill_queue(family, &pushed);
-        result = motion_cycle(&motion, &record);
-        if (result != MOTION_CYCLE) {
+        plan(family, look_ahead, &pushed);
+        result = motion_cycle(&motion, &asked, &record);
+        if (result != MOTION_CYCLE || motion.cycles > CYCLES_MAX) {
             break;
         }
         judge(limits, &record);
@@ -217,22 +233,39 @@ static void run_chain(enum family family, uint64_t chain_seed, const struct plan
     TEST_ASSERT_EQUAL_MEMORY(&at, &record.cmd, sizeof(at));
 }
 
+static void check_chain(enum family family, unsigned s, unsigned m, uint32_t look_ahead)
+{
+    char where[80];
+
+    run_chain(family, s, &machines[m], look_ahead);
+    (void)snprintf(where, sizeof(where), "family %d, seed %u, machine %u, look-ahead %u",
+                   (int)family, s, m, (unsigned)look_ahead);
+    TEST_ASSERT_TRUE_MESSAGE(seen.velocity <= 1.0001, where);
+    TEST_ASSERT_TRUE_MESSAGE(seen.acceleration <= 1.0001, where);
+    TEST_ASSERT_TRUE_MESSAGE(seen.jerk <= 1.001, where);
+    TEST_ASSERT_TRUE_MESSAGE(seen.landing_mm <= 1e-9, where);
+    TEST_ASSERT_TRUE_MESSAGE(seen.jerk > 0.01, where);
+}
+
 static void check_family(enum family family, uint32_t look_ahead)
 {
     for (unsigned m = 0; m < sizeof(machines) / sizeof(machines[0]); m++) {
         for (unsigned s = 1; s <= SEEDS; s++) {
-            char where[80];
-
-            run_chain(family, s, &machines[m], look_ahead);
-            (void)snprintf(where, sizeof(where), "family %d, seed %u, machine %u, look-ahead %u",
-                           (int)family, s, m, (unsigned)look_ahead);
-            TEST_ASSERT_TRUE_MESSAGE(seen.velocity <= 1.0001, where);
-            TEST_ASSERT_TRUE_MESSAGE(seen.acceleration <= 1.0001, where);
-            TEST_ASSERT_TRUE_MESSAGE(seen.jerk <= 1.001, where);
-            TEST_ASSERT_TRUE_MESSAGE(seen.landing_mm <= 1e-9, where);
-            TEST_ASSERT_TRUE_MESSAGE(seen.jerk > 0.01, where);
+            check_chain(family, s, m, look_ahead);
         }
     }
+}
+
+/* Found by longer runs of this test, each for another reason. */
+static void test_rare_chains_keep_the_limits(void)
+{
+    check_chain(FAMILY_SPIRAL_ARCS, 163, 2, 256); /* braking took the room that a landing needed */
+    check_chain(FAMILY_CORNERS, 171, 1, 256); /* rest missed a joint by the rounding of its feed */
+    check_chain(FAMILY_HELICES, 153, 1, 256); /* likewise, by less */
+    check_chain(FAMILY_SPIRAL_ARCS, 66, 0, 256); /* a span begins with blocks of half a window */
+    check_chain(FAMILY_MIXED, 25, 2, 1);         /* a joint was the end of all that was known */
+    check_chain(FAMILY_NEARLY_COLLINEAR, 34, 1,
+                1); /* and its continuation came too late to land on it */
 }
 
 static void test_corners_keep_the_limits(void)
@@ -303,5 +336,6 @@ int main(void)
     RUN_TEST(test_helices_keep_the_limits);
     RUN_TEST(test_mixed_programs_keep_the_limits);
     RUN_TEST(test_small_windows_keep_the_limits);
+    RUN_TEST(test_rare_chains_keep_the_limits);
     return UNITY_END();
 }

@@ -21,7 +21,7 @@
 #define TEXT_MAX   16384
 #define EXACT_MM   1e-9
 /* A blunt outer corner, which has one point instead of an arc, stands off by so much more. */
-#define BLUNT_MM (2.0 * OFFSET_BLUNT_MM)
+#define BLUNT_MM (OFFSET_BLUNT_MM + EXACT_MM)
 /* Sharp corners have right angles at most: their tips stand off by so much of the radius. */
 #define SHARP_MAX_RATIO 0.41422
 /* Points looked at on each move of the tool. */

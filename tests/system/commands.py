@@ -4,7 +4,7 @@ import re
 
 import takt_test as t
 
-COMMANDS = "run", "plan", "check", "canon", "trace", "machine"
+COMMANDS = "run", "plan", "check", "canon", "trace", "machine", "serve", "panel", "bore", "drives", "cycle-frequency", "precision"
 PROGRAM = t.write("part.ngc", "F600\nG1 X10\nG2 X20 I5\nG4 P0.5\nG0 Z5\nM2\n")
 
 status, out, _ = t.run("help")
@@ -18,7 +18,7 @@ t.check(re.fullmatch(r"takt \d+\.\d+\.\d+\n", t.run("--version")[1]), "--version
 for words, said in (
     ([], "usage"),
     (["rum"], "did you mean run?"),
-    (["serve"], "run "),
+    (["serv"], "did you mean serve?"),
     (["run"], "file name is missing"),
     (["run", PROGRAM, "more"], "one argument too many"),
     (["run", PROGRAM, "--jsno", "x"], "did you mean --json?"),
@@ -46,10 +46,12 @@ t.check(plan["blocks"][2]["time_s"] == 0.5, "the dwell's time", plan["blocks"][2
 t.check(abs(plan["blocks"][0]["feed_cruise_mm_min"] - 600) < 1e-6, "the programmed feed is reached", plan["blocks"][0])
 t.check(plan["blocks"][0]["governor"] == "program" and plan["blocks"][3]["end"] == "stop", "why and how", plan["blocks"])
 run_cycles = t.json.loads(t.run("run", PROGRAM, "--json", "-", "--quiet")[1])["cycles"]
+rows_s = sum(block["time_s"] for block in plan["blocks"])
+t.check(abs(rows_s - plan["totals"]["time_s"]) < 1e-9, "the rows' times add up", rows_s, plan["totals"])
 t.check(plan["totals"]["cycles"] == run_cycles, "the plan takes as long as the run", plan["totals"], run_cycles)
 
 status, out, _ = t.run("check", PROGRAM)
-t.check(status == 0 and "no errors" in out and "30.708 mm" in out, "check", out)
+t.check(status == 0 and out.endswith(": no errors, 0 warnings; 3 moves, 30.708 mm\n"), "check", out)
 status, out, _ = t.run("canon", PROGRAM)
 t.check(out.splitlines()[1] == "3 arc_cw X20.000000 Y0.000000 Z0.000000 I15.000000 J0.000000 K0.000000 P1 G17 F600.000000", "canon", out)
 

@@ -1,5 +1,6 @@
 """What the system tests share: running the command, reading what it wrote, telling failures."""
 
+import cmath
 import csv
 import json
 import math
@@ -92,14 +93,48 @@ class Move:
         self.start = start
         values = {word[0]: word[1:] for word in words[2:]}
         self.end = tuple(float(values[axis]) for axis in "XYZ")
-        if self.is_arc():
+        if self.is_arc() or self.is_involute():
             self.centre = tuple(float(values[axis]) for axis in "IJK")
-            self.turns = int(float(values["P"]))
             self.plane = {"G17": (0, 1, 2), "G18": (2, 0, 1), "G19": (1, 2, 0)}["G" + values["G"]]
+        if self.is_arc():
+            self.turns = int(float(values["P"]))
             self.set_arc()
+        if self.is_involute():
+            self.base = float(values["R"])
+            self.set_involute()
 
     def is_arc(self):
         return self.kind.startswith("arc")
+
+    def is_involute(self):
+        return self.kind.startswith("involute")
+
+    def string(self, point):
+        """The string from a point to the base circle: how far it is unrolled, and where it touches."""
+        first, second, _ = self.plane
+        at = complex(point[first] - self.centre[first], point[second] - self.centre[second])
+        unrolled = math.sqrt(max(0.0, (abs(at) / self.base) ** 2 - 1))
+        return unrolled, cmath.phase(at) + self.hand * math.atan(unrolled)
+
+    def set_involute(self):
+        first, second, _ = self.plane
+        start, end = (math.hypot(p[first] - self.centre[first], p[second] - self.centre[second])
+                      for p in (self.start, self.end))
+        self.hand = 1 if (end > start) == (self.kind == "involute_ccw") else -1
+        self.unrolled = self.string(self.start)[0], self.string(self.end)[0]
+        outer = self.start if start > end else self.end
+        self.heading = self.string(outer)[1] - self.hand * max(self.unrolled)
+
+    def involute_distance(self, point):
+        """Across the curve: the string unrolled too far; and along the third axis, which goes with the length."""
+        unrolled, touches = self.string(point)
+        turn = self.hand * (touches - self.heading) - unrolled
+        off = self.base * abs(turn - 2 * math.pi * round(turn / (2 * math.pi)))
+        start, end = self.unrolled
+        place = min(1.0, max(0.0, (unrolled**2 - start**2) / (end**2 - start**2)))
+        third = self.plane[2]
+        along = self.start[third] + place * (self.end[third] - self.start[third])
+        return math.hypot(off, point[third] - along), place
 
     def set_arc(self):
         first, second, _ = self.plane
@@ -116,6 +151,8 @@ class Move:
 
     def distance(self, point, near):
         """Distance of a point from the curve, and where on it (0 ... 1), near the place given."""
+        if self.is_involute():
+            return self.involute_distance(point)
         return self.arc_distance(point, near) if self.is_arc() else self.line_distance(point)
 
     def line_distance(self, point):
@@ -145,7 +182,7 @@ def canon(program, *options):
     check(status == 0, "canon reads " + program, err)
     moves, at = [], (0.0, 0.0, 0.0)
     for line in out.splitlines():
-        if line.split()[1] in ("rapid", "feed", "arc_cw", "arc_ccw"):
+        if line.split()[1] in ("rapid", "feed", "arc_cw", "arc_ccw", "involute_cw", "involute_ccw"):
             moves.append(Move(line, at))
             at = moves[-1].end
     return moves

@@ -60,18 +60,33 @@ static inline void reader_open(struct reader *r, const char *text)
     reader_text(r, text);
 }
 
-/* The next move, which must be one of this kind. */
-static inline struct move reader_next(struct reader *r, enum move_kind kind)
+/* What has been read must be a move of this kind; if it is an error, the test fails with its text. */
+static inline void reader_check(const struct reader *r, enum program_result result,
+                                enum move_kind kind, const struct move *move)
 {
-    struct move move = {0};
-    const enum program_result result = program_next(&r->program, &move, &r->diagnostic);
     char text[DIAGNOSTIC_TEXT_MAX] = "";
 
     if (result == PROGRAM_ERROR) {
         (void)diagnostic_text(&r->diagnostic, text);
     }
     TEST_ASSERT_EQUAL_INT_MESSAGE(PROGRAM_MOVE, result, text);
-    TEST_ASSERT_EQUAL_INT(kind, move.kind);
+    TEST_ASSERT_EQUAL_INT(kind, move->kind);
+}
+
+static inline void reader_check_end(const struct move *move, double x, double y, double z)
+{
+    TEST_ASSERT_DOUBLE_WITHIN(1e-9, x, move->end.at[AXIS_X]);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-9, y, move->end.at[AXIS_Y]);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-9, z, move->end.at[AXIS_Z]);
+}
+
+/* The next move, which must be one of this kind. */
+static inline struct move reader_next(struct reader *r, enum move_kind kind)
+{
+    struct move move = {0};
+    const enum program_result result = program_next(&r->program, &move, &r->diagnostic);
+
+    reader_check(r, result, kind, &move);
     return move;
 }
 
@@ -81,10 +96,13 @@ static inline struct move reader_expect(struct reader *r, enum move_kind kind, d
 {
     const struct move move = reader_next(r, kind);
 
-    TEST_ASSERT_DOUBLE_WITHIN(1e-9, x, move.end.at[AXIS_X]);
-    TEST_ASSERT_DOUBLE_WITHIN(1e-9, y, move.end.at[AXIS_Y]);
-    TEST_ASSERT_DOUBLE_WITHIN(1e-9, z, move.end.at[AXIS_Z]);
+    reader_check_end(&move, x, y, z);
     return move;
+}
+
+static inline void reader_expect_rapid(struct reader *r, double x, double y, double z)
+{
+    (void)reader_expect(r, MOVE_RAPID, x, y, z);
 }
 
 /* The next thing must be an error; its place, word and value are then in r->diagnostic. */
@@ -94,6 +112,20 @@ static inline void reader_expect_error(struct reader *r, enum takt_error code)
 
     TEST_ASSERT_EQUAL_INT(PROGRAM_ERROR, program_next(&r->program, &move, &r->diagnostic));
     TEST_ASSERT_EQUAL_INT(code, r->diagnostic.code);
+}
+
+/* Opens a text whose first error, after any moves, must be this one. */
+static inline void reader_expect_refused(struct reader *r, const char *text, enum takt_error code)
+{
+    struct move move;
+    enum program_result result;
+
+    reader_open(r, text);
+    do {
+        result = program_next(&r->program, &move, &r->diagnostic);
+    } while (result == PROGRAM_MOVE);
+    TEST_ASSERT_EQUAL_INT_MESSAGE(PROGRAM_ERROR, result, text);
+    TEST_ASSERT_EQUAL_INT_MESSAGE(code, r->diagnostic.code, text);
 }
 
 static inline void reader_expect_end(struct reader *r)

@@ -26,25 +26,42 @@ static void test_the_word_and_the_value_stand_in_their_places(void)
 {
     check_text("unknown word 'Q7'", TAKT_ERROR_WORD_UNKNOWN, "Q7", 0.0);
     check_text("the arc's end is 0.031 mm off its circle", TAKT_ERROR_ARC_ENDPOINT, "", 0.031);
-    check_text("axis X would leave its travel: -12.5", TAKT_ERROR_TRAVEL_EXCEEDED, "X", -12.5);
+    check_text("'X-12.5' must not be negative: -12.5", TAKT_ERROR_WORD_NEGATIVE, "X-12.5", -12.5);
     check_text("axis Z lags 2 mm behind its setpoint", TAKT_ERROR_DRIVE_FOLLOWING, "Z", 2.0);
     check_text("a comment is not closed", TAKT_ERROR_COMMENT_UNCLOSED, "", 0.0);
 }
 
 static void test_a_value_has_at_most_six_decimals_and_no_idle_zeros(void)
 {
-    check_text("axis X would leave its travel: 0.000001", TAKT_ERROR_TRAVEL_EXCEEDED, "X", 1e-6);
-    check_text("axis X would leave its travel: 0", TAKT_ERROR_TRAVEL_EXCEEDED, "X", -1e-7);
-    check_text("axis X would leave its travel: 100", TAKT_ERROR_TRAVEL_EXCEEDED, "X", 100.0);
-    check_text("axis X would leave its travel: 1.25", TAKT_ERROR_TRAVEL_EXCEEDED, "X", 1.25);
-    check_text("axis X would leave its travel: 1.500000e10", TAKT_ERROR_TRAVEL_EXCEEDED, "X",
-               1.5e10);
-    check_text("axis X would leave its travel: inf", TAKT_ERROR_TRAVEL_EXCEEDED, "X", 1e308 * 10.0);
+    check_text("'X' is out of range: 0.000001", TAKT_ERROR_WORD_OUT_OF_RANGE, "X", 1e-6);
+    check_text("'X' is out of range: 0", TAKT_ERROR_WORD_OUT_OF_RANGE, "X", -1e-7);
+    check_text("'X' is out of range: 100", TAKT_ERROR_WORD_OUT_OF_RANGE, "X", 100.0);
+    check_text("'X' is out of range: 1.25", TAKT_ERROR_WORD_OUT_OF_RANGE, "X", 1.25);
+    check_text("'X' is out of range: 1.500000e10", TAKT_ERROR_WORD_OUT_OF_RANGE, "X", 1.5e10);
+    check_text("'X' is out of range: inf", TAKT_ERROR_WORD_OUT_OF_RANGE, "X", 1e308 * 10.0);
+}
+
+static void check_travel(const char *expected, const char *axis, double value, double limit)
+{
+    struct diagnostic d;
+    char text[DIAGNOSTIC_TEXT_MAX];
+
+    diagnostic_set(&d, TAKT_ERROR_TRAVEL_EXCEEDED, 1, 1, axis, 1, value);
+    diagnostic_set_limit(&d, limit);
+    (void)diagnostic_text(&d, text);
+    TEST_ASSERT_EQUAL_STRING(expected, text);
+}
+
+static void test_a_limit_stands_beside_its_value_in_the_unit_of_the_axis(void)
+{
+    check_travel("axis X would leave its travel: 520.5 mm, limit 500 mm", "X", 520.5, 500.0);
+    check_travel("axis C would leave its travel: -361 degrees, limit -360 degrees", "C", -361.0,
+                 -360.0);
 }
 
 static void test_percent_signs_of_the_word_are_left_alone(void)
 {
-    check_text("unknown word '%v%w%'", TAKT_ERROR_WORD_UNKNOWN, "%v%w%", 5.0);
+    check_text("unknown word '%v%w%l%u%'", TAKT_ERROR_WORD_UNKNOWN, "%v%w%l%u%", 5.0);
 }
 
 static void test_set_keeps_code_place_word_and_value(void)
@@ -107,6 +124,20 @@ static void test_every_text_knows_its_placeholders_and_fits(void)
         check_that_everything_fits((enum takt_error)(-1 - index));
 }
 
+static void test_codes_are_written_with_4_or_8_hexadecimal_digits_and_their_meaning(void)
+{
+    struct diagnostic d;
+    char text[DIAGNOSTIC_TEXT_MAX];
+    diagnostic_set(&d, TAKT_ERROR_DRIVE_REFUSES, 0, 0, "X", 1, 0x06010002);
+    d.meaning = "read only";
+    (void)diagnostic_text(&d, text);
+    TEST_ASSERT_EQUAL_STRING("the drive of axis X refuses with abort code 06010002: read only",
+                             text);
+    diagnostic_set(&d, TAKT_ERROR_DRIVE_FAULT, 0, 0, "X", 1, 0x611);
+    (void)diagnostic_text(&d, text);
+    TEST_ASSERT_EQUAL_STRING("the drive of axis X reports 0611: ?", text);
+}
+
 static void test_codes_outside_the_list_are_named_by_their_number(void)
 {
     check_text("no error", TAKT_OK, "", 0.0);
@@ -119,12 +150,14 @@ int main(void)
     UNITY_BEGIN();
     RUN_TEST(test_the_word_and_the_value_stand_in_their_places);
     RUN_TEST(test_a_value_has_at_most_six_decimals_and_no_idle_zeros);
+    RUN_TEST(test_a_limit_stands_beside_its_value_in_the_unit_of_the_axis);
     RUN_TEST(test_percent_signs_of_the_word_are_left_alone);
     RUN_TEST(test_set_keeps_code_place_word_and_value);
     RUN_TEST(test_a_long_word_is_cut_and_still_ends_in_zero);
     RUN_TEST(test_a_word_is_not_cut_inside_a_character);
     RUN_TEST(test_control_characters_cannot_reach_the_terminal);
     RUN_TEST(test_every_text_knows_its_placeholders_and_fits);
+    RUN_TEST(test_codes_are_written_with_4_or_8_hexadecimal_digits_and_their_meaning);
     RUN_TEST(test_codes_outside_the_list_are_named_by_their_number);
     return UNITY_END();
 }

@@ -1,6 +1,8 @@
 #include "canopen/cia402.h"
 #include "unity.h"
 
+#include <string.h>
+
 #define STATES (CIA402_FAULT + 1)
 
 void setUp(void)
@@ -107,6 +109,21 @@ static void test_the_advised_steps_lead_to_enabled_in_at_most_four(void)
     }
 }
 
+static void test_the_short_test_for_enabled_agrees_with_the_state(void)
+{
+    for (unsigned word = 0; word <= 0xFFFF; word++)
+        TEST_ASSERT_EQUAL_INT(cia402_state((uint16_t)word) == CIA402_ENABLED,
+                              cia402_is_enabled((uint16_t)word));
+}
+
+static void test_every_state_has_a_name(void)
+{
+    for (unsigned i = CIA402_NOT_READY; i <= CIA402_FAULT; i++)
+        for (unsigned k = CIA402_NOT_READY; k < i; k++)
+            TEST_ASSERT_NOT_EQUAL(0, strcmp(cia402_state_text((enum cia402_state)i),
+                                            cia402_state_text((enum cia402_state)k)));
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -117,5 +134,7 @@ int main(void)
     RUN_TEST(test_quick_stop_brakes_an_enabled_drive_and_switches_off_others);
     RUN_TEST(test_fault_is_left_by_the_rising_edge_of_reset_alone);
     RUN_TEST(test_the_advised_steps_lead_to_enabled_in_at_most_four);
+    RUN_TEST(test_the_short_test_for_enabled_agrees_with_the_state);
+    RUN_TEST(test_every_state_has_a_name);
     return UNITY_END();
 }

@@ -49,6 +49,15 @@ static void test_sync_and_short_frames_are_no_emergency(void)
     TEST_ASSERT_FALSE(emcy_read(&frame, &emcy));
 }
 
+static void test_codes_have_a_meaning_and_unknown_ones_that_of_their_class(void)
+{
+    TEST_ASSERT_EQUAL_STRING("following error", emcy_text(0x8611));
+    TEST_ASSERT_EQUAL_STRING("positioning controller", emcy_text(0x8600));
+    TEST_ASSERT_EQUAL_STRING("DC bus voltage", emcy_text(0x32FE));
+    TEST_ASSERT_EQUAL_STRING("voltage", emcy_text(0x3FFF));
+    TEST_ASSERT_EQUAL_STRING("made up by the manufacturer", emcy_text(0x0E01));
+}
+
 static void test_sync_has_identifier_80_and_no_data(void)
 {
     struct can_frame frame = {.id = 0x7FF, .length = 8};
@@ -75,6 +84,7 @@ int main(void)
     RUN_TEST(test_an_emergency_is_the_frame_of_the_standard);
     RUN_TEST(test_an_emergency_reads_back);
     RUN_TEST(test_sync_and_short_frames_are_no_emergency);
+    RUN_TEST(test_codes_have_a_meaning_and_unknown_ones_that_of_their_class);
     RUN_TEST(test_sync_has_identifier_80_and_no_data);
     RUN_TEST(test_sync_with_a_counter_is_sync_and_an_emergency_is_not);
     return UNITY_END();

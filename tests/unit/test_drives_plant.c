@@ -13,7 +13,7 @@ void setUp(void)
 {
     drive_plant_set_default(&config);
     TEST_ASSERT_NULL(drive_plant_check(&config));
-    drive_plant_init(&plant, &config, 0);
+    drive_plant_init(&plant, &config);
 }
 
 void tearDown(void)
@@ -64,7 +64,7 @@ static void test_without_feed_forward_the_lag_is_velocity_by_gain(void)
 {
     double ramp_mm, constant_mm;
     config.velocity_feed_forward_ratio = 0;
-    drive_plant_init(&plant, &config, 0);
+    drive_plant_init(&plant, &config);
     measure_ramp(&ramp_mm, &constant_mm);
     TEST_ASSERT_TRUE(fabs(constant_mm - 100 / config.position_gain_per_s) < 0.001);
 }
@@ -74,7 +74,7 @@ static void test_without_integral_part_friction_leaves_the_error_of_its_formula(
 {
     double ramp_mm, constant_mm;
     config.velocity_integral_time_s = 0;
-    drive_plant_init(&plant, &config, 0);
+    drive_plant_init(&plant, &config);
     measure_ramp(&ramp_mm, &constant_mm);
     double friction_mm_s2 = 100 * config.viscous_friction_nm_s_per_rad / config.inertia_kg_m2;
     double expected_mm = friction_mm_s2 / (6.283185307179586 * config.velocity_bandwidth_hz) /
@@ -108,7 +108,8 @@ static void test_a_step_settles_at_its_end_and_does_not_overshoot_much(void)
 static void test_the_encoder_reports_whole_steps_of_its_own(void)
 {
     config.encoder_counts_per_revolution = 1000;
-    drive_plant_init(&plant, &config, 0.1234);
+    config.start_mm = 0.1234;
+    drive_plant_init(&plant, &config);
     for (unsigned i = 0; i < 500; i++) {
         follow_for(1, 37.7);
         double steps = plant.measured_mm / 0.01;
@@ -120,7 +121,8 @@ static void test_the_encoder_reports_whole_steps_of_its_own(void)
 static void test_without_encoder_steps_the_position_itself_is_measured(void)
 {
     config.encoder_counts_per_revolution = 0;
-    drive_plant_init(&plant, &config, 0.123456789);
+    config.start_mm = 0.123456789;
+    drive_plant_init(&plant, &config);
     follow_for(100, 12.3);
     TEST_ASSERT_TRUE(plant.measured_mm == plant.position_mm);
 }
@@ -130,7 +132,7 @@ static void test_braking_stops_with_the_quick_stop_deceleration_and_then_stands(
     unsigned cycles = 0;
     follow_for(500, 100);
     double from_mm = plant.position_mm;
-    drive_plant_begin_brake(&plant);
+    drive_plant_begin_brake(&plant, config.quick_stop_deceleration_mm_s2);
     while (!drive_plant_brake(&plant, CYCLE_NS))
         TEST_ASSERT_TRUE(++cycles < 200);
     double way_mm = plant.position_mm - from_mm;
@@ -144,7 +146,7 @@ static void test_braking_begins_at_the_motor_however_far_the_command_was(void)
 {
     unsigned cycles = 0;
     drive_plant_follow(&plant, 1000, CYCLE_NS);
-    drive_plant_begin_brake(&plant);
+    drive_plant_begin_brake(&plant, config.quick_stop_deceleration_mm_s2);
     TEST_ASSERT_TRUE(drive_plant_following_error_mm(&plant) == 0);
     while (!drive_plant_brake(&plant, CYCLE_NS))
         TEST_ASSERT_TRUE(++cycles < 200);
@@ -170,13 +172,106 @@ static void test_any_cycle_from_100_us_to_10_ms_follows(void)
 {
     static const uint32_t cycles_ns[] = {100000, 250000, 333000, 1000000, 2000000, 10000000};
     for (unsigned i = 0; i < sizeof cycles_ns / sizeof cycles_ns[0]; i++) {
-        drive_plant_init(&plant, &config, 0);
+        drive_plant_init(&plant, &config);
         for (uint32_t time_ns = 0; time_ns < 1000000000; time_ns += cycles_ns[i]) {
             double command_mm = 5 * (1 - cos(6e-9 * time_ns));
             drive_plant_follow(&plant, command_mm, cycles_ns[i]);
             TEST_ASSERT_TRUE(fabs(drive_plant_following_error_mm(&plant)) < 0.05);
         }
     }
+}
+
+/* Its torque stands against c: the position loop alone holds c J / h short of the command. */
+static void test_dry_friction_holds_the_motor_until_the_torque_exceeds_it(void)
+{
+    config.coulomb_friction_nm = 0.5;
+    config.velocity_integral_time_s = 0;
+    config.velocity_feed_forward_ratio = 0;
+    drive_plant_init(&plant, &config);
+    double held_mm_s2 = 0.01 / 6.283185307179586 * 1000 * 0.5 / 3e-4;
+    double gain_mm_s2 = 6.283185307179586 * 100 * 100; /* Kp Kv, per mm */
+    double held_mm = held_mm_s2 / gain_mm_s2;
+    drive_plant_follow(&plant, 0.9 * held_mm, CYCLE_NS);
+    for (unsigned i = 0; i < 100; i++)
+        drive_plant_follow(&plant, 0.9 * held_mm, CYCLE_NS);
+    TEST_ASSERT_TRUE(fabs(plant.position_mm) < 0.05 * held_mm);
+    for (unsigned i = 0; i < 1000; i++)
+        drive_plant_follow(&plant, 10 * held_mm, CYCLE_NS);
+    TEST_ASSERT_TRUE(plant.position_mm > 8 * held_mm && plant.position_mm < 10 * held_mm);
+    TEST_ASSERT_TRUE(plant.velocity_mm_s == 0);
+}
+
+static void test_without_power_dry_friction_stops_the_motor_in_the_time_of_its_torque(void)
+{
+    config.coulomb_friction_nm = 0.5;
+    config.viscous_friction_nm_s_per_rad = 0;
+    drive_plant_init(&plant, &config);
+    follow_for(500, 50);
+    double from_mm = plant.position_mm, velocity_mm_s = plant.velocity_mm_s;
+    while (plant.velocity_mm_s != 0)
+        drive_plant_coast(&plant, CYCLE_NS);
+    double held_mm_s2 = 0.01 / 6.283185307179586 * 1000 * 0.5 / 3e-4;
+    double way_mm = velocity_mm_s * velocity_mm_s / (2 * held_mm_s2);
+    TEST_ASSERT_TRUE(fabs(plant.position_mm - from_mm - way_mm) < 0.02 * way_mm);
+}
+
+static void test_torque_feed_forward_takes_the_error_out_of_ramps(void)
+{
+    double without_mm, with_mm, constant_mm;
+    measure_ramp(&without_mm, &constant_mm);
+    config.torque_feed_forward_ratio = 1;
+    drive_plant_init(&plant, &config);
+    measure_ramp(&with_mm, &constant_mm);
+    TEST_ASSERT_TRUE(with_mm < 0.5 * without_mm);
+}
+
+static void test_the_table_hangs_behind_by_half_the_play_on_either_side(void)
+{
+    config.backlash_mm = 0.04;
+    drive_plant_init(&plant, &config);
+    follow_for(200, 10);
+    TEST_ASSERT_TRUE(fabs(plant.position_mm - drive_plant_table_mm(&plant) - 0.02) < 1e-12);
+    double turned_mm = drive_plant_table_mm(&plant);
+    while (plant.position_mm - turned_mm > -0.015)
+        follow_for(1, -1);
+    TEST_ASSERT_TRUE(fabs(drive_plant_table_mm(&plant) - turned_mm) < 0.01);
+    follow_for(200, -10);
+    TEST_ASSERT_TRUE(fabs(plant.position_mm - drive_plant_table_mm(&plant) + 0.02) < 1e-12);
+}
+
+static void test_the_screw_has_its_error_of_pitch_and_the_encoder_does_not_see_it(void)
+{
+    config.pitch_error_mm = 0.01;
+    config.pitch_error_period_mm = 20;
+    config.start_mm = 5;
+    drive_plant_init(&plant, &config);
+    TEST_ASSERT_TRUE(fabs(plant.measured_mm - 5) < 1e-5);
+    TEST_ASSERT_TRUE(fabs(drive_plant_table_mm(&plant) - 5.01) < 1e-9);
+}
+
+static void test_an_encoder_that_is_not_absolute_counts_from_0(void)
+{
+    config.start_mm = 123.4;
+    config.absolute_encoder = 0;
+    drive_plant_init(&plant, &config);
+    TEST_ASSERT_TRUE(fabs(plant.measured_mm) < 1e-5);
+    TEST_ASSERT_TRUE(drive_plant_table_mm(&plant) == 123.4);
+    follow_for(1000, 10);
+    TEST_ASSERT_TRUE(fabs(drive_plant_table_mm(&plant) - 133.4) < 0.01);
+}
+
+/* T = ambient + rise (M / M_rated)^2 (1 - exp(-t / time)) */
+static void test_the_motor_warms_up_as_its_torque_says(void)
+{
+    config.temperature_time_s = 2;
+    drive_plant_init(&plant, &config);
+    plant.damage.is_jammed = true;
+    for (unsigned i = 0; i < 2000; i++)
+        drive_plant_follow(&plant, 1, CYCLE_NS);
+    double ratio = drive_plant_torque_ratio(&plant);
+    double expected_c = 25 + 60 * ratio * ratio * (1 - exp(-1));
+    TEST_ASSERT_TRUE(fabs(ratio - 3.8 / 1.27) < 1e-9);
+    TEST_ASSERT_TRUE(fabs(plant.temperature_c - expected_c) < 0.01 * expected_c);
 }
 
 static void assert_wrong(const char *field)
@@ -205,6 +300,22 @@ static void test_a_field_out_of_range_is_named(void)
     assert_wrong("loop_period_us");
     config.quick_stop_deceleration_mm_s2 = 0;
     assert_wrong("quick_stop_deceleration_mm_s2");
+    config.coulomb_friction_nm = -1e-9;
+    assert_wrong("coulomb_friction_nm");
+    config.torque_rated_nm = 0;
+    assert_wrong("torque_rated_nm");
+    config.torque_feed_forward_ratio = -0.1;
+    assert_wrong("torque_feed_forward_ratio");
+    config.temperature_time_s = 0;
+    assert_wrong("temperature_time_s");
+    config.pitch_error_period_mm = 0;
+    assert_wrong("pitch_error_period_mm");
+    config.backlash_mm = (double)NAN;
+    assert_wrong("backlash_mm");
+    config.start_mm = (double)INFINITY;
+    assert_wrong("start_mm");
+    config.limit_switch_max_mm = config.limit_switch_min_mm;
+    assert_wrong("limit_switch_max_mm");
 }
 
 int main(void)
@@ -222,6 +333,13 @@ int main(void)
     RUN_TEST(test_braking_begins_at_the_motor_however_far_the_command_was);
     RUN_TEST(test_without_torque_friction_stops_the_motor_and_the_command_stays_with_it);
     RUN_TEST(test_any_cycle_from_100_us_to_10_ms_follows);
+    RUN_TEST(test_dry_friction_holds_the_motor_until_the_torque_exceeds_it);
+    RUN_TEST(test_without_power_dry_friction_stops_the_motor_in_the_time_of_its_torque);
+    RUN_TEST(test_torque_feed_forward_takes_the_error_out_of_ramps);
+    RUN_TEST(test_the_table_hangs_behind_by_half_the_play_on_either_side);
+    RUN_TEST(test_the_screw_has_its_error_of_pitch_and_the_encoder_does_not_see_it);
+    RUN_TEST(test_an_encoder_that_is_not_absolute_counts_from_0);
+    RUN_TEST(test_the_motor_warms_up_as_its_torque_says);
     RUN_TEST(test_a_field_out_of_range_is_named);
     return UNITY_END();
 }

@@ -1,138 +1,252 @@
+/* The control cycle over a path: stops, dwell, end, hold and resume, override 0, an early end, too small a window. */
 #include "motion/motion.h"
+
+#include "base/maths.h"
+#include "plan/path.h"
 
 #include <string.h>
 #include <unity.h>
 
-#define CYCLE_S 1e-3
+static const struct plan_limits limits = {
+    7,    {100, 100, 100}, {1000, 1000, 1000}, {50000, 50000, 50000}, 1e-3,
+    1e-3, LAW_JERK,        LANDING_SPAN};
 
+static struct path path;
 static struct motion motion;
 static struct cycle_record record;
+static struct motion_operator asked;
 
 void setUp(void)
 {
-    struct point start;
+    const struct point start = {{0}};
 
-    memset(&start, 0, sizeof(start));
-    motion_init(&motion, CYCLE_S, &start);
+    path_init(&path, &limits, &start);
+    motion_init(&motion, &path, &start, false);
+    asked = (struct motion_operator){.feed_ratio = 1.0, .rapid_ratio = 1.0};
 }
 
 void tearDown(void)
 {
 }
 
-/* A segment along X at constant feed, whose first cycle comes first_s after its start. */
-static void push_line(double from, double to, double feed_mm_s, enum joint_kind end, double first_s,
-                      uint32_t cycles)
+static void push(enum move_kind kind, double x, double feed_mm_s)
 {
-    struct segment *s = motion_next_slot(&motion);
-    const struct point start = {{from, 0, 0, 0, 0, 0}};
-    const struct point stop = {{to, 0, 0, 0, 0, 0}};
+    struct move m;
 
-    memset(s, 0, sizeof(*s));
-    s->move.kind = MOVE_FEED;
-    s->move.line = (uint32_t)to;
-    s->end = end;
-    s->cycles = cycles;
-    s->first_s = first_s;
-    TEST_ASSERT_TRUE(curve_set_line(&s->curve, &start, &stop));
-    profile_append(&s->profile, (struct profile_state){0.0, feed_mm_s, 0.0},
-                   s->curve.length_mm / feed_mm_s, 0.0);
-    motion_push(&motion);
+    memset(&m, 0, sizeof(m));
+    m.kind = kind;
+    m.end.at[AXIS_X] = x;
+    m.feed_mm_s = feed_mm_s;
+    m.dwell_s = feed_mm_s;
+    m.overrides = OVERRIDE_FEED | OVERRIDE_HOLD;
+    m.turns = 1;
+    path_push(&path, &m);
 }
 
-static void push_kind(enum move_kind kind, uint32_t cycles)
+static void push_end(void)
 {
-    struct segment *s = motion_next_slot(&motion);
-
-    memset(s, 0, sizeof(*s));
-    s->move.kind = kind;
-    s->cycles = cycles;
-    motion_push(&motion);
+    push(MOVE_END, 0.0, 0.0);
+    path_finish(&path);
 }
 
-static double next_x(void)
+static enum motion_result cycle(void)
 {
-    TEST_ASSERT_EQUAL(MOTION_CYCLE, motion_cycle(&motion, &record));
-    return record.cmd.at[AXIS_X];
-}
-
-static void test_an_empty_queue_is_starvation(void)
-{
-    TEST_ASSERT_EQUAL(MOTION_STARVED, motion_cycle(&motion, &record));
-}
-
-static void test_the_end_of_the_program_ends_the_motion_for_ever(void)
-{
-    push_kind(MOVE_END, 0);
-    TEST_ASSERT_EQUAL(MOTION_DONE, motion_cycle(&motion, &record));
-    TEST_ASSERT_EQUAL(MOTION_DONE, motion_cycle(&motion, &record));
-}
-
-static void test_one_setpoint_a_cycle_along_the_profile(void)
-{
-    push_line(0, 3, 1000, JOINT_STOP, CYCLE_S, 3);
-    TEST_ASSERT_DOUBLE_WITHIN(1e-12, 1.0, next_x());
-    TEST_ASSERT_EQUAL(0, record.cycle);
-    TEST_ASSERT_DOUBLE_WITHIN(1e-12, 2.0, next_x());
-    TEST_ASSERT_FALSE(record.landed);
-    TEST_ASSERT_EQUAL(1, record.cycle);
-    TEST_ASSERT_EQUAL_DOUBLE(3.0, next_x());
-    TEST_ASSERT_TRUE(record.landed);
-    TEST_ASSERT_EQUAL(3, record.line);
-}
-
-static void test_a_passed_end_lies_between_two_cycles(void)
-{
-    push_line(0, 1.5, 1000, JOINT_PASSED, CYCLE_S, 1);
-    push_line(1.5, 3, 1000, JOINT_STOP, 0.5 * CYCLE_S, 2);
-    TEST_ASSERT_DOUBLE_WITHIN(1e-12, 1.0, next_x());
-    TEST_ASSERT_DOUBLE_WITHIN(1e-12, 2.0, next_x());
-    TEST_ASSERT_FALSE(record.landed);
-    TEST_ASSERT_EQUAL_DOUBLE(3.0, next_x());
-}
-
-static void test_blocks_shorter_than_a_cycle_are_passed_inside_it(void)
-{
-    for (int i = 0; i < 4; i++) {
-        push_line(0.25 * i, 0.25 * (i + 1), 1000, i < 3 ? JOINT_PASSED : JOINT_STOP, CYCLE_S,
-                  i < 3 ? 0 : 1);
+    if (motion_wanted(&motion) != NULL) {
+        path_go_on(&path);
+        motion_build(&motion);
     }
-    TEST_ASSERT_EQUAL_DOUBLE(1.0, next_x());
-    TEST_ASSERT_TRUE(record.landed);
-    TEST_ASSERT_EQUAL(MOTION_STARVED, motion_cycle(&motion, &record));
+    return motion_cycle(&motion, &asked, &record);
 }
 
-static void test_a_dwell_holds_the_position_and_an_event_takes_no_cycle(void)
+static uint64_t run_to_the_end(void)
 {
-    push_line(0, 1, 1000, JOINT_STOP, CYCLE_S, 1);
-    push_kind(MOVE_SPINDLE, 0);
-    push_kind(MOVE_DWELL, 2);
-    push_kind(MOVE_END, 0);
-    next_x();
-    TEST_ASSERT_EQUAL_DOUBLE(1.0, next_x());
-    TEST_ASSERT_EQUAL_DOUBLE(0.0, record.feed_mm_s);
-    TEST_ASSERT_EQUAL_DOUBLE(1.0, next_x());
-    TEST_ASSERT_EQUAL(MOTION_DONE, motion_cycle(&motion, &record));
+    enum motion_result result;
+
+    do {
+        result = cycle();
+        TEST_ASSERT_TRUE(motion.cycles < 400000);
+    } while (result == MOTION_CYCLE);
+    TEST_ASSERT_EQUAL(MOTION_DONE, result);
+    return motion.cycles;
 }
 
-static void test_the_queue_has_room_for_its_size_and_no_more(void)
+/* T = D/a + a/j for a ramp of D = F, else 2 sqrt(D/j), whole time 2 T + the rest at F: seven segments. */
+static double least_time(double length, double feed, double a, double j)
 {
-    for (int i = 0; i < MOTION_QUEUE_MAX; i++) {
-        TEST_ASSERT_TRUE(motion_has_room(&motion));
-        push_kind(MOVE_DWELL, 1);
+    const double top = feed;
+    const double ramp = top >= a * a / j ? top / a + a / j : 2.0 * maths_sqrt(top / j);
+
+    if (top * ramp <= length) {
+        return 2.0 * ramp + (length - top * ramp) / top;
     }
-    TEST_ASSERT_FALSE(motion_has_room(&motion));
+    const double v = 0.5 * a * (maths_sqrt(a * a / (j * j) + 4.0 * length / a) - a / j);
+
+    return v >= a * a / j ? 2.0 * (v / a + a / j) : 4.0 * maths_cbrt(length / (2.0 * j));
+}
+
+static void test_a_single_move_takes_the_least_time_within_two_cycles(void)
+{
+    static const double lengths[] = {0.001, 0.01, 0.1, 0.5, 1.0, 3.0, 10.0, 33.0, 300.0};
+    static const double feeds[] = {1.0, 5.0, 20.0, 50.0, 100.0};
+
+    for (unsigned i = 0; i < sizeof(lengths) / sizeof(lengths[0]); i++) {
+        for (unsigned k = 0; k < sizeof(feeds) / sizeof(feeds[0]); k++) {
+            const double least_s = least_time(lengths[i], feeds[k], 1000.0, 50000.0);
+
+            setUp();
+            push(MOVE_FEED, lengths[i], feeds[k]);
+            push_end();
+            const double cycles = (double)run_to_the_end();
+
+            TEST_ASSERT_TRUE(record.cmd.at[AXIS_X] == lengths[i]);
+            TEST_ASSERT_DOUBLE_WITHIN(2.0, 1000.0 * least_s, cycles);
+        }
+    }
+}
+
+static void test_a_dwell_lasts_its_cycles_at_rest(void)
+{
+    push(MOVE_FEED, 1.0, 50.0);
+    push_end();
+    const uint64_t without = run_to_the_end();
+
+    setUp();
+    push(MOVE_FEED, 1.0, 50.0);
+    push(MOVE_DWELL, 0.0, 0.25);
+    push_end();
+    TEST_ASSERT_EQUAL_UINT64(without + 250, run_to_the_end());
+    TEST_ASSERT_TRUE(record.cmd.at[AXIS_X] == 1.0);
+}
+
+static void test_a_stop_is_landed_on_and_the_program_goes_on(void)
+{
+    unsigned landed = 0;
+
+    push(MOVE_FEED, 10.0, 50.0);
+    push(MOVE_FEED, 3.0, 50.0);
+    push_end();
+    while (cycle() == MOTION_CYCLE) {
+        if (record.landed) {
+            TEST_ASSERT_TRUE(record.cmd.at[AXIS_X] == (landed == 0 ? 10.0 : 3.0));
+            landed++;
+        }
+    }
+    TEST_ASSERT_EQUAL(2, landed);
+}
+
+/* Rests within the time of one ramp, somewhere on the move; then goes on to its end. */
+static void rest_and_go_on(void)
+{
+    double x;
+
+    for (int i = 0; i < 300; i++) {
+        (void)cycle();
+    }
+    x = record.cmd.at[AXIS_X];
+    TEST_ASSERT_TRUE(x > 1.0 && x < 99.0);
+    TEST_ASSERT_TRUE(motion.feed == 0.0);
+    for (int i = 0; i < 100; i++) {
+        TEST_ASSERT_EQUAL(MOTION_CYCLE, cycle());
+        TEST_ASSERT_TRUE(record.cmd.at[AXIS_X] == x);
+    }
+    asked = (struct motion_operator){.feed_ratio = 1.0, .rapid_ratio = 1.0};
+    (void)run_to_the_end();
+    TEST_ASSERT_TRUE(record.cmd.at[AXIS_X] == 100.0);
+}
+
+static void start_a_long_move(void)
+{
+    push(MOVE_FEED, 100.0, 50.0);
+    push_end();
+    for (int i = 0; i < 500; i++) {
+        (void)cycle();
+    }
+}
+
+static void test_a_hold_rests_on_the_path_and_resumes(void)
+{
+    start_a_long_move();
+    asked.hold = true;
+    rest_and_go_on();
+}
+
+static void test_an_override_of_0_holds(void)
+{
+    start_a_long_move();
+    asked.feed_ratio = 0.0;
+    rest_and_go_on();
+}
+
+static void test_half_the_override_is_half_the_feed(void)
+{
+    asked.feed_ratio = 0.5;
+    start_a_long_move();
+    TEST_ASSERT_DOUBLE_WITHIN(1e-6, 25.0, record.feed_mm_s);
+}
+
+static void test_an_override_above_100_percent_keeps_to_the_axis(void)
+{
+    push(MOVE_FEED, 100.0, 95.0);
+    push_end();
+    asked.feed_ratio = 1.2;
+    for (int i = 0; i < 500; i++) {
+        (void)cycle();
+    }
+    TEST_ASSERT_DOUBLE_WITHIN(1e-6, 100.0, record.feed_mm_s);
+}
+
+static void test_an_early_end_drops_the_rest_of_the_path(void)
+{
+    push(MOVE_FEED, 100.0, 50.0);
+    push(MOVE_FEED, 200.0, 50.0);
+    for (int i = 0; i < 500; i++) {
+        (void)cycle();
+    }
+    motion_end_here(&motion);
+    for (int i = 0; i < 300; i++) {
+        (void)cycle();
+    }
+    const double x = record.cmd.at[AXIS_X];
+
+    TEST_ASSERT_TRUE(motion_is_idle(&motion) && x > 1.0 && x < 50.0);
+    push(MOVE_FEED, 0.0, 50.0);
+    push_end();
+    (void)run_to_the_end();
+    TEST_ASSERT_TRUE(record.cmd.at[AXIS_X] == 0.0);
+}
+
+/* The next move comes only when the axes have rested at the end of the last one: they wait for it, and go on. */
+static void test_a_starved_cycle_rests_and_goes_on(void)
+{
+    push(MOVE_FEED, 1.0, 50.0);
+    push(MOVE_FEED, 2.0, 50.0);
+    for (int i = 0; i < 400; i++) {
+        TEST_ASSERT_TRUE(cycle() != MOTION_DONE);
+    }
+    TEST_ASSERT_TRUE(record.cmd.at[AXIS_X] == 1.0);
+    push(MOVE_FEED, 3.0, 50.0);
+    push_end();
+    (void)run_to_the_end();
+    TEST_ASSERT_TRUE(record.cmd.at[AXIS_X] == 3.0);
+}
+
+static void test_no_cycle_is_made_before_anything_is_planned(void)
+{
+    TEST_ASSERT_EQUAL(MOTION_NOT_YET, motion_cycle(&motion, &asked, &record));
 }
 
 int main(void)
 {
     UNITY_BEGIN();
-    RUN_TEST(test_an_empty_queue_is_starvation);
-    RUN_TEST(test_the_end_of_the_program_ends_the_motion_for_ever);
-    RUN_TEST(test_one_setpoint_a_cycle_along_the_profile);
-    RUN_TEST(test_a_passed_end_lies_between_two_cycles);
-    RUN_TEST(test_blocks_shorter_than_a_cycle_are_passed_inside_it);
-    RUN_TEST(test_a_dwell_holds_the_position_and_an_event_takes_no_cycle);
-    RUN_TEST(test_the_queue_has_room_for_its_size_and_no_more);
+    RUN_TEST(test_a_single_move_takes_the_least_time_within_two_cycles);
+    RUN_TEST(test_a_dwell_lasts_its_cycles_at_rest);
+    RUN_TEST(test_a_stop_is_landed_on_and_the_program_goes_on);
+    RUN_TEST(test_a_hold_rests_on_the_path_and_resumes);
+    RUN_TEST(test_an_override_of_0_holds);
+    RUN_TEST(test_half_the_override_is_half_the_feed);
+    RUN_TEST(test_an_override_above_100_percent_keeps_to_the_axis);
+    RUN_TEST(test_an_early_end_drops_the_rest_of_the_path);
+    RUN_TEST(test_a_starved_cycle_rests_and_goes_on);
+    RUN_TEST(test_no_cycle_is_made_before_anything_is_planned);
     return UNITY_END();
 }

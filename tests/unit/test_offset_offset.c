@@ -26,17 +26,11 @@ static enum program_result next(struct move *m)
 static struct move expect(enum move_kind kind, double x, double y, double z)
 {
     struct move m;
-    char text[DIAGNOSTIC_TEXT_MAX] = "";
+    const enum program_result result = next(&m);
 
-    if (next(&m) == PROGRAM_ERROR) {
-        (void)diagnostic_text(&reader.diagnostic, text);
-        TEST_FAIL_MESSAGE(text);
-    }
-    TEST_ASSERT_EQUAL_INT(kind, m.kind);
+    reader_check(&reader, result, kind, &m);
+    reader_check_end(&m, x, y, z);
     TEST_ASSERT_EQUAL_INT(CUTTER_OFF, m.cutter_side);
-    TEST_ASSERT_DOUBLE_WITHIN(1e-9, x, m.end.at[AXIS_X]);
-    TEST_ASSERT_DOUBLE_WITHIN(1e-9, y, m.end.at[AXIS_Y]);
-    TEST_ASSERT_DOUBLE_WITHIN(1e-9, z, m.end.at[AXIS_Z]);
     return m;
 }
 
@@ -337,6 +331,42 @@ static void test_a_corner_by_rounding_is_no_corner(void)
     expect_end();
 }
 
+/*
+ * The tool goes outside around the circle of radius 1 about (0, 0), on one of radius 3; the line behind it climbs by
+ * 0.001 from (0, 1). With a = atan 0.001, its way has the distance D = cos a + 2 from (0, 0), at its foot D (sin a, cos a),
+ * and crosses the circle at sqrt(9 - D^2) before and behind that. What lies between is inside the circle.
+ */
+/* Radius 2, orientation 3: the point that is led lies 2 mm beside the nose's centre along X, and 2 mm back along Z. */
+static void test_a_lathe_tool_is_led_beside_its_nose(void)
+{
+    open_text("G18 G0 X30\nG42.1 D4 L3\nG1 X20 F60\nZ-20\nG2 X30 Z-30 I10\nG1 Y5\nG40 X40\n");
+    (void)expect(MOVE_RAPID, 30.0, 0.0, 0.0);
+    (void)expect(MOVE_FEED, 20.0 + 2.0 + 2.0, 0.0, -2.0 - 2.0);
+    (void)expect(MOVE_FEED, 24.0, 0.0, -20.0 - 2.0);
+    const struct move m = expect(MOVE_ARC_CW, 32.0, 0.0, -30.0);
+
+    TEST_ASSERT_DOUBLE_WITHIN(1e-12, -22.0, m.centre_mm[0]);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-12, 32.0, m.centre_mm[1]);
+    (void)expect(MOVE_FEED, 32.0, 5.0, -30.0);
+    (void)expect(MOVE_FEED, 40.0, 5.0, -30.0);
+    expect_end();
+}
+
+static void test_a_blunt_inner_corner_behind_an_arc_is_the_crossing_ahead(void)
+{
+    const double sine = 0.001 / sqrt(1.0 + 1e-6);
+    const double cosine = 1.0 / sqrt(1.0 + 1e-6);
+    const double foot = cosine + 2.0;
+    const double ahead = sqrt(9.0 - foot * foot);
+
+    open_text("G0 X1 Y-20\nG42.1 D4\nG1 Y0 F60\nG3 X0 Y1 I-1\nG1 X-10 Y1.01\n");
+    (void)expect(MOVE_RAPID, 1.0, -20.0, 0.0);
+    (void)expect(MOVE_FEED, 3.0, 0.0, 0.0);
+    (void)expect(MOVE_ARC_CCW, foot * sine - ahead * cosine, foot * cosine + ahead * sine, 0.0);
+    (void)expect(MOVE_FEED, -10.0 + 2.0 * sine, 1.01 + 2.0 * cosine, 0.0);
+    expect_end();
+}
+
 static void test_too_many_commands_inside_a_contour_are_refused(void)
 {
     static char text[4096];
@@ -389,6 +419,8 @@ int main(void)
     RUN_TEST(test_sharp_corners_stand_off_by_no_more_than_a_right_angle_gives);
     RUN_TEST(test_a_rapid_goes_around_an_outer_corner_in_lines);
     RUN_TEST(test_a_corner_by_rounding_is_no_corner);
+    RUN_TEST(test_a_lathe_tool_is_led_beside_its_nose);
+    RUN_TEST(test_a_blunt_inner_corner_behind_an_arc_is_the_crossing_ahead);
     RUN_TEST(test_too_many_commands_inside_a_contour_are_refused);
     RUN_TEST(test_the_memory_is_what_the_limits_say);
     return UNITY_END();

@@ -39,15 +39,7 @@ static double distance(double x0, double y0, double x1, double y1)
 
 static void check_error(const char *text, enum takt_error code, const char *word, double value)
 {
-    struct move move;
-    enum program_result result;
-
-    reader_open(&reader, text);
-    do {
-        result = program_next(&reader.program, &move, &reader.diagnostic);
-    } while (result == PROGRAM_MOVE);
-    TEST_ASSERT_EQUAL_INT_MESSAGE(PROGRAM_ERROR, result, text);
-    TEST_ASSERT_EQUAL_INT_MESSAGE(code, reader.diagnostic.code, text);
+    reader_expect_refused(&reader, text, code);
     TEST_ASSERT_EQUAL_STRING_MESSAGE(word, reader.diagnostic.word, text);
     TEST_ASSERT_DOUBLE_WITHIN(1e-6, value, reader.diagnostic.value);
 }

@@ -11,11 +11,6 @@ void tearDown(void)
 {
 }
 
-static void expect_rapid(double x, double y, double z)
-{
-    (void)reader_expect(&reader, MOVE_RAPID, x, y, z);
-}
-
 static void expect_feed(double x, double y, double z)
 {
     (void)reader_expect(&reader, MOVE_FEED, x, y, z);
@@ -24,29 +19,29 @@ static void expect_feed(double x, double y, double z)
 static void test_a_hole_is_reached_above_drilled_and_left_to_r(void)
 {
     reader_open(&reader, "G0 Z10 F60\nG81 X5 Y6 Z-4 R2\nX7");
-    expect_rapid(0.0, 0.0, 10.0);
-    expect_rapid(5.0, 6.0, 10.0);
-    expect_rapid(5.0, 6.0, 2.0);
+    reader_expect_rapid(&reader, 0.0, 0.0, 10.0);
+    reader_expect_rapid(&reader, 5.0, 6.0, 10.0);
+    reader_expect_rapid(&reader, 5.0, 6.0, 2.0);
     expect_feed(5.0, 6.0, -4.0);
-    expect_rapid(5.0, 6.0, 2.0);
-    expect_rapid(7.0, 6.0, 2.0);
+    reader_expect_rapid(&reader, 5.0, 6.0, 2.0);
+    reader_expect_rapid(&reader, 7.0, 6.0, 2.0);
     expect_feed(7.0, 6.0, -4.0);
-    expect_rapid(7.0, 6.0, 2.0);
+    reader_expect_rapid(&reader, 7.0, 6.0, 2.0);
     reader_expect_end(&reader);
 }
 
 static void test_pecks_go_back_to_r_and_come_to_where_they_cut(void)
 {
     reader_open(&reader, "G0 Z2 F60\nG83 X0 Z-4 R2 Q2.5");
-    expect_rapid(0.0, 0.0, 2.0);
+    reader_expect_rapid(&reader, 0.0, 0.0, 2.0);
     expect_feed(0.0, 0.0, -0.5);
-    expect_rapid(0.0, 0.0, 2.0);
-    expect_rapid(0.0, 0.0, -0.246);
+    reader_expect_rapid(&reader, 0.0, 0.0, 2.0);
+    reader_expect_rapid(&reader, 0.0, 0.0, -0.246);
     expect_feed(0.0, 0.0, -3.0);
-    expect_rapid(0.0, 0.0, 2.0);
-    expect_rapid(0.0, 0.0, -2.746);
+    reader_expect_rapid(&reader, 0.0, 0.0, 2.0);
+    reader_expect_rapid(&reader, 0.0, 0.0, -2.746);
     expect_feed(0.0, 0.0, -4.0);
-    expect_rapid(0.0, 0.0, 2.0);
+    reader_expect_rapid(&reader, 0.0, 0.0, 2.0);
     reader_expect_end(&reader);
 }
 
@@ -71,7 +66,7 @@ static void test_too_many_pecks_are_a_mistake(void)
 {
     reader_open(&reader, "F60\nG83 X0 Z-400 R0 Q0.0001\nG0 X1");
     reader_expect_error(&reader, TAKT_ERROR_CYCLE_TOO_LONG);
-    expect_rapid(1.0, 0.0, 0.0);
+    reader_expect_rapid(&reader, 1.0, 0.0, 0.0);
 }
 
 static void test_too_many_cuts_are_a_mistake(void)
@@ -87,18 +82,18 @@ static void test_the_last_hole_is_looked_at_before_the_first(void)
     reader_open(&reader, "F60 G91\nG81 X85 Z-1 R0 L6\nG90 G0 X1");
     reader_expect_error(&reader, TAKT_ERROR_TRAVEL_EXCEEDED);
     TEST_ASSERT_EQUAL_DOUBLE(510.0, reader.diagnostic.value);
-    expect_rapid(1.0, 0.0, 0.0);
+    reader_expect_rapid(&reader, 1.0, 0.0, 0.0);
 }
 
 static void test_a_line_with_an_error_leaves_the_cycle_as_it_was(void)
 {
     reader_open(&reader, "F60\nG81 X1 Z-1 R0\nX2 Z5\nX3");
-    expect_rapid(1.0, 0.0, 0.0);
+    reader_expect_rapid(&reader, 1.0, 0.0, 0.0);
     expect_feed(1.0, 0.0, -1.0);
-    expect_rapid(1.0, 0.0, 0.0);
+    reader_expect_rapid(&reader, 1.0, 0.0, 0.0);
     reader_expect_error(&reader, TAKT_ERROR_CYCLE_UPSIDE_DOWN);
     TEST_ASSERT_EQUAL_DOUBLE(5.0, reader.diagnostic.value);
-    expect_rapid(3.0, 0.0, 0.0);
+    reader_expect_rapid(&reader, 3.0, 0.0, 0.0);
     expect_feed(3.0, 0.0, -1.0);
 }
 
@@ -106,9 +101,9 @@ static void test_the_end_of_the_line_waits_for_the_cycle(void)
 {
     reader_open(&reader, "F60\nM8 G81 X1 Z-1 R0 M0");
     (void)reader_next(&reader, MOVE_COOLANT);
-    expect_rapid(1.0, 0.0, 0.0);
+    reader_expect_rapid(&reader, 1.0, 0.0, 0.0);
     expect_feed(1.0, 0.0, -1.0);
-    expect_rapid(1.0, 0.0, 0.0);
+    reader_expect_rapid(&reader, 1.0, 0.0, 0.0);
     (void)reader_next(&reader, MOVE_STOP);
     reader_expect_end(&reader);
 }
@@ -151,16 +146,16 @@ static void test_a_thread_is_cut_to_equal_areas(void)
         const double depth = 4.0 + maths_min(0.3 * maths_sqrt(n), 1.0);
 
         if (n < 12) {
-            expect_rapid(20.0 + 5.0 - depth, 0.0, 0.0);
+            reader_expect_rapid(&reader, 20.0 + 5.0 - depth, 0.0, 0.0);
         }
-        expect_rapid(20.0 - depth, 0.0, 0.0);
+        reader_expect_rapid(&reader, 20.0 - depth, 0.0, 0.0);
         const struct move cut = reader_expect(&reader, MOVE_THREAD, 20.0 - depth, 0.0, -10.0);
 
         TEST_ASSERT_EQUAL_DOUBLE(1.5, cut.feed_rev_mm);
         TEST_ASSERT_DOUBLE_WITHIN(1e-12, 1.5, cut.feed_mm_s);
-        expect_rapid(20.0 + 5.0 - depth, 0.0, -10.0);
+        reader_expect_rapid(&reader, 20.0 + 5.0 - depth, 0.0, -10.0);
         if (n == 11) {
-            expect_rapid(20.0, 0.0, 0.0);
+            reader_expect_rapid(&reader, 20.0, 0.0, 0.0);
         }
     }
     reader_expect_end(&reader);

@@ -50,15 +50,7 @@ static const struct faulty table[] = {
 
 static void check(const struct faulty *f)
 {
-    struct move move;
-    enum program_result result;
-
-    reader_open(&reader, f->text);
-    do {
-        result = program_next(&reader.program, &move, &reader.diagnostic);
-    } while (result == PROGRAM_MOVE);
-    TEST_ASSERT_EQUAL_INT_MESSAGE(PROGRAM_ERROR, result, f->text);
-    TEST_ASSERT_EQUAL_INT_MESSAGE(f->code, reader.diagnostic.code, f->text);
+    reader_expect_refused(&reader, f->text, f->code);
     TEST_ASSERT_EQUAL_UINT32_MESSAGE(f->line, reader.diagnostic.line, f->text);
     TEST_ASSERT_EQUAL_UINT32_MESSAGE(f->column, reader.diagnostic.column, f->text);
     TEST_ASSERT_EQUAL_STRING_MESSAGE(f->word, reader.diagnostic.word, f->text);

@@ -37,8 +37,7 @@ static void expect_tool(uint32_t tool, bool change)
 
 static void check_error(const char *text, enum takt_error code, const char *word)
 {
-    reader_open(&reader, text);
-    reader_expect_error(&reader, code);
+    reader_expect_refused(&reader, text, code);
     TEST_ASSERT_EQUAL_STRING_MESSAGE(word, reader.diagnostic.word, text);
 }
 

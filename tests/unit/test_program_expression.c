@@ -31,8 +31,7 @@ static void check_error(const char *text, enum takt_error code, uint32_t column,
     char line[PROGRAM_LINE_MAX + 1];
 
     (void)snprintf(line, sizeof(line), "#1=%s", text);
-    reader_open(&reader, line);
-    reader_expect_error(&reader, code);
+    reader_expect_refused(&reader, line, code);
     TEST_ASSERT_EQUAL_STRING_MESSAGE(word, reader.diagnostic.word, text);
     TEST_ASSERT_EQUAL_UINT32_MESSAGE(column + 3, reader.diagnostic.column, text);
 }

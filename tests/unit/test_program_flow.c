@@ -22,15 +22,7 @@ static void expect_x(double x)
 /* The text is refused, at its first error, with this code in this line. */
 static void expect_refused(const char *text, enum takt_error code, unsigned line)
 {
-    struct move move;
-    enum program_result result;
-
-    reader_open(&reader, text);
-    do {
-        result = program_next(&reader.program, &move, &reader.diagnostic);
-    } while (result == PROGRAM_MOVE);
-    TEST_ASSERT_EQUAL_INT_MESSAGE(PROGRAM_ERROR, result, text);
-    TEST_ASSERT_EQUAL_INT_MESSAGE(code, reader.diagnostic.code, text);
+    reader_expect_refused(&reader, text, code);
     TEST_ASSERT_EQUAL_UINT_MESSAGE(line, reader.diagnostic.line, text);
 }
 

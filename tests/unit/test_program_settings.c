@@ -11,17 +11,12 @@ void tearDown(void)
 {
 }
 
-static void expect_rapid(double x, double y, double z)
-{
-    (void)reader_expect(&reader, MOVE_RAPID, x, y, z);
-}
-
 static void test_g10_l2_moves_the_system_in_use(void)
 {
     reader_open(&reader, "G10 L2 P1 X5 Y6\nG0 X1\nG10 L2 P2 Z7\nG0 X2\nG55\nG0 X0 Y0 Z0");
-    expect_rapid(6.0, 0.0, 0.0);
-    expect_rapid(7.0, 0.0, 0.0);
-    expect_rapid(0.0, 0.0, 7.0);
+    reader_expect_rapid(&reader, 6.0, 0.0, 0.0);
+    reader_expect_rapid(&reader, 7.0, 0.0, 0.0);
+    reader_expect_rapid(&reader, 0.0, 0.0, 7.0);
     reader_expect_end(&reader);
     TEST_ASSERT_EQUAL_DOUBLE(6.0, parameters_get(&reader.parameters, PARAMETER_SYSTEM_OFFSET + 1));
 }
@@ -35,8 +30,8 @@ static void test_g10_l20_gives_the_position_its_coordinates(void)
     (void)reader_next(&reader, MOVE_TOOL);
     const struct point at = reader_next(&reader, MOVE_RAPID).end;
 
-    expect_rapid(at.at[AXIS_X], at.at[AXIS_Y], at.at[AXIS_Z]);
-    expect_rapid(at.at[AXIS_X], at.at[AXIS_Y], at.at[AXIS_Z]);
+    reader_expect_rapid(&reader, at.at[AXIS_X], at.at[AXIS_Y], at.at[AXIS_Z]);
+    reader_expect_rapid(&reader, at.at[AXIS_X], at.at[AXIS_Y], at.at[AXIS_Z]);
 }
 
 static void test_g10_l10_measures_a_tool(void)
@@ -47,16 +42,16 @@ static void test_g10_l10_measures_a_tool(void)
     (void)reader_next(&reader, MOVE_TOOL);
     const struct point at = reader_next(&reader, MOVE_RAPID).end;
 
-    expect_rapid(at.at[AXIS_X], at.at[AXIS_Y], at.at[AXIS_Z]);
+    reader_expect_rapid(&reader, at.at[AXIS_X], at.at[AXIS_Y], at.at[AXIS_Z]);
     reader_expect_end(&reader);
 }
 
 static void test_g10_l1_changes_a_tool_for_this_program_alone(void)
 {
     reader_open(&reader, "G10 L1 P5 Z30 R4\nG43 H5\nG0 Z0\n");
-    expect_rapid(0.0, 0.0, 30.0);
+    reader_expect_rapid(&reader, 0.0, 0.0, 30.0);
     reader_text(&reader, "G43 H5\nG0 Z0");
-    expect_rapid(0.0, 0.0, 100.0);
+    reader_expect_rapid(&reader, 0.0, 0.0, 100.0);
 }
 
 static void test_the_values_of_the_tool_in_the_spindle_are_parameters(void)
@@ -113,20 +108,24 @@ static void test_m61_loads_a_tool_for_g43(void)
 
     TEST_ASSERT_TRUE(move.tool_loaded);
     TEST_ASSERT_EQUAL_UINT32(12, move.tool);
-    expect_rapid(0.0, 0.0, 41.0);
+    reader_expect_rapid(&reader, 0.0, 0.0, 41.0);
 }
 
 static void test_a_probe_that_answers_ends_the_move_there(void)
 {
-    const struct point contact = {{4.0, 2.0, 1.5, 0.0, 0.0, 0.0}};
+    const struct program_answer answer = {
+        .contact = true,
+        .contact_at = {{4.0, 2.0, 1.5, 0.0, 0.0, 0.0}},
+        .rest_at = {{4.5, 2.5, 1.75, 0.0, 0.0, 0.0}},
+    };
 
     reader_open(&reader, "G92 X-1\nF60\nG38.2 X9\nG0 Y#5061 Z#5070");
     const struct move move = reader_expect(&reader, MOVE_PROBE, 10.0, 0.0, 0.0);
 
     TEST_ASSERT_FALSE(move.probe_away);
     TEST_ASSERT_FALSE(move.probe_optional);
-    program_set_probe(&reader.program, &contact, true);
-    expect_rapid(4.0, 3.0, 1.0);
+    program_answer(&reader.program, &answer);
+    reader_expect_rapid(&reader, 4.5, 3.0, 1.0);
 }
 
 static void test_without_an_answer_a_probe_ends_where_it_was_sent(void)
@@ -136,7 +135,7 @@ static void test_without_an_answer_a_probe_ends_where_it_was_sent(void)
 
     TEST_ASSERT_TRUE(move.probe_away);
     TEST_ASSERT_TRUE(move.probe_optional);
-    expect_rapid(9.0, 9.0, 0.0);
+    reader_expect_rapid(&reader, 9.0, 9.0, 0.0);
 }
 
 static void test_a_feed_per_revolution_is_told_with_what_it_comes_to(void)
@@ -184,7 +183,7 @@ static void test_a_rigid_tap_comes_back_at_its_ratio(void)
     move = reader_expect(&reader, MOVE_TAP_OUT, 0.0, 0.0, 5.0);
     TEST_ASSERT_DOUBLE_WITHIN(1e-12, 6.0, move.feed_mm_s);
     TEST_ASSERT_EQUAL_DOUBLE(3.0, move.speed_ratio);
-    expect_rapid(1.0, 0.0, 5.0);
+    reader_expect_rapid(&reader, 1.0, 0.0, 5.0);
 }
 
 static unsigned overrides_after(const char *text)
@@ -279,15 +278,15 @@ static void test_an_input_nobody_reads_is_0(void)
     TEST_ASSERT_EQUAL_UINT32(3, move.channel);
     TEST_ASSERT_EQUAL_INT(INPUT_LOW, move.input_wait);
     TEST_ASSERT_EQUAL_DOUBLE(1.5, move.timeout_s);
-    expect_rapid(0.0, 0.0, 0.0);
+    reader_expect_rapid(&reader, 0.0, 0.0, 0.0);
 }
 
 static void test_diameters_are_halved(void)
 {
     reader_open(&reader, "G7 G0 X10\nG91 X2\nG8 G90 X10");
-    expect_rapid(5.0, 0.0, 0.0);
-    expect_rapid(6.0, 0.0, 0.0);
-    expect_rapid(10.0, 0.0, 0.0);
+    reader_expect_rapid(&reader, 5.0, 0.0, 0.0);
+    reader_expect_rapid(&reader, 6.0, 0.0, 0.0);
+    reader_expect_rapid(&reader, 10.0, 0.0, 0.0);
 }
 
 int main(void)

@@ -14,15 +14,7 @@ void tearDown(void)
 /* The text's last line must be refused at this column and word, and no line before it. */
 static void check_error(const char *text, enum takt_error code, uint32_t column, const char *word)
 {
-    struct move move;
-    enum program_result result;
-
-    reader_open(&reader, text);
-    do {
-        result = program_next(&reader.program, &move, &reader.diagnostic);
-    } while (result == PROGRAM_MOVE);
-    TEST_ASSERT_EQUAL_INT_MESSAGE(PROGRAM_ERROR, result, text);
-    TEST_ASSERT_EQUAL_INT_MESSAGE(code, reader.diagnostic.code, text);
+    reader_expect_refused(&reader, text, code);
     TEST_ASSERT_EQUAL_STRING_MESSAGE(word, reader.diagnostic.word, text);
     TEST_ASSERT_EQUAL_UINT32_MESSAGE(column, reader.diagnostic.column, text);
 }

@@ -16,15 +16,15 @@ static struct parameters parameters;
 static struct source_text text;
 static struct judge judge;
 static struct cycle_record record;
-static struct segment segment;
+static struct block executed;
 
 void setUp(void)
 {
     machine_set_default(&machine);
     parameters_clear(&parameters);
     memset(&record, 0, sizeof record);
-    memset(&segment, 0, sizeof segment);
-    segment.end = JOINT_STOP;
+    memset(&executed, 0, sizeof executed);
+    executed.end = JOINT_STOP;
 }
 
 void tearDown(void)
@@ -32,9 +32,10 @@ void tearDown(void)
 }
 
 /* A judge of this program, before its first cycle. */
-static void begin(const char *program)
+static void begin_as(const char *program, bool waits)
 {
-    struct program_config config = {.axes = machine_axes(&machine), .parameters = &parameters};
+    struct program_config config = {
+        .axes = machine_axes(&machine), .parameters = &parameters, .waits = waits};
     struct source source;
 
     for (int i = 0; i < AXIS_COUNT; i++) {
@@ -43,6 +44,11 @@ static void begin(const char *program)
     }
     source_open_text(&source, &text, program, strlen(program));
     judge_init(&judge, &machine, &config, &source);
+}
+
+static void begin(const char *program)
+{
+    begin_as(program, false);
 }
 
 /* A cycle of a block at x, y, as an ideal drive would do it: reporting each setpoint when it is due. */
@@ -58,7 +64,7 @@ static void cycle(uint32_t block, double x, double y)
     record.set = record.cmd;
     record.act = due[judge.figures.cycles % DRIVES_LATENCY_CYCLES];
     due[judge.figures.cycles % DRIVES_LATENCY_CYCLES] = record.set;
-    judge_add(&judge, &record, &segment);
+    judge_add(&judge, &record, &executed);
     record.landed = false;
 }
 
@@ -159,19 +165,17 @@ static void test_the_last_block_must_land(void)
     TEST_ASSERT_DOUBLE_WITHIN(1e-12, 0.5, judge.figures.landing_error_mm);
 }
 
-/* Of a block that is passed, the executed curve counts where its feed profile ends. */
+/* Of a block that is passed, the executed curve counts at the end of its block. */
 static void test_a_passed_end_is_where_the_executed_path_leads(void)
 {
     struct point start = {{0}}, end = {{10}};
 
     begin("G0 X10\nG0 X20\n");
-    TEST_ASSERT_TRUE(curve_set_line(&segment.curve, &start, &end));
-    segment.end = JOINT_PASSED;
-    segment.profile.count = 1;
-    segment.profile.duration_s = 1;
-    segment.profile.piece[0] = (struct profile_piece){.duration_s = 1, .v_mm_s = 9.75};
+    TEST_ASSERT_TRUE(curve_set_line(&executed.curve, &start, &end));
+    executed.end = JOINT_PASSED;
+    executed.length_mm = 9.75;
     cycle(1, 9, 0);
-    segment.end = JOINT_STOP;
+    executed.end = JOINT_STOP;
     landed_cycle(2, 20, 0);
     TEST_ASSERT_DOUBLE_WITHIN(1e-12, 0.25, judge.figures.landing_error_mm);
 }
@@ -179,8 +183,7 @@ static void test_a_passed_end_is_where_the_executed_path_leads(void)
 static void test_blocks_in_which_no_cycle_ends_are_followed(void)
 {
     begin("G0 X1\nG0 X2\nG0 X3\n");
-    segment.end = JOINT_PASSED;
-    segment.profile.duration_s = 0;
+    executed.end = JOINT_PASSED;
     landed_cycle(1, 1, 0);
     landed_cycle(3, 3, 0);
     judge_finish(&judge, true);
@@ -222,7 +225,7 @@ static void test_the_following_error_compares_a_report_with_its_own_setpoint(voi
     TEST_ASSERT_DOUBLE_WITHIN(1e-12, 0, judge.figures.following_error_mm[AXIS_X]);
     record.act.at[AXIS_X] += 0.02; /* the drive runs ahead of the setpoint of three cycles ago */
     record.act.at[AXIS_X] += 0.1;
-    judge_add(&judge, &record, &segment);
+    judge_add(&judge, &record, &executed);
     TEST_ASSERT_DOUBLE_WITHIN(1e-12, 0.02, judge.figures.following_error_mm[AXIS_X]);
 }
 
@@ -272,6 +275,65 @@ static void test_an_arc_of_changing_radius_is_on_its_own_path(void)
     }
 }
 
+static void expect_answered_run(double path_length_mm, double landing_error_mm)
+{
+    judge_finish(&judge, true);
+    TEST_ASSERT_EQUAL_INT(0, judge_get_missing(&judge));
+    TEST_ASSERT_DOUBLE_WITHIN(1e-12, path_length_mm, judge.figures.path_length_mm);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-12, 0, judge.figures.path_error_mm);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-12, landing_error_mm, judge.figures.landing_error_mm);
+}
+
+static void answer_contact_at_rest(double x)
+{
+    judge_answer(&judge, &(struct program_answer){.contact = true, .rest_at = {{x}}});
+}
+
+static void test_a_probing_move_may_end_early_and_the_next_begins_there(void)
+{
+    begin_as("F60\nG38.2 X10\nG0 Y5\n", true);
+    cycle(1, 2, 0);
+    cycle(1, 4, 0);
+    answer_contact_at_rest(4);
+    cycle(2, 4, 2);
+    landed_cycle(2, 4, 5);
+    expect_answered_run(9, 0);
+}
+
+static void test_a_rest_that_is_not_the_last_setpoint_is_seen(void)
+{
+    begin_as("F60\nG38.2 X10\n", true);
+    cycle(1, 4, 0);
+    answer_contact_at_rest(4.5);
+    judge_finish(&judge, true);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-12, 0.5, judge.figures.landing_error_mm);
+}
+
+static void test_a_probing_move_that_comes_to_its_end_counts_whole(void)
+{
+    begin_as("F60\nG38.3 X10\nM66 P0 L0\nG0 X12\n", true);
+    landed_cycle(1, 10, 0);
+    judge_answer(&judge, &(struct program_answer){.rest_at = {{10}}});
+    judge_answer(&judge, &(struct program_answer){.value = 1});
+    landed_cycle(2, 12, 0);
+    expect_answered_run(12, 0);
+}
+
+static void test_the_judge_goes_the_way_the_answer_leads(void)
+{
+    begin_as("G0 X0\nM66 P0 L0\nO1 if [#5399 EQ 1]\nG0 X1\nO1 else\nG0 Y1\nO1 endif\n", true);
+    judge_answer(&judge, &(struct program_answer){.value = 1});
+    landed_cycle(2, 1, 0);
+    expect_answered_run(1, 0);
+}
+
+static void test_nothing_is_missing_before_an_answer(void)
+{
+    begin_as("G0 X1\nM66 P0 L0\nG0 X2\n", true);
+    landed_cycle(1, 1, 0);
+    TEST_ASSERT_EQUAL_INT(0, judge_get_missing(&judge));
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -293,5 +355,10 @@ int main(void)
     RUN_TEST(test_the_digest_depends_on_every_bit_of_every_setpoint);
     RUN_TEST(test_the_distance_to_a_helix_finds_its_turn);
     RUN_TEST(test_an_arc_of_changing_radius_is_on_its_own_path);
+    RUN_TEST(test_a_probing_move_may_end_early_and_the_next_begins_there);
+    RUN_TEST(test_a_rest_that_is_not_the_last_setpoint_is_seen);
+    RUN_TEST(test_a_probing_move_that_comes_to_its_end_counts_whole);
+    RUN_TEST(test_the_judge_goes_the_way_the_answer_leads);
+    RUN_TEST(test_nothing_is_missing_before_an_answer);
     return UNITY_END();
 }

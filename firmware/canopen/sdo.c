@@ -1,0 +1,24 @@
+#include "canopen/sdo.h"
+#include "canopen/little_endian.h"
+
+uint32_t sdo_read_object(const struct can_frame *frame)
+{
+    return SDO_OBJECT(little_endian_read16(frame->data + 1), frame->data[3]);
+}
+
+void sdo_write_initiate(struct can_frame *frame, uint16_t cob_id, uint8_t command, uint32_t object,
+                        uint32_t value)
+{
+    frame->id = cob_id;
+    frame->length = SDO_LENGTH;
+    frame->data[0] = command;
+    little_endian_write16(frame->data + 1, (uint16_t)(object >> 16));
+    frame->data[3] = (uint8_t)(object >> 8);
+    little_endian_write32(frame->data + 4, value);
+}
+
+void sdo_write_abort(struct can_frame *frame, uint16_t function, uint8_t node, uint32_t object,
+                     uint32_t code)
+{
+    sdo_write_initiate(frame, (uint16_t)(function + node), SDO_ABORT, object, code);
+}

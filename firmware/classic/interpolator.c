@@ -1,0 +1,202 @@
+#include "classic/interpolator.h"
+
+#include "base/maths.h"
+#include "geometry/place.h"
+
+#include <string.h>
+
+/* Feeds that differ by less, as a part, are the same: rounding of the places they are taken from. */
+#define SAME_FEED 1e-6
+
+void interpolator_init(struct interpolator *i, const struct interpolator_config *config)
+{
+    memset(i, 0, sizeof(*i));
+    i->config = *config;
+}
+
+const struct interpolator_errors *interpolator_get_errors(const struct interpolator *i)
+{
+    return &i->errors;
+}
+
+static bool is_for(enum interpolator_kind kind, const struct curve *c)
+{
+    switch (kind) {
+    case INTERPOLATOR_EXACT:
+        return false;
+    case INTERPOLATOR_INTEGRATE:
+        return c->kind == CURVE_LINE;
+    case INTERPOLATOR_ROTATE:
+        return c->kind == CURVE_ARC && c->arc.radius_change_mm == 0.0;
+    }
+    return false;
+}
+
+static void begin_line(struct interpolator *i)
+{
+    const double unit_mm = i->config.increment_mm / (double)(INT64_C(1) << i->config.bits);
+
+    integrate_begin(&i->integrate, unit_mm, &i->curve.start, &i->curve.end, i->curve.length_mm);
+}
+
+static void begin_circle(struct interpolator *i)
+{
+    const struct curve *c = &i->curve;
+
+    rotate_begin(&i->rotate, c->start.at[c->arc.first] - c->arc.centre_mm[0],
+                 c->start.at[c->arc.second] - c->arc.centre_mm[1], 0.0);
+}
+
+static void begin_block(struct interpolator *i, const struct curve *curve, uint32_t block)
+{
+    i->block = block;
+    i->curve = *curve;
+    i->part = 0.0;
+    i->way_mm = 0.0;
+    i->aimed = false;
+    i->along_rad = 0.0;
+    i->growth = 0.0;
+    i->active = is_for(i->config.kind, curve);
+    if (i->active && curve->kind == CURVE_LINE) {
+        begin_line(i);
+    } else if (i->active) {
+        begin_circle(i);
+    }
+}
+
+static double distance(const struct point *a, const struct point *b)
+{
+    double sum = 0.0;
+
+    for (int n = 0; n < AXIS_COUNT; n++) {
+        sum += (a->at[n] - b->at[n]) * (a->at[n] - b->at[n]);
+    }
+    return maths_sqrt(sum);
+}
+
+static void raise_to(double *largest, double value)
+{
+    *largest = maths_max(*largest, value);
+}
+
+/*
+ * V(j+1) = V(j) + a while the feed changes, the exact V when it no longer does. The end rule is for the end of a block that
+ * is passed at a constant feed; N is what the planner's feed has left, not rounded to a power of two, since its cycles are
+ * the planner's.
+ */
+static void choose_velocity(struct interpolator *i, double way_mm, double left_mm)
+{
+    const double change = way_mm - i->way_mm;
+    const bool constant = maths_abs(change) <= SAME_FEED * way_mm;
+
+    if (!constant) {
+        i->aimed = false;
+        integrate_accelerate(&i->integrate, change);
+    } else if (i->aimed) {
+        return;
+    } else if (left_mm <= way_mm * INTEGRATE_END_CYCLES) {
+        integrate_aim(&i->integrate, left_mm / way_mm);
+        i->aimed = true;
+    } else {
+        integrate_set_velocity(&i->integrate, way_mm);
+    }
+}
+
+static double moving_axes(const struct curve *c)
+{
+    double count = 0.0;
+
+    for (int n = 0; n < AXIS_COUNT; n++) {
+        count += c->start.at[n] != c->end.at[n] ? 1.0 : 0.0;
+    }
+    return count;
+}
+
+/* Every axis loses loss_ulp units at most, and its end is the nearest unit. */
+static double integrate_bound(const struct interpolator *i)
+{
+    return maths_sqrt(moving_axes(&i->curve)) * (i->integrate.loss_ulp + 1.0) *
+           i->integrate.unit_mm;
+}
+
+static void integrate_to(struct interpolator *i, double part, struct point *cmd)
+{
+    const struct point exact = *cmd;
+    const double way = (part - i->part) * i->curve.length_mm;
+    struct point done;
+
+    choose_velocity(i, way, (1.0 - i->part) * i->curve.length_mm);
+    integrate_advance(&i->integrate);
+    integrate_get_way(&i->integrate, &done);
+    i->way_mm = way;
+    for (int n = 0; n < AXIS_COUNT; n++) {
+        cmd->at[n] = i->curve.start.at[n] + done.at[n];
+    }
+    raise_to(&i->errors.along_mm, distance(cmd, &exact));
+    raise_to(&i->errors.along_bound_mm, integrate_bound(i));
+    raise_to(&i->errors.loss_ulp, i->integrate.loss_ulp);
+}
+
+/* Sums of R dphi^3 / 6 along, dphi^4 / 8 across: bounds_rotation_... of accuracy/bounds.h for angles that change. */
+static void add_rotation_bounds(struct interpolator *i, double angle_rad)
+{
+    const double radius = i->curve.arc.radius_start_mm;
+    const double square = angle_rad * angle_rad;
+
+    i->along_rad += square * maths_abs(angle_rad) / 6.0;
+    i->growth += square * square / 8.0;
+    raise_to(&i->errors.along_bound_mm, radius * i->along_rad);
+    raise_to(&i->errors.contour_bound_mm, radius * (maths_exp(i->growth) - 1.0));
+}
+
+static void rotate_to(struct interpolator *i, double part, struct point *cmd)
+{
+    const struct curve_arc *arc = &i->curve.arc;
+    const double angle = rotate_step(&i->rotate, (part - i->part) * arc->sweep_rad);
+    const double a = i->rotate.a;
+    const double b = i->rotate.b;
+
+    const double x = cmd->at[arc->first] - arc->centre_mm[0];
+    const double y = cmd->at[arc->second] - arc->centre_mm[1];
+
+    add_rotation_bounds(i, angle);
+    raise_to(&i->errors.angle_rad, maths_abs(angle));
+    raise_to(&i->errors.contour_mm, maths_abs(maths_sqrt(a * a + b * b) - arc->radius_start_mm));
+    raise_to(&i->errors.along_mm,
+             arc->radius_start_mm * maths_abs(maths_atan2(x * b - y * a, x * a + y * b)));
+    cmd->at[arc->first] = arc->centre_mm[0] + a;
+    cmd->at[arc->second] = arc->centre_mm[1] + b;
+}
+
+/* The step of this cycle; a landed end is set to its exact value, and what that takes is measured. */
+static void interpolate(struct interpolator *i, bool landed, struct point *cmd)
+{
+    const struct point exact = *cmd;
+    const double part = landed ? 1.0 : curve_place(&i->curve, cmd, i->part);
+
+    if (i->curve.kind == CURVE_LINE) {
+        integrate_to(i, part, cmd);
+    } else {
+        rotate_to(i, part, cmd);
+    }
+    i->part = part;
+    if (landed) {
+        raise_to(&i->errors.landing_mm, distance(cmd, &exact));
+        *cmd = exact;
+        i->active = false;
+    }
+}
+
+void interpolator_cycle(struct interpolator *i, const struct curve *curve, uint32_t block,
+                        bool landed, struct point *cmd)
+{
+    if (i->config.kind == INTERPOLATOR_EXACT) {
+        return;
+    }
+    if (block != i->block) {
+        begin_block(i, curve, block);
+    }
+    if (i->active) {
+        interpolate(i, landed, cmd);
+    }
+}

@@ -1,0 +1,65 @@
+/* The configuration of the drives that follows from a machine. */
+#include "base/maths.h"
+#include "controller/controller.h"
+
+#include <string.h>
+
+#define START_TIMEOUT_S  5.0
+#define ANSWER_TIMEOUT_S 0.02
+#define SDO_TIMEOUT_S    0.5
+#define STOP_TIMEOUT_S   2.0
+#define BRAKE_TIMEOUT_S  3.0
+
+static uint32_t cycles_in(const struct machine *machine, double time_s)
+{
+    return (uint32_t)maths_ceil(1e6 * time_s / (double)machine->cycle_us);
+}
+
+static void set_homing(struct drives_homing *homing, const struct machine *machine,
+                       const struct machine_axis *axis)
+{
+    *homing = (struct drives_homing){
+        .order = axis->home_order,
+        .method = axis->home_method,
+        .velocity_mm_s = axis->home_velocity_mm_s,
+        .zero_mm_s = axis->home_zero_velocity_mm_s,
+        .acceleration_mm_s2 = axis->home_acceleration_mm_s2,
+        .offset_mm = axis->home_offset_mm,
+        .timeout_cycles = cycles_in(machine, axis->home_timeout_s),
+    };
+}
+
+static void add_drive(struct drives_config *config, const struct machine *machine, unsigned i)
+{
+    const struct machine_axis *axis = &machine->axis[i];
+    struct drives_config_axis *drive = &config->axis[config->count++];
+
+    *drive = (struct drives_config_axis){
+        .axis = (enum axis)i,
+        .node = axis->drive_node,
+        .increments_per_mm = axis->increments_per_mm,
+        .following_error_max_mm = axis->following_error_max_mm,
+        .identity = {axis->drive_vendor, axis->drive_product, axis->drive_revision,
+                     axis->drive_serial},
+    };
+    set_homing(&drive->homing, machine, axis);
+}
+
+void controller_drives_config(const struct machine *machine, struct drives_config *config)
+{
+    memset(config, 0, sizeof(*config));
+    config->cycle_us = machine->cycle_us;
+    config->bitrate = machine->can_bitrate;
+    config->controller_node = machine->controller_node;
+    config->heartbeat_ms = (uint16_t)machine->heartbeat_ms;
+    config->start_timeout_cycles = cycles_in(machine, START_TIMEOUT_S);
+    config->answer_timeout_cycles = cycles_in(machine, ANSWER_TIMEOUT_S);
+    config->sdo_timeout_cycles = cycles_in(machine, SDO_TIMEOUT_S);
+    config->stop_timeout_cycles = cycles_in(machine, STOP_TIMEOUT_S);
+    config->brake_timeout_cycles = cycles_in(machine, BRAKE_TIMEOUT_S);
+    for (unsigned i = 0; i < AXIS_COUNT; i++) {
+        if (machine_axis_is_on_can(&machine->axis[i])) {
+            add_drive(config, machine, i);
+        }
+    }
+}

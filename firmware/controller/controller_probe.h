@@ -1,0 +1,64 @@
+/*
+ * What a program asks of the world, and waits for: where a probe answers (G38), what an input says (M66).
+ *
+ *     background                              control cycle
+ *       program gives out the move
+ *       controller_probe_ask     ──────────→    controller_probe_watch   the move is executed; true: brake now
+ *       program says PROGRAM_WAIT               ...
+ *                                               controller_probe_rest    nothing moves any more; true: answered
+ *       controller_probe_take    ←──────────
+ *       offset_answer, and on from where the axes rest
+ *
+ * Nobody else is asked meanwhile: the program reads nothing until it is answered. struct controller_probe passes from
+ * the background to the cycle by ask and back when it is answered; nobody touches it out of turn.
+ */
+#ifndef TAKT_CONTROLLER_CONTROLLER_PROBE_H
+#define TAKT_CONTROLLER_CONTROLLER_PROBE_H
+
+#include "base/error.h"
+#include "hal/inputs.h"
+#include "program/program.h"
+
+#include <stdbool.h>
+#include <stdint.h>
+
+enum controller_probe_state {
+    PROBE_IDLE,    /* nothing has been asked */
+    PROBE_ASKED,   /* the move is executed, or comes to rest, or waits */
+    PROBE_ANSWERED /* answer and error hold */
+};
+
+struct controller_probe {
+    enum controller_probe_state state;
+    struct move move;
+    bool begun;            /* the move has been looked at */
+    bool level_before;     /* of the input */
+    uint64_t cycles_left;  /* until the input's time is over */
+    enum takt_error error; /* TAKT_OK: none */
+    struct program_answer answer;
+    uint32_t answers; /* taken so far, by the background, and the last of them */
+    struct program_answer taken;
+};
+
+/* A move has come from the program: remembers it when it asks for something. */
+void controller_probe_ask(struct controller_probe *q, const struct move *move, double cycle_s);
+
+/*
+ * In each cycle that executes a motion. actual: where the axes are, by their drives. True, once: the motion is to brake
+ * at once and to end where it comes to rest.
+ */
+bool controller_probe_watch(struct controller_probe *q, const struct move *executed,
+                            const struct inputs *inputs, const struct point *actual);
+
+/*
+ * In each cycle in which all that has been read is done and the program waits. rest: where the axes have been sent to
+ * last. True: answered.
+ */
+bool controller_probe_rest(struct controller_probe *q, const struct inputs *inputs,
+                           const struct point *rest, const struct point *actual);
+
+/* The answer that waits to be taken, and TAKT_OK or the error that ends the program; false: there is none. */
+bool controller_probe_take(struct controller_probe *q, struct program_answer *answer,
+                           struct diagnostic *error);
+
+#endif

@@ -1,0 +1,89 @@
+#include "controller/restart.h"
+
+#include "controller/controller_steps.h"
+
+#include <string.h>
+
+void controller_start_program(struct controller *c, const struct controller_config *config,
+                              const struct point *start)
+{
+    struct program_config program;
+    struct plan_limits limits;
+
+    controller_program_config(config, &program);
+    program.start = *start;
+    program_open(&c->program, &program, &config->source);
+    offset_open(&c->offset, &program);
+    controller_plan_limits(&c->machine, &limits);
+    correction_restart(&c->correction, start);
+    controller_reserve_correction(&c->correction, &c->machine, &limits);
+    path_init(&c->path, &limits, start);
+    motion_init(&c->motion, &c->path, start, c->machine.override_proportional != 0);
+    c->single_block = config->single_block;
+    c->keeps_outputs = config->keeps_outputs;
+    c->program_waits = false;
+    c->program_ended = false;
+    c->program_error.code = TAKT_OK;
+    c->has_record = false;
+    c->state = CONTROLLER_RUNNING;
+}
+
+void controller_drop_program(struct controller *c)
+{
+    c->program_ended = true;
+    c->has_record = false;
+    c->state = CONTROLLER_COMPLETED;
+}
+
+void controller_quieten(struct controller *c)
+{
+    memset(&c->surface, 0, sizeof(c->surface));
+    c->outputs.spindle_speed_rpm = 0.0;
+    c->outputs.spindle_orient = false;
+    c->outputs.mist = false;
+    c->outputs.flood = false;
+}
+
+bool controller_passed_stop(const struct controller *c, bool *optional)
+{
+    for (uint32_t i = c->motion.passed_first; c->has_record && i != c->path.first; i++) {
+        const struct move *move = &path_at(&c->path, i)->move;
+
+        if (move->kind == MOVE_STOP) {
+            *optional = move->optional;
+            return true;
+        }
+    }
+    return false;
+}
+
+void controller_stop_at_once(struct controller *c, enum takt_error reason)
+{
+    drives_stop_at_once(&c->drives, reason);
+    controller_quieten(c);
+    c->state = CONTROLLER_FAULTED;
+    c->fault = *drives_get_fault(&c->drives);
+}
+
+void controller_recover(struct controller *c, const struct controller_config *config, bool home)
+{
+    struct drives_config drives;
+
+    controller_drives_config(&c->machine, &drives);
+    drives.homed = !home && drives_are_homed(&c->drives);
+    drives_init(&c->drives, &drives);
+    controller_steps_restart(c);
+    controller_start_program(c, config, &c->setpoint);
+    c->state = CONTROLLER_STARTING;
+}
+
+void controller_follow_drives(struct controller *c, struct point *at)
+{
+    controller_get_actual(c, at);
+    if (drives_get_state(&c->drives) == DRIVES_STARTING) {
+        c->setpoint = *at;
+        approach_init(&c->approach, at);
+    } else {
+        *at = c->setpoint;
+    }
+}

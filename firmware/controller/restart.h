@@ -1,0 +1,43 @@
+/*
+ * What a controller that outlives its programs needs beyond controller.h: one program after another from where the axes
+ * stand, giving one up, stopping at once, and enabling the drives again. Called between two cycles.
+ */
+#ifndef TAKT_CONTROLLER_RESTART_H
+#define TAKT_CONTROLLER_RESTART_H
+
+#include "controller/controller.h"
+
+/*
+ * Reads another program, from start on: the last setpoint, without correction. The axes are at rest there, and the last
+ * program has been completed or dropped. machine and can of the configuration are those of controller_init. The drives,
+ * the outputs and the parameters stay as they are.
+ */
+void controller_start_program(struct controller *c, const struct controller_config *config,
+                              const struct point *start);
+
+/* Gives the program up where it is: no more setpoints come from it. The axes are at rest. CONTROLLER_COMPLETED. */
+void controller_drop_program(struct controller *c);
+
+/* All drives brake by themselves, outputs that move or turn something go off. CONTROLLER_FAULTED, for this reason. */
+void controller_stop_at_once(struct controller *c, enum takt_error reason);
+
+/*
+ * After CONTROLLER_FAULTED, or at rest between programs: resets and enables the drives again where they stand.
+ * CONTROLLER_STARTING, then CONTROLLER_COMPLETED after an empty program: config->source is empty. home: axes that are
+ * homed at start are homed again, else only if they have not been.
+ */
+void controller_recover(struct controller *c, const struct controller_config *config, bool home);
+
+/* The last cycle has passed M0, or M1 (*optional). */
+bool controller_passed_stop(const struct controller *c, bool *optional);
+
+/* Spindle and coolant off. */
+void controller_quieten(struct controller *c);
+
+/*
+ * While CONTROLLER_STARTING, before each cycle: the setpoint is where the drives stand, so that none of them moves when
+ * it is enabled. Returns it in *at.
+ */
+void controller_follow_drives(struct controller *c, struct point *at);
+
+#endif

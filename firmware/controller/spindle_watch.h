@@ -1,0 +1,41 @@
+/*
+ * What the spindle's feedback does to the feed: motion waits until it has reached its speed, and goes slower while it is
+ * loaded beyond its limit.
+ *
+ *     load > limit    ratio falls by (load/limit - 1) / SPINDLE_FALL_S a second, not below SPINDLE_RATIO_MIN
+ *     load <= limit   ratio rises by 1 / SPINDLE_RISE_S a second, up to 1
+ *
+ * The ratio multiplies the feed override; acceleration and jerk of the change are the planner's.
+ */
+#ifndef TAKT_CONTROLLER_SPINDLE_WATCH_H
+#define TAKT_CONTROLLER_SPINDLE_WATCH_H
+
+#include "hal/inputs.h"
+#include "program/move.h"
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#define SPINDLE_FALL_S    0.5
+#define SPINDLE_RISE_S    2.0
+#define SPINDLE_RATIO_MIN 0.1
+
+struct spindle_watch {
+    double cycle_s;
+    double load_limit_percent; /* 0: the load changes nothing */
+    double at_speed_s;         /* longest wait for a commanded speed; 0: none is made */
+    double ratio;              /* of the feed, SPINDLE_RATIO_MIN ... 1 */
+    bool waits;                /* for the speed commanded last */
+    uint64_t waited;           /* cycles */
+};
+
+void spindle_watch_init(struct spindle_watch *w, double cycle_s, double load_limit_percent,
+                        double at_speed_s);
+
+/* Motion has passed an event: a speed that has been commanded is waited for. */
+void spindle_watch_pass(struct spindle_watch *w, const struct move *event);
+
+/* Every control cycle. False: the speed has not been reached in time. */
+bool spindle_watch_cycle(struct spindle_watch *w, const struct spindle_feedback *spindle);
+
+#endif

@@ -1,0 +1,385 @@
+#include "correction/correction.h"
+
+#include "base/maths.h"
+#include "correction/layer.h"
+
+#include <assert.h>
+#include <string.h>
+
+#define CORRECTION_DECLARE(NAME, name) extern const struct correction_layer layer_##name;
+CORRECTION_LAYERS(CORRECTION_DECLARE)
+#undef CORRECTION_DECLARE
+
+#define CORRECTION_LIST(NAME, name) &layer_##name,
+static const struct correction_layer *const layers[] = {CORRECTION_LAYERS(CORRECTION_LIST)};
+#undef CORRECTION_LIST
+
+static_assert(CORRECTION_LAYERS_COUNT <= 8, "a move has a byte for the layers a program switches");
+
+/* The layers that read tables. */
+#define LAYERS_OF_TABLES (1U << CORRECTION_AXES | 1U << CORRECTION_VOLUME)
+
+void correction_settings_set_default(struct correction_settings *settings)
+{
+    memset(settings, 0, sizeof(*settings));
+    settings->largest_mm = 1.0;
+    settings->steepest_ratio = 0.005;
+    settings->fade_s = 1.0;
+    settings->reversal_fade_s = 0.25;
+    settings->turn_axis = AXIS_COUNT;
+}
+
+void correction_table_rules(const struct correction_settings *settings, unsigned axes,
+                            struct table_rules *rules)
+{
+    rules->axes = axes;
+    rules->largest_mm = settings->largest_mm;
+    rules->steepest_ratio = settings->steepest_ratio;
+}
+
+unsigned correction_axis_of(const struct correction *c, unsigned coordinate)
+{
+    return coordinate < AXIS_LINEAR_COUNT ? coordinate : c->settings.turn_axis;
+}
+
+/* Lets a layer look at its settings and tables anew. */
+static void begin_layer(struct correction *c, unsigned i)
+{
+    const unsigned bit = 1U << i;
+
+    memset(&c->notes[i], 0, sizeof(c->notes[i]));
+    c->present &= ~bit;
+    c->followers &= ~bit;
+    if (layers[i]->begin(c, &c->notes[i])) {
+        c->present |= bit;
+        c->followers |= layers[i]->follow != NULL ? bit : 0U;
+    }
+}
+
+void correction_restart(struct correction *c, const struct point *start)
+{
+    c->at = start;
+    c->fading = c->running = c->program_off = 0;
+    memset(c->weight, 0, sizeof(c->weight));
+    for (unsigned i = 0; i < CORRECTION_LAYERS_COUNT; i++) {
+        begin_layer(c, i);
+    }
+    c->at = NULL;
+}
+
+void correction_init(struct correction *c, const struct correction_settings *settings,
+                     unsigned axes, double cycle_s, const struct correction_tables *tables,
+                     const struct point *start)
+{
+    memset(c, 0, sizeof(*c));
+    c->settings = *settings;
+    c->axes = axes;
+    while (axes >> c->axes_end != 0) {
+        c->axes_end++;
+    }
+    c->cycle_s = cycle_s;
+    c->tables = tables;
+    c->off = settings->off;
+    fade_pace_set(&c->layer_pace, settings->fade_s, cycle_s);
+    fade_pace_set(&c->reversal_pace, settings->reversal_fade_s, cycle_s);
+    correction_restart(c, start);
+}
+
+/* ---- the control cycle ---- */
+
+static unsigned wanted(const struct correction *c)
+{
+    const unsigned loading = c->pending != NULL ? LAYERS_OF_TABLES : 0U;
+
+    return c->present & ~(c->off | c->program_off | loading);
+}
+
+static __attribute__((noinline)) void fade_layers(struct correction *c)
+{
+    const unsigned on = wanted(c);
+
+    c->fading = c->running = 0;
+    for (unsigned i = 0; i < CORRECTION_LAYERS_COUNT; i++) {
+        const unsigned bit = 1U << i;
+
+        if (fade_cycle(&c->weight[i], (on & bit) != 0 ? 1.0 : 0.0, &c->layer_pace)) {
+            c->fading |= bit;
+        }
+        if (c->weight[i].value != 0.0) {
+            c->running |= bit;
+        }
+    }
+}
+
+/* New tables take the place of the old ones when nobody reads them any more. */
+static __attribute__((noinline)) void exchange_tables(struct correction *c)
+{
+    c->tables = c->pending;
+    c->pending = NULL;
+    begin_layer(c, CORRECTION_AXES);
+    begin_layer(c, CORRECTION_VOLUME);
+}
+
+/* The lowest layer of a set that is not empty. */
+static unsigned first_of(unsigned set)
+{
+    return (unsigned)__builtin_ctz(set);
+}
+
+static void follow(struct correction *c)
+{
+    for (unsigned rest = c->followers; rest != 0; rest &= rest - 1U) {
+        const unsigned i = first_of(rest);
+
+        layers[i]->follow(c, &c->notes[i]);
+        c->notes[i].started = true;
+    }
+}
+
+static void add_layers(struct correction *c, struct point *set)
+{
+    struct correction_sum sum;
+
+    memset(sum.fine, 0, sizeof(sum.fine));
+    sum.is_coarse = false;
+    sum.outside = 0;
+    for (unsigned rest = c->running; rest != 0; rest &= rest - 1U) {
+        const unsigned i = first_of(rest);
+
+        layers[i]->add(c, &c->notes[i], c->weight[i].value, &sum);
+    }
+    for (unsigned i = 0; i < c->axes_end; i++) {
+        set->at[i] += sum.is_coarse ? sum.coarse[i] + (double)sum.fine[i] : (double)sum.fine[i];
+    }
+    c->outside |= sum.outside;
+}
+
+void correction_cycle(struct correction *c, const struct point *cmd, const struct move *move,
+                      struct point *set)
+{
+    *set = *cmd;
+    if (c->present == 0 && c->pending == NULL) {
+        return;
+    }
+    c->move = move;
+    c->at = cmd;
+    if (move_is_motion(move)) {
+        c->program_off = move->correction_off;
+    }
+    follow(c);
+    if (c->fading != 0 || c->running != wanted(c)) {
+        fade_layers(c);
+    }
+    if (c->running != 0) {
+        add_layers(c, set);
+    }
+    if (c->pending != NULL && ((c->running | c->fading) & LAYERS_OF_TABLES) == 0) {
+        exchange_tables(c);
+    }
+}
+
+/* A layer as it is when everything has settled. */
+static void add_settled(struct correction *c, unsigned i, struct correction_sum *sum)
+{
+    struct layer_notes *notes = &c->notes[i];
+
+    begin_layer(c, i);
+    if (i == CORRECTION_WEAR) {
+        return;
+    }
+    if (i == CORRECTION_AXES) {
+        memset(notes->coefficient, 0, sizeof(notes->coefficient));
+    } else if ((c->followers & 1U << i) != 0) {
+        layers[i]->follow(c, notes);
+    }
+    layers[i]->add(c, notes, 1.0, sum);
+}
+
+void correction_evaluate(const struct correction *c, const struct point *at,
+                         const struct move *move, struct point *k)
+{
+    struct correction settled = *c;
+    struct correction_sum sum;
+
+    memset(&sum, 0, sizeof(sum));
+    settled.at = at;
+    settled.move = move;
+    for (unsigned i = 0; i < CORRECTION_LAYERS_COUNT; i++) {
+        if ((c->present & ~(c->off | (unsigned)move->correction_off) & 1U << i) != 0) {
+            add_settled(&settled, i, &sum);
+        }
+    }
+    for (unsigned i = 0; i < AXIS_COUNT; i++) {
+        k->at[i] = sum.coarse[i] + (double)sum.fine[i];
+    }
+}
+
+/* ---- what others set and ask ---- */
+
+void correction_switch(struct correction *c, enum correction_layer_number layer, bool on)
+{
+    c->off = on ? c->off & ~(1U << layer) : c->off | 1U << layer;
+}
+
+void correction_set_rise(struct correction *c, enum axis axis, double rise_k)
+{
+    c->rise_k[axis] = rise_k;
+}
+
+bool correction_is_loading(const struct correction *c)
+{
+    return c->pending != NULL;
+}
+
+unsigned correction_get_running(const struct correction *c)
+{
+    return c->running | c->fading;
+}
+
+unsigned correction_get_present(const struct correction *c)
+{
+    return c->present;
+}
+
+const char *correction_layer_name(enum correction_layer_number layer)
+{
+    return layers[layer]->name;
+}
+
+unsigned correction_take_outside(struct correction *c)
+{
+    const unsigned outside = c->outside;
+
+    c->outside = 0;
+    return outside;
+}
+
+/* ---- shares of the axes' limits ---- */
+
+/* A layer K faded by w: products of the derivatives of both (Leibniz). */
+static void add_faded(struct need *sum, const struct need *k, const struct fade_pace *pace,
+                      unsigned i)
+{
+    const double w1 = fade_velocity_per_s(pace);
+    const double w2 = fade_acceleration_per_s2(pace);
+    const double w3 = fade_jerk_per_s3(pace);
+
+    sum->size_mm[i] += k->size_mm[i];
+    sum->noise_mm[i] += k->noise_mm[i];
+    sum->velocity_mm_s[i] += k->velocity_mm_s[i] + w1 * k->size_mm[i];
+    sum->acceleration_mm_s2[i] +=
+        k->acceleration_mm_s2[i] + 2.0 * w1 * k->velocity_mm_s[i] + w2 * k->size_mm[i];
+    sum->jerk_mm_s3[i] += k->jerk_mm_s3[i] + 3.0 * w1 * k->acceleration_mm_s2[i] +
+                          3.0 * w2 * k->velocity_mm_s[i] + w3 * k->size_mm[i];
+}
+
+/* Rounding of K in differences over a cycle: up to 2, 4 and 8 times itself. */
+static void add_noise(struct need *need, double cycle_s, unsigned i)
+{
+    const double step_mm_s = 2.0 * need->noise_mm[i] / cycle_s;
+
+    need->velocity_mm_s[i] += step_mm_s;
+    need->acceleration_mm_s2[i] += 2.0 * step_mm_s / cycle_s;
+    need->jerk_mm_s3[i] += 4.0 * step_mm_s / (cycle_s * cycle_s);
+}
+
+void correction_get_need(const struct correction *c, const struct motion_bound *most,
+                         struct need *need)
+{
+    memset(need, 0, sizeof(*need));
+    for (unsigned i = 0; i < CORRECTION_LAYERS_COUNT; i++) {
+        struct need of_layer;
+
+        if ((c->present & 1U << i) == 0) {
+            continue;
+        }
+        memset(&of_layer, 0, sizeof(of_layer));
+        layers[i]->need(c, &c->notes[i], most, &of_layer);
+        for (unsigned axis = 0; axis < AXIS_COUNT; axis++) {
+            add_faded(need, &of_layer, &c->layer_pace, axis);
+        }
+    }
+    for (unsigned axis = 0; axis < AXIS_COUNT; axis++) {
+        add_noise(need, c->cycle_s, axis);
+    }
+}
+
+static void raise(double *value, double least)
+{
+    *value = maths_max(*value, least);
+}
+
+void correction_reserve(struct correction *c, const struct motion_bound *most, struct need *need)
+{
+    const double reserve = c->settings.reserve_ratio;
+
+    correction_get_need(c, most, need);
+    for (unsigned i = 0; i < AXIS_COUNT; i++) {
+        raise(&need->velocity_mm_s[i], reserve * most->velocity_mm_s[i]);
+        raise(&need->acceleration_mm_s2[i], reserve * most->acceleration_mm_s2[i]);
+        raise(&need->jerk_mm_s3[i], reserve * most->jerk_mm_s3[i]);
+    }
+    c->reserved = *need;
+    c->most = *most;
+    c->is_reserved = true;
+}
+
+static double share_of(double need, double most)
+{
+    return most > 0.0 ? need / most : 0.0;
+}
+
+double correction_largest_share(const struct need *need, const struct motion_bound *most,
+                                enum axis *axis)
+{
+    double largest = 0.0;
+
+    *axis = AXIS_X;
+    for (unsigned i = 0; i < AXIS_COUNT; i++) {
+        double share = share_of(need->velocity_mm_s[i], most->velocity_mm_s[i]);
+
+        raise(&share, share_of(need->acceleration_mm_s2[i], most->acceleration_mm_s2[i]));
+        raise(&share, share_of(need->jerk_mm_s3[i], most->jerk_mm_s3[i]));
+        if (share > largest) {
+            largest = share;
+            *axis = (enum axis)i;
+        }
+    }
+    return largest;
+}
+
+/* The need of other tables than those in use. */
+static void need_with(const struct correction *c, const struct correction_tables *tables,
+                      struct need *need)
+{
+    static const struct point somewhere = {{0.0}};
+    struct correction other = *c;
+
+    other.at = &somewhere;
+    other.tables = tables;
+    begin_layer(&other, CORRECTION_AXES);
+    begin_layer(&other, CORRECTION_VOLUME);
+    correction_get_need(&other, &c->most, need);
+}
+
+bool correction_load(struct correction *c, const struct correction_tables *tables,
+                     struct diagnostic *wrong)
+{
+    struct need need;
+
+    need_with(c, tables, &need);
+    for (unsigned i = 0; c->is_reserved && i < AXIS_COUNT; i++) {
+        if (need.velocity_mm_s[i] > c->reserved.velocity_mm_s[i] ||
+            need.acceleration_mm_s2[i] > c->reserved.acceleration_mm_s2[i] ||
+            need.jerk_mm_s3[i] > c->reserved.jerk_mm_s3[i]) {
+            enum axis axis;
+            const double share = correction_largest_share(&need, &c->most, &axis);
+
+            diagnostic_set(wrong, TAKT_ERROR_TABLE_RESERVE, 0, 0, &AXIS_LETTERS[axis], 1,
+                           100.0 * share);
+            return false;
+        }
+    }
+    c->pending = tables;
+    return true;
+}

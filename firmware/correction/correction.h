@@ -1,0 +1,96 @@
+/*
+ * Position-error correction: commanded coordinates in, corrected ones out, every control cycle.
+ *
+ *     set = cmd + K,   K = w_1 K_1(cmd) + w_2 K_2(cmd) + ...   summed in the order of layers.h
+ *
+ * Each layer has a weight w that fades between 0 and 1 as it is switched; with every weight 0 set is cmd, to the last
+ * bit. The position shown to users is cmd.
+ */
+#ifndef TAKT_CORRECTION_CORRECTION_H
+#define TAKT_CORRECTION_CORRECTION_H
+
+#include "base/error.h"
+#include "base/point.h"
+#include "correction/fade.h"
+#include "correction/layers.h"
+#include "correction/need.h"
+#include "correction/settings.h"
+#include "correction/table.h"
+#include "correction/tables.h"
+#include "program/move.h"
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#include "correction/correction_state.h"
+
+/* tables: NULL for none; must outlive c or be replaced by correction_load. start: where the machine stands. */
+void correction_init(struct correction *c, const struct correction_settings *settings,
+                     unsigned axes, double cycle_s, const struct correction_tables *tables,
+                     const struct point *start);
+
+/*
+ * The next motion begins at a setpoint that is taken for a commanded position: nothing is corrected there, and all layers
+ * fade in anew. What tools have worn stays.
+ */
+void correction_restart(struct correction *c, const struct point *start);
+
+/* One control cycle. move: the one being executed; what the program switches travels with it. */
+void correction_cycle(struct correction *c, const struct point *cmd, const struct move *move,
+                      struct point *set);
+
+/*
+ * The correction at a point, without any history: layers that are on have full weight, directions of approach their mean,
+ * tools no wear. For planning and offline use; *c stays as it is.
+ */
+void correction_evaluate(const struct correction *c, const struct point *at,
+                         const struct move *move, struct point *k);
+
+/* The operator switches a layer: it fades in or out. A layer is on if machine file or operator, and the program, let it. */
+void correction_switch(struct correction *c, enum correction_layer_number layer, bool on);
+
+/* A sensor says how much warmer than at calibration an axis is. */
+void correction_set_rise(struct correction *c, enum axis axis, double rise_k);
+
+/* How long and how far a tool has cut; for the caller to keep between programs. */
+void correction_set_wear(struct correction *c, uint32_t tool, double length_mm, double time_s);
+void correction_get_wear(const struct correction *c, uint32_t tool, double *length_mm,
+                         double *time_s);
+
+/*
+ * Exchanges the tables while axes may be moving: the table layers fade out, then in with the new tables. False: the new
+ * ones would take more of the axes than has been reserved, *wrong says where; the old ones stay. Old and new must stay
+ * where they are until correction_is_loading is false.
+ */
+bool correction_load(struct correction *c, const struct correction_tables *tables,
+                     struct diagnostic *wrong);
+bool correction_is_loading(const struct correction *c);
+
+/* The rules tables have to keep on this machine. */
+void correction_table_rules(const struct correction_settings *settings, unsigned axes,
+                            struct table_rules *rules);
+
+/* What all layers together take of the axes at most, fading included, while commanded motion does at most *most. */
+void correction_get_need(const struct correction *c, const struct motion_bound *most,
+                         struct need *need);
+
+/*
+ * What the planner has to leave: the need of what is loaded, or the reserve if that is more, in *need. Later loads are
+ * held against it.
+ */
+void correction_reserve(struct correction *c, const struct motion_bound *most, struct need *need);
+
+/* The greatest part of its velocity, acceleration or jerk that an axis gives up, 0 ...; *axis says which one does. */
+double correction_largest_share(const struct need *need, const struct motion_bound *most,
+                                enum axis *axis);
+
+/* Bit i set: layer i corrects something now, or is fading. */
+unsigned correction_get_running(const struct correction *c);
+/* Bit i set: layer i has something to correct. */
+unsigned correction_get_present(const struct correction *c);
+const char *correction_layer_name(enum correction_layer_number layer);
+
+/* Bit i set: axis i has been beyond the end of a table, where the edge value holds; since the last call. */
+unsigned correction_take_outside(struct correction *c);
+
+#endif

@@ -1,0 +1,69 @@
+#include "correction/fade.h"
+
+#include "base/maths.h"
+
+/*
+ * A chain of three equal first-order lags, w = p^3 / (s + p)^3 target. Its step response is
+ *
+ *     w(t) = 1 - (1 + x + x^2 / 2) e^-x,   x = p t
+ *
+ * which reaches 99 % at x = 8.406.
+ */
+#define FADE_DONE_X 8.406
+
+/* Nearer than this the value is taken for its target: far below a drive's increment, whatever it is multiplied by. */
+#define FADE_NEAR 1e-9
+
+/*
+ * Of responses to a target that jumps between 0 and 1 at the worst times: half the integral of the absolute impulse
+ * response. In units of p, p^2, p^3 (tests/unit/test_correction_fade.c tries to exceed them).
+ */
+#define FADE_VELOCITY_MAX     0.28
+#define FADE_ACCELERATION_MAX 0.33
+#define FADE_JERK_MAX         1.3
+
+void fade_pace_set(struct fade_pace *pace, double time_s, double cycle_s)
+{
+    pace->cycle_s = cycle_s;
+    pace->rate = FADE_DONE_X * cycle_s / maths_max(time_s, FADE_CYCLES_MIN * cycle_s);
+}
+
+/*
+ * The differential equation w''' = p^3 (target - w) - 3 p^2 w' - 3 p w'', in steps of a cycle; p in 1/cycle. The third
+ * difference of the values is the step itself, so it is bounded as the jerk of the equation is.
+ */
+bool fade_cycle(struct fade *f, double target, const struct fade_pace *pace)
+{
+    const double p = pace->rate;
+    const double gap = target - f->value;
+
+    if (maths_abs(gap) + maths_abs(f->slope) + maths_abs(f->bend) <
+        FADE_NEAR * maths_max(1.0, maths_abs(target))) {
+        *f = (struct fade){target, 0.0, 0.0};
+        return false;
+    }
+    f->bend += p * (p * (p * gap - 3.0 * f->slope) - 3.0 * f->bend);
+    f->slope += f->bend;
+    f->value += f->slope;
+    return true;
+}
+
+static double per_s(const struct fade_pace *pace)
+{
+    return pace->rate / pace->cycle_s;
+}
+
+double fade_velocity_per_s(const struct fade_pace *pace)
+{
+    return FADE_VELOCITY_MAX * per_s(pace);
+}
+
+double fade_acceleration_per_s2(const struct fade_pace *pace)
+{
+    return FADE_ACCELERATION_MAX * per_s(pace) * per_s(pace);
+}
+
+double fade_jerk_per_s3(const struct fade_pace *pace)
+{
+    return FADE_JERK_MAX * per_s(pace) * per_s(pace) * per_s(pace);
+}

@@ -1,0 +1,113 @@
+/* What following a grid takes of the axes: K as a function of time, differentiated three times. */
+#include "base/maths.h"
+#include "correction/edge.h"
+#include "correction/grid_bound.h"
+#include "correction/grid_patch.h"
+
+/*
+ * Room for what is not bounded one by one: differences over whole cycles instead of derivatives, and second derivatives
+ * of the hold at the edges in mixed terms. Only terms of second and third order have it, which are small.
+ */
+#define NEED_MARGIN 2.0
+
+/* Per mm or rad instead of per step. */
+static double largest(const struct grid *grid, const struct grid_order *order, unsigned component)
+{
+    double most = grid_bound(grid, order, component);
+
+    for (unsigned i = 0; i < grid->inputs; i++) {
+        for (unsigned n = 0; n < order->along[i]; n++) {
+            most *= grid->input[i].per_mm;
+        }
+    }
+    return most;
+}
+
+struct sums {
+    const struct grid *grid;
+    const struct motion_bound *most;
+    struct need *need;
+    unsigned component;
+};
+
+static unsigned corrected(const struct sums *s)
+{
+    return s->component < AXIS_LINEAR_COUNT ? s->component : s->grid->turn_axis;
+}
+
+/* Beyond an edge, d2u/dx2 and d3u/dx3 of the hold come in. */
+static void add_first(const struct sums *s, unsigned i)
+{
+    const struct grid_input *input = &s->grid->input[i];
+    const double v = s->most->velocity_mm_s[input->axis];
+    struct grid_order order = {{0}};
+
+    order.along[i] = 1;
+    const double slope = largest(s->grid, &order, s->component);
+
+    need_add_slope(s->need, corrected(s), input->axis, slope, s->most);
+    s->need->acceleration_mm_s2[corrected(s)] += slope * EDGE_SECOND_MAX * input->per_mm * v * v;
+    s->need->jerk_mm_s3[corrected(s)] +=
+        slope * EDGE_THIRD_MAX * input->per_mm * input->per_mm * v * v * v +
+        slope * EDGE_SECOND_MAX * input->per_mm * 3.0 * v *
+            s->most->acceleration_mm_s2[input->axis];
+}
+
+/* acceleration: q_ij v_i v_j, jerk: 3 q_ij v_i a_j, summed over all ordered pairs. */
+static void add_second(const struct sums *s, unsigned i, unsigned j)
+{
+    const unsigned a = s->grid->input[i].axis;
+    const unsigned b = s->grid->input[j].axis;
+    struct grid_order order = {{0}};
+
+    order.along[i]++;
+    order.along[j]++;
+    const double q = NEED_MARGIN * largest(s->grid, &order, s->component);
+
+    s->need->acceleration_mm_s2[corrected(s)] +=
+        q * s->most->velocity_mm_s[a] * s->most->velocity_mm_s[b];
+    s->need->jerk_mm_s3[corrected(s)] +=
+        3.0 * q * s->most->velocity_mm_s[a] * s->most->acceleration_mm_s2[b];
+}
+
+static void add_third(const struct sums *s, unsigned i, unsigned j, unsigned k)
+{
+    struct grid_order order = {{0}};
+
+    order.along[i]++;
+    order.along[j]++;
+    order.along[k]++;
+    s->need->jerk_mm_s3[corrected(s)] += NEED_MARGIN * largest(s->grid, &order, s->component) *
+                                         s->most->velocity_mm_s[s->grid->input[i].axis] *
+                                         s->most->velocity_mm_s[s->grid->input[j].axis] *
+                                         s->most->velocity_mm_s[s->grid->input[k].axis];
+}
+
+static void add_component(const struct sums *s)
+{
+    const struct grid_order none = {{0}};
+    const double size = largest(s->grid, &none, s->component);
+
+    s->need->size_mm[corrected(s)] += size;
+    s->need->noise_mm[corrected(s)] += NEED_ROUNDING * size + GRID_PATCH_ERROR_MM;
+    for (unsigned i = 0; i < s->grid->inputs; i++) {
+        add_first(s, i);
+        for (unsigned j = 0; j < s->grid->inputs; j++) {
+            add_second(s, i, j);
+            for (unsigned k = 0; k < s->grid->inputs; k++) {
+                add_third(s, i, j, k);
+            }
+        }
+    }
+}
+
+void grid_need(const struct grid *grid, const struct motion_bound *most, struct need *need)
+{
+    struct sums s = {.grid = grid, .most = most, .need = need};
+
+    for (s.component = 0; s.component < GRID_COMPONENTS; s.component++) {
+        if ((grid->components & 1U << s.component) != 0) {
+            add_component(&s);
+        }
+    }
+}

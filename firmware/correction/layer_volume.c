@@ -1,0 +1,32 @@
+/* Volume table: corrections over a grid of X, Y, Z and the turning axis. */
+#include "correction/layer.h"
+
+static bool volume_begin(const struct correction *c, struct layer_notes *notes)
+{
+    (void)notes;
+    return c->tables != NULL && c->tables->volume.inputs > 0;
+}
+
+static void volume_add(const struct correction *c, struct layer_notes *notes, double weight,
+                       struct correction_sum *sum)
+{
+    const struct grid *grid = &c->tables->volume;
+
+    sum->outside |= grid->inputs == GRID_PATCH_INPUTS
+                        ? grid_patch_add(grid, &notes->patch, c->at, (float)weight, sum->fine)
+                        : grid_add(grid, c->at, (float)weight, sum->fine);
+}
+
+static void volume_need(const struct correction *c, const struct layer_notes *notes,
+                        const struct motion_bound *most, struct need *need)
+{
+    (void)notes;
+    grid_need(&c->tables->volume, most, need);
+}
+
+const struct correction_layer layer_volume = {
+    .name = "volume",
+    .begin = volume_begin,
+    .add = volume_add,
+    .need = volume_need,
+};

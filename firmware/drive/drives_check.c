@@ -1,0 +1,136 @@
+/*
+ * What is watched once a cycle, and the way to rest after a fault.
+ */
+#include "base/maths.h"
+#include "canopen/cia402.h"
+#include "canopen/emcy.h"
+#include "drive/drives_private.h"
+
+/* A drive stands when for so many reports it has moved no more than this in each, mm or rad, or an increment. */
+#define REST_REPORTS 10
+#define REST_MM      1e-5
+
+void drives_raise_reported(struct drives *d, unsigned index, uint16_t code)
+{
+    drives_raise(d, index, TAKT_ERROR_DRIVE_FAULT, code,
+                 code != EMCY_NONE ? emcy_text(code) : "a fault without a code");
+}
+
+static void raise_state(struct drives *d, unsigned index)
+{
+    const struct drives_axis *axis = &d->axis[index];
+    enum cia402_state state = cia402_state(axis->statusword);
+    if (state == CIA402_FAULT || state == CIA402_FAULT_REACTION)
+        drives_raise_reported(d, index, axis->emcy_code);
+    else
+        drives_raise(d, index, TAKT_ERROR_DRIVE_STATE, axis->statusword, cia402_state_text(state));
+}
+
+bool drives_check_links(struct drives *d, unsigned index)
+{
+    const struct drives_axis *axis = &d->axis[index];
+    uint32_t lost_cycles = d->heartbeat_cycles * DRIVES_HEARTBEATS_LOST;
+    if (!cia402_is_enabled(axis->statusword))
+        raise_state(d, index);
+    else if (axis->silent_cycles > d->answer_timeout_cycles)
+        drives_raise(d, index, TAKT_ERROR_DRIVE_SILENT, drives_cycles_ms(d, axis->silent_cycles),
+                     NULL);
+    else if (lost_cycles > 0 && axis->heartbeat_cycles > lost_cycles)
+        drives_raise(d, index, TAKT_ERROR_DRIVE_HEARTBEAT,
+                     drives_cycles_ms(d, axis->heartbeat_cycles), NULL);
+    else
+        return true;
+    return false;
+}
+
+/*
+ * lag = setpoint of DRIVES_LATENCY_CYCLES ago - actual position. Without a report this cycle the
+ * two do not belong together.
+ */
+static void check_following(struct drives *d, unsigned index)
+{
+    const struct drives_axis *axis = &d->axis[index];
+    double limit_mm = axis->config.following_error_max_mm;
+    if (limit_mm <= 0 || axis->silent_cycles != 0)
+        return;
+    double set_mm = axis->sent_mm[(d->cycle - DRIVES_LATENCY_CYCLES) & (DRIVES_HISTORY - 1)];
+    double lag_mm = maths_abs(set_mm - drives_axis_actual_mm(axis));
+    if (lag_mm > limit_mm)
+        drives_raise(d, index, TAKT_ERROR_DRIVE_FOLLOWING, drives_axis_shown(axis, lag_mm), NULL);
+}
+
+void drives_check_operation(struct drives *d)
+{
+    for (unsigned i = 0; i < d->count; i++)
+        if (drives_check_links(d, i))
+            check_following(d, i);
+}
+
+static bool setpoint_moves(const struct drives *d, const struct drives_axis *axis)
+{
+    double now_mm = axis->sent_mm[d->cycle & (DRIVES_HISTORY - 1)];
+    double before_mm = axis->sent_mm[(d->cycle - 1) & (DRIVES_HISTORY - 1)];
+    return maths_abs(now_mm - before_mm) > 0;
+}
+
+/* With an emergency as the fault, a statusword that does not come soon would have told of it. */
+static bool is_lost(const struct drives_axis *axis)
+{
+    return axis->lost || axis->silent_cycles > DRIVES_LATENCY_CYCLES;
+}
+
+/*
+ * Setpoints have come to rest when they have not changed for as long as a report takes. Where a lost axis has to move,
+ * the path is left anyway, and least if all brake as hard as they can.
+ */
+void drives_watch_stop(struct drives *d)
+{
+    bool at_rest = true;
+    bool leaves_path = false;
+    for (unsigned i = 0; i < d->count; i++) {
+        bool moves = setpoint_moves(d, &d->axis[i]);
+        at_rest = at_rest && !moves;
+        leaves_path = leaves_path || (moves && is_lost(&d->axis[i]));
+    }
+    d->rest_cycles = at_rest ? d->rest_cycles + 1 : 0;
+    if (leaves_path || d->rest_cycles >= DRIVES_LATENCY_CYCLES ||
+        d->stop_cycles++ >= d->stop_timeout_cycles)
+        drives_brake(d);
+}
+
+static bool is_switched_off(const struct drives_axis *axis)
+{
+    switch (cia402_state(axis->statusword)) {
+    case CIA402_SWITCH_ON_DISABLED:
+    case CIA402_READY:
+    case CIA402_SWITCHED_ON:
+    case CIA402_FAULT:
+    case CIA402_NOT_READY:
+        return true;
+    case CIA402_ENABLED:
+    case CIA402_QUICK_STOP:
+    case CIA402_FAULT_REACTION:
+        break;
+    }
+    return false;
+}
+
+/* A drive that has never been started has never had torque. */
+static bool rests(struct drives_axis *axis)
+{
+    double moved_inc = maths_abs((double)axis->actual_inc - axis->braking_inc);
+    bool still = axis->silent_cycles == 0 && is_switched_off(axis) &&
+                 moved_inc <= maths_max(REST_MM * axis->config.increments_per_mm, 1);
+    axis->braking_inc = axis->actual_inc;
+    axis->rest_cycles = still ? axis->rest_cycles + 1 : 0;
+    return !axis->started || axis->rest_cycles >= REST_REPORTS;
+}
+
+void drives_watch_brakes(struct drives *d)
+{
+    bool all = true;
+    for (unsigned i = 0; i < d->count; i++)
+        all = rests(&d->axis[i]) && all;
+    if (all || d->stop_cycles++ >= d->brake_timeout_cycles)
+        d->state = DRIVES_FAULTED;
+}

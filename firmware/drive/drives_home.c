@@ -1,0 +1,134 @@
+/*
+ * Homing, and the change of modes before and after it (CiA 402-2, homing mode). The drive finds its home by itself; the
+ * master chooses when, and watches.
+ *
+ *     statusword bits 13 12 10:  0 0 0 under way,  0 1 1 done,  0 0 1 idle,  1 x x error
+ */
+#include "base/maths.h"
+#include "canopen/cia402.h"
+#include "drive/drives_private.h"
+
+/* A drive that does not show the mode it was given within this time will not. */
+#define MODE_TIMEOUT_MS 1000
+
+/*
+ * A drive shows that it is homing within this time; one that shows "done" from then on is. Before, "done" may be an
+ * older one.
+ */
+#define HOMING_SHOWN_MS 20
+
+/* Lowest order above the present one; 0: none. */
+static uint8_t next_order(const struct drives *d)
+{
+    uint8_t next = 0;
+    for (unsigned i = 0; i < d->count && !d->homed; i++) {
+        uint8_t order = d->axis[i].config.homing.order;
+        if (order > d->home_order && (next == 0 || order < next))
+            next = order;
+    }
+    return next;
+}
+
+/* Homing has given positions another zero: the target of a drive that leaves it is where it stands now. */
+static void select_mode(struct drives_axis *axis, bool is_homing)
+{
+    if (axis->mode == CIA402_MODE_HOMING)
+        axis->target_inc = axis->actual_inc;
+    axis->mode = is_homing ? CIA402_MODE_HOMING : CIA402_MODE_CYCLIC_SYNC_POSITION;
+    axis->command = 0;
+}
+
+void drives_home_next(struct drives *d)
+{
+    uint8_t order = next_order(d);
+    for (unsigned i = 0; i < d->count; i++)
+        select_mode(&d->axis[i], order != 0 && d->axis[i].config.homing.order == order);
+    d->home_order = order;
+    d->homed = order == 0;
+    drives_enter_phase(d, DRIVES_SELECT);
+}
+
+/* All show their modes: those that are to be homed begin; without any the drives are ready. */
+static void begin_homing(struct drives *d)
+{
+    bool is_any = false;
+    for (unsigned i = 0; i < d->count; i++) {
+        struct drives_axis *axis = &d->axis[i];
+        if (axis->mode != CIA402_MODE_HOMING)
+            continue;
+        is_any = true;
+        axis->command = CIA402_START_HOMING;
+        axis->homing_seen = false;
+        axis->homed = false;
+    }
+    drives_enter_phase(d, DRIVES_HOME);
+    if (is_any)
+        return;
+    d->state = DRIVES_ENABLED;
+    for (unsigned i = 0; i < d->count; i++)
+        for (unsigned k = 0; k < DRIVES_HISTORY; k++)
+            d->axis[i].sent_mm[k] = drives_axis_actual_mm(&d->axis[i]);
+}
+
+static void check_links(struct drives *d)
+{
+    for (unsigned i = 0; i < d->count; i++)
+        (void)drives_check_links(d, i);
+}
+
+/* Modes are not in the statusword: object 6061 is read, of one drive after the other, until it agrees. */
+void drives_select(struct drives *d)
+{
+    const uint32_t object = SDO_OBJECT(CIA402_MODE_DISPLAY >> 16, 0);
+    const struct drives_axis *axis = &d->axis[d->at_axis];
+    check_links(d);
+    if (d->state != DRIVES_STARTING || sdo_client_is_busy(&d->sdo))
+        return;
+    if (d->sdo.result == SDO_ABORTED) {
+        drives_raise_object(d, d->at_axis, object, TAKT_ERROR_DRIVE_REFUSES, d->sdo.abort_code,
+                            sdo_abort_text(d->sdo.abort_code));
+        return;
+    }
+    if (d->sdo.result == SDO_DONE && sdo_client_number(&d->sdo) == axis->mode) {
+        d->at_axis++;
+        d->phase_cycles = 0;
+    } else if (drives_cycles_ms(d, d->phase_cycles) > MODE_TIMEOUT_MS) {
+        drives_raise(d, d->at_axis, TAKT_ERROR_DRIVE_MODE, axis->mode, NULL);
+        return;
+    }
+    if (d->at_axis == d->count)
+        begin_homing(d);
+    else
+        sdo_client_upload(&d->sdo, d->node[d->at_axis], object, d->sdo_timeout_cycles);
+}
+
+static void follow_homing(struct drives *d, unsigned index)
+{
+    struct drives_axis *axis = &d->axis[index];
+    const uint16_t done = CIA402_HOMING_ATTAINED | CIA402_TARGET_REACHED;
+    bool is_done = (axis->statusword & done) == done;
+    double since_ms = drives_cycles_ms(d, d->phase_cycles);
+    if (axis->controlword == (CIA402_ENABLE_OPERATION | CIA402_START_HOMING) && !is_done)
+        axis->homing_seen = true;
+    if (since_ms >= HOMING_SHOWN_MS && axis->statusword & CIA402_HOMING_ERROR)
+        drives_raise(d, index, TAKT_ERROR_DRIVE_HOMING, axis->statusword, NULL);
+    else if (d->phase_cycles > axis->config.homing.timeout_cycles)
+        drives_raise(d, index, TAKT_ERROR_DRIVE_HOMING_SLOW,
+                     1e-3 * drives_cycles_ms(d, axis->config.homing.timeout_cycles), NULL);
+    axis->homed = is_done && (axis->homing_seen || since_ms >= HOMING_SHOWN_MS);
+}
+
+void drives_home(struct drives *d)
+{
+    bool all = true;
+    check_links(d);
+    for (unsigned i = 0; i < d->count && d->state == DRIVES_STARTING; i++) {
+        if (d->axis[i].mode != CIA402_MODE_HOMING)
+            continue;
+        if (!d->axis[i].homed)
+            follow_homing(d, i);
+        all = all && d->axis[i].homed;
+    }
+    if (all && d->state == DRIVES_STARTING)
+        drives_home_next(d);
+}

@@ -1,0 +1,55 @@
+#include "drive/drives_private.h"
+#include "drive/word.h"
+
+#define HEARTBEAT_LENGTH 1
+
+unsigned drives_cycle_frames(unsigned count, uint8_t length[DRIVES_CYCLE_FRAMES_MAX])
+{
+    unsigned frames = 0;
+    if (count > AXIS_COUNT)
+        count = AXIS_COUNT;
+    length[frames++] = 0;
+    for (unsigned i = 0; i < count; i += 2)
+        length[frames++] = i + 1 < count ? 8 : 4;
+    for (unsigned i = 0; i < count; i++)
+        length[frames++] = DRIVES_STATUS_LENGTH;
+    length[frames++] = DRIVES_STATUS_LENGTH;
+    length[frames++] = HEARTBEAT_LENGTH;
+    return frames;
+}
+
+/*
+ * Bits of a data frame with an 11-bit identifier and n bytes, intermission included: 47 + 8 n, and the most that can
+ * be stuffed into its first 34 + 8 n bits, one after the first five and one after every four more:
+ *     C = 47 + 8 n + floor((34 + 8 n - 1) / 4)
+ * Davis, Burns, Bril, Lukkien: Controller Area Network schedulability analysis, Real-Time Systems 35 (2007), eq. 1.
+ */
+static uint32_t frame_bits_worst(uint32_t n)
+{
+    return 47 + 8 * n + (34 + 8 * n - 1) / 4;
+}
+
+bool drives_predict_load(unsigned count, uint32_t bitrate, uint32_t cycle_us,
+                         struct drives_load *load)
+{
+    uint8_t length[DRIVES_CYCLE_FRAMES_MAX];
+    unsigned frames = drives_cycle_frames(count, length);
+    double capacity_bits = 1e-6 * (double)cycle_us * (double)bitrate;
+    load->bits = 0;
+    for (unsigned i = 0; i < frames; i++)
+        load->bits += frame_bits_worst(length[i]);
+    load->capacity_bits = (uint32_t)capacity_bits;
+    load->percent = 100.0 * load->bits / capacity_bits;
+    return load->percent <= 100.0;
+}
+
+/* "1310 of 1000 bits". */
+void drives_set_overload(const struct drives_load *load, struct diagnostic *fault)
+{
+    struct word word = {.length = 0};
+    word_add_number(&word, load->bits);
+    word_add_text(&word, " of ");
+    word_add_number(&word, load->capacity_bits);
+    word_add_text(&word, " bits");
+    diagnostic_set(fault, TAKT_ERROR_BUS_OVERLOAD, 0, 0, word.text, word.length, load->percent);
+}

@@ -1,0 +1,192 @@
+#include "inverter/inverter.h"
+
+#include "base/maths.h"
+
+#include <string.h>
+
+#define US_PER_S 1e6
+
+/* Closer to standstill than this counts as standing, rpm. */
+#define STANDSTILL_RPM 1.0
+
+#define HZ_PER_COUNT      0.01
+#define PERCENT_PER_COUNT 0.1
+#define AMPERE_PER_COUNT  0.1
+#define WORD_MAX          65535.0
+
+void inverter_init(struct inverter *inverter, const struct inverter_config *config)
+{
+    memset(inverter, 0, sizeof *inverter);
+    inverter->config = *config;
+}
+
+static double seconds(const struct inverter *v)
+{
+    return (double)v->config.cycle_us / US_PER_S;
+}
+
+/* The commanded speed moves by at most ramp dt, through 0 when it turns round. */
+static void follow_ramp(struct inverter *v, double commanded_rpm)
+{
+    const double most_rpm = v->config.ramp_rpm_s * seconds(v);
+
+    v->ramp_rpm += maths_clamp(commanded_rpm - v->ramp_rpm, -most_rpm, most_rpm);
+}
+
+/* f = rpm pole pairs / 60 */
+static uint16_t frequency_of(const struct inverter *v, double rpm)
+{
+    const double hz = maths_min(maths_abs(rpm) * v->config.pole_pairs / 60.0, v->config.max_hz);
+
+    return (uint16_t)maths_min(maths_round(hz / HZ_PER_COUNT), WORD_MAX);
+}
+
+/* What the registers COMMAND and FREQUENCY should hold. */
+static void wanted_command(const struct inverter *v, double commanded_rpm, uint16_t word[2])
+{
+    const bool stands = maths_abs(v->ramp_rpm) < STANDSTILL_RPM && commanded_rpm == 0.0;
+
+    word[1] = frequency_of(v, v->ramp_rpm);
+    word[0] = v->ramp_rpm > 0.0 ? INVERTER_FORWARD : INVERTER_REVERSE;
+    if (stands) {
+        word[0] = INVERTER_STOP;
+        word[1] = 0;
+    }
+}
+
+static double rpm_of(const struct inverter *v, uint16_t frequency)
+{
+    return (double)frequency * HZ_PER_COUNT * 60.0 / v->config.pole_pairs;
+}
+
+/* INVERTER_ERROR and the four registers behind it. */
+static void take_status(struct inverter *v, const uint16_t *word)
+{
+    const double speed_rpm = rpm_of(v, word[INVERTER_OUTPUT - INVERTER_ERROR]);
+    const bool reverse = (word[INVERTER_STATUS - INVERTER_ERROR] & INVERTER_TURNS_REVERSE) != 0;
+
+    v->error = word[0] & INVERTER_ERROR_MASK;
+    v->feedback.tripped = v->error != 0;
+    v->feedback.speed_rpm = reverse ? -speed_rpm : speed_rpm;
+    v->current_a = (double)word[INVERTER_CURRENT - INVERTER_ERROR] * AMPERE_PER_COUNT;
+}
+
+static void take_load(struct inverter *v, const uint16_t *word)
+{
+    v->feedback.load_percent = maths_abs((double)(int16_t)word[0]) * PERCENT_PER_COUNT;
+}
+
+static void take_answer(struct inverter *v, const uint16_t *word)
+{
+    v->quiet_us = 0;
+    v->heard = true;
+    switch (v->request) {
+    case INVERTER_WRITES_COMMAND:
+        v->is_written = true;
+        break;
+    case INVERTER_READS_STATUS:
+        take_status(v, word);
+        break;
+    case INVERTER_READS_LOAD:
+        take_load(v, word);
+        break;
+    case INVERTER_RESETS:
+        v->wants_reset = false;
+        v->is_written = false;
+        break;
+    case INVERTER_NOTHING:
+        break;
+    }
+}
+
+/* True: nothing is under way any more. A converter that was away may have forgotten its command. */
+static bool end_request(struct inverter *v, const struct registers_port *port)
+{
+    uint16_t word[REGISTERS_MAX] = {0};
+
+    if (v->request == INVERTER_NOTHING)
+        return true;
+    switch (port->take(port->context, word)) {
+    case REGISTERS_WAITING:
+        return false;
+    case REGISTERS_DONE:
+        take_answer(v, word);
+        return true;
+    case REGISTERS_FAILED:
+        break;
+    }
+    v->is_written = false;
+    return true;
+}
+
+static void write_command(struct inverter *v, const struct registers_port *port,
+                          const uint16_t word[2])
+{
+    memcpy(v->command, word, sizeof v->command);
+    v->is_written = false;
+    v->request = INVERTER_WRITES_COMMAND;
+    port->write(port->context, INVERTER_COMMAND, 2, word);
+}
+
+static void read_report(struct inverter *v, const struct registers_port *port)
+{
+    if (v->request == INVERTER_READS_STATUS) {
+        v->request = INVERTER_READS_LOAD;
+        port->read(port->context, INVERTER_TORQUE, 1);
+    } else {
+        v->request = INVERTER_READS_STATUS;
+        port->read(port->context, INVERTER_ERROR, INVERTER_CURRENT - INVERTER_ERROR + 1);
+    }
+}
+
+/* After each command comes a report, so that a ramp does not silence the reports. */
+static void begin_request(struct inverter *v, const struct registers_port *port,
+                          double commanded_rpm)
+{
+    static const uint16_t reset = INVERTER_RESET;
+    const bool reported = v->request != INVERTER_WRITES_COMMAND;
+    uint16_t word[2];
+
+    wanted_command(v, commanded_rpm, word);
+    if (v->wants_reset) {
+        v->request = INVERTER_RESETS;
+        port->write(port->context, INVERTER_CONTROL, 1, &reset);
+    } else if (reported && (!v->is_written || memcmp(word, v->command, sizeof v->command) != 0)) {
+        write_command(v, port, word);
+    } else {
+        read_report(v, port);
+    }
+}
+
+static bool is_at_speed(const struct inverter *v, double commanded_rpm)
+{
+    const double room_rpm =
+        maths_max(STANDSTILL_RPM, 0.01 * v->config.at_speed_percent * maths_abs(commanded_rpm));
+
+    return !v->feedback.tripped && !v->feedback.silent &&
+           maths_abs(v->feedback.speed_rpm - commanded_rpm) <= room_rpm;
+}
+
+/* Silence counts from power-on too: a converter that never answers is lost. */
+static void watch_silence(struct inverter *v)
+{
+    v->quiet_us += v->config.cycle_us;
+    v->feedback.silent = v->quiet_us > v->config.silent_after_us;
+}
+
+struct spindle_feedback inverter_cycle(struct inverter *v, const struct registers_port *port,
+                                       double commanded_rpm)
+{
+    watch_silence(v);
+    follow_ramp(v, commanded_rpm);
+    if (end_request(v, port))
+        begin_request(v, port, commanded_rpm);
+    v->feedback.angle_rev += v->feedback.speed_rpm / 60.0 * seconds(v);
+    v->feedback.at_speed = is_at_speed(v, commanded_rpm);
+    return v->feedback;
+}
+
+void inverter_reset(struct inverter *inverter)
+{
+    inverter->wants_reset = true;
+}

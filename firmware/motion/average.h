@@ -1,0 +1,38 @@
+/*
+ * The moving average that makes the setpoint's path position out of the lead point's: one to three boxes, one after the
+ * other (plan/law.h). Exact: sums of whole path units, modulo 2^64, of which only differences are used.
+ */
+#ifndef TAKT_MOTION_AVERAGE_H
+#define TAKT_MOTION_AVERAGE_H
+
+#include "plan/law.h"
+
+#include <stdint.h>
+
+struct average_box {
+    uint32_t cycles;
+    uint64_t sum; /* of the last cycles inputs */
+    uint64_t input[LAW_CYCLES_MAX];
+};
+
+struct average {
+    enum law law;
+    uint32_t next;  /* place of the next input in the rings */
+    uint64_t at;    /* newest input */
+    double product; /* of the boxes' cycles */
+    struct average_box box[LAW_BOXES_MAX];
+};
+
+/*
+ * The lead point is at this position and has always moved by step, path units a cycle. cycles: of the first box,
+ * 1 ... law_cycles_max.
+ */
+void average_start(struct average *a, enum law law, uint32_t cycles, uint64_t at, uint64_t step);
+
+/* The next position of the lead point, path units. */
+void average_push(struct average *a, uint64_t at);
+
+/* How far the average follows behind the newest input: path units, >= 0. 0 at rest. */
+double average_lag(const struct average *a);
+
+#endif

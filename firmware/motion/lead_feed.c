@@ -1,0 +1,293 @@
+/*
+ * Goal: in each cycle the highest feed from which everything ahead can still be met.
+ *
+ * With w the feed, s the position, a the acceleration of the piece, N the averaging window in cycles:
+ *
+ *     speeding up to w'    it must then be possible to keep w' for N cycles and brake:   w'^2 <= B(s' + N w')
+ *     keeping w            the next cycle must be able to brake:                         w^2  <= B(s + w)
+ *     braking to w'        by a at most, otherwise as above without N
+ *
+ * B(x) = u + 2 a (x_end - x) is feed squared from which the piece's end can be met (ceiling.h). A ceiling that the
+ * setpoint has not left yet, and every one up to s' + N w', binds w' as well.
+ */
+#include "motion/lead_private.h"
+
+#include "base/maths.h"
+#include "motion/landing.h"
+
+/* Pieces that are looked through for speeding up; no faster than reaches over them. */
+#define AHEAD_PIECES_MAX 64
+
+/* Cycles beside two windows within which a landing is looked into. */
+#define LANDING_CYCLES 64.0
+
+/* Halvings in search of a feed to land from. */
+#define LANDING_TRIES 5
+
+/* Rounding of positions as doubles, path units. */
+#define END_UNITS 64.0
+
+/* The last deceleration to rest may be more than the allowed one by this part. */
+#define REST_PART 2e-4
+
+/* -- braking -- */
+
+/* Feed squared at the end of a piece: 0 at a joint that is only come to rest at, whatever follows. */
+static double end_energy(const struct ceiling_piece *p)
+{
+    return p->feed == 0.0 ? 0.0 : p->end_energy;
+}
+
+/* Highest feed at the end of the cycle at which what piece k ends in can be met from there by a. */
+static double feed_to_meet(const struct ceiling_piece *p, double gap_mm, double w)
+{
+    const double a = p->acceleration;
+    const double energy = end_energy(p);
+    const double root = 0.25 * a * a - a * w + energy + 2.0 * a * gap_mm;
+    const double v = root > 0.0 ? maths_sqrt(root) - 0.5 * a : -1.0;
+
+    return gap_mm < 0.5 * (w + v) || v < 0.0 ? maths_sqrt(energy) : v;
+}
+
+/* Where the end of a piece is come to rest at: the end of its block exactly, if that is where it ends. */
+static uint64_t rest_position(const struct lead *l, const struct ceiling_piece *p)
+{
+    const uint64_t end = path_units(p->end_mm);
+    const uint64_t leave = (uint64_t)p->leave;
+    const bool same = maths_abs((double)(int64_t)(end - leave)) <= END_UNITS;
+
+    return l->ceiling->origin + (p->stop || same ? leave : end);
+}
+
+/* Rest may come a little early, so that no feed is left that is lost in the rounding of positions. */
+static void brake_for_piece(const struct lead *l, const struct ceiling_piece *p, double gap_mm,
+                            struct lead_brake *b)
+{
+    const double a = p->acceleration;
+    const double feed = feed_to_meet(p, gap_mm, l->feed);
+
+    b->a = maths_max(b->a, a);
+    b->feed = maths_min(b->feed, feed);
+    if (end_energy(p) == 0.0 && feed < maths_max(REST_PART * a, l->feed - a) &&
+        l->feed < a * (1.0 + 2.0 * REST_PART)) {
+        b->rest_at = rest_position(l, p);
+        b->rest = l->feed > 0.0 || l->at != b->rest_at;
+    }
+}
+
+struct lead_brake lead_brake_ahead(const struct lead *l)
+{
+    const double s = path_mm(l->ceiling->origin, l->at);
+    struct lead_brake b = {.feed = maths_min(l->feed, lead_piece(l, l->piece)->feed)};
+    uint32_t k = l->piece;
+
+    while (!b.rest) {
+        const struct ceiling_piece *p = lead_piece(l, k);
+
+        brake_for_piece(l, p, p->end_mm - s, &b);
+        if (lead_is_last_of_span(p) || p->end_mm - s >= l->feed || k + 1 == l->ceiling->count) {
+            break;
+        }
+        k++;
+    }
+    return b;
+}
+
+/* -- landing -- */
+
+/* A joint that nothing is known behind is only come to rest at: the ceiling ends with it. */
+static bool has_landing(const struct lead *l)
+{
+    return l->landing != CEILING_NONE && l->landing + 1U < l->ceiling->count;
+}
+
+static double landing_gap(const struct lead *l)
+{
+    return path_mm(l->at, lead_leave_of(l, l->landing));
+}
+
+/* How hard the lead point may slow down on its way to the joint: above its feed as in the piece that it is in. */
+static double landing_acceleration(const struct lead *l, double feed)
+{
+    const double here = lead_piece(l, l->piece < l->landing ? l->piece : l->landing)->acceleration;
+
+    return feed > l->landing_feed ? here : maths_min(here, lead_piece(l, l->landing)->acceleration);
+}
+
+static bool landing_from(const struct lead *l, double gap_mm, double feed, struct landing_run *run)
+{
+    const struct landing_case landing = {
+        .gap_mm = gap_mm,
+        .feed = feed,
+        .feed_max = l->landing_feed,
+        .acceleration = landing_acceleration(l, feed),
+        .window = l->window,
+    };
+
+    return landing_solve(&landing, run);
+}
+
+/* A joint that cannot be landed on in motion any more, because of a hold close to it, is a stop. */
+static struct ceiling_piece joint_as_stop(const struct lead *l)
+{
+    return (struct ceiling_piece){
+        .acceleration = landing_acceleration(l, 0.0),
+        .stop = true,
+        .leave = lead_piece(l, l->landing)->leave,
+    };
+}
+
+/*
+ * After speeding up to v: can the next landed joint be met in motion when v has been kept for a window? A feed above
+ * the joint's comes down to it in time by the ceiling.
+ */
+static bool can_land_later(const struct lead *l, double v)
+{
+    const double gap_mm = landing_gap(l) - 0.5 * (l->feed + v) - (l->window + 1.0) * v;
+    struct landing_run run;
+
+    return v > l->landing_feed || landing_from(l, gap_mm, v, &run);
+}
+
+/* The highest feed up to v from which the next landed joint can be met: in motion, else at rest. */
+static double feed_to_land(const struct lead *l, double v)
+{
+    double low = l->feed;
+    double high = v;
+
+    if (!has_landing(l) || can_land_later(l, v)) {
+        return v;
+    }
+    for (int i = 0; i < LANDING_TRIES; i++) {
+        const double middle = 0.5 * (low + high);
+
+        if (can_land_later(l, middle)) {
+            low = middle;
+        } else {
+            high = middle;
+        }
+    }
+    if (low > l->feed) {
+        return low;
+    }
+    const double a = joint_as_stop(l).acceleration;
+    const double m = a * (l->window + 1.5);
+    const double root = m * m + 2.0 * a * (landing_gap(l) - 0.5 * l->feed);
+
+    return root > 0.0 ? maths_min(v, maths_sqrt(root) - m) : l->feed;
+}
+
+/* Farther away than this a joint can be landed on at this feed. */
+static double landing_reach(const struct lead *l)
+{
+    const double a = landing_acceleration(l, l->feed);
+
+    return l->feed * (0.5 * l->feed / a + 2.0 * l->window + LANDING_CYCLES);
+}
+
+/* Does anything before the joint ask for less than the present feed? Looked at only when that is near. */
+static bool is_way_free(const struct lead *l)
+{
+    for (uint32_t k = l->piece; k + 1U < l->landing; k++) {
+        if (lead_piece(l, k)->end_energy < l->feed * l->feed * (1.0 - LEAD_ENERGY_SLACK)) {
+            return false;
+        }
+    }
+    return true;
+}
+
+/* The feed at the end of this cycle if nothing else but braking happens. */
+static double braked_feed(const struct lead *l, const struct lead_brake *b)
+{
+    return b->rest ? 0.0 : maths_max(maths_min(b->feed, l->feed), l->feed - b->a);
+}
+
+/* Could the joint still be landed on when this cycle does nothing else but brake? */
+static bool can_land_after(const struct lead *l, const struct lead_brake *b, double gap_mm)
+{
+    const double feed = braked_feed(l, b);
+    struct landing_run later;
+
+    return landing_from(l, gap_mm - 0.5 * (l->feed + feed), feed, &later);
+}
+
+/* Braking from now on, does the lead point come to rest before the joint? */
+static bool can_rest_before(const struct lead *l, double gap_mm)
+{
+    return l->feed * l->feed <= 2.0 * joint_as_stop(l).acceleration * gap_mm;
+}
+
+/*
+ * Begins to land when it could not be done any more a cycle later, and no ceiling lies between. Where it cannot be done
+ * at all, or a hold can still be obeyed before the joint, the joint becomes a stop.
+ */
+void lead_approach_landing(struct lead *l, bool hold, struct lead_brake *b)
+{
+    if (!has_landing(l) || l->since_plus < l->window) {
+        return;
+    }
+    const double gap_mm = landing_gap(l);
+
+    if (gap_mm > landing_reach(l) || can_land_after(l, b, gap_mm) || !is_way_free(l)) {
+        return;
+    }
+    l->run = (struct landing_run){.start = l->at, .joint = lead_leave_of(l, l->landing)};
+    if (!hold || !can_rest_before(l, gap_mm)) {
+        l->run.active = landing_from(l, gap_mm, l->feed, &l->run);
+    }
+    if (!l->run.active && (hold || l->piece >= l->landing || l->feed <= l->landing_feed)) {
+        const struct ceiling_piece stop = joint_as_stop(l);
+
+        brake_for_piece(l, &stop, gap_mm, b);
+    }
+}
+
+/* -- speeding up -- */
+
+/* Highest feed v with v^2 <= u + 2 a (x_end - x), x = s + (w + v)/2 + N v: what the piece's end asks for. */
+static double feed_in_piece(const struct lead *l, const struct ceiling_piece *p, double s_mm)
+{
+    const double m = p->acceleration * (l->window + 0.5);
+    const double root =
+        m * m + p->end_energy + 2.0 * p->acceleration * (p->end_mm - s_mm - 0.5 * l->feed);
+
+    return root > 0.0 ? maths_sqrt(root) - m : 0.0;
+}
+
+/*
+ * The highest feed up to top that can be kept for a window with everything met that is ahead then. Going on from piece
+ * to piece: at its end the feed for x = end is allowed, or the answer lies in it.
+ */
+static double feed_to_keep(const struct lead *l, double top, double low)
+{
+    const double s = path_mm(l->ceiling->origin, l->at);
+    const double way = l->window + 0.5;
+
+    for (uint32_t k = l->piece; k < l->ceiling->count; k++) {
+        const struct ceiling_piece *p = lead_piece(l, k);
+        const double at_end = (p->end_mm - s - 0.5 * l->feed) / way;
+
+        low = maths_min(low, p->feed);
+        top = maths_min(top, low);
+        if (lead_is_last_of_span(p) || at_end >= top || at_end * at_end > p->end_energy ||
+            k + 1 == l->ceiling->count) {
+            return maths_min(top, feed_in_piece(l, p, s));
+        }
+        if (k - l->piece >= AHEAD_PIECES_MAX) {
+            return at_end;
+        }
+    }
+    return 0.0;
+}
+
+double lead_speed_up(const struct lead *l, double low)
+{
+    const double a = lead_piece(l, l->piece)->acceleration;
+
+    if (l->since_minus < l->window || low <= l->feed * (1.0 + 1e-12)) {
+        return l->feed;
+    }
+    const double v = feed_to_keep(l, l->feed + a, low);
+
+    return v > l->feed + LEAD_CHANGE_MIN * a ? maths_max(l->feed, feed_to_land(l, v)) : l->feed;
+}

@@ -1,0 +1,131 @@
+#include "panel/panel.h"
+
+#include "panel/panel_private.h"
+
+#include <string.h>
+
+void panel_init(struct panel *panel, const struct panel_config *config)
+{
+    memset(panel, 0, sizeof *panel);
+    panel->config = *config;
+}
+
+void panel_client_enter(struct panel_client *client, struct panel *panel)
+{
+    *client = (struct panel_client){.panel = panel};
+}
+
+void panel_client_leave(struct panel_client *client)
+{
+    struct panel *panel = client->panel;
+
+    /* Nobody else becomes the owner by it: the register WATCHDOG stays until the watchdog has bitten. */
+    if (panel->owner == client)
+        panel->owner = NULL;
+}
+
+struct modbus_map panel_client_map(struct panel_client *client)
+{
+    return (struct modbus_map){.read = panel_read, .write = panel_write, .context = client};
+}
+
+void panel_look(struct panel *panel, struct panel_snapshot *snapshot)
+{
+    panel->config.port.look(panel->config.port.context, snapshot);
+    if (snapshot->value[REGISTER_WATCHDOG] == 0)
+        panel->owner = NULL;
+}
+
+static enum panel_control control_of(const struct panel_client *client,
+                                     const struct panel_snapshot *snapshot)
+{
+    if (snapshot->value[REGISTER_WATCHDOG] == 0)
+        return PANEL_CONTROL_FREE;
+    return client->panel->owner == client ? PANEL_CONTROL_MINE : PANEL_CONTROL_OTHER;
+}
+
+/* The registers that the controller does not know. */
+static void add_own(struct panel_client *client, struct panel_snapshot *snapshot)
+{
+    const struct panel *panel = client->panel;
+    const struct panel_mailbox *mailbox = &panel->mailbox;
+    int64_t *value = snapshot->value;
+
+    value[REGISTER_VERSION] = PANEL_TABLE_VERSION;
+    value[REGISTER_REFUSAL] = client->refusal;
+    value[REGISTER_CONTROL] = control_of(client, snapshot);
+    value[REGISTER_UPLOAD_STATE] = panel->upload.state;
+    value[REGISTER_UPLOAD_RECEIVED] = panel->upload.received;
+    value[REGISTER_PROGRAM_MAX] = PANEL_PROGRAM_BYTES_MAX;
+    value[REGISTER_UPLOAD_SIZE] = mailbox->upload_size;
+    value[REGISTER_UPLOAD_CRC] = mailbox->upload_crc;
+    value[REGISTER_UPLOAD_OFFSET] = mailbox->chunk_offset;
+    value[REGISTER_UPLOAD_LENGTH] = mailbox->chunk_length;
+    value[REGISTER_UPLOAD_COMMAND] = 0;
+    value[REGISTER_UPLOAD_CHECK] = 0;
+    value[REGISTER_PASSWORD] = 0;
+}
+
+/* Word number index of a row that holds characters or bytes. */
+static uint16_t word_of_bytes(const struct panel *panel, const struct panel_snapshot *snapshot,
+                              enum panel_id id, unsigned index)
+{
+    const char *text = snapshot->alarm_text + (size_t)2 * index;
+
+    if (id == REGISTER_UPLOAD_DATA)
+        return modbus_read16(panel->mailbox.chunk + (size_t)2 * index);
+    if (id == REGISTER_MDI_TEXT)
+        return modbus_read16(panel->mailbox.mdi + (size_t)2 * index);
+    return (uint16_t)((uint8_t)text[0] << 8 | (uint8_t)text[1]);
+}
+
+/* Word number index of a row: negative numbers in two's complement. */
+static uint16_t word_of_row(const struct panel *panel, const struct panel_snapshot *snapshot,
+                            enum panel_id id, unsigned index)
+{
+    const struct panel_register *row = &panel_registers[id];
+    const uint32_t bits = (uint32_t)(uint64_t)snapshot->value[id];
+
+    if (row->form == PANEL_TEXT || row->form == PANEL_BYTES)
+        return word_of_bytes(panel, snapshot, id, index);
+    return (uint16_t)(index + 1 < row->words ? bits >> 16 : bits);
+}
+
+static void put_value(uint8_t *data, enum modbus_table table, unsigned at, uint16_t word)
+{
+    if (table != MODBUS_COILS)
+        modbus_write16(data + (size_t)2 * at, word);
+    else if (word != 0)
+        data[at / 8] = (uint8_t)(data[at / 8] | 1U << at % 8);
+}
+
+static void sign_of_life(const struct panel_client *client)
+{
+    const struct panel_port *port = &client->panel->config.port;
+
+    if (client->panel->owner == client)
+        port->alive(port->context);
+}
+
+enum modbus_exception panel_read(void *context, enum modbus_table table, uint16_t address,
+                                 uint16_t count, uint8_t *data)
+{
+    struct panel_client *client = context;
+    struct panel_snapshot snapshot;
+
+    panel_look(client->panel, &snapshot);
+    add_own(client, &snapshot);
+    sign_of_life(client);
+    if (table == MODBUS_COILS)
+        memset(data, 0, ((size_t)count + 7) / 8);
+    for (unsigned i = 0; i < count; i++) {
+        const uint16_t here = (uint16_t)(address + i);
+        const enum panel_id id = panel_find(table, here);
+
+        if (id == REGISTER_COUNT)
+            return MODBUS_ADDRESS;
+        put_value(data, table, i,
+                  word_of_row(client->panel, &snapshot, id, here - panel_registers[id].address));
+    }
+    return MODBUS_GOOD;
+}

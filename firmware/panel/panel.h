@@ -1,0 +1,55 @@
+/*
+ * The operator's panel: the register table behind a Modbus server, for several clients at once.
+ *
+ *     request -> rows of the table -> who may, value, state -> mailbox, or an order to the controller
+ *     snapshot of the controller   -> reply
+ *
+ * No input or output: what it asks for goes through a panel_port and a panel_store. One thread calls it.
+ */
+#ifndef TAKT_PANEL_PANEL_H
+#define TAKT_PANEL_PANEL_H
+
+#include "modbus/modbus.h"
+#include "panel/snapshot.h"
+#include "panel/upload.h"
+
+struct panel_config {
+    struct panel_port port;
+    struct panel_store store;
+    uint32_t password; /* clients must write it before anything else; 0: none is asked for */
+};
+
+/* What clients write and the controller does not see. */
+struct panel_mailbox {
+    uint32_t upload_size, upload_crc;
+    uint32_t chunk_offset;
+    uint16_t chunk_length;
+    uint8_t chunk[PANEL_CHUNK_MAX];
+    uint8_t mdi[PANEL_MDI_MAX];
+};
+
+struct panel {
+    struct panel_config config;
+    struct panel_mailbox mailbox;
+    struct panel_upload upload;
+    const struct panel_client *owner; /* has claimed control; NULL: nobody */
+};
+
+/* A connection, or a serial line. */
+struct panel_client {
+    struct panel *panel;
+    bool unlocked;
+    enum panel_refusal refusal;
+};
+
+void panel_init(struct panel *panel, const struct panel_config *config);
+
+/* A client has come; it stays at its address until it leaves. */
+void panel_client_enter(struct panel_client *client, struct panel *panel);
+/* Control that it has claimed is left to the watchdog. */
+void panel_client_leave(struct panel_client *client);
+
+/* The registers as this client sees them. */
+struct modbus_map panel_client_map(struct panel_client *client);
+
+#endif

@@ -1,0 +1,31 @@
+/*
+ * Inside the panel: reading, and the steps of a write.
+ */
+#ifndef TAKT_PANEL_PANEL_PRIVATE_H
+#define TAKT_PANEL_PANEL_PRIVATE_H
+
+#include "panel/panel.h"
+
+/* Of struct modbus_map. */
+enum modbus_exception panel_read(void *context, enum modbus_table table, uint16_t address,
+                                 uint16_t count, uint8_t *data);
+enum modbus_exception panel_write(void *context, enum modbus_table table, uint16_t address,
+                                  uint16_t count, const uint8_t *data);
+
+/* A snapshot; control that the watchdog has taken from its owner is free again. */
+void panel_look(struct panel *panel, struct panel_snapshot *snapshot);
+
+/* One write request on its way: everything is found out before anything is done. */
+struct panel_request {
+    struct panel_client *client;
+    struct panel_snapshot snapshot;
+    struct panel_mailbox mailbox; /* as it will be */
+    struct panel_order order;     /* to the controller */
+    enum panel_upload_command command;
+    bool has_password, has_watchdog, has_chunk, has_command;
+    uint32_t password;
+    uint16_t check;
+    int64_t watchdog_ms;
+};
+
+#endif

@@ -1,0 +1,49 @@
+/*
+ * What passes between the panel and the controller: a snapshot one way, orders the other.
+ */
+#ifndef TAKT_PANEL_SNAPSHOT_H
+#define TAKT_PANEL_SNAPSHOT_H
+
+#include "panel/registers.h"
+
+/*
+ * The value of every register at one moment, in counts of its row. Registers that belong to the mailbox or to one client
+ * (UPLOAD_..., MDI_TEXT, PASSWORD, REFUSAL, CONTROL, VERSION, PROGRAM_MAX) are not used.
+ */
+struct panel_snapshot {
+    int64_t value[REGISTER_COUNT];
+    char alarm_text[PANEL_ALARM_TEXT_MAX]; /* ends with a zero, or its last character */
+};
+
+/* More than one request can write: registers of a table that are an order, by the test of the room. */
+#define PANEL_ORDER_MAX 48
+
+/* What one request wants changed: all of it, or nothing. */
+struct panel_order {
+    unsigned count;
+    struct panel_order_item {
+        enum panel_id id;
+        int64_t value;
+    } item[PANEL_ORDER_MAX];
+    char mdi[PANEL_MDI_MAX + 1]; /* with MDI_START: the line, ends with a zero */
+};
+
+enum panel_verdict {
+    PANEL_DONE,
+    PANEL_WRONG_STATE,
+    PANEL_WRONG_VALUE,
+    PANEL_TRY_AGAIN /* the controller has not taken it in time; it is not done */
+};
+
+/* Who stands behind the panel. */
+struct panel_port {
+    /* The latest snapshot. Must not wait. */
+    void (*look)(void *context, struct panel_snapshot *snapshot);
+    /* Does what is ordered, all or nothing; snapshots from now on show it. May wait for a control cycle. */
+    enum panel_verdict (*order)(void *context, const struct panel_order *order);
+    /* The panel in control has asked something: the watchdog starts anew. */
+    void (*alive)(void *context);
+    void *context; /* owned by whoever made the port */
+};
+
+#endif

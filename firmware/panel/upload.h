@@ -1,0 +1,47 @@
+/*
+ * A program on its way in: begun with its size and CRC-32, brought chunk by chunk in order, committed when all of it is
+ * there and the CRC is right.
+ */
+#ifndef TAKT_PANEL_UPLOAD_H
+#define TAKT_PANEL_UPLOAD_H
+
+#include "panel/registers.h"
+
+/* Where the bytes are kept until they are a program. None of these may keep the control cycle waiting. */
+struct panel_store {
+    /* Room for a program of size bytes; what was brought before is dropped. False: no room. */
+    bool (*begin)(void *context, uint32_t size);
+    /* Bytes at an offset, within the size. */
+    bool (*write)(void *context, uint32_t offset, const uint8_t *data, size_t length);
+    /* All bytes are there and right: makes them durable beside the program there is. False: cannot. */
+    bool (*prepare)(void *context);
+    /* The controller has taken the program: puts it in the place of the one before, at once or not at all. False: the
+     * new program runs, but is not kept over power-off. */
+    bool (*place)(void *context);
+    void *context; /* owned by whoever made the store */
+};
+
+struct panel_upload {
+    enum panel_upload_state state;
+    uint32_t size, crc; /* announced */
+    uint32_t received;
+    uint32_t received_crc;
+};
+
+/* Begins, or goes on with an open upload of the same size and CRC. False: the store has no room. */
+bool panel_upload_begin(struct panel_upload *upload, const struct panel_store *store, uint32_t size,
+                        uint32_t crc);
+
+/*
+ * A chunk. It may repeat bytes that are there already (the reply to it may have been lost) but leave none out. False: it
+ * does not fit, its check is wrong, or no upload is open; nothing has changed.
+ */
+bool panel_upload_take(struct panel_upload *upload, const struct panel_store *store,
+                       uint32_t offset, const uint8_t *data, size_t length, uint16_t check);
+
+/* All bytes are there and are those that were announced. */
+bool panel_upload_is_right(const struct panel_upload *upload);
+
+void panel_upload_abandon(struct panel_upload *upload);
+
+#endif

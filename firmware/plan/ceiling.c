@@ -1,0 +1,375 @@
+/*
+ * Goal: the highest feed of the lead point everywhere, from which the rest of the window can be met and stopped, in
+ * time linear in blocks. How the pieces lie against the blocks, and why limits then hold for the setpoint, is in
+ * spans.md.
+ *
+ * Forward: one piece for each ceiling, shifted by half the averaging window times its feed. Backward: the feed at the
+ * end of each piece, by constant deceleration: u = min(c^2, u_next + 2 a L).
+ */
+#include "plan/ceiling.h"
+
+#include "base/maths.h"
+#include "plan/path_unit.h"
+
+/* Cycles beside the window: differences of setpoints reach over three cycles. */
+#define MARGIN_CYCLES 2.0
+
+/* Lower accelerations of blocks left behind, that the setpoint still has to keep: at most so many at once. */
+#define HEADS_MAX 4
+
+/* A joint feed that the lead point reaches from rest in this many cycles is not worth passing: it comes to rest. */
+#define PASS_WORTH 2.0
+
+struct head {
+    double a;
+    double end_mm;
+};
+
+struct builder {
+    struct ceiling *c;
+    const struct path *path;
+    const struct ceiling_request *request;
+    double cycle_s;
+    uint32_t cycles; /* of the first box, in the span being laid */
+    double behind;   /* cycles that the setpoint follows behind the lead point, with the margin */
+    double begin_mm; /* where the newest ceiling begins */
+    unsigned overrides; /* of the block being laid, */
+    double feed_max;    /* and its highest feed whatever they are, mm/cycle */
+    unsigned heads;
+    struct head head[HEADS_MAX]; /* both rising */
+};
+
+double ceiling_block_feed(const struct block *b, const struct ceiling_request *request)
+{
+    const bool rapid = b->move.kind == MOVE_RAPID;
+    const bool obeys = rapid || (b->move.overrides & OVERRIDE_FEED) != 0;
+    const double ratio = rapid ? request->rapid_ratio : obeys ? request->feed_ratio : 1.0;
+    const double program = b->feed_program_mm_s;
+
+    if (rapid || (request->proportional && ratio < 1.0)) {
+        return ratio * maths_min(program, b->feed_max_mm_s);
+    }
+    return maths_min(ratio * program, b->feed_max_mm_s);
+}
+
+/* Does a span end with this block, at a joint that is passed and landed on? */
+static bool is_landed(const struct builder *s, const struct block *b)
+{
+    return b->end == JOINT_REDUCED ||
+           (b->end == JOINT_PASSED && s->path->limits.landing == LANDING_BLOCK);
+}
+
+/*
+ * Averaging window for a span, from one landed end to the next: A/J lets a ramp reach its full acceleration; a ramp to a feed F that
+ * does not needs sqrt(F/J), a span of length L cbrt(L/2J). A longer window would only cost time.
+ */
+static uint32_t span_cycles(const struct builder *s, uint32_t index)
+{
+    double full_s = 0.0;
+    double j_min = MATHS_INFINITY;
+    double length_mm = 0.0;
+    bool known = false;
+
+    for (; index != s->path->closed && !known; index++) {
+        const struct block *b = path_at(s->path, index);
+
+        if (!block_is_motion(b)) {
+            break;
+        }
+        full_s = maths_max(
+            full_s, maths_min(b->a_mm_s2 / b->j_mm_s3, maths_sqrt(b->feed_max_mm_s / b->j_mm_s3)));
+        j_min = maths_min(j_min, b->j_mm_s3);
+        length_mm += b->length_mm;
+        known = b->end == JOINT_STOP || is_landed(s, b);
+    }
+    if (known) {
+        full_s = maths_min(full_s, maths_cbrt(length_mm / (2.0 * j_min)));
+    }
+    return (uint32_t)maths_clamp(maths_ceil(full_s / s->cycle_s - 1e-9), 1.0,
+                                 law_cycles_max(s->path->limits.law));
+}
+
+/* The span that begins with the block at index. One that the lead point has begun keeps its window. */
+static void begin_span(struct builder *s, uint32_t index)
+{
+    const uint64_t start = path_at(s->path, index)->start;
+    const bool inside = index == s->request->first && (int64_t)(s->request->lead - start) > 0;
+    const bool begun = inside || (int64_t)(s->request->span - start) >= 0;
+
+    s->cycles = begun ? s->request->cycles : span_cycles(s, index);
+    s->behind =
+        0.5 * ((double)law_window_cycles(s->path->limits.law, s->cycles) - 1.0) + MARGIN_CYCLES;
+    s->begin_mm = path_mm(s->c->origin, start);
+    s->heads = 0;
+}
+
+static struct ceiling_piece *append(struct builder *s, double end_mm, double feed, double a,
+                                    int64_t leave)
+{
+    struct ceiling_piece *p = &s->c->piece[s->c->count++];
+
+    *p = (struct ceiling_piece){
+        .end_mm = end_mm,
+        .feed = feed,
+        .feed_max = maths_max(feed, s->feed_max),
+        .acceleration = a,
+        .leave = leave,
+        .cycles = (uint16_t)s->cycles,
+        .landing = CEILING_NONE,
+        .overrides = s->overrides,
+    };
+    return p;
+}
+
+/*
+ * A ceiling begins where the lead point is when the setpoint, following at that feed, reaches at_mm. What lay there
+ * ends there; never before the beginning of the ceiling before it, since a faster one behind a slower cannot bind
+ * earlier.
+ */
+static void begin_ceiling(struct builder *s, double at_mm, double lead_mm)
+{
+    s->begin_mm = maths_max(s->begin_mm, at_mm - lead_mm);
+    for (uint32_t k = s->c->count; k-- > 0 && s->c->piece[k].end_mm > s->begin_mm;) {
+        s->c->piece[k].end_mm = s->begin_mm;
+    }
+}
+
+/* mm/cycle2: A tau^2, and the jerk J over the first box: J tau^3 N. */
+static double block_acceleration(const struct builder *s, const struct block *b)
+{
+    const double t = s->cycle_s;
+
+    return maths_min(b->a_mm_s2 * t * t, b->j_mm_s3 * t * t * t * (double)s->cycles);
+}
+
+/* The setpoint is in a block of acceleration a until the lead point is at end_mm: forgets what that implies. */
+static void add_head(struct builder *s, double a, double end_mm)
+{
+    unsigned kept = 0;
+
+    for (unsigned i = 0; i < s->heads; i++) {
+        if (s->head[i].a < a && s->head[i].end_mm > s->begin_mm) {
+            s->head[kept++] = s->head[i];
+        }
+    }
+    if (kept > 0 && s->head[kept - 1].end_mm >= end_mm) {
+        s->heads = kept;
+        return;
+    }
+    if (kept == HEADS_MAX) {
+        kept--;
+        a = s->head[kept].a;
+    }
+    s->head[kept] = (struct head){a, end_mm};
+    s->heads = kept + 1;
+}
+
+/* The pieces of one ceiling up to end_mm: first those where a block left behind asks for less acceleration. */
+static void append_pieces(struct builder *s, double end_mm, double feed, double a, int64_t leave)
+{
+    double at_mm = s->begin_mm;
+
+    for (unsigned i = 0; i < s->heads; i++) {
+        if (s->head[i].a < a && s->head[i].end_mm > at_mm && at_mm < end_mm) {
+            at_mm = maths_min(s->head[i].end_mm, end_mm);
+            append(s, at_mm, feed, s->head[i].a, leave);
+        }
+    }
+    if (at_mm < end_mm) {
+        append(s, end_mm, feed, a, leave);
+    }
+}
+
+/* May the block be joined to the newest piece: the same ceiling, and nothing between? */
+static bool continues(const struct builder *s, double feed, double a)
+{
+    if (s->c->count == 0 || s->heads != 1 || s->head[0].a != a) {
+        return false;
+    }
+    const struct ceiling_piece *last = &s->c->piece[s->c->count - 1];
+
+    return !last->stop && !last->landed && last->feed == feed && last->feed_max == s->feed_max &&
+           last->acceleration == a && last->overrides == s->overrides;
+}
+
+static unsigned block_overrides(const struct block *b)
+{
+    const unsigned hold = b->move.overrides & OVERRIDE_HOLD;
+
+    return b->move.kind == MOVE_RAPID ? hold | CEILING_RAPID
+                                      : hold | (b->move.overrides & OVERRIDE_FEED);
+}
+
+static void lay_block(struct builder *s, const struct block *b)
+{
+    const double feed = ceiling_block_feed(b, s->request) * s->cycle_s;
+    const double a = block_acceleration(s, b);
+    const double start_mm = path_mm(s->c->origin, b->start);
+    const int64_t leave = (int64_t)(b->start + b->length - s->c->origin);
+    const double end_mm = path_mm(s->c->origin, b->start + b->length);
+
+    s->overrides = block_overrides(b);
+    s->feed_max = b->feed_max_mm_s * s->cycle_s;
+    if (continues(s, feed, a)) {
+        s->c->piece[s->c->count - 1].end_mm = end_mm;
+        s->c->piece[s->c->count - 1].leave = leave;
+    } else {
+        begin_ceiling(s, start_mm, feed * s->behind);
+        append_pieces(s, end_mm, feed, a, leave);
+    }
+    add_head(s, a, end_mm + feed * s->behind);
+}
+
+/*
+ * Cycles of slowing down within which a landing at feed w can make up for any fraction of a cycle's way: with
+ * n (n + N + 1) a >= 2 w (motion/landing.h).
+ */
+static double landing_ramp(double feed, double a, double window)
+{
+    const double half = 0.5 * (window + 1.0);
+
+    return maths_sqrt(half * half + 2.0 * feed / a) - half + 1.0;
+}
+
+/*
+ * A joint that is landed: the lead point passes it at constant feed for a whole window, so that a setpoint can be put
+ * on it; before that it makes up for the fraction of a cycle's way that is missing, and for the cycle in which it comes
+ * into the piece. Two such joints need room between. after: the block behind it.
+ */
+static void lay_landed_joint(struct builder *s, const struct block *b, uint32_t after)
+{
+    const struct block *next = path_at(s->path, after);
+    const double a = maths_min(block_acceleration(s, b), block_acceleration(s, next));
+    const double window = 2.0 * (s->behind - MARGIN_CYCLES) + 1.0;
+    const double wider =
+        maths_max(window, law_window_cycles(s->path->limits.law, span_cycles(s, after)));
+    const double shorter_mm = maths_min(b->length_mm, next->length_mm);
+    const double end_mm = path_mm(s->c->origin, b->start + b->length);
+    double feed = b->feed_joint_mm_s * s->cycle_s;
+
+    feed = maths_min(feed, shorter_mm / (wider + 4.0 + landing_ramp(feed, a, wider)));
+    feed = feed < PASS_WORTH * a ? 0.0 : feed;
+    begin_ceiling(s, end_mm, feed * (0.5 * (window + 1.0) + landing_ramp(feed, a, window) + 1.0));
+    s->feed_max = 0.0;
+    append(s, end_mm, feed, a, (int64_t)(b->start + b->length - s->c->origin))->landed = true;
+}
+
+/* Lays the blocks from the ring into pieces. Room for the pieces of one block more is kept. */
+static void lay_blocks(struct builder *s)
+{
+    const uint32_t room = CEILING_PIECES_MAX - HEADS_MAX - 2;
+    bool fresh = true;
+    uint32_t i = s->request->first;
+
+    for (; i != s->path->closed && s->c->count < room; i++) {
+        const struct block *b = path_at(s->path, i);
+
+        if (!block_is_motion(b)) {
+            continue;
+        }
+        if (fresh) {
+            begin_span(s, i);
+        }
+        lay_block(s, b);
+        fresh = b->end == JOINT_STOP || is_landed(s, b);
+        if (b->end == JOINT_STOP) {
+            s->c->piece[s->c->count - 1].stop = true;
+        } else if (fresh) {
+            lay_landed_joint(s, b, i + 1);
+        }
+    }
+    s->c->complete = i == s->path->closed;
+}
+
+/* Feed^2 at the beginning of a piece from which its end can be met at this energy: u = min(c^2, u_end + 2 a L). */
+static double begin_energy(const struct ceiling *c, uint32_t k, double feed, double end_energy)
+{
+    const struct ceiling_piece *p = &c->piece[k];
+    const double begin_mm = k == 0 ? 0.0 : c->piece[k - 1].end_mm;
+
+    return maths_min(feed * feed, end_energy + 2.0 * p->acceleration * (p->end_mm - begin_mm));
+}
+
+/* Ceiling of a piece, and feed squared at its end: as the overrides are, or at their highest. */
+static double feed_of(const struct ceiling_piece *p, bool highest)
+{
+    return highest ? p->feed_max : p->feed;
+}
+
+static double energy_of(const struct ceiling_piece *p, bool highest)
+{
+    return highest ? p->end_energy_max : p->end_energy;
+}
+
+/*
+ * The feed up to feed at which the lead point, when the setpoint is on a landed joint, in piece k, can go on and meet
+ * what follows: it is then half the next span's window ahead, at x; by the pieces up to there w is no more than their
+ * ceilings, and w^2 <= u + 2 a (x_end - x).
+ */
+static double landed_feed(const struct ceiling *c, uint32_t k, enum law law, double feed,
+                          bool highest)
+{
+    const double start_mm = c->piece[k].end_mm;
+    uint32_t i = k + 1;
+
+    if (i == c->count) {
+        return feed;
+    }
+    const double cycles = 0.5 * (double)law_window_cycles(law, c->piece[i].cycles) + 1.0;
+    const double hold_mm = start_mm + feed * cycles;
+
+    while (i < c->count && c->piece[i].end_mm < hold_mm) {
+        feed = maths_min(feed, feed_of(&c->piece[i], highest));
+        feed = maths_min(feed, maths_sqrt(energy_of(&c->piece[i], highest)));
+        i++;
+    }
+    if (i < c->count) {
+        const struct ceiling_piece *p = &c->piece[i];
+        const double m = p->acceleration * cycles;
+        const double energy =
+            energy_of(p, highest) + 2.0 * p->acceleration * (p->end_mm - start_mm);
+
+        feed = maths_min(feed, feed_of(p, highest));
+        feed = maths_min(feed, maths_sqrt(m * m + maths_max(0.0, energy)) - m);
+    }
+    return feed;
+}
+
+static void plan_backward(struct ceiling *c, enum law law)
+{
+    double energy = 0.0;
+    double energy_max = 0.0;
+    uint16_t landing = CEILING_NONE;
+
+    for (uint32_t k = c->count; k-- > 0;) {
+        struct ceiling_piece *p = &c->piece[k];
+
+        if (p->stop) {
+            energy = 0.0;
+            energy_max = 0.0;
+            landing = CEILING_NONE;
+        }
+        p->end_energy = energy;
+        p->end_energy_max = energy_max;
+        if (p->landed) {
+            p->feed_max = landed_feed(c, k, law, p->feed, true);
+            p->feed = landed_feed(c, k, law, p->feed, false);
+            landing = (uint16_t)k;
+        }
+        p->landing = landing;
+        energy = begin_energy(c, k, p->feed, p->end_energy);
+        energy_max = begin_energy(c, k, p->feed_max, p->end_energy_max);
+    }
+}
+
+void ceiling_build(struct ceiling *c, const struct path *path,
+                   const struct ceiling_request *request)
+{
+    struct builder s = {.c = c, .path = path, .request = request, .cycle_s = path->limits.cycle_s};
+
+    c->count = 0;
+    c->origin =
+        request->first == path->pushed ? path->position : path_at(path, request->first)->start;
+    lay_blocks(&s);
+    plan_backward(c, path->limits.law);
+}

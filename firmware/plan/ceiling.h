@@ -1,0 +1,72 @@
+/*
+ * The feed ceiling ahead: what the lead point may do where, made of blocks for one setting of the overrides.
+ *
+ *    feed |  ____                    ____________      pieces end to end, each with a ceiling, an acceleration and the
+ *         |      \      ____________/            \     feed at its end from which everything after it can be met
+ *         |       \____/                          \    (a line in feed squared: constant deceleration)
+ *         +------------------------------------------> path position
+ *
+ * Positions are those of the lead point: a slow stretch begins for it as much earlier as the setpoint follows behind.
+ * Units here are mm and control cycles: feeds mm/cycle, accelerations mm/cycle2. See spans.md.
+ */
+#ifndef TAKT_PLAN_CEILING_H
+#define TAKT_PLAN_CEILING_H
+
+#include "plan/path.h"
+
+#include <stdbool.h>
+#include <stdint.h>
+
+/* Pieces of one ceiling at most: enough for a full ring of short blocks, each of another feed. */
+#define CEILING_PIECES_MAX 1024
+
+#define CEILING_NONE UINT16_MAX
+
+/* Bit beside OVERRIDE_...: the rapid override counts here. */
+#define CEILING_RAPID 256U
+
+struct ceiling_piece {
+    double end_mm; /* from the origin */
+    double
+        feed; /* mm/cycle: not above this in the piece, nor until the setpoint has passed leave */
+    double acceleration; /* mm/cycle2, also of braking */
+    double
+        end_energy; /* mm2/cycle2: feed squared at the end from which all that follows can be met */
+    /* the same two at the highest override: what the machine could do. A lead point beyond that cannot be helped */
+    double feed_max;
+    double end_energy_max;
+    int64_t leave;   /* path units from the origin */
+    uint16_t cycles; /* of the first averaging box, in this span */
+    uint16_t
+        landing; /* the first landed joint in or after this piece, CEILING_NONE: a stop comes first */
+    unsigned overrides; /* what the operator may do here: OVERRIDE_..., or CEILING_RAPID */
+    bool stop;          /* the span ends with this piece, at leave */
+    bool landed; /* the span ends with this piece, at leave, where a setpoint falls in motion */
+};
+
+struct ceiling {
+    uint64_t origin; /* path position */
+    bool complete;   /* reaches to the end of all blocks that were known */
+    uint32_t count;
+    struct ceiling_piece piece[CEILING_PIECES_MAX];
+};
+
+/* What a ceiling is made for. */
+struct ceiling_request {
+    uint32_t first;     /* block to begin with */
+    uint64_t lead;      /* where the lead point is */
+    uint64_t span;      /* where the span starts that it has begun last */
+    uint32_t cycles;    /* of the first averaging box in that span */
+    double feed_ratio;  /* override of programmed feeds, 0 < ratio <= BLOCK_OVERRIDE_MAX */
+    double rapid_ratio; /* likewise of rapids, <= 1 */
+    bool proportional;  /* scale the whole diagram instead of the programmed feed alone */
+};
+
+/* The ceiling over the closed blocks of the path, from the first that is asked for on. It ends at rest. */
+void ceiling_build(struct ceiling *c, const struct path *path,
+                   const struct ceiling_request *request);
+
+/* Feed ceiling of one block under a request, mm/s. */
+double ceiling_block_feed(const struct block *b, const struct ceiling_request *request);
+
+#endif

@@ -1,0 +1,26 @@
+/*
+ * Path positions as whole numbers: 2^38 units a mm (or a rad), 3.6e-12 mm each.
+ *
+ * Positions count from the start of the program and may wrap; only their differences have a meaning. Sums of them are
+ * exact, so that an average that runs for days does not drift, and landing is a comparison of integers.
+ */
+#ifndef TAKT_PLAN_PATH_UNIT_H
+#define TAKT_PLAN_PATH_UNIT_H
+
+#include <stdint.h>
+
+#define PATH_UNITS_PER_MM 274877906944.0
+
+/* mm >= 0 to units, to the nearest. */
+static inline uint64_t path_units(double mm)
+{
+    return (uint64_t)(mm * PATH_UNITS_PER_MM + 0.5);
+}
+
+/* From one position to another: mm. */
+static inline double path_mm(uint64_t from, uint64_t to)
+{
+    return (double)(int64_t)(to - from) / PATH_UNITS_PER_MM;
+}
+
+#endif

@@ -1,0 +1,175 @@
+#include "base/decimal.h"
+#include "base/fnv.h"
+#include "base/maths.h"
+#include "program/parameters.h"
+#include "service/service_private.h"
+
+#include <assert.h>
+
+#define DEGREES_PER_RAD (180.0 / MATHS_PI)
+
+/* Decimals of the positions a jog names: finer than any machine's resolution. */
+#define JOG_PLACES 6
+
+/* A jog ends this far inside the travel at least, so that its end as text is not outside. */
+#define JOG_ROOM 1e-6
+
+static void begin_job(struct service *s, enum service_job job)
+{
+    s->job = job;
+    s->finds_home = false;
+    s->hold = PANEL_HOLD_NONE;
+    s->giving_up = false;
+    s->rest_cycles = 0;
+    s->held_block = 0;
+    s->digest = FNV_START;
+}
+
+void service_end_job(struct service *s, enum panel_outcome outcome)
+{
+    if (s->job != SERVICE_NOTHING) {
+        s->outcome = outcome;
+        s->runs++;
+    }
+    s->job = SERVICE_NOTHING;
+    s->finds_home = false;
+    s->hold = PANEL_HOLD_NONE;
+    s->giving_up = false;
+}
+
+void service_give_up(struct service *s)
+{
+    if (s->finds_home)
+        controller_stop_at_once(&s->controller, TAKT_ERROR_HOMING_STOPPED);
+    else if (s->job != SERVICE_NOTHING)
+        s->giving_up = true;
+}
+
+bool service_start_program(struct service *s)
+{
+    struct controller_config config = service_controller_config(s);
+    const struct service_programs *programs = &s->config.programs;
+
+    if (s->program_size == 0 || !programs->open(programs->context, &config.source))
+        return false;
+    controller_start_program(&s->controller, &config, &s->at);
+    begin_job(s, SERVICE_PROGRAM);
+    return true;
+}
+
+static void start_text(struct service *s, enum service_job job)
+{
+    struct controller_config config = service_controller_config(s);
+
+    config.keeps_outputs = true;
+    config.single_block = config.single_block && job == SERVICE_MDI;
+    source_open_text(&config.source, &s->source_text, s->text, s->text_length);
+    controller_start_program(&s->controller, &config, &s->at);
+    begin_job(s, job);
+}
+
+static void add_character(struct service *s, char c)
+{
+    assert(s->text_length < sizeof s->text);
+    s->text[s->text_length++] = c;
+}
+
+static void add_text(struct service *s, const char *text)
+{
+    for (; *text != '\0'; text++)
+        add_character(s, *text);
+}
+
+void service_start_mdi(struct service *s, const char *line)
+{
+    s->text_length = 0;
+    add_text(s, line);
+    start_text(s, SERVICE_MDI);
+}
+
+static void add_word(struct service *s, char letter, double value)
+{
+    char digits[DECIMAL_TEXT_MAX];
+    const size_t length = decimal_write(digits, value, JOG_PLACES);
+
+    add_character(s, letter);
+    for (size_t i = 0; i < length; i++)
+        add_character(s, digits[i]);
+}
+
+/* mm or degrees, as programs count. */
+static double program_units(const struct machine_axis *axis, double mm)
+{
+    return axis->rotary ? mm * DEGREES_PER_RAD : mm;
+}
+
+/* Where a jog would end, mm or degrees. Without a distance: the end of the travel. */
+static double jog_end(const struct service *s, bool negative)
+{
+    const struct machine_axis *axis = &s->controller.machine.axis[s->settings.jog_axis];
+    const double from = program_units(axis, s->at.at[s->settings.jog_axis]);
+    const double distance = 0.001 * (double)s->settings.jog_distance;
+
+    if (s->settings.jog_distance > 0)
+        return negative ? from - distance : from + distance;
+    return negative ? program_units(axis, axis->travel_min_mm) + JOG_ROOM
+                    : program_units(axis, axis->travel_max_mm) - JOG_ROOM;
+}
+
+bool service_jog_is_possible(const struct service *s, bool negative)
+{
+    const struct machine_axis *axis = &s->controller.machine.axis[s->settings.jog_axis];
+    const double end = jog_end(s, negative);
+
+    return axis->present && end >= program_units(axis, axis->travel_min_mm) &&
+           end <= program_units(axis, axis->travel_max_mm);
+}
+
+/* G53 G1: a straight line to a place of the machine, whatever offsets are in effect. */
+void service_start_jog(struct service *s, bool negative)
+{
+    s->text_length = 0;
+    add_text(s, "G53 G1 ");
+    add_word(s, AXIS_LETTERS[s->settings.jog_axis], jog_end(s, negative));
+    add_word(s, 'F', (double)s->settings.jog_feed_mm_min);
+    s->jog_is_negative = negative;
+    start_text(s, SERVICE_JOG);
+}
+
+static void add_home(struct service *s, unsigned axis)
+{
+    if (s->controller.machine.axis[axis].present)
+        add_word(s, AXIS_LETTERS[axis], 0.0);
+}
+
+static bool has_home(const struct service *s)
+{
+    for (unsigned i = 0; i < AXIS_COUNT; i++) {
+        if (s->controller.machine.axis[i].present && s->controller.machine.axis[i].home_order != 0)
+            return true;
+    }
+    return false;
+}
+
+void service_start_home(struct service *s)
+{
+    if (!has_home(s)) {
+        service_go_to_zero(s);
+        return;
+    }
+    service_recover(s, true);
+    begin_job(s, SERVICE_HOME);
+    s->finds_home = true;
+}
+
+/* Z first, so that the tool is out of the way of the others. */
+void service_go_to_zero(struct service *s)
+{
+    s->text_length = 0;
+    if (s->controller.machine.axis[AXIS_Z].present)
+        add_text(s, "G53 G0 Z0\n");
+    add_text(s, "G53 G0 ");
+    for (unsigned i = 0; i < AXIS_COUNT; i++)
+        add_home(s, i);
+    start_text(s, SERVICE_HOME);
+}

@@ -1,0 +1,195 @@
+/*
+ * Everything a panel can read, in counts of its register.
+ */
+#include "base/maths.h"
+#include "program/parameters.h"
+#include "service/service_private.h"
+
+#include <string.h>
+
+#define DEGREES_PER_RAD (180.0 / MATHS_PI)
+
+#define COUNTS_PER_UNIT 1000.0 /* of positions and offsets */
+#define MM_MIN_PER_MM_S 60.0
+#define TENTHS          10.0
+#define LIMITER_COUNTS  10000.0
+
+/* Rounded, and kept within what a register can say. */
+static int64_t counts(double value, double per_unit, enum panel_id id)
+{
+    const struct panel_register *row = &panel_registers[id];
+    const double rounded = maths_round(value * per_unit);
+
+    return (int64_t)maths_clamp(rounded, (double)row->least, (double)row->most);
+}
+
+static double shown_units(unsigned axis, double mm)
+{
+    return axis >= AXIS_LINEAR_COUNT ? mm * DEGREES_PER_RAD : mm;
+}
+
+static void set_axes(int64_t *value, enum panel_id first, const struct point *at)
+{
+    for (unsigned i = 0; i < AXIS_COUNT; i++)
+        value[first + i] =
+            counts(shown_units(i, at->at[i]), COUNTS_PER_UNIT, (enum panel_id)(first + i));
+}
+
+/* The report of a position belongs to a setpoint of some cycles ago. */
+static void look_at_axes(const struct service *s, int64_t *value)
+{
+    uint16_t statusword[AXIS_COUNT];
+    struct point actual, following;
+
+    drives_get_actual(&s->controller.drives, &actual);
+    drives_get_statuswords(&s->controller.drives, statusword);
+    for (unsigned i = 0; i < AXIS_COUNT; i++) {
+        const struct point *set = &s->sent[DRIVES_LATENCY_CYCLES - 1];
+
+        following.at[i] = set->at[i] - actual.at[i];
+        value[REGISTER_DRIVE_STATUS_X + i] = statusword[i];
+    }
+    set_axes(value, REGISTER_POSITION_X, &s->at);
+    set_axes(value, REGISTER_ACTUAL_X, &actual);
+    set_axes(value, REGISTER_FOLLOWING_X, &following);
+    value[REGISTER_AXES] = machine_axes(&s->controller.machine);
+}
+
+static enum panel_override_reason override_reason(const struct service *s,
+                                                  const struct block *block)
+{
+    if (s->inputs.feed_hold)
+        return PANEL_OVERRIDE_HELD;
+    if (block != NULL && move_is_motion(&block->move) &&
+        (block->move.overrides & OVERRIDE_FEED) == 0)
+        return PANEL_OVERRIDE_LOCKED;
+    return s->record.limiter < 1.0 ? PANEL_OVERRIDE_LIMITED : PANEL_OVERRIDE_FOLLOWS;
+}
+
+/* What the program does now; between programs, nothing. */
+static void look_at_motion(const struct service *s, int64_t *value)
+{
+    const struct cycle_record *record = controller_get_record(&s->controller);
+    const struct block *block = controller_get_block(&s->controller);
+    const bool moves = record != NULL;
+
+    value[REGISTER_ACTIVE_LINE] = moves ? (int64_t)record->line : 0;
+    value[REGISTER_BLOCK] = moves ? (int64_t)record->block : 0;
+    value[REGISTER_FEED] =
+        moves ? counts(record->feed_mm_s, MM_MIN_PER_MM_S * TENTHS, REGISTER_FEED) : 0;
+    value[REGISTER_OVERRIDE_EFFECTIVE] =
+        moves ? counts(record->override_percent, TENTHS, REGISTER_OVERRIDE_EFFECTIVE)
+              : s->settings.feed_override;
+    value[REGISTER_OVERRIDE_REASON] = override_reason(s, block);
+    value[REGISTER_LIMITER] =
+        counts(moves ? record->limiter : 1.0, LIMITER_COUNTS, REGISTER_LIMITER);
+    value[REGISTER_DIGEST_HIGH] = (int64_t)(s->digest >> 32);
+    value[REGISTER_DIGEST_LOW] = (int64_t)(s->digest & UINT32_MAX);
+}
+
+static void look_at_outputs(const struct service *s, int64_t *value)
+{
+    const struct outputs outputs = service_get_outputs(s);
+    const struct spindle_feedback *spindle = &s->inputs.spindle;
+
+    value[REGISTER_SPINDLE_COMMANDED] =
+        counts(outputs.spindle_speed_rpm, TENTHS, REGISTER_SPINDLE_COMMANDED);
+    value[REGISTER_SPINDLE_SPEED] = counts(spindle->speed_rpm, TENTHS, REGISTER_SPINDLE_SPEED);
+    value[REGISTER_SPINDLE_LOAD] = counts(spindle->load_percent, TENTHS, REGISTER_SPINDLE_LOAD);
+    value[REGISTER_SPINDLE_STATUS] =
+        (spindle->at_speed ? 1 : 0) | (spindle->tripped ? 2 : 0) | (spindle->silent ? 4 : 0);
+    value[REGISTER_TOOL] = outputs.tool;
+    value[REGISTER_COOLANT] = (outputs.mist ? 1 : 0) | (outputs.flood ? 2 : 0);
+    value[REGISTER_DIGITAL_OUTPUTS] = outputs.digital;
+}
+
+static void look_at_health(const struct service *s, int64_t *value)
+{
+    value[REGISTER_BUS_LOAD] = counts(s->health.bus_load_percent, TENTHS, REGISTER_BUS_LOAD);
+    value[REGISTER_CYCLE_MIN] = s->health.cycle_min_ns;
+    value[REGISTER_CYCLE_MEAN] = s->health.cycle_mean_ns;
+    value[REGISTER_CYCLE_MAX] = s->health.cycle_max_ns;
+    value[REGISTER_CYCLES] = s->cycles;
+    value[REGISTER_OVERRUNS] = s->health.overruns;
+}
+
+static void look_at_state(const struct service *s, int64_t *value)
+{
+    const enum panel_state state = service_get_state(s);
+
+    value[REGISTER_STATE] = state;
+    value[REGISTER_HOLD_REASON] = state == PANEL_HELD ? s->hold : PANEL_HOLD_NONE;
+    value[REGISTER_ALARM] = s->alarm;
+    value[REGISTER_ALARM_LINE] = s->alarm_text.line;
+    value[REGISTER_OUTCOME] = s->outcome;
+    value[REGISTER_RUNS] = s->runs;
+    value[REGISTER_PROGRAM_SIZE] = s->program_size;
+    value[REGISTER_PROGRAM_CRC] = s->program_crc;
+    value[REGISTER_CYCLE_START] = s->job == SERVICE_PROGRAM;
+    value[REGISTER_FEED_HOLD] = s->hold != PANEL_HOLD_NONE;
+    value[REGISTER_EMERGENCY_STOP] = s->emergency;
+    value[REGISTER_MDI_START] = s->job == SERVICE_MDI;
+    value[REGISTER_JOG_PLUS] = s->job == SERVICE_JOG && !s->jog_is_negative;
+    value[REGISTER_JOG_MINUS] = s->job == SERVICE_JOG && s->jog_is_negative;
+    value[REGISTER_HOME] = s->job == SERVICE_HOME;
+}
+
+static void look_at_settings(const struct service *s, int64_t *value)
+{
+    const struct service_settings *settings = &s->settings;
+
+    value[REGISTER_SINGLE_BLOCK] = settings->single_block;
+    value[REGISTER_OPTIONAL_STOP] = settings->optional_stop;
+    value[REGISTER_BLOCK_DELETE] = settings->block_delete;
+    for (unsigned i = 0; i < CORRECTION_LAYERS_COUNT; i++)
+        value[REGISTER_CORRECTION_MATRIX + i] = settings->corrections >> i & 1U;
+    value[REGISTER_FEED_OVERRIDE] = settings->feed_override;
+    value[REGISTER_RAPID_OVERRIDE] = settings->rapid_override;
+    value[REGISTER_SPINDLE_OVERRIDE] = settings->spindle_override;
+    value[REGISTER_MODE] = settings->mode;
+    value[REGISTER_JOG_AXIS] = settings->jog_axis;
+    value[REGISTER_JOG_FEED] = settings->jog_feed_mm_min;
+    value[REGISTER_JOG_DISTANCE] = settings->jog_distance;
+    value[REGISTER_WORK_SYSTEM] = settings->work_system;
+    value[REGISTER_TOOL_SELECT] = settings->tool_select;
+    value[REGISTER_WATCHDOG] = settings->watchdog_ms;
+    for (unsigned i = 0; i < AXIS_COUNT; i++)
+        value[REGISTER_RISE_X + i] = settings->rise[i];
+}
+
+/* Parameters hold mm and degrees already. */
+static void look_at_work_offset(const struct service *s, int64_t *value)
+{
+    const unsigned first =
+        PARAMETER_SYSTEM_OFFSET + (s->settings.work_system - 1) * PARAMETER_SYSTEM_STRIDE;
+
+    for (unsigned i = 0; i < AXIS_COUNT; i++)
+        value[REGISTER_WORK_OFFSET_X + i] = counts(parameters_get(s->config.parameters, first + i),
+                                                   COUNTS_PER_UNIT, REGISTER_WORK_OFFSET_X);
+}
+
+/* A tool that is not in the table has offsets 0. */
+static void look_at_tool(const struct service *s, int64_t *value)
+{
+    const struct tool *tool = tool_table_find(&s->tools, s->settings.tool_select);
+    const struct point none = {{0}};
+
+    set_axes(value, REGISTER_TOOL_OFFSET_X, tool != NULL ? &tool->offset : &none);
+    value[REGISTER_TOOL_DIAMETER] =
+        tool != NULL ? counts(tool->diameter_mm, COUNTS_PER_UNIT, REGISTER_TOOL_DIAMETER) : 0;
+}
+
+void service_look(const struct service *s, struct panel_snapshot *snapshot)
+{
+    memset(snapshot, 0, sizeof *snapshot);
+    look_at_state(s, snapshot->value);
+    look_at_axes(s, snapshot->value);
+    look_at_motion(s, snapshot->value);
+    look_at_outputs(s, snapshot->value);
+    look_at_health(s, snapshot->value);
+    look_at_settings(s, snapshot->value);
+    look_at_work_offset(s, snapshot->value);
+    look_at_tool(s, snapshot->value);
+    if (s->alarm != PANEL_ALARM_NONE)
+        (void)diagnostic_text(&s->alarm_text, snapshot->alarm_text);
+}

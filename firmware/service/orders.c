@@ -1,0 +1,349 @@
+/*
+ * What a panel may order. Each order is checked as a whole first, then done: so nothing has changed when it is refused.
+ */
+#include "base/maths.h"
+#include "program/parameters.h"
+#include "service/service_private.h"
+
+#include <assert.h>
+
+static_assert(REGISTER_CORRECTION_WEAR - REGISTER_CORRECTION_MATRIX + 1 == CORRECTION_LAYERS_COUNT,
+              "a coil for each layer, in their order");
+
+#define RAD_PER_DEGREE (MATHS_PI / 180.0)
+
+/* Offsets are counted in 0.001 mm or degrees. */
+#define UNITS_PER_COUNT 0.001
+
+static bool is_between(enum panel_id id, enum panel_id first, enum panel_id last)
+{
+    return id >= first && id <= last;
+}
+
+static struct tool *selected_tool(const struct service *s)
+{
+    for (size_t i = 0; i < s->config.tools_count; i++) {
+        if (s->config.tools[i].number == s->settings.tool_select)
+            return &s->config.tools[i];
+    }
+    return NULL;
+}
+
+/* What stopped it must have been seen, and be gone. */
+static bool may_go_on(const struct service *s)
+{
+    const struct spindle_feedback *spindle = &s->inputs.spindle;
+    const bool is_back = !spindle->silent && !spindle->tripped && spindle->at_speed;
+
+    return s->alarm == PANEL_ALARM_NONE && (s->hold != PANEL_HOLD_SPINDLE || is_back);
+}
+
+static enum panel_verdict verdict_on(bool allowed)
+{
+    return allowed ? PANEL_DONE : PANEL_WRONG_STATE;
+}
+
+static enum panel_verdict check_start(const struct service *s)
+{
+    if (service_get_state(s) == PANEL_HELD)
+        return verdict_on(may_go_on(s));
+    return verdict_on(s->settings.mode == PANEL_MODE_PROGRAM && s->alarm == PANEL_ALARM_NONE &&
+                      s->program_size > 0);
+}
+
+/* A jog without a distance ends when its coil is cleared: whoever starts it must be known to be there. */
+static enum panel_verdict check_jog(const struct service *s, bool negative)
+{
+    if (s->job == SERVICE_JOG)
+        return verdict_on(s->jog_is_negative == negative && !s->giving_up);
+    if (s->job != SERVICE_NOTHING || s->settings.mode != PANEL_MODE_JOG ||
+        s->alarm != PANEL_ALARM_NONE)
+        return PANEL_WRONG_STATE;
+    if (s->settings.jog_distance == 0 && s->settings.watchdog_ms == 0)
+        return PANEL_WRONG_STATE;
+    return service_jog_is_possible(s, negative) ? PANEL_DONE : PANEL_WRONG_VALUE;
+}
+
+/* Drives that brake are left alone until they stand. */
+static enum panel_verdict check_reset(const struct service *s)
+{
+    const enum drives_state drives = drives_get_state(&s->controller.drives);
+
+    return verdict_on(!s->emergency && drives != DRIVES_STOPPING && drives != DRIVES_BRAKING);
+}
+
+/* Coils that start something, written as 1. */
+static enum panel_verdict check_coil(const struct service *s, enum panel_id id)
+{
+    if (id == REGISTER_CYCLE_START)
+        return check_start(s);
+    if (id == REGISTER_RESUME)
+        return verdict_on(may_go_on(s));
+    if (id == REGISTER_MDI_START)
+        return verdict_on(s->settings.mode == PANEL_MODE_MDI && s->alarm == PANEL_ALARM_NONE);
+    if (id == REGISTER_HOME)
+        return verdict_on(s->settings.mode == PANEL_MODE_JOG && s->alarm == PANEL_ALARM_NONE);
+    if (is_between(id, REGISTER_JOG_PLUS, REGISTER_JOG_MINUS))
+        return check_jog(s, id == REGISTER_JOG_MINUS);
+    if (id == REGISTER_RESET)
+        return check_reset(s);
+    if (id == REGISTER_ACKNOWLEDGE)
+        return verdict_on(!s->failed);
+    return PANEL_DONE;
+}
+
+static enum panel_verdict check_holding(const struct service *s, enum panel_id id, int64_t value)
+{
+    if (id == REGISTER_JOG_AXIS)
+        return s->controller.machine.axis[value].present ? PANEL_DONE : PANEL_WRONG_VALUE;
+    if (is_between(id, REGISTER_TOOL_OFFSET_X, REGISTER_TOOL_DIAMETER))
+        return selected_tool(s) != NULL ? PANEL_DONE : PANEL_WRONG_VALUE;
+    if (id == REGISTER_UPLOAD_COMMAND)
+        return verdict_on(s->job == SERVICE_NOTHING);
+    return PANEL_DONE;
+}
+
+static enum panel_verdict check_item(const struct service *s, const struct panel_order_item *item)
+{
+    const enum panel_state state = service_get_state(s);
+    const bool is_coil = panel_registers[item->id].form == PANEL_BIT;
+
+    if (is_coil && item->value == 0 && item->id != REGISTER_BLOCK_DELETE &&
+        item->id != REGISTER_SINGLE_BLOCK)
+        return PANEL_DONE;
+    if (!panel_may_write(item->id, state))
+        return PANEL_WRONG_STATE;
+    return is_coil ? check_coil(s, item->id) : check_holding(s, item->id, item->value);
+}
+
+static void go_on(struct service *s)
+{
+    s->hold = PANEL_HOLD_NONE;
+    s->rest_cycles = 0;
+}
+
+static void acknowledge(struct service *s)
+{
+    s->resets_spindle = s->resets_spindle || s->inputs.spindle.tripped;
+    s->alarm = PANEL_ALARM_NONE;
+    s->alarm_text = (struct diagnostic){0};
+}
+
+static void reset(struct service *s)
+{
+    acknowledge(s);
+    if (!s->failed) {
+        service_give_up(s);
+        return;
+    }
+    s->failed = false;
+    if (drives_get_state(&s->controller.drives) >= DRIVES_STOPPING)
+        service_recover(s, false);
+    else
+        controller_drop_program(&s->controller);
+}
+
+static void set_emergency(struct service *s, bool in)
+{
+    if (in && !s->emergency) {
+        controller_stop_at_once(&s->controller, TAKT_ERROR_EMERGENCY_STOP);
+        acknowledge(s);
+        service_raise(s, PANEL_ALARM_EMERGENCY, controller_get_fault(&s->controller));
+        service_end_job(s, PANEL_OUTCOME_ABORTED);
+        s->failed = true;
+    }
+    s->emergency = in;
+}
+
+static void jog(struct service *s, bool negative, bool on)
+{
+    if (on && s->job == SERVICE_NOTHING)
+        service_start_jog(s, negative);
+    else if (!on && s->job == SERVICE_JOG && s->jog_is_negative == negative &&
+             s->settings.jog_distance == 0)
+        service_give_up(s);
+}
+
+static void switch_correction(struct service *s, unsigned layer, bool on)
+{
+    struct service_settings *settings = &s->settings;
+
+    settings->corrections =
+        on ? settings->corrections | 1U << layer : settings->corrections & ~(1U << layer);
+    correction_switch(controller_get_correction(&s->controller),
+                      (enum correction_layer_number)layer, on);
+}
+
+/* Coils that stay as they are written. False: it is none of them. */
+static bool set_switch(struct service *s, enum panel_id id, bool on)
+{
+    struct service_settings *settings = &s->settings;
+
+    if (id == REGISTER_SINGLE_BLOCK) {
+        settings->single_block = on;
+    } else if (id == REGISTER_OPTIONAL_STOP) {
+        settings->optional_stop = on;
+    } else if (id == REGISTER_BLOCK_DELETE) {
+        settings->block_delete = on;
+    } else if (id == REGISTER_EMERGENCY_STOP) {
+        set_emergency(s, on);
+    } else if (is_between(id, REGISTER_CORRECTION_MATRIX, REGISTER_CORRECTION_WEAR)) {
+        switch_correction(s, id - REGISTER_CORRECTION_MATRIX, on);
+    } else if (is_between(id, REGISTER_JOG_PLUS, REGISTER_JOG_MINUS)) {
+        jog(s, id == REGISTER_JOG_MINUS, on);
+    } else {
+        return false;
+    }
+    return true;
+}
+
+/* Coils that do something when 1 is written. */
+static bool push_button(struct service *s, enum panel_id id, const char *mdi)
+{
+    if (id == REGISTER_RESUME || (id == REGISTER_CYCLE_START && s->job != SERVICE_NOTHING))
+        go_on(s);
+    else if (id == REGISTER_CYCLE_START)
+        return service_start_program(s);
+    else if (id == REGISTER_FEED_HOLD)
+        service_hold(s, PANEL_HOLD_OPERATOR);
+    else if (id == REGISTER_RESET)
+        reset(s);
+    else if (id == REGISTER_ACKNOWLEDGE)
+        acknowledge(s);
+    else if (id == REGISTER_MDI_START)
+        service_start_mdi(s, mdi);
+    else if (id == REGISTER_HOME)
+        service_start_home(s);
+    return true;
+}
+
+static bool set_work_offset(struct service *s, unsigned axis, int64_t value)
+{
+    const unsigned number =
+        PARAMETER_SYSTEM_OFFSET + (s->settings.work_system - 1) * PARAMETER_SYSTEM_STRIDE + axis;
+
+    return parameters_set(s->config.parameters, number, (double)value * UNITS_PER_COUNT);
+}
+
+static void set_tool_offset(struct service *s, unsigned axis, int64_t value)
+{
+    const bool rotary = axis >= AXIS_LINEAR_COUNT;
+
+    selected_tool(s)->offset.at[axis] =
+        (double)value * UNITS_PER_COUNT * (rotary ? RAD_PER_DEGREE : 1.0);
+}
+
+/* Holding registers that are mere settings. False: it is none of them. */
+static bool set_setting(struct service_settings *settings, enum panel_id id, int64_t value)
+{
+    if (id == REGISTER_FEED_OVERRIDE)
+        settings->feed_override = (uint16_t)value;
+    else if (id == REGISTER_RAPID_OVERRIDE)
+        settings->rapid_override = (uint16_t)value;
+    else if (id == REGISTER_SPINDLE_OVERRIDE)
+        settings->spindle_override = (uint16_t)value;
+    else if (id == REGISTER_MODE)
+        settings->mode = (enum panel_mode)value;
+    else if (id == REGISTER_JOG_AXIS)
+        settings->jog_axis = (enum axis)value;
+    else if (id == REGISTER_JOG_FEED)
+        settings->jog_feed_mm_min = (uint16_t)value;
+    else if (id == REGISTER_JOG_DISTANCE)
+        settings->jog_distance = (int32_t)value;
+    else if (id == REGISTER_WORK_SYSTEM)
+        settings->work_system = (unsigned)value;
+    else if (id == REGISTER_TOOL_SELECT)
+        settings->tool_select = (uint32_t)value;
+    else if (id == REGISTER_WATCHDOG)
+        settings->watchdog_ms = (uint32_t)value;
+    else
+        return false;
+    return true;
+}
+
+static void set_rise(struct service *s, unsigned axis, int64_t value)
+{
+    s->settings.rise[axis] = (int32_t)value;
+    correction_set_rise(controller_get_correction(&s->controller), (enum axis)axis,
+                        (double)value * UNITS_PER_COUNT);
+}
+
+/* The other holding registers. */
+static bool set_holding(struct service *s, enum panel_id id, int64_t value)
+{
+    if (is_between(id, REGISTER_WORK_OFFSET_X, REGISTER_WORK_OFFSET_C))
+        return set_work_offset(s, id - REGISTER_WORK_OFFSET_X, value);
+    if (is_between(id, REGISTER_TOOL_OFFSET_X, REGISTER_TOOL_OFFSET_C))
+        set_tool_offset(s, id - REGISTER_TOOL_OFFSET_X, value);
+    else if (is_between(id, REGISTER_RISE_X, REGISTER_RISE_C))
+        set_rise(s, id - REGISTER_RISE_X, value);
+    else if (id == REGISTER_TOOL_DIAMETER)
+        selected_tool(s)->diameter_mm = (double)value * UNITS_PER_COUNT;
+    else if (id == REGISTER_UPLOAD_SIZE)
+        s->program_size = (uint32_t)value;
+    else if (id == REGISTER_UPLOAD_CRC)
+        s->program_crc = (uint32_t)value;
+    else if (id == REGISTER_UPLOAD_COMMAND)
+        s->config.programs.adopt(s->config.programs.context);
+    return true;
+}
+
+static bool do_item(struct service *s, const struct panel_order_item *item, const char *mdi)
+{
+    if (panel_registers[item->id].form != PANEL_BIT)
+        return set_setting(&s->settings, item->id, item->value) ||
+               set_holding(s, item->id, item->value);
+    return set_switch(s, item->id, item->value != 0) || item->value == 0 ||
+           push_button(s, item->id, mdi);
+}
+
+/* Two buttons at once that start or end something: no order says which is meant first. */
+static bool is_ambiguous(const struct panel_order *order)
+{
+    unsigned buttons = 0;
+
+    for (unsigned i = 0; i < order->count; i++) {
+        const enum panel_id id = order->item[i].id;
+
+        if (order->item[i].value != 0 &&
+            (is_between(id, REGISTER_CYCLE_START, REGISTER_RESUME) || id == REGISTER_RESET ||
+             is_between(id, REGISTER_MDI_START, REGISTER_HOME)) &&
+            panel_registers[id].form == PANEL_BIT)
+            buttons++;
+    }
+    return buttons > 1;
+}
+
+/* Settings are made on the way, since what follows may depend on them: which tool is selected, say. */
+static enum panel_verdict check_order(struct service *s, const struct panel_order *order)
+{
+    enum panel_verdict verdict = PANEL_DONE;
+
+    for (unsigned i = 0; i < order->count && verdict == PANEL_DONE; i++) {
+        verdict = check_item(s, &order->item[i]);
+        if (verdict == PANEL_DONE)
+            (void)set_setting(&s->settings, order->item[i].id, order->item[i].value);
+    }
+    return verdict;
+}
+
+enum panel_verdict service_order(struct service *s, const struct panel_order *order)
+{
+    const struct service_settings before = s->settings;
+    enum panel_verdict verdict;
+
+    if (is_ambiguous(order))
+        return PANEL_WRONG_VALUE;
+    verdict = check_order(s, order);
+    if (verdict != PANEL_DONE) {
+        s->settings = before;
+        return verdict;
+    }
+    for (unsigned i = 0; i < order->count; i++) {
+        if (!do_item(s, &order->item[i], order->mdi))
+            return PANEL_WRONG_STATE;
+    }
+    if (s->settings.watchdog_ms != before.watchdog_ms)
+        service_alive(s);
+    return PANEL_DONE;
+}

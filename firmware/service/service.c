@@ -1,0 +1,306 @@
+#include "service/service.h"
+
+#include "base/fnv.h"
+#include "base/maths.h"
+#include "service/service_private.h"
+
+#include <string.h>
+
+/*
+ * So many cycles without motion after a hold was asked for are rest: the first may be the last one before the hold is
+ * seen, and a stretch may begin with a cycle too slow to move any axis by a bit.
+ */
+#define REST_CYCLES 3
+
+#define MS_PER_US 1e-3
+
+struct controller_config service_controller_config(const struct service *s)
+{
+    return (struct controller_config){
+        .machine = &s->controller.machine,
+        .can = s->config.can,
+        .step = s->config.step,
+        .tools = &s->tools,
+        .parameters = s->config.parameters,
+        .correction = s->config.correction,
+        .exact_path = s->config.exact_path,
+        .block_delete = s->settings.block_delete,
+        .single_block = s->settings.single_block,
+    };
+}
+
+void service_recover(struct service *s, bool home)
+{
+    struct controller_config config = service_controller_config(s);
+
+    source_open_text(&config.source, &s->source_text, s->text, 0);
+    controller_recover(&s->controller, &config, home);
+}
+
+void service_init(struct service *s, const struct service_config *config)
+{
+    struct controller_config controller;
+
+    memset(s, 0, sizeof *s);
+    s->config = *config;
+    s->tools = (struct tool_table){config->tools, config->tools_count};
+    s->settings = (struct service_settings){
+        .feed_override = 1000,
+        .rapid_override = 1000,
+        .spindle_override = 1000,
+        .jog_feed_mm_min = 1000,
+        .work_system = 1,
+        .corrections = CORRECTION_ALL_LAYERS & ~config->machine->correction.off,
+    };
+    s->digest = FNV_START;
+    controller = service_controller_config(s);
+    controller.machine = config->machine;
+    source_open_text(&controller.source, &s->source_text, s->text, 0);
+    controller_init(&s->controller, &controller);
+}
+
+void service_set_program(struct service *s, uint32_t size, uint32_t crc)
+{
+    s->program_size = size;
+    s->program_crc = crc;
+}
+
+/* The first alarm stays until it is acknowledged: it is the cause of the others. */
+void service_raise(struct service *s, enum panel_alarm alarm, const struct diagnostic *text)
+{
+    if (s->alarm != PANEL_ALARM_NONE)
+        return;
+    s->alarm = alarm;
+    s->alarm_text = *text;
+}
+
+/* A jog has nothing to go on with: it is given up. Drives that look for their homes can only be stopped at once. */
+void service_hold(struct service *s, enum panel_hold reason)
+{
+    if (s->job == SERVICE_NOTHING)
+        return;
+    if (s->finds_home)
+        controller_stop_at_once(&s->controller, TAKT_ERROR_HOMING_STOPPED);
+    else if (s->job == SERVICE_JOG)
+        service_give_up(s);
+    else if (s->hold == PANEL_HOLD_NONE || reason > PANEL_HOLD_PROGRAM)
+        s->hold = reason;
+}
+
+void service_alive(struct service *s)
+{
+    s->quiet_cycles = 0;
+}
+
+static void raise_simple(struct service *s, enum panel_alarm alarm, enum takt_error error,
+                         double value)
+{
+    struct diagnostic text;
+
+    diagnostic_set(&text, error, 0, 0, "", 0, value);
+    service_raise(s, alarm, &text);
+}
+
+/* Whoever has claimed control and is no longer heard has lost it, and nothing goes on without the operator. */
+static void watch_panel(struct service *s)
+{
+    const double quiet_ms =
+        (double)s->quiet_cycles * (double)s->controller.machine.cycle_us * MS_PER_US;
+
+    if (s->settings.watchdog_ms == 0)
+        return;
+    s->quiet_cycles++;
+    if (quiet_ms < (double)s->settings.watchdog_ms)
+        return;
+    raise_simple(s, PANEL_ALARM_PANEL, TAKT_ERROR_PANEL_SILENT, (double)s->settings.watchdog_ms);
+    s->settings.watchdog_ms = 0;
+    service_hold(s, PANEL_HOLD_PANEL);
+}
+
+/* A spindle that should turn and is lost stops the axes on their path, while they are still on it. */
+static void watch_spindle(struct service *s)
+{
+    const struct spindle_feedback *spindle = &s->inputs.spindle;
+
+    if (service_get_outputs(s).spindle_speed_rpm == 0.0 || (!spindle->silent && !spindle->tripped))
+        return;
+    raise_simple(s, PANEL_ALARM_SPINDLE,
+                 spindle->silent ? TAKT_ERROR_SPINDLE_SILENT : TAKT_ERROR_SPINDLE_TRIPPED, 0.0);
+    service_hold(s, PANEL_HOLD_SPINDLE);
+}
+
+static void set_inputs(struct service *s, const struct inputs *world)
+{
+    const struct service_settings *settings = &s->settings;
+
+    s->inputs = *world;
+    s->inputs.feed_override_percent = 0.1 * (double)settings->feed_override;
+    s->inputs.rapid_override_percent = 0.1 * (double)settings->rapid_override;
+    s->inputs.feed_hold = s->hold != PANEL_HOLD_NONE || s->giving_up;
+}
+
+static void count_rest(struct service *s, const struct cycle_record *record)
+{
+    if (record == NULL || !s->inputs.feed_hold)
+        s->rest_cycles = record == NULL ? REST_CYCLES : 0;
+    else if (point_is_same(&record->cmd, &s->at))
+        s->rest_cycles++;
+    else
+        s->rest_cycles = 0;
+}
+
+static void add_to_digest(struct service *s, const struct cycle_record *record)
+{
+    const unsigned axes = machine_axes(&s->controller.machine);
+
+    for (unsigned i = 0; i < AXIS_COUNT; i++) {
+        if ((axes & 1U << i) != 0)
+            s->digest = fnv_add_double(s->digest, record->set.at[i]);
+    }
+}
+
+static void take_record(struct service *s)
+{
+    const struct cycle_record *record = controller_get_record(&s->controller);
+
+    count_rest(s, record);
+    for (unsigned i = DRIVES_LATENCY_CYCLES - 1; i > 0; i--)
+        s->sent[i] = s->sent[i - 1];
+    if (record != NULL) {
+        add_to_digest(s, record);
+        s->record = *record;
+        s->at = record->cmd;
+        s->sent[0] = record->set;
+    }
+}
+
+/* A fault of a drive stops everything; an error of the program only the program. */
+static void take_fault(struct service *s)
+{
+    const struct diagnostic *fault = controller_get_fault(&s->controller);
+    const bool drives = drives_get_state(&s->controller.drives) >= DRIVES_STOPPING;
+
+    if (s->failed)
+        return;
+    s->failed = true;
+    service_raise(s, drives ? PANEL_ALARM_DRIVE : PANEL_ALARM_PROGRAM, fault);
+    service_end_job(s, PANEL_OUTCOME_FAILED);
+    controller_quieten(&s->controller);
+}
+
+static void follow_controller(struct service *s)
+{
+    switch (controller_get_state(&s->controller)) {
+    case CONTROLLER_STARTING:
+    case CONTROLLER_RUNNING:
+    case CONTROLLER_STOPPING:
+        break;
+    case CONTROLLER_COMPLETED:
+        if (s->finds_home)
+            service_go_to_zero(s);
+        else if (s->job != SERVICE_NOTHING)
+            service_end_job(s, PANEL_OUTCOME_COMPLETED);
+        break;
+    case CONTROLLER_FAULTED:
+        take_fault(s);
+        break;
+    }
+}
+
+/* Of a program or a line; after a hold the next block has to come first. */
+static void stop_after_block(struct service *s)
+{
+    const struct cycle_record *record = controller_get_record(&s->controller);
+    bool optional;
+
+    if (record == NULL || (s->job != SERVICE_PROGRAM && s->job != SERVICE_MDI))
+        return;
+    if (controller_passed_stop(&s->controller, &optional) &&
+        (!optional || s->settings.optional_stop))
+        service_hold(s, PANEL_HOLD_PROGRAM);
+    if (s->settings.single_block && record->landed && record->block != s->held_block) {
+        s->held_block = record->block;
+        service_hold(s, PANEL_HOLD_SINGLE_BLOCK);
+    }
+}
+
+static void drop_at_rest(struct service *s)
+{
+    if (!s->giving_up || s->rest_cycles < REST_CYCLES)
+        return;
+    controller_drop_program(&s->controller);
+    if (s->job != SERVICE_JOG)
+        controller_quieten(&s->controller);
+    service_end_job(s, s->job == SERVICE_JOG ? PANEL_OUTCOME_COMPLETED : PANEL_OUTCOME_ABORTED);
+}
+
+void service_background(struct service *s)
+{
+    controller_background(&s->controller);
+}
+
+void service_cycle(struct service *s, const struct inputs *inputs)
+{
+    set_inputs(s, inputs);
+    if (controller_get_state(&s->controller) == CONTROLLER_STARTING)
+        controller_follow_drives(&s->controller, &s->at);
+    controller_cycle(&s->controller, &s->inputs);
+    take_record(s);
+    stop_after_block(s);
+    follow_controller(s);
+    watch_spindle(s);
+    watch_panel(s);
+    drop_at_rest(s);
+    s->cycles++;
+}
+
+struct outputs service_get_outputs(const struct service *s)
+{
+    struct outputs outputs = *controller_get_outputs(&s->controller);
+
+    outputs.spindle_speed_rpm *= 0.001 * (double)s->settings.spindle_override;
+    return outputs;
+}
+
+bool service_take_spindle_reset(struct service *s)
+{
+    const bool resets = s->resets_spindle;
+
+    s->resets_spindle = false;
+    return resets;
+}
+
+static enum panel_state state_of_job(enum service_job job)
+{
+    switch (job) {
+    case SERVICE_PROGRAM:
+        return PANEL_RUNNING;
+    case SERVICE_MDI:
+        return PANEL_MDI;
+    case SERVICE_JOG:
+        return PANEL_JOGGING;
+    case SERVICE_HOME:
+        return PANEL_HOMING;
+    case SERVICE_NOTHING:
+        break;
+    }
+    return PANEL_IDLE;
+}
+
+enum panel_state service_get_state(const struct service *s)
+{
+    if (s->emergency)
+        return PANEL_EMERGENCY;
+    if (s->failed)
+        return PANEL_ALARM;
+    if (controller_get_state(&s->controller) == CONTROLLER_STARTING)
+        return s->job == SERVICE_HOME ? PANEL_HOMING : PANEL_STARTING;
+    if (s->giving_up || controller_get_state(&s->controller) == CONTROLLER_STOPPING)
+        return PANEL_STOPPING;
+    return s->hold != PANEL_HOLD_NONE ? PANEL_HELD : state_of_job(s->job);
+}
+
+void service_set_health(struct service *s, const struct service_health *health)
+{
+    s->health = *health;
+}

@@ -1,0 +1,82 @@
+/*
+ * The controller as a service: the states above single programs, what the operator's panel orders, and what is shown to
+ * it. Jog, homing and MDI are programs of a line or two, so they run through the same planner, limits and drives.
+ *
+ *     service_order        what a panel wants: all of it or nothing, at once
+ *     service_background   reads and plans ahead, as often as there is time
+ *     service_cycle        one control cycle
+ *     service_look         everything a panel can read
+ *
+ * The caller sees to it that none of these runs while another does.
+ */
+#ifndef TAKT_SERVICE_SERVICE_H
+#define TAKT_SERVICE_SERVICE_H
+
+#include "controller/controller.h"
+#include "controller/restart.h"
+#include "panel/snapshot.h"
+
+#include <stdbool.h>
+#include <stdint.h>
+
+/* Programs as the service sees them; what an upload has brought waits beside until it is adopted. */
+struct service_programs {
+    /* A source at the beginning of the program. False: there is none. */
+    bool (*open)(void *context, struct source *source);
+    /* What the last upload brought becomes the program. No program runs. */
+    void (*adopt)(void *context);
+    void *context; /* owned by whoever made it */
+};
+
+struct service_config {
+    const struct machine *machine; /* copied */
+    struct step_port step;         /* pulses; not used by a machine without step drives */
+    struct can_port can;
+    struct tool *tools; /* read and written; tools_count of them */
+    size_t tools_count;
+    struct parameters *parameters;              /* read and written */
+    const struct correction_tables *correction; /* NULL: none; must outlive the service */
+    struct service_programs programs;
+    bool exact_path; /* every G64 is treated as G61 */
+};
+
+/* What only the platform knows, for the panel. */
+struct service_health {
+    double bus_load_percent;
+    uint32_t cycle_min_ns, cycle_mean_ns, cycle_max_ns;
+    uint32_t overruns; /* cycles that began later than the next one was due */
+};
+
+/* What runs. */
+enum service_job { SERVICE_NOTHING, SERVICE_PROGRAM, SERVICE_MDI, SERVICE_JOG, SERVICE_HOME };
+
+#include "service/service_state.h"
+
+void service_init(struct service *s, const struct service_config *config);
+
+/* The program that is there at power-on, for the panel to show. */
+void service_set_program(struct service *s, uint32_t size, uint32_t crc);
+
+/* Between two cycles. Nothing has changed unless PANEL_DONE. */
+enum panel_verdict service_order(struct service *s, const struct panel_order *order);
+
+/* The panel in control has been heard. */
+void service_alive(struct service *s);
+
+void service_background(struct service *s);
+
+/* inputs: the world's; overrides and hold of it are the panel's, and not used. */
+void service_cycle(struct service *s, const struct inputs *inputs);
+
+/* What the outputs are to be after the last cycle: the controller's, with the spindle override. */
+struct outputs service_get_outputs(const struct service *s);
+
+/* True once after a trip of the spindle has been acknowledged: its drive is to be reset. */
+bool service_take_spindle_reset(struct service *s);
+
+enum panel_state service_get_state(const struct service *s);
+
+void service_set_health(struct service *s, const struct service_health *health);
+void service_look(const struct service *s, struct panel_snapshot *snapshot);
+
+#endif

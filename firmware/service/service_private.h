@@ -1,0 +1,29 @@
+/*
+ * Between the files of the service.
+ */
+#ifndef TAKT_SERVICE_SERVICE_PRIVATE_H
+#define TAKT_SERVICE_SERVICE_PRIVATE_H
+
+#include "service/service.h"
+
+/* service_jobs.c: starting and ending what runs. False: there is no program, or it would leave the travel. */
+bool service_start_program(struct service *s);
+void service_start_mdi(struct service *s, const char *line);
+bool service_jog_is_possible(const struct service *s, bool negative);
+void service_start_jog(struct service *s, bool negative);
+/* Homing: first the drives, then the way to machine zero. */
+void service_start_home(struct service *s);
+void service_go_to_zero(struct service *s);
+/* What ran has ended by itself, or has been given up. */
+void service_end_job(struct service *s, enum panel_outcome outcome);
+/* What runs comes to rest and is dropped. */
+void service_give_up(struct service *s);
+
+/* service.c */
+struct controller_config service_controller_config(const struct service *s);
+/* Enables the drives again, and homes them again if told so. */
+void service_recover(struct service *s, bool home);
+void service_raise(struct service *s, enum panel_alarm alarm, const struct diagnostic *text);
+void service_hold(struct service *s, enum panel_hold reason);
+
+#endif

@@ -1,0 +1,67 @@
+/*
+ * Inside the service: public only so that the caller can own the memory. Read service.h instead.
+ */
+#ifndef TAKT_SERVICE_SERVICE_STATE_H
+#define TAKT_SERVICE_SERVICE_STATE_H
+
+#include "controller/controller.h"
+#include "drive/drives.h"
+#include "panel/snapshot.h"
+
+/* Longest program the service writes itself: MDI lines, jogs, homing. */
+#define SERVICE_TEXT_MAX PANEL_MDI_MAX
+
+/* What the panel sets and reads back. */
+struct service_settings {
+    uint16_t feed_override, rapid_override, spindle_override; /* 0.1 % */
+    enum panel_mode mode;
+    enum axis jog_axis;
+    uint16_t jog_feed_mm_min; /* deg/min for rotary axes */
+    int32_t jog_distance;     /* 0.001 mm or deg; 0: until released */
+    unsigned work_system;     /* 1 ... 9 */
+    uint32_t tool_select;
+    uint32_t watchdog_ms; /* 0: no panel is in control */
+    bool single_block, optional_stop, block_delete;
+    unsigned corrections;     /* bit i: layer i of the position correction is on */
+    int32_t rise[AXIS_COUNT]; /* 0.001 K, of each axis since calibration */
+};
+
+struct service {
+    struct service_config config;
+    struct tool_table tools;
+    struct controller controller;
+    struct service_settings settings;
+
+    enum service_job job;
+    enum panel_hold hold;  /* why the feed is held; PANEL_HOLD_NONE: it is not */
+    bool finds_home;       /* the drives look for their homes; then comes the way to zero */
+    bool giving_up;        /* what runs is dropped as soon as it is at rest */
+    uint32_t held_block;   /* at whose end a single block has been held; 0: none yet */
+    bool resets_spindle;   /* its drive is to be reset */
+    bool emergency;        /* the button is in */
+    bool jog_is_negative;  /* of a jog */
+    unsigned rest_cycles;  /* cycles in which no axis has been moved */
+    uint32_t quiet_cycles; /* since the panel in control was heard */
+
+    enum panel_alarm alarm; /* latched until acknowledged */
+    struct diagnostic alarm_text;
+    bool failed; /* the controller is faulted: RESET leads on */
+
+    struct point at;                          /* last setpoint, without correction */
+    struct point sent[DRIVES_LATENCY_CYCLES]; /* setpoints of the last cycles, newest first */
+    uint64_t digest;                          /* of the setpoints of this program */
+    struct cycle_record record;               /* of the last program cycle */
+    struct inputs inputs;                     /* of the last cycle */
+    struct service_health health;
+
+    enum panel_outcome outcome;
+    uint16_t runs;
+    uint32_t cycles;
+    uint32_t program_size, program_crc; /* size 0: none */
+
+    char text[SERVICE_TEXT_MAX]; /* of a program the service has written */
+    size_t text_length;
+    struct source_text source_text;
+};
+
+#endif

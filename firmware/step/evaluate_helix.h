@@ -1,0 +1,36 @@
+/*
+ * An arc of unit steps with any number of further axes that move in proportion to its angle: a helix, over any octants.
+ */
+#ifndef TAKT_STEP_EVALUATE_HELIX_H
+#define TAKT_STEP_EVALUATE_HELIX_H
+
+#include "step/evaluate_arc.h"
+
+#include <stdbool.h>
+
+struct evaluate_helix {
+    enum evaluate_form form;
+    struct evaluate_arc arc;
+    bool arc_done;
+    unsigned plane[2];           /* the arc's axes */
+    unsigned leading;            /* straight axis with the largest increment */
+    uint8_t direction;           /* of the straight axes */
+    int64_t size[AXIS_COUNT];    /* increments of the straight axes; 0 in the plane */
+    int64_t done[AXIS_COUNT];    /* steps of them made */
+    struct evaluate_tick queued; /* plain form: what the last tick has left for the next ones */
+    double due;                  /* of the next tick */
+    double group_due;            /* of the next tick that does not come out of queued */
+    double gap;                  /* plain form: between the ticks of a group */
+};
+
+/* plane: the arc's axes, different ones. delta: increments in steps; those of the plane are the arc's affair. */
+void evaluate_helix_begin(struct evaluate_helix *h, const struct evaluate_arc_config *arc,
+                          const unsigned plane[2], const int64_t delta[AXIS_COUNT]);
+
+/* The next tick. False: the end has been reached, *tick is empty. */
+bool evaluate_helix_next(struct evaluate_helix *h, struct evaluate_tick *tick);
+
+/* Which part of the way, 0 ... 1, has been done when the next tick is due, at constant speed evenly. 1 at the end. */
+double evaluate_helix_due(const struct evaluate_helix *h);
+
+#endif

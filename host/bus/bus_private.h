@@ -1,0 +1,37 @@
+/*
+ * Shared by the sources of the embedded bus: bus.c, where nothing goes wrong, and bus_faults.c,
+ * which does the same with faults. A test keeps them equal where no fault strikes.
+ */
+#ifndef TAKT_BUS_BUS_PRIVATE_H
+#define TAKT_BUS_BUS_PRIVATE_H
+
+#include "bus/bus.h"
+
+/* Puts a frame among the waiting ones, in its place. */
+void bus_insert_waiting(struct bus *bus, const struct bus_waiting *waiting);
+
+/*
+ * Takes the waiting frame at this index onto the wire, which it holds from start_ns on for so many
+ * bits.
+ */
+void bus_put_on_wire(struct bus *bus, unsigned index, uint64_t start_ns, unsigned bits);
+
+/* The frame on the wire has ended: it counts and the observer sees it. */
+void bus_count_frame(struct bus *bus);
+
+/* Gives the frame on the wire to a port. */
+void bus_deliver(struct bus *bus, struct bus_port *port);
+
+/* The bus until time_ns with everything that can go wrong. */
+void bus_run_faulty(struct bus *bus, uint64_t time_ns);
+
+/* Something has gone wrong or may until then: bus_run_faulty is needed. */
+static inline bool bus_is_faulty(const struct bus *bus, uint64_t time_ns)
+{
+    return bus->is_unwell || time_ns >= bus->fault_from_ns;
+}
+
+/* A frame is being sent: false if its port is off the bus; a delay moves waiting->since_ns. */
+bool bus_admit(struct bus *bus, struct bus_waiting *waiting);
+
+#endif

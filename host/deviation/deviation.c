@@ -1,0 +1,154 @@
+#include "deviation/deviation.h"
+
+#include "base/maths.h"
+
+#include <stddef.h>
+
+#define N      DEVIATION_LINEAR
+#define MICRO  1e-6
+#define UM     1e-3 /* in mm */
+#define DEGREE (MATHS_PI / 180.0)
+
+void deviation_init(struct deviation *d, const struct deviation_config *config,
+                    const double min_mm[AXIS_COUNT], const double max_mm[AXIS_COUNT])
+{
+    const double *number = (const double *)config->axis;
+
+    *d = (struct deviation){.config = *config};
+    for (unsigned i = 0; i < AXIS_COUNT; i++) {
+        d->min_mm[i] = min_mm[i];
+        d->max_mm[i] = max_mm[i];
+    }
+    for (size_t i = 0; i < sizeof config->axis / sizeof(double); i++)
+        d->any = d->any || number[i] != 0;
+    for (unsigned i = 0; i < N; i++)
+        d->any = d->any || config->squareness_urad[i] != 0 || config->backlash_um[i] != 0 ||
+                 config->growth_um_per_m_k[i] != 0;
+    d->any = d->any || config->table_axis < AXIS_COUNT || config->wear_along_um_per_m != 0 ||
+             config->wear_along_um_per_min != 0;
+}
+
+/* The table lags by up to half the gap: play, as a pin in a slot. */
+static void take_up(double *lost_mm, double step_mm, double gap_mm)
+{
+    *lost_mm = maths_clamp(*lost_mm - step_mm, -0.5 * gap_mm, 0.5 * gap_mm);
+}
+
+/* rise(t) = warming (1 - e^(-t / T)) */
+static double rise_at(const struct deviation_config *config, double time_s)
+{
+    if (config->warming_time_s <= 0)
+        return config->warming_k;
+    return config->warming_k * (1.0 - maths_exp(-time_s / config->warming_time_s));
+}
+
+void deviation_follow(struct deviation *d, const struct point *drives, double time_s)
+{
+    for (unsigned i = 0; i < N; i++) {
+        take_up(&d->lost_mm[i], drives->at[i] - d->drives_mm[i], d->config.backlash_um[i] * UM);
+        d->drives_mm[i] = drives->at[i];
+    }
+    d->rise_k = rise_at(&d->config, time_s);
+}
+
+void deviation_set_wear(struct deviation *d, double length_mm, double time_s)
+{
+    d->wear_mm = UM * (d->config.wear_along_um_per_m * length_mm * 1e-3 +
+                       d->config.wear_along_um_per_min * time_s / 60.0);
+}
+
+double deviation_sensor_k(const struct deviation *d)
+{
+    const double step = d->config.sensor_step_k;
+
+    return step > 0 ? step * maths_round(d->rise_k / step) : d->rise_k;
+}
+
+/* v = R v, R the product of small rotations about X, Y, Z, to the first order: R v = v + r x v. */
+static void turn_slightly(const double r[N], double v[N])
+{
+    const double x = v[0], y = v[1], z = v[2];
+
+    v[0] += r[1] * z - r[2] * y;
+    v[1] += r[2] * x - r[0] * z;
+    v[2] += r[0] * y - r[1] * x;
+}
+
+/* Where the table of an axis stands: play taken off, grown. */
+static double table_mm(const struct deviation *d, unsigned axis, double drive_mm)
+{
+    const double x = drive_mm + d->lost_mm[axis];
+
+    return x + MICRO * d->config.growth_um_per_m_k[axis] * d->rise_k *
+                   (x - d->config.growth_reference_mm[axis]);
+}
+
+/*
+ * Carries a point, as seen from the carriage of an axis, to what the axis stands on:
+ *
+ *     v = R(x) v + x along the axis + translations + squareness x
+ */
+static void carry(const struct deviation *d, unsigned axis, double drive_mm, double v[N])
+{
+    const double x = table_mm(d, axis, drive_mm);
+    const double *square = d->config.squareness_urad;
+    double e[DEVIATION_OF_AXIS];
+
+    for (unsigned i = 0; i < DEVIATION_OF_AXIS; i++)
+        e[i] =
+            deviation_curve(d->config.axis[axis][i], drive_mm, d->min_mm[axis], d->max_mm[axis]) *
+            (i < N ? UM : MICRO);
+    turn_slightly(e + N, v);
+    v[axis] += x;
+    for (unsigned i = 0; i < N; i++)
+        v[i] += e[i];
+    if (axis == AXIS_Y)
+        v[AXIS_X] -= square[0] * MICRO * x;
+    if (axis == AXIS_Z) {
+        v[AXIS_X] += square[1] * MICRO * x;
+        v[AXIS_Y] -= square[2] * MICRO * x;
+    }
+}
+
+double deviation_table_angle(const struct deviation *d, const struct point *drives)
+{
+    const struct deviation_config *config = &d->config;
+    const double angle = drives->at[config->table_axis];
+    const double turn_deg = angle / DEGREE;
+
+    return angle + MICRO * deviation_curve(config->table_yaw, turn_deg,
+                                           d->min_mm[config->table_axis] / DEGREE,
+                                           d->max_mm[config->table_axis] / DEGREE);
+}
+
+/* Turns v about an axis through the table's centre. */
+static void turn_about(const struct deviation *d, double angle, struct point *v)
+{
+    const unsigned about = d->config.table_axis - AXIS_A;
+    const unsigned first = (about + 1) % N, second = (about + 2) % N;
+    const double *centre = d->config.table_centre_mm;
+    const double u = v->at[first] - centre[first], w = v->at[second] - centre[second];
+    double sine, cosine;
+
+    maths_sincos(angle, &sine, &cosine);
+    v->at[first] = centre[first] + cosine * u - sine * w;
+    v->at[second] = centre[second] + sine * u + cosine * w;
+}
+
+/* Spindle first, then down the machine: Z stands on Y, Y on X, X on the bed. */
+void deviation_tool_point(const struct deviation *d, const struct point *drives, double turn_rad,
+                          struct point *tool)
+{
+    double v[N];
+
+    for (unsigned i = 0; i < N; i++)
+        v[i] = d->config.tool_mm[i];
+    v[AXIS_Z] += d->wear_mm;
+    for (unsigned axis = N; axis-- > 0;)
+        carry(d, axis, drives->at[axis], v);
+    *tool = *drives;
+    for (unsigned i = 0; i < N; i++)
+        tool->at[i] = v[i] - d->config.tool_mm[i];
+    if (d->config.table_axis < AXIS_COUNT)
+        turn_about(d, turn_rad - deviation_table_angle(d, drives), tool);
+}

@@ -1,0 +1,340 @@
+#include "drives/object_table.h"
+
+#include <string.h>
+
+#define NODE  OBJECT_NODE_ID
+#define TPDO  OBJECT_TO_TPDO
+#define RPDO  OBJECT_TO_RPDO
+#define EVENT OBJECT_EVENT
+#define OWN   OBJECT_BY_MACHINE
+
+#define I8  OBJECT_INTEGER8
+#define I16 OBJECT_INTEGER16
+#define I32 OBJECT_INTEGER32
+#define U8  OBJECT_UNSIGNED8
+#define U16 OBJECT_UNSIGNED16
+#define U32 OBJECT_UNSIGNED32
+
+#define RO OBJECT_RO
+#define RW OBJECT_RW
+#define WO OBJECT_WO
+
+#define PROCESS(field)  offsetof(struct drive_objects, process.field)
+#define COM(field)      offsetof(struct drive_objects, communication.field)
+#define SET(field)      offsetof(struct drive_objects, settings.field)
+#define IDENTITY(field) offsetof(struct drive_objects, identity.field)
+
+#define COM_BEGIN offsetof(struct drive_objects, communication)
+
+#define ROW(index, sub, kind, type, access, flags, field, initial, min, max, name, title)          \
+    {                                                                                              \
+        index, sub, kind, type, access, flags, (uint16_t)(field), initial, min, max, name, title   \
+    }
+
+/* An index by itself; the same with limits; one whose value never changes. */
+#define VAR(index, type, access, flags, field, initial, name)                                      \
+    ROW(index, 0, OBJECT_VAR, type, access, flags, field, initial, 0, 0, name, NULL)
+#define VARL(index, type, access, flags, field, initial, min, max, name)                           \
+    ROW(index, 0, OBJECT_VAR, type, access, (flags) | OBJECT_LIMITED, field, initial, min, max,    \
+        name, NULL)
+#define CONST(index, type, value, name)                                                            \
+    ROW(index, 0, OBJECT_VAR, type, OBJECT_CONST, OBJECT_FIXED, 0, value, 0, 0, name, NULL)
+#define TEXT(index, text, name)                                                                    \
+    ROW(index, 0, OBJECT_VAR, OBJECT_STRING, OBJECT_CONST, OBJECT_FIXED, 0, 0, 0, 0, name, text)
+
+/* An index with sub-indices: its head, then those. */
+#define HEAD(index, kind, count, title)                                                            \
+    ROW(index, 0, kind, U8, OBJECT_CONST, OBJECT_FIXED, 0, count, 0, 0,                            \
+        "Highest sub-index supported", title)
+#define SUB(index, sub, type, access, flags, field, initial, name)                                 \
+    ROW(index, sub, OBJECT_SAME, type, access, flags, field, initial, 0, 0, name, NULL)
+#define SUBL(index, sub, type, access, flags, field, initial, min, max, name)                      \
+    ROW(index, sub, OBJECT_SAME, type, access, (flags) | OBJECT_LIMITED, field, initial, min, max, \
+        name, NULL)
+#define SUBC(index, sub, value, name)                                                              \
+    ROW(index, sub, OBJECT_SAME, U32, RO, OBJECT_FIXED, 0, value, 0, 0, name, NULL)
+
+#define RPDO_PARAMETERS(n, id, when)                                                               \
+    HEAD(0x1400 + (n), OBJECT_RECORD, 2, "RPDO communication parameter"),                          \
+        SUB(0x1400 + (n), 1, U32, RW, NODE, COM(rpdo[n].cob_id), id, "COB-ID"),                    \
+        SUB(0x1400 + (n), 2, U8, RW, 0, COM(rpdo[n].transmission), when, "Transmission type")
+
+#define TPDO_PARAMETERS(n, id, when, milliseconds)                                                 \
+    HEAD(0x1800 + (n), OBJECT_RECORD, 6, "TPDO communication parameter"),                          \
+        SUB(0x1800 + (n), 1, U32, RW, NODE, COM(tpdo[n].cob_id), id, "COB-ID"),                    \
+        SUB(0x1800 + (n), 2, U8, RW, 0, COM(tpdo[n].transmission), when, "Transmission type"),     \
+        SUB(0x1800 + (n), 3, U16, RW, 0, COM(tpdo[n].inhibit_100us), 0, "Inhibit time"),           \
+        SUB(0x1800 + (n), 5, U16, RW, 0, COM(tpdo[n].event_ms), milliseconds, "Event timer"),      \
+        SUBL(0x1800 + (n), 6, U8, RW, 0, COM(tpdo[n].sync_start), 0, 0, 240, "SYNC start value")
+
+/* Where mapping n begins, and entry i of it. */
+#define MAPPING_OF(direction, n)                                                                   \
+    (offsetof(struct drive_communication, direction##_mapping) +                                   \
+     (n) * sizeof(struct drive_pdo_mapping) + COM_BEGIN)
+#define ENTRY(i) (offsetof(struct drive_pdo_mapping, entry) + (i) * sizeof(uint32_t))
+
+#define MAPPED(index, i, mapping, value)                                                           \
+    SUB(index, (i) + 1, U32, RW, 0, (mapping) + ENTRY(i), value, "Mapped object")
+
+#define MAPPING(index, mapping, title, used, first, second)                                        \
+    ROW(index, 0, OBJECT_RECORD, U8, RW, OBJECT_LIMITED,                                           \
+        (mapping) + offsetof(struct drive_pdo_mapping, count), used, 0, DRIVE_PDO_MAPPED_MAX,      \
+        "Number of mapped objects", title),                                                        \
+        MAPPED(index, 0, mapping, first), MAPPED(index, 1, mapping, second),                       \
+        MAPPED(index, 2, mapping, 0), MAPPED(index, 3, mapping, 0), MAPPED(index, 4, mapping, 0),  \
+        MAPPED(index, 5, mapping, 0), MAPPED(index, 6, mapping, 0), MAPPED(index, 7, mapping, 0)
+
+#define RPDO_MAPPING(n, used, first, second)                                                       \
+    MAPPING(0x1600 + (n), MAPPING_OF(rpdo, n), "RPDO mapping parameter", used, first, second)
+#define TPDO_MAPPING(n, used, first, second)                                                       \
+    MAPPING(0x1A00 + (n), MAPPING_OF(tpdo, n), "TPDO mapping parameter", used, first, second)
+
+#define HISTORY(i) SUB(0x1003, (i) + 1, U32, RO, 0, PROCESS(history[i]), 0, "Error")
+
+#define NOT_VALID 0x80000000
+#define NO_RTR    0x40000000
+
+/* clang-format off */
+const struct object_row object_table[] = {
+    CONST(0x1000, U32, 0x00020192, "Device type"),
+    VAR(0x1001, U8, RO, TPDO, PROCESS(error_register), 0, "Error register"),
+    ROW(0x1003, 0, OBJECT_ARRAY, U8, RW, OBJECT_LIMITED, PROCESS(history_count), 0, 0, 0, "Number of errors", "Pre-defined error field"),
+    HISTORY(0), HISTORY(1), HISTORY(2), HISTORY(3), HISTORY(4), HISTORY(5), HISTORY(6), HISTORY(7),
+    VAR(0x1005, U32, RW, 0, COM(sync_cob_id), 0x80, "COB-ID SYNC message"),
+    VAR(0x1006, U32, RW, 0, COM(sync_period_us), 0, "Communication cycle period"),
+    TEXT(0x1008, "takt virtual drive", "Manufacturer device name"),
+    TEXT(0x1009, "1", "Manufacturer hardware version"),
+    TEXT(0x100A, "1.0", "Manufacturer software version"),
+    HEAD(0x1010, OBJECT_ARRAY, 1, "Store parameters"),
+    SUB(0x1010, 1, U32, RW, 0, PROCESS(store), 1, "Save all parameters"),
+    HEAD(0x1011, OBJECT_ARRAY, 1, "Restore default parameters"),
+    SUB(0x1011, 1, U32, RW, 0, PROCESS(restore), 1, "Restore all default parameters"),
+    VAR(0x1014, U32, RW, NODE, COM(emcy_cob_id), 0x80, "COB-ID EMCY"),
+    VAR(0x1015, U16, RW, 0, COM(emcy_inhibit_100us), 0, "Inhibit time EMCY"),
+    HEAD(0x1016, OBJECT_ARRAY, DRIVE_CONSUMERS, "Consumer heartbeat time"),
+    SUB(0x1016, 1, U32, RW, 0, COM(consumer_heartbeat[0]), 0, "Node and time"),
+    SUB(0x1016, 2, U32, RW, 0, COM(consumer_heartbeat[1]), 0, "Node and time"),
+    VAR(0x1017, U16, RW, 0, COM(producer_heartbeat_ms), 0, "Producer heartbeat time"),
+    HEAD(0x1018, OBJECT_RECORD, 4, "Identity object"),
+    SUBC(0x1018, 1, 0, "Vendor-ID"),
+    SUBC(0x1018, 2, 0x402, "Product code"),
+    SUBC(0x1018, 3, 0x10000, "Revision number"),
+    SUB(0x1018, 4, U32, RO, OWN, IDENTITY(serial), 0, "Serial number"),
+    VARL(0x1019, U8, RW, 0, COM(sync_overflow), 0, 0, 240, "Synchronous counter overflow value"),
+    ROW(0x1021, 0, OBJECT_VAR, OBJECT_DOMAIN, RO, OBJECT_FIXED, 0, 0, 0, 0, "Store EDS", NULL),
+    CONST(0x1022, U16, 0, "Store format"),
+    HEAD(0x1029, OBJECT_ARRAY, 1, "Error behaviour"),
+    SUBL(0x1029, 1, U8, RW, 0, COM(error_behaviour), 0, 0, 2, "Communication error"),
+    HEAD(0x1200, OBJECT_RECORD, 2, "SDO server parameter"),
+    SUB(0x1200, 1, U32, RO, NODE, IDENTITY(sdo_cob_id[0]), 0x600, "COB-ID client to server"),
+    SUB(0x1200, 2, U32, RO, NODE, IDENTITY(sdo_cob_id[1]), 0x580, "COB-ID server to client"),
+
+    RPDO_PARAMETERS(0, 0x200, 255),
+    RPDO_PARAMETERS(1, 0x300, 1),
+    RPDO_PARAMETERS(2, NOT_VALID | 0x400, 255),
+    RPDO_PARAMETERS(3, NOT_VALID | 0x500, 1),
+    RPDO_MAPPING(0, 2, 0x60400010, 0x60600008),
+    RPDO_MAPPING(1, 1, 0x607A0020, 0),
+    RPDO_MAPPING(2, 2, 0x60400010, 0x607A0020),
+    RPDO_MAPPING(3, 1, 0x60C10120, 0),
+    TPDO_PARAMETERS(0, NO_RTR | 0x180, 1, 0),
+    TPDO_PARAMETERS(1, NO_RTR | 0x280, 255, 100),
+    TPDO_PARAMETERS(2, NOT_VALID | NO_RTR | 0x380, 255, 0),
+    TPDO_PARAMETERS(3, NOT_VALID | NO_RTR | 0x480, 1, 0),
+    TPDO_MAPPING(0, 2, 0x60410010, 0x60640020),
+    TPDO_MAPPING(1, 2, 0x603F0010, 0x60F40020),
+    TPDO_MAPPING(2, 2, 0x60410010, 0x60610008),
+    TPDO_MAPPING(3, 2, 0x606C0020, 0x60770010),
+
+    VAR(0x2000, OBJECT_STRING, RW, 0, SET(label), 0, "Name of the axis"),
+    VAR(0x2001, OBJECT_DOMAIN, RW, 0, PROCESS(notes), 0, "Notes"),
+
+    VARL(0x6007, I16, RW, 0, SET(abort_connection_option), 3, 0, 3, "Abort connection option code"),
+    VAR(0x603F, U16, RO, TPDO | EVENT, PROCESS(error_code), 0, "Error code"),
+    VAR(0x6040, U16, RW, RPDO, PROCESS(controlword), 0, "Controlword"),
+    VAR(0x6041, U16, RO, TPDO | EVENT, PROCESS(statusword), 0, "Statusword"),
+    VARL(0x605A, I16, RW, 0, SET(quick_stop_option), 2, 0, 6, "Quick stop option code"),
+    VARL(0x605B, I16, RW, 0, SET(shutdown_option), 0, 0, 1, "Shutdown option code"),
+    VARL(0x605C, I16, RW, 0, SET(disable_option), 1, 0, 1, "Disable operation option code"),
+    VARL(0x605D, I16, RW, 0, SET(halt_option), 1, 1, 2, "Halt option code"),
+    VARL(0x605E, I16, RW, 0, SET(fault_reaction_option), 2, 0, 2, "Fault reaction option code"),
+    VAR(0x6060, I8, RW, RPDO, PROCESS(mode), 0, "Modes of operation"),
+    VAR(0x6061, I8, RO, TPDO | EVENT, PROCESS(mode_display), 0, "Modes of operation display"),
+    VAR(0x6062, I32, RO, TPDO, PROCESS(demand_position), 0, "Position demand value"),
+    VAR(0x6063, I32, RO, TPDO, PROCESS(actual_internal), 0, "Position actual internal value"),
+    VAR(0x6064, I32, RO, TPDO, PROCESS(actual_position), 0, "Position actual value"),
+    VAR(0x6065, U32, RW, OWN, SET(following_window), 0, "Following error window"),
+    VAR(0x6066, U16, RW, OWN, SET(following_timeout_ms), 0, "Following error time out"),
+    VAR(0x6067, U32, RW, OWN, SET(position_window), 0, "Position window"),
+    VAR(0x6068, U16, RW, 0, SET(position_window_ms), 10, "Position window time"),
+    VAR(0x606C, I32, RO, TPDO, PROCESS(actual_velocity), 0, "Velocity actual value"),
+    VAR(0x6077, I16, RO, TPDO, PROCESS(actual_torque), 0, "Torque actual value"),
+    VAR(0x607A, I32, RW, RPDO, PROCESS(target_position), 0, "Target position"),
+    VAR(0x607C, I32, RW, 0, SET(home_offset), 0, "Home offset"),
+    HEAD(0x607D, OBJECT_ARRAY, 2, "Software position limit"),
+    SUB(0x607D, 1, I32, RW, 0, SET(position_limit[0]), INT32_MIN, "Min position limit"),
+    SUB(0x607D, 2, I32, RW, 0, SET(position_limit[1]), INT32_MAX, "Max position limit"),
+    VARL(0x607F, U32, RW, OWN, SET(max_profile_velocity), 1, 1, UINT32_MAX, "Max profile velocity"),
+    VARL(0x6080, U32, RW, 0, SET(max_motor_speed_rpm), 3000, 1, UINT32_MAX, "Max motor speed"),
+    VARL(0x6081, U32, RW, OWN | RPDO, SET(profile_velocity), 1, 1, UINT32_MAX, "Profile velocity"),
+    VARL(0x6083, U32, RW, OWN, SET(profile_acceleration), 1, 1, UINT32_MAX, "Profile acceleration"),
+    VARL(0x6084, U32, RW, OWN, SET(profile_deceleration), 1, 1, UINT32_MAX, "Profile deceleration"),
+    VARL(0x6085, U32, RW, OWN, SET(quick_stop_deceleration), 1, 1, UINT32_MAX, "Quick stop deceleration"),
+    VARL(0x6086, I16, RW, 0, SET(motion_profile_type), 0, 0, 0, "Motion profile type"),
+    HEAD(0x608F, OBJECT_ARRAY, 2, "Position encoder resolution"),
+    SUB(0x608F, 1, U32, RO, OWN, IDENTITY(encoder_counts), 0, "Encoder increments"),
+    SUBC(0x608F, 2, 1, "Motor revolutions"),
+    HEAD(0x6091, OBJECT_ARRAY, 2, "Gear ratio"),
+    SUBL(0x6091, 1, U32, RW, 0, SET(gear_motor), 1, 1, UINT32_MAX, "Motor revolutions"),
+    SUBL(0x6091, 2, U32, RW, 0, SET(gear_shaft), 1, 1, UINT32_MAX, "Shaft revolutions"),
+    HEAD(0x6092, OBJECT_ARRAY, 2, "Feed constant"),
+    SUBL(0x6092, 1, U32, RW, OWN, SET(feed_increments), 1, 1, UINT32_MAX, "Feed"),
+    SUBL(0x6092, 2, U32, RW, 0, SET(feed_shaft), 1, 1, UINT32_MAX, "Shaft revolutions"),
+    VAR(0x6098, I8, RW, 0, SET(homing_method), 37, "Homing method"),
+    HEAD(0x6099, OBJECT_ARRAY, 2, "Homing speeds"),
+    SUBL(0x6099, 1, U32, RW, OWN, SET(homing_velocity[0]), 1, 1, UINT32_MAX, "Speed during search for switch"),
+    SUBL(0x6099, 2, U32, RW, OWN, SET(homing_velocity[1]), 1, 1, UINT32_MAX, "Speed during search for zero"),
+    VARL(0x609A, U32, RW, OWN, SET(homing_acceleration), 1, 1, UINT32_MAX, "Homing acceleration"),
+    VAR(0x60B0, I32, RW, RPDO, PROCESS(position_offset), 0, "Position offset"),
+    VAR(0x60B1, I32, RW, RPDO, PROCESS(velocity_offset), 0, "Velocity offset"),
+    VAR(0x60B2, I16, RW, RPDO, PROCESS(torque_offset), 0, "Torque offset"),
+    VARL(0x60C0, I16, RW, 0, SET(interpolation_submode), 0, 0, 0, "Interpolation sub mode select"),
+    HEAD(0x60C1, OBJECT_ARRAY, 1, "Interpolation data record"),
+    SUB(0x60C1, 1, I32, RW, RPDO, PROCESS(interpolation_target), 0, "Set-point"),
+    HEAD(0x60C2, OBJECT_RECORD, 2, "Interpolation time period"),
+    SUBL(0x60C2, 1, U8, RW, OWN, SET(interpolation_period), 1, 1, 255, "Interpolation time period value"),
+    SUBL(0x60C2, 2, I8, RW, OWN, SET(interpolation_index), -3, -6, 0, "Interpolation time index"),
+    HEAD(0x60C4, OBJECT_RECORD, 6, "Interpolation data configuration"),
+    SUBC(0x60C4, 1, 1, "Maximum buffer size"),
+    SUBL(0x60C4, 2, U32, RW, 0, PROCESS(buffer_size), 1, 1, 1, "Actual buffer size"),
+    SUBL(0x60C4, 3, U8, RW, 0, SET(buffer_organisation), 0, 0, 1, "Buffer organisation"),
+    SUBL(0x60C4, 4, U16, RW, 0, SET(buffer_position), 0, 0, 0, "Buffer position"),
+    ROW(0x60C4, 5, OBJECT_SAME, U8, WO, OBJECT_LIMITED | OBJECT_FIXED, 0, 4, 4, 4, "Size of data record", NULL),
+    SUBL(0x60C4, 6, U8, WO, 0, PROCESS(buffer_clear), 0, 0, 1, "Buffer clear"),
+    VAR(0x60F4, I32, RO, TPDO, PROCESS(following_error), 0, "Following error actual value"),
+    VAR(0x60FD, U32, RO, TPDO | EVENT, PROCESS(digital_inputs), 0, "Digital inputs"),
+    HEAD(0x60FE, OBJECT_ARRAY, 2, "Digital outputs"),
+    SUB(0x60FE, 1, U32, RW, RPDO, PROCESS(digital_outputs), 0, "Physical outputs"),
+    SUB(0x60FE, 2, U32, RW, 0, SET(output_mask), 0, "Bit mask"),
+    CONST(0x6502, U32, 0xE1, "Supported drive modes"),
+};
+/* clang-format on */
+
+const unsigned object_table_count = sizeof object_table / sizeof object_table[0];
+
+static uint32_t place(uint16_t index, uint8_t sub)
+{
+    return (uint32_t)index << 8 | sub;
+}
+
+const struct object_row *object_table_find(uint16_t index, uint8_t sub, bool *has_index)
+{
+    unsigned low = 0, high = object_table_count;
+    while (low < high) {
+        unsigned middle = (low + high) / 2;
+        if (place(object_table[middle].index, object_table[middle].sub) < place(index, sub))
+            low = middle + 1;
+        else
+            high = middle;
+    }
+    *has_index = (low < object_table_count && object_table[low].index == index) ||
+                 (low > 0 && object_table[low - 1].index == index);
+    if (low == object_table_count || object_table[low].index != index ||
+        object_table[low].sub != sub)
+        return NULL;
+    return &object_table[low];
+}
+
+unsigned object_type_bytes(enum object_type type)
+{
+    switch (type) {
+    case OBJECT_INTEGER8:
+    case OBJECT_UNSIGNED8:
+        return 1;
+    case OBJECT_INTEGER16:
+    case OBJECT_UNSIGNED16:
+        return 2;
+    case OBJECT_INTEGER32:
+    case OBJECT_UNSIGNED32:
+        return 4;
+    case OBJECT_STRING:
+    case OBJECT_DOMAIN:
+        break;
+    }
+    return 0;
+}
+
+int64_t object_type_value(enum object_type type, uint32_t raw)
+{
+    switch (type) {
+    case OBJECT_INTEGER8:
+        return (int8_t)(uint8_t)raw;
+    case OBJECT_INTEGER16:
+        return (int16_t)(uint16_t)raw;
+    case OBJECT_INTEGER32:
+        return (int32_t)raw;
+    case OBJECT_UNSIGNED8:
+        return (uint8_t)raw;
+    case OBJECT_UNSIGNED16:
+        return (uint16_t)raw;
+    case OBJECT_UNSIGNED32:
+    case OBJECT_STRING:
+    case OBJECT_DOMAIN:
+        break;
+    }
+    return raw;
+}
+
+/* Fields have the width of their type; the copy goes through a number of that width. */
+uint32_t object_read(const struct object_row *row, const struct drive_objects *objects)
+{
+    const char *field = (const char *)objects + row->field;
+    uint8_t one;
+    uint16_t two;
+    uint32_t four;
+    if (row->flags & OBJECT_FIXED)
+        return (uint32_t)row->initial;
+    switch (object_type_bytes(row->type)) {
+    case 1:
+        memcpy(&one, field, sizeof one);
+        return one;
+    case 2:
+        memcpy(&two, field, sizeof two);
+        return two;
+    default:
+        memcpy(&four, field, sizeof four);
+        return four;
+    }
+}
+
+void object_write(const struct object_row *row, struct drive_objects *objects, uint32_t raw)
+{
+    char *field = (char *)objects + row->field;
+    uint8_t one = (uint8_t)raw;
+    uint16_t two = (uint16_t)raw;
+    if (row->flags & OBJECT_FIXED)
+        return;
+    switch (object_type_bytes(row->type)) {
+    case 1:
+        memcpy(field, &one, sizeof one);
+        break;
+    case 2:
+        memcpy(field, &two, sizeof two);
+        break;
+    default:
+        memcpy(field, &raw, sizeof raw);
+        break;
+    }
+}
+
+void object_table_set_initial(struct drive_objects *objects, uint8_t node)
+{
+    memset(objects, 0, sizeof *objects);
+    for (unsigned i = 0; i < object_table_count; i++) {
+        const struct object_row *row = &object_table[i];
+        if (object_type_bytes(row->type) == 0)
+            continue;
+        uint32_t added = row->flags & OBJECT_NODE_ID ? node : 0;
+        object_write(row, objects, (uint32_t)row->initial + added);
+    }
+}

@@ -1,0 +1,144 @@
+/*
+ * Scripted faults of the drive: when they begin and end, and what they do.
+ */
+#include "drives/virtual_drive_private.h"
+
+#include <assert.h>
+
+static_assert(INJECT_FAULTS_MAX <= 64, "faults in force are bits of a word");
+
+static const struct inject_fault *fault_of(const struct virtual_drive *drive, unsigned i)
+{
+    return &drive->faults.script->fault[i];
+}
+
+static bool is_in_force(const struct virtual_drive *drive, unsigned i)
+{
+    return drive->faults.in_force >> i & 1;
+}
+
+/* The bits of the error register that CiA 301 gives the classes of error codes. */
+static uint8_t register_of(const struct inject_fault *fault)
+{
+    if (fault->error_register != 0)
+        return fault->error_register;
+    switch (fault->code >> 12) {
+    case 2:
+        return EMCY_REGISTER_GENERIC | EMCY_REGISTER_CURRENT;
+    case 3:
+        return EMCY_REGISTER_GENERIC | EMCY_REGISTER_VOLTAGE;
+    case 4:
+        return EMCY_REGISTER_GENERIC | EMCY_REGISTER_TEMPERATURE;
+    case 8:
+        return EMCY_REGISTER_GENERIC |
+               (fault->code >> 8 == 0x86 ? EMCY_REGISTER_PROFILE : EMCY_REGISTER_COMMUNICATION);
+    default:
+        return EMCY_REGISTER_GENERIC;
+    }
+}
+
+static bool overrides(const struct inject_fault *fault)
+{
+    return fault->kind == INJECT_FREEZE || fault->kind == INJECT_REPORT;
+}
+
+/* What the object shows from now on, whatever happens. */
+static uint32_t shown_by(struct virtual_drive *drive, const struct inject_fault *fault)
+{
+    bool has_index;
+    const struct object_row *row = object_table_find(fault->index, fault->sub, &has_index);
+    if (fault->kind == INJECT_REPORT || !row)
+        return fault->value;
+    virtual_drive_refresh(drive, DRIVE_GROUP_ALL);
+    return object_read(row, &drive->objects);
+}
+
+/* Faults that last: their sum. */
+static void sum_up(struct virtual_drive *drive)
+{
+    struct drive_faults *f = &drive->faults;
+    struct drive_plant_damage damage = {.torque_ratio = 1};
+    f->mute = 0;
+    f->is_hung = false;
+    f->overrides = 0;
+    for (unsigned i = 0; i < f->script->count; i++) {
+        const struct inject_fault *fault = fault_of(drive, i);
+        if (!is_in_force(drive, i))
+            continue;
+        if (fault->kind == INJECT_MUTE)
+            f->mute |= (uint8_t)(1u << fault->what);
+        f->is_hung = f->is_hung || fault->kind == INJECT_HANG;
+        f->overrides += overrides(fault);
+        damage.is_jammed = damage.is_jammed || fault->kind == INJECT_JAM;
+        if (fault->kind == INJECT_WEAK)
+            damage.torque_ratio *= fault->ratio;
+    }
+    drive->plant.damage = damage;
+}
+
+/* Faults that happen once. */
+static void happen(struct virtual_drive *drive, const struct inject_fault *fault)
+{
+    if (fault->kind == INJECT_EMCY)
+        virtual_drive_fail(drive, (uint16_t)fault->code, register_of(fault));
+    else if (fault->kind == INJECT_WARN)
+        virtual_drive_send_emergency(drive, (uint16_t)fault->code, register_of(fault));
+    else if (fault->kind == INJECT_REBOOT)
+        virtual_drive_reboot(drive);
+    else if (fault->kind == INJECT_ENCODER_JUMP)
+        drive_plant_shift_encoder(&drive->plant, fault->by_mm);
+}
+
+static void begin_or_end(struct virtual_drive *drive, unsigned i)
+{
+    struct drive_faults *f = &drive->faults;
+    const struct inject_fault *fault = fault_of(drive, i);
+    f->in_force ^= UINT64_C(1) << i;
+    bool begins = is_in_force(drive, i);
+    virtual_drive_tell(drive, begins ? DRIVE_EVENT_FAULT : DRIVE_EVENT_FAULT_END, fault->line,
+                       (uint32_t)fault->kind);
+    if (begins && overrides(fault))
+        f->shown[i] = shown_by(drive, fault);
+    sum_up(drive);
+    if (begins)
+        happen(drive, fault);
+}
+
+void virtual_drive_run_faults(struct virtual_drive *drive)
+{
+    const struct drive_faults *f = &drive->faults;
+    for (unsigned i = 0; i < f->script->count; i++) {
+        const struct inject_fault *fault = fault_of(drive, i);
+        if (inject_is_of_bus(fault->kind) || fault->node != drive->config.node)
+            continue;
+        if (inject_is_in_force(fault, f->clock) != is_in_force(drive, i))
+            begin_or_end(drive, i);
+    }
+}
+
+bool virtual_drive_aborts_sdo(const struct virtual_drive *drive, uint32_t object, uint32_t *code)
+{
+    for (unsigned i = 0; i < drive->faults.script->count; i++) {
+        const struct inject_fault *fault = fault_of(drive, i);
+        if (!is_in_force(drive, i) || fault->kind != INJECT_SDO_ABORT ||
+            SDO_OBJECT(fault->index, fault->sub) != object)
+            continue;
+        *code = fault->code;
+        return true;
+    }
+    return false;
+}
+
+bool virtual_drive_overrides(const struct virtual_drive *drive, const struct object_row *row,
+                             uint32_t *value)
+{
+    for (unsigned i = 0; i < drive->faults.script->count; i++) {
+        const struct inject_fault *fault = fault_of(drive, i);
+        if (!is_in_force(drive, i) || !overrides(fault) || fault->index != row->index ||
+            fault->sub != row->sub)
+            continue;
+        *value = drive->faults.shown[i];
+        return true;
+    }
+    return false;
+}

@@ -1,0 +1,375 @@
+/*
+ * Modes of operation: where the command goes while the drive is enabled.
+ */
+#include "base/maths.h"
+#include "drives/virtual_drive_private.h"
+
+#define CONTROL_BIT_4     0x0010 /* new set-point, homing start, enable interpolation */
+#define CONTROL_IMMEDIATE 0x0020
+#define CONTROL_RELATIVE  0x0040
+
+#define STATUS_REACHED 0x0400
+#define STATUS_BIT_12  0x1000 /* set-point acknowledged, homing attained, follows the target */
+#define STATUS_BIT_13  0x2000 /* following error, homing error */
+
+#define WINDOW_ANY       UINT32_MAX
+#define HALT_QUICK_STOP  2
+#define SECONDS_PER_MIN  60.0
+#define TORQUE_PER_RATED 1000.0
+
+#define INCREMENTS_MAX 2147483647.0
+
+int32_t virtual_drive_increments(const struct virtual_drive *drive, double position_mm)
+{
+    double increments = maths_round(position_mm * drive->increments_per_mm);
+    return (int32_t)maths_clamp(increments, -INCREMENTS_MAX, INCREMENTS_MAX);
+}
+
+double virtual_drive_actual_mm(const struct virtual_drive *drive)
+{
+    return drive->plant.measured_mm - drive->origin_mm;
+}
+
+double virtual_drive_profile_deceleration_mm_s2(const struct virtual_drive *drive)
+{
+    return drive->objects.settings.profile_deceleration / drive->increments_per_mm;
+}
+
+/*
+ * What the target of an earlier run was is forgotten: the drive stands, or slows down to stand,
+ * until it gets a new one.
+ */
+void virtual_drive_hold(struct virtual_drive *drive)
+{
+    struct drive_process *p = &drive->objects.process;
+    int32_t here_inc = virtual_drive_increments(drive, drive->plant.command_mm - drive->origin_mm);
+    p->target_position = here_inc;
+    p->interpolation_target = here_inc;
+    drive->velocity_mm_s = drive->plant.command_velocity_mm_s;
+    drive->goal_mm = drive->plant.command_mm;
+    drive->steps = 0;
+    drive->interpolates = false;
+    drive->following_ns = 0;
+    drive->plant.velocity_offset_mm_s = 0;
+    drive->plant.torque_offset_mm_s2 = 0;
+    drive->setpoints = (struct drive_setpoints){.active_inc = here_inc, .is_reached = true};
+}
+
+/* ---- Motion of the command ---- */
+
+static double approach(double value, double goal, double by)
+{
+    if (maths_abs(goal - value) <= by)
+        return goal;
+    return goal > value ? value + by : value - by;
+}
+
+/* x += (v0 + v1) / 2 t */
+static void move_command(struct virtual_drive *drive, double velocity_mm_s, uint32_t cycle_ns)
+{
+    double mean_mm_s = (drive->velocity_mm_s + velocity_mm_s) / 2;
+    drive->velocity_mm_s = velocity_mm_s;
+    drive_plant_follow(&drive->plant, drive->plant.command_mm + mean_mm_s * (cycle_ns * 1e-9),
+                       cycle_ns);
+}
+
+void virtual_drive_run_at(struct virtual_drive *drive, double velocity_mm_s,
+                          double acceleration_mm_s2, uint32_t cycle_ns)
+{
+    double by_mm_s = acceleration_mm_s2 * (cycle_ns * 1e-9);
+    move_command(drive, approach(drive->velocity_mm_s, velocity_mm_s, by_mm_s), cycle_ns);
+}
+
+bool virtual_drive_slow(struct virtual_drive *drive, double deceleration_mm_s2, uint32_t cycle_ns)
+{
+    virtual_drive_run_at(drive, 0, deceleration_mm_s2, cycle_ns);
+    return drive->velocity_mm_s == 0;
+}
+
+struct ramps {
+    double velocity_mm_s, acceleration_mm_s2, deceleration_mm_s2;
+};
+
+/*
+ * The highest velocity u' at the end of a cycle t from which the rest of the way s can still be
+ * braked by d, when the cycle itself begins with u towards the target:
+ *     s - (u + u') t / 2 >= u'^2 / (2 d)
+ * so  u' = -d t / 2 + sqrt((d t / 2)^2 + d (2 s - u t))
+ */
+static double allowed_velocity(double way_mm, double u_mm_s, double d_mm_s2, double t_s)
+{
+    double half = d_mm_s2 * t_s / 2;
+    double square = half * half + d_mm_s2 * (2 * way_mm - u_mm_s * t_s);
+    return square > half * half ? maths_sqrt(square) - half : 0;
+}
+
+/*
+ * A cycle of a trapezoidal profile to target_mm, as a position of the encoder. Near enough to get
+ * there within the next cycle's rounding, it is there.
+ */
+static void run_profile(struct virtual_drive *drive, double target_mm, const struct ramps *ramps,
+                        uint32_t cycle_ns)
+{
+    double t_s = cycle_ns * 1e-9;
+    double way_mm = target_mm - drive->plant.command_mm;
+    double sign = way_mm < 0 ? -1 : 1;
+    double u_mm_s = sign * drive->velocity_mm_s;
+    double brake_mm_s = ramps->deceleration_mm_s2 * t_s;
+    if (maths_abs(way_mm) <= brake_mm_s * t_s && maths_abs(u_mm_s) <= 2 * brake_mm_s) {
+        drive->velocity_mm_s = 0;
+        drive_plant_follow(&drive->plant, target_mm, cycle_ns);
+        return;
+    }
+    double allowed_mm_s =
+        allowed_velocity(maths_abs(way_mm), u_mm_s, ramps->deceleration_mm_s2, t_s);
+    double wanted_mm_s = maths_min(ramps->velocity_mm_s, allowed_mm_s);
+    double by_mm_s =
+        wanted_mm_s > u_mm_s && u_mm_s >= 0 ? ramps->acceleration_mm_s2 * t_s : brake_mm_s;
+    move_command(drive, sign * approach(u_mm_s, wanted_mm_s, by_mm_s), cycle_ns);
+}
+
+/* ---- Profile position ---- */
+
+static struct ramps profile_ramps(const struct virtual_drive *drive)
+{
+    const struct drive_settings *s = &drive->objects.settings;
+    double per_mm = drive->increments_per_mm;
+    double motor_mm_s =
+        s->max_motor_speed_rpm / SECONDS_PER_MIN * drive->config.plant.travel_per_revolution_mm;
+    uint32_t velocity = s->profile_velocity < s->max_profile_velocity ? s->profile_velocity
+                                                                      : s->max_profile_velocity;
+    return (struct ramps){maths_min(velocity / per_mm, motor_mm_s),
+                          s->profile_acceleration / per_mm, s->profile_deceleration / per_mm};
+}
+
+static int64_t limited(const struct virtual_drive *drive, int64_t position_inc)
+{
+    const int32_t *limit = drive->objects.settings.position_limit;
+    if (position_inc < limit[0])
+        return limit[0];
+    return position_inc > limit[1] ? limit[1] : position_inc;
+}
+
+static void activate(struct virtual_drive *drive, int64_t target_inc)
+{
+    struct drive_setpoints *s = &drive->setpoints;
+    s->active_inc = target_inc;
+    s->has_next = false;
+    s->is_reached = false;
+    s->in_window_ns = 0;
+    virtual_drive_tell(drive, DRIVE_EVENT_SETPOINT, (uint32_t)target_inc, 0);
+}
+
+/* A relative target counts from the one before. One target may wait until the active is reached. */
+static void take_setpoint(struct virtual_drive *drive, uint16_t controlword)
+{
+    struct drive_setpoints *s = &drive->setpoints;
+    int64_t target_inc = drive->objects.process.target_position;
+    if (s->is_acknowledged)
+        return;
+    if (controlword & CONTROL_RELATIVE)
+        target_inc += s->active_inc;
+    target_inc = limited(drive, target_inc);
+    s->is_acknowledged = true;
+    if (controlword & CONTROL_IMMEDIATE || s->is_reached) {
+        activate(drive, target_inc);
+    } else {
+        s->next_inc = target_inc;
+        s->has_next = true;
+    }
+}
+
+/* The master has taken notice when bit 4 has fallen; then there is room for another one. */
+static void release_setpoint(struct virtual_drive *drive)
+{
+    if (!(drive->controlword & CONTROL_BIT_4) && !drive->setpoints.has_next)
+        drive->setpoints.is_acknowledged = false;
+}
+
+/* Objects 6067 and 6068. */
+static void check_reached(struct virtual_drive *drive, double target_mm, uint32_t cycle_ns)
+{
+    const struct drive_settings *o = &drive->objects.settings;
+    struct drive_setpoints *s = &drive->setpoints;
+    double window_mm = o->position_window / drive->increments_per_mm;
+    bool is_inside = o->position_window == WINDOW_ANY ||
+                     maths_abs(target_mm - drive->plant.measured_mm) <= window_mm;
+    s->in_window_ns = is_inside ? s->in_window_ns + cycle_ns : 0;
+    s->is_reached =
+        is_inside && s->in_window_ns >= (uint64_t)o->position_window_ms * MILLISECOND_NS;
+}
+
+static void run_position(struct virtual_drive *drive, uint32_t cycle_ns)
+{
+    struct drive_setpoints *s = &drive->setpoints;
+    struct ramps ramps = profile_ramps(drive);
+    if (s->has_next && s->is_reached)
+        activate(drive, s->next_inc);
+    release_setpoint(drive);
+    double target_mm = (double)s->active_inc / drive->increments_per_mm + drive->origin_mm;
+    run_profile(drive, target_mm, &ramps, cycle_ns);
+    check_reached(drive, target_mm, cycle_ns);
+}
+
+/* ---- Cyclic synchronous and interpolated position ---- */
+
+/* Cycles of a period of object 60C2; mostly one. */
+static uint32_t period_cycles(const struct virtual_drive *drive, uint32_t cycle_ns)
+{
+    if (2 * drive->interpolation_ns < 3 * (uint64_t)cycle_ns)
+        return 1;
+    return (uint32_t)((drive->interpolation_ns + cycle_ns / 2) / cycle_ns);
+}
+
+/* The command goes to the target in a straight line, within the period after it has changed. */
+static void run_interpolated(struct virtual_drive *drive, double target_inc, uint32_t cycle_ns)
+{
+    const int32_t *limit = drive->objects.settings.position_limit;
+    double limited_inc = maths_clamp(target_inc, limit[0], limit[1]);
+    double goal_mm = limited_inc / drive->increments_per_mm + drive->origin_mm;
+    double command_mm = goal_mm;
+    if (goal_mm != drive->goal_mm) {
+        drive->goal_mm = goal_mm;
+        drive->steps = period_cycles(drive, cycle_ns);
+    }
+    if (drive->steps > 1) {
+        double from_mm = drive->plant.command_mm;
+        command_mm = from_mm + (goal_mm - from_mm) / drive->steps;
+        drive->steps--;
+    }
+    drive_plant_follow(&drive->plant, command_mm, cycle_ns);
+}
+
+/* Objects 60B1 and 60B2. */
+static void set_offsets(struct virtual_drive *drive)
+{
+    const struct drive_process *p = &drive->objects.process;
+    struct drive_plant *plant = &drive->plant;
+    plant->velocity_offset_mm_s =
+        p->velocity_offset ? p->velocity_offset / drive->increments_per_mm : 0;
+    plant->torque_offset_mm_s2 =
+        p->torque_offset ? p->torque_offset / TORQUE_PER_RATED * plant->mm_s2_per_rated : 0;
+}
+
+static void run_cyclic(struct virtual_drive *drive, uint32_t cycle_ns)
+{
+    const struct drive_process *p = &drive->objects.process;
+    set_offsets(drive);
+    run_interpolated(drive, (double)p->target_position + p->position_offset, cycle_ns);
+}
+
+static void run_ip(struct virtual_drive *drive, uint32_t cycle_ns)
+{
+    const struct drive_process *p = &drive->objects.process;
+    if (!drive->interpolates) {
+        (void)virtual_drive_slow(drive, virtual_drive_profile_deceleration_mm_s2(drive), cycle_ns);
+        return;
+    }
+    run_interpolated(drive, p->interpolation_target, cycle_ns);
+    drive->velocity_mm_s = drive->plant.command_velocity_mm_s;
+    check_reached(drive, drive->goal_mm, cycle_ns);
+}
+
+/* ---- What all modes have ---- */
+
+static void run_halt(struct virtual_drive *drive, uint32_t cycle_ns)
+{
+    bool is_quick = drive->objects.settings.halt_option == HALT_QUICK_STOP;
+    double deceleration_mm_s2 =
+        is_quick ? drive->quick_stop_mm_s2 : virtual_drive_profile_deceleration_mm_s2(drive);
+    (void)virtual_drive_slow(drive, deceleration_mm_s2, cycle_ns);
+    release_setpoint(drive);
+}
+
+/* In cyclic synchronous position halt is the controller's own business: it sends the targets. */
+void virtual_drive_run_mode(struct virtual_drive *drive, uint32_t cycle_ns)
+{
+    int8_t mode = drive->objects.process.mode_display;
+    if (mode == CIA402_MODE_CYCLIC_SYNC_POSITION)
+        run_cyclic(drive, cycle_ns);
+    else if (drive->is_halted)
+        run_halt(drive, cycle_ns);
+    else if (mode == CIA402_MODE_PROFILE_POSITION)
+        run_position(drive, cycle_ns);
+    else if (mode == CIA402_MODE_HOMING)
+        virtual_drive_run_homing(drive, cycle_ns);
+    else if (mode == CIA402_MODE_INTERPOLATED_POSITION)
+        run_ip(drive, cycle_ns);
+    else
+        (void)virtual_drive_slow(drive, virtual_drive_profile_deceleration_mm_s2(drive), cycle_ns);
+}
+
+static void take_interpolation(struct virtual_drive *drive, bool enables)
+{
+    if (enables == drive->interpolates)
+        return;
+    drive->interpolates = enables;
+    drive->goal_mm = drive->plant.command_mm;
+    drive->steps = 0;
+    drive->velocity_mm_s = drive->plant.command_velocity_mm_s;
+}
+
+void virtual_drive_take_mode_controlword(struct virtual_drive *drive, uint16_t before,
+                                         uint16_t controlword)
+{
+    bool is_set = controlword & CONTROL_BIT_4;
+    bool rises = is_set && !(before & CONTROL_BIT_4);
+    bool is_enabled = drive->state == CIA402_ENABLED && !drive->is_leaving;
+    switch (drive->objects.process.mode_display) {
+    case CIA402_MODE_PROFILE_POSITION:
+        if (rises && is_enabled)
+            take_setpoint(drive, controlword);
+        release_setpoint(drive);
+        break;
+    case CIA402_MODE_HOMING:
+        if (rises && is_enabled)
+            virtual_drive_begin_homing(drive);
+        else if (!is_set)
+            virtual_drive_interrupt_homing(drive);
+        break;
+    case CIA402_MODE_INTERPOLATED_POSITION:
+        take_interpolation(drive, is_set && is_enabled);
+        break;
+    default:
+        break;
+    }
+}
+
+/* Bit 10 is set while nothing is under way: idle drives have reached their target. */
+static uint16_t homing_status(const struct virtual_drive *drive)
+{
+    const struct drive_homing *h = &drive->homing;
+    unsigned word = h->is_homed ? STATUS_BIT_12 : 0;
+    if (h->phase == HOMING_FAILED)
+        word = STATUS_BIT_13 | (drive->velocity_mm_s == 0 ? STATUS_REACHED : 0);
+    else if (h->phase == HOMING_IDLE)
+        word |= STATUS_REACHED;
+    return (uint16_t)word;
+}
+
+static uint16_t position_status(const struct virtual_drive *drive)
+{
+    bool is_reached = drive->is_halted ? drive->velocity_mm_s == 0 : drive->setpoints.is_reached;
+    unsigned word = is_reached ? STATUS_REACHED : 0;
+    if (drive->setpoints.is_acknowledged)
+        word |= STATUS_BIT_12;
+    return (uint16_t)word;
+}
+
+uint16_t virtual_drive_mode_status(const struct virtual_drive *drive)
+{
+    bool is_enabled = drive->state == CIA402_ENABLED && !drive->is_leaving;
+    switch (drive->objects.process.mode_display) {
+    case CIA402_MODE_CYCLIC_SYNC_POSITION:
+        return is_enabled ? CIA402_FOLLOWS_TARGET : 0;
+    case CIA402_MODE_PROFILE_POSITION:
+        return position_status(drive);
+    case CIA402_MODE_HOMING:
+        return homing_status(drive);
+    case CIA402_MODE_INTERPOLATED_POSITION:
+        return (uint16_t)((drive->interpolates && is_enabled ? STATUS_BIT_12 : 0) |
+                          (drive->setpoints.is_reached ? STATUS_REACHED : 0));
+    default:
+        return 0;
+    }
+}

@@ -1,0 +1,473 @@
+/*
+ * Process data objects with live mapping (CiA 301, 7.2.2 and 7.5.2.35 ... 38).
+ */
+#include "canopen/little_endian.h"
+#include "canopen/node.h"
+#include "drives/virtual_drive_private.h"
+
+#include <string.h>
+
+#define COB_NOT_VALID 0x80000000u
+#define COB_NO_RTR    0x40000000u
+#define COB_EXTENDED  0x20000000u
+#define COB_ID_MASK   0x7FFu
+
+/* Transmission types: up to this one by SYNC; 0 at the SYNC after an event. */
+#define TYPE_SYNC_MAX  240
+#define TYPE_EVENT_MIN 254
+
+#define TICK_100US_NS 100000u
+
+#define RPDO_PARAMETERS 0x1400
+#define RPDO_MAPPING    0x1600
+#define TPDO_PARAMETERS 0x1800
+#define TPDO_MAPPING    0x1A00
+
+/* Data types as indices: places an RPDO skips. */
+static bool is_dummy(uint16_t index)
+{
+    return index >= OBJECT_INTEGER8 && index <= OBJECT_UNSIGNED32;
+}
+
+/*
+ * The row of a mapping entry, NULL for a dummy. False: there is no such object, of that length, that
+ * may travel this way.
+ */
+static bool find_mapped(uint32_t entry, enum object_flag direction, const struct object_row **row,
+                        uint32_t *code)
+{
+    uint16_t index = (uint16_t)(entry >> 16);
+    uint8_t sub = (uint8_t)(entry >> 8);
+    unsigned bits = entry & 0xFF;
+    bool has_index;
+    *row = NULL;
+    *code = SDO_ABORT_NOT_MAPPABLE;
+    if (is_dummy(index))
+        return direction == OBJECT_TO_RPDO && sub == 0 &&
+               bits == 8 * object_type_bytes((enum object_type)index);
+    *row = object_table_find(index, sub, &has_index);
+    if (!*row)
+        *code = has_index ? SDO_ABORT_NO_SUB_INDEX : SDO_ABORT_NO_OBJECT;
+    return *row && (*row)->flags & direction && bits == 8 * object_type_bytes((*row)->type);
+}
+
+static uint8_t touches_of(const struct object_row *row)
+{
+    if (row->index == 0x6040)
+        return DRIVE_TOUCH_CONTROLWORD;
+    return row->index == 0x6060 ? DRIVE_TOUCH_MODE : 0;
+}
+
+static uint8_t group_of(const struct object_row *row)
+{
+    switch (row->index) {
+    case 0x603F:
+        return DRIVE_GROUP_ERROR;
+    case 0x6041:
+        return DRIVE_GROUP_STATUS;
+    case 0x6061:
+        return DRIVE_GROUP_MODE;
+    case 0x6064:
+        return DRIVE_GROUP_POSITION;
+    case 0x60F4:
+        return DRIVE_GROUP_FOLLOWING;
+    case 0x60FD:
+        return DRIVE_GROUP_INPUTS;
+    case 0x1001:
+        return 0;
+    default:
+        return DRIVE_GROUP_REST;
+    }
+}
+
+static void add_mapped(struct virtual_drive *drive, struct drive_pdo *pdo, uint32_t entry,
+                       enum object_flag direction)
+{
+    const struct object_row *row;
+    uint32_t code;
+    if (!find_mapped(entry, direction, &row, &code))
+        return;
+    pdo->row[pdo->count] = row;
+    if (row && !(row->flags & OBJECT_FIXED))
+        pdo->field[pdo->count] = (char *)&drive->objects + row->field;
+    pdo->bytes[pdo->count] = (uint8_t)((entry & 0xFF) / 8);
+    pdo->length = (uint8_t)(pdo->length + pdo->bytes[pdo->count]);
+    pdo->count++;
+    if (!row)
+        return;
+    if (direction == OBJECT_TO_RPDO)
+        pdo->touches |= touches_of(row);
+    else
+        pdo->groups |= group_of(row);
+    if (row->flags & OBJECT_EVENT)
+        pdo->events |= group_of(row);
+}
+
+static void update_pdo(struct virtual_drive *drive, struct drive_pdo *pdo,
+                       const struct drive_pdo_parameters *parameters,
+                       const struct drive_pdo_mapping *mapping, enum object_flag direction)
+{
+    memset(pdo, 0, sizeof *pdo);
+    pdo->is_valid = !(parameters->cob_id & COB_NOT_VALID);
+    pdo->cob_id = (uint16_t)(parameters->cob_id & COB_ID_MASK);
+    pdo->transmission = parameters->transmission;
+    pdo->event_ns = DRIVE_NEVER;
+    for (unsigned i = 0; i < mapping->count; i++)
+        add_mapped(drive, pdo, mapping->entry[i], direction);
+}
+
+static bool is_event_driven(const struct drive_pdo *pdo)
+{
+    return pdo->transmission >= TYPE_EVENT_MIN;
+}
+
+static void watch_events(struct virtual_drive *drive)
+{
+    drive->watched = 0;
+    for (unsigned i = 0; i < DRIVE_PDO_COUNT; i++) {
+        const struct drive_pdo *pdo = &drive->tpdo[i];
+        if (pdo->is_valid && (is_event_driven(pdo) || pdo->transmission == 0))
+            drive->watched |= pdo->events;
+    }
+}
+
+/*
+ * The nodes' event timers are shifted by a millisecond each, so that their frames do not come all
+ * at once.
+ */
+static void start_tpdo(struct virtual_drive *drive, unsigned i)
+{
+    struct drive_pdo *pdo = &drive->tpdo[i];
+    const struct drive_pdo_parameters *parameters = &drive->objects.communication.tpdo[i];
+    uint64_t period_ns = (uint64_t)parameters->event_ms * MILLISECOND_NS;
+    uint64_t shift_ns = (uint64_t)drive->config.node * MILLISECOND_NS;
+    pdo->is_due = false;
+    pdo->syncs = 0;
+    pdo->waits_for_start = parameters->sync_start != 0;
+    pdo->inhibit_ns = 0;
+    pdo->event_ns = DRIVE_NEVER;
+    if (period_ns != 0 && is_event_driven(pdo))
+        pdo->event_ns = drive->now_ns + period_ns - shift_ns % period_ns;
+    virtual_drive_look_soon(drive);
+}
+
+static void update_rpdo(struct virtual_drive *drive, unsigned i)
+{
+    const struct drive_communication *c = &drive->objects.communication;
+    update_pdo(drive, &drive->rpdo[i], &c->rpdo[i], &c->rpdo_mapping[i], OBJECT_TO_RPDO);
+    virtual_drive_set_filter(drive);
+}
+
+static void update_tpdo(struct virtual_drive *drive, unsigned i)
+{
+    const struct drive_communication *c = &drive->objects.communication;
+    update_pdo(drive, &drive->tpdo[i], &c->tpdo[i], &c->tpdo_mapping[i], OBJECT_TO_TPDO);
+    start_tpdo(drive, i);
+    watch_events(drive);
+}
+
+void virtual_drive_update_pdo(struct virtual_drive *drive, uint16_t index)
+{
+    const struct drive_communication *c = &drive->objects.communication;
+    unsigned i = index & 0xFFu;
+    if (index >= TPDO_PARAMETERS)
+        update_tpdo(drive, i);
+    else
+        update_rpdo(drive, i);
+    virtual_drive_tell(drive, DRIVE_EVENT_PDO, index,
+                       index >= TPDO_PARAMETERS ? c->tpdo[i].cob_id : c->rpdo[i].cob_id);
+}
+
+void virtual_drive_update_pdos(struct virtual_drive *drive)
+{
+    for (unsigned i = 0; i < DRIVE_PDO_COUNT; i++) {
+        update_rpdo(drive, i);
+        update_tpdo(drive, i);
+    }
+}
+
+void virtual_drive_start_pdos(struct virtual_drive *drive)
+{
+    for (unsigned i = 0; i < DRIVE_PDO_COUNT; i++) {
+        drive->rpdo[i].is_held = false;
+        start_tpdo(drive, i);
+    }
+}
+
+/* A field has the width of its object; NULL: data that nobody wants. */
+static void take_value(void *field, unsigned count, const uint8_t *bytes)
+{
+    if (!field)
+        return;
+    if (count == 4)
+        *(uint32_t *)field = little_endian_read32(bytes);
+    else if (count == 2)
+        *(uint16_t *)field = little_endian_read16(bytes);
+    else
+        *(uint8_t *)field = bytes[0];
+}
+
+static uint32_t value_of(const void *field, unsigned count)
+{
+    if (count == 4)
+        return *(const uint32_t *)field;
+    return count == 2 ? *(const uint16_t *)field : *(const uint8_t *)field;
+}
+
+static void write_bytes(uint8_t *bytes, unsigned count, uint32_t value)
+{
+    if (count == 4)
+        little_endian_write32(bytes, value);
+    else if (count == 2)
+        little_endian_write16(bytes, (uint16_t)value);
+    else
+        bytes[0] = (uint8_t)value;
+}
+
+/* All values are written before the first takes effect: they belong together. */
+static void apply(struct virtual_drive *drive, const struct drive_pdo *pdo,
+                  const struct can_frame *frame)
+{
+    const uint8_t *bytes = frame->data;
+    for (unsigned i = 0; i < pdo->count; i++) {
+        take_value(pdo->field[i], pdo->bytes[i], bytes);
+        bytes += pdo->bytes[i];
+    }
+    if (pdo->touches)
+        virtual_drive_apply_touches(drive, pdo->touches);
+}
+
+static void take(struct virtual_drive *drive, struct drive_pdo *pdo, const struct can_frame *frame)
+{
+    if (pdo->count == 0)
+        return;
+    if (frame->length < pdo->length) {
+        virtual_drive_send_emergency(drive, EMCY_PDO_LENGTH,
+                                     EMCY_REGISTER_GENERIC | EMCY_REGISTER_COMMUNICATION);
+    } else if (pdo->transmission <= TYPE_SYNC_MAX) {
+        pdo->held = *frame;
+        pdo->is_held = true;
+    } else {
+        apply(drive, pdo, frame);
+    }
+}
+
+void virtual_drive_take_rpdo(struct virtual_drive *drive, const struct can_frame *frame)
+{
+    for (unsigned i = 0; i < DRIVE_PDO_COUNT; i++)
+        if (drive->rpdo[i].is_valid && frame->id == drive->rpdo[i].cob_id)
+            take(drive, &drive->rpdo[i], frame);
+}
+
+void virtual_drive_apply_held(struct virtual_drive *drive)
+{
+    for (unsigned i = 0; i < DRIVE_PDO_COUNT; i++) {
+        if (!drive->rpdo[i].is_held)
+            continue;
+        drive->rpdo[i].is_held = false;
+        apply(drive, &drive->rpdo[i], &drive->rpdo[i].held);
+    }
+}
+
+static void send(struct virtual_drive *drive, struct drive_pdo *pdo)
+{
+    struct can_frame frame = {.id = pdo->cob_id, .length = pdo->length};
+    uint8_t *bytes = frame.data;
+    bool is_plain = drive->faults.overrides == 0;
+    virtual_drive_refresh(drive, pdo->groups);
+    for (unsigned i = 0; i < pdo->count; i++) {
+        uint32_t value = is_plain ? value_of(pdo->field[i], pdo->bytes[i])
+                                  : virtual_drive_read_row(drive, pdo->row[i]);
+        write_bytes(bytes, pdo->bytes[i], value);
+        bytes += pdo->bytes[i];
+    }
+    (void)virtual_drive_send(drive, INJECT_MUTE_TPDO, &frame);
+    pdo->is_due = false;
+}
+
+/* Type 0: at the SYNC after an event; n: at every n-th SYNC. */
+static bool is_due_at_sync(struct drive_pdo *pdo, uint8_t sync_start, const struct can_frame *sync)
+{
+    if (pdo->waits_for_start && sync->length == 1) {
+        if (sync->data[0] != sync_start)
+            return false;
+        pdo->syncs = (uint8_t)(pdo->transmission - 1);
+    }
+    pdo->waits_for_start = false;
+    if (pdo->transmission == 0)
+        return pdo->is_due;
+    pdo->syncs++;
+    if (pdo->syncs < pdo->transmission)
+        return false;
+    pdo->syncs = 0;
+    return true;
+}
+
+/* The first TPDO, which has the statusword, is the last to be sent: then all of this SYNC is said. */
+void virtual_drive_send_synchronous(struct virtual_drive *drive, const struct can_frame *sync)
+{
+    for (unsigned i = DRIVE_PDO_COUNT; i-- > 0;) {
+        struct drive_pdo *pdo = &drive->tpdo[i];
+        uint8_t start = drive->objects.communication.tpdo[i].sync_start;
+        if (pdo->is_valid && pdo->transmission <= TYPE_SYNC_MAX && pdo->count > 0 &&
+            is_due_at_sync(pdo, start, sync))
+            send(drive, pdo);
+    }
+}
+
+void virtual_drive_note_events(struct virtual_drive *drive)
+{
+    const struct drive_process *p = &drive->objects.process;
+    uint8_t changed = 0;
+    virtual_drive_refresh(drive, drive->watched & (DRIVE_GROUP_STATUS | DRIVE_GROUP_INPUTS));
+    if (p->error_code != drive->seen_error_code)
+        changed |= DRIVE_GROUP_ERROR;
+    if (p->mode_display != drive->seen_mode)
+        changed |= DRIVE_GROUP_MODE;
+    if (drive->watched & DRIVE_GROUP_STATUS && p->statusword != drive->seen_statusword)
+        changed |= DRIVE_GROUP_STATUS;
+    if (drive->watched & DRIVE_GROUP_INPUTS && p->digital_inputs != drive->seen_inputs)
+        changed |= DRIVE_GROUP_INPUTS;
+    if (!changed)
+        return;
+    drive->seen_error_code = p->error_code;
+    drive->seen_mode = p->mode_display;
+    drive->seen_statusword = p->statusword;
+    drive->seen_inputs = p->digital_inputs;
+    for (unsigned i = 0; i < DRIVE_PDO_COUNT; i++)
+        drive->tpdo[i].is_due = drive->tpdo[i].is_due || drive->tpdo[i].events & changed;
+    virtual_drive_look_soon(drive);
+}
+
+static void send_if_due(struct virtual_drive *drive, unsigned i)
+{
+    struct drive_pdo *pdo = &drive->tpdo[i];
+    const struct drive_pdo_parameters *parameters = &drive->objects.communication.tpdo[i];
+    bool is_time = drive->now_ns >= pdo->event_ns;
+    if (!pdo->is_valid || pdo->count == 0 || !is_event_driven(pdo))
+        return;
+    if (!(pdo->is_due || is_time) || drive->now_ns < pdo->inhibit_ns)
+        return;
+    send(drive, pdo);
+    pdo->inhibit_ns = drive->now_ns + (uint64_t)parameters->inhibit_100us * TICK_100US_NS;
+    if (is_time)
+        pdo->event_ns += (uint64_t)parameters->event_ms * MILLISECOND_NS;
+    else if (pdo->event_ns != DRIVE_NEVER)
+        pdo->event_ns = drive->now_ns + (uint64_t)parameters->event_ms * MILLISECOND_NS;
+}
+
+void virtual_drive_send_due(struct virtual_drive *drive)
+{
+    if (drive->nmt != NMT_OPERATIONAL)
+        return;
+    for (unsigned i = 0; i < DRIVE_PDO_COUNT; i++)
+        send_if_due(drive, i);
+}
+
+uint64_t virtual_drive_next_pdo_ns(const struct virtual_drive *drive)
+{
+    uint64_t next_ns = DRIVE_NEVER;
+    if (drive->nmt != NMT_OPERATIONAL)
+        return next_ns;
+    for (unsigned i = 0; i < DRIVE_PDO_COUNT; i++) {
+        const struct drive_pdo *pdo = &drive->tpdo[i];
+        if (!pdo->is_valid || !is_event_driven(pdo))
+            continue;
+        uint64_t at_ns = pdo->is_due ? pdo->inhibit_ns : pdo->event_ns;
+        if (at_ns < next_ns)
+            next_ns = at_ns;
+    }
+    return next_ns;
+}
+
+/* Identifiers CiA 301 keeps for NMT, SYNC's neighbours, SDO and heartbeats (7.3.5). */
+static bool is_restricted(uint32_t id)
+{
+    return id <= 0x07F || (id >= 0x101 && id <= 0x180) || (id >= 0x581 && id <= 0x5FF) ||
+           (id >= 0x601 && id <= 0x67F) || (id >= 0x6E0 && id <= 0x6FF) || id >= 0x701;
+}
+
+/* A valid PDO keeps its identifier; it is changed by way of "not valid". */
+static uint32_t check_cob_id(const struct drive_pdo *pdo, uint32_t value)
+{
+    uint32_t id = value & ~(COB_NOT_VALID | COB_NO_RTR);
+    if (id > COB_ID_MASK || value & COB_EXTENDED)
+        return SDO_ABORT_VALUE;
+    if (value & COB_NOT_VALID)
+        return SDO_ABORT_NONE;
+    if (is_restricted(id) || (pdo->is_valid && id != pdo->cob_id))
+        return SDO_ABORT_VALUE;
+    return SDO_ABORT_NONE;
+}
+
+static uint32_t check_type(uint32_t value)
+{
+    return value > TYPE_SYNC_MAX && value < TYPE_EVENT_MIN ? SDO_ABORT_VALUE : SDO_ABORT_NONE;
+}
+
+static uint32_t check_parameters(const struct drive_pdo *pdo, uint8_t sub, uint32_t value)
+{
+    switch (sub) {
+    case 1:
+        return check_cob_id(pdo, value);
+    case 2:
+        return check_type(value);
+    case 3:
+    case 6:
+        return pdo->is_valid ? SDO_ABORT_STATE : SDO_ABORT_NONE;
+    default:
+        return SDO_ABORT_NONE;
+    }
+}
+
+static uint32_t check_entry(uint32_t entry, enum object_flag direction)
+{
+    const struct object_row *row;
+    uint32_t code;
+    return entry == 0 || find_mapped(entry, direction, &row, &code) ? SDO_ABORT_NONE : code;
+}
+
+/* Sub-index 0 makes the entries below it valid: do all of them exist, and fit into a frame? */
+static uint32_t check_count(const struct drive_pdo_mapping *mapping, uint32_t count,
+                            enum object_flag direction)
+{
+    unsigned bits = 0;
+    for (unsigned i = 0; i < count; i++) {
+        uint32_t code = mapping->entry[i] == 0 ? (uint32_t)SDO_ABORT_NOT_MAPPABLE
+                                               : check_entry(mapping->entry[i], direction);
+        if (code != SDO_ABORT_NONE)
+            return code;
+        bits += mapping->entry[i] & 0xFF;
+    }
+    return bits > 8 * CAN_DATA_MAX ? SDO_ABORT_PDO_LENGTH : SDO_ABORT_NONE;
+}
+
+/* The mapping changes only while the PDO is not valid, its entries only while none is in use. */
+static uint32_t check_mapping(const struct drive_pdo *pdo, const struct drive_pdo_mapping *mapping,
+                              enum object_flag direction, uint8_t sub, uint32_t value)
+{
+    if (pdo->is_valid || (sub != 0 && mapping->count != 0))
+        return SDO_ABORT_ACCESS;
+    return sub == 0 ? check_count(mapping, value, direction) : check_entry(value, direction);
+}
+
+uint32_t virtual_drive_check_pdo_write(const struct virtual_drive *drive,
+                                       const struct object_row *row, uint32_t value)
+{
+    const struct drive_communication *c = &drive->objects.communication;
+    unsigned i = row->index & 0xFFu;
+    if (i >= DRIVE_PDO_COUNT)
+        return SDO_ABORT_NO_OBJECT;
+    switch (row->index & 0xFF00) {
+    case RPDO_PARAMETERS:
+        return check_parameters(&drive->rpdo[i], row->sub, value);
+    case TPDO_PARAMETERS:
+        return check_parameters(&drive->tpdo[i], row->sub, value);
+    case RPDO_MAPPING:
+        return check_mapping(&drive->rpdo[i], &c->rpdo_mapping[i], OBJECT_TO_RPDO, row->sub, value);
+    case TPDO_MAPPING:
+        return check_mapping(&drive->tpdo[i], &c->tpdo_mapping[i], OBJECT_TO_TPDO, row->sub, value);
+    default:
+        return SDO_ABORT_NONE;
+    }
+}

@@ -1,0 +1,130 @@
+/*
+ * Memory of a virtual drive: only for sizeof, and for the sources of this room.
+ */
+#ifndef TAKT_DRIVES_VIRTUAL_DRIVE_STATE_H
+#define TAKT_DRIVES_VIRTUAL_DRIVE_STATE_H
+
+#define VIRTUAL_DRIVE_EMCY_QUEUE 8
+
+/* A PDO as it is worked with; made from the objects whenever they change. */
+struct drive_pdo {
+    bool is_valid;
+    uint16_t cob_id;
+    uint8_t transmission;
+    uint8_t count, length;
+    uint8_t touches;                                    /* RPDO: enum of virtual_drive_private.h */
+    uint8_t groups;                                     /* TPDO: what must be computed first */
+    uint8_t events;                                     /* TPDO: whose change sends it */
+    const struct object_row *row[DRIVE_PDO_MAPPED_MAX]; /* NULL: a dummy */
+    void *field[DRIVE_PDO_MAPPED_MAX];                  /* its value, where there is one */
+    uint8_t bytes[DRIVE_PDO_MAPPED_MAX];
+
+    bool is_held;         /* RPDO: held waits for SYNC */
+    bool is_due;          /* TPDO: an event has happened */
+    bool waits_for_start; /* TPDO: until SYNC's counter has its start value */
+    uint8_t syncs;        /* TPDO: since it was sent */
+    uint64_t event_ns;    /* TPDO: when its event timer runs out */
+    uint64_t inhibit_ns;  /* TPDO: not sent before */
+    struct can_frame held;
+};
+
+/* Profile position. */
+struct drive_setpoints {
+    bool is_acknowledged;
+    bool has_next; /* one more target waits for the active one to be reached */
+    int64_t next_inc;
+    int64_t active_inc;
+    uint64_t in_window_ns; /* how long the position has been within its window */
+    bool is_reached;
+};
+
+enum drive_homing_phase {
+    HOMING_IDLE,
+    HOMING_SEARCH, /* towards the switch */
+    HOMING_EDGE,   /* slowly to its edge */
+    HOMING_INDEX,  /* slowly to the next index pulse */
+    HOMING_STOP,   /* the home position is known */
+    HOMING_FAILED
+};
+
+struct drive_homing {
+    enum drive_homing_phase phase;
+    int8_t method; /* of the homing under way */
+    bool is_homed;
+    double index_mm;   /* of the motor: where the awaited index pulse is */
+    double encoder_mm; /* what the encoder says at the home position */
+};
+
+struct drive_faults {
+    const struct inject *script;
+    const struct inject_clock *clock;
+    uint64_t in_force; /* bit i: fault i of the script has begun and not ended */
+    uint8_t mute;      /* bit: 1 << enum inject_mute */
+    bool is_hung;
+    unsigned overrides;                /* faults in force that change what an object shows */
+    uint32_t shown[INJECT_FAULTS_MAX]; /* what it shows by fault i */
+};
+
+struct virtual_drive {
+    uint32_t accepts[64]; /* bit id: frames with this identifier are looked at */
+    struct virtual_drive_config config;
+    struct can_port port;
+    struct drive_observer observer;
+    struct drive_plant plant;
+    struct drive_objects objects;
+
+    enum nmt_state nmt;
+    enum cia402_state state;
+    uint16_t controlword; /* the one before, for edges */
+    uint64_t now_ns;      /* since it was switched on */
+    uint64_t due_ns;      /* nothing of all that waits for a time happens before */
+
+    /* Of the position loop, from the objects. */
+    double increments_per_mm;
+    double origin_mm;           /* what the encoder says at position 0 */
+    double following_window_mm; /* 0: not watched */
+    double quick_stop_mm_s2;
+    uint64_t interpolation_ns; /* object 60C2 */
+    uint64_t following_ns;     /* how long the following error has been outside its window */
+
+    /* Motion of the command. */
+    double velocity_mm_s; /* profile position, homing, halt */
+    double goal_mm;       /* cyclic and interpolated position */
+    uint32_t steps;       /* cycles until the goal is to be reached */
+    bool is_leaving;      /* slows down, then takes the state leaving_to */
+    bool is_halted;
+    bool is_stopped;   /* quick stop has come to rest and stays */
+    bool interpolates; /* mode 7, by controlword bit 4 */
+    enum cia402_state leaving_to;
+    struct drive_setpoints setpoints;
+    struct drive_homing homing;
+
+    struct drive_pdo rpdo[DRIVE_PDO_COUNT], tpdo[DRIVE_PDO_COUNT];
+    uint8_t watched;          /* objects whose change is an event: groups */
+    uint16_t seen_statusword; /* for that */
+    uint16_t seen_error_code;
+    int8_t seen_mode;
+    uint32_t seen_inputs;
+
+    /* Times at which something happens; UINT64_MAX: never. */
+    uint64_t heartbeat_ns;
+    uint64_t
+        consumer_ns[DRIVE_CONSUMERS]; /* by then the next must have come; never before the first */
+    uint64_t sync_lost_ns;
+    uint64_t emcy_ns; /* the next emergency may be sent */
+
+    uint16_t communication_error; /* 8130, 8700: under way; 0: none */
+    unsigned emcy_count;
+    struct emcy emcy[VIRTUAL_DRIVE_EMCY_QUEUE]; /* that wait for the inhibit time */
+
+    struct sdo_server sdo;
+    const char *eds;
+    size_t eds_length;
+    struct drive_faults faults;
+
+    /* What a reset brings back: of power-on, or stored by object 1010. */
+    struct drive_communication stored_communication, initial_communication;
+    struct drive_settings stored_settings, initial_settings;
+};
+
+#endif

@@ -1,0 +1,42 @@
+/*
+ * The program of the service, and the one that is on its way in. In memory; with a path also in a file, which is
+ * replaced at once or not at all.
+ *
+ * The panel's thread brings the new one, the control thread adopts it between two cycles, while the panel waits.
+ */
+#ifndef TAKT_SERVE_PROGRAM_STORE_H
+#define TAKT_SERVE_PROGRAM_STORE_H
+
+#include "panel/upload.h"
+#include "program/source.h"
+
+#include <stdbool.h>
+#include <stddef.h>
+
+#define PROGRAM_STORE_PATH_MAX 4096
+
+struct program_store {
+    char *program; /* what runs; owned, NULL: none */
+    size_t size;
+    char *staged; /* what is coming, or the program before the last */
+    size_t staged_size;
+    const char *path; /* NULL: in memory alone */
+    char aside[PROGRAM_STORE_PATH_MAX + 16];
+    struct source_text text; /* of the program being read */
+};
+
+/* path stays the caller's. False: it is too long. */
+bool program_store_open(struct program_store *store, const char *path);
+void program_store_close(struct program_store *store);
+
+/* A program from elsewhere, before anything runs. False: out of memory. */
+bool program_store_set(struct program_store *store, const char *bytes, size_t size);
+
+/* Panel thread. */
+struct panel_store program_store_get_staging(struct program_store *store);
+
+/* Control thread. */
+bool program_store_read(void *store, struct source *source);
+void program_store_adopt(void *store);
+
+#endif

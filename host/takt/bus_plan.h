@@ -1,0 +1,35 @@
+/*
+ * The frames of a control cycle, and how long each may take at most: what can be told of a bus
+ * before anything runs.
+ */
+#ifndef TAKT_HOST_BUS_PLAN_H
+#define TAKT_HOST_BUS_PLAN_H
+
+#include "bus/bus.h"
+#include "bus/bus_response.h"
+#include "controller/machine.h"
+
+#include <stdbool.h>
+
+/*
+ * SYNC, per drive a status and per pair the targets; and one TPDO2 and one heartbeat, which nodes
+ * send in turns.
+ */
+#define BUS_PLAN_MAX (3 + AXIS_COUNT + (AXIS_COUNT + 1) / 2)
+
+struct bus_plan {
+    uint32_t bitrate; /* bit/s */
+    uint64_t cycle_ns;
+    unsigned count;
+    struct bus_message message[BUS_PLAN_MAX];
+    const char *name[BUS_PLAN_MAX];
+    uint64_t worst_ns[BUS_PLAN_MAX]; /* from being given to the last bit; UINT64_MAX: no bound */
+};
+
+void bus_plan_set(struct bus_plan *plan, const struct machine *machine);
+
+/* What messages have taken at most on this bus since bus_clear_responses; 0: none was sent. */
+void bus_plan_get_observed(const struct bus_plan *plan, const struct bus *bus,
+                           uint64_t observed_ns[BUS_PLAN_MAX]);
+
+#endif

@@ -1,0 +1,384 @@
+#include "takt/axis_unit.h"
+#include "takt/command.h"
+#include "takt/correction_file.h"
+#include "takt/measurement.h"
+#include "takt/message.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Everything a calibration works with. */
+struct calibration {
+    struct session session;
+    struct table table;
+    struct measurement_visit *visits; /* of every row first from below, then from above */
+    struct measurement_noise noise;
+};
+
+static bool is_axis(const struct calibration *c, unsigned axis)
+{
+    return c->session.setup.machine.axis[axis].present;
+}
+
+/* The axis that turns the part on this machine; AXIS_COUNT: none. */
+static unsigned turn_axis(const struct calibration *c)
+{
+    return c->session.setup.geometry.table_axis;
+}
+
+/* ---- what is to be measured ---- */
+
+/* "9x7x6": points along each input. */
+static bool read_grid(const char *text, unsigned inputs, unsigned points[TABLE_INPUTS_MAX])
+{
+    for (unsigned i = 0; i < inputs; i++) {
+        char *end;
+        const long number = strtol(text, &end, 10);
+
+        if (end == text || number < 2 || number > TABLE_KNOTS_MAX ||
+            *end != (i + 1 < inputs ? 'x' : '\0'))
+            return false;
+        points[i] = (unsigned)number;
+        text = end + 1;
+    }
+    return true;
+}
+
+/* "0,0,-250": a position of each input, in mm and degrees. */
+static bool read_positions(const char *text, const struct table *table, double mm[TABLE_INPUTS_MAX])
+{
+    for (unsigned i = 0; i < table->inputs; i++) {
+        char *end;
+
+        mm[i] = strtod(text, &end) / axis_unit_ratio(table->input[i]);
+        if (end == text || !isfinite(mm[i]) || *end != (i + 1U < table->inputs ? ',' : '\0'))
+            return false;
+        text = end + 1;
+    }
+    return true;
+}
+
+static bool check_range(const struct calibration *c, unsigned input, double from, double to)
+{
+    const unsigned axis = c->table.input[input];
+    const struct machine_axis *of = &c->session.setup.machine.axis[axis];
+
+    if (from < to && from >= of->travel_min_mm - 1e-9 && to <= of->travel_max_mm + 1e-9)
+        return true;
+    message_command_error(
+        "axis %c: it cannot be measured from %.9g to %.9g %s: its travel is %.9g to %.9g",
+        AXIS_LETTERS[axis], from * axis_unit_ratio(axis), to * axis_unit_ratio(axis),
+        axis_unit_name(axis), of->travel_min_mm * axis_unit_ratio(axis),
+        of->travel_max_mm * axis_unit_ratio(axis));
+    return false;
+}
+
+static bool set_knots(struct calibration *c, const struct options *options)
+{
+    struct table *table = &c->table;
+    unsigned points[TABLE_INPUTS_MAX];
+    double from[TABLE_INPUTS_MAX], to[TABLE_INPUTS_MAX];
+
+    if (!read_grid(options->correction.grid, table->inputs, points)) {
+        message_command_error("--grid %s: points along %s are expected, 2 to %d each, such as %s",
+                              options->correction.grid,
+                              table->inputs == 1 ? "the axis" : "X, Y, Z (and the turning axis)",
+                              TABLE_KNOTS_MAX, table->inputs == 1 ? "17" : "9x7x6");
+        return false;
+    }
+    for (unsigned i = 0; i < table->inputs; i++) {
+        from[i] = c->session.setup.machine.axis[table->input[i]].travel_min_mm;
+        to[i] = c->session.setup.machine.axis[table->input[i]].travel_max_mm;
+    }
+    if ((options->correction.from != NULL &&
+         !read_positions(options->correction.from, table, from)) ||
+        (options->correction.to != NULL && !read_positions(options->correction.to, table, to))) {
+        message_command_error("--from and --to: %u positions are expected, separated by commas",
+                              table->inputs);
+        return false;
+    }
+    for (unsigned i = 0; i < table->inputs; i++) {
+        if (!check_range(c, i, from[i], to[i]))
+            return false;
+        table->knots[i] = (uint16_t)points[i];
+        for (unsigned k = 0; k < points[i]; k++)
+            table->knot_mm[i][k] = from[i] + (to[i] - from[i]) * k / (points[i] - 1);
+    }
+    if ((uint64_t)table_rows(table) * table->outputs <= TABLE_VALUES_MAX)
+        return true;
+    message_command_error("--grid %s: these are more than %d numbers", options->correction.grid,
+                          TABLE_VALUES_MAX);
+    return false;
+}
+
+/* A volume: the linear axes, and the turning axis if the grid has a fourth number. */
+static bool set_volume(struct calibration *c, const char *grid)
+{
+    const bool turns = strchr(grid, 'x') != NULL && strchr(strchr(grid, 'x') + 1, 'x') != NULL &&
+                       strchr(strchr(strchr(grid, 'x') + 1, 'x') + 1, 'x') != NULL;
+
+    for (uint8_t i = 0; i < AXIS_LINEAR_COUNT; i++) {
+        if (is_axis(c, i)) {
+            c->table.input[c->table.inputs++] = i;
+            c->table.output[c->table.outputs++] = (struct table_output){i, TABLE_BOTH};
+        }
+    }
+    if (!turns)
+        return true;
+    if (turn_axis(c) == AXIS_COUNT || !is_axis(c, turn_axis(c))) {
+        message_command_error("--grid %s: the machine has no turning table (geometry.table_axis)",
+                              grid);
+        return false;
+    }
+    c->table.input[c->table.inputs++] = (uint8_t)turn_axis(c);
+    return true;
+}
+
+/* One axis: its own error in both directions, and what it does to the others. */
+static bool set_axis(struct calibration *c, const char *name)
+{
+    const char *letter = strlen(name) == 1 ? strchr(AXIS_LETTERS, name[0] & ~0x20) : NULL;
+    const uint8_t axis = letter != NULL ? (uint8_t)(letter - AXIS_LETTERS) : AXIS_COUNT;
+
+    if (axis == AXIS_COUNT || !is_axis(c, axis) ||
+        (axis >= AXIS_LINEAR_COUNT && axis != turn_axis(c))) {
+        message_command_error("--axis %s: a linear axis of the machine, or its turning table, is "
+                              "expected",
+                              name);
+        return false;
+    }
+    c->table.input[c->table.inputs++] = axis;
+    c->table.output[c->table.outputs++] = (struct table_output){axis, TABLE_UP};
+    c->table.output[c->table.outputs++] = (struct table_output){axis, TABLE_DOWN};
+    for (uint8_t i = 0; i < AXIS_LINEAR_COUNT && axis < AXIS_LINEAR_COUNT; i++) {
+        if (i != axis && is_axis(c, i))
+            c->table.output[c->table.outputs++] = (struct table_output){i, TABLE_BOTH};
+    }
+    return true;
+}
+
+/* ---- measuring ---- */
+
+static void drop_axis_tables(struct axis_tables *tables, unsigned input)
+{
+    unsigned kept = 0;
+
+    for (unsigned i = 0; i < tables->count; i++) {
+        if (tables->pair[i].input != input)
+            tables->pair[kept++] = tables->pair[i];
+    }
+    tables->count = kept;
+    tables->inputs &= ~(1U << input);
+}
+
+/* What is measured must not be corrected already, and a part that stands askew is no error of the machine. */
+static void switch_off(struct calibration *c)
+{
+    c->session.setup.machine.correction.off |= 1U << CORRECTION_SETUP | 1U << CORRECTION_WEAR;
+    if (c->session.correction == NULL)
+        return;
+    if (c->table.inputs > 1)
+        c->session.correction->volume.inputs = 0;
+    else
+        drop_axis_tables(&c->session.correction->axes, c->table.input[0]);
+}
+
+static bool plan_visits(struct calibration *c)
+{
+    const uint32_t rows = table_rows(&c->table);
+
+    c->visits = calloc(2 * (size_t)rows, sizeof *c->visits);
+    if (c->visits == NULL) {
+        message_command_error("out of memory");
+        return false;
+    }
+    for (uint32_t row = 0; row < rows; row++) {
+        struct measurement_visit *visit = &c->visits[2 * (size_t)row];
+        uint32_t rest = row;
+
+        for (unsigned i = 0; i < c->table.inputs; i++) {
+            visit[0].at.at[c->table.input[i]] = c->table.knot_mm[i][rest % c->table.knots[i]];
+            rest /= c->table.knots[i];
+        }
+        visit[0].direction = 1;
+        visit[1].at = visit[0].at;
+        visit[1].direction = -1;
+    }
+    return true;
+}
+
+/* K is what takes the deviation back; without a direction, the mean of both. */
+static double correction_of(const struct measurement_visit visit[2],
+                            const struct table_output *output)
+{
+    const double up = visit[0].deviation.at[output->axis];
+    const double down = visit[1].deviation.at[output->axis];
+
+    if (output->direction == TABLE_BOTH)
+        return -0.5 * (up + down);
+    return output->direction == TABLE_UP ? -up : -down;
+}
+
+static void set_values(struct calibration *c)
+{
+    struct table *table = &c->table;
+    const uint32_t rows = table_rows(table);
+
+    for (uint32_t row = 0; row < rows; row++) {
+        for (unsigned i = 0; i < table->outputs; i++)
+            table->value_mm[row * table->outputs + i] =
+                (float)correction_of(&c->visits[2 * (size_t)row], &table->output[i]);
+    }
+}
+
+static enum command_status write_result(const struct calibration *c, const struct options *options)
+{
+    const char *path = options->output != NULL ? options->output : "-";
+    char comment[160];
+
+    if (options->correction.comp != NULL)
+        (void)snprintf(comment, sizeof comment, "from a file of nominal, forward, reverse");
+    else
+        (void)snprintf(
+            comment, sizeof comment, "measured on %.60s: %u points, noise %.3g um (1 sigma)",
+            c->session.setup.machine.name, (unsigned)table_rows(&c->table), 1e3 * c->noise.sigma);
+    return correction_file_write(&c->table, path, comment) ? STATUS_DONE : STATUS_ENVIRONMENT;
+}
+
+static enum command_status measure(struct calibration *c, const struct options *options)
+{
+    enum command_status status;
+
+    if (!(options->correction.axis != NULL ? set_axis(c, options->correction.axis)
+                                           : set_volume(c, options->correction.grid)) ||
+        !set_knots(c, options))
+        return STATUS_INPUT;
+    switch_off(c);
+    if (!plan_visits(c))
+        return STATUS_ENVIRONMENT;
+    status = measurement_run(&c->session, c->visits, 2 * table_rows(&c->table), &c->noise);
+    if (status != STATUS_DONE)
+        return status;
+    set_values(c);
+    return write_result(c, options);
+}
+
+/* From LinuxCNC's file instead of a measurement. */
+static enum command_status convert(struct calibration *c, const struct options *options)
+{
+    const char *letter = options->correction.axis != NULL && strlen(options->correction.axis) == 1
+                             ? strchr(AXIS_LETTERS, options->correction.axis[0] & ~0x20)
+                             : NULL;
+
+    if (letter == NULL) {
+        message_command_error("--comp needs --axis, the axis its numbers are for");
+        return STATUS_INPUT;
+    }
+    if (options->correction.comp_type > 1) {
+        message_command_error("--comp-type is 0 (positions measured) or 1 (corrections)");
+        return STATUS_INPUT;
+    }
+    if (!correction_file_read_triplets(
+            &c->table, options->correction.comp, (enum axis)(letter - AXIS_LETTERS),
+            (unsigned)options->correction.comp_type, &c->session.setup.machine))
+        return STATUS_INPUT;
+    return write_result(c, options);
+}
+
+static bool read_noise(const char *text, double *sigma_mm)
+{
+    char *end;
+    double um = MEASUREMENT_NOISE;
+
+    if (text != NULL) {
+        um = strtod(text, &end);
+        if (end == text || *end != '\0' || !isfinite(um) || um < 0) {
+            message_command_error("--noise-um %s: a number, 0 or more, is expected", text);
+            return false;
+        }
+    }
+    *sigma_mm = 1e-3 * um;
+    return true;
+}
+
+static enum command_status execute(struct calibration *c, const struct options *options)
+{
+    enum command_status status = session_open_machine(&c->session, options);
+
+    if (status != STATUS_DONE)
+        return status;
+    if (!read_noise(options->correction.noise, &c->noise.sigma))
+        return STATUS_INPUT;
+    c->noise.state = UINT64_C(0x9E3779B97F4A7C15) * (1 + (uint64_t)options->correction.seed);
+    if (options->correction.comp != NULL)
+        return convert(c, options);
+    if (options->correction.grid == NULL) {
+        message_command_error("--grid is missing: how many points, such as 9x7x6, or 17 with "
+                              "--axis X");
+        return STATUS_INPUT;
+    }
+    return measure(c, options);
+}
+
+static enum command_status command_calibrate_execute(const struct options *options)
+{
+    struct calibration *c = calloc(1, sizeof *c);
+    enum command_status status;
+
+    if (c == NULL) {
+        message_command_error("out of memory");
+        return STATUS_ENVIRONMENT;
+    }
+    status = execute(c, options);
+    session_close(&c->session);
+    free(c->visits);
+    free(c);
+    return status;
+}
+
+static const struct option_row rows[] = {
+    OPTIONS_MACHINE,
+    {"grid", OPTION_TEXT, offsetof(struct options, correction.grid), "NxNxN",
+     "points along X, Y, Z, a fourth number: the turning table; with --axis one number"},
+    {"axis", OPTION_TEXT, offsetof(struct options, correction.axis), "AXIS",
+     "a table over this axis alone, both directions of approach"},
+    {"from", OPTION_TEXT, offsetof(struct options, correction.from), "X,Y,Z",
+     "first point (default: where the travel begins)"},
+    {"to", OPTION_TEXT, offsetof(struct options, correction.to), "X,Y,Z",
+     "last point (default: where it ends)"},
+    {"noise-um", OPTION_TEXT, offsetof(struct options, correction.noise), "UM",
+     "standard deviation of the instrument, um and urad (0.1)"},
+    {"seed", OPTION_NUMBER, offsetof(struct options, correction.seed), "N", "of the noise (0)"},
+    {"comp", OPTION_TEXT, offsetof(struct options, correction.comp), "FILE",
+     "convert LinuxCNC's COMP_FILE of --axis instead of measuring"},
+    {"comp-type", OPTION_NUMBER, offsetof(struct options, correction.comp_type), "0|1",
+     "its COMP_FILE_TYPE: 0 positions measured (default), 1 corrections"},
+    {"output", OPTION_TEXT, offsetof(struct options, output), "FILE",
+     "or -o FILE: the table (default: standard output)"},
+    OPTIONS_END,
+};
+
+const struct command command_calibrate = {
+    .name = "calibrate",
+    .usage = "--machine FILE --grid NxNxN [options]",
+    .summary = "measure a correction table on the virtual machine",
+    .help =
+        "Sends the machine's drives to every point of a grid, from below and from above, waits "
+        "until they have settled, and\n"
+        "measures how far the tool's point is from where it was sent; the table holds what takes "
+        "that back. The machine's\n"
+        "errors stand in [geometry] of the machine file. Layers of [correction] stay on while "
+        "measuring, but for the one that\n"
+        "is measured, set-up and wear: so calibrate the volume first, name the table, then the "
+        "axes for backlash.\n"
+        "\n"
+        "Examples:\n"
+        "  takt calibrate --machine worn_mill.ini --grid 9x7x6 -o volume.csv\n"
+        "  takt calibrate --machine worn_mill.ini --axis X --grid 17 -o x.csv\n"
+        "  takt calibrate --comp x.comp --axis X -o x.csv\n",
+    .options = rows,
+    .operands_min = 0,
+    .operands_max = 0,
+    .run = command_calibrate_execute,
+};

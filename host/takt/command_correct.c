@@ -1,0 +1,152 @@
+#include "takt/command.h"
+#include "takt/correction_file.h"
+#include "takt/message.h"
+#include "takt/offline.h"
+#include "takt/output_file.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+/* Unless --tolerance says something else. */
+#define TOLERANCE_MM 0.0005
+
+/* The table of --table takes the place of the machine file's of its kind. */
+static bool use_table(struct session *session, const char *path)
+{
+    struct machine_setup *setup = &session->setup;
+    struct table *table = malloc(sizeof *table);
+    char *place = setup->volume_table;
+    bool good = table != NULL && correction_file_read(table, path, &setup->machine);
+
+    if (good && table->inputs == 1)
+        place = setup->axis_table[table->input[0]];
+    free(table);
+    if (!good)
+        return false;
+    if (strlen(path) > MACHINE_SETUP_PATH_MAX) {
+        message_command_error("--table: the path is too long");
+        return false;
+    }
+    (void)snprintf(place, MACHINE_SETUP_PATH_MAX + 1, "%s", path);
+    free(session->correction);
+    session->correction = NULL;
+    return correction_file_load(&session->correction, setup);
+}
+
+static void print_totals(const struct options *options, const struct offline_totals *totals)
+{
+    if (totals->compensated)
+        message_warning(options->operand[0], 0, 0,
+                        "contours with G41 or G42 are corrected as programmed, not where the "
+                        "tool's centre goes");
+    if (options->quiet)
+        return;
+    (void)fprintf(stderr,
+                  "%u motions in %u pieces; corrected by %.4f mm at most; the written path is "
+                  "within %.6f mm of the corrected one\n",
+                  (unsigned)totals->motions, (unsigned)totals->pieces, totals->largest_mm,
+                  totals->error_mm);
+}
+
+static enum command_status correct_text(struct offline_config *config,
+                                        const struct options *options,
+                                        struct offline_totals *totals)
+{
+    enum command_status status = STATUS_INPUT;
+    struct text text;
+
+    if (!text_read(&text, options->operand[0]))
+        return STATUS_INPUT;
+    config->text = text.bytes;
+    config->length = text.length;
+    config->name = text.name;
+    status = offline_correct(config, totals);
+    text_free(&text);
+    return status;
+}
+
+static enum command_status correct(struct session *session, const struct options *options)
+{
+    struct offline_config config = {
+        .session = session,
+        .tolerance_mm = options->tolerance > 0 ? options->tolerance : TOLERANCE_MM,
+        .stream = stdin,
+        .name = "<stdin>",
+    };
+    struct offline_totals totals = {0};
+    struct output_file file;
+    enum command_status status;
+
+    if (options->correction.filter && strcmp(options->operand[0], "-") != 0) {
+        message_command_error("--filter reads standard input: the program is -");
+        return STATUS_INPUT;
+    }
+    if (!output_file_open(&file, options->output != NULL ? options->output : "-"))
+        return STATUS_ENVIRONMENT;
+    config.out = file.stream;
+    status = options->correction.filter ? offline_correct(&config, &totals)
+                                        : correct_text(&config, options, &totals);
+    if (status != STATUS_DONE) {
+        output_file_discard(&file);
+        return status;
+    }
+    if (!output_file_finish(&file) || !output_file_place(&file))
+        return STATUS_ENVIRONMENT;
+    print_totals(options, &totals);
+    return STATUS_DONE;
+}
+
+static enum command_status command_correct_execute(const struct options *options)
+{
+    static struct session session;
+    enum command_status status = session_open_machine(&session, options);
+
+    if (status == STATUS_DONE && options->correction.table != NULL &&
+        !use_table(&session, options->correction.table))
+        status = STATUS_INPUT;
+    if (status == STATUS_DONE)
+        status = correct(&session, options);
+    session_close(&session);
+    return status;
+}
+
+static const struct option_row rows[] = {
+    OPTIONS_PROGRAM,
+    {"table", OPTION_TEXT, offsetof(struct options, correction.table), "FILE",
+     "correction table, CSV; beside what the machine file says"},
+    {"tolerance", OPTION_NUMBER, offsetof(struct options, tolerance), "MM",
+     "distance of the written path from the corrected one (0.0005)"},
+    {"filter", OPTION_FLAG, offsetof(struct options, correction.filter), NULL,
+     "line by line from standard input to standard output, as a program is streamed"},
+    {"output", OPTION_TEXT, offsetof(struct options, output), "FILE",
+     "or -o FILE: the corrected program (default: standard output)"},
+    {"quiet", OPTION_FLAG, offsetof(struct options, quiet), NULL, "errors and warnings alone"},
+    OPTIONS_END,
+};
+
+const struct command command_correct = {
+    .name = "correct",
+    .usage = "PROGRAM [--table FILE] [options]",
+    .summary = "write a program with position errors corrected, for other controllers",
+    .help =
+        "The words of every motion are replaced by corrected ones. A long line in a curved field "
+        "of errors, or an arc,\n"
+        "becomes several. Comments, feeds, modes, line numbers and subroutines stay; a line in a "
+        "loop or a subroutine gets\n"
+        "a form for each time it runs. Rapids are corrected at their ends. Drilling cycles are "
+        "written out as lines. Other\n"
+        "cycles, threads, probing, G28 and G30 are refused.\n"
+        "\n"
+        "Layers of [correction] that depend on position take part: matrix, set-up, axes (both "
+        "directions' mean), volume.\n"
+        "--filter reads and writes line by line; loops and calls are then errors, since a stream "
+        "cannot go back.\n"
+        "\n"
+        "Examples:\n"
+        "  takt correct part.ngc --machine mill.ini --table volume.csv -o part-corrected.ngc\n"
+        "  sender part.ngc | takt correct - --filter --table volume.csv | machine\n",
+    .options = rows,
+    .operands_min = 1,
+    .operands_max = 1,
+    .run = command_correct_execute,
+};

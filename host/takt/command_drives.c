@@ -1,0 +1,350 @@
+#define _POSIX_C_SOURCE 200809L
+
+#include "takt/command.h"
+
+#include "drives/eds.h"
+#include "takt/drive_service.h"
+#include "takt/inject_file.h"
+#include "takt/interrupt.h"
+#include "takt/machine_file.h"
+#include "takt/message.h"
+#include "takt/output_file.h"
+#include "takt/serving_options.h"
+#include "takt/spindle_service.h"
+
+#include <poll.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+
+#define NODE_MAX_ID 127
+
+/* How soon a signal is noticed while there is nothing else to do; it also ends the wait by itself. */
+#define SIGNAL_LOOK_MS 100
+
+/* Between two looks at Ctrl-C, which also ends a wait. */
+#define WAIT_MS 100
+
+/* Everything a command line has been read into. */
+struct drives_command {
+    const struct options *options;
+    struct machine_setup setup;
+    struct virtual_drives_config drives;
+    struct inject script;
+};
+
+static bool add_drive(struct drives_command *command, unsigned node)
+{
+    struct virtual_drives_config *drives = &command->drives;
+    struct virtual_drive_config *drive = &drives->drive[drives->count];
+
+    if (drives->count == VIRTUAL_DRIVES_MAX) {
+        message_command_error("--nodes: more than %d drives", VIRTUAL_DRIVES_MAX);
+        return false;
+    }
+    for (unsigned i = 0; i < drives->count; i++) {
+        if (drives->drive[i].node == node) {
+            message_command_error("--nodes: %u is named twice", node);
+            return false;
+        }
+    }
+    drives->count++;
+    *drive = (struct virtual_drive_config){.node = (uint8_t)node,
+                                           .increments_per_mm = 100000,
+                                           .cycle_us = command->setup.machine.cycle_us};
+    drive_plant_set_default(&drive->plant);
+    return true;
+}
+
+/* An axis of the machine with this node lends the drive its plant. */
+static void use_axis(struct drives_command *command, struct virtual_drive_config *drive)
+{
+    for (unsigned i = 0; i < AXIS_COUNT; i++) {
+        const struct machine_axis *axis = &command->setup.machine.axis[i];
+
+        if (!axis->present || axis->drive_node != drive->node)
+            continue;
+        drive->increments_per_mm = axis->increments_per_mm;
+        drive->plant = command->setup.drive[i];
+    }
+}
+
+/* Reads "N" or "N-M" and steps over it. */
+static bool read_range(const char **text, unsigned long *from, unsigned long *to)
+{
+    char *end;
+
+    if (**text < '0' || **text > '9')
+        return false;
+    *from = *to = strtoul(*text, &end, 10);
+    if (*end == '-') {
+        const char *second = end + 1;
+
+        if (*second < '0' || *second > '9')
+            return false;
+        *to = strtoul(second, &end, 10);
+    }
+    *text = end;
+    return *from >= 1 && *to <= NODE_MAX_ID && *from <= *to;
+}
+
+/* "1-3", "1,2,5-6". */
+static bool read_nodes(struct drives_command *command, const char *nodes)
+{
+    const char *at = nodes;
+    unsigned long from;
+    unsigned long to;
+
+    for (;;) {
+        if (!read_range(&at, &from, &to) || (*at != ',' && *at != '\0')) {
+            message_command_error("--nodes %s: node ids 1 ... 127 are expected, as 1-3 or 1,2,5",
+                                  nodes);
+            return false;
+        }
+        for (unsigned long node = from; node <= to; node++) {
+            if (!add_drive(command, (unsigned)node))
+                return false;
+        }
+        if (*at == '\0')
+            return true;
+        at++;
+    }
+}
+
+static bool set_drives(struct drives_command *command)
+{
+    const char *nodes = command->options->nodes;
+
+    if (nodes != NULL && !read_nodes(command, nodes))
+        return false;
+    for (unsigned i = 0; i < AXIS_COUNT && nodes == NULL; i++) {
+        const struct machine_axis *axis = &command->setup.machine.axis[i];
+
+        if (machine_axis_is_on_can(axis) && !add_drive(command, axis->drive_node))
+            return false;
+    }
+    for (unsigned i = 0; i < command->drives.count; i++)
+        use_axis(command, &command->drives.drive[i]);
+    return true;
+}
+
+static bool load_script(struct drives_command *command)
+{
+    const char *path = command->options->inject;
+    uint8_t nodes[VIRTUAL_DRIVES_MAX];
+
+    if (path == NULL)
+        return true;
+    if (!inject_file_load(&command->script, path))
+        return false;
+    for (unsigned i = 0; i < command->drives.count; i++)
+        nodes[i] = command->drives.drive[i].node;
+    if (!inject_file_check_nodes(&command->script, path, nodes, command->drives.count))
+        return false;
+    for (unsigned i = 0; i < command->script.count; i++) {
+        const struct inject_fault *fault = &command->script.fault[i];
+
+        if (inject_is_of_bus(fault->kind)) {
+            message_error(path, fault->line, 0,
+                          "bus %s is a fault of the embedded bus; here only drives can fail",
+                          inject_name(fault->kind));
+            return false;
+        }
+    }
+    return true;
+}
+
+static bool send_nowhere(void *context, const struct can_frame *frame)
+{
+    (void)context;
+    (void)frame;
+    return true;
+}
+
+static bool receive_nothing(void *context, struct can_frame *frame)
+{
+    (void)context;
+    (void)frame;
+    return false;
+}
+
+/* The drive as it is at power-on. */
+static enum command_status write_eds(const struct virtual_drive_config *config, const char *path)
+{
+    static struct virtual_drive drive;
+    static const struct can_port nowhere = {.send = send_nowhere, .receive = receive_nothing};
+    static struct output_file file;
+    const char *slash = strrchr(path, '/');
+
+    if (!output_file_open(&file, path))
+        return STATUS_ENVIRONMENT;
+    virtual_drive_init(&drive, config, NULL, &nowhere);
+    eds_write(file.stream, &drive, slash != NULL ? slash + 1 : path);
+    if (!output_file_finish(&file) || !output_file_place(&file))
+        return STATUS_ENVIRONMENT;
+    return STATUS_DONE;
+}
+
+static bool is_folder(const char *path)
+{
+    struct stat status;
+
+    return stat(path, &status) == 0 && S_ISDIR(status.st_mode);
+}
+
+/* Into a folder: a file for every drive. As a file: of the first drive. */
+static enum command_status write_data_sheets(const struct drives_command *command)
+{
+    const char *path = command->options->eds;
+    enum command_status status = STATUS_DONE;
+    char name[OUTPUT_PATH_MAX];
+
+    if (!is_folder(path))
+        return write_eds(&command->drives.drive[0], path);
+    for (unsigned i = 0; i < command->drives.count && status == STATUS_DONE; i++) {
+        const struct virtual_drive_config *drive = &command->drives.drive[i];
+
+        (void)snprintf(name, sizeof name, "%s/takt-drive-%u.eds", path, (unsigned)drive->node);
+        status = write_eds(drive, name);
+    }
+    return status;
+}
+
+/* Where the log goes; NULL: nowhere. False after a message. */
+static bool open_log(const struct options *options, FILE **log)
+{
+    *log = options->quiet ? NULL : stdout;
+    if (options->log == NULL)
+        return true;
+    *log = strcmp(options->log, "-") == 0 ? stdout : fopen(options->log, "w");
+    if (*log == NULL)
+        message_command_error("--log %s: it cannot be written", options->log);
+    return *log != NULL;
+}
+
+static enum command_status serve(const struct drives_command *command)
+{
+    const struct options *options = command->options;
+    FILE *log;
+    enum command_status status;
+
+    if (!open_log(options, &log))
+        return STATUS_ENVIRONMENT;
+    status = drive_service_run(&(struct drive_service_config){
+        .bus = options->bus,
+        .bitrate = command->setup.machine.can_bitrate,
+        .cycle_us = command->setup.machine.cycle_us,
+        .is_paced = options->realtime,
+        .drives = &command->drives,
+        .script = options->inject != NULL ? &command->script : NULL,
+        .log = log,
+    });
+    if (log != NULL && log != stdout && fclose(log) != 0 && status == STATUS_DONE) {
+        message_command_error("--log %s: not everything could be written", options->log);
+        status = STATUS_ENVIRONMENT;
+    }
+    return status;
+}
+
+/* The spindle alone, until a signal comes; its own thread answers. */
+static void wait_for_signal(void)
+{
+    while (!interrupt_asked())
+        (void)poll(NULL, 0, SIGNAL_LOOK_MS);
+}
+
+static enum command_status serve_with_spindle(const struct drives_command *command)
+{
+    static struct spindle_service spindle;
+    const struct options *options = command->options;
+    enum command_status status = STATUS_DONE;
+    uint8_t unit;
+
+    if (!serving_options_unit(options->panel.unit, &unit))
+        return STATUS_INPUT;
+    if (!spindle_service_start(&spindle, &command->setup, options->panel.spindle, unit,
+                               options->quiet))
+        return STATUS_ENVIRONMENT;
+    if (options->bus != NULL)
+        status = serve(command);
+    else
+        wait_for_signal();
+    spindle_service_stop(&spindle);
+    return status;
+}
+
+static enum command_status command_drives_execute(const struct options *options)
+{
+    static struct drives_command command;
+    enum command_status status = STATUS_DONE;
+
+    command.options = options;
+    if (options->bus == NULL && options->eds == NULL && options->panel.spindle == NULL) {
+        message_command_error("--bus says where the drives are to be reached, --spindle where the "
+                              "spindle is, --eds where their data sheets go: one of them is "
+                              "needed");
+        return STATUS_INPUT;
+    }
+    if (!machine_file_load(&command.setup, options) || !set_drives(&command) ||
+        !load_script(&command))
+        return STATUS_INPUT;
+    if (options->eds != NULL)
+        status = write_data_sheets(&command);
+    if (status == STATUS_DONE && options->panel.spindle != NULL)
+        status = serve_with_spindle(&command);
+    else if (status == STATUS_DONE && options->bus != NULL)
+        status = serve(&command);
+    return status;
+}
+
+static const struct option_row rows[] = {
+    {"bus", OPTION_TEXT, offsetof(struct options, bus), "BUS",
+     "socketcan:IF, slcan:PATH, slcan:pty, socketcand:HOST:PORT, socketcand:listen:PORT"},
+    {"spindle", OPTION_TEXT, offsetof(struct options, panel.spindle), "WHERE",
+     "virtual spindle on Modbus: HOST:PORT, or PATH[,BAUD[,PARITY]] of a serial line"},
+    {"unit", OPTION_NUMBER, offsetof(struct options, panel.unit), "N",
+     "unit of the spindle on its serial line (default 1)"},
+    {"nodes", OPTION_TEXT, offsetof(struct options, nodes), "LIST",
+     "node ids, 1-3 or 1,2,5 (default: those of the machine's axes)"},
+    OPTIONS_MACHINE,
+    {"eds", OPTION_TEXT, offsetof(struct options, eds), "FILE|FOLDER",
+     "write the electronic data sheet, or one for each drive"},
+    {"inject", OPTION_TEXT, offsetof(struct options, inject), "FILE",
+     "scripted faults; takt help inject explains them"},
+    {"realtime", OPTION_FLAG, offsetof(struct options, realtime), NULL,
+     "keep to the wall clock even if SYNC has a period"},
+    {"log", OPTION_TEXT, offsetof(struct options, log), "FILE",
+     "one line an event (default: standard output)"},
+    {"quiet", OPTION_FLAG, offsetof(struct options, quiet), NULL, "no log on standard output"},
+    OPTIONS_END,
+};
+
+const struct command command_drives = {
+    .name = "drives",
+    .usage = "--bus BUS|--spindle WHERE [options]",
+    .summary = "virtual CiA 402 drives, for any CANopen master",
+    .help =
+        "Every drive is a CANopen node with the drive profile CiA 402 (profile position, homing,\n"
+        "interpolated position, cyclic synchronous position) and a motor that obeys mechanics, as\n"
+        "[drive N] of the machine file says. They run until Ctrl-C or SIGTERM, which is status 0.\n"
+        "\n"
+        "Drives keep the time of the wall clock, unless a controller tells all of them the period\n"
+        "of SYNC (object 1006), as takt does: then a SYNC is a period, however fast they come.\n"
+        "\n"
+        "--spindle adds a spindle behind the registers of a Delta VFD-B or MS300 converter, with "
+        "inertia, ramp,\n"
+        "torque limit and trips as [spindle] of the machine file says. Register 3000 (hex) takes "
+        "the torque of a cut,\n"
+        "0.1 % of the rated one; a number written to 3001 trips it.\n"
+        "\n"
+        "Examples:\n"
+        "  takt drives --bus socketcan:vcan0\n"
+        "  takt drives --spindle 127.0.0.1:1503\n"
+        "  takt drives --bus slcan:pty:can0.pty --machine mill3.ini --log drives.log\n"
+        "  takt drives --nodes 1-6 --eds data-sheets\n"
+        "  takt drives --bus socketcand:listen:29536 --inject faults.inject\n",
+    .options = rows,
+    .operands_min = 0,
+    .operands_max = 0,
+    .run = command_drives_execute,
+};

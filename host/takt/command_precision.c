@@ -1,0 +1,314 @@
+#include "takt/command.h"
+#include "takt/interrupt.h"
+#include "takt/message.h"
+#include "takt/precision.h"
+#include "takt/session.h"
+#include "takt/simulation.h"
+
+#include "accuracy/bounds.h"
+#include "base/maths.h"
+
+#include <stdlib.h>
+
+/* Cycles between two looks at Ctrl-C. */
+#define LOOK_CYCLES 4096
+
+/* Bits of an angle's word that the page names, and what they leave of evenness. */
+#define ANGLE_BITS_LOW  6
+#define ANGLE_BITS_HIGH 8
+
+struct precision_job {
+    struct session session;
+    struct precision precision;
+    struct simulation *simulation;
+};
+
+static double increment_mm(const struct precision *p)
+{
+    return 1 / p->machine.resolution_per_mm;
+}
+
+/* The farthest position of any axis, times a number of units per mm. */
+static double farthest(const struct machine *machine, bool in_steps)
+{
+    double most = 0;
+
+    for (unsigned i = 0; i < AXIS_COUNT; i++) {
+        const struct machine_axis *axis = &machine->axis[i];
+        double units = in_steps ? axis->steps_per_mm : machine->resolution_per_mm;
+        double end = maths_max(maths_abs(axis->travel_min_mm), maths_abs(axis->travel_max_mm));
+
+        if (axis->present)
+            most = maths_max(most, end * units);
+    }
+    return most;
+}
+
+static double finest_steps(const struct machine *machine)
+{
+    double most = 0;
+
+    for (unsigned i = 0; i < AXIS_COUNT; i++) {
+        if (machine->axis[i].present)
+            most = maths_max(most, machine->axis[i].steps_per_mm);
+    }
+    return most;
+}
+
+static double coarsest_step_mm(const struct machine *machine)
+{
+    double largest = 0;
+
+    for (unsigned i = 0; i < AXIS_COUNT; i++) {
+        if (machine->axis[i].present)
+            largest = maths_max(largest, 1 / machine->axis[i].steps_per_mm);
+    }
+    return largest;
+}
+
+static unsigned count_axes(unsigned mask)
+{
+    unsigned count = 0;
+
+    for (; mask != 0; mask &= mask - 1)
+        count++;
+    return count;
+}
+
+static void print_row(const char *method, const char *what, double measured, double bound,
+                      const char *unit)
+{
+    (void)printf("  %-10s %-34s %11.3g  %11.3g %s\n", method, what, measured, bound, unit);
+}
+
+/* exact: what is left is the last bit of a double, at the farthest position. */
+static void print_exact(const struct precision *p)
+{
+    double position = farthest(&p->machine, false) * increment_mm(p);
+
+    (void)printf("  %-10s %-34s %11s  %11.3g mm\n", "exact", "last bit of a setpoint", "-",
+                 position * 0x1p-53);
+    (void)printf(
+        "             words: setpoints of %u bits and more for whole increments; doubles have "
+        "53\n",
+        bounds_word_bits(farthest(&p->machine, false)));
+}
+
+/* Longest way of a line in steps: the range of F. */
+static double longest_steps(const struct precision *p)
+{
+    double most = 0;
+
+    for (unsigned i = 0; i < AXIS_COUNT; i++)
+        most = maths_max(most, p->longest_mm[i] * p->machine.axis[i].steps_per_mm);
+    return most;
+}
+
+/*
+ * Of where an axis is when its setpoint is due. Even steps are off by half a step. By evaluation functions a point is
+ * within a step of a line, or radially of a circle, whose start and centre are rounded to steps: one more at most; and
+ * along it up to two steps early or late, because ticks come evenly (firmware/step/README.md).
+ */
+static void print_steps(const struct precision *p)
+{
+    static const char *const names[] = {"even", "improved", "plain"};
+    static const double bounds[] = {0.5, 4, 4};
+
+    for (unsigned i = 0; i < PRECISION_FORMS; i++) {
+        print_row(names[i], "position of an axis", p->form[i].off_steps, bounds[i], "steps");
+        (void)printf("             highest rate %.0f steps/s\n", p->form[i].rate_hz);
+    }
+}
+
+static void print_step_words(const struct precision *p)
+{
+    unsigned axes = count_axes(p->axes);
+    double step_mm = coarsest_step_mm(&p->machine);
+
+    (void)printf("             a line over %u axes is left by less than %.4g mm\n", axes,
+                 bounds_line_off_mm(axes, step_mm));
+    (void)printf("             words: position %u bits; F of lines %u",
+                 bounds_word_bits(farthest(&p->machine, true)), bounds_word_bits(longest_steps(p)));
+    if (p->radius_mm > 0)
+        (void)printf(", of arcs %u",
+                     bounds_word_bits(2 * p->radius_mm * finest_steps(&p->machine)));
+    (void)printf(
+        " bits\n             at 1,000 ticks/s an axis does %.4g mm/s, the path up to %.4g\n",
+        bounds_axis_speed_mm_s(step_mm, 1000), bounds_path_speed_mm_s(axes, step_mm, 1000));
+}
+
+static void print_integrate(const struct precision *p)
+{
+    const struct interpolator_errors *errors = interpolator_get_errors(&p->integrate);
+    unsigned fraction = bounds_fraction_bits(errors->loss_ulp);
+    unsigned whole = bounds_word_bits(farthest(&p->machine, false));
+
+    if (p->cycles_max == 0) {
+        (void)printf("  %-10s no lines\n", "integrate");
+        return;
+    }
+    print_row("integrate", "position on lines", errors->along_mm, errors->along_bound_mm, "mm");
+    (void)printf(
+        "             lost by truncation: up to %.4g units of the last place; with %d bits "
+        "behind the increment\n"
+        "             words: %u bits behind the increment keep that below one; with the "
+        "travel %u bits\n",
+        errors->loss_ulp, INTERPOLATOR_BITS, fraction, whole + fraction);
+}
+
+static void print_rotate(const struct precision *p)
+{
+    const struct interpolator_errors *errors = interpolator_get_errors(&p->rotate);
+
+    if (p->radius_mm == 0) {
+        (void)printf("  %-10s no arcs\n", "rotate");
+        return;
+    }
+    print_row("rotate", "along arcs", errors->along_mm, errors->along_bound_mm, "mm");
+    print_row("", "contour of arcs", errors->contour_mm, errors->contour_bound_mm, "mm");
+    (void)printf(
+        "             largest angle of a cycle %.4g rad\n"
+        "             words: angle %d to %d bits, speed even to %.2g to %.2g; radius vector "
+        "%u bits\n",
+        errors->angle_rad, ANGLE_BITS_LOW, ANGLE_BITS_HIGH, 0x1p-6, 0x1p-8,
+        bounds_word_bits(p->radius_mm * p->machine.resolution_per_mm) +
+            bounds_fraction_bits(increment_mm(p) / maths_max(errors->contour_bound_mm, 1e-12)));
+}
+
+/* What the machine's limits alone say, whatever the program. */
+static void print_machine(const struct precision *p)
+{
+    for (unsigned i = 0; i < AXIS_COUNT; i++) {
+        const struct machine_axis *axis = &p->machine.axis[i];
+        double cycle_s = 1e-6 * (double)p->machine.cycle_us;
+        double ramp;
+        struct bounds_cycles n;
+
+        if (!axis->present)
+            continue;
+        ramp = bounds_ramp_cycles(axis->max_velocity_mm_s, axis->max_acceleration_mm_s2, cycle_s);
+        n = (struct bounds_cycles){ramp, p->cycles_max, ramp};
+        (void)printf(
+            "  axis %c     ramp to full feed %.0f cycles: integration loses up to %.4g units, "
+            "%u bits; rotation %.3g mm a turn\n",
+            AXIS_LETTERS[i], ramp, bounds_truncation_ulp(&n),
+            bounds_fraction_bits(bounds_truncation_ulp(&n)),
+            bounds_rotation_turn_mm(axis->max_acceleration_mm_s2, cycle_s));
+    }
+}
+
+static void print_precision(const struct session *session, const struct precision *p)
+{
+    (void)printf("%s on %s: %llu setpoints, increment %.4g mm, cycle %.4g ms\n\n",
+                 session->program.name, p->machine.name, (unsigned long long)p->setpoints,
+                 increment_mm(p), 1e-3 * (double)p->machine.cycle_us);
+    (void)printf("  %-10s %-34s %11s  %11s\n", "method", "error", "measured", "bound");
+    print_exact(p);
+    print_integrate(p);
+    print_rotate(p);
+    print_steps(p);
+    print_step_words(p);
+    (void)fputc('\n', stdout);
+    print_machine(p);
+}
+
+/* False: interrupted. */
+static bool watch(struct precision_job *job)
+{
+    const struct controller *controller = &job->simulation->controller;
+
+    while (controller_get_state(controller) < CONTROLLER_COMPLETED) {
+        const struct cycle_record *record;
+
+        if (!simulation_step(job->simulation))
+            return false;
+        record = controller_get_record(controller);
+        if (record != NULL)
+            precision_add(&job->precision, record, controller_get_block(controller));
+        if (job->simulation->cycles % LOOK_CYCLES == 0 && interrupt_asked())
+            return false;
+    }
+    return true;
+}
+
+static enum command_status finish(const struct precision_job *job)
+{
+    const struct controller *controller = &job->simulation->controller;
+    const struct diagnostic *fault = controller_get_fault(controller);
+    char text[DIAGNOSTIC_TEXT_MAX];
+
+    print_precision(&job->session, &job->precision);
+    if (controller_get_state(controller) == CONTROLLER_COMPLETED)
+        return STATUS_DONE;
+    (void)diagnostic_text(fault, text);
+    message_command_error("the program did not end: %s", text);
+    return STATUS_FAILED;
+}
+
+static enum command_status run_program(struct precision_job *job)
+{
+    enum command_status status = simulation_open(&job->session, &job->simulation);
+
+    if (status != STATUS_DONE)
+        return status;
+    precision_init(&job->precision, &job->session.setup.machine);
+    return watch(job) ? finish(job) : STATUS_INTERRUPTED;
+}
+
+static enum command_status execute(struct precision_job *job, const struct options *options)
+{
+    struct session_totals totals;
+    enum command_status status = session_open(&job->session, options);
+
+    /* The setpoints all are compared with are the exact ones. */
+    job->session.setup.machine.interpolator = INTERPOLATOR_EXACT;
+    if (status == STATUS_DONE)
+        status = session_check(&job->session, 1, &totals);
+    if (status == STATUS_DONE)
+        status = run_program(job);
+    simulation_close(job->simulation);
+    session_close(&job->session);
+    return status;
+}
+
+static enum command_status command_precision_execute(const struct options *options)
+{
+    struct precision_job *job = calloc(1, sizeof *job);
+    enum command_status status;
+
+    if (job == NULL) {
+        message_command_error("out of memory");
+        return STATUS_ENVIRONMENT;
+    }
+    status = execute(job, options);
+    free(job);
+    return status;
+}
+
+static const struct option_row rows[] = {
+    OPTIONS_PROGRAM,
+    OPTIONS_END,
+};
+
+const struct command command_precision = {
+    .name = "precision",
+    .usage = "PROGRAM [options]",
+    .summary =
+        "what every interpolator errs by on a program, beside its bound, and the words it needs",
+    .help = "Runs the program exactly and gives every setpoint to the other ways of interpolation "
+            "as well: digital\n"
+            "integration of lines, rotation of the radius vector on arcs, and the step forms, with "
+            "the steps_per_mm\n"
+            "of each axis. For each: the largest error that was measured, the bound that is to be "
+            "expected, and the bits\n"
+            "of the words it needs. README.md of firmware/classic and firmware/step say how they "
+            "work.\n"
+            "\n"
+            "Examples:\n"
+            "  takt precision part.ngc\n"
+            "  takt precision part.ngc --machine mill3.ini --set axis.X.steps_per_mm=400\n",
+    .options = rows,
+    .operands_min = 1,
+    .operands_max = 1,
+    .run = command_precision_execute,
+};

@@ -1,0 +1,129 @@
+#include "takt/command.h"
+#include "takt/message.h"
+#include "takt/serving.h"
+
+#include <inttypes.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+/* Upper ends of the classes of lateness that are printed, us. */
+static const unsigned late_us[] = {10, 20, 50, 100, 200, 500, 1000, 2000, 5000, 10000};
+
+#define LATE_CLASSES (sizeof late_us / sizeof late_us[0])
+
+static void print_ready(const struct serving *s)
+{
+    const struct server_config *config = &s->server.config;
+
+    if (config->address != NULL)
+        (void)printf("panel on %s:%u\n", config->address, (unsigned)server_get_port(&s->server));
+    if (config->serial >= 0)
+        (void)printf("panel on %s, unit %u\n", s->options.serial.path, (unsigned)config->unit);
+    (void)fflush(stdout);
+}
+
+static void print_lateness(const struct pace *pace)
+{
+    unsigned step = 0;
+
+    (void)printf("  cycles begun late by\n");
+    for (size_t i = 0; i < LATE_CLASSES; i++) {
+        uint64_t count = 0;
+
+        for (; step < late_us[i] * (1000 / PACE_STEP_NS); step++)
+            count += pace->steps[step];
+        (void)printf("    < %5u us  %10" PRIu64 "\n", late_us[i], count);
+    }
+}
+
+static void print_figures(const struct serving *s)
+{
+    const struct server *server = &s->server;
+    struct pace_figures pace;
+
+    pace_get_figures(&s->field.pace, &pace);
+    (void)printf("served %" PRIu64 " cycles, %" PRIu64 " of them over their time\n", s->cycles,
+                 pace.overruns);
+    (void)printf("  late        mean %.1f us, 99 %%: %.1f, max: %.1f\n",
+                 1e-3 * pace.lateness_mean_ns, 1e-3 * pace.lateness_p99_ns,
+                 1e-3 * (double)pace.lateness_max_ns);
+    print_lateness(&s->field.pace);
+    (void)printf("  panel       %llu requests, %llu connections, %llu refused, %llu dropped\n",
+                 (unsigned long long)server->answered, (unsigned long long)server->accepted,
+                 (unsigned long long)server->refused, (unsigned long long)server->dropped);
+}
+
+static enum command_status command_serve_execute(const struct options *options)
+{
+    struct serving *serving = calloc(1, sizeof *serving);
+    enum command_status status;
+
+    if (serving == NULL) {
+        message_command_error("out of memory");
+        return STATUS_ENVIRONMENT;
+    }
+    status = serving_open(serving, options);
+    if (status == STATUS_DONE) {
+        if (!options->quiet)
+            print_ready(serving);
+        status = serving_run(serving);
+        if (!options->quiet)
+            print_figures(serving);
+    }
+    serving_close(serving);
+    free(serving);
+    return status;
+}
+
+static const struct option_row rows[] = {
+    OPTIONS_DRIVEN,
+    {"listen", OPTION_TEXT, offsetof(struct options, panel.listen), "HOST:PORT",
+     "Modbus TCP of the panel (default 127.0.0.1:1502; port 0: any)"},
+    {"serial", OPTION_TEXT, offsetof(struct options, panel.serial), "PATH[,BAUD[,PARITY]]",
+     "Modbus RTU of the panel too (default 19200, even)"},
+    {"unit", OPTION_NUMBER, offsetof(struct options, panel.unit), "N",
+     "unit on the serial line (default 1)"},
+    {"program", OPTION_TEXT, offsetof(struct options, panel.program), "FILE",
+     "load this program; CYCLE_START starts it"},
+    {"store", OPTION_TEXT, offsetof(struct options, panel.store), "FILE",
+     "keep uploaded programs there, and load what is there"},
+    {"spindle", OPTION_TEXT, offsetof(struct options, panel.spindle), "WHERE",
+     "spindle drive on Modbus: HOST:PORT, or PATH[,BAUD[,PARITY]] (default: virtual, inside)"},
+    {"bus", OPTION_TEXT, offsetof(struct options, bus), "BUS",
+     "embedded (default), socketcan:IF, slcan:PATH, socketcand:HOST:PORT"},
+    {"drives", OPTION_TEXT, offsetof(struct options, drives), "WHERE",
+     "internal on the embedded bus, external on any other"},
+    OPTIONS_MACHINE,
+    {"tools", OPTION_TEXT, offsetof(struct options, tools), "FILE", "tool table, LinuxCNC's .tbl"},
+    {"parameters", OPTION_TEXT, offsetof(struct options, parameters), "FILE",
+     "parameters, LinuxCNC's .var"},
+    {"exact-path", OPTION_FLAG, offsetof(struct options, exact_path), NULL,
+     "treat every G64 as G61"},
+    {"quiet", OPTION_FLAG, offsetof(struct options, quiet), NULL, "print errors alone"},
+    OPTIONS_END,
+};
+
+const struct command command_serve = {
+    .name = "serve",
+    .usage = "[options]",
+    .summary = "the controller as a service, with the operator's panel on Modbus",
+    .help =
+        "Runs in real time until SIGTERM or Ctrl-C. Without options: the built-in machine with "
+        "virtual drives and\n"
+        "spindle, and the panel on 127.0.0.1:1502 for any number of clients. What can be read and "
+        "written there is\n"
+        "listed by `takt panel list`; who may connect and a password stand in the machine file, "
+        "section [panel].\n"
+        "\n"
+        "At its end it prints how late control cycles began.\n"
+        "\n"
+        "Examples:\n"
+        "  takt serve\n"
+        "  takt serve --program part.ngc --machine mill.ini\n"
+        "  takt serve --spindle 127.0.0.1:1503        (takt drives --spindle 127.0.0.1:1503)\n"
+        "  takt serve --listen 0.0.0.0:1502 --set panel.allow=192.168.1.0/24 --store program.ngc\n",
+    .options = rows,
+    .operands_min = 0,
+    .operands_max = 0,
+    .run = command_serve_execute,
+};

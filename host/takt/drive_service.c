@@ -1,0 +1,161 @@
+#define _POSIX_C_SOURCE 200809L
+
+#include "takt/drive_service.h"
+
+#include "drives/eds.h"
+#include "takt/interrupt.h"
+#include "takt/message.h"
+
+#include <stdlib.h>
+
+/* Frames taken before the time is looked at again. */
+#define FRAMES_PER_ROUND_MAX 256
+
+/* Cycles a drive makes up for when it has been kept from running; what is more is lost time. */
+#define CYCLES_BEHIND_MAX 100
+
+struct eds_text {
+    char *bytes;
+    size_t length;
+};
+
+struct drive_service {
+    const struct drive_service_config *config;
+    struct link *link;
+    struct can_port port;
+    uint64_t cycle_ns;
+    uint64_t next_ns; /* end of the cycle under way, by link_clock_ns */
+    struct eds_text eds[VIRTUAL_DRIVES_MAX];
+    struct virtual_drives set;
+};
+
+static void log_event(void *context, const struct drive_event *event)
+{
+    FILE *log = context;
+
+    drive_event_write(log, event);
+    (void)fflush(log);
+}
+
+static void log_start(struct drive_service *service)
+{
+    FILE *log = service->config->log;
+
+    if (log == NULL)
+        return;
+    (void)fprintf(log, "0.000000 bus %s\n", link_get_address(service->link));
+    (void)fflush(log);
+    virtual_drives_observe(&service->set, &(struct drive_observer){log_event, log});
+}
+
+/* Each drive gives its own data sheet away, object 1021. */
+static bool make_eds(struct virtual_drive *drive, struct eds_text *text)
+{
+    FILE *stream = open_memstream(&text->bytes, &text->length);
+
+    if (stream == NULL)
+        return false;
+    eds_write(stream, drive, "takt-drive.eds");
+    if (fclose(stream) != 0)
+        return false;
+    virtual_drive_set_eds(drive, text->bytes, text->length);
+    return true;
+}
+
+static enum command_status open_link(struct drive_service *service)
+{
+    struct link_config config = {.bitrate = service->config->bitrate};
+    struct link_error error;
+
+    service->link = link_open(service->config->bus, &config, &error);
+    if (service->link == NULL) {
+        message_command_error("--bus: %s", error.text);
+        return error.is_environment ? STATUS_ENVIRONMENT : STATUS_INPUT;
+    }
+    service->port = link_get_port(service->link);
+    return STATUS_DONE;
+}
+
+static enum command_status start(struct drive_service *service)
+{
+    const struct drive_service_config *config = service->config;
+    enum command_status status = open_link(service);
+
+    if (status != STATUS_DONE)
+        return status;
+    service->cycle_ns = (uint64_t)config->cycle_us * 1000;
+    virtual_drives_open(&service->set, &service->port, config->drives);
+    for (unsigned i = 0; i < service->set.count; i++) {
+        if (!make_eds(&service->set.drive[i], &service->eds[i])) {
+            message_command_error("out of memory");
+            return STATUS_ENVIRONMENT;
+        }
+    }
+    if (config->script != NULL)
+        virtual_drives_inject(&service->set, config->script);
+    log_start(service);
+    virtual_drives_boot(&service->set);
+    service->next_ns = link_clock_ns() + service->cycle_ns;
+    return STATUS_DONE;
+}
+
+static void take_frames(struct drive_service *service)
+{
+    struct can_frame frame;
+
+    for (unsigned n = 0; n < FRAMES_PER_ROUND_MAX; n++) {
+        if (!service->port.receive(service->port.context, &frame))
+            return;
+        if (service->config->is_paced)
+            virtual_drives_take(&service->set, &frame);
+        else
+            (void)virtual_drives_take_by_sync(&service->set, &frame);
+    }
+}
+
+/* The cycles that have gone by on the wall clock. */
+static void keep_time(struct drive_service *service)
+{
+    uint64_t now_ns = link_clock_ns();
+    bool by_sync = !service->config->is_paced && virtual_drives_follow_sync(&service->set);
+
+    if (now_ns > service->next_ns + CYCLES_BEHIND_MAX * service->cycle_ns)
+        service->next_ns = now_ns;
+    for (; service->next_ns <= now_ns; service->next_ns += service->cycle_ns) {
+        if (!by_sync)
+            virtual_drives_step(&service->set, (uint32_t)service->cycle_ns);
+    }
+}
+
+static enum command_status run(struct drive_service *service)
+{
+    while (!interrupt_asked()) {
+        if (link_wait(service->link, service->next_ns) == LINK_BROKEN) {
+            message_command_error("--bus: %s", link_get_problem(service->link));
+            return STATUS_ENVIRONMENT;
+        }
+        take_frames(service);
+        keep_time(service);
+    }
+    return STATUS_DONE;
+}
+
+enum command_status drive_service_run(const struct drive_service_config *config)
+{
+    struct drive_service *service = calloc(1, sizeof *service);
+    enum command_status status;
+
+    if (service == NULL) {
+        message_command_error("out of memory");
+        return STATUS_ENVIRONMENT;
+    }
+    service->config = config;
+    status = start(service);
+    if (status == STATUS_DONE)
+        status = run(service);
+    link_close(service->link);
+    for (unsigned i = 0; i < VIRTUAL_DRIVES_MAX; i++)
+        free(service->eds[i].bytes);
+    free(service);
+    return status;
+}

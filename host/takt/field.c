@@ -1,0 +1,276 @@
+#include "takt/field.h"
+
+#include "takt/inject_bus.h"
+#include "takt/message.h"
+
+#include <string.h>
+
+static bool is_outside(const struct field_options *options)
+{
+    enum link_kind kind = LINK_EMBEDDED;
+    struct link_error error;
+
+    return options->bus != NULL && link_check(options->bus, &kind, &error) && kind != LINK_EMBEDDED;
+}
+
+static bool check_bus(const char *bus)
+{
+    enum link_kind kind;
+    struct link_error error;
+
+    if (bus == NULL || link_check(bus, &kind, &error))
+        return true;
+    message_command_error("--bus: %s", error.text);
+    return false;
+}
+
+bool field_check_options(const struct field_options *options)
+{
+    const char *drives = options->drives;
+
+    if (!check_bus(options->bus))
+        return false;
+    if (options->has_script && is_outside(options)) {
+        message_command_error("--inject: what goes wrong on an outside bus is not up to this "
+                              "process; give drives their faults by takt drives --inject");
+        return false;
+    }
+    if (drives != NULL && strcmp(drives, "internal") != 0 && strcmp(drives, "external") != 0) {
+        message_command_error("--drives %s: internal or external is expected", drives);
+        return false;
+    }
+    if (drives == NULL)
+        return true;
+    if (strcmp(drives, "external") == 0 && !is_outside(options)) {
+        message_command_error("--drives external needs a bus that other processes can reach: "
+                              "--bus socketcan:can0, slcan:PATH or socketcand:HOST:PORT");
+        return false;
+    }
+    if (strcmp(drives, "internal") == 0 && is_outside(options)) {
+        message_command_error("--drives internal are on the embedded bus; with --bus %s they are "
+                              "external, a process of `takt drives` or real ones",
+                              options->bus);
+        return false;
+    }
+    return true;
+}
+
+static void set_drives(struct virtual_drives_config *config, const struct machine_setup *setup)
+{
+    config->count = 0;
+    for (unsigned i = 0; i < AXIS_COUNT; i++) {
+        const struct machine_axis *axis = &setup->machine.axis[i];
+
+        if (!machine_axis_is_on_can(axis))
+            continue;
+        config->drive[config->count++] = (struct virtual_drive_config){
+            .node = axis->drive_node,
+            .increments_per_mm = axis->increments_per_mm,
+            .cycle_us = setup->machine.cycle_us,
+            .plant = setup->drive[i],
+        };
+    }
+}
+
+/* Faults of the bus whose time counts from this anchor. */
+static bool add_faults(struct field *field, enum inject_anchor anchor, uint64_t anchor_ns)
+{
+    uint8_t nodes[VIRTUAL_DRIVES_MAX];
+
+    for (unsigned i = 0; i < field->drives.count; i++)
+        nodes[i] = field->drives.drive[i].config.node;
+    return inject_bus_add(&field->bus, field->script, anchor, anchor_ns, nodes,
+                          field->drives.count);
+}
+
+static bool start_faults(struct field *field)
+{
+    if (field->script == NULL)
+        return true;
+    virtual_drives_inject(&field->drives, field->script);
+    return add_faults(field, INJECT_POWER, 0);
+}
+
+static void add_enabled_faults(struct field *field)
+{
+    uint64_t enabled_ns = virtual_drives_get_clock(&field->drives)->enabled_ns;
+
+    if (enabled_ns == INJECT_ALWAYS)
+        return;
+    field->has_enabled_faults = true;
+    (void)add_faults(field, INJECT_ENABLED, enabled_ns);
+}
+
+static bool open_inside(struct field *field, const struct machine_setup *setup)
+{
+    struct virtual_drives_config drives;
+
+    (void)bus_init(&field->bus, setup->machine.can_bitrate); /* checked with the machine */
+    field->port = bus_attach(&field->bus, NULL);
+    set_drives(&drives, setup);
+    virtual_drives_init(&field->drives, &field->bus, &drives);
+    return start_faults(field);
+}
+
+static void count_frame(void *context, const struct wire_frame *frame, uint64_t time_ns)
+{
+    struct field_traffic *traffic = context;
+
+    if (!(frame->flags & WIRE_ERROR)) {
+        traffic->frames++;
+        traffic->bits += frame_bits_count_wire(&traffic->tables, frame) + FRAME_BITS_INTERMISSION;
+    }
+    if (traffic->next.on_frame != NULL)
+        traffic->next.on_frame(traffic->next.context, frame, time_ns);
+}
+
+static enum command_status open_outside(struct field *field, const struct machine_setup *setup,
+                                        const char *bus)
+{
+    struct link_config config = {.bitrate = setup->machine.can_bitrate};
+    struct link_error error;
+    uint8_t nodes[AXIS_COUNT];
+    unsigned count = 0;
+
+    field->link = link_open(bus, &config, &error);
+    if (field->link == NULL) {
+        message_command_error("--bus: %s", error.text);
+        return error.is_environment ? STATUS_ENVIRONMENT : STATUS_INPUT;
+    }
+    for (unsigned i = 0; i < AXIS_COUNT; i++) {
+        if (machine_axis_is_on_can(&setup->machine.axis[i]))
+            nodes[count++] = setup->machine.axis[i].drive_node;
+    }
+    frame_bits_init(&field->traffic.tables);
+    link_observe(field->link, &(struct wire_listener){count_frame, &field->traffic});
+    lockstep_init(&field->lockstep, field->link, field->cycle_ns, nodes, count);
+    field->port = lockstep_get_port(&field->lockstep);
+    return STATUS_DONE;
+}
+
+static void start_steppers(struct field *field, const struct machine_setup *setup)
+{
+    struct virtual_stepper_config config[AXIS_COUNT];
+
+    for (unsigned i = 0; i < AXIS_COUNT; i++) {
+        config[i] = setup->stepper[i];
+        config[i].present = machine_axis_is_stepped(&setup->machine.axis[i]);
+    }
+    virtual_steppers_init(&field->steppers, config, (uint32_t)field->cycle_ns);
+}
+
+static void start_pace(struct field *field)
+{
+    field->is_paced = true;
+    field->permission = pace_ask_permission();
+    pace_start(&field->pace, field->cycle_ns);
+}
+
+enum command_status field_open(struct field *field, const struct machine_setup *setup,
+                               const struct field_options *options)
+{
+    enum command_status status = STATUS_DONE;
+
+    memset(field, 0, sizeof *field);
+    field->cycle_ns = (uint64_t)setup->machine.cycle_us * 1000;
+    field->bit_ns = 1000000000u / setup->machine.can_bitrate;
+    field->script = options->script;
+    start_steppers(field, setup);
+    if (is_outside(options))
+        status = open_outside(field, setup, options->bus);
+    else if (!open_inside(field, setup))
+        status = STATUS_INPUT;
+    if (status == STATUS_DONE && options->is_paced)
+        start_pace(field);
+    return status;
+}
+
+void field_close(struct field *field)
+{
+    link_close(field->link);
+    field->link = NULL;
+}
+
+struct can_port field_get_port(struct field *field)
+{
+    return field->port;
+}
+
+struct step_port field_get_step_port(struct field *field)
+{
+    return virtual_steppers_get_port(&field->steppers);
+}
+
+static void end_inside(struct field *field)
+{
+    bus_run_until(&field->bus, field->cycles * field->cycle_ns);
+    virtual_drives_step(&field->drives, (uint32_t)field->cycle_ns);
+    if (field->script != NULL && !field->has_enabled_faults)
+        add_enabled_faults(field);
+}
+
+static bool end_paced(struct field *field)
+{
+    bool good = true;
+
+    if (field->link == NULL)
+        end_inside(field);
+    uint64_t next_ns = pace_end_work(&field->pace);
+    if (field->link != NULL)
+        good = lockstep_end_cycle_at(&field->lockstep, next_ns);
+    good = good && pace_sleep(&field->pace);
+    pace_begin_cycle(&field->pace);
+    return good;
+}
+
+static void tell_warning(struct field *field)
+{
+    char text[LOCKSTEP_TEXT_MAX + 1];
+
+    if (lockstep_take_warning(&field->lockstep, text))
+        message_command_warning("%s", text);
+}
+
+bool field_end_cycle(struct field *field)
+{
+    bool good = true;
+
+    field->cycles++;
+    virtual_steppers_end_cycle(&field->steppers);
+    if (field->is_paced)
+        good = end_paced(field);
+    else if (field->link != NULL)
+        good = lockstep_end_cycle(&field->lockstep);
+    else
+        end_inside(field);
+    if (field->link != NULL)
+        tell_warning(field);
+    return good;
+}
+
+const char *field_get_problem(const struct field *field)
+{
+    if (field->link == NULL || link_get_problem(field->link)[0] == '\0')
+        return NULL;
+    return link_get_problem(field->link);
+}
+
+void field_observe_outside(struct field *field, const struct wire_listener *listener)
+{
+    field->traffic.next = *listener;
+}
+
+uint64_t field_get_frames(const struct field *field)
+{
+    return field->link == NULL ? field->bus.counts.frames : field->traffic.frames;
+}
+
+double field_get_load_percent(const struct field *field)
+{
+    if (field->link == NULL)
+        return bus_load_percent(&field->bus);
+    if (field->cycles == 0)
+        return 0;
+    return 100.0 * (double)(field->traffic.bits * field->bit_ns) /
+           (double)(field->cycles * field->cycle_ns);
+}

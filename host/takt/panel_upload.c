@@ -1,0 +1,83 @@
+#include "takt/panel_upload.h"
+
+#include "base/crc32.h"
+#include "modbus/crc.h"
+#include "panel/registers.h"
+#include "takt/interrupt.h"
+#include "takt/message.h"
+#include "takt/text.h"
+
+#include <inttypes.h>
+#include <stdio.h>
+#include <string.h>
+
+/* The mailbox in registers: offset, length and check before the bytes. */
+#define CHUNK_WORDS (4 + PANEL_CHUNK_MAX / 2)
+
+static bool begin(struct panel_line *line, const struct text *text)
+{
+    const uint32_t crc = crc32_add(CRC32_START, text->bytes, text->length);
+
+    return panel_line_set(line, REGISTER_UPLOAD_SIZE, (int64_t)text->length) &&
+           panel_line_set(line, REGISTER_UPLOAD_CRC, crc) &&
+           panel_line_set(line, REGISTER_UPLOAD_COMMAND, PANEL_UPLOAD_BEGIN);
+}
+
+static void pack_bytes(uint16_t *word, const uint8_t *bytes, size_t length)
+{
+    for (size_t i = 0; i < length; i++)
+        word[i / 2] |= (uint16_t)(bytes[i] << (i % 2 == 0 ? 8 : 0));
+}
+
+/* One request: the chunk from offset on. */
+static bool send_chunk(struct panel_line *line, const struct text *text, uint32_t offset)
+{
+    const uint8_t *bytes = (const uint8_t *)text->bytes + offset;
+    const size_t left = text->length - offset;
+    const size_t length = left < PANEL_CHUNK_MAX ? left : PANEL_CHUNK_MAX;
+    uint16_t word[CHUNK_WORDS] = {(uint16_t)(offset >> 16), (uint16_t)offset, (uint16_t)length,
+                                  crc16(bytes, length)};
+
+    pack_bytes(word + 4, bytes, length);
+    if (client_write(&line->client, CLIENT_HOLDINGS,
+                     panel_registers[REGISTER_UPLOAD_OFFSET].address, CHUNK_WORDS, word))
+        return true;
+    panel_line_report(line, REGISTER_UPLOAD_CHECK, "written");
+    return false;
+}
+
+static enum command_status bring(struct panel_line *line, const struct text *text)
+{
+    int64_t received;
+
+    if (!begin(line, text))
+        return STATUS_INPUT;
+    do {
+        if (interrupt_asked())
+            return STATUS_INTERRUPTED;
+        if (!panel_line_get(line, REGISTER_UPLOAD_RECEIVED, &received))
+            return STATUS_ENVIRONMENT;
+        if (received < (int64_t)text->length && !send_chunk(line, text, (uint32_t)received))
+            return STATUS_ENVIRONMENT;
+    } while (received < (int64_t)text->length);
+    return panel_line_set(line, REGISTER_UPLOAD_COMMAND, PANEL_UPLOAD_COMMIT) ? STATUS_DONE
+                                                                              : STATUS_INPUT;
+}
+
+enum command_status panel_upload_file(struct panel_line *line, const char *path, bool quiet)
+{
+    struct text text;
+    enum command_status status = STATUS_INPUT;
+
+    if (!text_read(&text, path))
+        return STATUS_INPUT;
+    if (text.length == 0 || text.length > PANEL_PROGRAM_BYTES_MAX)
+        message_error(path, 0, 0, "a program of 1 to %d bytes is expected; it has %zu",
+                      PANEL_PROGRAM_BYTES_MAX, text.length);
+    else
+        status = bring(line, &text);
+    if (status == STATUS_DONE && !quiet)
+        (void)printf("%s: %zu bytes\n", path, text.length);
+    text_free(&text);
+    return status;
+}

@@ -1,0 +1,12 @@
+/*
+ * A program brought to a controller through its panel's mailbox.
+ */
+#ifndef TAKT_HOST_PANEL_UPLOAD_H
+#define TAKT_HOST_PANEL_UPLOAD_H
+
+#include "takt/panel_line.h"
+
+/* Goes on where an upload of the same program was left. STATUS_DONE, else after a message. */
+enum command_status panel_upload_file(struct panel_line *line, const char *path, bool quiet);
+
+#endif

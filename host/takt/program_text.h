@@ -1,0 +1,51 @@
+/*
+ * The text of a part program. Of a file only the piece being read is in memory, so its length does not matter; what
+ * cannot be read twice, standard input or a pipe, is kept whole.
+ */
+#ifndef TAKT_HOST_PROGRAM_TEXT_H
+#define TAKT_HOST_PROGRAM_TEXT_H
+
+#include "program/source.h"
+#include "takt/text.h"
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <time.h>
+
+#define PROGRAM_TEXT_PIECE 16384
+
+struct program_text {
+    const char *name; /* for messages: the path, or "<stdin>". Not owned */
+    bool is_file;     /* else whole */
+    int file;
+    int64_t size; /* when it was opened; and when it had last been changed then */
+    struct timespec changed;
+    struct text whole;
+};
+
+/* One reading of it; several may go on at once. */
+struct program_text_reader {
+    const struct program_text *text;
+    uint64_t at;       /* next byte to read */
+    uint64_t piece_at; /* of the piece in the text */
+    size_t piece_length;
+    char piece[PROGRAM_TEXT_PIECE];
+};
+
+/* Opens path, "-" for standard input. False after a message: it cannot be opened or read. */
+bool program_text_open(struct program_text *text, const char *path);
+void program_text_close(struct program_text *text);
+
+/*
+ * A source that begins at the beginning. The reader is the caller's and must stay where it is. Reading ends in an error
+ * when the file is changed meanwhile.
+ */
+void program_text_read(const struct program_text *text, struct program_text_reader *reader,
+                       struct source *source);
+
+/* Up to size bytes of a line (from 1) after its first ones, without its end; returns how many there are. */
+size_t program_text_line(const struct program_text *text, uint32_t line, size_t first, char *bytes,
+                         size_t size);
+
+#endif

@@ -1,0 +1,50 @@
+/*
+ * `takt serve` at work: the controller as a service, paced by the wall clock, on its bus, with spindle and panel.
+ *
+ *     panel's thread  --- orders --->  exchange  --->  service_order      control thread
+ *                     <-- snapshots -            <---  service_cycle  ->  field (bus, drives)
+ *                                                                     ->  spindle
+ */
+#ifndef TAKT_HOST_SERVING_H
+#define TAKT_HOST_SERVING_H
+
+#include "serve/exchange.h"
+#include "serve/panel_host.h"
+#include "serve/program_store.h"
+#include "serve/server.h"
+#include "service/service.h"
+#include "takt/command.h"
+#include "takt/cycle_cost.h"
+#include "takt/field.h"
+#include "takt/serving_options.h"
+#include "takt/serving_spindle.h"
+#include "takt/session.h"
+
+#include <stdbool.h>
+#include <stdint.h>
+
+/* It must not be moved once opened. Private. */
+struct serving {
+    struct session session;
+    struct serving_options options;
+    struct field field;
+    struct service service;
+    struct serving_spindle spindle;
+    struct inputs inputs; /* of the next cycle */
+    struct program_store store;
+    struct exchange exchange;
+    struct panel_host panel;
+    struct server server;
+    struct cycle_cost cost;
+    uint64_t cycles;
+    bool has_field, has_exchange, has_server; /* are open */
+};
+
+/* Opens everything the options name, starts nothing. STATUS_DONE, else after messages; serving_close is due. */
+enum command_status serving_open(struct serving *serving, const struct options *options);
+void serving_close(struct serving *serving);
+
+/* Serves until a signal comes: STATUS_DONE. Else after a message. */
+enum command_status serving_run(struct serving *serving);
+
+#endif

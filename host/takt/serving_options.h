@@ -1,0 +1,29 @@
+/*
+ * What the options of `takt serve` and the machine file's section [panel] say of the panel's server.
+ */
+#ifndef TAKT_HOST_SERVING_OPTIONS_H
+#define TAKT_HOST_SERVING_OPTIONS_H
+
+#include "serve/serial_line.h"
+#include "serve/server.h"
+#include "takt/session.h"
+
+#include <stdbool.h>
+
+struct serving_options {
+    char address[MACHINE_SETUP_PATH_MAX + 1];
+    struct allow_list allowed;
+    struct serial_settings serial;
+};
+
+/* Fills the parts of *config that options decide, the serial line opened. options must stay. False after a message. */
+bool serving_options_read(struct serving_options *options, const struct session *session,
+                          struct server_config *config);
+
+/* HOST:PORT or [HOST]:PORT apart, in *text. False: it is neither. */
+bool serving_options_split(char *text, const char **host, const char **port);
+
+/* --unit: 1 if it is not given. False after a message. */
+bool serving_options_unit(double given, uint8_t *unit);
+
+#endif

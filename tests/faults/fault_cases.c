@@ -1,0 +1,120 @@
+/*
+ * The faults, and what is to come of each. The program moves all three axes from the moment the drives are enabled.
+ */
+#include "fault_run.h"
+
+/* Rows: the program goes on; it is stopped; nothing has moved yet. */
+#define GOES_ON(name, script, off_max_mm)                                                          \
+    {                                                                                              \
+        name, script, false, TAKT_OK, "", 0, off_max_mm                                            \
+    }
+#define STOPS(name, script, alarm, text, stop_max_ms, off_max_mm)                                  \
+    {                                                                                              \
+        name, script, false, TAKT_ERROR_##alarm, text, stop_max_ms, off_max_mm                     \
+    }
+#define REFUSED(name, script, alarm, text)                                                         \
+    {                                                                                              \
+        name, script, false, TAKT_ERROR_##alarm, text, 0, 0.0001                                   \
+    }
+
+/* clang-format off */
+const struct fault_case fault_cases[] = {
+    /* frames lost */
+    GOES_ON("1 frame of targets of X and Y is lost", "enabled+0.5s bus drop id=301", 0.02),
+    STOPS("10 frames of targets of X and Y are lost", "enabled+0.5s bus drop id=301 frames=10",
+          DRIVE_FOLLOWING, "axis X (node 1) lags ", 150, 1),
+    STOPS("100 frames of targets of X and Y are lost", "enabled+0.5s bus drop id=301 frames=100",
+          DRIVE_FOLLOWING, "axis X (node 1) lags ", 150, 1),
+    GOES_ON("1 position of Y is lost", "enabled+0.5s bus drop id=182", 0.001),
+    GOES_ON("10 positions of Y are lost", "enabled+0.5s bus drop id=182 frames=10", 0.001),
+    STOPS("100 positions of Y are lost", "enabled+0.5s bus drop id=182 frames=100", DRIVE_SILENT,
+          "the drive of axis Y (node 2) has sent no position for 21 ms", 200, 1),
+    GOES_ON("1 SYNC is lost", "enabled+0.5s bus drop id=080", 0.02),
+    STOPS("10 SYNC are lost", "enabled+0.5s bus drop id=080 frames=10", DRIVE_FAULT,
+          "the drive of axis X (node 1) reports 8700: SYNC missing or at the wrong time", 150, 1),
+    STOPS("100 SYNC are lost", "enabled+0.5s bus drop id=080 frames=100", DRIVE_FAULT,
+          "the drive of axis X (node 1) reports 8700: SYNC missing or at the wrong time", 150, 1),
+
+    /* frames late, spoilt, doubled */
+    GOES_ON("a SYNC comes 0.3 ms late", "enabled+0.5s bus delay id=080 by=300us", 0.02),
+    GOES_ON("every SYNC of 0.1 s comes 0.3 ms late", "enabled+0.5s bus delay id=080 by=300us for=0.1s", 0.03),
+    GOES_ON("a SYNC comes 3 ms late", "enabled+0.5s bus delay id=080 by=3ms", 0.02),
+    GOES_ON("1 target of X and Y is corrupted", "enabled+0.5s bus corrupt id=301", 0.001),
+    GOES_ON("1 frame in 100 is corrupted for 1 s", "enabled+0.2s bus corrupt ratio=0.01 seed=7 for=1s", 0.001),
+    STOPS("every frame of the drive of Y is corrupted", "enabled+0.5s bus corrupt node=2 frames=all",
+          DRIVE_SILENT, "the drive of axis Y (node 2) has sent no position for 21 ms", 200, 3),
+    GOES_ON("every target of X and Y is doubled for 20 ms", "enabled+0.5s bus duplicate id=301 for=20ms", 0.001),
+    GOES_ON("every position of Y is doubled for 20 ms", "enabled+0.5s bus duplicate id=182 for=20ms", 0.001),
+    STOPS("every frame is doubled for 0.1 s: more than the bus can carry", "enabled+0.5s bus duplicate for=0.1s",
+          DRIVE_FOLLOWING, "axis X (node 1) lags ", 150, 1),
+
+    /* nodes off the bus */
+    GOES_ON("the drive of Y becomes error passive", "enabled+0.5s bus error_passive node=2", 0.001),
+    STOPS("the drive of Y is bus-off", "enabled+0.5s bus bus_off node=2", DRIVE_SILENT,
+          "the drive of axis Y (node 2) has sent no position for 21 ms", 200, 3),
+    STOPS("the controller is bus-off", "enabled+0.5s bus bus_off node=controller", DRIVE_UNREACHABLE,
+          "the bus refused the setpoint of axis Y (node 2)", 150, 1),
+    STOPS("the cable to the drive of X is cut", "enabled+0.5s bus cut node=1", DRIVE_SILENT,
+          "the drive of axis X (node 1) has sent no position for 21 ms", 150, 2),
+    STOPS("the cable to the controller is cut", "enabled+0.5s bus cut node=controller", DRIVE_UNREACHABLE,
+          "the bus refused the setpoint of axis ", 150, 1),
+    STOPS("the cable to the drive of X has a loose contact for 5 ms", "enabled+0.5s bus cut node=1 for=5ms",
+          DRIVE_FAULT, "the drive of axis X (node 1) reports 8700: SYNC missing or at the wrong time", 150, 1),
+
+    /* what drives say */
+    STOPS("the drive of X gets too hot", "enabled+0.5s drive 1 emcy code=4310", DRIVE_FAULT,
+          "the drive of axis X (node 1) reports 4310: drive too hot", 150, 1),
+    STOPS("the DC bus of the drive of Z has over-voltage", "enabled+0.5s drive 3 emcy code=3210", DRIVE_FAULT,
+          "the drive of axis Z (node 3) reports 3210: DC bus over-voltage", 150, 1),
+    STOPS("the drive of Y sends an emergency and goes on", "enabled+0.5s drive 2 warn code=FF01", DRIVE_FAULT,
+          "the drive of axis Y (node 2) reports FF01: additional functions", 150, 0.01),
+    STOPS("the heartbeat of the drive of Y stops", "enabled+0.2s drive 2 mute what=heartbeat", DRIVE_HEARTBEAT,
+          "the drive of axis Y (node 2) has sent no heartbeat for 301 ms", 500, 0.01),
+    STOPS("the drive of Y sends no more positions", "enabled+0.5s drive 2 mute what=tpdo", DRIVE_SILENT,
+          "the drive of axis Y (node 2) has sent no position for 21 ms", 200, 1),
+    STOPS("the drive of Y hangs", "enabled+0.5s drive 2 hang", DRIVE_SILENT,
+          "the drive of axis Y (node 2) has sent no position for 21 ms", 200, 3),
+    STOPS("the drive of Y starts anew, without torque", "enabled+0.5s drive 2 reboot", DRIVE_REBOOTED,
+          "the drive of axis Y (node 2) has started anew", 2500, 20),
+    STOPS("the drive of Y shows 'switch on disabled'", "enabled+0.5s drive 2 report object=6041 value=250",
+          DRIVE_STATE, "the drive of axis Y (node 2) has left operation: its state is 'switch on disabled'", 150, 1),
+    GOES_ON("the statusword of Y is stuck", "enabled+0.2s drive 2 freeze object=6041", 0.001),
+    STOPS("the statusword of Y is stuck, and the drive fails",
+          "enabled+0.5s drive 2 freeze object=6041\nenabled+0.5s drive 2 emcy code=7305\n", DRIVE_FAULT,
+          "the drive of axis Y (node 2) reports 7305: encoder", 150, 2),
+
+    /* what axes do */
+    STOPS("the position of X is stuck", "enabled+0.5s drive 1 freeze object=6064", DRIVE_FOLLOWING,
+          "axis X (node 1) lags ", 200, 1),
+    STOPS("the axis X jams", "enabled+0.5s drive 1 jam", DRIVE_FOLLOWING, "axis X (node 1) lags ", 150, 2),
+    STOPS("the motor of X has 2 % of its torque", "enabled+0.02s drive 1 weak ratio=0.02", DRIVE_FOLLOWING,
+          "axis X (node 1) lags ", 400, 2),
+    GOES_ON("the encoder of X jumps by 0.5 mm", "enabled+0.5s drive 1 encoder_jump by_mm=0.5", 0.4),
+    STOPS("the encoder of X jumps by 5 mm", "enabled+0.5s drive 1 encoder_jump by_mm=5", DRIVE_FAULT,
+          "the drive of axis X (node 1) reports 8611: following error", 700, 1),
+
+    /* at start */
+    REFUSED("the drive of Y is absent", "power bus cut node=2", DRIVE_ABSENT,
+            "the drive of axis Y (node 2) has not booted within 5 s"),
+    REFUSED("the drive of Z is another one", "power drive 3 report object=1018:02 value=403", DRIVE_IDENTITY,
+            "axis Z (node 3) has another drive than the machine file says: its product code, object 1018:02, is 0403"),
+    REFUSED("the node of Z is no drive", "power drive 3 report object=1000 value=30191", DRIVE_TYPE,
+            "axis Z (node 3) has no CiA 402 drive: the device type, object 1000, is 00030191"),
+    REFUSED("the drive of X refuses a mapping", "power drive 1 sdo_abort object=1A00:01 code=06040041", DRIVE_REFUSES,
+            "the drive of axis X (node 1), object 1A00:01, refuses with abort code 06040041: object cannot be mapped "
+            "into the PDO"),
+    REFUSED("the drive of X answers no request", "power drive 1 mute what=sdo", DRIVE_UNANSWERED,
+            "the drive of axis X (node 1), object 1000:00, does not answer within 500 ms"),
+    GOES_ON("an answer of the drive of X to a request is lost", "power bus drop id=581 skip=10", 0.001),
+    REFUSED("the statusword of Z is stuck at start", "power drive 3 freeze object=6041", DRIVE_NOT_ENABLED,
+            "the drive of axis Z (node 3) does not get enabled: it stays in 'switch on disabled'"),
+    REFUSED("the drive of Z stays in fault", "power drive 3 report object=6041 value=0218", DRIVE_FAULT,
+            "the drive of axis Z (node 3) reports 0000: a fault without a code"),
+    REFUSED("the drive of Y does not take its mode", "power drive 2 report object=6061 value=1", DRIVE_MODE,
+            "the drive of axis Y (node 2) does not take the mode 8"),
+    {"the axis X jams while it is homed", "power drive 1 jam", true, TAKT_ERROR_DRIVE_FAULT,
+     "the drive of axis X (node 1) reports 8611: following error", 500, 0.0001},
+};
+/* clang-format on */
+
+const unsigned fault_cases_count = sizeof fault_cases / sizeof fault_cases[0];

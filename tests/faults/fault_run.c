@@ -1,0 +1,217 @@
+#include "fault_run.h"
+
+#include "bus/bus.h"
+#include "controller/controller.h"
+#include "drives/virtual_drives.h"
+#include "inject/inject.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+/* Object 1018:02 of virtual drives. */
+#define VIRTUAL_DRIVE_PRODUCT 0x402
+
+/* Towards the lower limit switch. */
+#define HOME_METHOD    17
+#define HOME_TIMEOUT_S 3
+
+#define DRIVES     3U
+#define CYCLE_NS   1000000U
+#define CYCLES_MAX 12000U
+
+/* Cycles after the end of everything in which an axis that has not been stopped would be seen. */
+#define AFTER_CYCLES 1000U
+
+/* An axis that is slower stands: 0.1 mm/s. */
+#define MOVING_MM_PER_CYCLE 1e-4
+
+/*
+ * A straight line out and back at 100 mm/s and the axes' limits: the three axes have different velocities, so drives
+ * that brake each for themselves leave it.
+ */
+static const char program[] = "G21 G90 G64 F7200 G1 X100 Y60 Z-30\nX0 Y0 Z0\nM2\n";
+static const double line_mm[DRIVES] = {100, 60, -30};
+
+struct world {
+    struct bus bus;
+    struct virtual_drives drives;
+    struct controller controller;
+    struct parameters parameters;
+    struct source_text text;
+    struct inject script;
+    struct inject_clock clock;
+    bool is_on_bus[INJECT_FAULTS_MAX]; /* the bus has been told of this fault */
+    uint64_t fault_ns; /* when the first fault begins; INJECT_ALWAYS: not known yet */
+    double at_mm[DRIVES];
+};
+
+/* Ports of the bus in the order they are attached: the controller, then the drives. */
+static uint32_t ports_of(uint8_t node)
+{
+    if (node == INJECT_ANY_NODE)
+        return 0;
+    return node == INJECT_CONTROLLER ? 1U : 1U << node;
+}
+
+static enum bus_fault_kind kind_of(enum inject_kind kind)
+{
+    switch ((int)kind) {
+    case INJECT_DROP:
+        return BUS_FAULT_DROP;
+    case INJECT_CORRUPT:
+        return BUS_FAULT_CORRUPT;
+    case INJECT_DUPLICATE:
+        return BUS_FAULT_DUPLICATE;
+    case INJECT_DELAY:
+        return BUS_FAULT_DELAY;
+    case INJECT_BUS_OFF:
+        return BUS_FAULT_BUS_OFF;
+    case INJECT_ERROR_PASSIVE:
+        return BUS_FAULT_ERROR_PASSIVE;
+    default:
+        return BUS_FAULT_CUT;
+    }
+}
+
+static void tell_bus(struct world *w, const struct inject_fault *fault, uint64_t from_ns)
+{
+    (void)bus_add_fault(&w->bus,
+                        &(struct bus_fault){
+                            .kind = kind_of(fault->kind),
+                            .id = fault->id == INJECT_ANY_ID ? 0 : fault->id,
+                            .id_mask = fault->id == INJECT_ANY_ID ? 0 : 0x7FF,
+                            .ports = ports_of(fault->node),
+                            .from_ns = from_ns,
+                            .until_ns = fault->for_ns == INJECT_ALWAYS || fault->for_ns == 0
+                                            ? 0
+                                            : from_ns + fault->for_ns,
+                            .skip = fault->skip,
+                            .count = fault->frames == INJECT_ALL ? BUS_FAULT_ALWAYS : fault->frames,
+                            .probability = fault->ratio < 1 ? fault->ratio : 0,
+                            .seed = fault->seed,
+                            .delay_ns = fault->by_ns,
+                        });
+}
+
+/* Beginnings of faults become known with the moment the drives are enabled. */
+static void place_faults(struct world *w)
+{
+    for (unsigned i = 0; i < w->script.count; i++) {
+        const struct inject_fault *fault = &w->script.fault[i];
+        uint64_t anchor_ns = fault->anchor == INJECT_POWER ? 0 : w->clock.enabled_ns;
+        if (w->is_on_bus[i] || anchor_ns == INJECT_ALWAYS)
+            continue;
+        w->is_on_bus[i] = true;
+        if (w->fault_ns > anchor_ns + fault->after_ns)
+            w->fault_ns = anchor_ns + fault->after_ns;
+        if (inject_is_of_bus(fault->kind))
+            tell_bus(w, fault, anchor_ns + fault->after_ns);
+    }
+}
+
+static void open_world(struct world *w, const struct fault_case *fault)
+{
+    struct virtual_drives_config virtual;
+    struct machine machine;
+    struct controller_config config = {
+        .machine = &machine, .parameters = &w->parameters, .exact_path = true};
+    virtual_drives_set_default(&virtual, DRIVES);
+    machine_set_default(&machine);
+    for (unsigned i = 0; i < DRIVES; i++)
+        machine.axis[i].drive_product = VIRTUAL_DRIVE_PRODUCT;
+    if (fault->is_homed) {
+        machine.axis[AXIS_X].home_order = 1;
+        machine.axis[AXIS_X].home_method = HOME_METHOD;
+        machine.axis[AXIS_X].home_timeout_s = HOME_TIMEOUT_S;
+    }
+    (void)bus_init(&w->bus, machine.can_bitrate);
+    config.can = bus_attach(&w->bus, NULL);
+    virtual_drives_init(&w->drives, &w->bus, &virtual);
+    for (unsigned i = 0; i < DRIVES; i++)
+        virtual_drive_inject(&w->drives.drive[i], &w->script, &w->clock);
+    parameters_clear(&w->parameters);
+    source_open_text(&config.source, &w->text, program, sizeof program - 1);
+    controller_init(&w->controller, &config);
+    w->clock.enabled_ns = INJECT_ALWAYS;
+    w->fault_ns = INJECT_ALWAYS;
+}
+
+static void cycle(struct world *w)
+{
+    const struct inputs inputs = inputs_idle();
+    place_faults(w);
+    controller_background(&w->controller);
+    controller_cycle(&w->controller, &inputs);
+    if (w->clock.enabled_ns == INJECT_ALWAYS &&
+        controller_get_state(&w->controller) == CONTROLLER_RUNNING)
+        w->clock.enabled_ns = w->clock.now_ns;
+    w->clock.now_ns += CYCLE_NS;
+    bus_run_until(&w->bus, w->clock.now_ns);
+    virtual_drives_step(&w->drives, CYCLE_NS);
+}
+
+/* Distance of the tool from the straight line through 0: |p - (p u) u| with u the line's direction. */
+static double distance_mm(const double at_mm[DRIVES])
+{
+    double length2 = 0, along = 0, distance2 = 0;
+    for (unsigned i = 0; i < DRIVES; i++) {
+        length2 += line_mm[i] * line_mm[i];
+        along += at_mm[i] * line_mm[i];
+    }
+    for (unsigned i = 0; i < DRIVES; i++) {
+        double off_mm = at_mm[i] - along / length2 * line_mm[i];
+        distance2 += off_mm * off_mm;
+    }
+    return sqrt(distance2);
+}
+
+/* Way of the fastest axis in the cycle just made. */
+static double observe(struct world *w, struct fault_result *result)
+{
+    double fastest_mm = 0;
+    for (unsigned i = 0; i < DRIVES; i++) {
+        double now_mm = virtual_drive_get_position_mm(&w->drives.drive[i]);
+        fastest_mm = fmax(fastest_mm, fabs(now_mm - w->at_mm[i]));
+        w->at_mm[i] = now_mm;
+    }
+    if (w->clock.now_ns <= w->fault_ns)
+        return fastest_mm;
+    result->off_mm = fmax(result->off_mm, distance_mm(w->at_mm));
+    if (fastest_mm > MOVING_MM_PER_CYCLE)
+        result->stop_ms = 1e-6 * (double)(w->clock.now_ns - w->fault_ns);
+    return fastest_mm;
+}
+
+static void note_alarm(const struct world *w, struct fault_result *result)
+{
+    enum drives_state state = drives_get_state(&w->controller.drives);
+    if (state > DRIVES_ENABLED && result->alarm_ms == 0 && w->clock.now_ns > w->fault_ns)
+        result->alarm_ms = 1e-6 * (double)(w->clock.now_ns - w->fault_ns);
+}
+
+bool fault_run(const struct fault_case *fault, struct fault_result *result)
+{
+    static struct world world;
+    struct world *w = &world;
+    struct inject_error error;
+    memset(w, 0, sizeof *w);
+    memset(result, 0, sizeof *result);
+    if (!inject_read(&w->script, fault->script, strlen(fault->script), &error)) {
+        (void)snprintf(result->text, sizeof result->text, "%u:%u: %.150s", (unsigned)error.line,
+                       (unsigned)error.column, error.text);
+        return false;
+    }
+    open_world(w, fault);
+    for (unsigned k = 0, after = 0; k < CYCLES_MAX && after < AFTER_CYCLES; k++) {
+        cycle(w);
+        result->end_mm_s = 1e9 / CYCLE_NS * observe(w, result);
+        note_alarm(w, result);
+        after += controller_get_state(&w->controller) >= CONTROLLER_COMPLETED;
+    }
+    result->completed = controller_get_state(&w->controller) == CONTROLLER_COMPLETED;
+    result->alarm = *controller_get_fault(&w->controller);
+    if (result->alarm.code != TAKT_OK)
+        (void)diagnostic_text(&result->alarm, result->text);
+    return true;
+}

@@ -1,0 +1,129 @@
+#!/usr/bin/env python3
+"""LinuxCNC's own programs, unmodified: vfdb_vfd turns the virtual spindle, mb2hal reads the panel and writes to it."""
+
+import atexit
+import os
+import shutil
+import subprocess
+import sys
+import time
+
+sys.path.insert(0, os.path.join(os.environ["TAKT_SOURCE"], "tests", "system"))
+
+import panel_client as p
+import serial_pair
+import takt_test as t
+
+VFD_INI = """[VFD-B]
+DEVICE = {path}
+BAUD = 115200
+PARITY = None
+STOPBITS = 2
+TARGET = 1
+POLLCYCLES = 1
+MOTOR_HZ = 400
+MOTOR_RPM = 24000
+"""
+
+MB2HAL_INI = """[MB2HAL_INIT]
+INIT_DEBUG=0
+VERSION=1.1
+HAL_MODULE_NAME=mb2hal
+SLOWDOWN=0.0
+TOTAL_TRANSACTIONS=2
+
+[TRANSACTION_00]
+LINK_TYPE=tcp
+TCP_IP=127.0.0.1
+TCP_PORT={port}
+MB_SLAVE_ID=1
+FIRST_ELEMENT=1
+NELEMENTS=1
+MAX_UPDATE_RATE=0.0
+DEBUG=0
+MB_TX_CODE=fnct_04_read_input_registers
+HAL_TX_NAME=state
+
+[TRANSACTION_01]
+MB_TX_CODE=fnct_06_write_single_register
+FIRST_ELEMENT=0
+NELEMENTS=1
+HAL_TX_NAME=override
+"""
+
+# LinuxCNC's memory is one for all of a user's processes, and it refuses the superuser without this.
+ENVIRONMENT = {**os.environ, "RTAPI_UID": "1000"}
+
+
+def halcmd(*words):
+    done = subprocess.run(["halcmd", *words], capture_output=True, text=True, env=ENVIRONMENT, check=False)
+    return done.stdout.strip() if done.returncode == 0 else None
+
+
+class Component:
+    """A running program of LinuxCNC, and its pins."""
+
+    def __init__(self, *command):
+        self.process = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, env=ENVIRONMENT)
+        atexit.register(self.process.kill)
+
+    def wait_for(self, pin, test):
+        until = time.monotonic() + p.PATIENCE_S
+        while (value := halcmd("getp", pin)) is None or not test(value):
+            if time.monotonic() > until or self.process.poll() is not None:
+                return t.check(False, f"{pin} stays {value}", self.process.poll())
+        return True
+
+    def stop(self):
+        self.process.terminate()
+        try:
+            self.process.wait(20)
+        except subprocess.TimeoutExpired:
+            self.process.kill()
+            self.process.wait()
+
+
+def check_spindle():
+    pair = serial_pair.Pair()
+    service = p.Service("--spindle", pair.paths[0] + ",115200,none", "--set", "spindle.ramp_rpm_s=100000", command="drives")
+    component = Component("vfdb_vfd", "-I", t.write("vfd.ini", VFD_INI.format(path=pair.paths[1])), "-n", "vfd")
+    component.wait_for("vfd.modbus-ok", lambda value: value == "TRUE")
+    t.check(float(halcmd("getp", "vfd.max-rpm")) == 24000, "vfdb_vfd knows the highest speed")
+    halcmd("setp", "vfd.enable", "1")
+    for speed in (9000, -6000):
+        halcmd("setp", "vfd.speed-command", str(speed))
+        halcmd("setp", "vfd.spindle-on", "1")
+        turns = component.wait_for("vfd.motor-RPM", lambda value: abs(float(value) - abs(speed)) < 20)
+        t.check(turns and abs(float(halcmd("getp", "vfd.frequency-out")) - abs(speed) / 60) < 1, f"vfdb_vfd turns it at {speed} rpm")
+        if speed > 0:  # vfdb_vfd never says so of a negative speed
+            t.check(component.wait_for("vfd.at-speed", lambda value: value == "TRUE"), "and sees it at speed")
+    t.check(int(halcmd("getp", "vfd.status")) & 0x18 == 0x18, "backwards when told so", halcmd("getp", "vfd.status"))
+    halcmd("setp", "vfd.spindle-on", "0")
+    t.check(component.wait_for("vfd.is-stopped", lambda value: value == "TRUE"), "and stops it")
+    t.check(int(halcmd("getp", "vfd.error-count")) == 0, "without an error on the line")
+    component.stop()
+    service.stop()
+    pair.close()
+
+
+def check_panel():
+    service = p.serve()
+    client = service.client()
+    client.wait_for("STATE", p.IDLE)
+    component = Component("mb2hal", "config=" + t.write("mb2hal.ini", MB2HAL_INI.format(port=service.port)))
+    t.check(component.wait_for("mb2hal.state.00.int", lambda value: int(value) == p.IDLE), "mb2hal reads the state")
+    halcmd("setp", "mb2hal.override.00.int", "750")
+    client.wait_for("FEED_OVERRIDE", 750)
+    t.check(int(halcmd("getp", "mb2hal.override.num_errors"), 0) == 0, "and writes an override")
+    client.put("EMERGENCY_STOP", 1)
+    t.check(component.wait_for("mb2hal.state.00.int", lambda value: int(value) == p.EMERGENCY), "and sees it change")
+    component.stop()
+    service.stop()
+
+
+for program in ("halcmd", "vfdb_vfd", "mb2hal"):
+    if shutil.which(program) is None:
+        t.skip(f"{program} is not installed (Debian: linuxcnc-uspace); tests/run --peers does it")
+check_spindle()
+check_panel()
+t.finish()

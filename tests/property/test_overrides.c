@@ -1,0 +1,248 @@
+/*
+ * Whatever the operator does: random programs on random machines with every law, under random schedules of feed
+ * override, rapid override and hold. The setpoints keep every axis's limits by differences, landed ends are hit, the
+ * program is completed, and nothing stops that neither the program nor the operator asked to.
+ *
+ * test_overrides NUMBER runs so many programs instead of PROGRAMS, test_overrides NUMBER FIRST from that seed on.
+ */
+#include "motion/motion.h"
+#include "plan/path.h"
+#include "random_chain.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unity.h>
+
+/* Programs in each run of all tests. */
+#define PROGRAMS 200
+
+/* A program that takes longer stands still for ever. */
+#define CYCLES_MAX 2000000
+
+/* After this many cycles without hold everything that a hold has begun is over. */
+#define HOLD_IS_OVER_CYCLES 1200
+
+/* With fewer blocks the lead point may come to the end of what is known, and waits there for more. */
+#define LOOK_AHEAD_ENOUGH 64
+
+static struct path path;
+static struct motion motion;
+static unsigned programs = PROGRAMS;
+static unsigned first_seed = 1;
+
+struct schedule {
+    struct motion_operator now;
+    double target;  /* of a ramp of the feed override */
+    double change;  /* of it in a cycle */
+    uint64_t until; /* the next event */
+    uint64_t free;  /* cycles since anything was held */
+};
+
+struct run {
+    struct chain chain;
+    struct plan_limits limits;
+    enum chain_family family;
+    uint32_t look_ahead;
+    bool proportional;
+    unsigned moves;
+    unsigned pushed;
+    struct schedule schedule;
+    struct chain_judge judge;
+    double landing_mm;
+    unsigned unplanned;
+    uint64_t unplanned_cycle;
+    bool rested;
+};
+
+static struct run run;
+
+void setUp(void)
+{
+}
+
+void tearDown(void)
+{
+}
+
+static void random_machine(struct run *r)
+{
+    static const double cycles_s[] = {5e-4, 1e-3, 2e-3, 4e-3};
+    struct chain *c = &r->chain;
+    struct plan_limits *l = &r->limits;
+
+    memset(l, 0, sizeof(*l));
+    l->axes = 7;
+    l->cycle_s = cycles_s[(unsigned)chain_between(c, 0, 4)];
+    l->chord_error_max_mm = chain_decades(c, -4, -2);
+    l->law = (enum law)chain_between(c, 0, 3);
+    l->landing = chain_between(c, 0, 1) < 0.8 ? LANDING_SPAN : LANDING_BLOCK;
+    for (int i = 0; i < CHAIN_AXES; i++) {
+        l->velocity_mm_s[i] = chain_decades(c, 1.3, 2.7);
+        l->acceleration_mm_s2[i] = chain_decades(c, 2.3, 4.0);
+        l->jerk_mm_s3[i] = chain_decades(c, 3.7, 6.0);
+    }
+}
+
+/* Steps, ramps, holds, feed override 0, rapid override 0; then nothing for a while. */
+static void next_event(struct run *r, uint64_t cycle)
+{
+    struct chain *c = &r->chain;
+    struct schedule *s = &r->schedule;
+    const double what = chain_between(c, 0, 1);
+
+    s->until = cycle + 1 + (uint64_t)chain_decades(c, 0, 2.8);
+    s->now.hold = what < 0.15;
+    s->now.rapid_ratio = what > 0.9 ? 0.0 : chain_between(c, 0.01, 1.0);
+    s->target = what > 0.8 && what < 0.9 ? 0.0 : chain_between(c, 0.01, 1.2);
+    s->change = what > 0.5 ? 1.2 : chain_decades(c, -4, -1);
+}
+
+static void follow_schedule(struct run *r, uint64_t cycle)
+{
+    struct schedule *s = &r->schedule;
+
+    if (cycle >= s->until) {
+        next_event(r, cycle);
+    }
+    s->now.feed_ratio += maths_clamp(s->target - s->now.feed_ratio, -s->change, s->change);
+    const bool held = s->now.hold || s->now.feed_ratio <= 0.0 || s->now.rapid_ratio <= 0.0;
+
+    s->free = held ? 0 : s->free + 1;
+}
+
+static void push_next(struct run *r)
+{
+    struct move m;
+
+    if (r->pushed < r->moves) {
+        m = chain_next(&r->chain, r->family, r->pushed);
+        r->pushed++;
+        path_push(&path, &m);
+        return;
+    }
+    memset(&m, 0, sizeof(m));
+    m.kind = MOVE_END;
+    path_push(&path, &m);
+    path_finish(&path);
+}
+
+static void plan(struct run *r)
+{
+    if (motion_wanted(&motion) == NULL) {
+        return;
+    }
+    while (!path.finished && path_has_room(&path) && motion_ahead(&motion) < r->look_ahead) {
+        push_next(r);
+    }
+    motion_build(&motion);
+}
+
+static double distance(const struct point *a, const struct point *b)
+{
+    double most = 0.0;
+
+    for (int i = 0; i < CHAIN_AXES; i++) {
+        most = maths_max(most, maths_abs(a->at[i] - b->at[i]));
+    }
+    return most;
+}
+
+/* The axes have just come to rest where no block ends, and nothing has been held for long. */
+static void judge_rest(struct run *r, const struct cycle_record *record)
+{
+    const bool rests = motion.lead.feed == 0.0 && motion.lag == 0.0;
+
+    if (rests && !r->rested && !record->landed && r->look_ahead >= LOOK_AHEAD_ENOUGH &&
+        r->schedule.free > HOLD_IS_OVER_CYCLES) {
+        r->unplanned++;
+        r->unplanned_cycle = record->cycle;
+    }
+    r->rested = rests;
+}
+
+static void judge(struct run *r, const struct cycle_record *record)
+{
+    chain_judge_setpoint(&r->judge, &r->limits, &record->cmd);
+    judge_rest(r, record);
+    if (record->landed) {
+        const double off_mm = distance(&record->cmd, &motion_block(&motion)->move.end);
+
+        r->landing_mm = maths_max(r->landing_mm, off_mm);
+    }
+}
+
+static void set_up_run(struct run *r, unsigned seed)
+{
+    static const uint32_t look_ahead[] = {256, 256, 64, 8, 2};
+
+    memset(r, 0, sizeof(*r));
+    r->chain.seed = UINT64_C(0x9e3779b97f4a7c15) * seed;
+    random_machine(r);
+    r->family = (enum chain_family)chain_between(&r->chain, 0, CHAIN_MIXED + 1);
+    r->look_ahead = look_ahead[(unsigned)chain_between(&r->chain, 0, 5)];
+    r->proportional = chain_between(&r->chain, 0, 1) < 0.25;
+    r->moves = (unsigned)chain_decades(&r->chain, 0.5, 2);
+    r->schedule.now = (struct motion_operator){.feed_ratio = 1.0, .rapid_ratio = 1.0};
+    r->schedule.target = 1.0;
+}
+
+static enum motion_result run_program(struct run *r)
+{
+    const struct point start = {{0}};
+    struct cycle_record record;
+    enum motion_result result;
+
+    path_init(&path, &r->limits, &start);
+    motion_init(&motion, &path, &start, r->proportional);
+    do {
+        follow_schedule(r, motion.cycles);
+        plan(r);
+        result = motion_cycle(&motion, &r->schedule.now, &record);
+        if (result == MOTION_CYCLE) {
+            judge(r, &record);
+        }
+    } while (result == MOTION_CYCLE && motion.cycles < CYCLES_MAX);
+    r->landing_mm = maths_max(r->landing_mm, distance(&r->chain.at, &record.cmd));
+    return result;
+}
+
+static void check_program(unsigned seed)
+{
+    char what[200];
+
+    set_up_run(&run, seed);
+    const enum motion_result result = run_program(&run);
+
+    (void)snprintf(what, sizeof(what),
+                   "seed %u: v %.6f, a %.6f, j %.6f of the limits, ends missed by %.3g mm, "
+                   "%u unplanned stops, the last in cycle %llu",
+                   seed, run.judge.velocity, run.judge.acceleration, run.judge.jerk, run.landing_mm,
+                   run.unplanned, (unsigned long long)run.unplanned_cycle);
+    TEST_ASSERT_EQUAL_MESSAGE(MOTION_DONE, result, what);
+    TEST_ASSERT_TRUE_MESSAGE(run.judge.velocity <= 1.0001, what);
+    TEST_ASSERT_TRUE_MESSAGE(run.judge.acceleration <= 1.0001, what);
+    TEST_ASSERT_TRUE_MESSAGE(run.judge.jerk <= 1.001, what);
+    TEST_ASSERT_TRUE_MESSAGE(run.landing_mm <= 1e-9, what);
+    TEST_ASSERT_TRUE_MESSAGE(run.unplanned == 0, what);
+}
+
+static void test_whatever_the_operator_does_the_limits_hold(void)
+{
+    for (unsigned seed = first_seed; seed < first_seed + programs; seed++) {
+        check_program(seed);
+    }
+}
+
+int main(int argc, char **argv)
+{
+    if (argc > 1) {
+        programs = (unsigned)strtoul(argv[1], NULL, 10);
+    }
+    if (argc > 2) {
+        first_seed = (unsigned)strtoul(argv[2], NULL, 10);
+    }
+    UNITY_BEGIN();
+    RUN_TEST(test_whatever_the_operator_does_the_limits_hold);
+    return UNITY_END();
+}

@@ -1,0 +1,106 @@
+"""takt bore: its programs run, carry the figures of the page, and what cannot be milled is refused."""
+
+import os
+import re
+import xml.etree.ElementTree
+
+import takt_test as t
+
+HOLE = "--hole", "200", "--cutter", "40"
+ROUGH = (*HOLE, "--step", "4", "--allowance", "1")
+SMALL = "--hole", "30", "--cutter", "10", "--step", "2.5", "--allowance", "0.2"
+
+
+def bore(*options):
+    status, out, err = t.run("bore", *options)
+    t.check(status == 0 and err == "", f"bore {' '.join(options)}", status, err)
+    return out
+
+
+def summary_of(program, *options):
+    t.write("bore.ngc", program)
+    status, _, err = t.run("run", "bore.ngc", "--json", "run.json", "--quiet", *options)
+    t.check(status == 0, "every check held", err, program[:400])
+    return t.load_json("run.json")
+
+
+# The page's numbers.
+rough = bore(*ROUGH)
+for figure in ("R 79,", "n 20,", "H 3.95,", "r 0.628662025,", "involute 4963.71639 mm", "circle 496.371639 mm"):
+    t.check(figure in rough, f"roughing: {figure}", rough)
+t.check("\nG3.2 X0 Y-79 I-0.628662025 J0 R0.628662025\nG3 X0 Y-79 I0 J79\n" in rough, "roughing moves", rough)
+t.check("S" not in rough.split("G94")[1] and "M3" not in rough, "no spindle words unless asked for", rough)
+finish = bore(*HOLE, "--pass", "finishing", "--start", "-40,40", "--turns", "2")
+for figure in ("R 80,", "r 6.36619772,", "psi 0.946567", "phi0 9.0448", "involute 242.2497", "circle 502.6548", "57.58107"):
+    t.check(figure in finish, f"finishing: {figure}", finish)
+t.check("G0 X-40 Y40\n" in finish and "G3.2 X64.9131188" in finish and "Y-46.7577480" in finish, "finishing moves", finish)
+for other in (("--start-radius", "57.5810791999"), ("--start-length", "242.2497265")):
+    same = bore(*HOLE, "--pass", "finishing", *other, "--turns", "2")
+    t.check("phi0 9.044814" in same, f"the same approach by {other[0]}", same)
+
+# The programs run. Lengths: per depth, and lines and arcs as long as what they replace.
+summary = summary_of(bore(*SMALL))
+length = float(re.search(r"involute ([\d.]+) mm", bore(*SMALL))[1])
+circle = 2 * 3.141592653589793 * 9.8
+t.check(abs(summary["path_length_mm"] - length - circle - 9.8) < 1e-6, "spiral, circle and back to the centre", summary["path_length_mm"])
+both = bore(*SMALL, "--pass", "both", "--depth", "7", "--depth-step", "3", "--spindle", "8000", "--feed", "1200", "--plunge", "200")
+t.check(both.count("G3.2") == 9, "three depths: roughing out, finishing out and in", both)
+t.check(re.findall(r"G1 Z(-?[\d.]+) F200", both) == ["-2.333333333", "-4.666666667", "-7"] * 2, "equal depths", both)
+t.check("M3 S8000\n" in both and both.endswith("G0 Z2\nM5\nM2\n") and "\nF1200\n" in both, "spindle and feed", both)
+exact = summary_of(both)
+for form in ("arcs", "lines"):
+    program = bore(*SMALL, "--pass", "both", "--depth", "7", "--depth-step", "3", "--as", form, "--tolerance", "0.001")
+    t.check("G3.2" not in program and ("G3 " in program) == (form == "arcs"), f"as {form}", program[:300])
+    summary = summary_of(program)
+    t.check(abs(summary["path_length_mm"] / exact["path_length_mm"] - 1) < 1e-3, f"as long as {form}", summary["path_length_mm"])
+
+# A file is written whole, or not at all.
+bore(*ROUGH, "-o", "rough.ngc")
+t.check(open("rough.ngc").read() == rough, "-o writes what standard output gets")
+bore(*ROUGH, "--output=again.ngc")
+t.check(open("again.ngc").read() == rough, "--output is the same")
+
+for words, said in (
+    (("--hole", "30"), "the cutter's diameter is 0 mm"),
+    (("--cutter", "30", "--step", "1"), "the hole's diameter is 0 mm"),
+    (("--hole", "30", "--cutter", "30", "--step", "1"), "not smaller than the hole"),
+    (("--hole", "-30", "--cutter", "3", "--step", "1"), "--hole -30"),
+    (("--hole", "30", "--cutter", "3", "--step", "0"), "the radial step is 0 mm"),
+    (("--hole", "30", "--cutter", "3", "--step", "-1"), "--step -1"),
+    (("--hole", "30", "--cutter", "3", "--step", "x"), "--step x"),
+    (("--hole", "30", "--cutter", "10", "--step", "1", "--allowance", "10"), "leaves nothing to mill"),
+    ((*HOLE, "--pass", "finishing", "--start", "80,0"), "must be inside the circle of 80 mm"),
+    ((*HOLE, "--pass", "finishing", "--start", "8"), "--start 8: X,Y"),
+    ((*HOLE, "--pass", "finishing", "--start", "8,"), "--start 8,: X,Y"),
+    ((*HOLE, "--pass", "finishing", "--start", "8,9x"), "--start 8,9x: X,Y"),
+    ((*HOLE, "--pass", "finishing", "--start", "nan,0"), "--start nan,0: X,Y"),
+    ((*HOLE, "--pass", "finishing", "--turns", "1.5"), "--turns 1.5"),
+    ((*HOLE, "--pass", "finishing", "--start", "1,1", "--start-radius", "9"), "only one of"),
+    ((*ROUGH, "--start", "1,1"), "of the finishing pass"),
+    ((*ROUGH, "--pass", "rough"), "--pass rough: roughing, finishing or both"),
+    ((*ROUGH, "--as", "spline"), "--as spline: involute, arcs or lines"),
+    ((*ROUGH, "--as", "lines", "--tolerance", "1e-9"), "the tolerance is 1e-09 mm"),
+    ((*ROUGH, "--depth-step", "2"), "needs --depth"),
+    ((*ROUGH, "--pass", "both", "--compare"), "--compare is about roughing"),
+    ((*ROUGH, "rough.ngc"), "one argument too many"),
+):
+    status, out, err = t.run("bore", *words, "-o", "none.ngc")
+    t.check(status == 2 and out == "" and said in err, f"bore {' '.join(words)}: refused", status, out, err)
+    t.check(not os.path.exists("none.ngc"), "and nothing written")
+t.check(t.run("bore", *ROUGH, "-o", "no/such/folder/x.ngc")[0] == 3, "a file that cannot be created")
+
+# Side by side, within the limits of the machine.
+out = bore(*SMALL, "--feed", "6000", "--compare", "-o", "spirals.svg", "--set", "axis.X.max_jerk_mm_s3=30000")
+rows = re.findall(r"^  (.+?)  +([\d.]+) +([\d.]+) +([\d.]+) +([\d.]+) % +([\d.]+) +([\d.]+) %$", out, re.M)
+t.check(len(rows) == 4 and rows[0][0] == "involute", "four spirals", out)
+for name, time_s, _, acceleration, _, jerk, percent in rows:
+    t.check(float(time_s) > 0 and float(acceleration) <= 1000.1 and float(jerk) <= 50050, f"{name}: within the limits", out)
+    t.check(abs(float(jerk) / 300 - float(percent)) < 0.1, f"{name}: per cent of the smaller limit", out)
+length = float(re.search(r"involute ([\d.]+) mm", bore(*SMALL))[1]) + circle
+t.check(abs(float(rows[0][2]) / length - 1) < 1e-3, "the involute's length", rows[0], length)
+t.check("15 mm" in out.splitlines()[-1], "what a helix would need", out)
+picture = xml.etree.ElementTree.parse("spirals.svg").getroot()
+t.check(picture.tag.endswith("svg") and len(picture.findall(".//{*}polyline")) == 16, "the picture: four paths, twelve curves")
+status, out, err = t.run("bore", *SMALL, "--compare", "-o", "-")
+t.check(status == 0 and out.startswith("<svg") and "Archimedean" in err, "a picture on standard output", err)
+t.finish()

@@ -1,0 +1,56 @@
+"""What the tests of buses share: virtual drives as a process of their own, and a controller that comes to them."""
+
+import os
+import re
+import subprocess
+
+import takt_test as t
+
+# A few seconds of motion of all axes, with stops and an arc.
+PROGRAM = t.write("pair.ngc", "G21 G90 G17 F3000\nG1 X20 Y10 Z-2\nG2 X30 Y20 I0 J10\nG4 P0.05\nG0 X0 Y0 Z5\nG1 X3 F200\nM2\n")
+
+
+class Drives:
+    """`takt drives` on a bus; address is where a controller finds them."""
+
+    def __init__(self, bus, *options):
+        self.process = subprocess.Popen(
+            [t.TAKT, "drives", "--bus", bus, *options], stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True
+        )
+        first = self.process.stdout.readline()
+        found = re.search(r"bus (\S+)", first)
+        t.check(found, "the drives say where they are", bus, first)
+        self.address = found.group(1) if found else ""
+
+    def stop(self):
+        self.process.terminate()
+        rest = self.process.stdout.read()
+        t.check(self.process.wait() == 0, "the drives end well when asked to", rest)
+        return rest
+
+
+def run_controller(name, *options, program=PROGRAM):
+    """Runs the program; returns the exit status, the summary (None if there is none), and what went to stderr."""
+    json, trace = name + ".json", name + ".csv"
+    status, _, err = t.run("run", program, "--json", json, "--trace", trace, "--quiet", *options)
+    return status, t.load_json(json) if os.path.exists(json) else None, err
+
+
+def compare(name, embedded, summary):
+    """Setpoints and everything the drives have reported are the same to the last digit."""
+    t.check(summary["setpoint_digest"] == embedded["setpoint_digest"], name + ": same setpoints", summary["setpoint_digest"])
+    t.check(summary["axes"] == embedded["axes"], name + ": same figures of all axes")
+    with open("embedded.csv", "rb") as a, open(name + ".csv", "rb") as b:
+        t.check(a.read() == b.read(), name + ": same trace, actual positions included")
+
+
+def check_pair(name, bus, prefix, *options):
+    """Separate drives on a bus, in lockstep, do what those of the embedded bus do."""
+    status, embedded, err = run_controller("embedded")
+    t.check(status == 0, "the embedded bus runs the program", err)
+    drives = Drives(bus)
+    status, summary, err = run_controller(name, "--bus", prefix + drives.address, "--drives", "external", *options)
+    if t.check(status == 0, name + ": the run completes and holds", err) and summary:
+        compare(name, embedded, summary)
+    log = drives.stop()
+    t.check(log.count("operation enabled") >= 3, name + ": all drives were enabled", log)

@@ -1,0 +1,142 @@
+/*
+ * Nodes that answer a master under test as CiA 301 wants: boot-up after a reset, SDO responses. What they answer can
+ * be set; what they are told is kept. They send nothing else by themselves.
+ */
+#ifndef TAKT_TESTS_FAKE_NODES_H
+#define TAKT_TESTS_FAKE_NODES_H
+
+#include "canopen/little_endian.h"
+#include "canopen/nmt.h"
+#include "canopen/sdo.h"
+
+#include <string.h>
+
+#define FAKE_NODES_PENDING 128
+#define FAKE_NODES_WRITTEN 512
+#define FAKE_NODES_RULES   8
+
+/* An answer out of the ordinary. node 0: every node's. */
+struct fake_rule {
+    uint8_t node;
+    uint32_t object;
+    uint32_t value;      /* of a reading request */
+    uint32_t abort_code; /* not 0: the request is aborted */
+    unsigned silent;     /* so many requests are not answered */
+};
+
+struct fake_written {
+    uint8_t node;
+    uint32_t object, value;
+    uint8_t length;
+};
+
+struct fake_nodes {
+    unsigned pending_count, pending_read, written_count, rule_count;
+    struct can_frame pending[FAKE_NODES_PENDING]; /* for the master to receive */
+    struct fake_written written[FAKE_NODES_WRITTEN];
+    struct fake_rule rule[FAKE_NODES_RULES];
+    uint8_t mode[128]; /* shown as object 6061: what RPDO1 said */
+    uint8_t mute;      /* this node says nothing; 0: none */
+    unsigned resets[128], starts[128];
+};
+
+static inline struct can_frame *fake_nodes_add(struct fake_nodes *nodes)
+{
+    return &nodes->pending[nodes->pending_count++ % FAKE_NODES_PENDING];
+}
+
+static inline uint32_t fake_nodes_value(const struct fake_nodes *nodes, uint8_t node,
+                                        uint32_t object)
+{
+    switch (sdo_index(object)) {
+    case 0x1000:
+        return 0x00020192;
+    case 0x6502:
+        return 0xE1;
+    case 0x6061:
+        return nodes->mode[node];
+    default:
+        return 0;
+    }
+}
+
+static inline struct fake_rule *fake_nodes_rule(struct fake_nodes *nodes, uint8_t node,
+                                                uint32_t object)
+{
+    for (unsigned i = 0; i < nodes->rule_count; i++)
+        if ((nodes->rule[i].node == 0 || nodes->rule[i].node == node) &&
+            nodes->rule[i].object == object)
+            return &nodes->rule[i];
+    return NULL;
+}
+
+static inline void fake_nodes_keep(struct fake_nodes *nodes, uint8_t node, uint32_t object,
+                                   const struct can_frame *frame)
+{
+    nodes->written[nodes->written_count++ % FAKE_NODES_WRITTEN] =
+        (struct fake_written){node, object, little_endian_read32(frame->data + 4),
+                              (uint8_t)(4 - sdo_unused_expedited(frame->data[0]))};
+}
+
+static inline void fake_nodes_answer(struct fake_nodes *nodes, const struct can_frame *frame)
+{
+    uint8_t node = (uint8_t)(frame->id - SDO_REQUEST_FUNCTION);
+    uint32_t object = sdo_read_object(frame);
+    struct fake_rule *rule = fake_nodes_rule(nodes, node, object);
+    bool is_upload = (frame->data[0] & SDO_COMMAND_MASK) == SDO_REQUEST_UPLOAD;
+    uint32_t value = rule ? rule->value : fake_nodes_value(nodes, node, object);
+    if (frame->data[0] == SDO_ABORT)
+        return;
+    if (rule && rule->silent > 0) {
+        rule->silent--;
+        return;
+    }
+    if (rule && rule->abort_code != 0) {
+        sdo_write_abort(fake_nodes_add(nodes), SDO_RESPONSE_FUNCTION, node, object,
+                        rule->abort_code);
+        return;
+    }
+    if (!is_upload)
+        fake_nodes_keep(nodes, node, object, frame);
+    sdo_write_initiate(fake_nodes_add(nodes), (uint16_t)(SDO_RESPONSE_FUNCTION + node),
+                       is_upload ? SDO_RESPONSE_UPLOAD | SDO_EXPEDITED | SDO_SIZE_GIVEN
+                                 : SDO_RESPONSE_DOWNLOAD,
+                       object, is_upload ? value : 0);
+}
+
+/* A frame of the master. */
+static inline void fake_nodes_take(struct fake_nodes *nodes, const struct can_frame *frame)
+{
+    uint8_t node = (uint8_t)(frame->id & 0x7F);
+    if (frame->id == NMT_COMMAND_COB_ID) {
+        node = frame->data[1];
+        nodes->resets[node] += frame->data[0] == NMT_RESET_COMMUNICATION;
+        nodes->starts[node] += frame->data[0] == NMT_START;
+        if (frame->data[0] == NMT_RESET_COMMUNICATION && node != nodes->mute)
+            nmt_write_heartbeat(fake_nodes_add(nodes), node, NMT_BOOTED);
+    } else if (node != nodes->mute && (frame->id & 0x780) == SDO_REQUEST_FUNCTION) {
+        fake_nodes_answer(nodes, frame);
+    } else if ((frame->id & 0x780) == 0x200) {
+        nodes->mode[node] = frame->data[2];
+    }
+}
+
+static inline bool fake_nodes_receive(struct fake_nodes *nodes, struct can_frame *frame)
+{
+    if (nodes->pending_read == nodes->pending_count)
+        return false;
+    *frame = nodes->pending[nodes->pending_read++ % FAKE_NODES_PENDING];
+    return true;
+}
+
+/* The value a node has been told last for an object; fails when it has not. */
+static inline const struct fake_written *fake_nodes_told(const struct fake_nodes *nodes,
+                                                         uint8_t node, uint32_t object)
+{
+    for (unsigned i = nodes->written_count; i-- > 0;)
+        if (nodes->written[i].node == node && nodes->written[i].object == object)
+            return &nodes->written[i];
+    return NULL;
+}
+
+#endif

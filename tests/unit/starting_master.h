@@ -1,0 +1,139 @@
+/*
+ * A master at the start of its drives, against fake nodes that do what their controlwords say: shared by the tests of
+ * the start (test_drive_boot.c) and of homing (test_drive_homing.c).
+ */
+#ifndef TAKT_TESTS_STARTING_MASTER_H
+#define TAKT_TESTS_STARTING_MASTER_H
+
+#include "canopen/cia402.h"
+#include "drive/drives.h"
+#include "fake_nodes.h"
+#include "unity.h"
+
+#define DRIVES       3
+#define START_CYCLES 2000
+
+static struct fake_nodes nodes;
+static struct drives_config config;
+static struct drives drives;
+static unsigned cycles_run, frames_sent;
+static enum cia402_state shown[128]; /* by the statusword of a node that has been started */
+static uint16_t shown_bits[128];
+static uint16_t control[128]; /* last controlword of a node */
+static int32_t shown_inc;     /* actual position of all */
+static int32_t target_of_3;   /* last target of node 3 */
+
+static inline bool port_send(void *context, const struct can_frame *frame)
+{
+    (void)context;
+    frames_sent++;
+    fake_nodes_take(&nodes, frame);
+    if ((frame->id & 0x780) == 0x200)
+        control[frame->id & 0x7F] = little_endian_read16(frame->data);
+    if (frame->id == 0x303)
+        target_of_3 = (int32_t)little_endian_read32(frame->data);
+    return true;
+}
+
+static inline bool port_receive(void *context, struct can_frame *frame)
+{
+    (void)context;
+    return fake_nodes_receive(&nodes, frame);
+}
+
+static const struct can_port port = {.send = port_send, .receive = port_receive};
+
+/* Drives that do what the controlword says. */
+static inline void put_statuses(void)
+{
+    for (unsigned i = 0; i < config.count; i++) {
+        unsigned node = config.axis[i].node;
+        struct can_frame *frame;
+        if (nodes.starts[node] == 0 || node == nodes.mute)
+            continue;
+        shown[node] = cia402_next_state(shown[node], control[node], 0);
+        if (cycles_run % 100 == node)
+            nmt_write_heartbeat(fake_nodes_add(&nodes), (uint8_t)node, NMT_OPERATIONAL);
+        frame = fake_nodes_add(&nodes);
+        *frame = (struct can_frame){.id = (uint16_t)(PDO_TPDO1_FUNCTION + node), .length = 6};
+        little_endian_write16(frame->data,
+                              (uint16_t)(cia402_statusword(shown[node]) | shown_bits[node]));
+        little_endian_write32(frame->data + 2, (uint32_t)shown_inc);
+    }
+}
+
+static inline void cycle(void)
+{
+    static const struct point nowhere;
+    put_statuses();
+    drives_receive(&drives, &port);
+    drives_sync(&drives, &port);
+    drives_send(&drives, &port, &nowhere);
+    cycles_run++;
+}
+
+static inline void run_until(enum drives_state state)
+{
+    while (drives_get_state(&drives) != state && cycles_run < 2 * START_CYCLES)
+        cycle();
+    TEST_ASSERT_EQUAL_INT(state, drives_get_state(&drives));
+}
+
+static inline void run_start(void)
+{
+    drives_init(&drives, &config);
+    while (drives_get_state(&drives) == DRIVES_STARTING && cycles_run < 2 * START_CYCLES)
+        cycle();
+}
+
+void setUp(void)
+{
+    memset(&nodes, 0, sizeof nodes);
+    memset(shown_bits, 0, sizeof shown_bits);
+    memset(control, 0, sizeof control);
+    for (unsigned i = 0; i < 128; i++)
+        shown[i] = CIA402_SWITCH_ON_DISABLED;
+    cycles_run = frames_sent = 0;
+    shown_inc = 0;
+    config = (struct drives_config){
+        .count = DRIVES,
+        .cycle_us = 1000,
+        .bitrate = 1000000,
+        .controller_node = 127,
+        .heartbeat_ms = 100,
+        .start_timeout_cycles = START_CYCLES,
+        .answer_timeout_cycles = 20,
+        .sdo_timeout_cycles = 10,
+        .brake_timeout_cycles = 100,
+    };
+    for (unsigned i = 0; i < DRIVES; i++)
+        config.axis[i] = (struct drives_config_axis){.axis = (enum axis)(AXIS_X + (int)i),
+                                                     .node = (uint8_t)(i + 1),
+                                                     .increments_per_mm = 1000,
+                                                     .following_error_max_mm = 0.5};
+}
+
+void tearDown(void)
+{
+}
+
+static inline void set_rule(struct fake_rule rule)
+{
+    nodes.rule[nodes.rule_count++] = rule;
+}
+
+static inline void assert_text(const char *expected)
+{
+    char text[DIAGNOSTIC_TEXT_MAX];
+    (void)diagnostic_text(drives_get_fault(&drives), text);
+    TEST_ASSERT_EQUAL_STRING(expected, text);
+}
+
+static inline void assert_told(uint8_t node, uint32_t object, uint32_t value)
+{
+    const struct fake_written *told = fake_nodes_told(&nodes, node, object);
+    TEST_ASSERT_NOT_NULL(told);
+    TEST_ASSERT_EQUAL_HEX32(value, told->value);
+}
+
+#endif

@@ -1,0 +1,313 @@
+/*
+ * The start of the drives: what the master asks and tells the nodes before the first setpoint, and what it makes of
+ * their answers.
+ */
+#include "starting_master.h"
+
+static void assert_refused(enum takt_error error, const char *text)
+{
+    run_start();
+    TEST_ASSERT_EQUAL_INT(error, drives_get_fault(&drives)->code);
+    assert_text(text);
+    run_until(DRIVES_FAULTED);
+    for (unsigned node = 1; node <= DRIVES; node++)
+        TEST_ASSERT_NOT_EQUAL(CIA402_ENABLED, shown[node]);
+}
+
+static void test_drives_that_answer_are_enabled(void)
+{
+    run_start();
+    TEST_ASSERT_EQUAL_INT(DRIVES_ENABLED, drives_get_state(&drives));
+    TEST_ASSERT_TRUE(cycles_run < 250);
+    for (unsigned node = 1; node <= DRIVES; node++) {
+        TEST_ASSERT_EQUAL_UINT(1, nodes.resets[node]);
+        TEST_ASSERT_EQUAL_UINT(1, nodes.starts[node]);
+        TEST_ASSERT_EQUAL_UINT(8, nodes.mode[node]);
+    }
+}
+
+static void test_nodes_are_started_one_a_cycle_so_that_their_event_timers_are_staggered(void)
+{
+    drives_init(&drives, &config);
+    while (nodes.starts[3] == 0)
+        cycle();
+    TEST_ASSERT_EQUAL_UINT(0, nodes.starts[2]);
+    cycle();
+    TEST_ASSERT_EQUAL_UINT(1, nodes.starts[2]);
+    TEST_ASSERT_EQUAL_UINT(0, nodes.starts[1]);
+    cycle();
+    TEST_ASSERT_EQUAL_UINT(1, nodes.starts[1]);
+}
+
+static void test_nothing_is_asked_before_all_have_booted(void)
+{
+    nodes.mute = 3;
+    drives_init(&drives, &config);
+    for (unsigned i = 0; i < 400; i++)
+        cycle();
+    TEST_ASSERT_EQUAL_UINT(0, nodes.written_count);
+    nodes.mute = 0;
+    run_until(DRIVES_ENABLED);
+    TEST_ASSERT_EQUAL_UINT(2, nodes.resets[3]);
+    TEST_ASSERT_EQUAL_UINT(1, nodes.resets[1]);
+}
+
+static void test_a_node_that_never_boots_is_named(void)
+{
+    nodes.mute = 2;
+    assert_refused(TAKT_ERROR_DRIVE_ABSENT,
+                   "the drive of axis Y (node 2) has not booted within 2 s");
+}
+
+/* Writes of a node to the objects of one PDO, in order. */
+static unsigned find_writes(uint8_t node, uint16_t communication, uint16_t mapping,
+                            struct fake_written found[16])
+{
+    unsigned count = 0;
+    for (unsigned i = 0; i < nodes.written_count; i++) {
+        uint16_t index = sdo_index(nodes.written[i].object);
+        if (nodes.written[i].node == node && (index == communication || index == mapping))
+            found[count++ & 15] = nodes.written[i];
+    }
+    return count;
+}
+
+static void assert_writes(uint8_t node, uint16_t communication, uint16_t mapping,
+                          const struct fake_written *expected, unsigned count)
+{
+    struct fake_written found[16] = {{0}};
+    TEST_ASSERT_EQUAL_UINT(count, find_writes(node, communication, mapping, found));
+    for (unsigned i = 0; i < count; i++) {
+        TEST_ASSERT_EQUAL_HEX32(expected[i].object, found[i].object);
+        TEST_ASSERT_EQUAL_HEX32(expected[i].value, found[i].value);
+        TEST_ASSERT_EQUAL_UINT(expected[i].length, found[i].length);
+    }
+}
+
+static void test_two_axes_are_paired_in_a_frame_by_dummies(void)
+{
+    const struct fake_written first[] = {
+        {1, SDO_OBJECT(0x1401, 1), 0x80000301, 4}, {1, SDO_OBJECT(0x1401, 2), 1, 1},
+        {1, SDO_OBJECT(0x1601, 0), 0, 1},          {1, SDO_OBJECT(0x1601, 1), 0x607A0020, 4},
+        {1, SDO_OBJECT(0x1601, 2), 0x00070020, 4}, {1, SDO_OBJECT(0x1601, 0), 2, 1},
+        {1, SDO_OBJECT(0x1401, 1), 0x301, 4}};
+    const struct fake_written second[] = {
+        {2, SDO_OBJECT(0x1401, 1), 0x80000301, 4}, {2, SDO_OBJECT(0x1401, 2), 1, 1},
+        {2, SDO_OBJECT(0x1601, 0), 0, 1},          {2, SDO_OBJECT(0x1601, 1), 0x00070020, 4},
+        {2, SDO_OBJECT(0x1601, 2), 0x607A0020, 4}, {2, SDO_OBJECT(0x1601, 0), 2, 1},
+        {2, SDO_OBJECT(0x1401, 1), 0x301, 4}};
+    const struct fake_written alone[] = {
+        {3, SDO_OBJECT(0x1401, 1), 0x80000303, 4}, {3, SDO_OBJECT(0x1401, 2), 1, 1},
+        {3, SDO_OBJECT(0x1601, 0), 0, 1},          {3, SDO_OBJECT(0x1601, 1), 0x607A0020, 4},
+        {3, SDO_OBJECT(0x1601, 0), 1, 1},          {3, SDO_OBJECT(0x1401, 1), 0x303, 4}};
+    run_start();
+    assert_writes(1, 0x1401, 0x1601, first, 7);
+    assert_writes(2, 0x1401, 0x1601, second, 7);
+    assert_writes(3, 0x1401, 0x1601, alone, 6);
+}
+
+static void test_the_event_timer_of_tpdo2_is_set_while_it_is_not_valid(void)
+{
+    const struct fake_written tpdo2[] = {
+        {2, SDO_OBJECT(0x1801, 1), 0xC0000282, 4}, {2, SDO_OBJECT(0x1801, 2), 255, 1},
+        {2, SDO_OBJECT(0x1A01, 0), 0, 1},          {2, SDO_OBJECT(0x1A01, 1), 0x603F0010, 4},
+        {2, SDO_OBJECT(0x1A01, 2), 0x60F40020, 4}, {2, SDO_OBJECT(0x1A01, 0), 2, 1},
+        {2, SDO_OBJECT(0x1801, 5), 100, 2},        {2, SDO_OBJECT(0x1801, 1), 0x40000282, 4}};
+    run_start();
+    assert_writes(2, 0x1801, 0x1A01, tpdo2, 8);
+}
+
+static void test_heartbeats_cycle_and_stops_are_configured(void)
+{
+    run_start();
+    for (uint8_t node = 1; node <= DRIVES; node++) {
+        assert_told(node, SDO_OBJECT(0x1017, 0), 100);
+        assert_told(node, SDO_OBJECT(0x1016, 1), 127u << 16 | 300);
+        assert_told(node, SDO_OBJECT(0x1006, 0), 1000);
+        assert_told(node, SDO_OBJECT(0x60C2, 1), 1);
+        assert_told(node, SDO_OBJECT(0x60C2, 2), 0xFD);
+        assert_told(node, SDO_OBJECT(0x605A, 0), 2);
+        assert_told(node, SDO_OBJECT(0x6007, 0), 3);
+    }
+}
+
+static void test_periods_of_any_length_are_told_as_value_and_power_of_ten(void)
+{
+    static const uint32_t periods[][3] = {
+        {10000, 1, 0xFE}, {2000, 2, 0xFD}, {1500, 15, 0xFC}, {250, 25, 0xFB}, {125, 125, 0xFA}};
+    for (unsigned i = 0; i < sizeof periods / sizeof periods[0]; i++) {
+        setUp();
+        config.cycle_us = periods[i][0];
+        config.bitrate = 10000000;
+        config.count = 1;
+        run_start();
+        assert_told(1, SDO_OBJECT(0x60C2, 1), periods[i][1]);
+        assert_told(1, SDO_OBJECT(0x60C2, 2), periods[i][2]);
+    }
+}
+
+static void test_pdos_that_are_not_used_are_switched_off(void)
+{
+    run_start();
+    assert_told(2, SDO_OBJECT(0x1402, 1), 0x80000402);
+    assert_told(2, SDO_OBJECT(0x1403, 1), 0x80000502);
+    assert_told(2, SDO_OBJECT(0x1802, 1), 0xC0000382);
+    assert_told(2, SDO_OBJECT(0x1803, 1), 0xC0000482);
+}
+
+static void test_a_node_of_another_profile_is_refused(void)
+{
+    set_rule((struct fake_rule){.node = 3, .object = SDO_OBJECT(0x1000, 0), .value = 0x00030191});
+    assert_refused(
+        TAKT_ERROR_DRIVE_TYPE,
+        "axis Z (node 3) has no CiA 402 drive: the device type, object 1000, is 00030191");
+}
+
+static void test_another_drive_than_the_machine_file_names_is_refused(void)
+{
+    config.axis[1].identity = (struct drives_identity){.vendor = 0x11, .product = 0x402};
+    set_rule((struct fake_rule){.object = SDO_OBJECT(0x1018, 1), .value = 0x11});
+    set_rule((struct fake_rule){.object = SDO_OBJECT(0x1018, 2), .value = 0x403});
+    assert_refused(TAKT_ERROR_DRIVE_IDENTITY,
+                   "axis Y (node 2) has another drive than the machine file says: its product "
+                   "code, object 1018:02, is 0403");
+}
+
+static void test_the_drive_the_machine_file_names_is_taken(void)
+{
+    config.axis[1].identity =
+        (struct drives_identity){.vendor = 0x11, .product = 0x402, .revision = 7, .serial = 8};
+    for (uint8_t sub = 1; sub <= 4; sub++)
+        set_rule((struct fake_rule){.object = SDO_OBJECT(0x1018, sub),
+                                    .value = sub == 1   ? 0x11
+                                             : sub == 2 ? 0x402
+                                                        : sub + 4u});
+    run_start();
+    TEST_ASSERT_EQUAL_INT(DRIVES_ENABLED, drives_get_state(&drives));
+}
+
+static void test_a_drive_without_the_cyclic_mode_is_refused(void)
+{
+    set_rule((struct fake_rule){.object = SDO_OBJECT(0x6502, 0), .value = 0x61});
+    assert_refused(TAKT_ERROR_DRIVE_MODES,
+                   "the drive of axis X (node 1) has no cyclic synchronous position mode: the "
+                   "modes, object 6502, are 0061");
+}
+
+static void test_what_a_drive_may_lack_is_passed_over(void)
+{
+    static const uint32_t lacking[] = {SDO_OBJECT(0x1018, 4), SDO_OBJECT(0x1016, 1),
+                                       SDO_OBJECT(0x1006, 0), SDO_OBJECT(0x60C2, 1),
+                                       SDO_OBJECT(0x605E, 0), SDO_OBJECT(0x1403, 1)};
+    for (unsigned i = 0; i < sizeof lacking / sizeof lacking[0]; i++)
+        set_rule(
+            (struct fake_rule){.object = lacking[i],
+                               .abort_code = i % 2 ? SDO_ABORT_NO_OBJECT : SDO_ABORT_NO_SUB_INDEX});
+    run_start();
+    TEST_ASSERT_EQUAL_INT(DRIVES_ENABLED, drives_get_state(&drives));
+}
+
+static void test_a_refusal_is_told_with_object_code_and_meaning(void)
+{
+    set_rule((struct fake_rule){
+        .node = 2, .object = SDO_OBJECT(0x1600, 1), .abort_code = SDO_ABORT_NOT_MAPPABLE});
+    assert_refused(TAKT_ERROR_DRIVE_REFUSES,
+                   "the drive of axis Y (node 2), object 1600:01, refuses with abort code "
+                   "06040041: object cannot be mapped into the PDO");
+}
+
+static void test_an_optional_object_that_is_refused_for_its_value_is_a_fault(void)
+{
+    set_rule((struct fake_rule){.object = SDO_OBJECT(0x1006, 0), .abort_code = SDO_ABORT_VALUE});
+    assert_refused(TAKT_ERROR_DRIVE_REFUSES,
+                   "the drive of axis X (node 1), object 1006:00, refuses with abort code "
+                   "06090030: invalid value");
+}
+
+static void test_a_request_without_an_answer_is_repeated_twice_and_no_more(void)
+{
+    set_rule((struct fake_rule){.object = SDO_OBJECT(0x1017, 0), .silent = 2});
+    run_start();
+    TEST_ASSERT_EQUAL_INT(DRIVES_ENABLED, drives_get_state(&drives));
+    setUp();
+    set_rule((struct fake_rule){.node = 3, .object = SDO_OBJECT(0x1017, 0), .silent = 3});
+    assert_refused(TAKT_ERROR_DRIVE_UNANSWERED,
+                   "the drive of axis Z (node 3), object 1017:00, does not answer within 10 ms");
+}
+
+static void test_a_drive_that_boots_while_it_is_configured_is_configured_again(void)
+{
+    drives_init(&drives, &config);
+    while (nodes.starts[1] == 0)
+        cycle();
+    unsigned written = nodes.written_count;
+    nmt_write_heartbeat(fake_nodes_add(&nodes), 2, NMT_BOOTED);
+    run_until(DRIVES_ENABLED);
+    TEST_ASSERT_EQUAL_UINT(2 * written, nodes.written_count);
+    TEST_ASSERT_EQUAL_UINT(2, nodes.starts[2]);
+    TEST_ASSERT_EQUAL_UINT(1, nodes.starts[1]);
+}
+
+static void test_a_drive_that_does_not_show_its_mode_is_refused(void)
+{
+    set_rule((struct fake_rule){.node = 2, .object = SDO_OBJECT(0x6061, 0), .value = 1});
+    run_start();
+    TEST_ASSERT_EQUAL_INT(TAKT_ERROR_DRIVE_MODE, drives_get_fault(&drives)->code);
+    assert_text("the drive of axis Y (node 2) does not take the mode 8");
+}
+
+static void test_a_bus_that_cannot_carry_the_cycle_is_refused_with_figures_before_any_frame(void)
+{
+    config.count = 4;
+    config.axis[3] = config.axis[2];
+    config.axis[3].node = 4;
+    config.bitrate = 500000;
+    drives_init(&drives, &config);
+    TEST_ASSERT_EQUAL_INT(DRIVES_FAULTED, drives_get_state(&drives));
+    TEST_ASSERT_EQUAL_INT(TAKT_ERROR_BUS_OVERLOAD, drives_get_fault(&drives)->code);
+    assert_text("the bus cannot carry a cycle: it takes 965 of 500 bits at worst, 193 percent");
+    TEST_ASSERT_EQUAL_UINT(0, frames_sent);
+}
+
+/* 55 + 10 n bits a frame: SYNC, pairs of targets, a status of each drive, a TPDO2 and a heartbeat. */
+static void test_the_load_is_that_of_the_worst_stuffed_frames(void)
+{
+    static const uint32_t bits[] = {55 + 95 + 115 + 180, 55 + 135 + 230 + 180,
+                                    55 + 135 + 95 + 345 + 180, 785 + 180};
+    struct drives_load load;
+    for (unsigned count = 1; count <= 4; count++) {
+        TEST_ASSERT_TRUE(drives_predict_load(count, 1000000, 1000, &load));
+        TEST_ASSERT_EQUAL_UINT32(bits[count - 1], load.bits);
+        TEST_ASSERT_EQUAL_UINT32(1000, load.capacity_bits);
+        TEST_ASSERT_TRUE(load.percent == bits[count - 1] / 10.0);
+    }
+    TEST_ASSERT_FALSE(drives_predict_load(6, 1000000, 1000, &load));
+    TEST_ASSERT_TRUE(drives_predict_load(6, 1000000, 2000, &load));
+}
+
+int main(void)
+{
+    UNITY_BEGIN();
+    RUN_TEST(test_drives_that_answer_are_enabled);
+    RUN_TEST(test_nodes_are_started_one_a_cycle_so_that_their_event_timers_are_staggered);
+    RUN_TEST(test_nothing_is_asked_before_all_have_booted);
+    RUN_TEST(test_a_node_that_never_boots_is_named);
+    RUN_TEST(test_two_axes_are_paired_in_a_frame_by_dummies);
+    RUN_TEST(test_the_event_timer_of_tpdo2_is_set_while_it_is_not_valid);
+    RUN_TEST(test_heartbeats_cycle_and_stops_are_configured);
+    RUN_TEST(test_periods_of_any_length_are_told_as_value_and_power_of_ten);
+    RUN_TEST(test_pdos_that_are_not_used_are_switched_off);
+    RUN_TEST(test_a_node_of_another_profile_is_refused);
+    RUN_TEST(test_another_drive_than_the_machine_file_names_is_refused);
+    RUN_TEST(test_the_drive_the_machine_file_names_is_taken);
+    RUN_TEST(test_a_drive_without_the_cyclic_mode_is_refused);
+    RUN_TEST(test_what_a_drive_may_lack_is_passed_over);
+    RUN_TEST(test_a_refusal_is_told_with_object_code_and_meaning);
+    RUN_TEST(test_an_optional_object_that_is_refused_for_its_value_is_a_fault);
+    RUN_TEST(test_a_request_without_an_answer_is_repeated_twice_and_no_more);
+    RUN_TEST(test_a_drive_that_boots_while_it_is_configured_is_configured_again);
+    RUN_TEST(test_a_drive_that_does_not_show_its_mode_is_refused);
+    RUN_TEST(test_a_bus_that_cannot_carry_the_cycle_is_refused_with_figures_before_any_frame);
+    RUN_TEST(test_the_load_is_that_of_the_worst_stuffed_frames);
+    return UNITY_END();
+}

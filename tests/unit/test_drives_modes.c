@@ -1,0 +1,558 @@
+/*
+ * Modes of operation of the drive: profile position, homing, interpolated and cyclic position, and
+ * what the option codes say of stopping. 1000 increments/mm, a cycle of 1 ms.
+ */
+#include "lone_drive.h"
+
+#include <math.h>
+
+#define PP  1
+#define HM  6
+#define IP  7
+#define CSP 8
+
+#define ENABLE 0x000F
+#define NEW    0x0010
+#define NOW    0x0020
+#define REL    0x0040
+#define HALT   0x0100
+
+#define REACHED 0x0400
+#define BIT_12  0x1000
+#define BIT_13  0x2000
+
+static struct lone_drive lone;
+
+void setUp(void)
+{
+    lone_set_default(&lone);
+    lone_start(&lone);
+}
+
+void tearDown(void)
+{
+}
+
+static double command_mm(void)
+{
+    return lone.drive.plant.command_mm;
+}
+
+static void set_target(int32_t target_inc)
+{
+    TEST_ASSERT_EQUAL_HEX32(0, lone_write(&lone, 0x607A, 0, 4, (uint32_t)target_inc));
+}
+
+/* A set-point as the profile has it: target, bit 4 up, acknowledged, bit 4 down. */
+static void go(int32_t target_inc, uint16_t bits)
+{
+    set_target(target_inc);
+    lone_control(&lone, ENABLE | NEW | bits, PP);
+    TEST_ASSERT_TRUE(lone_statusword(&lone) & BIT_12);
+    lone_control(&lone, ENABLE | bits, PP);
+}
+
+static unsigned cycles_until_reached(void)
+{
+    for (unsigned k = 1; k < 20000; k++) {
+        lone_step(&lone, 1);
+        if (lone_statusword(&lone) & REACHED)
+            return k;
+    }
+    TEST_FAIL_MESSAGE("the target is never reached");
+    return 0;
+}
+
+/* ---- Profile position ---- */
+
+/* 50 mm/s, 500 mm/s2 over 20 mm: v / a + s / v = 0.1 + 0.4 s. */
+static void test_a_profile_takes_the_time_of_its_trapezoid(void)
+{
+    lone_enable(&lone, PP);
+    go(20000, 0);
+    unsigned cycles = cycles_until_reached();
+    TEST_ASSERT_TRUE(cycles >= 500 && cycles < 540);
+    TEST_ASSERT_INT_WITHIN(10, 20000, lone_actual(&lone));
+    lone_step(&lone, 500);
+    TEST_ASSERT_EQUAL_INT(20000, lone_actual(&lone));
+}
+
+/* Judged by differences of the command, cycle by cycle. */
+static void test_a_profile_keeps_velocity_and_accelerations_and_never_overshoots(void)
+{
+    double x = 0, v = 0, v_max = 0, up = 0, down = 0;
+    (void)lone_write(&lone, 0x6081, 0, 4, 80000);
+    (void)lone_write(&lone, 0x6083, 0, 4, 400000);
+    (void)lone_write(&lone, 0x6084, 0, 4, 900000);
+    lone_enable(&lone, PP);
+    go(30000, 0);
+    for (unsigned k = 0; k < 900; k++) {
+        lone_step(&lone, 1);
+        double v_now = (command_mm() - x) / 1e-3;
+        double a = (v_now - v) / 1e-3;
+        up = fmax(up, a);
+        down = fmin(down, a);
+        v_max = fmax(v_max, v_now);
+        x = command_mm();
+        v = v_now;
+        TEST_ASSERT_TRUE(x <= 30 + 1e-9);
+    }
+    TEST_ASSERT_TRUE(x == 30);
+    TEST_ASSERT_TRUE(fabs(v_max - 80) < 1e-6);
+    TEST_ASSERT_TRUE(fabs(up - 400) < 1);
+    TEST_ASSERT_TRUE(down < -890 && down > -1810); /* the last cycle may brake by two */
+}
+
+static void test_velocity_is_the_least_of_6081_607F_and_6080(void)
+{
+    double fastest_mm_s = 0;
+    (void)lone_write(&lone, 0x6081, 0, 4, 300000);
+    (void)lone_write(&lone, 0x607F, 0, 4, 200000);
+    (void)lone_write(&lone, 0x6080, 0, 4, 240); /* 40 mm/s */
+    lone_enable(&lone, PP);
+    go(20000, 0);
+    for (unsigned k = 0; k < 300; k++) {
+        lone_step(&lone, 1);
+        fastest_mm_s = fmax(fastest_mm_s, lone.drive.plant.command_velocity_mm_s);
+    }
+    TEST_ASSERT_TRUE(fabs(fastest_mm_s - 40) < 1e-6);
+}
+
+static void test_a_second_target_waits_for_the_first(void)
+{
+    double farthest_mm = 0;
+    lone_enable(&lone, PP);
+    go(10000, 0);
+    lone_step(&lone, 50);
+    go(-5000, 0);
+    TEST_ASSERT_TRUE(lone_statusword(&lone) & BIT_12); /* no room for a third */
+    for (unsigned k = 0; k < 2000; k++) {
+        lone_step(&lone, 1);
+        farthest_mm = fmax(farthest_mm, command_mm());
+    }
+    TEST_ASSERT_TRUE(farthest_mm == 10);
+    TEST_ASSERT_FALSE(lone_statusword(&lone) & BIT_12);
+    TEST_ASSERT_TRUE(command_mm() == -5);
+}
+
+static void test_change_immediately_turns_round_on_the_way(void)
+{
+    double farthest_mm = 0;
+    lone_enable(&lone, PP);
+    go(50000, 0);
+    lone_step(&lone, 200);
+    go(0, NOW);
+    for (unsigned k = 0; k < 2000; k++) {
+        lone_step(&lone, 1);
+        farthest_mm = fmax(farthest_mm, command_mm());
+    }
+    /* 7.5 mm until then and v^2 / 2a = 2.5 mm to turn round */
+    TEST_ASSERT_TRUE(farthest_mm > 9.9 && farthest_mm < 10.1);
+    TEST_ASSERT_TRUE(command_mm() == 0);
+}
+
+static void test_a_relative_target_counts_from_the_one_before(void)
+{
+    lone_enable(&lone, PP);
+    go(3000, 0);
+    (void)cycles_until_reached();
+    go(2000, REL);
+    (void)cycles_until_reached();
+    TEST_ASSERT_INT_WITHIN(10, 5000, lone_actual(&lone));
+}
+
+static void test_halt_stops_and_lets_go_on(void)
+{
+    lone_enable(&lone, PP);
+    go(20000, 0);
+    lone_step(&lone, 200);
+    lone_control(&lone, ENABLE | HALT, PP);
+    lone_step(&lone, 300);
+    TEST_ASSERT_TRUE(lone_statusword(&lone) & REACHED);
+    TEST_ASSERT_TRUE(command_mm() > 9.9 && command_mm() < 10.1);
+    lone_control(&lone, ENABLE, PP);
+    TEST_ASSERT_FALSE(lone_statusword(&lone) & REACHED);
+    (void)cycles_until_reached();
+    TEST_ASSERT_INT_WITHIN(10, 20000, lone_actual(&lone));
+}
+
+static void test_targets_beyond_the_software_limits_end_at_them(void)
+{
+    (void)lone_write(&lone, 0x607D, 1, 4, (uint32_t)-1000);
+    (void)lone_write(&lone, 0x607D, 2, 4, 2000);
+    lone_enable(&lone, PP);
+    go(5000, 0);
+    lone_step(&lone, 1000);
+    TEST_ASSERT_TRUE(command_mm() == 2);
+    go(-5000, 0);
+    lone_step(&lone, 1000);
+    TEST_ASSERT_TRUE(command_mm() == -1);
+}
+
+static void test_without_a_rising_bit_4_nothing_moves(void)
+{
+    lone_enable(&lone, PP);
+    set_target(5000);
+    lone_step(&lone, 100);
+    TEST_ASSERT_TRUE(command_mm() == 0);
+    lone_control(&lone, ENABLE | NEW, PP);
+    set_target(9000);
+    lone_control(&lone, ENABLE | NEW, PP);
+    lone_step(&lone, 1000);
+    TEST_ASSERT_TRUE(command_mm() == 5);
+}
+
+/* ---- Homing ---- */
+
+static void home_with(uint8_t method, double start_mm)
+{
+    lone_set_default(&lone);
+    lone.config.plant.start_mm = start_mm;
+    lone.config.plant.absolute_encoder = 0;
+    lone.config.plant.limit_switch_min_mm = -12.345;
+    lone.config.plant.limit_switch_max_mm = 23.456;
+    lone.config.plant.home_switch_mm = 3.21;
+    lone_start(&lone);
+    TEST_ASSERT_EQUAL_HEX32(0, lone_write(&lone, 0x6098, 0, 1, method));
+    lone_enable(&lone, HM);
+    lone_control(&lone, ENABLE | NEW, HM);
+}
+
+static uint16_t run_homing(void)
+{
+    for (unsigned k = 0; k < 30000; k++) {
+        uint16_t status = lone_statusword(&lone) & (REACHED | BIT_12 | BIT_13);
+        if (status != 0)
+            return status;
+        lone_step(&lone, 1);
+    }
+    return 0;
+}
+
+/* Where position 0 is on the axis. */
+static double zero_mm(void)
+{
+    return virtual_drive_get_position_mm(&lone.drive) - lone_actual(&lone) / 1000.0;
+}
+
+/* Pulses are at multiples of 10 mm. */
+static void test_every_method_finds_its_home_from_every_side(void)
+{
+    static const struct {
+        uint8_t method;
+        double home_mm;
+    } rows[] = {{1, -10},      {2, 20},      {3, 0},     {4, 10},
+                {17, -12.345}, {18, 23.456}, {19, 3.21}, {20, 3.21}};
+    static const double starts_mm[] = {-12.5, -7.3, 0.4, 3.3, 18.8, 23.6};
+    for (unsigned i = 0; i < sizeof rows / sizeof rows[0]; i++) {
+        for (unsigned k = 0; k < sizeof starts_mm / sizeof starts_mm[0]; k++) {
+            home_with(rows[i].method, starts_mm[k]);
+            TEST_ASSERT_EQUAL_HEX16(REACHED | BIT_12, run_homing());
+            TEST_ASSERT_TRUE(fabs(zero_mm() - rows[i].home_mm) < 0.001);
+        }
+    }
+}
+
+static void test_index_pulses_are_the_next_in_their_direction(void)
+{
+    home_with(33, 4);
+    TEST_ASSERT_EQUAL_HEX16(REACHED | BIT_12, run_homing());
+    TEST_ASSERT_TRUE(fabs(zero_mm() - 0) < 0.001);
+    home_with(34, 4);
+    TEST_ASSERT_EQUAL_HEX16(REACHED | BIT_12, run_homing());
+    TEST_ASSERT_TRUE(fabs(zero_mm() - 10) < 0.001);
+}
+
+static void test_bit_10_is_set_while_idle_and_falls_with_the_controlword_that_starts(void)
+{
+    lone.config.plant.absolute_encoder = 0;
+    lone_start(&lone);
+    (void)lone_write(&lone, 0x6098, 0, 1, 33);
+    lone_enable(&lone, HM);
+    TEST_ASSERT_EQUAL_HEX16(REACHED, lone_statusword(&lone) & (REACHED | BIT_12 | BIT_13));
+    lone_control(&lone, ENABLE | NEW, HM);
+    TEST_ASSERT_EQUAL_HEX16(0, lone_statusword(&lone) & (REACHED | BIT_12 | BIT_13));
+}
+
+static void test_a_drive_with_an_absolute_encoder_is_homed_at_power_on(void)
+{
+    lone_enable(&lone, HM);
+    TEST_ASSERT_EQUAL_HEX16(REACHED | BIT_12, lone_statusword(&lone) & (REACHED | BIT_12 | BIT_13));
+}
+
+/* CiA 402: the zero position is the home position plus the home offset. */
+static void test_home_is_at_minus_the_home_offset(void)
+{
+    lone.config.plant.start_mm = 2;
+    lone_start(&lone);
+    (void)lone_write(&lone, 0x607C, 0, 4, 1500);
+    (void)lone_write(&lone, 0x6098, 0, 1, 37);
+    lone_enable(&lone, HM);
+    lone_control(&lone, ENABLE | NEW, HM);
+    lone_step(&lone, 2);
+    TEST_ASSERT_EQUAL_INT(-1500, lone_actual(&lone));
+    TEST_ASSERT_EQUAL_INT(-1500, (int32_t)lone_read(&lone, 0x607A, 0));
+    TEST_ASSERT_TRUE(fabs(zero_mm() - 3.5) < 0.001);
+}
+
+static void test_homing_that_runs_into_the_other_end_fails_and_may_be_tried_again(void)
+{
+    home_with(3, 0);
+    lone.drive.config.plant.home_switch_mm = 100;
+    TEST_ASSERT_EQUAL_HEX16(BIT_13, run_homing() & BIT_13);
+    lone_step(&lone, 500);
+    TEST_ASSERT_EQUAL_HEX16(BIT_13 | REACHED, lone_statusword(&lone) & (REACHED | BIT_12 | BIT_13));
+    lone.drive.config.plant.home_switch_mm = 3.21;
+    lone_control(&lone, ENABLE, HM);
+    lone_control(&lone, ENABLE | NEW, HM);
+    TEST_ASSERT_EQUAL_HEX16(REACHED | BIT_12, run_homing());
+}
+
+static void test_homing_is_interrupted_when_bit_4_falls(void)
+{
+    home_with(17, 0);
+    lone_step(&lone, 300);
+    lone_control(&lone, ENABLE, HM);
+    lone_step(&lone, 300);
+    TEST_ASSERT_EQUAL_HEX16(REACHED, lone_statusword(&lone) & (REACHED | BIT_12 | BIT_13));
+    TEST_ASSERT_TRUE(lone.drive.plant.command_velocity_mm_s == 0);
+}
+
+/* ---- Cyclic and interpolated position ---- */
+
+static void target_by_pdo(int32_t target_inc)
+{
+    lone_take(&lone, 0x300 + LONE_NODE, 4, (uint32_t)target_inc, 0);
+    lone_sync(&lone);
+}
+
+/* 60C2 says that a target comes every 4 ms: the command is there in four cycles, in a straight line. */
+static void test_a_target_is_reached_in_the_interpolation_period(void)
+{
+    (void)lone_write(&lone, 0x60C2, 1, 1, 4);
+    lone_enable(&lone, CSP);
+    target_by_pdo(40);
+    for (unsigned k = 1; k <= 4; k++) {
+        lone_step(&lone, 1);
+        TEST_ASSERT_TRUE(fabs(command_mm() - 0.01 * k) < 1e-12);
+    }
+    lone_step(&lone, 3);
+    TEST_ASSERT_TRUE(command_mm() == 0.04);
+}
+
+static void test_offsets_add_to_target_velocity_and_torque(void)
+{
+    lone_enable(&lone, CSP);
+    (void)lone_write(&lone, 0x60B0, 0, 4, 25);
+    (void)lone_write(&lone, 0x60B1, 0, 4, 500);
+    (void)lone_write(&lone, 0x60B2, 0, 2, 100);
+    target_by_pdo(10);
+    lone_step(&lone, 1);
+    TEST_ASSERT_TRUE(command_mm() == 0.035);
+    TEST_ASSERT_TRUE(lone.drive.plant.velocity_offset_mm_s == 0.5);
+    TEST_ASSERT_TRUE(
+        fabs(lone.drive.plant.torque_offset_mm_s2 - 0.1 * lone.drive.plant.mm_s2_per_rated) < 1e-9);
+}
+
+static void test_cyclic_targets_are_held_within_the_software_limits(void)
+{
+    (void)lone_write(&lone, 0x607D, 2, 4, 15);
+    lone_enable(&lone, CSP);
+    target_by_pdo(20);
+    lone_step(&lone, 2);
+    TEST_ASSERT_TRUE(command_mm() == 0.015);
+}
+
+static void test_interpolated_position_follows_60C1_while_bit_4_is_set(void)
+{
+    lone_enable(&lone, IP);
+    TEST_ASSERT_EQUAL_HEX32(0, lone_write(&lone, 0x60C1, 1, 4, 30));
+    lone_step(&lone, 5);
+    TEST_ASSERT_TRUE(command_mm() == 0);
+    TEST_ASSERT_FALSE(lone_statusword(&lone) & BIT_12);
+    lone_control(&lone, ENABLE | NEW, IP);
+    TEST_ASSERT_TRUE(lone_statusword(&lone) & BIT_12);
+    lone_step(&lone, 1);
+    TEST_ASSERT_TRUE(command_mm() == 0.03);
+    lone_control(&lone, ENABLE, IP);
+    (void)lone_write(&lone, 0x60C1, 1, 4, 60);
+    lone_step(&lone, 1000);
+    TEST_ASSERT_FALSE(lone_statusword(&lone) & BIT_12);
+    TEST_ASSERT_TRUE(command_mm() < 0.06 + 1.0); /* it slows down from 30 mm/s and stands */
+    TEST_ASSERT_TRUE(lone.drive.plant.command_velocity_mm_s == 0);
+}
+
+static void test_a_mode_the_drive_does_not_have_is_not_taken(void)
+{
+    lone_enable(&lone, CSP);
+    lone_control(&lone, ENABLE, 3);
+    TEST_ASSERT_EQUAL_UINT32(CSP, lone_read(&lone, 0x6061, 0));
+    TEST_ASSERT_EQUAL_UINT32(3, lone_read(&lone, 0x6060, 0));
+    lone_control(&lone, ENABLE, PP);
+    TEST_ASSERT_EQUAL_UINT32(PP, lone_read(&lone, 0x6061, 0));
+}
+
+static void test_every_mode_of_6502_is_taken(void)
+{
+    static const uint8_t modes[] = {PP, HM, IP, CSP};
+    uint32_t supported = lone_read(&lone, 0x6502, 0);
+    TEST_ASSERT_EQUAL_HEX32(0xE1, supported);
+    for (unsigned i = 0; i < 4; i++) {
+        TEST_ASSERT_TRUE(supported >> (modes[i] - 1) & 1);
+        TEST_ASSERT_EQUAL_HEX32(0, lone_write(&lone, 0x6060, 0, 1, modes[i]));
+        TEST_ASSERT_EQUAL_UINT32(modes[i], lone_read(&lone, 0x6061, 0));
+    }
+}
+
+static void run_at_40_mm_s(unsigned cycles)
+{
+    for (unsigned k = 1; k <= cycles; k++) {
+        target_by_pdo((int32_t)lround(1000 * command_mm()) + 40);
+        lone_step(&lone, 1);
+    }
+}
+
+static void test_a_change_of_mode_in_motion_slows_down_and_stands(void)
+{
+    lone_enable(&lone, CSP);
+    run_at_40_mm_s(200);
+    double from_mm = command_mm();
+    lone_control(&lone, ENABLE, PP);
+    lone_step(&lone, 1);
+    TEST_ASSERT_EQUAL_INT(CIA402_ENABLED, virtual_drive_get_state(&lone.drive));
+    lone_step(&lone, 500);
+    TEST_ASSERT_TRUE(lone.drive.plant.command_velocity_mm_s == 0);
+    TEST_ASSERT_TRUE(fabs(command_mm() - from_mm) < 2);
+}
+
+/* ---- Option codes ---- */
+
+static enum cia402_state state_after(unsigned cycles)
+{
+    lone_step(&lone, cycles);
+    return virtual_drive_get_state(&lone.drive);
+}
+
+/* 40 mm/s at 500 mm/s2: 80 ms and 1.6 mm. */
+static void test_disable_operation_slows_down_first(void)
+{
+    lone_enable(&lone, CSP);
+    run_at_40_mm_s(200);
+    double from_mm = command_mm();
+    lone_control(&lone, CIA402_SWITCH_ON, CSP);
+    TEST_ASSERT_EQUAL_INT(CIA402_ENABLED, state_after(79));
+    TEST_ASSERT_EQUAL_INT(CIA402_SWITCHED_ON, state_after(2));
+    TEST_ASSERT_TRUE(fabs(command_mm() - from_mm - 1.6) < 0.05);
+}
+
+static void test_enable_operation_takes_disable_operation_back(void)
+{
+    lone_enable(&lone, CSP);
+    run_at_40_mm_s(200);
+    lone_control(&lone, CIA402_SWITCH_ON, CSP);
+    lone_step(&lone, 10);
+    lone_control(&lone, ENABLE, CSP);
+    TEST_ASSERT_EQUAL_INT(CIA402_ENABLED, state_after(500));
+}
+
+static void test_shutdown_takes_the_torque_away_or_slows_down_as_605B_says(void)
+{
+    lone_enable(&lone, CSP);
+    run_at_40_mm_s(200);
+    lone_control(&lone, CIA402_SHUTDOWN, CSP);
+    TEST_ASSERT_EQUAL_INT(CIA402_READY, virtual_drive_get_state(&lone.drive));
+    setUp();
+    (void)lone_write(&lone, 0x605B, 0, 2, 1);
+    lone_enable(&lone, CSP);
+    run_at_40_mm_s(200);
+    lone_control(&lone, CIA402_SHUTDOWN, CSP);
+    TEST_ASSERT_EQUAL_INT(CIA402_ENABLED, state_after(79));
+    TEST_ASSERT_EQUAL_INT(CIA402_READY, state_after(2));
+}
+
+static void quick_stop_with(uint32_t option)
+{
+    setUp();
+    TEST_ASSERT_EQUAL_HEX32(0, lone_write(&lone, 0x605A, 0, 2, option));
+    lone_enable(&lone, CSP);
+    run_at_40_mm_s(200);
+    lone_control(&lone, CIA402_QUICK_STOP_NOW, CSP);
+    TEST_ASSERT_EQUAL_INT(CIA402_QUICK_STOP, virtual_drive_get_state(&lone.drive));
+}
+
+/* 40 mm/s: 20 ms at 2000 mm/s2, 80 ms at 500 mm/s2. */
+static void test_quick_stop_takes_its_ramp_and_its_end_from_605A(void)
+{
+    quick_stop_with(0);
+    TEST_ASSERT_EQUAL_INT(CIA402_SWITCH_ON_DISABLED, state_after(1));
+    quick_stop_with(1);
+    TEST_ASSERT_EQUAL_INT(CIA402_QUICK_STOP, state_after(70));
+    TEST_ASSERT_EQUAL_INT(CIA402_SWITCH_ON_DISABLED, state_after(100));
+    quick_stop_with(2);
+    TEST_ASSERT_EQUAL_INT(CIA402_SWITCH_ON_DISABLED, state_after(70));
+    quick_stop_with(6);
+    TEST_ASSERT_EQUAL_INT(CIA402_QUICK_STOP, state_after(1000));
+    lone_control(&lone, ENABLE, CSP);
+    TEST_ASSERT_EQUAL_INT(CIA402_ENABLED, state_after(100));
+}
+
+static void test_a_fault_takes_the_torque_away_at_once_if_605E_says_so(void)
+{
+    (void)lone_write(&lone, 0x605E, 0, 2, 0);
+    lone_enable(&lone, CSP);
+    target_by_pdo(5000);
+    lone_step(&lone, 1);
+    TEST_ASSERT_EQUAL_INT(CIA402_FAULT, state_after(1));
+}
+
+static void test_a_following_error_may_last_as_long_as_6066_says(void)
+{
+    (void)lone_write(&lone, 0x6065, 0, 4, 100);
+    (void)lone_write(&lone, 0x6066, 0, 2, 50);
+    lone.drive.plant.damage.is_jammed = true;
+    lone_enable(&lone, CSP);
+    target_by_pdo(500);
+    TEST_ASSERT_EQUAL_INT(CIA402_ENABLED, state_after(50));
+    TEST_ASSERT_EQUAL_INT(CIA402_FAULT_REACTION, state_after(1));
+    setUp();
+    TEST_ASSERT_EQUAL_HEX32(0, lone_write(&lone, 0x6065, 0, 4, 0xFFFFFFFF));
+    lone_enable(&lone, CSP);
+    lone.drive.plant.damage.is_jammed = true;
+    target_by_pdo(500000);
+    TEST_ASSERT_EQUAL_INT(CIA402_ENABLED, state_after(500));
+}
+
+int main(void)
+{
+    UNITY_BEGIN();
+    RUN_TEST(test_a_profile_takes_the_time_of_its_trapezoid);
+    RUN_TEST(test_a_profile_keeps_velocity_and_accelerations_and_never_overshoots);
+    RUN_TEST(test_velocity_is_the_least_of_6081_607F_and_6080);
+    RUN_TEST(test_a_second_target_waits_for_the_first);
+    RUN_TEST(test_change_immediately_turns_round_on_the_way);
+    RUN_TEST(test_a_relative_target_counts_from_the_one_before);
+    RUN_TEST(test_halt_stops_and_lets_go_on);
+    RUN_TEST(test_targets_beyond_the_software_limits_end_at_them);
+    RUN_TEST(test_without_a_rising_bit_4_nothing_moves);
+    RUN_TEST(test_every_method_finds_its_home_from_every_side);
+    RUN_TEST(test_index_pulses_are_the_next_in_their_direction);
+    RUN_TEST(test_bit_10_is_set_while_idle_and_falls_with_the_controlword_that_starts);
+    RUN_TEST(test_a_drive_with_an_absolute_encoder_is_homed_at_power_on);
+    RUN_TEST(test_home_is_at_minus_the_home_offset);
+    RUN_TEST(test_homing_that_runs_into_the_other_end_fails_and_may_be_tried_again);
+    RUN_TEST(test_homing_is_interrupted_when_bit_4_falls);
+    RUN_TEST(test_a_target_is_reached_in_the_interpolation_period);
+    RUN_TEST(test_offsets_add_to_target_velocity_and_torque);
+    RUN_TEST(test_cyclic_targets_are_held_within_the_software_limits);
+    RUN_TEST(test_interpolated_position_follows_60C1_while_bit_4_is_set);
+    RUN_TEST(test_a_mode_the_drive_does_not_have_is_not_taken);
+    RUN_TEST(test_every_mode_of_6502_is_taken);
+    RUN_TEST(test_a_change_of_mode_in_motion_slows_down_and_stands);
+    RUN_TEST(test_disable_operation_slows_down_first);
+    RUN_TEST(test_enable_operation_takes_disable_operation_back);
+    RUN_TEST(test_shutdown_takes_the_torque_away_or_slows_down_as_605B_says);
+    RUN_TEST(test_quick_stop_takes_its_ramp_and_its_end_from_605A);
+    RUN_TEST(test_a_fault_takes_the_torque_away_at_once_if_605E_says_so);
+    RUN_TEST(test_a_following_error_may_last_as_long_as_6066_says);
+    return UNITY_END();
+}

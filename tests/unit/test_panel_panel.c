@@ -1,0 +1,561 @@
+#include "base/crc32.h"
+#include "modbus/crc.h"
+#include "panel/panel.h"
+#include "unity.h"
+
+#include <string.h>
+
+static struct panel_snapshot shown;
+static struct panel_order ordered;
+static unsigned orders, alive;
+static enum panel_verdict verdict;
+static uint8_t stored[1000];
+static uint32_t room;
+static unsigned prepared, placed;
+
+static struct panel panel;
+static struct panel_client one, other;
+static uint8_t data[2 * MODBUS_READ_WORDS_MAX];
+
+static void look(void *context, struct panel_snapshot *snapshot)
+{
+    (void)context;
+    *snapshot = shown;
+}
+
+static enum panel_verdict order(void *context, const struct panel_order *wanted)
+{
+    (void)context;
+    orders++;
+    ordered = *wanted;
+    for (unsigned i = 0; i < wanted->count && verdict == PANEL_DONE; i++)
+        shown.value[wanted->item[i].id] = wanted->item[i].value;
+    return verdict;
+}
+
+static void hear(void *context)
+{
+    (void)context;
+    alive++;
+}
+
+static bool store_begin(void *context, uint32_t size)
+{
+    (void)context;
+    room = size;
+    return size <= sizeof stored;
+}
+
+static bool store_write(void *context, uint32_t offset, const uint8_t *bytes, size_t size)
+{
+    (void)context;
+    TEST_ASSERT_TRUE(offset + size <= room);
+    memcpy(stored + offset, bytes, size);
+    return true;
+}
+
+static bool store_prepare(void *context)
+{
+    (void)context;
+    prepared++;
+    return true;
+}
+
+static bool store_place(void *context)
+{
+    (void)context;
+    placed++;
+    return true;
+}
+
+static void start_with(uint32_t password)
+{
+    const struct panel_config config = {
+        .port = {look, order, hear, NULL},
+        .store = {store_begin, store_write, store_prepare, store_place, NULL},
+        .password = password,
+    };
+
+    panel_init(&panel, &config);
+    panel_client_enter(&one, &panel);
+    panel_client_enter(&other, &panel);
+}
+
+void setUp(void)
+{
+    memset(&shown, 0, sizeof shown);
+    memset(&ordered, 0, sizeof ordered);
+    orders = alive = prepared = placed = 0;
+    verdict = PANEL_DONE;
+    shown.value[REGISTER_STATE] = PANEL_IDLE;
+    start_with(0);
+}
+
+void tearDown(void)
+{
+}
+
+static enum modbus_exception read_row(struct panel_client *client, enum panel_id id)
+{
+    const struct panel_register *row = &panel_registers[id];
+    const struct modbus_map map = panel_client_map(client);
+
+    return map.read(map.context, row->table, row->address, row->words, data);
+}
+
+static int64_t value_of(struct panel_client *client, enum panel_id id)
+{
+    const struct panel_register *row = &panel_registers[id];
+    uint32_t bits;
+
+    TEST_ASSERT_EQUAL_INT(MODBUS_GOOD, read_row(client, id));
+    if (row->table == MODBUS_COILS)
+        return data[0] & 1;
+    bits = modbus_read16(data);
+    if (row->words == 2)
+        bits = bits << 16 | modbus_read16(data + 2);
+    return row->form == PANEL_S32 ? (int32_t)bits : (int64_t)bits;
+}
+
+static enum modbus_exception write_words(struct panel_client *client, uint16_t address,
+                                         uint16_t count, const uint8_t *bytes)
+{
+    const struct modbus_map map = panel_client_map(client);
+
+    return map.write(map.context, MODBUS_HOLDINGS, address, count, bytes);
+}
+
+static enum modbus_exception write_row(struct panel_client *client, enum panel_id id, int64_t value)
+{
+    const struct panel_register *row = &panel_registers[id];
+    const struct modbus_map map = panel_client_map(client);
+    const uint32_t bits = (uint32_t)(uint64_t)value;
+    uint8_t bytes[4] = {0};
+
+    if (row->words == 2)
+        modbus_write16(bytes, (uint16_t)(bits >> 16));
+    modbus_write16(bytes + (size_t)2 * (row->words - 1U), (uint16_t)bits);
+    if (row->table == MODBUS_COILS)
+        bytes[0] = value != 0;
+    return map.write(map.context, row->table, row->address, row->words, bytes);
+}
+
+static bool is_number(const struct panel_register *row)
+{
+    return row->form != PANEL_TEXT && row->form != PANEL_BYTES;
+}
+
+static void test_rows_stand_in_order_and_do_not_overlap(void)
+{
+    for (unsigned i = 1; i < REGISTER_COUNT; i++) {
+        const struct panel_register *before = &panel_registers[i - 1], *row = &panel_registers[i];
+
+        TEST_ASSERT_TRUE_MESSAGE(
+            row->table > before->table ||
+                (row->table == before->table && row->address >= before->address + before->words),
+            row->name);
+    }
+}
+
+static void test_every_row_is_found_by_each_address_and_by_its_name(void)
+{
+    for (unsigned i = 0; i < REGISTER_COUNT; i++) {
+        const struct panel_register *row = &panel_registers[i];
+
+        for (unsigned k = 0; k < row->words; k++)
+            TEST_ASSERT_EQUAL_UINT(i, panel_find(row->table, (uint16_t)(row->address + k)));
+        TEST_ASSERT_EQUAL_UINT(i, panel_find_name(row->name));
+    }
+    TEST_ASSERT_EQUAL_UINT(REGISTER_FEED_OVERRIDE, panel_find_name("feed_override"));
+    TEST_ASSERT_EQUAL_UINT(REGISTER_COUNT, panel_find_name("FEED"
+                                                           "_OVERRIDES"));
+    TEST_ASSERT_EQUAL_UINT(REGISTER_COUNT, panel_find(MODBUS_COILS, 40000));
+}
+
+static void test_an_order_has_room_for_all_that_one_request_can_write(void)
+{
+    unsigned rows[3] = {0};
+
+    for (unsigned i = 0; i < REGISTER_COUNT; i++)
+        rows[panel_registers[i].table] += panel_registers[i].states != PANEL_NEVER;
+    TEST_ASSERT_TRUE(rows[MODBUS_COILS] <= PANEL_ORDER_MAX);
+    TEST_ASSERT_TRUE(rows[MODBUS_HOLDINGS] <= PANEL_ORDER_MAX);
+}
+
+/* The server's own requests are as long as a mailbox: one function 16. */
+static void test_the_mailbox_is_one_request_long(void)
+{
+    const struct panel_register *bytes = &panel_registers[REGISTER_UPLOAD_DATA];
+
+    TEST_ASSERT_EQUAL_UINT(MODBUS_WRITE_WORDS_MAX,
+                           bytes->address + bytes->words -
+                               panel_registers[REGISTER_UPLOAD_OFFSET].address);
+}
+
+/* Registers that are the panel's own, and not the controller's. */
+static bool is_own(enum panel_id id)
+{
+    return id == REGISTER_VERSION || id == REGISTER_CONTROL || id == REGISTER_REFUSAL ||
+           id == REGISTER_PASSWORD || id == REGISTER_PROGRAM_MAX || id == REGISTER_UPLOAD_STATE ||
+           id == REGISTER_UPLOAD_RECEIVED ||
+           (id >= REGISTER_UPLOAD_SIZE && id <= REGISTER_UPLOAD_CHECK);
+}
+
+static void test_every_value_of_the_snapshot_is_read_back(void)
+{
+    for (unsigned i = 0; i < REGISTER_COUNT; i++) {
+        const struct panel_register *row = &panel_registers[i];
+        const enum panel_id id = (enum panel_id)i;
+
+        if (!is_number(row) || id == REGISTER_STATE)
+            continue;
+        shown.value[i] = row->form == PANEL_BIT ? 1 : row->form == PANEL_S32 ? -1234567 : 54321;
+    }
+    for (unsigned i = 0; i < REGISTER_COUNT; i++) {
+        const struct panel_register *row = &panel_registers[i];
+        const enum panel_id id = (enum panel_id)i;
+        const int64_t value = is_number(row) ? value_of(&one, id) : shown.value[i];
+
+        if (!is_own(id))
+            TEST_ASSERT_EQUAL_INT64_MESSAGE(shown.value[i], value, row->name);
+    }
+}
+
+static void test_the_text_of_an_alarm_is_read_two_characters_a_word(void)
+{
+    memcpy(shown.alarm_text, "axis X lags", sizeof "axis X lags");
+    TEST_ASSERT_EQUAL_INT(MODBUS_GOOD, read_row(&one, REGISTER_ALARM_TEXT));
+    TEST_ASSERT_EQUAL_STRING("axis X lags", (const char *)data);
+}
+
+static void test_addresses_that_are_not_there_are_exception_2(void)
+{
+    const struct modbus_map map = panel_client_map(&one);
+
+    TEST_ASSERT_EQUAL_INT(MODBUS_ADDRESS, map.read(map.context, MODBUS_COILS, 13, 1, data));
+    TEST_ASSERT_EQUAL_INT(MODBUS_ADDRESS, map.read(map.context, MODBUS_INPUTS, 54, 3, data));
+    TEST_ASSERT_EQUAL_INT(MODBUS_ADDRESS, map.write(map.context, MODBUS_HOLDINGS, 39, 1, data));
+    TEST_ASSERT_EQUAL_INT(MODBUS_ADDRESS, map.write(map.context, MODBUS_INPUTS, 0, 1, data));
+    TEST_ASSERT_EQUAL_INT64(PANEL_REFUSAL_ADDRESS, value_of(&one, REGISTER_REFUSAL));
+    TEST_ASSERT_EQUAL_INT64(PANEL_REFUSAL_NONE, value_of(&other, REGISTER_REFUSAL));
+}
+
+static bool is_order(enum panel_id id)
+{
+    return id != REGISTER_PASSWORD && !(id >= REGISTER_UPLOAD_SIZE && id <= REGISTER_MDI_TEXT);
+}
+
+static void test_every_number_is_ordered_within_its_range_and_refused_outside(void)
+{
+    for (unsigned i = 0; i < REGISTER_COUNT; i++) {
+        const struct panel_register *row = &panel_registers[i];
+        const enum panel_id id = (enum panel_id)i;
+
+        if (row->states == PANEL_NEVER || !is_number(row) || !is_order(id))
+            continue;
+        shown.value[REGISTER_WATCHDOG] = 0;
+        shown.value[REGISTER_STATE] = PANEL_IDLE;
+        if (!panel_may_write(id, PANEL_IDLE))
+            shown.value[REGISTER_STATE] = PANEL_HELD;
+        TEST_ASSERT_EQUAL_INT_MESSAGE(MODBUS_GOOD, write_row(&one, id, row->most), row->name);
+        TEST_ASSERT_EQUAL_INT_MESSAGE(MODBUS_GOOD, write_row(&one, id, row->least), row->name);
+        TEST_ASSERT_EQUAL_UINT(1, ordered.count);
+        TEST_ASSERT_EQUAL_INT(id, ordered.item[0].id);
+        TEST_ASSERT_EQUAL_INT64_MESSAGE(row->least, ordered.item[0].value, row->name);
+        orders = 0;
+        if (row->form == PANEL_U16 && row->most < PANEL_U16_MOST)
+            TEST_ASSERT_EQUAL_INT_MESSAGE(MODBUS_VALUE, write_row(&one, id, row->most + 1),
+                                          row->name);
+        if (row->form != PANEL_BIT && row->least > 0)
+            TEST_ASSERT_EQUAL_INT_MESSAGE(MODBUS_VALUE, write_row(&one, id, row->least - 1),
+                                          row->name);
+        TEST_ASSERT_EQUAL_UINT_MESSAGE(0, orders, row->name);
+    }
+}
+
+static void test_the_table_says_in_which_states_a_register_is_written(void)
+{
+    for (unsigned i = 0; i < REGISTER_COUNT; i++) {
+        const struct panel_register *row = &panel_registers[i];
+        const enum panel_id id = (enum panel_id)i;
+
+        if (row->states == PANEL_NEVER || !is_number(row) || !is_order(id))
+            continue;
+        for (unsigned state = 0; state < PANEL_STATES; state++) {
+            const bool allowed = (row->states & PANEL_IN(state)) != 0;
+
+            shown.value[REGISTER_STATE] = state;
+            shown.value[REGISTER_WATCHDOG] = 0;
+            TEST_ASSERT_EQUAL_INT_MESSAGE(allowed ? MODBUS_GOOD : MODBUS_STATE,
+                                          write_row(&one, id, row->most), row->name);
+        }
+    }
+}
+
+static void test_a_request_is_ordered_as_a_whole_or_not_at_all(void)
+{
+    /* FEED_OVERRIDE 50 %, RAPID_OVERRIDE 25 %, and a SPINDLE_OVERRIDE out of range, then in it */
+    uint8_t bytes[] = {0x01, 0xF4, 0x00, 0xFA, 0x00, 0x01};
+
+    TEST_ASSERT_EQUAL_INT(MODBUS_VALUE, write_words(&one, 0, 3, bytes));
+    TEST_ASSERT_EQUAL_UINT(0, orders);
+    bytes[4] = 0x03;
+    bytes[5] = 0xE8;
+    TEST_ASSERT_EQUAL_INT(MODBUS_GOOD, write_words(&one, 0, 3, bytes));
+    TEST_ASSERT_EQUAL_UINT(1, orders);
+    TEST_ASSERT_EQUAL_UINT(3, ordered.count);
+    TEST_ASSERT_EQUAL_INT64(250, ordered.item[1].value);
+}
+
+static void test_half_a_number_is_not_written(void)
+{
+    static const uint8_t bytes[] = {0, 1};
+    const uint16_t address = panel_registers[REGISTER_JOG_DISTANCE].address;
+
+    TEST_ASSERT_EQUAL_INT(MODBUS_VALUE, write_words(&one, address, 1, bytes));
+    TEST_ASSERT_EQUAL_INT(MODBUS_VALUE, write_words(&one, (uint16_t)(address + 1), 1, bytes));
+    TEST_ASSERT_EQUAL_UINT(0, orders);
+}
+
+static void test_what_the_controller_refuses_is_the_exception(void)
+{
+    verdict = PANEL_WRONG_STATE;
+    TEST_ASSERT_EQUAL_INT(MODBUS_STATE, write_row(&one, REGISTER_FEED_OVERRIDE, 500));
+    verdict = PANEL_WRONG_VALUE;
+    TEST_ASSERT_EQUAL_INT(MODBUS_VALUE, write_row(&one, REGISTER_FEED_OVERRIDE, 500));
+    verdict = PANEL_TRY_AGAIN;
+    TEST_ASSERT_EQUAL_INT(MODBUS_BUSY, write_row(&one, REGISTER_FEED_OVERRIDE, 500));
+    TEST_ASSERT_EQUAL_INT64(PANEL_REFUSAL_BUSY, value_of(&one, REGISTER_REFUSAL));
+}
+
+static void test_the_password_unlocks_one_client(void)
+{
+    start_with(4711);
+    TEST_ASSERT_EQUAL_INT(MODBUS_STATE, write_row(&one, REGISTER_MODE, 1));
+    TEST_ASSERT_EQUAL_INT64(PANEL_REFUSAL_LOCKED, value_of(&one, REGISTER_REFUSAL));
+    TEST_ASSERT_EQUAL_INT(MODBUS_VALUE, write_row(&one, REGISTER_PASSWORD, 4712));
+    TEST_ASSERT_EQUAL_INT(MODBUS_STATE, write_row(&one, REGISTER_MODE, 1));
+    TEST_ASSERT_EQUAL_UINT(0, orders);
+    TEST_ASSERT_EQUAL_INT(MODBUS_GOOD, write_row(&one, REGISTER_PASSWORD, 4711));
+    TEST_ASSERT_EQUAL_INT(MODBUS_GOOD, write_row(&one, REGISTER_MODE, 1));
+    TEST_ASSERT_EQUAL_INT(MODBUS_STATE, write_row(&other, REGISTER_MODE, 2));
+    TEST_ASSERT_EQUAL_INT64(0, value_of(&one, REGISTER_PASSWORD));
+}
+
+static void test_anybody_may_hold_the_feed_and_stop(void)
+{
+    start_with(4711);
+    TEST_ASSERT_EQUAL_INT(MODBUS_GOOD, write_row(&one, REGISTER_FEED_HOLD, 1));
+    TEST_ASSERT_EQUAL_INT(MODBUS_GOOD, write_row(&one, REGISTER_EMERGENCY_STOP, 1));
+    TEST_ASSERT_EQUAL_INT(MODBUS_STATE, write_row(&one, REGISTER_EMERGENCY_STOP, 0));
+    TEST_ASSERT_EQUAL_UINT(2, orders);
+}
+
+static void test_whoever_claims_control_is_the_only_one_to_write(void)
+{
+    TEST_ASSERT_EQUAL_INT(MODBUS_GOOD, write_row(&one, REGISTER_WATCHDOG, 500));
+    TEST_ASSERT_EQUAL_INT(MODBUS_GOOD, write_row(&one, REGISTER_MODE, 1));
+    TEST_ASSERT_EQUAL_INT(MODBUS_BUSY, write_row(&other, REGISTER_MODE, 2));
+    TEST_ASSERT_EQUAL_INT64(PANEL_REFUSAL_CONTROL, value_of(&other, REGISTER_REFUSAL));
+    TEST_ASSERT_EQUAL_INT64(PANEL_CONTROL_MINE, value_of(&one, REGISTER_CONTROL));
+    TEST_ASSERT_EQUAL_INT64(PANEL_CONTROL_OTHER, value_of(&other, REGISTER_CONTROL));
+    TEST_ASSERT_EQUAL_INT(MODBUS_GOOD, write_row(&other, REGISTER_FEED_HOLD, 1));
+    TEST_ASSERT_EQUAL_INT(MODBUS_GOOD, write_row(&one, REGISTER_WATCHDOG, 0));
+    TEST_ASSERT_EQUAL_INT(MODBUS_GOOD, write_row(&other, REGISTER_MODE, 2));
+    TEST_ASSERT_EQUAL_INT64(PANEL_CONTROL_FREE, value_of(&one, REGISTER_CONTROL));
+}
+
+static void test_each_request_of_the_panel_in_control_is_a_sign_of_life(void)
+{
+    (void)value_of(&one, REGISTER_STATE);
+    TEST_ASSERT_EQUAL_UINT(0, alive);
+    (void)write_row(&one, REGISTER_WATCHDOG, 500);
+    alive = 0;
+    (void)value_of(&one, REGISTER_STATE);
+    (void)write_row(&one, REGISTER_FEED_OVERRIDE, 65535);
+    TEST_ASSERT_EQUAL_UINT(2, alive);
+    (void)value_of(&other, REGISTER_STATE);
+    TEST_ASSERT_EQUAL_UINT(2, alive);
+}
+
+static void test_control_of_a_client_that_has_left_stays_until_the_watchdog_bites(void)
+{
+    (void)write_row(&one, REGISTER_WATCHDOG, 500);
+    panel_client_leave(&one);
+    panel_client_enter(&one, &panel);
+    TEST_ASSERT_EQUAL_INT(MODBUS_BUSY, write_row(&one, REGISTER_MODE, 1));
+    shown.value[REGISTER_WATCHDOG] = 0;
+    TEST_ASSERT_EQUAL_INT(MODBUS_GOOD, write_row(&one, REGISTER_MODE, 1));
+}
+
+static void test_a_line_goes_to_the_controller_with_its_start(void)
+{
+    static const uint8_t text[] = "G1 X5 F100\0";
+
+    TEST_ASSERT_EQUAL_INT(MODBUS_GOOD, write_words(&one, 300, 6, text));
+    TEST_ASSERT_EQUAL_UINT(0, orders);
+    TEST_ASSERT_EQUAL_INT(MODBUS_GOOD, write_row(&one, REGISTER_MDI_START, 1));
+    TEST_ASSERT_EQUAL_STRING("G1 X5 F100", ordered.mdi);
+    TEST_ASSERT_EQUAL_INT(MODBUS_GOOD, read_row(&one, REGISTER_MDI_TEXT));
+    TEST_ASSERT_EQUAL_STRING("G1 X5 F100", (const char *)data);
+}
+
+/* One request of function 16: offset, length, check, bytes. */
+static enum modbus_exception send_chunk(uint32_t offset, const char *bytes, uint16_t size,
+                                        uint16_t check)
+{
+    uint8_t chunk[8 + PANEL_CHUNK_MAX] = {0};
+
+    modbus_write16(chunk, (uint16_t)(offset >> 16));
+    modbus_write16(chunk + 2, (uint16_t)offset);
+    modbus_write16(chunk + 4, size);
+    modbus_write16(chunk + 6, check);
+    memcpy(chunk + 8, bytes, size);
+    return write_words(&one, panel_registers[REGISTER_UPLOAD_OFFSET].address,
+                       MODBUS_WRITE_WORDS_MAX, chunk);
+}
+
+static enum modbus_exception send_good(uint32_t offset, const char *bytes)
+{
+    const uint16_t size = (uint16_t)strlen(bytes);
+
+    return send_chunk(offset, bytes, size, crc16((const uint8_t *)bytes, size));
+}
+
+static const char program[] = "G21 G90\nG1 X10 F600\nM2\n";
+
+static enum modbus_exception begin(uint32_t size, uint32_t crc)
+{
+    uint8_t words[10];
+
+    modbus_write16(words, (uint16_t)(size >> 16));
+    modbus_write16(words + 2, (uint16_t)size);
+    modbus_write16(words + 4, (uint16_t)(crc >> 16));
+    modbus_write16(words + 6, (uint16_t)crc);
+    modbus_write16(words + 8, PANEL_UPLOAD_BEGIN);
+    return write_words(&one, panel_registers[REGISTER_UPLOAD_SIZE].address, 5, words);
+}
+
+static uint32_t program_crc(void)
+{
+    return crc32_add(CRC32_START, program, sizeof program - 1);
+}
+
+static void test_a_program_is_brought_in_chunks_and_committed(void)
+{
+    TEST_ASSERT_EQUAL_INT(MODBUS_GOOD, begin(sizeof program - 1, program_crc()));
+    TEST_ASSERT_EQUAL_INT(MODBUS_GOOD, send_good(0, "G21 G90\n"));
+    TEST_ASSERT_EQUAL_INT64(8, value_of(&one, REGISTER_UPLOAD_RECEIVED));
+    TEST_ASSERT_EQUAL_INT64(PANEL_UPLOAD_OPEN, value_of(&one, REGISTER_UPLOAD_STATE));
+    TEST_ASSERT_EQUAL_INT(MODBUS_STATE, write_row(&one, REGISTER_UPLOAD_COMMAND, 2));
+    TEST_ASSERT_EQUAL_INT(MODBUS_GOOD, send_good(8, program + 8));
+    TEST_ASSERT_EQUAL_INT64(PANEL_UPLOAD_WHOLE, value_of(&one, REGISTER_UPLOAD_STATE));
+    TEST_ASSERT_EQUAL_INT(MODBUS_GOOD, write_row(&one, REGISTER_UPLOAD_COMMAND, 2));
+    TEST_ASSERT_EQUAL_MEMORY(program, stored, sizeof program - 1);
+    TEST_ASSERT_EQUAL_UINT(1, prepared);
+    TEST_ASSERT_EQUAL_UINT(1, placed);
+    TEST_ASSERT_EQUAL_UINT(3, ordered.count);
+    TEST_ASSERT_EQUAL_INT64(sizeof program - 1, ordered.item[0].value);
+    TEST_ASSERT_EQUAL_INT64(program_crc(), ordered.item[1].value);
+    TEST_ASSERT_EQUAL_INT64(PANEL_UPLOAD_NONE, value_of(&one, REGISTER_UPLOAD_STATE));
+}
+
+static void test_an_upload_goes_on_where_it_was_left(void)
+{
+    (void)begin(sizeof program - 1, program_crc());
+    (void)send_good(0, "G21 G90\n");
+    panel_client_leave(&one);
+    panel_client_enter(&one, &panel);
+    TEST_ASSERT_EQUAL_INT(MODBUS_GOOD, begin(sizeof program - 1, program_crc()));
+    TEST_ASSERT_EQUAL_INT64(8, value_of(&one, REGISTER_UPLOAD_RECEIVED));
+    TEST_ASSERT_EQUAL_INT(MODBUS_GOOD, begin(5, 5));
+    TEST_ASSERT_EQUAL_INT64(0, value_of(&one, REGISTER_UPLOAD_RECEIVED));
+}
+
+static void test_a_chunk_may_be_repeated_but_not_left_out(void)
+{
+    (void)begin(sizeof program - 1, program_crc());
+    TEST_ASSERT_EQUAL_INT(MODBUS_VALUE, send_good(1, "21 G90"));
+    (void)send_good(0, "G21 G90\n");
+    TEST_ASSERT_EQUAL_INT(MODBUS_GOOD, send_good(0, "G21 G90\n"));
+    TEST_ASSERT_EQUAL_INT(MODBUS_GOOD, send_good(4, program + 4));
+    TEST_ASSERT_EQUAL_INT(MODBUS_GOOD, write_row(&one, REGISTER_UPLOAD_COMMAND, 2));
+    TEST_ASSERT_EQUAL_MEMORY(program, stored, sizeof program - 1);
+}
+
+static void test_a_chunk_with_a_wrong_check_changes_nothing(void)
+{
+    (void)begin(sizeof program - 1, program_crc());
+    TEST_ASSERT_EQUAL_INT(MODBUS_VALUE, send_chunk(0, "G21", 3, 1));
+    TEST_ASSERT_EQUAL_INT64(0, value_of(&one, REGISTER_UPLOAD_RECEIVED));
+    TEST_ASSERT_EQUAL_INT64(0, value_of(&one, REGISTER_UPLOAD_LENGTH));
+}
+
+static void test_a_chunk_beyond_the_announced_size_is_refused(void)
+{
+    (void)begin(4, 0);
+    TEST_ASSERT_EQUAL_INT(MODBUS_VALUE, send_good(0, "G21 G90"));
+    TEST_ASSERT_EQUAL_INT(MODBUS_STATE,
+                          (write_row(&one, REGISTER_UPLOAD_COMMAND, 3), send_good(0, "G21")));
+}
+
+static void test_bytes_that_are_not_those_announced_are_no_program(void)
+{
+    (void)begin(3, 12345);
+    (void)send_good(0, "G21");
+    TEST_ASSERT_EQUAL_INT(MODBUS_VALUE, write_row(&one, REGISTER_UPLOAD_COMMAND, 2));
+    TEST_ASSERT_EQUAL_UINT(0, orders + prepared + placed);
+    TEST_ASSERT_EQUAL_INT(MODBUS_GOOD, begin(3, 12345));
+    TEST_ASSERT_EQUAL_INT64(0, value_of(&one, REGISTER_UPLOAD_RECEIVED));
+}
+
+static void test_a_commit_that_the_controller_refuses_keeps_the_upload(void)
+{
+    (void)begin(sizeof program - 1, program_crc());
+    (void)send_good(0, program);
+    verdict = PANEL_WRONG_STATE;
+    TEST_ASSERT_EQUAL_INT(MODBUS_STATE, write_row(&one, REGISTER_UPLOAD_COMMAND, 2));
+    TEST_ASSERT_EQUAL_UINT(0, placed);
+    verdict = PANEL_DONE;
+    TEST_ASSERT_EQUAL_INT(MODBUS_GOOD, write_row(&one, REGISTER_UPLOAD_COMMAND, 2));
+    TEST_ASSERT_EQUAL_UINT(1, placed);
+}
+
+static void test_a_program_for_which_there_is_no_room_is_refused(void)
+{
+    TEST_ASSERT_EQUAL_INT(MODBUS_VALUE, begin(sizeof stored + 1, 0));
+    TEST_ASSERT_EQUAL_INT(MODBUS_VALUE, begin(PANEL_PROGRAM_BYTES_MAX + 1, 0));
+    TEST_ASSERT_EQUAL_INT(MODBUS_VALUE, begin(0, 0));
+}
+
+int main(void)
+{
+    UNITY_BEGIN();
+    RUN_TEST(test_rows_stand_in_order_and_do_not_overlap);
+    RUN_TEST(test_every_row_is_found_by_each_address_and_by_its_name);
+    RUN_TEST(test_an_order_has_room_for_all_that_one_request_can_write);
+    RUN_TEST(test_the_mailbox_is_one_request_long);
+    RUN_TEST(test_every_value_of_the_snapshot_is_read_back);
+    RUN_TEST(test_the_text_of_an_alarm_is_read_two_characters_a_word);
+    RUN_TEST(test_addresses_that_are_not_there_are_exception_2);
+    RUN_TEST(test_every_number_is_ordered_within_its_range_and_refused_outside);
+    RUN_TEST(test_the_table_says_in_which_states_a_register_is_written);
+    RUN_TEST(test_a_request_is_ordered_as_a_whole_or_not_at_all);
+    RUN_TEST(test_half_a_number_is_not_written);
+    RUN_TEST(test_what_the_controller_refuses_is_the_exception);
+    RUN_TEST(test_the_password_unlocks_one_client);
+    RUN_TEST(test_anybody_may_hold_the_feed_and_stop);
+    RUN_TEST(test_whoever_claims_control_is_the_only_one_to_write);
+    RUN_TEST(test_each_request_of_the_panel_in_control_is_a_sign_of_life);
+    RUN_TEST(test_control_of_a_client_that_has_left_stays_until_the_watchdog_bites);
+    RUN_TEST(test_a_line_goes_to_the_controller_with_its_start);
+    RUN_TEST(test_a_program_is_brought_in_chunks_and_committed);
+    RUN_TEST(test_an_upload_goes_on_where_it_was_left);
+    RUN_TEST(test_a_chunk_may_be_repeated_but_not_left_out);
+    RUN_TEST(test_a_chunk_with_a_wrong_check_changes_nothing);
+    RUN_TEST(test_a_chunk_beyond_the_announced_size_is_refused);
+    RUN_TEST(test_bytes_that_are_not_those_announced_are_no_program);
+    RUN_TEST(test_a_commit_that_the_controller_refuses_keeps_the_upload);
+    RUN_TEST(test_a_program_for_which_there_is_no_room_is_refused);
+    return UNITY_END();
+}

@@ -1,0 +1,148 @@
+/* The feed ceiling that is made of blocks. */
+#include "plan/ceiling.h"
+
+#include "base/maths.h"
+#include "plan/path.h"
+#include "plan/path_unit.h"
+
+#include <string.h>
+#include <unity.h>
+
+static const struct plan_limits limits = {
+    7,    {100, 100, 100}, {1000, 1000, 1000}, {50000, 50000, 50000}, 1e-3,
+    1e-3, LAW_JERK,        LANDING_SPAN};
+
+static struct path path;
+static struct ceiling ceiling;
+static struct ceiling_request request;
+
+void setUp(void)
+{
+    const struct point start = {{0}};
+
+    path_init(&path, &limits, &start);
+    request = (struct ceiling_request){.span = UINT64_MAX, .feed_ratio = 1.0, .rapid_ratio = 1.0};
+}
+
+void tearDown(void)
+{
+}
+
+static void push(enum move_kind kind, double x, double feed_mm_s)
+{
+    struct move m;
+
+    memset(&m, 0, sizeof(m));
+    m.kind = kind;
+    m.feed_mm_s = feed_mm_s;
+    m.overrides = OVERRIDE_FEED | OVERRIDE_HOLD;
+    m.turns = 1;
+    m.end.at[AXIS_X] = x;
+    path_push(&path, &m);
+}
+
+static void build(void)
+{
+    path_finish(&path);
+    ceiling_build(&ceiling, &path, &request);
+}
+
+static void test_blocks_of_one_feed_make_one_piece(void)
+{
+    for (int i = 1; i <= 100; i++) {
+        push(MOVE_FEED, 0.1 * i, 50.0);
+    }
+    build();
+    TEST_ASSERT_EQUAL(1, ceiling.count);
+    TEST_ASSERT_TRUE(ceiling.piece[0].stop);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-9, 10.0, ceiling.piece[0].end_mm);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-15, 0.05, ceiling.piece[0].feed);
+}
+
+/* N = A/J = 20 cycles: the setpoint is (20 - 1)/2 cycles behind, and two of margin. */
+static void test_a_slower_block_begins_earlier_by_half_the_window(void)
+{
+    push(MOVE_FEED, 50.0, 100.0);
+    push(MOVE_FEED, 100.0, 40.0);
+    build();
+    TEST_ASSERT_EQUAL(2, ceiling.count);
+    TEST_ASSERT_EQUAL(20, ceiling.piece[0].cycles);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-9, 50.0 - 0.04 * 11.5, ceiling.piece[0].end_mm);
+    TEST_ASSERT_EQUAL_INT64((int64_t)path_units(50.0), ceiling.piece[0].leave);
+}
+
+/* u = min(c^2, u_next + 2 a L), from rest at the end backwards. */
+static void test_feed_squared_falls_linearly_towards_a_stop(void)
+{
+    push(MOVE_FEED, 50.0, 100.0);
+    push(MOVE_FEED, 50.5, 99.0);
+    build();
+    TEST_ASSERT_EQUAL(2, ceiling.count);
+    TEST_ASSERT_TRUE(ceiling.piece[1].end_energy == 0.0);
+    const double length = ceiling.piece[1].end_mm - ceiling.piece[0].end_mm;
+    const double energy = maths_min(0.099 * 0.099, 2.0 * ceiling.piece[1].acceleration * length);
+
+    TEST_ASSERT_DOUBLE_WITHIN(1e-15, energy, ceiling.piece[0].end_energy);
+}
+
+static void test_the_override_scales_the_programmed_feed_alone(void)
+{
+    struct block b;
+
+    push(MOVE_FEED, 50.0, 80.0);
+    build();
+    b = *path_at(&path, 0);
+    b.feed_max_mm_s = 50.0; /* by geometry */
+    request.feed_ratio = 0.75;
+    TEST_ASSERT_DOUBLE_WITHIN(1e-12, 50.0, ceiling_block_feed(&b, &request));
+    request.feed_ratio = 0.5;
+    TEST_ASSERT_DOUBLE_WITHIN(1e-12, 40.0, ceiling_block_feed(&b, &request));
+    request.proportional = true;
+    TEST_ASSERT_DOUBLE_WITHIN(1e-12, 25.0, ceiling_block_feed(&b, &request));
+}
+
+static void test_a_move_without_override_keeps_its_feed(void)
+{
+    push(MOVE_FEED, 50.0, 80.0);
+    build();
+    struct block b = *path_at(&path, 0);
+
+    b.move.overrides = 0;
+    request.feed_ratio = 0.5;
+    TEST_ASSERT_DOUBLE_WITHIN(1e-12, 80.0, ceiling_block_feed(&b, &request));
+}
+
+static void test_a_rapid_obeys_the_rapid_override(void)
+{
+    push(MOVE_RAPID, 50.0, 0.0);
+    request.rapid_ratio = 0.25;
+    request.feed_ratio = 0.5;
+    build();
+    TEST_ASSERT_DOUBLE_WITHIN(1e-12, 25.0, ceiling_block_feed(path_at(&path, 0), &request));
+    TEST_ASSERT_EQUAL(CEILING_RAPID | OVERRIDE_HOLD, ceiling.piece[0].overrides);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-12, 0.1, ceiling.piece[0].feed_max);
+}
+
+/* A short span needs no longer window than cbrt(L / 2J) = cbrt(0.001 mm / 100,000 mm/s3) = 2.15 ms. */
+static void test_a_short_span_has_a_short_window(void)
+{
+    push(MOVE_FEED, 0.001, 80.0);
+    push(MOVE_DWELL, 0.0, 0.0);
+    push(MOVE_FEED, 50.0, 80.0);
+    build();
+    TEST_ASSERT_EQUAL(3, ceiling.piece[0].cycles);
+    TEST_ASSERT_EQUAL(20, ceiling.piece[1].cycles);
+}
+
+int main(void)
+{
+    UNITY_BEGIN();
+    RUN_TEST(test_blocks_of_one_feed_make_one_piece);
+    RUN_TEST(test_a_slower_block_begins_earlier_by_half_the_window);
+    RUN_TEST(test_feed_squared_falls_linearly_towards_a_stop);
+    RUN_TEST(test_the_override_scales_the_programmed_feed_alone);
+    RUN_TEST(test_a_move_without_override_keeps_its_feed);
+    RUN_TEST(test_a_rapid_obeys_the_rapid_override);
+    RUN_TEST(test_a_short_span_has_a_short_window);
+    return UNITY_END();
+}

@@ -1,0 +1,262 @@
+/*
+ * firmware/service/service.h: coming to rest on the path and going on, for every cause; giving up; jogs that are let go.
+ */
+#include "base/maths.h"
+#include "service_bench.h"
+
+#define TAU_S 0.001
+
+/* Limits of the machine's axes, judged by differences of the setpoints. */
+static double most_velocity, most_acceleration, most_jerk;
+static double x, v, a;
+
+void setUp(void)
+{
+    bench_set_up();
+    x = service.at.at[AXIS_X];
+    v = a = 0;
+    most_velocity = most_acceleration = most_jerk = 0;
+}
+
+void tearDown(void)
+{
+}
+
+static void judged_cycle(void)
+{
+    double velocity, acceleration;
+
+    cycle();
+    velocity = (service.controller.setpoint.at[AXIS_X] - x) / TAU_S;
+    acceleration = (velocity - v) / TAU_S;
+    most_jerk = maths_max(most_jerk, maths_abs(acceleration - a) / TAU_S);
+    most_acceleration = maths_max(most_acceleration, maths_abs(acceleration));
+    most_velocity = maths_max(most_velocity, maths_abs(velocity));
+    x = service.controller.setpoint.at[AXIS_X];
+    v = velocity;
+    a = acceleration;
+}
+
+static void judged_cycles(unsigned count)
+{
+    for (unsigned i = 0; i < count; i++)
+        judged_cycle();
+}
+
+static void judged_wait_for(enum panel_state state)
+{
+    for (unsigned i = 0; i < BENCH_CYCLES_MAX && service_get_state(&service) != state; i++)
+        judged_cycle();
+    TEST_ASSERT_EQUAL_INT(state, service_get_state(&service));
+}
+
+static void expect_limits_kept(void)
+{
+    TEST_ASSERT_TRUE(most_velocity <= 100.0 * 1.0001);
+    TEST_ASSERT_TRUE(most_acceleration <= 1000.0 * 1.0001);
+    TEST_ASSERT_TRUE(most_jerk <= 50000.0 * 1.001);
+    TEST_ASSERT_GREATER_THAN(10, most_velocity);
+}
+
+/* A cut at 50 mm/s, half a second old. */
+static void cut(void)
+{
+    load("G21 F3000\nG1 X200\nM2\n");
+    must(REGISTER_CYCLE_START, 1);
+    judged_cycles(500);
+    TEST_ASSERT_EQUAL_INT(PANEL_RUNNING, service_get_state(&service));
+    TEST_ASSERT_GREATER_THAN(10, service.at.at[AXIS_X]);
+}
+
+/* At rest on the way; returns where. */
+static double expect_rest(void)
+{
+    const double before = service.at.at[AXIS_X];
+
+    judged_cycles(500);
+    const double at = service.at.at[AXIS_X];
+
+    judged_cycles(200);
+    TEST_ASSERT_EQUAL_DOUBLE(at, service.at.at[AXIS_X]);
+    TEST_ASSERT_TRUE(at > before && at < 199);
+    return at;
+}
+
+static void test_a_hold_rests_on_the_path_and_resume_goes_on_to_its_end(void)
+{
+    cut();
+    must(REGISTER_FEED_HOLD, 1);
+    TEST_ASSERT_EQUAL_INT(PANEL_HELD, service_get_state(&service));
+    (void)expect_rest();
+    TEST_ASSERT_EQUAL_INT64(PANEL_HOLD_OPERATOR, shown(REGISTER_HOLD_REASON));
+    TEST_ASSERT_EQUAL_INT64(PANEL_OVERRIDE_HELD, shown(REGISTER_OVERRIDE_REASON));
+    must(REGISTER_RESUME, 1);
+    judged_wait_for(PANEL_IDLE);
+    TEST_ASSERT_EQUAL_INT64(200000, shown(REGISTER_POSITION_X));
+    TEST_ASSERT_EQUAL_INT64(PANEL_OUTCOME_COMPLETED, shown(REGISTER_OUTCOME));
+    expect_limits_kept();
+}
+
+static void test_a_program_given_up_rests_within_the_limits_and_another_begins_there(void)
+{
+    cut();
+    must(REGISTER_RESET, 1);
+    TEST_ASSERT_EQUAL_INT(PANEL_STOPPING, service_get_state(&service));
+    judged_wait_for(PANEL_IDLE);
+    TEST_ASSERT_EQUAL_INT64(PANEL_OUTCOME_ABORTED, shown(REGISTER_OUTCOME));
+    TEST_ASSERT_TRUE(service.at.at[AXIS_X] < 199);
+    must(REGISTER_CYCLE_START, 1);
+    judged_wait_for(PANEL_IDLE);
+    TEST_ASSERT_EQUAL_INT64(200000, shown(REGISTER_POSITION_X));
+    expect_limits_kept();
+}
+
+static void test_a_program_held_can_be_given_up(void)
+{
+    cut();
+    must(REGISTER_FEED_HOLD, 1);
+    (void)expect_rest();
+    must(REGISTER_RESET, 1);
+    judged_wait_for(PANEL_IDLE);
+    TEST_ASSERT_EQUAL_INT64(PANEL_OUTCOME_ABORTED, shown(REGISTER_OUTCOME));
+}
+
+static void test_a_feed_override_of_0_rests_and_of_more_goes_on(void)
+{
+    cut();
+    must(REGISTER_FEED_OVERRIDE, 0);
+    (void)expect_rest();
+    TEST_ASSERT_EQUAL_INT(PANEL_RUNNING, service_get_state(&service));
+    must(REGISTER_FEED_OVERRIDE, 500);
+    judged_cycles(500);
+    TEST_ASSERT_INT64_WITHIN(1, 15000, shown(REGISTER_FEED));
+    must(REGISTER_FEED_OVERRIDE, 1200);
+    judged_wait_for(PANEL_IDLE);
+    expect_limits_kept();
+}
+
+/* The spindle's drive is lost in a cut: the axes rest within their limits, and stay until the operator has seen it. */
+static void test_a_spindle_lost_in_a_cut_rests_the_axes_until_acknowledged(void)
+{
+    load("G21 F3000\nM3 S6000\nG1 X200\nM2\n");
+    must(REGISTER_CYCLE_START, 1);
+    judged_cycles(500);
+    TEST_ASSERT_EQUAL_INT64(60000, shown(REGISTER_SPINDLE_COMMANDED));
+    world.spindle.silent = true;
+    world.spindle.at_speed = false;
+    (void)expect_rest();
+    TEST_ASSERT_EQUAL_INT64(PANEL_ALARM_SPINDLE, shown(REGISTER_ALARM));
+    world.spindle.silent = false;
+    world.spindle.at_speed = true;
+    judged_cycles(100);
+    TEST_ASSERT_EQUAL_INT(PANEL_WRONG_STATE, order(REGISTER_RESUME, 1));
+    must(REGISTER_ACKNOWLEDGE, 1);
+    judged_cycles(100);
+    TEST_ASSERT_EQUAL_INT(PANEL_HELD, service_get_state(&service));
+    must(REGISTER_RESUME, 1);
+    judged_wait_for(PANEL_IDLE);
+    TEST_ASSERT_EQUAL_INT64(200000, shown(REGISTER_POSITION_X));
+    TEST_ASSERT_EQUAL_INT64(0, shown(REGISTER_SPINDLE_COMMANDED));
+    expect_limits_kept();
+}
+
+static void test_a_silent_panel_in_control_rests_the_axes(void)
+{
+    cut();
+    must(REGISTER_WATCHDOG, 200);
+    (void)expect_rest();
+    TEST_ASSERT_EQUAL_INT(PANEL_HELD, service_get_state(&service));
+    TEST_ASSERT_EQUAL_INT64(PANEL_HOLD_PANEL, shown(REGISTER_HOLD_REASON));
+    expect_limits_kept();
+}
+
+static void test_a_jog_ends_when_it_is_let_go(void)
+{
+    must(REGISTER_MODE, PANEL_MODE_JOG);
+    must(REGISTER_WATCHDOG, 60000);
+    must(REGISTER_JOG_FEED, 3000);
+    must(REGISTER_JOG_PLUS, 1);
+    judged_cycles(500);
+    must(REGISTER_JOG_PLUS, 0);
+    TEST_ASSERT_EQUAL_INT(PANEL_STOPPING, service_get_state(&service));
+    judged_wait_for(PANEL_IDLE);
+    TEST_ASSERT_TRUE(service.at.at[AXIS_X] > 10 && service.at.at[AXIS_X] < 60);
+    TEST_ASSERT_EQUAL_INT64(PANEL_OUTCOME_COMPLETED, shown(REGISTER_OUTCOME));
+    expect_limits_kept();
+}
+
+static void expect_held_at(double place_mm, enum panel_hold reason)
+{
+    judged_wait_for(PANEL_HELD);
+    judged_cycles(300);
+    TEST_ASSERT_EQUAL_INT64(reason, shown(REGISTER_HOLD_REASON));
+    TEST_ASSERT_DOUBLE_WITHIN(1e-3, place_mm, service.at.at[AXIS_X]);
+}
+
+static void test_single_block_holds_at_the_end_of_each_motion(void)
+{
+    load("G21 F3000 G64\nG1 X10\nX20\nX30\nM2\n");
+    must(REGISTER_SINGLE_BLOCK, 1);
+    must(REGISTER_CYCLE_START, 1);
+    for (int i = 1; i <= 2; i++) {
+        expect_held_at(10.0 * i, PANEL_HOLD_SINGLE_BLOCK);
+        TEST_ASSERT_EQUAL_DOUBLE(10.0 * i, service.at.at[AXIS_X]);
+        must(REGISTER_CYCLE_START, 1);
+    }
+    judged_wait_for(PANEL_IDLE);
+    TEST_ASSERT_EQUAL_INT64(PANEL_OUTCOME_COMPLETED, shown(REGISTER_OUTCOME));
+}
+
+static void test_m0_holds_and_m1_only_if_the_operator_wants_it(void)
+{
+    load("G21 F3000\nG1 X10\nM0\nG1 X20\nM1\nG1 X30\nM2\n");
+    must(REGISTER_CYCLE_START, 1);
+    expect_held_at(10, PANEL_HOLD_PROGRAM);
+    must(REGISTER_CYCLE_START, 1);
+    judged_wait_for(PANEL_IDLE);
+    TEST_ASSERT_EQUAL_INT64(30000, shown(REGISTER_POSITION_X));
+    start_line("G0 X0");
+    judged_wait_for(PANEL_IDLE);
+    must(REGISTER_MODE, PANEL_MODE_PROGRAM);
+    must(REGISTER_OPTIONAL_STOP, 1);
+    must(REGISTER_CYCLE_START, 1);
+    expect_held_at(10, PANEL_HOLD_PROGRAM);
+    must(REGISTER_RESUME, 1);
+    expect_held_at(20, PANEL_HOLD_PROGRAM);
+    must(REGISTER_RESUME, 1);
+    judged_wait_for(PANEL_IDLE);
+}
+
+static void test_a_line_leaves_the_spindle_turning_and_a_program_does_not(void)
+{
+    start_line("M3 S1000");
+    judged_wait_for(PANEL_IDLE);
+    start_line("G0 X1");
+    judged_wait_for(PANEL_IDLE);
+    TEST_ASSERT_EQUAL_INT64(10000, shown(REGISTER_SPINDLE_COMMANDED));
+    start_line("M5");
+    judged_wait_for(PANEL_IDLE);
+    TEST_ASSERT_EQUAL_INT64(0, shown(REGISTER_SPINDLE_COMMANDED));
+    load("M3 S1000\nM8\nG0 X0\nM2\n");
+    must(REGISTER_MODE, PANEL_MODE_PROGRAM);
+    must(REGISTER_CYCLE_START, 1);
+    judged_wait_for(PANEL_IDLE);
+    TEST_ASSERT_EQUAL_INT64(0, shown(REGISTER_SPINDLE_COMMANDED));
+    TEST_ASSERT_EQUAL_INT64(0, shown(REGISTER_COOLANT));
+}
+
+int main(void)
+{
+    UNITY_BEGIN();
+    RUN_TEST(test_a_hold_rests_on_the_path_and_resume_goes_on_to_its_end);
+    RUN_TEST(test_a_program_given_up_rests_within_the_limits_and_another_begins_there);
+    RUN_TEST(test_a_program_held_can_be_given_up);
+    RUN_TEST(test_a_feed_override_of_0_rests_and_of_more_goes_on);
+    RUN_TEST(test_a_spindle_lost_in_a_cut_rests_the_axes_until_acknowledged);
+    RUN_TEST(test_a_silent_panel_in_control_rests_the_axes);
+    RUN_TEST(test_a_jog_ends_when_it_is_let_go);
+    RUN_TEST(test_single_block_holds_at_the_end_of_each_motion);
+    RUN_TEST(test_m0_holds_and_m1_only_if_the_operator_wants_it);
+    RUN_TEST(test_a_line_leaves_the_spindle_turning_and_a_program_does_not);
+    return UNITY_END();
+}
