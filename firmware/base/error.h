@@ -158,7 +158,6 @@
     X(TABLE_RESERVE, "axis %w would need %v percent of its limits, more than has been reserved")   \
     /* machine and drives */                                                                       \
     X(SPINDLE_SLOW, "the spindle has not reached its speed in time")                               \
-    X(STARVED, "the planner could not keep up with the motion")                                    \
     X(DRIVE_FAULT, "the drive of axis %w reports %x: %m")                                          \
     X(DRIVE_STATE, "the drive of axis %w has left operation: its state is '%m'")                   \
     X(DRIVE_NOT_ENABLED, "the drive of axis %w does not get enabled: it stays in '%m'")            \

@@ -15,9 +15,6 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-/* Blocks of look-ahead at most. */
-#define PATH_AHEAD_MAX 256
-
 /*
  * Blocks in the ring: the look-ahead, and those between the setpoint and the lead point that runs ahead of it
  * (firmware/motion), both ends included.

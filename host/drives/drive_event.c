@@ -7,21 +7,6 @@
 #define NS_PER_US 1000u
 #define US_PER_S  1000000u
 
-static const char *state_name(uint32_t state)
-{
-    static const char *const names[] = {
-        [CIA402_NOT_READY] = "not ready to switch on",
-        [CIA402_SWITCH_ON_DISABLED] = "switch on disabled",
-        [CIA402_READY] = "ready to switch on",
-        [CIA402_SWITCHED_ON] = "switched on",
-        [CIA402_ENABLED] = "operation enabled",
-        [CIA402_QUICK_STOP] = "quick stop active",
-        [CIA402_FAULT_REACTION] = "fault reaction active",
-        [CIA402_FAULT] = "fault",
-    };
-    return names[state];
-}
-
 static const char *nmt_name(uint32_t state)
 {
     if (state == NMT_OPERATIONAL)
@@ -86,7 +71,8 @@ static void write_what(FILE *stream, const struct drive_event *event)
         (void)fprintf(stream, "NMT %s\n", nmt_name(event->first));
         break;
     case DRIVE_EVENT_STATE:
-        (void)fprintf(stream, "%s -> %s\n", state_name(event->first), state_name(event->second));
+        (void)fprintf(stream, "%s -> %s\n", cia402_state_text((enum cia402_state)event->first),
+                      cia402_state_text((enum cia402_state)event->second));
         break;
     case DRIVE_EVENT_MODE:
         (void)fprintf(stream, "mode %s\n", mode_name(event->first));

@@ -395,10 +395,10 @@ static void test_a_refused_setpoint_ends_the_stop_on_the_path(void)
 static void test_all_drives_brake_when_asked_to_stop_at_once(void)
 {
     enable_at(0);
-    drives_stop_at_once(&drives, TAKT_ERROR_STARVED);
+    drives_stop_at_once(&drives, TAKT_ERROR_EMERGENCY_STOP);
     cycle();
     TEST_ASSERT_EQUAL_INT(DRIVES_BRAKING, drives_get_state(&drives));
-    TEST_ASSERT_EQUAL_INT(TAKT_ERROR_STARVED, drives_get_fault(&drives)->code);
+    TEST_ASSERT_EQUAL_INT(TAKT_ERROR_EMERGENCY_STOP, drives_get_fault(&drives)->code);
     for (unsigned node = 1; node <= 3; node++)
         TEST_ASSERT_EQUAL_HEX16(0x0002, little_endian_read16(get_sent(0x200 + node)->data));
 }
