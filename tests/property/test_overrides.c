@@ -24,7 +24,7 @@
 #define HOLD_IS_OVER_CYCLES 1200
 
 /* With fewer blocks the lead point may come to the end of what is known, and waits there for more. */
-#define LOOK_AHEAD_ENOUGH 64
+#define LOOK_AHEAD_ENOUGH 8
 
 static struct path path;
 static struct motion motion;
