@@ -70,13 +70,14 @@ static void add_own(struct panel_client *client, struct panel_snapshot *snapshot
 static uint16_t word_of_bytes(const struct panel *panel, const struct panel_snapshot *snapshot,
                               enum panel_id id, unsigned index)
 {
-    const char *text = snapshot->alarm_text + (size_t)2 * index;
+    const size_t at = (size_t)2 * index;
 
     if (id == REGISTER_UPLOAD_DATA)
-        return modbus_read16(panel->mailbox.chunk + (size_t)2 * index);
+        return modbus_read16(panel->mailbox.chunk + at);
     if (id == REGISTER_MDI_TEXT)
-        return modbus_read16(panel->mailbox.mdi + (size_t)2 * index);
-    return (uint16_t)((uint8_t)text[0] << 8 | (uint8_t)text[1]);
+        return modbus_read16(panel->mailbox.mdi + at);
+    return (uint16_t)((uint8_t)snapshot->alarm_text[at] << 8 |
+                      (uint8_t)snapshot->alarm_text[at + 1]);
 }
 
 /* Word number index of a row: negative numbers in two's complement. */
