@@ -25,7 +25,8 @@ struct spindle_feedback {
 struct inputs {
     double feed_override_percent;  /* %F, 0 ... 120 */
     double rapid_override_percent; /* 0 ... 100 */
-    bool feed_hold;                /* true: come to rest on the path and stay */
+    bool single_block; /* every motion that can still be brought to rest at its end is */
+    bool feed_hold;    /* true: come to rest on the path and stay */
     bool probe_contact;
     uint32_t digital; /* bit i: input i */
     double analogue[INPUTS_ANALOGUE_MAX];

@@ -50,6 +50,14 @@ setup_need_for_host() {
     setup_need ca-certificates test -e /etc/ssl/certs/ca-certificates.crt
 }
 
+# What an image for a microcontroller is built with, and QEMU, which runs it.
+setup_need_for_target() {
+    setup_need gcc-arm-none-eabi command -v arm-none-eabi-gcc
+    setup_need picolibc-arm-none-eabi arm-none-eabi-gcc --specs=picolibc.specs -E -x c /dev/null
+    setup_need python3 command -v python3
+    setup_need qemu-system-arm command -v qemu-system-arm
+}
+
 # setup_as_root COMMAND...
 setup_as_root() {
     if [[ $(id -u) == 0 ]]; then

@@ -87,7 +87,7 @@
     X(ARC_TILTED, "'%w' works only in G17 while the coordinate system is rotated (by %v degrees)") \
     X(SPINDLE_STANDS, "'%w' needs a turning spindle: M3 or M4, and S above 0")                     \
     X(SPINDLE_WRONG_WAY, "'%w' needs the spindle to turn the other way")                           \
-    X(SPINDLE_FOLLOWED, "'%w' moves at the commanded spindle speed: the spindle is not measured")  \
+    X(SPINDLE_NO_ENCODER, "'%w' needs a spindle with an encoder, and this machine's has none")     \
     X(WORD_MISSING, "this code needs the word '%w'")                                               \
     X(WORD_ZERO, "'%w' must not be 0")                                                             \
     X(WORD_NOT_POSITIVE, "'%w' must be above 0: %v")                                               \
@@ -175,6 +175,8 @@
     X(DRIVE_FOLLOWING, "axis %w lags %v %u behind its setpoint")                                   \
     X(DRIVE_HOMING, "the drive of axis %w reports an error while homing: statusword %x")           \
     X(DRIVE_HOMING_SLOW, "homing of axis %w has not ended within %v s")                            \
+    X(DRIVE_HOME_OFFSET,                                                                           \
+      "after homing axis %w is at %v %u: turn home_offset_is_position, its drive means the other") \
     X(DRIVE_RANGE, "%v %u is beyond the position range of the drive of axis %w")                   \
     X(DRIVE_UNREACHABLE, "the bus refused the setpoint of axis %w")                                \
     X(CYCLE_SLOW,                                                                                  \
@@ -187,7 +189,49 @@
     X(HOMING_STOPPED, "homing was stopped: the axes do not know where they are")                   \
     X(PANEL_SILENT, "the panel in control has been silent for %v ms")                              \
     X(SPINDLE_SILENT, "the spindle drive does not answer")                                         \
-    X(SPINDLE_TRIPPED, "the spindle drive has switched off")
+    X(SPINDLE_TRIPPED, "the spindle drive has switched off")                                       \
+    X(THREAD_WAITS, "a thread waits for the spindle: it has not turned as commanded for %v s")     \
+    X(THREAD_STOPPED, "the spindle has stopped in a thread")                                       \
+    X(THREAD_FAST, "pitch times speed of the spindle is %v mm/s, and the axes can do %l mm/s")     \
+    X(THREAD_LAG, "the thread is %v mm off the spindle's angle, more than the allowed %l mm")      \
+    X(TAP_DEEP, "the spindle does not turn back in time: the tap would go %v mm below the bottom") \
+    X(THREAD_SHORT, "the thread is %v mm long; catching up and coming to rest take %l mm")         \
+    X(PROGRAM_STARVED, "the program did not come fast enough: the axes have waited for it")        \
+    X(PLAN_DAMAGED, "the compiled program is damaged")                                             \
+    X(PLAN_STRAYED, "the compiled program does not fit the part program here")                     \
+    /* machine as a whole, and how it is stored */                                                 \
+    X(MACHINE_NO_AXIS, "the machine has no axis")                                                  \
+    X(MACHINE_TRAVEL, "axis %w: its travel ends before it begins")                                 \
+    X(MACHINE_TRAVEL_ZERO, "axis %w: its travel must include 0, where the drives start")           \
+    X(MACHINE_INCREMENTS,                                                                          \
+      "axis %w: at %v increments per length its travel does not fit a drive's 32 bits")            \
+    X(MACHINE_ACCELERATION,                                                                        \
+      "axis %w: its acceleration is too low for so short a cycle: at least %v")                    \
+    X(MACHINE_JERK, "axis %w: its jerk is too low for so short a cycle: at least %v")              \
+    X(MACHINE_STEP_RATE,                                                                           \
+      "axis %w: at max_velocity its steps come at %v Hz, above its step_rate_max_hz of %l")        \
+    X(MACHINE_STEPS, "axis %w: its travel does not fit 32 bits of steps")                          \
+    X(MACHINE_HOME,                                                                                \
+      "axis %w: its home_offset_mm does not fit a drive's 32 bits (home_offset_deg when rotary)")  \
+    X(MACHINE_NODES, "axes %w have the same drive_node %v")                                        \
+    X(MACHINE_CONTROLLER_NODE, "controller_node %v is the drive_node of axis %w")                  \
+    X(SETTINGS_ABSENT, "no settings are stored: make them with takt machine --pack and load them") \
+    X(SETTINGS_KIND, "these are no settings of this version")                                      \
+    X(SETTINGS_CHECKSUM, "the settings are damaged: their checksum is wrong")                      \
+    X(SETTINGS_SHAPE, "the settings are damaged in record %v")                                     \
+    X(SETTINGS_UNKNOWN, "the settings hold record %v, which this version does not know")           \
+    X(SETTINGS_VALUE, "setting %w is out of range: %v")                                            \
+    X(SETTINGS_TABLE, "a stored correction table is wrong: %m")                                    \
+    X(SETTINGS_SHARE, "corrections would take %v percent of what axis %w can do: at most %l")      \
+    /* image of a target */                                                                        \
+    X(IMAGE_DAMAGED, "the image in the flash memory is damaged: its checksum is %x")               \
+    X(CAN_ABSENT, "the CAN controller does not answer")                                            \
+    X(CAN_RATE, "the CAN controller cannot make %v bit/s")                                         \
+    X(CAN_BUS, "the CAN bus is not idle: is there a transceiver, and is nothing shorted?")         \
+    X(CRYSTAL_ABSENT, "the crystal does not oscillate, and without it the CAN bus has no rate")    \
+    X(STEP_CYCLE, "step drives need a cycle of at most %v us, in steps of 5 us")                   \
+    X(WATCHDOG_RESET, "the watchdog had to restart the controller")                                \
+    X(CRASHED, "the controller had to stop and restart: %m at %x")
 
 #define TAKT_ERROR_INDEX(name, text) TAKT_ERROR_INDEX_##name,
 enum takt_error_index { TAKT_ERRORS(TAKT_ERROR_INDEX) TAKT_ERROR_TOTAL };

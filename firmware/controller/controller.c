@@ -1,8 +1,11 @@
 #include "controller/controller.h"
 
 #include "base/maths.h"
+#include "controller/controller_feed.h"
+#include "controller/controller_lock.h"
 #include "controller/controller_steps.h"
 #include "controller/outputs.h"
+#include "controller/restart.h"
 
 #include <string.h>
 
@@ -16,8 +19,8 @@ void controller_plan_limits(const struct machine *machine, struct plan_limits *l
     memset(limits, 0, sizeof(*limits));
     limits->axes = machine_axes(machine);
     limits->cycle_s = cycle_s(machine);
-    limits->law = machine->law;
-    limits->landing = machine->landing;
+    limits->law = (enum law)machine->law;
+    limits->landing = (enum landing)machine->landing;
     limits->chord_error_max_mm = 1.0 / machine->resolution_per_mm;
     for (int i = 0; i < AXIS_COUNT; i++) {
         limits->velocity_mm_s[i] = machine->axis[i].max_velocity_mm_s;
@@ -70,11 +73,13 @@ void controller_program_config(const struct controller_config *config,
     }
     program->path_tolerance_mm = machine->path_tolerance_mm;
     program->spindle_max_rpm = machine->spindle_max_rpm;
+    program->spindle_encoder = machine->spindle_encoder_counts > 0;
     program->exact_path = config->exact_path;
     program->block_delete = config->block_delete;
     program->from_line = config->from_line;
     program->sharp_corners = machine->sharp_corners;
     program->correction_layers = CORRECTION_LAYERS_COUNT;
+    program->modes = config->modes;
     program->tools = config->tools;
     program->parameters = config->parameters;
     program->waits = true;
@@ -93,41 +98,33 @@ static void start_interpolator(struct controller *c)
 
 void controller_init(struct controller *c, const struct controller_config *config)
 {
-    struct program_config program;
-    struct plan_limits limits;
+    const struct point start = {0};
     struct drives_config drives;
 
     memset(c, 0, sizeof(*c));
     c->machine = *config->machine;
     c->can = config->can;
+    correction_init(&c->correction, &c->machine.correction, machine_axes(&c->machine),
+                    cycle_s(&c->machine), config->correction, &start);
+    controller_start_program(c, config, &start);
     c->state = CONTROLLER_STARTING;
-    c->single_block = config->single_block;
-    c->keeps_outputs = config->keeps_outputs;
-    controller_program_config(config, &program);
-    program_open(&c->program, &program, &config->source);
-    offset_open(&c->offset, &program);
-    controller_plan_limits(&c->machine, &limits);
-    correction_init(&c->correction, &c->machine.correction, limits.axes, limits.cycle_s,
-                    config->correction, &program.start);
-    controller_reserve_correction(&c->correction, &c->machine, &limits);
-    path_init(&c->path, &limits, &program.start);
-    motion_init(&c->motion, &c->path, &program.start, c->machine.override_proportional != 0);
-    spindle_watch_init(&c->spindle, limits.cycle_s, c->machine.spindle_load_limit_percent,
+    spindle_watch_init(&c->spindle, cycle_s(&c->machine), c->machine.spindle_load_limit_percent,
                        c->machine.spindle_at_speed_s);
+    controller_lock_init(c);
     controller_drives_config(&c->machine, &drives);
     drives_init(&c->drives, &drives);
     controller_steps_init(c, &config->step);
     (void)controller_cycle_is_enough(&c->machine, &c->warning);
     start_interpolator(c);
-    approach_init(&c->approach, &program.start);
+    approach_init(&c->approach, &start);
 }
 
 /* A move has been read: onto the path with it. */
 static void take_move(struct controller *c, struct move *move)
 {
     c->program_error.code = TAKT_OK;
-    if (c->single_block && move_is_motion(move)) {
-        move->path = PATH_EXACT_STOP;
+    if (c->replays) {
+        replay_prepare(move);
     }
     path_push(&c->path, move);
     controller_probe_ask(&c->probe, move, cycle_s(&c->machine));
@@ -145,6 +142,9 @@ static void read_move(struct controller *c)
         break;
     case PROGRAM_WAIT:
         c->program_waits = true;
+        break;
+    case PROGRAM_LATER:
+        c->program_late = true;
         break;
     case PROGRAM_END:
     case PROGRAM_ERROR:
@@ -177,7 +177,13 @@ static void take_answer(struct controller *c)
 
 static bool can_read(struct controller *c)
 {
-    return !c->program_ended && !c->program_waits && path_has_room(&c->path);
+    return !c->program_ended && !c->program_waits && !c->program_late && path_has_room(&c->path);
+}
+
+/* A text that comes slowly begins to be driven when as much of it is there as is ever looked at. */
+static bool waits_for_text(const struct controller *c)
+{
+    return c->program_late && !c->motion.has_ceiling;
 }
 
 /* Reads more only when the look-ahead has become shorter by this part of it: a ceiling is then made for many blocks. */
@@ -188,16 +194,22 @@ void controller_background(struct controller *c)
     const uint32_t wanted = c->machine.look_ahead_blocks;
 
     take_answer(c);
+    if (c->replays) {
+        replay_read(&c->replay, &c->path.limits);
+    }
     if (motion_wanted(&c->motion) == NULL) {
         return;
     }
     path_go_on(&c->path);
+    c->program_late = false;
     if (motion_ahead(&c->motion) + wanted / TOP_UP_PART <= wanted) {
         while (can_read(c) && motion_ahead(&c->motion) < wanted) {
             read_move(c);
         }
     }
-    motion_build(&c->motion);
+    if (!waits_for_text(c)) {
+        motion_build(&c->motion);
+    }
 }
 
 static void controller_fail(struct controller *c, const struct diagnostic *fault)
@@ -219,6 +231,7 @@ static void come_to_start(struct controller *c)
 
     controller_get_actual(c, &actual);
     if (approach_cycle(&c->approach, &c->machine, &actual, &c->setpoint)) {
+        c->rest = c->setpoint;
         c->state = CONTROLLER_RUNNING;
     }
 }
@@ -255,11 +268,12 @@ static void follow_drives(struct controller *c)
     }
 }
 
-/* The spindle's speed and load. */
+/* The spindle's angle, speed and load. */
 static void follow_spindle(struct controller *c)
 {
     const struct diagnostic slow = {.code = TAKT_ERROR_SPINDLE_SLOW};
 
+    lock_measure(&c->lock, &c->inputs.spindle);
     if (c->state == CONTROLLER_RUNNING && !spindle_watch_cycle(&c->spindle, &c->inputs.spindle)) {
         controller_fail(c, &slow);
     }
@@ -274,8 +288,11 @@ static struct motion_operator operator_of(const struct controller *c)
                       maths_clamp(0.01 * in->feed_override_percent, 0.0, BLOCK_OVERRIDE_MAX),
         .rapid_ratio = maths_clamp(0.01 * in->rapid_override_percent, 0.0, 1.0),
         .hold = in->feed_hold,
+        .single_block = in->single_block,
         .stop = drives_get_state(&c->drives) == DRIVES_STOPPING,
         .wait = c->spindle.waits,
+        .measures = true,
+        .spindle_rev_s = c->spindle.rev_s,
     };
 }
 
@@ -299,6 +316,42 @@ static void end_program(struct controller *c)
     c->state = CONTROLLER_COMPLETED;
 }
 
+/* A thread: the setpoint follows the spindle's angle. */
+static void follow_angle(struct controller *c, const struct motion_operator *asked)
+{
+    const enum lock_result result =
+        lock_cycle(&c->lock, &c->motion, asked, c->outputs.spindle_speed_rpm, &c->record);
+
+    if (result == LOCK_FAILED) {
+        controller_fail(c, lock_get_alarm(&c->lock));
+    }
+    c->has_record = result == LOCK_CYCLE;
+}
+
+/* A compiled program: the setpoint is on its curve. */
+static void follow_replay(struct controller *c, const struct motion_operator *asked)
+{
+    c->has_record = replay_cycle(&c->replay, &c->motion, asked, &c->record) == REPLAY_CYCLE;
+    if (!c->has_record) {
+        controller_fail(c, &c->replay.alarm);
+    }
+}
+
+/* The setpoint is not motion's. */
+static void follow_handed_over(struct controller *c, const struct motion_operator *asked)
+{
+    if (!controller_feed_is_product(c)) {
+        follow_angle(c, asked);
+        return;
+    }
+    if (c->replays) {
+        follow_replay(c, asked);
+        return;
+    }
+    product_cycle(&c->product, &c->motion, asked, &c->record);
+    c->has_record = true;
+}
+
 static void follow_path(struct controller *c)
 {
     const struct motion_operator asked = operator_of(c);
@@ -306,6 +359,9 @@ static void follow_path(struct controller *c)
     switch (motion_cycle(&c->motion, &asked, &c->record)) {
     case MOTION_CYCLE:
         c->has_record = true;
+        break;
+    case MOTION_HANDED_OVER:
+        follow_handed_over(c, &asked);
         break;
     case MOTION_NOT_YET:
         break;
@@ -360,7 +416,27 @@ static void complete_record(struct controller *c)
     correction_cycle(&c->correction, &c->record.cmd, &motion_block(&c->motion)->move,
                      &c->record.set);
     controller_get_actual(c, &c->record.act);
+    c->record.spindle_rev = c->inputs.spindle.angle_rev;
     c->setpoint = c->record.set;
+    c->rest = c->record.cmd;
+}
+
+/* Between programs correction fades in; whatever has begun to fade goes on until it is done. */
+static bool stands_corrected(const struct controller *c)
+{
+    return drives_get_state(&c->drives) == DRIVES_ENABLED &&
+           (c->state == CONTROLLER_COMPLETED ||
+            (c->state != CONTROLLER_STARTING && correction_get_running(&c->correction) != 0));
+}
+
+/* A cycle without motion. */
+static void stand(struct controller *c)
+{
+    if (stands_corrected(c)) {
+        correction_stand(&c->correction, &c->rest, &c->setpoint);
+        c->record.set = c->setpoint;
+        c->record.cmd = c->rest;
+    }
 }
 
 /* Nothing that stands behind the place in the program is done any more. */
@@ -384,7 +460,10 @@ void controller_cycle(struct controller *c, const struct inputs *inputs)
         follow_events(c);
         complete_record(c);
         follow_probe(c);
+    } else {
+        stand(c);
     }
+    controller_lock_command(c);
     drives_send(&c->drives, &c->can, &c->setpoint);
     controller_steps_cycle(c);
 }
@@ -429,6 +508,11 @@ uint32_t controller_get_answers(const struct controller *c, struct program_answe
 {
     *last = c->probe.taken;
     return c->probe.answers;
+}
+
+bool controller_is_starved(const struct controller *c)
+{
+    return c->program_late && c->motion.has_ceiling && c->path.first == c->path.closed;
 }
 
 uint64_t controller_get_late(const struct controller *c)

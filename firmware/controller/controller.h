@@ -28,6 +28,7 @@
 #include "motion/cycle_record.h"
 #include "plan/block.h"
 #include "program/program.h"
+#include "replay/intake.h"
 
 #include <stdbool.h>
 #include <stdint.h>
@@ -40,9 +41,11 @@ struct controller_config {
     const struct tool_table *tools; /* NULL: empty. Must outlive the controller */
     struct parameters *parameters;  /* never NULL; read and written. Must outlive the controller */
     const struct correction_tables *correction; /* NULL: no tables; see correction_init */
-    bool exact_path;                            /* every G64 is treated as G61 */
-    bool block_delete;                          /* skip lines that begin with '/' */
-    bool single_block;                          /* every motion ends at rest */
+    const struct replay_source *compiled; /* of the same program: replayed. NULL: planned here */
+    const struct program_modes *modes;    /* the program goes on with; NULL: those it begins with */
+    bool exact_path;                      /* every G64 is treated as G61 */
+    bool block_delete;                    /* skip lines that begin with '/' */
+    bool single_block;                    /* every motion ends at rest */
     bool keeps_outputs; /* the end of the program leaves spindle and coolant as they are */
     uint32_t from_line; /* start in the middle, at this line; 0: at the beginning */
 };
@@ -74,6 +77,8 @@ const struct cycle_record *controller_get_record(const struct controller *c);
 void controller_get_actual(const struct controller *c, struct point *actual);
 /* How many questions of the program (G38, M66) have been answered, and the last answer. */
 uint32_t controller_get_answers(const struct controller *c, struct program_answer *last);
+/* The axes rest because the text of the program, which is still coming, has not come in time; they go on by themselves. */
+bool controller_is_starved(const struct controller *c);
 /* Exchanges with the background that it was too late for: the axes then come to rest where the path is known to. */
 uint64_t controller_get_late(const struct controller *c);
 /* The machine's outputs as the last cycle left them. Valid until the next cycle. */

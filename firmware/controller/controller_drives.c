@@ -25,6 +25,7 @@ static void set_homing(struct drives_homing *homing, const struct machine *machi
         .zero_mm_s = axis->home_zero_velocity_mm_s,
         .acceleration_mm_s2 = axis->home_acceleration_mm_s2,
         .offset_mm = axis->home_offset_mm,
+        .offset_is_position = axis->home_offset_is_position != 0,
         .timeout_cycles = cycles_in(machine, axis->home_timeout_s),
     };
 }

@@ -5,6 +5,7 @@
 #define TAKT_CONTROLLER_CONTROLLER_STATE_H
 
 #include "classic/interpolator.h"
+#include "classic/product.h"
 #include "controller/approach.h"
 #include "controller/controller_probe.h"
 #include "controller/outputs.h"
@@ -16,7 +17,9 @@
 #include "motion/motion.h"
 #include "offset/offset.h"
 #include "plan/path.h"
+#include "replay/replay.h"
 #include "step/steps.h"
+#include "sync/lock.h"
 
 struct controller {
     struct machine machine;
@@ -24,9 +27,9 @@ struct controller {
     enum controller_state state;
     struct diagnostic fault;
     struct diagnostic warning; /* TAKT_OK: none */
-    bool single_block;         /* every motion ends at rest */
     bool keeps_outputs;        /* the end of the program leaves spindle and coolant as they are */
     bool program_waits;        /* for an answer: what it asked (G38, M66) is being done */
+    bool program_late;         /* its next line has not come yet */
     bool program_ended;        /* nothing more comes from the program: its end or an error in it */
     bool has_record;
     struct diagnostic
@@ -34,8 +37,10 @@ struct controller {
     struct inputs inputs; /* of this cycle */
     struct outputs outputs;
     struct spindle_watch spindle;
+    struct lock lock;               /* threads */
     struct outputs_surface surface; /* G96 */
     struct point setpoint;
+    struct point rest; /* where the axes stand by the program, while nothing of it moves them */
     struct cycle_record record;
     struct program program;
     struct offset offset;
@@ -43,6 +48,9 @@ struct controller {
     struct motion motion;
     struct correction correction;
     struct interpolator interpolator;
+    bool replays; /* a compiled program */
+    struct replay replay;
+    struct product product; /* of the feed, where the machine has one for comparison */
     struct drives drives;
     struct step_port step_port;
     struct steps steps;

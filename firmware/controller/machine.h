@@ -43,13 +43,14 @@ struct machine_axis {
     uint32_t drive_revision;
     uint32_t drive_serial;
 
-    uint8_t home_order;             /* 1 first; axes of an order together; 0: not homed at start */
-    uint8_t home_method;            /* CiA 402, object 6098: 1 ... 37 */
-    double home_velocity_mm_s;      /* towards the switch; > 0 */
-    double home_zero_velocity_mm_s; /* towards the zero mark; > 0 */
-    double home_acceleration_mm_s2; /* > 0 */
-    double home_offset_mm;          /* machine coordinate of its home */
-    double home_timeout_s;          /* > 0 */
+    uint8_t home_order;              /* 1 first; axes of an order together; 0: not homed at start */
+    uint8_t home_method;             /* CiA 402, object 6098: 1 ... 37 */
+    double home_velocity_mm_s;       /* towards the switch; > 0 */
+    double home_zero_velocity_mm_s;  /* towards the zero mark; > 0 */
+    double home_acceleration_mm_s2;  /* > 0 */
+    double home_offset_mm;           /* machine coordinate of its home */
+    double home_timeout_s;           /* > 0 */
+    uint8_t home_offset_is_position; /* 1: its drive takes 607C for the position at its home */
 };
 
 struct machine {
@@ -61,13 +62,17 @@ struct machine {
     uint32_t sharp_corners;   /* 1: cutter compensation does not round outer corners */
     uint32_t
         override_proportional; /* 1: the feed override scales the whole diagram, not the programmed feed alone */
-    enum law law;              /* of ramps */
-    enum landing landing;
+    uint32_t law;              /* enum law, of ramps */
+    uint32_t landing;           /* enum landing */
+    uint32_t limiter;           /* enum limiter_form, classic/limiter.h */
     uint32_t look_ahead_blocks; /* 1 ... MACHINE_LOOK_AHEAD_MAX */
     uint32_t interpolator;      /* enum interpolator_kind, classic/interpolator.h */
     uint32_t step_form;         /* enum steps_form, step/steps.h */
     struct machine_axis axis[AXIS_COUNT];
     double spindle_max_rpm;
+    double spindle_ramp_rpm_s;       /* by which its drive changes the speed; > 0 */
+    uint32_t spindle_encoder_counts; /* in a revolution; 0: its angle is not measured */
+    double thread_tolerance_mm;      /* a thread farther off the spindle's angle is an alarm; > 0 */
     double spindle_load_limit_percent; /* beyond it the feed is lowered; 0: never */
     double spindle_at_speed_s; /* longest wait for a commanded speed; 0: motion does not wait */
     uint32_t can_bitrate;      /* bit/s */
@@ -80,7 +85,7 @@ struct machine {
 /*
  * X Y Z, each 100 mm/s, 1000 mm/s2, 50,000 mm/s3, travel -500 ... 500 mm, drive nodes 1 2 3 with 100,000
  * increments/mm and 1 mm following error; cycle 1 ms, 1000 increments/mm, exact path, 256 blocks of look-ahead,
- * spindle 24,000 rpm, CAN at 1 Mbit/s.
+ * spindle 24,000 rpm with an encoder, CAN at 1 Mbit/s.
  */
 void machine_set_default(struct machine *machine);
 

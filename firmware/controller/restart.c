@@ -1,5 +1,6 @@
 #include "controller/restart.h"
 
+#include "controller/controller_feed.h"
 #include "controller/controller_steps.h"
 
 #include <string.h>
@@ -15,16 +16,21 @@ void controller_start_program(struct controller *c, const struct controller_conf
     program_open(&c->program, &program, &config->source);
     offset_open(&c->offset, &program);
     controller_plan_limits(&c->machine, &limits);
-    correction_restart(&c->correction, start);
     controller_reserve_correction(&c->correction, &c->machine, &limits);
     path_init(&c->path, &limits, start);
     motion_init(&c->motion, &c->path, start, c->machine.override_proportional != 0);
-    c->single_block = config->single_block;
+    controller_feed_init(c, config->compiled);
+    lock_restart(&c->lock);
+    if (config->single_block) {
+        motion_stop_each(&c->motion);
+    }
     c->keeps_outputs = config->keeps_outputs;
     c->program_waits = false;
+    c->program_late = false;
     c->program_ended = false;
     c->program_error.code = TAKT_OK;
     c->has_record = false;
+    c->rest = *start;
     c->state = CONTROLLER_RUNNING;
 }
 
@@ -73,6 +79,7 @@ void controller_recover(struct controller *c, const struct controller_config *co
     drives.homed = !home && drives_are_homed(&c->drives);
     drives_init(&c->drives, &drives);
     controller_steps_restart(c);
+    correction_restart(&c->correction, &c->setpoint);
     controller_start_program(c, config, &c->setpoint);
     c->state = CONTROLLER_STARTING;
 }

@@ -8,8 +8,8 @@
 #include "controller/controller.h"
 
 /*
- * Reads another program, from start on: the last setpoint, without correction. The axes are at rest there, and the last
- * program has been completed or dropped. machine and can of the configuration are those of controller_init. The drives,
+ * Reads another program, from start on: the last setpoint, without correction, which goes on as it is. The axes are at
+ * rest there, and the last program has been completed or dropped. machine and can of the configuration are those of controller_init. The drives,
  * the outputs and the parameters stay as they are.
  */
 void controller_start_program(struct controller *c, const struct controller_config *config,
@@ -24,7 +24,7 @@ void controller_stop_at_once(struct controller *c, enum takt_error reason);
 /*
  * After CONTROLLER_FAULTED, or at rest between programs: resets and enables the drives again where they stand.
  * CONTROLLER_STARTING, then CONTROLLER_COMPLETED after an empty program: config->source is empty. home: axes that are
- * homed at start are homed again, else only if they have not been.
+ * homed at start are homed again, else only if they have not been. Correction fades in anew.
  */
 void controller_recover(struct controller *c, const struct controller_config *config, bool home);
 

@@ -5,6 +5,11 @@
 /* Feedback is older than the command by less than this. */
 #define FEEDBACK_CYCLES 4
 
+#define SECONDS_PER_MINUTE 60.0
+
+/* Slower than this it stands: 1 rev/min. */
+#define STANDS_REV_S (1.0 / SECONDS_PER_MINUTE)
+
 void spindle_watch_init(struct spindle_watch *w, double cycle_s, double load_limit_percent,
                         double at_speed_s)
 {
@@ -31,10 +36,23 @@ static double ratio_rate(const struct spindle_watch *w, double load_percent)
     return 1.0 / SPINDLE_RISE_S;
 }
 
+static void follow_speed(struct spindle_watch *w, double speed_rpm)
+{
+    const double rev_s = maths_abs(speed_rpm) / SECONDS_PER_MINUTE;
+
+    w->smooth_rev_s += (rev_s - w->smooth_rev_s) * w->cycle_s / (SPINDLE_SMOOTH_S + w->cycle_s);
+    if (w->smooth_rev_s < STANDS_REV_S) {
+        w->rev_s = 0.0;
+    } else if (maths_abs(w->smooth_rev_s - w->rev_s) > SPINDLE_STEP * w->smooth_rev_s) {
+        w->rev_s = w->smooth_rev_s;
+    }
+}
+
 bool spindle_watch_cycle(struct spindle_watch *w, const struct spindle_feedback *spindle)
 {
     w->ratio = maths_clamp(w->ratio + ratio_rate(w, spindle->load_percent) * w->cycle_s,
                            SPINDLE_RATIO_MIN, 1.0);
+    follow_speed(w, spindle->speed_rpm);
     if (!w->waits) {
         return true;
     }

@@ -5,6 +5,9 @@
  *     load > limit    ratio falls by (load/limit - 1) / SPINDLE_FALL_S a second, not below SPINDLE_RATIO_MIN
  *     load <= limit   ratio rises by 1 / SPINDLE_RISE_S a second, up to 1
  *
+ * Feeds per revolution go by the measured speed, smoothed over SPINDLE_SMOOTH_S; changes by less than SPINDLE_STEP of it
+ * are not told.
+ *
  * The ratio multiplies the feed override; acceleration and jerk of the change are the planner's.
  */
 #ifndef TAKT_CONTROLLER_SPINDLE_WATCH_H
@@ -19,6 +22,8 @@
 #define SPINDLE_FALL_S    0.5
 #define SPINDLE_RISE_S    2.0
 #define SPINDLE_RATIO_MIN 0.1
+#define SPINDLE_SMOOTH_S  0.03
+#define SPINDLE_STEP      0.002
 
 struct spindle_watch {
     double cycle_s;
@@ -27,6 +32,8 @@ struct spindle_watch {
     double ratio;              /* of the feed, SPINDLE_RATIO_MIN ... 1 */
     bool waits;                /* for the speed commanded last */
     uint64_t waited;           /* cycles */
+    double smooth_rev_s;       /* measured speed, >= 0 */
+    double rev_s;              /* as told; 0: it stands */
 };
 
 void spindle_watch_init(struct spindle_watch *w, double cycle_s, double load_limit_percent,

@@ -114,12 +114,12 @@ static void set_pieces(struct axis_tables *tables, const struct axis_pair *pair,
 
         mean[i] = 0.5 * ((double)row[up] + (double)row[down]);
         half[i] = 0.5 * ((double)row[up] - (double)row[down]);
-        tables->knot_mm[pair->first + i] = table->knot_mm[0][i];
+        tables->own_knot_mm[pair->first + i] = table->knot_mm[0][i];
     }
     spline_set_bends(pair->points, table->knot_mm[0], mean, mean_bend);
     spline_set_bends(pair->points, table->knot_mm[0], half, half_bend);
     for (unsigned i = 0; i + 1U < pair->points; i++) {
-        struct axis_piece *piece = &tables->piece[pair->first + i];
+        struct axis_piece *piece = &tables->own_piece[pair->first + i];
 
         set_piece(table->knot_mm[0] + i, mean + i, mean_bend + i, piece->mean);
         set_piece(table->knot_mm[0] + i, half + i, half_bend + i, piece->half);
@@ -172,6 +172,8 @@ bool axis_tables_add(struct axis_tables *tables, const struct table *table,
     if (!check_room(tables, table, wrong)) {
         return false;
     }
+    tables->knot_mm = tables->own_knot_mm;
+    tables->piece = tables->own_piece;
     for (unsigned i = 0; i < table->outputs; i++) {
         const struct table_output *output = &table->output[i];
         struct axis_pair *pair = &tables->pair[tables->count];

@@ -36,11 +36,17 @@ struct axis_tables {
     unsigned inputs; /* bit i: axis i is the input of a pair with directions */
     uint32_t points;
     struct axis_pair pair[AXIS_TABLES_PAIRS_MAX];
-    double knot_mm[AXIS_TABLES_POINTS_MAX];
-    struct axis_piece piece[AXIS_TABLES_POINTS_MAX]; /* that begins at the knot */
+    /* Own, or where they are stored; a piece begins at its knot. */
+    const double *knot_mm;
+    const struct axis_piece *piece;
+    double own_knot_mm[AXIS_TABLES_POINTS_MAX];
+    struct axis_piece own_piece[AXIS_TABLES_POINTS_MAX];
 };
 
-/* Adds a table over one axis, which has passed table_check. False: *wrong says why, and nothing has changed. */
+/*
+ * Adds a table over one axis, which has passed table_check; tables must not be moved afterwards. False: *wrong says why,
+ * and nothing has changed.
+ */
 bool axis_tables_add(struct axis_tables *tables, const struct table *table,
                      struct diagnostic *wrong);
 

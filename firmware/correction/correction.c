@@ -178,6 +178,13 @@ void correction_cycle(struct correction *c, const struct point *cmd, const struc
     }
 }
 
+void correction_stand(struct correction *c, const struct point *cmd, struct point *set)
+{
+    static const struct move standing = {.kind = MOVE_DWELL};
+
+    correction_cycle(c, cmd, &standing, set);
+}
+
 /* A layer as it is when everything has settled. */
 static void add_settled(struct correction *c, unsigned i, struct correction_sum *sum)
 {

@@ -40,6 +40,12 @@ void correction_cycle(struct correction *c, const struct point *cmd, const struc
                       struct point *set);
 
 /*
+ * The same while no program moves the axes: they stand at cmd, and what fades goes on. What the program has switched last
+ * stays so.
+ */
+void correction_stand(struct correction *c, const struct point *cmd, struct point *set);
+
+/*
  * The correction at a point, without any history: layers that are on have full weight, directions of approach their mean,
  * tools no wear. For planning and offline use; *c stays as it is.
  */
@@ -79,6 +85,9 @@ void correction_get_need(const struct correction *c, const struct motion_bound *
  * held against it.
  */
 void correction_reserve(struct correction *c, const struct motion_bound *most, struct need *need);
+
+/* More than this part of an axis is not left to correction: a machine that needs it is refused. */
+#define CORRECTION_SHARE_MAX 0.5
 
 /* The greatest part of its velocity, acceleration or jerk that an axis gives up, 0 ...; *axis says which one does. */
 double correction_largest_share(const struct need *need, const struct motion_bound *most,

@@ -40,10 +40,11 @@ struct grid {
     size_t size;   /* coefficients of one component */
     float reach;   /* steps from where a patch is made to where it is good, all inputs together */
     struct grid_input input[TABLE_INPUTS_MAX]; /* the first has stride 1 */
-    float coefficient[GRID_COEFFICIENTS_MAX];  /* component by component */
+    const float *coefficient;         /* component by component: own, or where they are stored */
+    float own[GRID_COEFFICIENTS_MAX]; /* of a spline that grid_set has made */
 };
 
-/* Makes the spline. table has passed table_check. False: it does not fit; *wrong says why. */
+/* Makes the spline; grid must not be moved afterwards. table has passed table_check. False: it does not fit; *wrong says why. */
 bool grid_set(struct grid *grid, const struct table *table, struct diagnostic *wrong);
 
 /* Adds weight times the corrections at a point to k, by axis. Returns the inputs that are outside: bit i for axis i. */

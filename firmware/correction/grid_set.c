@@ -97,8 +97,8 @@ static void transform_along(struct grid *grid, unsigned along)
     }
     do {
         for (unsigned i = 0; i < components_of(grid); i++) {
-            transform_line(grid->coefficient + i * grid->size + offset_of(grid, &index),
-                           input->stride, input->points);
+            transform_line(grid->own + i * grid->size + offset_of(grid, &index), input->stride,
+                           input->points);
         }
     } while (next_line(grid, along, &index));
 }
@@ -148,7 +148,7 @@ static void set_values(struct grid *grid, const struct table *table)
             index.at[i] = 1 + rest % table->knots[i];
             rest /= table->knots[i];
         }
-        float *to = grid->coefficient + offset_of(grid, &index);
+        float *to = grid->own + offset_of(grid, &index);
 
         for (unsigned i = 0; i < table->outputs; i++) {
             to[component_of(table->output[i].axis) * grid->size] =
@@ -160,6 +160,7 @@ static void set_values(struct grid *grid, const struct table *table)
 bool grid_set(struct grid *grid, const struct table *table, struct diagnostic *wrong)
 {
     memset(grid, 0, sizeof(*grid));
+    grid->coefficient = grid->own;
     if (table->inputs < 2) {
         return refuse(wrong, TAKT_ERROR_TABLE_KIND, "", 0, table->inputs);
     }

@@ -39,7 +39,8 @@ struct drives_homing {
     double velocity_mm_s;      /* 6099:01, towards the switch; > 0 */
     double zero_mm_s;          /* 6099:02, towards the zero mark; > 0 */
     double acceleration_mm_s2; /* 609A; > 0 */
-    double offset_mm;          /* position of the axis at its home; 607C is minus this */
+    double offset_mm;          /* position of the axis at its home */
+    bool offset_is_position;   /* 607C is that position; else, as CiA 402 has it, minus it */
     uint32_t timeout_cycles;   /* DRIVE_HOMING_SLOW beyond */
 };
 

@@ -208,12 +208,20 @@ static uint32_t increments_of(const struct drives_config_axis *config, double va
 
 #define HOMING_STEPS 5
 
-/* CiA 402: zero = home + home offset. So the offset is minus the coordinate that home is to have. */
+/*
+ * CiA 402: zero = home + home offset. So the offset is minus the coordinate that home is to have. There are drives whose
+ * position at home is the offset.
+ */
+static double home_offset_mm(const struct drives_homing *homing)
+{
+    return homing->offset_is_position ? homing->offset_mm : -homing->offset_mm;
+}
+
 static void homing_step(const struct drives_config_axis *config, unsigned number,
                         struct drives_step *step)
 {
     const struct drives_homing *homing = &config->homing;
-    double offset_inc = maths_round(-homing->offset_mm * config->increments_per_mm);
+    double offset_inc = maths_round(home_offset_mm(homing) * config->increments_per_mm);
     switch (number) {
     case 0:
         set_write(step, CIA402_HOMING_METHOD, 0, 1, homing->method);

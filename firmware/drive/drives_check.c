@@ -44,19 +44,34 @@ bool drives_check_links(struct drives *d, unsigned index)
 }
 
 /*
+ * After a fault a drive that still follows its setpoints brakes with them and lags no more than before; one that stays
+ * behind by this part of what is allowed has left them, whatever its statusword says.
+ */
+#define STOPPING_LAG_RATIO 0.1
+
+static double allowed_lag_mm(const struct drives *d, const struct drives_axis *axis)
+{
+    double limit_mm = axis->config.following_error_max_mm;
+    if (d->state != DRIVES_STOPPING)
+        return limit_mm;
+    return maths_min(limit_mm, axis->lag_mm + STOPPING_LAG_RATIO * limit_mm);
+}
+
+/*
  * lag = setpoint of DRIVES_LATENCY_CYCLES ago - actual position. Without a report this cycle the
  * two do not belong together.
  */
 static void check_following(struct drives *d, unsigned index)
 {
-    const struct drives_axis *axis = &d->axis[index];
-    double limit_mm = axis->config.following_error_max_mm;
-    if (limit_mm <= 0 || axis->silent_cycles != 0)
+    struct drives_axis *axis = &d->axis[index];
+    if (axis->config.following_error_max_mm <= 0 || axis->silent_cycles != 0)
         return;
     double set_mm = axis->sent_mm[(d->cycle - DRIVES_LATENCY_CYCLES) & (DRIVES_HISTORY - 1)];
     double lag_mm = maths_abs(set_mm - drives_axis_actual_mm(axis));
-    if (lag_mm > limit_mm)
+    if (lag_mm > allowed_lag_mm(d, axis))
         drives_raise(d, index, TAKT_ERROR_DRIVE_FOLLOWING, drives_axis_shown(axis, lag_mm), NULL);
+    if (d->state == DRIVES_ENABLED)
+        axis->lag_mm = lag_mm;
 }
 
 void drives_check_operation(struct drives *d)

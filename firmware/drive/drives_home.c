@@ -102,6 +102,33 @@ void drives_select(struct drives *d)
         sdo_client_upload(&d->sdo, d->node[d->at_axis], object, d->sdo_timeout_cycles);
 }
 
+/* Farthest from its home that a drive stands when it has braked from there, mm: v^2 / (2 a) of the faster velocity. */
+static double overshoot_mm(const struct drives_config_axis *config)
+{
+    const struct drives_homing *homing = &config->homing;
+    double v = maths_max(homing->velocity_mm_s, homing->zero_mm_s);
+    return v * v / (2 * homing->acceleration_mm_s2) + 1 / config->increments_per_mm;
+}
+
+/* Its home is where it should be, but for the sign. */
+static bool is_mirrored(const struct drives_axis *axis)
+{
+    double offset_mm = axis->config.homing.offset_mm;
+    double most_mm = overshoot_mm(&axis->config);
+    double actual_mm = drives_axis_actual_mm(axis);
+    return maths_abs(actual_mm + offset_mm) <= most_mm &&
+           maths_abs(actual_mm - offset_mm) > most_mm;
+}
+
+static void take_home(struct drives *d, unsigned index)
+{
+    struct drives_axis *axis = &d->axis[index];
+    axis->homed = true;
+    if (is_mirrored(axis))
+        drives_raise(d, index, TAKT_ERROR_DRIVE_HOME_OFFSET,
+                     drives_axis_shown(axis, drives_axis_actual_mm(axis)), NULL);
+}
+
 static void follow_homing(struct drives *d, unsigned index)
 {
     struct drives_axis *axis = &d->axis[index];
@@ -115,7 +142,8 @@ static void follow_homing(struct drives *d, unsigned index)
     else if (d->phase_cycles > axis->config.homing.timeout_cycles)
         drives_raise(d, index, TAKT_ERROR_DRIVE_HOMING_SLOW,
                      1e-3 * drives_cycles_ms(d, axis->config.homing.timeout_cycles), NULL);
-    axis->homed = is_done && (axis->homing_seen || since_ms >= HOMING_SHOWN_MS);
+    if (is_done && (axis->homing_seen || since_ms >= HOMING_SHOWN_MS))
+        take_home(d, index);
 }
 
 void drives_home(struct drives *d)

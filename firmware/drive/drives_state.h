@@ -42,7 +42,8 @@ struct drives_axis {
     uint16_t command;     /* controlword beside what the state asks for: CIA402_START_HOMING or 0 */
     uint16_t controlword; /* last sent */
     int32_t target_inc;
-    bool lost; /* after a fault: its setpoints lead nowhere */
+    double lag_mm; /* following error of the last report before a fault */
+    bool lost;     /* after a fault: its setpoints lead nowhere */
     bool homed;
     bool homing_seen;    /* the statusword has shown that homing is under way */
     int32_t braking_inc; /* where it was when its rest was looked at last */

@@ -4,6 +4,7 @@
 #include "geometry/arc.h"
 #include "geometry/involute.h"
 #include "geometry/line.h"
+#include "geometry/spline.h"
 
 #include <string.h>
 
@@ -24,6 +25,9 @@ void curve_point(const struct curve *c, double s_mm, struct point *p)
     case CURVE_INVOLUTE:
         involute_point(c, s_mm, p);
         break;
+    case CURVE_SPLINE:
+        spline_point(c, s_mm, p);
+        break;
     }
 }
 
@@ -38,6 +42,9 @@ void curve_tangent(const struct curve *c, double s_mm, struct point *t)
         break;
     case CURVE_INVOLUTE:
         involute_tangent(c, s_mm, t);
+        break;
+    case CURVE_SPLINE:
+        spline_tangent(c, s_mm, t);
         break;
     }
 }
@@ -54,6 +61,9 @@ void curve_curvature(const struct curve *c, double s_mm, struct point *k)
     case CURVE_INVOLUTE:
         involute_curvature(c, s_mm, k);
         break;
+    case CURVE_SPLINE:
+        spline_curvature(c, s_mm, k);
+        break;
     }
 }
 
@@ -68,6 +78,9 @@ void curve_bound(const struct curve *c, struct curve_bounds *b)
         break;
     case CURVE_INVOLUTE:
         involute_bound(c, b);
+        break;
+    case CURVE_SPLINE:
+        spline_bound(c, b);
         break;
     }
 }
@@ -100,6 +113,7 @@ bool curve_plane(const struct curve *c, enum axis *first, enum axis *second)
 {
     switch (c->kind) {
     case CURVE_LINE:
+    case CURVE_SPLINE:
         return false;
     case CURVE_ARC:
         *first = (enum axis)c->arc.first;

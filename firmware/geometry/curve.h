@@ -17,7 +17,7 @@
 /* An involute is unrolled by this at most, some 15,900 turns: up to there angles are exact (base/maths.h). */
 #define CURVE_UNROLLED_MAX_RAD 1e5
 
-enum curve_kind { CURVE_LINE, CURVE_ARC, CURVE_INVOLUTE };
+enum curve_kind { CURVE_LINE, CURVE_ARC, CURVE_INVOLUTE, CURVE_SPLINE };
 
 /* The plane of a bent curve: its first and second axis in the sense of G17 (X, Y), G18 (Z, X), G19 (Y, Z). */
 enum plane { PLANE_XY, PLANE_ZX, PLANE_YZ };
@@ -56,6 +56,12 @@ struct curve_involute {
     double plane_ratio;         /* length in the plane / length, <= 1 */
 };
 
+/* The part of a cubic that a line does not have (spline.c). Its s is no arc length. */
+struct curve_spline {
+    struct point second; /* d2 axis / d s2 at s = 0 */
+    struct point third;  /* d3 axis / d s3 */
+};
+
 struct curve {
     enum curve_kind kind;
     bool rotary;      /* the length counts radians: no linear axis moves, but for rounding */
@@ -66,6 +72,7 @@ struct curve {
     union {
         struct curve_arc arc;           /* kind CURVE_ARC alone */
         struct curve_involute involute; /* kind CURVE_INVOLUTE alone */
+        struct curve_spline spline;     /* kind CURVE_SPLINE alone */
     };
 };
 
@@ -109,6 +116,12 @@ bool curve_set_arc(struct curve *c, const struct point *start, const struct poin
 bool curve_set_involute(struct curve *c, const struct point *start, const struct point *end,
                         enum plane plane, const double centre_mm[2], double base_radius_mm,
                         bool clockwise);
+
+/*
+ * Piece of a uniform cubic B-spline between the second and the third of four control points; s goes 0 ... length_mm > 0
+ * evenly with the spline's parameter. Counts as linear: set rotary when only rotary axes move.
+ */
+void curve_set_spline(struct curve *c, const struct point control[4], double length_mm);
 
 /*
  * Where the piece of c that begins at from_mm ends: within one piece the curvature changes by a bounded ratio, so that

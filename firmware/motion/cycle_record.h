@@ -19,6 +19,7 @@ struct cycle_record {
     struct point cmd;        /* setpoint before correction, mm or rad */
     struct point set;        /* setpoint sent to the drives */
     struct point act;        /* last position the drives reported */
+    double spindle_rev;      /* measured at the start of the cycle */
     bool landed;             /* this cycle ends its block exactly: cmd is the block's end */
 };
 

@@ -15,8 +15,14 @@ void lead_init(struct lead *l, enum law law, uint64_t at)
     l->at = at;
     l->span = at - 1;
     l->standing = true;
+}
+
+void lead_stand(struct lead *l, uint64_t at)
+{
+    l->at = at;
+    l->feed = 0.0;
+    l->standing = true;
     l->released = false;
-    l->landing = CEILING_NONE;
 }
 
 void lead_release(struct lead *l)
@@ -24,61 +30,22 @@ void lead_release(struct lead *l)
     l->released = true;
 }
 
-/* Is the lead point past the end of piece k? A span's end is exact, the others are where a ceiling begins. */
-bool lead_has_passed(const struct lead *l, uint32_t k)
-{
-    const struct ceiling_piece *p = lead_piece(l, k);
-
-    return lead_is_last_of_span(p) ? lead_is_beyond(l->at, lead_leave_of(l, k))
-                                   : path_mm(l->ceiling->origin, l->at) >= p->end_mm;
-}
-
-/* -- the lowest ceiling from the setpoint to the lead point -- */
-
-static uint16_t *low_at(struct lead *l, uint32_t i)
-{
-    return &l->low[(l->low_first + i) % CEILING_PIECES_MAX];
-}
-
-void lead_low_push(struct lead *l, uint32_t k)
-{
-    while (l->low_count > 0 &&
-           lead_piece(l, *low_at(l, l->low_count - 1))->feed >= lead_piece(l, k)->feed) {
-        l->low_count--;
-    }
-    *low_at(l, l->low_count) = (uint16_t)k;
-    l->low_count++;
-}
-
-/* Forgets ceilings that the setpoint has left. */
-static void low_drop(struct lead *l, uint64_t setpoint)
-{
-    while (l->low_count > 0 && lead_is_beyond(setpoint, lead_leave_of(l, *low_at(l, 0)))) {
-        l->low_first = (l->low_first + 1) % CEILING_PIECES_MAX;
-        l->low_count--;
-    }
-}
-
-static double low_feed(struct lead *l)
-{
-    return l->low_count > 0 ? lead_piece(l, *low_at(l, 0))->feed : 0.0;
-}
-
 /* -- one cycle -- */
 
-/* Goes on to the next joint when one has been passed. */
+/* The joint that the span ends with keeps the feed that was promised for it, as long as the axes can do it. */
 static void follow_landing(struct lead *l)
 {
-    while (l->landing != CEILING_NONE && lead_is_beyond(l->at, lead_leave_of(l, l->landing))) {
-        l->landing = l->landing + 1U < l->ceiling->count ? lead_piece(l, l->landing + 1U)->landing
-                                                         : CEILING_NONE;
-        l->landing_feed = 0.0;
-    }
-    if (l->landing != CEILING_NONE) {
-        const struct ceiling_piece *joint = lead_piece(l, l->landing);
+    const uint16_t k = lead_landing(l);
 
-        l->landing_feed = maths_min(maths_max(l->landing_feed, joint->feed), joint->feed_max);
+    if (k == CEILING_NONE) {
+        l->landing_feed = 0.0;
+        return;
     }
+    const struct ceiling_piece *joint = lead_piece(l, k);
+
+    l->landing_feed = lead_leave_of(l, k) == l->joint ? l->landing_feed : 0.0;
+    l->landing_feed = maths_min(maths_max(l->landing_feed, joint->feed), joint->feed_max);
+    l->joint = lead_leave_of(l, k);
 }
 
 static void count_changes(struct lead *l, double change)
@@ -127,8 +94,9 @@ static void slow_down(struct lead *l, const struct lead_brake *b)
 }
 
 /* One cycle under the ceiling. */
-static void run_on(struct lead *l, bool hold)
+static void run_on(struct lead *l, uint64_t setpoint, bool hold)
 {
+    const double low = lead_low_feed(l, setpoint);
     struct lead_brake b = lead_brake_ahead(l);
 
     if (hold) {
@@ -142,7 +110,7 @@ static void run_on(struct lead *l, bool hold)
     if (b.rest || b.feed < l->feed - LEAD_CHANGE_MIN * b.a) {
         slow_down(l, &b);
     } else {
-        go(l, hold ? l->feed : lead_speed_up(l, low_feed(l)));
+        go(l, hold || l->here.late ? l->feed : lead_speed_up(l, low));
     }
 }
 
@@ -156,38 +124,22 @@ static void wait_for_more(struct lead *l)
     }
 }
 
-/* Moves on to the piece of the lead point. */
-static void follow_pieces(struct lead *l)
-{
-    while (l->piece < l->ceiling->count && !lead_is_last_of_span(lead_piece(l, l->piece)) &&
-           lead_has_passed(l, l->piece)) {
-        l->piece++;
-        if (l->piece < l->ceiling->count) {
-            lead_low_push(l, l->piece);
-        }
-    }
-}
-
 /* Enters the span that begins with piece k, from a position on the path that the setpoint is at. */
 static void enter_span(struct lead *l, uint32_t k, uint64_t from, struct lead_start *start)
 {
     start->step = path_units(l->feed);
     l->standing = false;
     l->span = from;
-    l->piece = k;
     l->cycles = lead_piece(l, k)->cycles;
     l->window = (double)law_window_cycles(l->law, l->cycles);
+    l->before = from;
     l->at = from + start->step * (law_window_cycles(l->law, l->cycles) - 1) / 2;
     l->feed = (double)start->step / PATH_UNITS_PER_MM;
     l->since_plus = LONG_AGO;
     l->since_minus = LONG_AGO;
-    l->low_count = 0;
-    lead_low_push(l, k);
-    l->landing = lead_piece(l, k)->landing;
-    l->landing_feed = 0.0;
     l->run.over = false;
     start->at = l->at;
-    follow_pieces(l);
+    lead_enter_piece(l, k);
 }
 
 /*
@@ -196,38 +148,40 @@ static void enter_span(struct lead *l, uint32_t k, uint64_t from, struct lead_st
  */
 static bool leave_stop(struct lead *l, struct lead_start *start)
 {
-    uint32_t next = 0;
-
-    while (next < l->ceiling->count && lead_is_beyond(l->at, lead_leave_of(l, next))) {
-        next++;
+    for (unsigned i = 0; i < LEAD_PIECES_MAX && lead_has_piece(l); i++) {
+        if (!lead_is_beyond(l->at, lead_leave_of(l, l->here.piece))) {
+            enter_span(l, l->here.piece, l->at, start);
+            return true;
+        }
+        l->here.piece++;
     }
-    if (next == l->ceiling->count) {
-        return false;
-    }
-    enter_span(l, next, l->at, start);
-    return true;
+    return false;
 }
 
-/* Goes over from a landed joint to the span behind it. False: it is at none, or has not rested at it long enough. */
+/* Is the lead point, or the setpoint that follows it, at the joint: landed in motion, or at rest for a whole window? */
+static bool is_at_joint(const struct lead *l, uint64_t joint)
+{
+    return l->run.over ? l->run.joint == joint
+                       : l->at == joint && l->feed == 0.0 && l->since_minus >= l->window;
+}
+
+/* Goes over from a landed joint to the span behind it. False: that is not known yet. */
 static bool leave_joint(struct lead *l, struct lead_start *start)
 {
-    if (!l->run.over && (l->feed != 0.0 || l->since_minus < l->window)) {
-        return false;
-    }
-    const uint64_t joint = l->run.over ? l->run.joint : l->at;
-    const uint32_t k = lead_piece_behind(l->ceiling, joint);
+    const uint16_t k = lead_landing(l);
 
-    if (k >= l->ceiling->count) {
+    if (k == CEILING_NONE || k + 1U >= l->here.ceiling->count ||
+        !is_at_joint(l, lead_leave_of(l, k))) {
         return false;
     }
-    enter_span(l, k, joint, start);
+    enter_span(l, k + 1U, lead_leave_of(l, k), start);
     return true;
 }
 
 static bool has_stopped(const struct lead *l)
 {
-    return l->feed == 0.0 && l->piece < l->ceiling->count && lead_piece(l, l->piece)->stop &&
-           lead_has_passed(l, l->piece);
+    return l->feed == 0.0 && lead_has_piece(l) && lead_piece(l, l->here.piece)->stop &&
+           lead_is_beyond(l->at, lead_leave_of(l, l->here.piece));
 }
 
 /* Between two spans: may the next one be begun in this cycle? */
@@ -241,7 +195,7 @@ static bool begin_span(struct lead *l, bool hold, struct lead_start *start)
 
 bool lead_step(struct lead *l, uint64_t setpoint, bool hold, struct lead_start *start)
 {
-    if (l->ceiling == NULL) {
+    if (l->here.ceiling == NULL) {
         return false;
     }
     const bool begun = begin_span(l, hold, start);
@@ -249,19 +203,20 @@ bool lead_step(struct lead *l, uint64_t setpoint, bool hold, struct lead_start *
     if (l->standing) {
         return false;
     }
-    low_drop(l, setpoint);
+    l->before = l->at;
     follow_landing(l);
     if (l->run.active) {
         run_landing(l);
-    } else if (l->piece < l->ceiling->count) {
-        run_on(l, hold);
+    } else if (lead_has_piece(l)) {
+        run_on(l, setpoint, hold);
     } else {
         wait_for_more(l);
     }
-    follow_pieces(l);
+    lead_follow_pieces(l);
     if (has_stopped(l)) {
         l->standing = true;
         l->released = false;
+        l->here.piece++;
     }
     return begun;
 }

@@ -17,11 +17,34 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+/* Ceilings that bind until the setpoint has left what they are made of: at most so many are told apart. */
+#define LEAD_LOW_MAX 32
+
+/* Pieces that the lead point comes to, or that are looked at, in one cycle at most. */
+#define LEAD_PIECES_MAX 32
+
+struct lead_low {
+    double feed;
+    uint64_t leave; /* path position */
+};
+
+/* Where the lead point is in a ceiling. */
+struct lead_place {
+    const struct ceiling *ceiling; /* NULL: none */
+    uint32_t piece; /* the ceiling's count: beyond its end. At a stop: the first behind it */
+    bool late;      /* the next piece begins here, but must not be come to yet */
+    double early_a; /* acceleration that still counts when a piece was come to before it begins */
+    /* from the setpoint's piece to the lead point's, feeds rising: the first is the lowest */
+    uint32_t low_first, low_count;
+    struct lead_low low[LEAD_LOW_MAX];
+};
+
 struct lead {
-    const struct ceiling *ceiling; /* NULL: none yet */
     enum law law;
     uint64_t at;
+    uint64_t before;      /* at the beginning of the last cycle */
     uint64_t span;        /* where the span starts that has been begun last */
+    uint64_t entered;     /* where what the lead point has come to last starts for the setpoint */
     double feed;          /* at the end of the last cycle */
     bool standing;        /* at a stop, or where the machine was switched on: between two spans */
     bool released;        /* and may leave it */
@@ -29,24 +52,27 @@ struct lead {
     double window;        /* cycles that the averages reach over */
     uint32_t since_plus;  /* cycles since it sped up */
     uint32_t since_minus; /* and since it slowed down */
-    uint32_t piece;       /* where the lead point is; the ceiling's count: beyond its end */
-    uint16_t landing;     /* the next joint to land on, CEILING_NONE */
-    double landing_feed;
+    struct lead_place here;
+    struct lead_place coming; /* in the next ceiling */
+    uint64_t joint;           /* the next one to land on, where there is one */
+    double landing_feed;      /* for it */
     struct landing_run run;
-    /* pieces from the setpoint's to the lead point's, their feeds rising: the first is the lowest */
-    uint32_t low_first, low_count;
-    uint16_t low[CEILING_PIECES_MAX];
 };
 
 /* At rest at a position; lead_release lets it leave. */
 void lead_init(struct lead *l, enum law law, uint64_t at);
 
 /*
- * A new ceiling, over a path that reaches further or under other overrides. False when it was made for another window
- * than that of the span that has been begun, or when what is new in it cannot be met any more (a short window may show
- * a slow block too late): the old one stays, which ends at rest. setpoint: where the setpoint is.
+ * A new ceiling, over a path that reaches further or under other overrides. It is taken when the lead point's place in it
+ * has been found, some cycles later; until then the ceiling in use and the new one stay as they are.
  */
-bool lead_set_ceiling(struct lead *l, const struct ceiling *ceiling, uint64_t setpoint);
+void lead_set_ceiling(struct lead *l, const struct ceiling *ceiling);
+
+/* Goes on taking it, once a cycle. True: it is not taken yet. */
+bool lead_take(struct lead *l);
+
+/* At rest, at a stop further on: what lay before it has been done by others. */
+void lead_stand(struct lead *l, uint64_t at);
 
 /* The stop at which everything stands has been served. */
 void lead_release(struct lead *l);

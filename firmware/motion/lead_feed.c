@@ -56,7 +56,7 @@ static uint64_t rest_position(const struct lead *l, const struct ceiling_piece *
     const uint64_t leave = (uint64_t)p->leave;
     const bool same = maths_abs((double)(int64_t)(end - leave)) <= END_UNITS;
 
-    return l->ceiling->origin + (p->stop || same ? leave : end);
+    return l->here.ceiling->origin + (p->stop || same ? leave : end);
 }
 
 /* Rest may come a little early, so that no feed is left that is lost in the rounding of positions. */
@@ -75,21 +75,45 @@ static void brake_for_piece(const struct lead *l, const struct ceiling_piece *p,
     }
 }
 
+/*
+ * The next piece must not be come to yet: slows down until that does no harm, v e <= S - s - (w + v)/2, and what follows
+ * can be met (lead_place.c), and comes to rest at S at the latest.
+ */
+static void brake_late(const struct lead *l, struct lead_brake *b)
+{
+    const struct ceiling_piece *next = lead_piece(l, l->here.piece + 1);
+    const double gap_mm = path_mm(l->at, l->here.ceiling->origin + (uint64_t)next->start);
+    const double harmless =
+        maths_min((gap_mm - 0.5 * l->feed) / (lead_entry_cycles(l) + 0.5), next->feed_max);
+    const struct ceiling_piece stop = {.acceleration = b->a, .stop = true, .leave = next->start};
+
+    b->feed = harmless < l->feed ? maths_max(0.0, harmless) : 0.0;
+    if (gap_mm >= 0.0) {
+        brake_for_piece(l, &stop, gap_mm, b);
+    }
+}
+
 struct lead_brake lead_brake_ahead(const struct lead *l)
 {
-    const double s = path_mm(l->ceiling->origin, l->at);
-    struct lead_brake b = {.feed = maths_min(l->feed, lead_piece(l, l->piece)->feed)};
-    uint32_t k = l->piece;
+    const double s = path_mm(l->here.ceiling->origin, l->at);
+    struct lead_brake b = {.feed = maths_min(l->feed, lead_piece(l, l->here.piece)->feed),
+                           .a = lead_piece(l, l->here.piece)->acceleration};
 
-    while (!b.rest) {
+    if (l->here.late) {
+        brake_late(l, &b);
+    }
+    for (uint32_t k = l->here.piece; !b.rest; k++) {
         const struct ceiling_piece *p = lead_piece(l, k);
 
-        brake_for_piece(l, p, p->end_mm - s, &b);
-        if (lead_is_last_of_span(p) || p->end_mm - s >= l->feed || k + 1 == l->ceiling->count) {
+        if (!l->here.late || p->stop) {
+            brake_for_piece(l, p, p->end_mm - s, &b);
+        }
+        if (lead_is_last_of_span(p) || p->end_mm - s >= l->feed ||
+            k + 1 == l->here.ceiling->count || k == l->here.piece + LEAD_PIECES_MAX) {
             break;
         }
-        k++;
     }
+    b.a = maths_min(b.a, l->here.early_a);
     return b;
 }
 
@@ -98,28 +122,32 @@ struct lead_brake lead_brake_ahead(const struct lead *l)
 /* A joint that nothing is known behind is only come to rest at: the ceiling ends with it. */
 static bool has_landing(const struct lead *l)
 {
-    return l->landing != CEILING_NONE && l->landing + 1U < l->ceiling->count;
+    const uint16_t k = lead_landing(l);
+
+    return k != CEILING_NONE && k + 1U < l->here.ceiling->count;
 }
 
 static double landing_gap(const struct lead *l)
 {
-    return path_mm(l->at, lead_leave_of(l, l->landing));
+    return path_mm(l->at, l->joint);
 }
 
 /* How hard the lead point may slow down on its way to the joint: above its feed as in the piece that it is in. */
 static double landing_acceleration(const struct lead *l, double feed)
 {
-    const double here = lead_piece(l, l->piece < l->landing ? l->piece : l->landing)->acceleration;
+    const double here = lead_piece(l, l->here.piece)->acceleration;
 
-    return feed > l->landing_feed ? here : maths_min(here, lead_piece(l, l->landing)->acceleration);
+    return feed > l->landing_feed ? here
+                                  : maths_min(here, lead_piece(l, lead_landing(l))->acceleration);
 }
 
-static bool landing_from(const struct lead *l, double gap_mm, double feed, struct landing_run *run)
+static bool landing_from(const struct lead *l, double gap_mm, double feed, double feed_max,
+                         struct landing_run *run)
 {
     const struct landing_case landing = {
         .gap_mm = gap_mm,
         .feed = feed,
-        .feed_max = l->landing_feed,
+        .feed_max = feed_max,
         .acceleration = landing_acceleration(l, feed),
         .window = l->window,
     };
@@ -133,7 +161,7 @@ static struct ceiling_piece joint_as_stop(const struct lead *l)
     return (struct ceiling_piece){
         .acceleration = landing_acceleration(l, 0.0),
         .stop = true,
-        .leave = lead_piece(l, l->landing)->leave,
+        .leave = lead_piece(l, lead_landing(l))->leave,
     };
 }
 
@@ -146,7 +174,7 @@ static bool can_land_later(const struct lead *l, double v)
     const double gap_mm = landing_gap(l) - 0.5 * (l->feed + v) - (l->window + 1.0) * v;
     struct landing_run run;
 
-    return v > l->landing_feed || landing_from(l, gap_mm, v, &run);
+    return v > l->landing_feed || landing_from(l, gap_mm, v, l->landing_feed, &run);
 }
 
 /* The highest feed up to v from which the next landed joint can be met: in motion, else at rest. */
@@ -185,15 +213,13 @@ static double landing_reach(const struct lead *l)
     return l->feed * (0.5 * l->feed / a + 2.0 * l->window + LANDING_CYCLES);
 }
 
-/* Does anything before the joint ask for less than the present feed? Looked at only when that is near. */
-static bool is_way_free(const struct lead *l)
+/* Does anything before the joint ask for less than the present feed? highest: at the highest overrides. */
+static bool is_way_free(const struct lead *l, bool highest)
 {
-    for (uint32_t k = l->piece; k + 1U < l->landing; k++) {
-        if (lead_piece(l, k)->end_energy < l->feed * l->feed * (1.0 - LEAD_ENERGY_SLACK)) {
-            return false;
-        }
-    }
-    return true;
+    const struct ceiling_piece *p = lead_piece(l, l->here.piece);
+    const double energy = (double)(highest ? p->way_energy_max : p->way_energy);
+
+    return energy >= l->feed * l->feed * (1.0 - LEAD_ENERGY_SLACK);
 }
 
 /* The feed at the end of this cycle if nothing else but braking happens. */
@@ -203,18 +229,41 @@ static double braked_feed(const struct lead *l, const struct lead_brake *b)
 }
 
 /* Could the joint still be landed on when this cycle does nothing else but brake? */
-static bool can_land_after(const struct lead *l, const struct lead_brake *b, double gap_mm)
+static bool can_land_after(const struct lead *l, const struct lead_brake *b, double gap_mm,
+                           double feed_max)
 {
     const double feed = braked_feed(l, b);
     struct landing_run later;
 
-    return landing_from(l, gap_mm - 0.5 * (l->feed + feed), feed, &later);
+    return landing_from(l, gap_mm - 0.5 * (l->feed + feed), feed, feed_max, &later);
 }
 
 /* Braking from now on, does the lead point come to rest before the joint? */
 static bool can_rest_before(const struct lead *l, double gap_mm)
 {
     return l->feed * l->feed <= 2.0 * joint_as_stop(l).acceleration * gap_mm;
+}
+
+/*
+ * Can it be landed in this cycle, and not a cycle later? Where the feed was lowered too late for the joint's, up to the
+ * highest that the axes can do there.
+ */
+static bool must_land(const struct lead *l, const struct lead_brake *b, double gap_mm,
+                      struct landing_run *run)
+{
+    const double highest = lead_piece(l, lead_landing(l))->feed_max;
+
+    if (landing_from(l, gap_mm, l->feed, l->landing_feed, run) && is_way_free(l, false)) {
+        return true;
+    }
+    return landing_from(l, gap_mm, l->feed, highest, run) &&
+           !can_land_after(l, b, gap_mm, highest) && is_way_free(l, true);
+}
+
+/* A joint that cannot be landed on any more, nor come down to by the ceiling, is a stop. */
+static bool must_stop(const struct lead *l)
+{
+    return l->here.piece >= lead_landing(l) || l->feed <= l->landing_feed;
 }
 
 /*
@@ -228,14 +277,14 @@ void lead_approach_landing(struct lead *l, bool hold, struct lead_brake *b)
     }
     const double gap_mm = landing_gap(l);
 
-    if (gap_mm > landing_reach(l) || can_land_after(l, b, gap_mm) || !is_way_free(l)) {
+    if (gap_mm > landing_reach(l) || can_land_after(l, b, gap_mm, l->landing_feed)) {
         return;
     }
-    l->run = (struct landing_run){.start = l->at, .joint = lead_leave_of(l, l->landing)};
+    l->run = (struct landing_run){.start = l->at, .joint = l->joint};
     if (!hold || !can_rest_before(l, gap_mm)) {
-        l->run.active = landing_from(l, gap_mm, l->feed, &l->run);
+        l->run.active = must_land(l, b, gap_mm, &l->run);
     }
-    if (!l->run.active && (hold || l->piece >= l->landing || l->feed <= l->landing_feed)) {
+    if (!l->run.active && (hold || (must_stop(l) && is_way_free(l, false)))) {
         const struct ceiling_piece stop = joint_as_stop(l);
 
         brake_for_piece(l, &stop, gap_mm, b);
@@ -260,21 +309,21 @@ static double feed_in_piece(const struct lead *l, const struct ceiling_piece *p,
  */
 static double feed_to_keep(const struct lead *l, double top, double low)
 {
-    const double s = path_mm(l->ceiling->origin, l->at);
+    const double s = path_mm(l->here.ceiling->origin, l->at);
     const double way = l->window + 0.5;
 
-    for (uint32_t k = l->piece; k < l->ceiling->count; k++) {
+    for (uint32_t k = l->here.piece; k < l->here.ceiling->count; k++) {
         const struct ceiling_piece *p = lead_piece(l, k);
-        const double at_end = (p->end_mm - s - 0.5 * l->feed) / way;
+        const double gap_mm = p->end_mm - s - 0.5 * l->feed;
 
         low = maths_min(low, p->feed);
         top = maths_min(top, low);
-        if (lead_is_last_of_span(p) || at_end >= top || at_end * at_end > p->end_energy ||
-            k + 1 == l->ceiling->count) {
+        if (lead_is_last_of_span(p) || gap_mm >= top * way ||
+            gap_mm * gap_mm > p->end_energy * way * way || k + 1 == l->here.ceiling->count) {
             return maths_min(top, feed_in_piece(l, p, s));
         }
-        if (k - l->piece >= AHEAD_PIECES_MAX) {
-            return at_end;
+        if (k - l->here.piece >= AHEAD_PIECES_MAX) {
+            return gap_mm / way;
         }
     }
     return 0.0;
@@ -282,7 +331,7 @@ static double feed_to_keep(const struct lead *l, double top, double low)
 
 double lead_speed_up(const struct lead *l, double low)
 {
-    const double a = lead_piece(l, l->piece)->acceleration;
+    const double a = lead_piece(l, l->here.piece)->acceleration;
 
     if (l->since_minus < l->window || low <= l->feed * (1.0 + 1e-12)) {
         return l->feed;

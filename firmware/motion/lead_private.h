@@ -1,5 +1,5 @@
 /*
- * What the parts of the lead point share: lead.c moves it, lead_feed.c finds the feed, lead_exchange.c takes a new
+ * What the parts of the lead point share: lead.c moves it, lead_feed.c finds the feed, lead_place.c finds its place in a
  * ceiling.
  */
 #ifndef TAKT_MOTION_LEAD_PRIVATE_H
@@ -7,6 +7,8 @@
 
 #include "motion/lead.h"
 #include "plan/path_unit.h"
+
+#include <stddef.h>
 
 /* Rounding of feed squared. */
 #define LEAD_ENERGY_SLACK 1e-6
@@ -24,13 +26,19 @@ struct lead_brake {
 
 static inline const struct ceiling_piece *lead_piece(const struct lead *l, uint32_t k)
 {
-    return &l->ceiling->piece[k];
+    return &l->here.ceiling->piece[k];
+}
+
+/* Is there a piece under the lead point, and not the end of all that is known? */
+static inline bool lead_has_piece(const struct lead *l)
+{
+    return l->here.ceiling != NULL && l->here.piece < l->here.ceiling->count;
 }
 
 /* Where the setpoint leaves what piece k is made of. */
 static inline uint64_t lead_leave_of(const struct lead *l, uint32_t k)
 {
-    return l->ceiling->origin + (uint64_t)lead_piece(l, k)->leave;
+    return l->here.ceiling->origin + (uint64_t)lead_piece(l, k)->leave;
 }
 
 /* Path position at or beyond another. */
@@ -44,13 +52,24 @@ static inline bool lead_is_last_of_span(const struct ceiling_piece *p)
     return p->stop || p->landed;
 }
 
-/* lead.c: is the lead point past the end of piece k? */
-bool lead_has_passed(const struct lead *l, uint32_t k);
-/* lead.c: the lead point has come to piece k, whose ceiling binds until the setpoint has left it. */
-void lead_low_push(struct lead *l, uint32_t k);
+/* The joint that this span ends with, if it is one to land on; CEILING_NONE: a stop, or it is not known. */
+static inline uint16_t lead_landing(const struct lead *l)
+{
+    return lead_has_piece(l) ? lead_piece(l, l->here.piece)->landing : CEILING_NONE;
+}
 
-/* lead_exchange.c: the piece behind a landed joint; the count: there is none. */
-uint32_t lead_piece_behind(const struct ceiling *c, uint64_t joint);
+/* Half the window and the margin but for one cycle: that in which the lead point comes to a piece. */
+static inline double lead_entry_cycles(const struct lead *l)
+{
+    return 0.5 * (l->window - 1.0) + CEILING_MARGIN_CYCLES - 1.0;
+}
+
+/* lead_place.c: goes on to the pieces that the lead point has come to. */
+void lead_follow_pieces(struct lead *l);
+/* lead_place.c: begins at a piece, of a new span. */
+void lead_enter_piece(struct lead *l, uint32_t k);
+/* lead_place.c: forgets ceilings that the setpoint has left, and tells the lowest of the others. */
+double lead_low_feed(struct lead *l, uint64_t setpoint);
 
 /* lead_feed.c: what is ahead within a cycle: the lowest feed that any piece's end asks for. */
 struct lead_brake lead_brake_ahead(const struct lead *l);

@@ -31,6 +31,11 @@ void motion_init(struct motion *m, struct path *path, const struct point *start,
                                           .proportional = proportional};
 }
 
+void motion_stop_each(struct motion *m)
+{
+    m->request.stops = true;
+}
+
 static const struct block *first_block(const struct motion *m)
 {
     return path_at(m->path, m->path->first);
@@ -71,7 +76,24 @@ static bool is_unchanged(const struct motion *m)
 
     return m->made_holds && c->complete && m->made_closed == m->path->closed &&
            m->made.feed_ratio == m->request.feed_ratio &&
-           m->made.rapid_ratio == m->request.rapid_ratio;
+           m->made.rapid_ratio == m->request.rapid_ratio && m->made.stops == m->request.stops &&
+           m->made.spindle_rev_s == m->request.spindle_rev_s;
+}
+
+/* The first block that can still be stopped at: its end is beyond the room that braking may take. */
+static uint32_t first_stop(const struct motion *m)
+{
+    const uint64_t from = m->request.lead + m->room;
+    uint32_t i = m->request.first;
+
+    for (; i != m->path->closed; i++) {
+        const struct block *b = path_at(m->path, i);
+
+        if ((int64_t)(b->start + b->length - from) >= 0) {
+            break;
+        }
+    }
+    return i;
 }
 
 void motion_build(struct motion *m)
@@ -81,6 +103,9 @@ void motion_build(struct motion *m)
         return;
     }
     m->built_restarts = m->asked_restarts;
+    if (m->request.stops) {
+        m->request.stops_from = m->used.stops ? m->used.stops_from : first_stop(m);
+    }
     ceiling_build(&m->ceiling[1 - m->active], m->path, &m->request);
     m->made = m->request;
     m->made_closed = m->path->closed;
@@ -90,13 +115,21 @@ void motion_build(struct motion *m)
 
 /* -- exchange with the background -- */
 
-static void take_ceiling(struct motion *m)
+/* The lead point stands at the end of a single block and the setpoint has not come there: that stop is still one. */
+static bool comes_to_stop(const struct motion *m)
 {
-    m->made_holds = m->built_restarts == m->restarts &&
-                    lead_set_ceiling(&m->lead, &m->ceiling[1 - m->active], m->setpoint);
+    return m->used.stops && !m->made.stops && m->lead.standing && m->lag != 0.0;
+}
+
+/* A ceiling of a path that has been dropped since is of no use. */
+static void offer_ceiling(struct motion *m)
+{
+    m->made_holds = m->built_restarts == m->restarts && !comes_to_stop(m);
     if (m->made_holds) {
         m->active = 1 - m->active;
         m->has_ceiling = true;
+        m->used = m->made;
+        lead_set_ceiling(&m->lead, &m->ceiling[m->active]);
     }
     m->built = false;
 }
@@ -104,12 +137,33 @@ static void take_ceiling(struct motion *m)
 /* Where the ceiling ends that the lead point is under. */
 static uint64_t piece_leave(const struct motion *m)
 {
-    const struct lead *l = &m->lead;
+    const struct lead_place *here = &m->lead.here;
 
-    if (l->ceiling == NULL || l->piece >= l->ceiling->count) {
-        return l->at;
+    if (here->ceiling == NULL || here->piece >= here->ceiling->count) {
+        return m->lead.at;
     }
-    return l->ceiling->origin + (uint64_t)l->ceiling->piece[l->piece].leave;
+    return here->ceiling->origin + (uint64_t)here->ceiling->piece[here->piece].leave;
+}
+
+/*
+ * The way in which the lead point can come to rest: the two exchanges that a new ceiling takes to be in use, a window at
+ * constant feed, and braking: v t + v^2 / 2 a.
+ */
+static uint64_t braking_room(const struct motion *m)
+{
+    const struct lead *l = &m->lead;
+    const struct lead_place *here = &l->here;
+
+    if (here->ceiling == NULL || here->piece >= here->ceiling->count || l->feed == 0.0) {
+        return 0;
+    }
+    const struct ceiling_piece *p = &here->ceiling->piece[here->piece];
+    const double cycles = 2.0 * MOTION_EXCHANGE_CYCLES;
+    const double v =
+        maths_clamp(l->feed + cycles * p->acceleration, l->feed, maths_max(l->feed, p->feed_max));
+
+    return (uint64_t)((v * (l->window + cycles) + 0.5 * v * v / p->acceleration) *
+                      PATH_UNITS_PER_MM);
 }
 
 /* An override asked for while the lead point brakes waits for the next block (seed 003 section 2). 0 is a hold. */
@@ -123,7 +177,12 @@ static void ask(struct motion *m, const struct motion_operator *wanted)
             wanted->feed_ratio > 0.0 ? wanted->feed_ratio : m->request.feed_ratio;
         m->request.rapid_ratio =
             wanted->rapid_ratio > 0.0 ? wanted->rapid_ratio : m->request.rapid_ratio;
+        if (wanted->measures && wanted->spindle_rev_s > 0.0 && m->path->has_revolution_feed) {
+            m->request.spindle_rev_s = wanted->spindle_rev_s;
+        }
     }
+    m->request.stops = wanted->single_block;
+    m->room = braking_room(m);
     m->asked_leave = leave;
     m->asked_restarts = m->restarts;
     m->request.first = m->path->first;
@@ -134,14 +193,21 @@ static void ask(struct motion *m, const struct motion_operator *wanted)
     m->wanted = true;
 }
 
+/* While a ceiling is being taken none is free to be made: then a new one is asked for some cycles later. */
 static void exchange(struct motion *m, const struct motion_operator *wanted)
 {
-    if (m->built) {
-        take_ceiling(m);
-    } else if (m->wanted) {
-        m->late++;
+    if (!m->has_ceiling || m->cycles % MOTION_EXCHANGE_CYCLES == 0) {
+        if (m->built) {
+            offer_ceiling(m);
+        } else if (m->wanted) {
+            m->late++;
+        }
+        m->asks = true;
     }
-    ask(m, wanted);
+    if (!lead_take(&m->lead) && m->asks) {
+        ask(m, wanted);
+        m->asks = false;
+    }
 }
 
 /* -- stops, and what happens at them -- */
@@ -152,6 +218,12 @@ static bool is_wait_over(const struct motion *m, const struct block *b)
         b->move.kind == MOVE_DWELL ? maths_ceil(b->move.dwell_s / m->cycle_s - 1e-9) : 0.0;
 
     return (double)m->waited >= cycles;
+}
+
+static bool is_handed_over(const struct motion *m, const struct block *b)
+{
+    return (m->hands_over && move_is_locked(&b->move)) ||
+           (m->hands_over_all && b->move.kind != MOVE_PROBE);
 }
 
 /* Goes through what happens at rest. MOTION_CYCLE: the axes move on, or wait when *waits is set. */
@@ -171,7 +243,7 @@ static enum motion_result serve(struct motion *m, bool *waits)
         m->current = m->path->first;
         if (block_is_motion(b)) {
             *waits = false;
-            return MOTION_CYCLE;
+            return is_handed_over(m, b) ? MOTION_HANDED_OVER : MOTION_CYCLE;
         }
         if (b->move.kind == MOVE_END) {
             return MOTION_DONE;
@@ -192,19 +264,27 @@ static enum motion_result serve(struct motion *m, bool *waits)
 /* Does the operator hold where the lead point is? */
 static bool is_held(const struct motion *m, const struct motion_operator *wanted)
 {
-    const struct lead *l = &m->lead;
+    const struct lead_place *here = &m->lead.here;
 
     if (m->ending || wanted->stop) {
         return true;
     }
-    if (l->ceiling == NULL || l->piece >= l->ceiling->count) {
+    if (here->ceiling == NULL || here->piece >= here->ceiling->count) {
         return wanted->hold;
     }
-    const unsigned overrides = l->ceiling->piece[l->piece].overrides;
+    const unsigned overrides = here->ceiling->piece[here->piece].overrides;
 
     return (wanted->hold && (overrides & OVERRIDE_HOLD) != 0) ||
            (!(wanted->feed_ratio > 0.0) && (overrides & OVERRIDE_FEED) != 0) ||
-           (!(wanted->rapid_ratio > 0.0) && (overrides & CEILING_RAPID) != 0);
+           (!(wanted->rapid_ratio > 0.0) && (overrides & CEILING_RAPID) != 0) ||
+           (wanted->measures && !(wanted->spindle_rev_s > 0.0) &&
+            (overrides & CEILING_SPINDLE) != 0);
+}
+
+/* Is the end of the oldest block a stop? */
+static bool ends_at_rest(const struct motion *m)
+{
+    return ceiling_stops(&m->used, first_block(m), m->path->first);
 }
 
 /* The setpoint's distance from the start of its block, path units, after passing the blocks it has left. */
@@ -213,7 +293,7 @@ static double find_block(struct motion *m)
     const struct block *b = first_block(m);
     double local = (double)(int64_t)(m->lead.at - b->start) - m->lag;
 
-    for (unsigned passed = 0; passed < PASS_MAX && b->end != JOINT_STOP; passed++) {
+    for (unsigned passed = 0; passed < PASS_MAX && !ends_at_rest(m); passed++) {
         if (local <= (double)b->length + LANDED_UNITS) {
             break;
         }
@@ -240,7 +320,7 @@ static void place(struct motion *m, double local, struct cycle_record *record)
         return;
     }
     if (maths_abs(local - (double)b->length) <= LANDED_UNITS) {
-        m->done = b->end == JOINT_STOP && m->lead.standing && m->lag == 0.0;
+        m->done = ends_at_rest(m) && m->lead.standing && m->lag == 0.0;
         m->rested = 0;
         record->landed = (m->done || is_landing(m, b)) && !b->continues;
         m->at = b->curve.end;
@@ -348,9 +428,7 @@ enum motion_result motion_cycle(struct motion *m, const struct motion_operator *
     if (!m->has_ceiling && !m->built) {
         return MOTION_NOT_YET;
     }
-    if (!m->has_ceiling || m->cycles % MOTION_EXCHANGE_CYCLES == 0) {
-        exchange(m, wanted);
-    }
+    exchange(m, wanted);
     const enum motion_result result = serve(m, &waits);
 
     if (result != MOTION_CYCLE) {

@@ -24,7 +24,8 @@ enum motion_result {
     MOTION_CYCLE,   /* the record holds this cycle */
     MOTION_DONE,    /* the end of the program has been reached: no cycle was made */
     MOTION_NOT_YET, /* nothing has been planned yet: no cycle was made */
-    MOTION_EMPTY    /* everything has been done, but no end of program came: no cycle was made */
+    MOTION_EMPTY,   /* everything has been done, but no end of program came: no cycle was made */
+    MOTION_HANDED_OVER /* the axes stand where a block begins that follows the spindle (handover.h): no cycle was made */
 };
 
 /* What the operator wants, in this cycle. */
@@ -32,8 +33,11 @@ struct motion_operator {
     double feed_ratio;  /* of programmed feeds, 0 ... BLOCK_OVERRIDE_MAX; 0 holds */
     double rapid_ratio; /* 0 ... 1; 0 holds rapids */
     bool hold;
-    bool stop; /* a hold that nothing in the program can switch off */
-    bool wait; /* does not leave a stop: the spindle has not reached its speed */
+    bool stop;         /* a hold that nothing in the program can switch off */
+    bool single_block; /* every motion that it can still brake in ends at rest */
+    bool wait;         /* does not leave a stop: the spindle has not reached its speed */
+    bool measures; /* the spindle's speed, for feeds per revolution; else they are as commanded */
+    double spindle_rev_s; /* >= 0; 0 holds them */
 };
 
 struct motion {
@@ -57,22 +61,30 @@ struct motion {
     struct average average;
     struct ceiling ceiling[2];
     unsigned active;  /* the one in use */
-    bool has_ceiling; /* one is in use */
-    bool wanted;      /* the background is asked for one */
+    bool has_ceiling; /* there has been one */
+    bool asks;        /* the background is to be asked for one as soon as there is room */
+    bool wanted;      /* it has been asked */
     bool built;       /* and has made it */
     struct ceiling_request request;
     uint64_t asked_leave;        /* of the piece the lead point was in then */
+    struct ceiling_request used; /* what the ceiling in use was made for */
+    uint64_t room;               /* beyond the lead point it may be too late to stop, path units */
     struct ceiling_request made; /* what the last ceiling was made for, and of how many blocks */
     uint32_t made_closed;
-    bool made_holds;   /* and it is the one in use, or will be */
+    bool made_holds;   /* and it is the one in use */
     uint32_t restarts; /* of the path, so that no ceiling of an old one is taken */
     uint32_t asked_restarts;
     uint32_t built_restarts;
-    bool ending; /* comes to rest where it is, and the rest of the path is dropped */
+    bool ending;         /* comes to rest where it is, and the rest of the path is dropped */
+    bool hands_over;     /* blocks that follow the spindle are executed by others: handover.h */
+    bool hands_over_all; /* and so are all others but probing moves */
 };
 
 /* start: where the machine stands. The path is read here, and passed; it must outlive m. */
 void motion_init(struct motion *m, struct path *path, const struct point *start, bool proportional);
+
+/* Before the first ceiling: as if single_block had been set all along. */
+void motion_stop_each(struct motion *m);
 
 /* Background: what a ceiling is asked for; NULL: none is. */
 const struct ceiling_request *motion_wanted(const struct motion *m);

@@ -418,6 +418,8 @@ static enum program_result read_on(struct offset *o, struct program *p, struct d
         return PROGRAM_MOVE;
     case PROGRAM_WAIT:
         return before_wait(o, d);
+    case PROGRAM_LATER:
+        return PROGRAM_LATER;
     case PROGRAM_END:
         break;
     }

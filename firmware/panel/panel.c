@@ -36,6 +36,11 @@ void panel_look(struct panel *panel, struct panel_snapshot *snapshot)
         panel->owner = NULL;
 }
 
+const struct panel_store *panel_get_store(const struct panel *panel)
+{
+    return panel->kind == PANEL_UPLOAD_SETTINGS ? &panel->config.settings : &panel->config.store;
+}
+
 static enum panel_control control_of(const struct panel_client *client,
                                      const struct panel_snapshot *snapshot)
 {
@@ -56,7 +61,9 @@ static void add_own(struct panel_client *client, struct panel_snapshot *snapshot
     value[REGISTER_CONTROL] = control_of(client, snapshot);
     value[REGISTER_UPLOAD_STATE] = panel->upload.state;
     value[REGISTER_UPLOAD_RECEIVED] = panel->upload.received;
+    value[REGISTER_UPLOAD_ROOM] = panel_upload_room(&panel->upload, panel_get_store(panel));
     value[REGISTER_PROGRAM_MAX] = PANEL_PROGRAM_BYTES_MAX;
+    value[REGISTER_UPLOAD_KIND] = mailbox->upload_kind;
     value[REGISTER_UPLOAD_SIZE] = mailbox->upload_size;
     value[REGISTER_UPLOAD_CRC] = mailbox->upload_crc;
     value[REGISTER_UPLOAD_OFFSET] = mailbox->chunk_offset;
@@ -71,13 +78,14 @@ static uint16_t word_of_bytes(const struct panel *panel, const struct panel_snap
                               enum panel_id id, unsigned index)
 {
     const size_t at = (size_t)2 * index;
+    const char *text;
 
     if (id == REGISTER_UPLOAD_DATA)
         return modbus_read16(panel->mailbox.chunk + at);
     if (id == REGISTER_MDI_TEXT)
         return modbus_read16(panel->mailbox.mdi + at);
-    return (uint16_t)((uint8_t)snapshot->alarm_text[at] << 8 |
-                      (uint8_t)snapshot->alarm_text[at + 1]);
+    text = id == REGISTER_UPLOAD_TEXT ? panel->upload_text : snapshot->alarm_text;
+    return (uint16_t)((uint8_t)text[at] << 8 | (uint8_t)text[at + 1]);
 }
 
 /* Word number index of a row: negative numbers in two's complement. */

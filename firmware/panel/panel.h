@@ -16,12 +16,14 @@
 struct panel_config {
     struct panel_port port;
     struct panel_store store;
+    struct panel_store settings; /* begin is NULL: none can be brought */
     uint32_t password; /* clients must write it before anything else; 0: none is asked for */
 };
 
 /* What clients write and the controller does not see. */
 struct panel_mailbox {
     uint32_t upload_size, upload_crc;
+    enum panel_upload_kind upload_kind;
     uint32_t chunk_offset;
     uint16_t chunk_length;
     uint8_t chunk[PANEL_CHUNK_MAX];
@@ -32,7 +34,9 @@ struct panel {
     struct panel_config config;
     struct panel_mailbox mailbox;
     struct panel_upload upload;
-    const struct panel_client *owner; /* has claimed control; NULL: nobody */
+    enum panel_upload_kind kind;            /* of that upload */
+    char upload_text[PANEL_ALARM_TEXT_MAX]; /* why the last one was refused; ends with a zero */
+    const struct panel_client *owner;       /* has claimed control; NULL: nobody */
 };
 
 /* A connection, or a serial line. */

@@ -12,6 +12,16 @@ enum modbus_exception panel_read(void *context, enum modbus_table table, uint16_
 enum modbus_exception panel_write(void *context, enum modbus_table table, uint16_t address,
                                   uint16_t count, const uint8_t *data);
 
+/* Where the upload that is under way goes. */
+const struct panel_store *panel_get_store(const struct panel *panel);
+
+/* An upload of another kind is given up. */
+void panel_turn_upload(struct panel *panel, enum panel_upload_kind kind);
+
+/* Settings: refused with a reason for UPLOAD_TEXT. */
+enum panel_refusal panel_begin_settings(struct panel *panel, const struct panel_mailbox *mailbox);
+enum panel_refusal panel_commit_settings(struct panel *panel);
+
 /* A snapshot; control that the watchdog has taken from its owner is free again. */
 void panel_look(struct panel *panel, struct panel_snapshot *snapshot);
 

@@ -33,6 +33,8 @@ static void take_number(struct panel_request *r, enum panel_id id, int64_t value
     if (id == REGISTER_PASSWORD) {
         r->has_password = true;
         r->password = (uint32_t)value;
+    } else if (id == REGISTER_UPLOAD_KIND) {
+        r->mailbox.upload_kind = (enum panel_upload_kind)value;
     } else if (id == REGISTER_UPLOAD_SIZE) {
         r->mailbox.upload_size = (uint32_t)value;
     } else if (id == REGISTER_UPLOAD_CRC) {
@@ -156,7 +158,7 @@ static enum panel_refusal check_rights(const struct panel_request *r)
 /* Stays as it is written, and counts for what is started next. */
 static bool is_switch(enum panel_id id)
 {
-    return id == REGISTER_BLOCK_DELETE || id == REGISTER_SINGLE_BLOCK;
+    return id == REGISTER_BLOCK_DELETE;
 }
 
 /* To clear a coil that starts something is allowed in every state: nothing starts. */
@@ -206,6 +208,30 @@ static void remember_owner(const struct panel_request *r)
     }
 }
 
+/* The controller alone knows whether a program may be taken now. */
+static enum panel_refusal hand_over(struct panel_request *r, uint32_t size, uint32_t crc)
+{
+    add_order(r, REGISTER_UPLOAD_SIZE, size);
+    add_order(r, REGISTER_UPLOAD_CRC, crc);
+    add_order(r, REGISTER_UPLOAD_COMMAND, r->command);
+    return give_order(r);
+}
+
+/* The program before is gone as soon as the first byte of this one may come. */
+static enum panel_refusal begin_stream(struct panel_request *r)
+{
+    struct panel *panel = r->client->panel;
+    const struct panel_mailbox *mailbox = &r->mailbox;
+
+    if (panel->config.store.begin_stream == NULL || mailbox->upload_size == 0)
+        return PANEL_REFUSAL_VALUE;
+    panel_turn_upload(panel, PANEL_UPLOAD_PROGRAM);
+    if (!panel_upload_stream(&panel->upload, &panel->config.store, mailbox->upload_size,
+                             mailbox->upload_crc))
+        return PANEL_REFUSAL_STATE;
+    return hand_over(r, mailbox->upload_size, mailbox->upload_crc);
+}
+
 /*
  * Made durable first, then handed to the controller, which alone knows whether it may be taken now, then put in its
  * place. Whatever fails, there is one whole program.
@@ -216,20 +242,31 @@ static enum panel_refusal commit(struct panel_request *r)
     const struct panel_store *store = &panel->config.store;
     enum panel_refusal refusal;
 
-    if (panel->upload.state != PANEL_UPLOAD_WHOLE)
+    if (panel->upload.state != PANEL_UPLOAD_WHOLE || panel->upload.is_stream)
         return PANEL_REFUSAL_STATE;
     if (!panel_upload_is_right(&panel->upload))
         return PANEL_REFUSAL_VALUE;
     if (!store->prepare(store->context))
         return PANEL_REFUSAL_BUSY;
-    add_order(r, REGISTER_UPLOAD_SIZE, panel->upload.size);
-    add_order(r, REGISTER_UPLOAD_CRC, panel->upload.crc);
-    add_order(r, REGISTER_UPLOAD_COMMAND, PANEL_UPLOAD_COMMIT);
-    refusal = give_order(r);
+    refusal = hand_over(r, panel->upload.size, panel->upload.crc);
     if (refusal != PANEL_REFUSAL_NONE)
         return refusal;
-    panel_upload_abandon(&panel->upload);
+    panel_upload_abandon(&panel->upload, store);
     return store->place(store->context) ? PANEL_REFUSAL_NONE : PANEL_REFUSAL_BUSY;
+}
+
+static enum panel_refusal begin(const struct panel_request *r)
+{
+    struct panel *panel = r->client->panel;
+    const struct panel_mailbox *mailbox = &r->mailbox;
+
+    panel_turn_upload(panel, mailbox->upload_kind);
+    if (panel->kind == PANEL_UPLOAD_SETTINGS)
+        return panel_begin_settings(panel, mailbox);
+    return mailbox->upload_size > 0 && panel_upload_begin(&panel->upload, &panel->config.store,
+                                                          mailbox->upload_size, mailbox->upload_crc)
+               ? PANEL_REFUSAL_NONE
+               : PANEL_REFUSAL_VALUE;
 }
 
 static enum panel_refusal command_upload(struct panel_request *r)
@@ -238,15 +275,13 @@ static enum panel_refusal command_upload(struct panel_request *r)
 
     switch (r->command) {
     case PANEL_UPLOAD_BEGIN:
-        return r->mailbox.upload_size > 0 &&
-                       panel_upload_begin(&panel->upload, &panel->config.store,
-                                          r->mailbox.upload_size, r->mailbox.upload_crc)
-                   ? PANEL_REFUSAL_NONE
-                   : PANEL_REFUSAL_VALUE;
+        return begin(r);
     case PANEL_UPLOAD_COMMIT:
-        return commit(r);
+        return panel->kind == PANEL_UPLOAD_SETTINGS ? panel_commit_settings(panel) : commit(r);
+    case PANEL_UPLOAD_STREAM:
+        return begin_stream(r);
     case PANEL_UPLOAD_ABANDON:
-        panel_upload_abandon(&panel->upload);
+        panel_upload_abandon(&panel->upload, panel_get_store(panel));
         break;
     }
     return PANEL_REFUSAL_NONE;
@@ -258,7 +293,12 @@ static enum panel_refusal take_chunk(const struct panel_request *r)
 
     if (panel->upload.state == PANEL_UPLOAD_NONE)
         return PANEL_REFUSAL_STATE;
-    return panel_upload_take(&panel->upload, &panel->config.store, r->mailbox.chunk_offset,
+    if (r->mailbox.chunk_offset <= panel->upload.received &&
+        r->mailbox.chunk_length > panel->upload.received - r->mailbox.chunk_offset +
+                                      panel_upload_room(&panel->upload, panel_get_store(panel)) &&
+        r->mailbox.chunk_length <= panel->upload.size - r->mailbox.chunk_offset)
+        return PANEL_REFUSAL_BUSY;
+    return panel_upload_take(&panel->upload, panel_get_store(panel), r->mailbox.chunk_offset,
                              r->mailbox.chunk, r->mailbox.chunk_length, r->check)
                ? PANEL_REFUSAL_NONE
                : PANEL_REFUSAL_VALUE;

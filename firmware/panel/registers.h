@@ -58,7 +58,8 @@ enum panel_alarm {
     PANEL_ALARM_SPINDLE,
     PANEL_ALARM_PANEL,
     PANEL_ALARM_EMERGENCY,
-    PANEL_ALARM_INTERNAL
+    PANEL_ALARM_INTERNAL,
+    PANEL_ALARM_STARVED
 };
 
 /* Register OUTCOME: of the last program or line. */
@@ -81,8 +82,12 @@ enum panel_override_reason {
 enum panel_upload_command {
     PANEL_UPLOAD_BEGIN = 1,
     PANEL_UPLOAD_COMMIT = 2,
-    PANEL_UPLOAD_ABANDON = 3
+    PANEL_UPLOAD_ABANDON = 3,
+    PANEL_UPLOAD_STREAM = 4
 };
+
+/* Register UPLOAD_KIND. */
+enum panel_upload_kind { PANEL_UPLOAD_PROGRAM, PANEL_UPLOAD_SETTINGS };
 
 /* Register UPLOAD_STATE. */
 enum panel_upload_state { PANEL_UPLOAD_NONE, PANEL_UPLOAD_OPEN, PANEL_UPLOAD_WHOLE };
@@ -170,7 +175,8 @@ enum panel_form {
     PANEL_COIL(ROW, FEED_HOLD, 1, PANEL_ANY, \
         "1: comes to rest on the path and stays; anyone may. Reads 1 while held. 0: no effect") \
     PANEL_COIL(ROW, RESUME, 2, PANEL_WHEN_HELD, "1: goes on after a hold. Reads 0") \
-    PANEL_COIL(ROW, SINGLE_BLOCK, 3, PANEL_WHEN_IDLE, "1: each motion of the programs and lines to come ends in a hold") \
+    PANEL_COIL(ROW, SINGLE_BLOCK, 3, PANEL_ANY, \
+               "1: each motion of a program or a line ends in a hold, the one under way too if there is room to brake") \
     PANEL_COIL(ROW, OPTIONAL_STOP, 4, PANEL_ANY, "1: M1 stops as M0 does") \
     PANEL_COIL(ROW, BLOCK_DELETE, 5, PANEL_WHEN_IDLE, "1: lines that begin with / are skipped") \
     PANEL_COIL(ROW, RESET, 6, PANEL_ANY, \
@@ -179,7 +185,7 @@ enum panel_form {
         "1: quick stop of all drives, spindle off; anyone may. 0: releases it, RESET then leads on") \
     PANEL_COIL(ROW, ACKNOWLEDGE, 8, PANEL_ANY, \
         "1: the operator has seen the alarm; a held program may then be resumed. Reads 0") \
-    PANEL_COIL(ROW, MDI_START, 9, PANEL_WHEN_IDLE, "1: runs MDI_TEXT (MODE 1). Reads 1 while it runs") \
+    PANEL_COIL(ROW, MDI_START, 9, PANEL_WHEN_IDLE, "1: runs MDI_TEXT (MODE 1), with the modes the last line has left, but anew after a program or RESET. Reads 1 while it runs") \
     PANEL_COIL(ROW, JOG_PLUS, 10, PANEL_WHEN_JOG, \
         "1: moves JOG_AXIS upwards (MODE 2), by JOG_DISTANCE or until 0 is written") \
     PANEL_COIL(ROW, JOG_MINUS, 11, PANEL_WHEN_JOG, "1: likewise downwards") \
@@ -199,7 +205,7 @@ enum panel_form {
     PANEL_SHOW16(ROW, HOLD_REASON, 2, "", 0, \
         "0 none, 1 operator, 2 single block, 3 program stop, 4 spindle drive, 5 panel silent") \
     PANEL_SHOW16(ROW, ALARM, 3, "", 0, \
-        "0 none, 1 program, 2 drive, 3 spindle, 4 panel silent, 5 emergency stop, 6 internal; ALARM_TEXT says more") \
+        "0 none, 1 program, 2 drive, 3 spindle, 4 panel silent, 5 emergency stop, 6 internal, 7 program starved; ALARM_TEXT says more") \
     PANEL_SHOW32(ROW, ALARM_LINE, 4, "", 0, "line of the program it is about; 0: none") \
     PANEL_SHOW32(ROW, ACTIVE_LINE, 6, "", 0, "line of the program being executed") \
     PANEL_SHOW32(ROW, BLOCK, 8, "", 0, "motion being executed, from 1") \
@@ -234,13 +240,16 @@ enum panel_form {
     PANEL_SHOW16(ROW, CONTROL, 50, "", 0, "0 no panel has claimed it, 1 this client has, 2 another") \
     PANEL_SHOW32(ROW, DIGEST_HIGH, 52, "", 0, "FNV-1a 64 of all setpoints of the program so far: upper half") \
     PANEL_SHOW32(ROW, DIGEST_LOW, 54, "", 0, "lower half") \
+    PANEL_SHOW32(ROW, UPLOAD_ROOM, 56, "byte", 0, "that can be handed in now") \
     PANEL_SHOW_AXES(ROW, POSITION, 60, "mm", "setpoint, machine coordinates, without correction") \
     PANEL_SHOW_AXES(ROW, ACTUAL, 72, "mm", "position its drive reports") \
     PANEL_SHOW_AXES(ROW, FOLLOWING, 84, "mm", "setpoint minus the position reported for it") \
     PANEL_AXIS_ROWS(ROW, DRIVE_STATUS, MODBUS_INPUTS, 96, PANEL_U16, 1, "", 0, 0, PANEL_U16_MOST, PANEL_NEVER, \
         "statusword of its drive (CiA 402, 6041)") \
     ROW(ALARM_TEXT, MODBUS_INPUTS, 200, PANEL_TEXT, PANEL_ALARM_TEXT_MAX / 2, "", 0, 0, 0, PANEL_NEVER, \
-        "what is wrong, in words")
+        "what is wrong, in words") \
+    ROW(UPLOAD_TEXT, MODBUS_INPUTS, 300, PANEL_TEXT, PANEL_ALARM_TEXT_MAX / 2, "", 0, 0, 0, PANEL_NEVER, \
+        "why the last upload of settings was refused, in words; empty: it was not")
 
 #define PANEL_HOLDING_ROWS(ROW) \
     PANEL_SET16(ROW, FEED_OVERRIDE, 0, "%", 1, 0, 1200, PANEL_ANY, "%F") \
@@ -266,8 +275,10 @@ enum panel_form {
         "of the program to come") \
     ROW(UPLOAD_CRC, MODBUS_HOLDINGS, 52, PANEL_U32, 2, "", 0, 0, PANEL_U32_MOST, PANEL_ANY, \
         "CRC-32 (ISO 3309) of the program to come") \
-    PANEL_SET16(ROW, UPLOAD_COMMAND, 54, "", 0, 1, 3, PANEL_ANY, \
-        "1 begin, or go on with an open upload of the same size and CRC; 2 commit (when idle); 3 abandon. Reads 0") \
+    PANEL_SET16(ROW, UPLOAD_COMMAND, 54, "", 0, 1, 4, PANEL_ANY, \
+        "1 begin, or go on with an open upload of the same size and CRC; 2 commit (when idle); 3 abandon; 4 begin, and CYCLE_START runs it while it comes (when idle). Reads 0") \
+    PANEL_SET16(ROW, UPLOAD_KIND, 55, "", 0, 0, 1, PANEL_ANY, \
+        "what the next upload brings: 0 a program, 1 settings of `takt machine --pack`, which are taken while the drives are off (emergency stop) and count from the next start on") \
     PANEL_AXIS_ROWS(ROW, RISE, MODBUS_HOLDINGS, 60, PANEL_S32, 2, "K", 3, -1000000, 1000000, PANEL_ANY, \
         "how much warmer than at calibration its sensor finds it: for the thermal layer of the correction") \
     ROW(UPLOAD_OFFSET, MODBUS_HOLDINGS, 100, PANEL_U32, 2, "byte", 0, 0, PANEL_PROGRAM_BYTES_MAX, PANEL_ANY, \

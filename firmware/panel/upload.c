@@ -23,10 +23,36 @@ bool panel_upload_begin(struct panel_upload *upload, const struct panel_store *s
     return true;
 }
 
+bool panel_upload_stream(struct panel_upload *upload, const struct panel_store *store,
+                         uint32_t size, uint32_t crc)
+{
+    if (store->begin_stream == NULL || !store->begin_stream(store->context, size))
+        return false;
+    *upload = (struct panel_upload){
+        .state = PANEL_UPLOAD_OPEN, .size = size, .crc = crc, .is_stream = true};
+    return true;
+}
+
+uint32_t panel_upload_room(const struct panel_upload *upload, const struct panel_store *store)
+{
+    const uint32_t left = upload->size - upload->received;
+    const uint32_t room = store->room == NULL ? left : store->room(store->context);
+
+    return room < left ? room : left;
+}
+
 static bool fits(const struct panel_upload *upload, uint32_t offset, size_t length)
 {
     return upload->state != PANEL_UPLOAD_NONE && offset <= upload->received && length >= 1 &&
            length <= upload->size - offset;
+}
+
+/* The last byte has come. Nobody commits a stream: it tells by itself whether it is what was announced. */
+static void complete(struct panel_upload *upload, const struct panel_store *store)
+{
+    upload->state = PANEL_UPLOAD_WHOLE;
+    if (upload->is_stream)
+        store->end_stream(store->context, panel_upload_is_right(upload));
 }
 
 bool panel_upload_take(struct panel_upload *upload, const struct panel_store *store,
@@ -44,7 +70,7 @@ bool panel_upload_take(struct panel_upload *upload, const struct panel_store *st
     upload->received_crc = crc32_add(upload->received_crc, data + known, length - known);
     upload->received += (uint32_t)(length - known);
     if (upload->received == upload->size)
-        upload->state = PANEL_UPLOAD_WHOLE;
+        complete(upload, store);
     return true;
 }
 
@@ -53,7 +79,9 @@ bool panel_upload_is_right(const struct panel_upload *upload)
     return upload->state == PANEL_UPLOAD_WHOLE && upload->received_crc == upload->crc;
 }
 
-void panel_upload_abandon(struct panel_upload *upload)
+void panel_upload_abandon(struct panel_upload *upload, const struct panel_store *store)
 {
+    if (upload->is_stream && upload->state == PANEL_UPLOAD_OPEN)
+        store->end_stream(store->context, false);
     memset(upload, 0, sizeof *upload);
 }

@@ -18,6 +18,14 @@ struct panel_store {
     /* The controller has taken the program: puts it in the place of the one before, at once or not at all. False: the
      * new program runs, but is not kept over power-off. */
     bool (*place)(void *context);
+    /* The same as begin, of a program that is run while it comes; then how it ended: all bytes are there and right, or no
+     * more will come. NULL, both: this store does not do that. */
+    bool (*begin_stream)(void *context, uint32_t size);
+    void (*end_stream)(void *context, bool right);
+    /* Why begin, prepare or place has said false last: a text that stays until the next of them. NULL: there is none. */
+    const char *(*why)(void *context);
+    /* Bytes that write takes now. NULL: any. Less than a chunk is no fault: what runs makes room. */
+    uint32_t (*room)(void *context);
     void *context; /* owned by whoever made the store */
 };
 
@@ -26,11 +34,19 @@ struct panel_upload {
     uint32_t size, crc; /* announced */
     uint32_t received;
     uint32_t received_crc;
+    bool is_stream;
 };
 
 /* Begins, or goes on with an open upload of the same size and CRC. False: the store has no room. */
 bool panel_upload_begin(struct panel_upload *upload, const struct panel_store *store, uint32_t size,
                         uint32_t crc);
+
+/* Begins a stream. False: the store does not, or what runs keeps it. */
+bool panel_upload_stream(struct panel_upload *upload, const struct panel_store *store,
+                         uint32_t size, uint32_t crc);
+
+/* Bytes that can be handed in now. */
+uint32_t panel_upload_room(const struct panel_upload *upload, const struct panel_store *store);
 
 /*
  * A chunk. It may repeat bytes that are there already (the reply to it may have been lost) but leave none out. False: it
@@ -42,6 +58,6 @@ bool panel_upload_take(struct panel_upload *upload, const struct panel_store *st
 /* All bytes are there and are those that were announced. */
 bool panel_upload_is_right(const struct panel_upload *upload);
 
-void panel_upload_abandon(struct panel_upload *upload);
+void panel_upload_abandon(struct panel_upload *upload, const struct panel_store *store);
 
 #endif

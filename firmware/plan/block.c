@@ -255,6 +255,33 @@ void block_set_motion(struct block *b, const struct move *move, const struct cur
     block_set_share(b, BLOCK_SHARE_MAX);
 }
 
+/* Its limits hold for every rate of nominal time up to the highest one. */
+void block_set_smooth(struct block *b, const struct smooth_piece *piece, double unit_mm)
+{
+    const struct judge_rate *rate = &piece->rate;
+
+    memset(b, 0, sizeof(*b));
+    b->move = *piece->move;
+    b->number = piece->number;
+    curve_set_spline(&b->curve, piece->control, unit_mm * piece->interval_s);
+    b->length = path_units(b->curve.length_mm);
+    b->length_mm = b->curve.length_mm;
+    b->feed_program_mm_s = rate->programmed * unit_mm;
+    b->feed_cap_mm_s = rate->most * unit_mm;
+    b->cap = GOVERNOR_SMOOTH;
+    b->shape.line_a_mm_s2 = piece->change.by * unit_mm;
+    b->shape.line_j_mm_s3 = piece->change.rounded * unit_mm;
+    b->end = JOINT_STOP;
+    block_set_share(b, 0.0);
+}
+
+void block_join_smooth(struct block *b, const struct block *next)
+{
+    b->end = JOINT_PASSED;
+    b->feed_joint_mm_s = MATHS_INFINITY;
+    b->continues = b->number == next->number;
+}
+
 void block_set_wait(struct block *b, const struct move *move)
 {
     memset(b, 0, sizeof(*b));

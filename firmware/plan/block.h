@@ -10,6 +10,7 @@
 #include "geometry/curve.h"
 #include "plan/limits.h"
 #include "program/move.h"
+#include "smooth/smooth.h"
 
 #include <stdbool.h>
 #include <stdint.h>
@@ -21,6 +22,7 @@ enum governor {
     GOVERNOR_ACCELERATION, /* centripetal acceleration on an arc */
     GOVERNOR_JERK,         /* jerk on an arc */
     GOVERNOR_CHORD,        /* chord error on an arc */
+    GOVERNOR_SMOOTH,       /* a smoothed curve's acceleration and jerk */
     GOVERNOR_SHORT,        /* block of about one cycle: changes of direction must not pile up */
     GOVERNOR_RAMP /* no ceiling is reached: the block is passed while speeding up or slowing down */
 };
@@ -67,6 +69,8 @@ struct block {
     double a_mm_s2;    /* along the path, what curvature and share leave at that feed */
     double j_mm_s3;
 
+    uint16_t
+        cycles; /* averaging window of the span that begins here, as planned last; 0: not yet */
     enum joint_kind end;
     double share_start;     /* part of the jerk limit used by the joint at the start */
     double share;           /* part of the jerk limit left to both joints, 0 ... BLOCK_SHARE_MAX */
@@ -82,6 +86,15 @@ struct block {
 /* Fills b from a motion's curve. Its end is a stop until a joint is formed. */
 void block_set_motion(struct block *b, const struct move *move, const struct curve *curve,
                       const struct plan_limits *limits);
+
+/*
+ * Fills b with a piece of a smoothed curve (firmware/smooth), of which unit_mm of path are passed in a second of its
+ * nominal time. Its end is a stop until block_join_smooth().
+ */
+void block_set_smooth(struct block *b, const struct smooth_piece *piece, double unit_mm);
+
+/* The next piece of the same smoothed curve follows: nothing changes at the end of b. */
+void block_join_smooth(struct block *b, const struct block *next);
 
 /* Fills b with something that happens while the axes stand. */
 void block_set_wait(struct block *b, const struct move *move);

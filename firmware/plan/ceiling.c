@@ -11,11 +11,14 @@
 #include "base/maths.h"
 #include "plan/path_unit.h"
 
-/* Cycles beside the window: differences of setpoints reach over three cycles. */
-#define MARGIN_CYCLES 2.0
+/*
+ * Between being asked for and being taken a ceiling grows so many cycles old at most (MOTION_EXCHANGE_CYCLES and the
+ * cycles of taking it).
+ */
+#define AGE_CYCLES 64.0
 
 /* Lower accelerations of blocks left behind, that the setpoint still has to keep: at most so many at once. */
-#define HEADS_MAX 4
+#define HEADS_MAX 16
 
 /* A joint feed that the lead point reaches from rest in this many cycles is not worth passing: it comes to rest. */
 #define PASS_WORTH 2.0
@@ -27,7 +30,7 @@ struct head {
 
 struct builder {
     struct ceiling *c;
-    const struct path *path;
+    struct path *path;
     const struct ceiling_request *request;
     double cycle_s;
     uint32_t cycles; /* of the first box, in the span being laid */
@@ -35,21 +38,37 @@ struct builder {
     double begin_mm; /* where the newest ceiling begins */
     unsigned overrides; /* of the block being laid, */
     double feed_max;    /* and its highest feed whatever they are, mm/cycle */
+    double fastest;     /* the highest of those laid so far */
+    int64_t start;      /* path units from the origin: of what is being laid */
     unsigned heads;
     struct head head[HEADS_MAX]; /* both rising */
 };
+
+/* As programmed, or so much per revolution as it turns now. */
+static double program_feed(const struct block *b, const struct ceiling_request *request)
+{
+    const double measured = b->move.feed_rev_mm * request->spindle_rev_s;
+
+    return measured > 0.0 ? measured : b->feed_program_mm_s;
+}
 
 double ceiling_block_feed(const struct block *b, const struct ceiling_request *request)
 {
     const bool rapid = b->move.kind == MOVE_RAPID;
     const bool obeys = rapid || (b->move.overrides & OVERRIDE_FEED) != 0;
     const double ratio = rapid ? request->rapid_ratio : obeys ? request->feed_ratio : 1.0;
-    const double program = b->feed_program_mm_s;
+    const double program = program_feed(b, request);
 
     if (rapid || (request->proportional && ratio < 1.0)) {
         return ratio * maths_min(program, b->feed_max_mm_s);
     }
     return maths_min(ratio * program, b->feed_max_mm_s);
+}
+
+bool ceiling_stops(const struct ceiling_request *request, const struct block *b, uint32_t index)
+{
+    return b->end == JOINT_STOP ||
+           (request->stops && !b->continues && (int32_t)(index - request->stops_from) >= 0);
 }
 
 /* Does a span end with this block, at a joint that is passed and landed on? */
@@ -80,7 +99,7 @@ static uint32_t span_cycles(const struct builder *s, uint32_t index)
             full_s, maths_min(b->a_mm_s2 / b->j_mm_s3, maths_sqrt(b->feed_max_mm_s / b->j_mm_s3)));
         j_min = maths_min(j_min, b->j_mm_s3);
         length_mm += b->length_mm;
-        known = b->end == JOINT_STOP || is_landed(s, b);
+        known = ceiling_stops(s->request, b, index) || is_landed(s, b);
     }
     if (known) {
         full_s = maths_min(full_s, maths_cbrt(length_mm / (2.0 * j_min)));
@@ -89,16 +108,37 @@ static uint32_t span_cycles(const struct builder *s, uint32_t index)
                                  law_cycles_max(s->path->limits.law));
 }
 
-/* The span that begins with the block at index. One that the lead point has begun keeps its window. */
+/* May the lead point come to a place before this ceiling is taken? */
+static bool is_near(const struct builder *s, uint64_t at)
+{
+    return path_mm(s->request->lead, at) <= AGE_CYCLES * s->fastest;
+}
+
+/*
+ * The window of a span is a promise to a lead point that has begun it, or may begin it under the ceiling made before; to
+ * others it is found anew, from all that is known of the span by now.
+ */
+static uint32_t window_cycles(const struct builder *s, uint32_t index)
+{
+    const struct ceiling_request *request = s->request;
+    const struct block *b = path_at(s->path, index);
+    const bool inside = index == request->first && (int64_t)(request->lead - b->start) > 0;
+
+    if (inside || (int64_t)(request->span - b->start) >= 0) {
+        return request->cycles;
+    }
+    return b->cycles > 0 && is_near(s, b->start) ? b->cycles : span_cycles(s, index);
+}
+
+/* The span that begins with the block at index. */
 static void begin_span(struct builder *s, uint32_t index)
 {
     const uint64_t start = path_at(s->path, index)->start;
-    const bool inside = index == s->request->first && (int64_t)(s->request->lead - start) > 0;
-    const bool begun = inside || (int64_t)(s->request->span - start) >= 0;
 
-    s->cycles = begun ? s->request->cycles : span_cycles(s, index);
-    s->behind =
-        0.5 * ((double)law_window_cycles(s->path->limits.law, s->cycles) - 1.0) + MARGIN_CYCLES;
+    s->cycles = window_cycles(s, index);
+    path_promise(s->path, index, s->cycles);
+    s->behind = 0.5 * ((double)law_window_cycles(s->path->limits.law, s->cycles) - 1.0) +
+                CEILING_MARGIN_CYCLES;
     s->begin_mm = path_mm(s->c->origin, start);
     s->heads = 0;
 }
@@ -113,6 +153,7 @@ static struct ceiling_piece *append(struct builder *s, double end_mm, double fee
         .feed = feed,
         .feed_max = maths_max(feed, s->feed_max),
         .acceleration = a,
+        .start = s->start,
         .leave = leave,
         .cycles = (uint16_t)s->cycles,
         .landing = CEILING_NONE,
@@ -142,7 +183,10 @@ static double block_acceleration(const struct builder *s, const struct block *b)
     return maths_min(b->a_mm_s2 * t * t, b->j_mm_s3 * t * t * t * (double)s->cycles);
 }
 
-/* The setpoint is in a block of acceleration a until the lead point is at end_mm: forgets what that implies. */
+/*
+ * The setpoint may be in a block of less acceleration until the lead point is at end_mm, by the block's highest feed:
+ * another override must not take back what was said. Forgets what that implies.
+ */
 static void add_head(struct builder *s, double a, double end_mm)
 {
     unsigned kept = 0;
@@ -167,6 +211,7 @@ static void add_head(struct builder *s, double a, double end_mm)
 /* The pieces of one ceiling up to end_mm: first those where a block left behind asks for less acceleration. */
 static void append_pieces(struct builder *s, double end_mm, double feed, double a, int64_t leave)
 {
+    const uint32_t first = s->c->count;
     double at_mm = s->begin_mm;
 
     for (unsigned i = 0; i < s->heads; i++) {
@@ -177,6 +222,9 @@ static void append_pieces(struct builder *s, double end_mm, double feed, double 
     }
     if (at_mm < end_mm) {
         append(s, end_mm, feed, a, leave);
+    }
+    if (first < s->c->count) {
+        s->c->piece[first].opens = true;
     }
 }
 
@@ -194,7 +242,8 @@ static bool continues(const struct builder *s, double feed, double a)
 
 static unsigned block_overrides(const struct block *b)
 {
-    const unsigned hold = b->move.overrides & OVERRIDE_HOLD;
+    const unsigned follows = b->move.feed_rev_mm != 0.0 ? CEILING_SPINDLE : 0U;
+    const unsigned hold = (b->move.overrides & OVERRIDE_HOLD) | follows;
 
     return b->move.kind == MOVE_RAPID ? hold | CEILING_RAPID
                                       : hold | (b->move.overrides & OVERRIDE_FEED);
@@ -210,6 +259,10 @@ static void lay_block(struct builder *s, const struct block *b)
 
     s->overrides = block_overrides(b);
     s->feed_max = b->feed_max_mm_s * s->cycle_s;
+    const double reach_mm = end_mm + s->feed_max * s->behind;
+
+    s->fastest = maths_max(s->fastest, s->feed_max);
+    s->start = (int64_t)(b->start - s->c->origin);
     if (continues(s, feed, a)) {
         s->c->piece[s->c->count - 1].end_mm = end_mm;
         s->c->piece[s->c->count - 1].leave = leave;
@@ -217,7 +270,7 @@ static void lay_block(struct builder *s, const struct block *b)
         begin_ceiling(s, start_mm, feed * s->behind);
         append_pieces(s, end_mm, feed, a, leave);
     }
-    add_head(s, a, end_mm + feed * s->behind);
+    add_head(s, a, reach_mm);
 }
 
 /*
@@ -240,9 +293,9 @@ static void lay_landed_joint(struct builder *s, const struct block *b, uint32_t 
 {
     const struct block *next = path_at(s->path, after);
     const double a = maths_min(block_acceleration(s, b), block_acceleration(s, next));
-    const double window = 2.0 * (s->behind - MARGIN_CYCLES) + 1.0;
+    const double window = 2.0 * (s->behind - CEILING_MARGIN_CYCLES) + 1.0;
     const double wider =
-        maths_max(window, law_window_cycles(s->path->limits.law, span_cycles(s, after)));
+        maths_max(window, law_window_cycles(s->path->limits.law, window_cycles(s, after)));
     const double shorter_mm = maths_min(b->length_mm, next->length_mm);
     const double end_mm = path_mm(s->c->origin, b->start + b->length);
     double feed = b->feed_joint_mm_s * s->cycle_s;
@@ -251,7 +304,11 @@ static void lay_landed_joint(struct builder *s, const struct block *b, uint32_t 
     feed = feed < PASS_WORTH * a ? 0.0 : feed;
     begin_ceiling(s, end_mm, feed * (0.5 * (window + 1.0) + landing_ramp(feed, a, window) + 1.0));
     s->feed_max = 0.0;
-    append(s, end_mm, feed, a, (int64_t)(b->start + b->length - s->c->origin))->landed = true;
+    s->start = (int64_t)(b->start + b->length - s->c->origin);
+    struct ceiling_piece *p = append(s, end_mm, feed, a, s->start);
+
+    p->opens = true;
+    p->landed = true;
 }
 
 /* Lays the blocks from the ring into pieces. Room for the pieces of one block more is kept. */
@@ -271,8 +328,10 @@ static void lay_blocks(struct builder *s)
             begin_span(s, i);
         }
         lay_block(s, b);
-        fresh = b->end == JOINT_STOP || is_landed(s, b);
-        if (b->end == JOINT_STOP) {
+        const bool stops = ceiling_stops(s->request, b, i);
+
+        fresh = stops || is_landed(s, b);
+        if (stops) {
             s->c->piece[s->c->count - 1].stop = true;
         } else if (fresh) {
             lay_landed_joint(s, b, i + 1);
@@ -335,6 +394,36 @@ static double landed_feed(const struct ceiling *c, uint32_t k, enum law law, dou
     return feed;
 }
 
+/*
+ * Feed squared at the end of piece k from which what is behind it can be met at the highest overrides: at worst by coming
+ * to rest where the setpoint comes to it. A ceiling that begins earlier because it is higher asks for no more than that.
+ */
+static double highest_energy(const struct ceiling *c, uint32_t k, double energy)
+{
+    const struct ceiling_piece *p = &c->piece[k];
+
+    if (k + 1 == c->count || !c->piece[k + 1].opens) {
+        return energy;
+    }
+    const double start_mm = (double)c->piece[k + 1].start / PATH_UNITS_PER_MM;
+
+    return maths_max(energy, 2.0 * p->acceleration * (start_mm - p->end_mm));
+}
+
+/* What lies between a piece and the joint that the span ends with. */
+static void note_way(struct ceiling *c, uint32_t k)
+{
+    struct ceiling_piece *p = &c->piece[k];
+
+    if (p->landing == CEILING_NONE || k + 1U >= p->landing) {
+        p->way_energy = (float)MATHS_INFINITY;
+        p->way_energy_max = (float)MATHS_INFINITY;
+        return;
+    }
+    p->way_energy = (float)maths_min(p->end_energy, (double)p[1].way_energy);
+    p->way_energy_max = (float)maths_min(p->end_energy_max, (double)p[1].way_energy_max);
+}
+
 static void plan_backward(struct ceiling *c, enum law law)
 {
     double energy = 0.0;
@@ -350,20 +439,20 @@ static void plan_backward(struct ceiling *c, enum law law)
             landing = CEILING_NONE;
         }
         p->end_energy = energy;
-        p->end_energy_max = energy_max;
+        p->end_energy_max = p->stop ? 0.0 : highest_energy(c, k, energy_max);
         if (p->landed) {
             p->feed_max = landed_feed(c, k, law, p->feed, true);
             p->feed = landed_feed(c, k, law, p->feed, false);
             landing = (uint16_t)k;
         }
         p->landing = landing;
+        note_way(c, k);
         energy = begin_energy(c, k, p->feed, p->end_energy);
         energy_max = begin_energy(c, k, p->feed_max, p->end_energy_max);
     }
 }
 
-void ceiling_build(struct ceiling *c, const struct path *path,
-                   const struct ceiling_request *request)
+void ceiling_build(struct ceiling *c, struct path *path, const struct ceiling_request *request)
 {
     struct builder s = {.c = c, .path = path, .request = request, .cycle_s = path->limits.cycle_s};
 

@@ -9,8 +9,9 @@
 
 /* Where a control cycle falls on the end of a block exactly. */
 enum landing {
-    LANDING_SPAN, /* where spans end: stops, and joints that need a lower feed */
-    LANDING_BLOCK /* at every block's end, as the source has it */
+    LANDING_SPAN,  /* where spans end: stops, and joints that need a lower feed */
+    LANDING_BLOCK, /* at every block's end, as the source has it */
+    LANDING_SCALE /* likewise, by the source's factor kl on the feed: not planned here, but in classic/product.h */
 };
 
 struct plan_limits {

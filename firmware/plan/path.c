@@ -1,15 +1,31 @@
 #include "plan/path.h"
 
+#include "base/maths.h"
 #include "plan/joint.h"
 
 #include <assert.h>
 #include <string.h>
+
+/* Path counts as much as the fastest axis goes in that time: a length that looks like mm. */
+static void init_smooth(struct path *p)
+{
+    struct smooth_limits limits = {.axes = p->limits.axes, .cycle_s = p->limits.cycle_s};
+
+    for (int i = 0; i < AXIS_COUNT; i++) {
+        limits.velocity_mm_s[i] = p->limits.velocity_mm_s[i];
+        limits.acceleration_mm_s2[i] = p->limits.acceleration_mm_s2[i];
+        limits.jerk_mm_s3[i] = p->limits.jerk_mm_s3[i];
+        p->unit_mm = maths_max(p->unit_mm, limits.velocity_mm_s[i]);
+    }
+    smooth_init(&p->smooth, &limits);
+}
 
 void path_init(struct path *p, const struct plan_limits *limits, const struct point *start)
 {
     memset(p, 0, sizeof(*p));
     p->limits = *limits;
     p->end = *start;
+    init_smooth(p);
 }
 
 /* Has the motion pushed last more pieces than found room? */
@@ -18,9 +34,14 @@ static bool is_splitting(const struct path *p)
     return p->split_mm < p->whole.length_mm;
 }
 
+static bool has_slot(const struct path *p)
+{
+    return p->pushed - p->kept < PATH_BLOCKS_MAX;
+}
+
 bool path_has_room(const struct path *p)
 {
-    return p->pushed - p->kept < PATH_BLOCKS_MAX && !is_splitting(p);
+    return has_slot(p) && !is_splitting(p) && !p->has_next && smooth_has_room(&p->smooth);
 }
 
 static struct block *slot(struct path *p, uint32_t index)
@@ -31,6 +52,11 @@ static struct block *slot(struct path *p, uint32_t index)
 const struct block *path_at(const struct path *p, uint32_t index)
 {
     return &p->block[index % PATH_BLOCKS_MAX];
+}
+
+void path_promise(struct path *p, uint32_t index, uint32_t cycles)
+{
+    slot(p, index)->cycles = (uint16_t)cycles;
 }
 
 /* Nothing joins the newest block: it ends at rest. */
@@ -76,7 +102,7 @@ static void push_piece(struct path *p, const struct curve *curve, double to_mm)
 /* At a cusp the axes stand. */
 static void push_pieces(struct path *p)
 {
-    while (is_splitting(p) && p->pushed - p->kept < PATH_BLOCKS_MAX) {
+    while (is_splitting(p) && has_slot(p)) {
         const double to_mm = curve_piece_end(&p->whole, p->split_mm);
         struct curve piece;
 
@@ -100,10 +126,89 @@ static void push_motion(struct path *p, const struct move *move, const struct cu
     push_pieces(p);
 }
 
+/* The next piece of the smoothed chain. Nothing joins its first and its last one. */
+static void push_smooth_piece(struct path *p, const struct smooth_piece *piece)
+{
+    struct block *b = slot(p, p->pushed);
+
+    block_set_smooth(b, piece, p->unit_mm);
+    b->start = p->position;
+    if (p->smoothing) {
+        block_join_smooth(slot(p, p->pushed - 1), b);
+        p->closed = p->pushed;
+    } else {
+        close_newest(p);
+    }
+    p->pushed++;
+    p->position += b->length;
+    p->smoothing = !piece->last && !piece->stop;
+    if (piece->last) {
+        b->curve.end = piece->move->end;
+    }
+    if (!p->smoothing) {
+        close_newest(p);
+    }
+}
+
+static void push_smooth_pieces(struct path *p)
+{
+    struct smooth_piece piece;
+
+    while (has_slot(p) && smooth_take(&p->smooth, &piece)) {
+        push_smooth_piece(p, &piece);
+    }
+}
+
+/* Where position begins or ceases to follow the spindle the axes stand; so they do in the hole, and out of it. */
+static bool is_divided(const struct path *p, const struct move *move)
+{
+    const struct move *newest = &path_at(p, p->pushed - 1)->move;
+
+    return p->closed < p->pushed &&
+           (newest->kind == MOVE_TAP_OUT || move_is_locked(newest) != move_is_locked(move));
+}
+
+static void push_move(struct path *p, const struct move *move)
+{
+    struct curve curve;
+
+    if (!move_is_motion(move)) {
+        push_wait(p, move);
+        return;
+    }
+    p->motions++;
+    p->has_revolution_feed = p->has_revolution_feed || move->feed_rev_mm != 0.0;
+    if (is_divided(p, move)) {
+        close_newest(p);
+    }
+    if (move_curve(move, &p->end, &curve)) {
+        if (smooth_takes(move, &curve)) {
+            p->end = move->end;
+            smooth_push(&p->smooth, move, p->motions, &curve);
+            push_smooth_pieces(p);
+        } else {
+            push_motion(p, move, &curve);
+        }
+    }
+    if (move->kind == MOVE_PROBE || move->kind == MOVE_TAP) {
+        close_newest(p);
+    }
+}
+
+static bool is_all_in_ring(const struct path *p)
+{
+    return !is_splitting(p) && !p->smooth.open && !p->has_next;
+}
+
 void path_go_on(struct path *p)
 {
     push_pieces(p);
-    if (p->finished && !is_splitting(p)) {
+    push_smooth_pieces(p);
+    if (p->has_next && !p->smooth.open && has_slot(p)) {
+        p->has_next = false;
+        push_move(p, &p->next);
+    }
+    if (p->finished && is_all_in_ring(p)) {
         close_newest(p);
     }
 }
@@ -116,32 +221,44 @@ void path_restart(struct path *p, const struct point *at, uint64_t position)
     p->end = *at;
     p->position = position;
     p->split_mm = p->whole.length_mm;
+    p->has_next = false;
+    p->smoothing = false;
+    smooth_reset(&p->smooth);
+}
+
+/* May it be smoothed together with what is being smoothed? */
+static bool joins_chain(const struct path *p, const struct move *move)
+{
+    struct curve curve;
+
+    if (!p->smooth.open) {
+        return true;
+    }
+    if (!move_is_motion(move)) {
+        return false;
+    }
+    return !move_curve(move, &p->end, &curve) ||
+           (smooth_takes(move, &curve) && smooth_joins(&p->smooth, move));
 }
 
 void path_push(struct path *p, const struct move *move)
 {
-    struct curve curve;
-
     assert(path_has_room(p) && !p->finished);
-    if (!move_is_motion(move)) {
-        push_wait(p, move);
+    if (joins_chain(p, move)) {
+        push_move(p, move);
         return;
     }
-    p->motions++;
-    if (move_curve(move, &p->end, &curve)) {
-        push_motion(p, move, &curve);
-    }
-    if (move->kind == MOVE_PROBE || move->kind == MOVE_TAP) {
-        close_newest(p);
-    }
+    smooth_finish(&p->smooth);
+    p->has_next = true;
+    p->next = *move;
+    path_go_on(p);
 }
 
 void path_finish(struct path *p)
 {
     p->finished = true;
-    if (!is_splitting(p)) {
-        close_newest(p);
-    }
+    smooth_finish(&p->smooth);
+    path_go_on(p);
 }
 
 void path_pass(struct path *p)

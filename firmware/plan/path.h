@@ -29,7 +29,13 @@ struct path {
     uint32_t closed;  /* blocks so far whose end is known: first <= closed <= pushed */
     uint32_t motions; /* pushed so far: the number of the newest */
     bool finished;
-    struct point end;   /* where everything pushed ends */
+    bool has_revolution_feed; /* a feed per revolution has been pushed */
+    struct point end;         /* where everything pushed ends */
+    struct smooth smooth;     /* motions that are not in the ring yet: a chain being smoothed */
+    bool has_next; /* a move that is not part of that chain waits until it has been taken */
+    struct move next;
+    bool smoothing;     /* the newest block is a piece of a chain that goes on */
+    double unit_mm;     /* path for a second of nominal time of a smoothed curve */
     struct move split;  /* a motion of several pieces that have not all found room yet */
     struct curve whole; /* its curve */
     double split_mm;    /* how much of it is in the ring; the length of whole: all */
@@ -51,6 +57,8 @@ void path_finish(struct path *p);
 void path_restart(struct path *p, const struct point *at, uint64_t position);
 /* The block with a number first <= index < pushed. */
 const struct block *path_at(const struct path *p, uint32_t index);
+/* Background: the averaging window that a span beginning with this block was planned with. */
+void path_promise(struct path *p, uint32_t index, uint32_t cycles);
 /* The oldest block has been passed. */
 void path_pass(struct path *p);
 

@@ -133,7 +133,7 @@ static double spindle_rpm(const struct program *p)
     return p->modes.surface_speed ? surface_rpm(p) : p->modes.speed_rpm;
 }
 
-/* feed = feed per revolution * speed */
+/* feed = feed per revolution * speed. A position that follows the angle needs one. */
 static bool follow_spindle(struct program *p, struct move *m)
 {
     const struct program_span span = p->words.code_span[STEP_MOTION];
@@ -142,9 +142,8 @@ static bool follow_spindle(struct program *p, struct move *m)
     if (!(rpm > 0.0)) {
         return report_error(p, TAKT_ERROR_SPINDLE_STANDS, span, 0.0);
     }
-    if (!p->spindle_followed) {
-        report_warning(p, TAKT_ERROR_SPINDLE_FOLLOWED, span, 0.0);
-        p->spindle_followed = true;
+    if (move_is_locked(m) && !p->config.spindle_encoder) {
+        return report_error(p, TAKT_ERROR_SPINDLE_NO_ENCODER, span, 0.0);
     }
     m->feed_mm_s = m->feed_rev_mm * rpm / SECONDS_PER_MINUTE;
     return true;

@@ -21,19 +21,33 @@ void lexer_open(struct program_lexer *l, const struct source *source)
     l->text[0] = '\0';
 }
 
+/* More input when all has been read. Returns its length, or what the source says instead. */
+static long fill(struct program_lexer *l)
+{
+    long count;
+
+    if (l->input_at < l->input_length) {
+        return (long)(l->input_length - l->input_at);
+    }
+    count = l->source.read(l->source.context, l->input, sizeof(l->input));
+    l->input_offset += l->input_length;
+    l->input_at = 0;
+    l->input_length = count > 0 ? (size_t)count : 0;
+    return count;
+}
+
+bool lexer_can_go_on(struct program_lexer *l)
+{
+    return fill(l) != SOURCE_LATER;
+}
+
 /* The next byte, or what the source says instead. */
 static int next_byte(struct program_lexer *l)
 {
-    if (l->input_at == l->input_length) {
-        const long count = l->source.read(l->source.context, l->input, sizeof(l->input));
+    const long count = fill(l);
 
-        l->input_offset += l->input_length;
-        l->input_at = 0;
-        l->input_length = 0;
-        if (count <= 0) {
-            return count == SOURCE_END ? SOURCE_END : SOURCE_ERROR;
-        }
-        l->input_length = (size_t)count;
+    if (count <= 0) {
+        return count == SOURCE_END ? SOURCE_END : SOURCE_ERROR;
     }
     return (unsigned char)l->input[l->input_at++];
 }

@@ -10,6 +10,9 @@ enum lexer_result { LEXER_LINE, LEXER_END, LEXER_ERROR, LEXER_UNREADABLE };
 
 void lexer_open(struct program_lexer *l, const struct source *source);
 
+/* False: what comes next has not come yet (SOURCE_LATER). */
+bool lexer_can_go_on(struct program_lexer *l);
+
 /*
  * Reads the next line whole, whatever its length. LEXER_ERROR: *error says what is wrong with it; the one after it
  * can be read. LEXER_UNREADABLE: the source fails.

@@ -10,8 +10,27 @@
 #define SECONDS_PER_MINUTE 60.0
 #define RAD_PER_DEGREE     (MATHS_PI / 180.0)
 
+/* Offsets are in the parameters, from where they are loaded; compensation ends with the text it was switched on in. */
+static void go_on(struct program *p)
+{
+    struct program_modes *m = &p->modes;
+
+    *m = *p->config.modes;
+    memset(&m->axis_offset, 0, sizeof(m->axis_offset));
+    m->at = p->config.start;
+    m->cutter_code = NULL;
+    m->cutter_side = CUTTER_OFF;
+    m->cutter_moved = false;
+    m->cutter_left = false;
+    p->config.modes = NULL;
+}
+
 void modes_open(struct program *p)
 {
+    if (p->config.modes != NULL) {
+        go_on(p);
+        return;
+    }
     memset(&p->modes, 0, sizeof(p->modes));
     p->modes.at = p->config.start;
     p->modes.unit_mm = 1.0;

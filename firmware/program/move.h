@@ -125,6 +125,12 @@ static inline bool move_is_involute(const struct move *m)
     return m->kind == MOVE_INVOLUTE_CW || m->kind == MOVE_INVOLUTE_CCW;
 }
 
+/* Does its position follow the spindle's angle, and not only its feed the spindle's speed? */
+static inline bool move_is_locked(const struct move *m)
+{
+    return m->kind == MOVE_THREAD || m->kind == MOVE_TAP || m->kind == MOVE_TAP_OUT;
+}
+
 /* The geometry of a motion that starts at start. False when it has no length. */
 bool move_curve(const struct move *m, const struct point *start, struct curve *c);
 

@@ -31,12 +31,16 @@ void program_open(struct program *p, const struct program_config *config,
     p->phase = PROGRAM_AT_START;
     p->question = QUESTION_NONE;
     p->tools.count = 0;
-    p->spindle_followed = false;
     cycles_open(p);
     modes_open(p);
     coordinates_open(p);
     flow_open(p);
     approach_open(p);
+}
+
+const struct program_modes *program_get_modes(const struct program *p)
+{
+    return &p->modes;
 }
 
 static bool run_step(struct program *p, const struct program_code *code,
@@ -195,6 +199,9 @@ enum program_result program_next(struct program *p, struct move *move,
     while (!emit_take(p, move)) {
         if (p->phase == PROGRAM_ENDED) {
             return PROGRAM_END;
+        }
+        if (!lexer_can_go_on(&p->lexer)) {
+            return PROGRAM_LATER;
         }
         if (!advance(p)) {
             *diagnostic = p->error;

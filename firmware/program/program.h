@@ -19,6 +19,8 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+struct program_modes;
+
 /* What the interpreter must know of the machine and the session. Copied by program_open. */
 struct program_config {
     unsigned axes;                 /* bit i set: the machine has axis i (enum axis) */
@@ -27,21 +29,24 @@ struct program_config {
     struct point start;         /* machine position the program starts at */
     double path_tolerance_mm;   /* G64 without P: this tolerance; 0 = exact */
     double spindle_max_rpm;     /* 0: no limit */
+    bool spindle_encoder;       /* its angle is measured: threads can be cut */
     uint32_t from_line;         /* start in the middle, at this line; 0: at the beginning */
     uint32_t correction_layers; /* of position-error correction, for M120 and M121: 0 ... 8 */
     bool exact_path;            /* treat every G64 as G61 */
     bool block_delete;          /* skip lines that begin with '/' */
     bool waits;                 /* PROGRAM_WAIT until program_answer; else no contact, input 0 */
     bool sharp_corners;         /* for the room offset: outer corners are not rounded */
-    const struct tool_table *tools; /* may be NULL: empty table */
-    struct parameters *parameters;  /* numbered parameters, read and written; never NULL */
+    const struct program_modes *modes; /* to go on with; NULL: those a program begins with */
+    const struct tool_table *tools;    /* may be NULL: empty table */
+    struct parameters *parameters;     /* numbered parameters, read and written; never NULL */
 };
 
 enum program_result {
     PROGRAM_MOVE,
     PROGRAM_END,
     PROGRAM_ERROR,
-    PROGRAM_WAIT /* nothing more is read until program_answer */
+    PROGRAM_WAIT, /* nothing more is read until program_answer */
+    PROGRAM_LATER /* the text is still coming, and its next line has not come: ask again */
 };
 
 /* What #5399 is after M66 when its time is over. */
@@ -75,6 +80,12 @@ enum program_result program_next(struct program *p, struct move *move,
 
 /* After the caller has run a MOVE_PROBE or a MOVE_INPUT, before the next move is asked for. Else it does nothing. */
 void program_answer(struct program *p, const struct program_answer *answer);
+
+/*
+ * What the lines read so far leave for the next, also for another text that goes on with it, but for cutter
+ * compensation. Valid as long as p.
+ */
+const struct program_modes *program_get_modes(const struct program *p);
 
 /*
  * Warnings since the last call (words read and ignored, H of an unknown tool): true and *diagnostic while there

@@ -274,7 +274,6 @@ struct program {
     struct diagnostic error;
     struct diagnostic warning[PROGRAM_WARNINGS_MAX];
     unsigned warnings;
-    bool spindle_followed; /* that the spindle is not measured has been said */
     enum program_phase phase;
     enum program_question question; /* not answered yet */
 };

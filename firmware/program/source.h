@@ -10,9 +10,13 @@
 
 #define SOURCE_END   (-1) /* no more text */
 #define SOURCE_ERROR (-2) /* the text cannot be read */
+#define SOURCE_LATER (-3) /* the next line has not come yet: ask again */
 
 struct source {
-    /* Up to size bytes into buffer; returns how many (>= 1), SOURCE_END or SOURCE_ERROR. */
+    /*
+     * Up to size bytes into buffer; returns how many (>= 1), SOURCE_END, SOURCE_ERROR or SOURCE_LATER. Whoever may say
+     * SOURCE_LATER hands out whole lines, in any pieces: between two lines the answer is taken, within one it is an error.
+     */
     long (*read)(void *context, char *buffer, size_t size);
     /* Next read starts at offset bytes from the beginning. NULL for a stream. False: cannot. */
     bool (*seek)(void *context, uint64_t offset);

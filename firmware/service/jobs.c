@@ -21,12 +21,22 @@ static void begin_job(struct service *s, enum service_job job)
     s->hold = PANEL_HOLD_NONE;
     s->giving_up = false;
     s->rest_cycles = 0;
+    s->has_starved = false;
     s->held_block = 0;
     s->digest = FNV_START;
 }
 
+/* Lines are one session: what one sets counts for those after it, until a program or a reset ends the session. */
+static void keep_modes(struct service *s)
+{
+    s->modes = *program_get_modes(&s->controller.program);
+    s->has_modes = true;
+}
+
 void service_end_job(struct service *s, enum panel_outcome outcome)
 {
+    if (s->job == SERVICE_MDI && outcome == PANEL_OUTCOME_COMPLETED)
+        keep_modes(s);
     if (s->job != SERVICE_NOTHING) {
         s->outcome = outcome;
         s->runs++;
@@ -53,6 +63,7 @@ bool service_start_program(struct service *s)
     if (s->program_size == 0 || !programs->open(programs->context, &config.source))
         return false;
     controller_start_program(&s->controller, &config, &s->at);
+    s->has_modes = false;
     begin_job(s, SERVICE_PROGRAM);
     return true;
 }
@@ -63,6 +74,7 @@ static void start_text(struct service *s, enum service_job job)
 
     config.keeps_outputs = true;
     config.single_block = config.single_block && job == SERVICE_MDI;
+    config.modes = s->has_modes && job == SERVICE_MDI ? &s->modes : NULL;
     source_open_text(&config.source, &s->source_text, s->text, s->text_length);
     controller_start_program(&s->controller, &config, &s->at);
     begin_job(s, job);

@@ -108,8 +108,7 @@ static enum panel_verdict check_item(const struct service *s, const struct panel
     const enum panel_state state = service_get_state(s);
     const bool is_coil = panel_registers[item->id].form == PANEL_BIT;
 
-    if (is_coil && item->value == 0 && item->id != REGISTER_BLOCK_DELETE &&
-        item->id != REGISTER_SINGLE_BLOCK)
+    if (is_coil && item->value == 0 && item->id != REGISTER_BLOCK_DELETE)
         return PANEL_DONE;
     if (!panel_may_write(item->id, state))
         return PANEL_WRONG_STATE;
@@ -132,6 +131,7 @@ static void acknowledge(struct service *s)
 static void reset(struct service *s)
 {
     acknowledge(s);
+    s->has_modes = false;
     if (!s->failed) {
         service_give_up(s);
         return;

@@ -129,6 +129,21 @@ static void watch_spindle(struct service *s)
     service_hold(s, PANEL_HOLD_SPINDLE);
 }
 
+/* Nothing is held: the axes go on as soon as the text does. The operator is told, once a program. */
+static void watch_text(struct service *s)
+{
+    if (s->has_starved || s->job != SERVICE_PROGRAM || !controller_is_starved(&s->controller))
+        return;
+    s->has_starved = true;
+    raise_simple(s, PANEL_ALARM_STARVED, TAKT_ERROR_PROGRAM_STARVED, 0.0);
+}
+
+/* Jogs and homing are no blocks of a program. */
+static bool ends_blocks(const struct service *s)
+{
+    return s->settings.single_block && (s->job == SERVICE_PROGRAM || s->job == SERVICE_MDI);
+}
+
 static void set_inputs(struct service *s, const struct inputs *world)
 {
     const struct service_settings *settings = &s->settings;
@@ -136,6 +151,7 @@ static void set_inputs(struct service *s, const struct inputs *world)
     s->inputs = *world;
     s->inputs.feed_override_percent = 0.1 * (double)settings->feed_override;
     s->inputs.rapid_override_percent = 0.1 * (double)settings->rapid_override;
+    s->inputs.single_block = ends_blocks(s);
     s->inputs.feed_hold = s->hold != PANEL_HOLD_NONE || s->giving_up;
 }
 
@@ -170,8 +186,8 @@ static void take_record(struct service *s)
         add_to_digest(s, record);
         s->record = *record;
         s->at = record->cmd;
-        s->sent[0] = record->set;
     }
+    s->sent[0] = s->controller.setpoint;
 }
 
 /* A fault of a drive stops everything; an error of the program only the program. */
@@ -196,9 +212,9 @@ static void follow_controller(struct service *s)
     case CONTROLLER_STOPPING:
         break;
     case CONTROLLER_COMPLETED:
-        if (s->finds_home)
+        if (s->finds_home && !s->is_planning)
             service_go_to_zero(s);
-        else if (s->job != SERVICE_NOTHING)
+        else if (!s->finds_home && s->job != SERVICE_NOTHING)
             service_end_job(s, PANEL_OUTCOME_COMPLETED);
         break;
     case CONTROLLER_FAULTED:
@@ -218,7 +234,8 @@ static void stop_after_block(struct service *s)
     if (controller_passed_stop(&s->controller, &optional) &&
         (!optional || s->settings.optional_stop))
         service_hold(s, PANEL_HOLD_PROGRAM);
-    if (s->settings.single_block && record->landed && record->block != s->held_block) {
+    if (s->settings.single_block && record->landed && motion_rests(&s->controller.motion) &&
+        record->block != s->held_block) {
         s->held_block = record->block;
         service_hold(s, PANEL_HOLD_SINGLE_BLOCK);
     }
@@ -226,7 +243,7 @@ static void stop_after_block(struct service *s)
 
 static void drop_at_rest(struct service *s)
 {
-    if (!s->giving_up || s->rest_cycles < REST_CYCLES)
+    if (!s->giving_up || s->rest_cycles < REST_CYCLES || s->is_planning)
         return;
     controller_drop_program(&s->controller);
     if (s->job != SERVICE_JOG)
@@ -236,7 +253,9 @@ static void drop_at_rest(struct service *s)
 
 void service_background(struct service *s)
 {
+    s->is_planning = true;
     controller_background(&s->controller);
+    s->is_planning = false;
 }
 
 void service_cycle(struct service *s, const struct inputs *inputs)
@@ -250,6 +269,7 @@ void service_cycle(struct service *s, const struct inputs *inputs)
     follow_controller(s);
     watch_spindle(s);
     watch_panel(s);
+    watch_text(s);
     drop_at_rest(s);
     s->cycles++;
 }

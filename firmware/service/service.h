@@ -7,7 +7,8 @@
  *     service_cycle        one control cycle
  *     service_look         everything a panel can read
  *
- * The caller sees to it that none of these runs while another does.
+ * service_cycle may interrupt service_background, as the interrupt of a target does. Otherwise the caller sees to it that
+ * none of these runs while another does.
  */
 #ifndef TAKT_SERVICE_SERVICE_H
 #define TAKT_SERVICE_SERVICE_H

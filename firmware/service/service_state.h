@@ -33,11 +33,14 @@ struct service {
     struct service_settings settings;
 
     enum service_job job;
-    enum panel_hold hold;  /* why the feed is held; PANEL_HOLD_NONE: it is not */
-    bool finds_home;       /* the drives look for their homes; then comes the way to zero */
-    bool giving_up;        /* what runs is dropped as soon as it is at rest */
-    uint32_t held_block;   /* at whose end a single block has been held; 0: none yet */
-    bool resets_spindle;   /* its drive is to be reset */
+    enum panel_hold hold; /* why the feed is held; PANEL_HOLD_NONE: it is not */
+    bool finds_home;      /* the drives look for their homes; then comes the way to zero */
+    bool giving_up;       /* what runs is dropped as soon as it is at rest */
+    uint32_t held_block;  /* at whose end a single block has been held; 0: none yet */
+    bool resets_spindle;  /* its drive is to be reset */
+    volatile bool
+        is_planning; /* the background is at work: a cycle that interrupts it drops nothing it works on */
+    bool has_starved;      /* the program that runs has had to wait for its text */
     bool emergency;        /* the button is in */
     bool jog_is_negative;  /* of a jog */
     unsigned rest_cycles;  /* cycles in which no axis has been moved */
@@ -61,6 +64,8 @@ struct service {
 
     char text[SERVICE_TEXT_MAX]; /* of a program the service has written */
     size_t text_length;
+    struct program_modes modes; /* that the last line has left */
+    bool has_modes;             /* and the next one goes on with */
     struct source_text source_text;
 };
 

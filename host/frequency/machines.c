@@ -6,7 +6,8 @@
 const struct known_machine known_machines[] = {
     {"6R13GN1", 1000, 0.006, 0.01, 5}, {"FP7M", 1500, 0.006, 0.012, 5},
     {"FP7SMN", 4500, 0.012, 0.02, 5},  {"MA655SM30A", 6000, 0.02, 0.1, 5},
-    {"16K20F3", 7500, 0.02, 0.08, 5},
+    {"16K20F3", 7500, 0.02, 0.08, 5},  {"UCP710", 0, 0, 0, 0},
+    {"MIKRON UCP 710", 0, 0, 0, 0},
 };
 
 const size_t known_machines_count = sizeof known_machines / sizeof known_machines[0];
@@ -27,6 +28,11 @@ const struct known_machine *known_machine_find(const char *name)
             return &known_machines[i];
     }
     return NULL;
+}
+
+bool known_machine_has_limits(const struct known_machine *machine)
+{
+    return machine->feed_max_mm_min > 0;
 }
 
 struct cycle_limits known_machine_limits(const struct known_machine *machine)

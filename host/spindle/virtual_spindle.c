@@ -30,6 +30,7 @@ void virtual_spindle_set_default(struct virtual_spindle_config *config)
         .overload_s = 10.0,
         .at_speed_percent = 2.0,
         .encoder_counts_per_revolution = 4096,
+        .ripple_per_revolution = 6.0,
         .cut_width_mm = 0.0,
         .cut_depth_mm = 0.0,
         .cutting_force_n_per_mm2 = 700.0,
@@ -59,6 +60,9 @@ const char *virtual_spindle_check(const struct virtual_spindle_config *c)
         {"overload_percent", c->overload_percent, 1, 1000},
         {"overload_s", c->overload_s, 0, 1e6},
         {"at_speed_percent", c->at_speed_percent, 0.01, 100},
+        {"encoder_noise_counts", c->encoder_noise_counts, 0, 1e6},
+        {"ripple_percent", c->ripple_percent, 0, 1000},
+        {"ripple_per_revolution", c->ripple_per_revolution, 0, 1000},
         {"cut_width_mm", c->cut_width_mm, 0, 1e4},
         {"cut_depth_mm", c->cut_depth_mm, 0, 1e4},
         {"cutting_force_n_per_mm2", c->cutting_force_n_per_mm2, 0, 1e5},
@@ -130,12 +134,23 @@ static double loop_nm(struct virtual_spindle *s, double dt_s, double ramp_rpm)
     return given_nm;
 }
 
+/* What poles, slots and a toothed belt make of the torque, while it turns: ripple sin(2 pi n angle). */
+static double ripple_nm(const struct virtual_spindle *s)
+{
+    const double turns = s->config.ripple_per_revolution * s->angle_rev;
+
+    if (s->config.ripple_percent == 0.0 || s->speed_rad_s == 0.0)
+        return 0.0;
+    return 0.01 * s->config.ripple_percent * s->config.rated_torque_nm *
+           maths_sin(2.0 * MATHS_PI * (turns - maths_floor(turns)));
+}
+
 /* The load resists and never drives: with less torque than it the rotor comes to rest and stays. */
 static void turn_rotor(struct virtual_spindle *s, double dt_s, double load_nm)
 {
     const double per_inertia = dt_s / s->config.inertia_kg_m2;
     const double before_rad_s = s->speed_rad_s;
-    const double free_rad_s = (before_rad_s + s->torque_nm * per_inertia) /
+    const double free_rad_s = (before_rad_s + (s->torque_nm + ripple_nm(s)) * per_inertia) /
                               (1.0 + s->config.friction_nm_s_per_rad * per_inertia);
     const double resisted_rad_s = free_rad_s - clamp(free_rad_s, load_nm * per_inertia);
 
@@ -194,11 +209,20 @@ static bool is_at_speed(const struct virtual_spindle *s, double commanded_rpm)
     return s->trip == VIRTUAL_SPINDLE_GOOD && maths_abs(speed_rpm - commanded_rpm) <= room_rpm;
 }
 
-static double measured_angle_rev(const struct virtual_spindle *s)
+/* From -1 to 1, the same row of numbers in every run: a linear congruential generator modulo 2^64. */
+static double next_noise(struct virtual_spindle *s)
+{
+    s->noise = s->noise * UINT64_C(6364136223846793005) + UINT64_C(1442695040888963407);
+    return (double)(s->noise >> 11) / 4503599627370496.0 - 1.0;
+}
+
+static double measured_angle_rev(struct virtual_spindle *s)
 {
     const double counts = (double)s->config.encoder_counts_per_revolution;
+    const double noise =
+        s->config.encoder_noise_counts > 0 ? s->config.encoder_noise_counts * next_noise(s) : 0.0;
 
-    return counts > 0 ? maths_floor(s->angle_rev * counts) / counts : s->angle_rev;
+    return counts > 0 ? maths_floor(s->angle_rev * counts + noise) / counts : s->angle_rev;
 }
 
 struct spindle_feedback virtual_spindle_step(struct virtual_spindle *s, double dt_s,

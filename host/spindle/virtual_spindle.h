@@ -26,6 +26,9 @@ struct virtual_spindle_config {
     double overload_s;            /* ... for this long; 0: at once */
     double at_speed_percent;      /* of the commanded speed: closer than this is at speed; > 0 */
     uint32_t encoder_counts_per_revolution; /* 0: no quantisation */
+    double encoder_noise_counts;            /* the encoder is off by up to so much; >= 0 */
+    double ripple_percent;        /* torque swings by this part of the rated torque; >= 0 */
+    double ripple_per_revolution; /* so often; >= 0 */
 
     /* The cut: what milling takes off. Depth 0: the spindle turns in air. */
     double cut_width_mm; /* radial engagement; >= 0 */
@@ -51,6 +54,7 @@ struct virtual_spindle {
     double angle_rev;   /* of the motor, since power-on */
     double torque_nm;   /* the motor gives now */
     double overload_s;  /* so long overloaded */
+    uint64_t noise;     /* the encoder's, of the last reading */
     bool locked;        /* the rotor cannot turn */
     enum virtual_spindle_trip trip;
 };

@@ -17,7 +17,7 @@ static const struct command *const commands[] = {
     &command_bore,      &command_drives,
     &command_calibrate, &command_correct,
     &command_replay,    &command_cycle_frequency,
-    &command_precision,
+    &command_precision, &command_compile,
 };
 
 #define COMMANDS (sizeof commands / sizeof commands[0])

@@ -42,6 +42,7 @@ extern const struct command command_panel;
 extern const struct command command_drives;
 extern const struct command command_replay;
 extern const struct command command_bore;
+extern const struct command command_compile;
 
 /* Finds and runs the sub-command of a command line. Returns the exit status. */
 enum command_status command_main(int argc, char **argv);

@@ -152,6 +152,11 @@ static enum command_status command_bore_execute(const struct options *options)
     return bore_compare(&job, options);
 }
 
+#define POSITIVE(name, field, unit, help)                                                          \
+    {                                                                                              \
+        name, OPTION_POSITIVE, offsetof(struct options, field), unit, help                         \
+    }
+
 #define NUMBER(name, field, unit, help)                                                            \
     {                                                                                              \
         name, OPTION_NUMBER, offsetof(struct options, field), unit, help                           \
@@ -167,17 +172,17 @@ static const struct option_row rows[] = {
     {"start", OPTION_TEXT, offsetof(struct options, bore.start), "X,Y",
      "finishing: where it begins, from the centre (default 0,0)"},
     NUMBER("start-radius", bore.start_radius, "MM", "or with which radius of curvature"),
-    NUMBER("start-length", bore.start_length, "MM", "or how long the approach is"),
-    NUMBER("turns", bore.turns, "N", "finishing: turns of the spiral from centre to wall (1)"),
-    NUMBER("depth", bore.depth, "MM", "below Z 0 (default: at Z 0, no plunge)"),
-    NUMBER("depth-step", bore.depth_step, "MM", "in equal steps of at most this"),
+    POSITIVE("start-length", bore.start_length, "MM", "or how long the approach is"),
+    POSITIVE("turns", bore.turns, "N", "finishing: turns of the spiral from centre to wall (1)"),
+    POSITIVE("depth", bore.depth, "MM", "below Z 0 (default: at Z 0, no plunge)"),
+    POSITIVE("depth-step", bore.depth_step, "MM", "in equal steps of at most this"),
     NUMBER("height", bore.height, "MM", "above Z 0, where plunges begin (2)"),
-    NUMBER("feed", bore.feed, "MM/MIN", "of the cut (1000)"),
-    NUMBER("plunge", bore.plunge, "MM/MIN", "feed down (300)"),
-    NUMBER("spindle", bore.spindle, "RPM", "spindle words M3 S and M5"),
+    POSITIVE("feed", bore.feed, "MM/MIN", "of the cut (1000)"),
+    POSITIVE("plunge", bore.plunge, "MM/MIN", "feed down (300)"),
+    POSITIVE("spindle", bore.spindle, "RPM", "spindle words M3 S and M5"),
     {"as", OPTION_TEXT, offsetof(struct options, bore.as), "FORM",
      "involute (default: G3.2), arcs or lines"},
-    NUMBER("tolerance", tolerance, "MM", "of arcs and lines (0.01)"),
+    POSITIVE("tolerance", tolerance, "MM", "of arcs and lines (0.01)"),
     {"output", OPTION_TEXT, offsetof(struct options, output), "FILE",
      "or -o FILE: the program (default: standard output); of --compare a picture, SVG"},
     {"compare", OPTION_FLAG, offsetof(struct options, bore.compare), NULL,

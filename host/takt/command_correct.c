@@ -4,11 +4,15 @@
 #include "takt/offline.h"
 #include "takt/output_file.h"
 
+#include <float.h>
 #include <stdlib.h>
 #include <string.h>
 
 /* Unless --tolerance says something else. */
 #define TOLERANCE_MM 0.0005
+
+/* Words have six decimals: less cannot be kept. */
+#define TOLERANCE_MIN_MM 0.00001
 
 /* The table of --table takes the place of the machine file's of its kind. */
 static bool use_table(struct session *session, const char *path)
@@ -33,12 +37,26 @@ static bool use_table(struct session *session, const char *path)
     return correction_file_load(&session->correction, setup);
 }
 
-static void print_totals(const struct options *options, const struct offline_totals *totals)
+static void print_warnings(const char *name, double tolerance_mm,
+                           const struct offline_totals *totals)
 {
     if (totals->compensated)
-        message_warning(options->operand[0], 0, 0,
+        message_warning(name, 0, 0,
                         "contours with G41 or G42 are corrected as programmed, not where the "
                         "tool's centre goes");
+    if (totals->thread_error_mm > tolerance_mm)
+        message_warning(name, totals->thread_line, 0,
+                        "threads are not divided: this one is within %.6f mm of the corrected path",
+                        totals->thread_error_mm);
+    if (totals->input_line > 0)
+        message_warning(name, totals->input_line, 0,
+                        "what M66 reads is not known before it is run, and taken for 0 here");
+}
+
+static void print_totals(const struct options *options, const struct offline_config *config,
+                         const struct offline_totals *totals)
+{
+    print_warnings(config->name, config->tolerance_mm, totals);
     if (options->quiet)
         return;
     (void)fprintf(stderr,
@@ -65,11 +83,26 @@ static enum command_status correct_text(struct offline_config *config,
     return status;
 }
 
+static bool read_tolerance(const char *text, double *tolerance_mm)
+{
+    char *end;
+
+    *tolerance_mm = TOLERANCE_MM;
+    if (text == NULL)
+        return true;
+    *tolerance_mm = strtod(text, &end);
+    if (end != text && *end == '\0' && *tolerance_mm >= TOLERANCE_MIN_MM &&
+        *tolerance_mm <= DBL_MAX)
+        return true;
+    message_command_error("--tolerance '%s' must be a number of mm, at least %g", text,
+                          TOLERANCE_MIN_MM);
+    return false;
+}
+
 static enum command_status correct(struct session *session, const struct options *options)
 {
     struct offline_config config = {
         .session = session,
-        .tolerance_mm = options->tolerance > 0 ? options->tolerance : TOLERANCE_MM,
         .stream = stdin,
         .name = "<stdin>",
     };
@@ -77,6 +110,8 @@ static enum command_status correct(struct session *session, const struct options
     struct output_file file;
     enum command_status status;
 
+    if (!read_tolerance(options->correction.tolerance, &config.tolerance_mm))
+        return STATUS_INPUT;
     if (options->correction.filter && strcmp(options->operand[0], "-") != 0) {
         message_command_error("--filter reads standard input: the program is -");
         return STATUS_INPUT;
@@ -92,7 +127,7 @@ static enum command_status correct(struct session *session, const struct options
     }
     if (!output_file_finish(&file) || !output_file_place(&file))
         return STATUS_ENVIRONMENT;
-    print_totals(options, &totals);
+    print_totals(options, &config, &totals);
     return STATUS_DONE;
 }
 
@@ -114,7 +149,7 @@ static const struct option_row rows[] = {
     OPTIONS_PROGRAM,
     {"table", OPTION_TEXT, offsetof(struct options, correction.table), "FILE",
      "correction table, CSV; beside what the machine file says"},
-    {"tolerance", OPTION_NUMBER, offsetof(struct options, tolerance), "MM",
+    {"tolerance", OPTION_TEXT, offsetof(struct options, correction.tolerance), "MM",
      "distance of the written path from the corrected one (0.0005)"},
     {"filter", OPTION_FLAG, offsetof(struct options, correction.filter), NULL,
      "line by line from standard input to standard output, as a program is streamed"},
@@ -130,12 +165,19 @@ const struct command command_correct = {
     .summary = "write a program with position errors corrected, for other controllers",
     .help =
         "The words of every motion are replaced by corrected ones. A long line in a curved field "
-        "of errors, or an arc,\n"
-        "becomes several. Comments, feeds, modes, line numbers and subroutines stay; a line in a "
-        "loop or a subroutine gets\n"
-        "a form for each time it runs. Rapids are corrected at their ends. Drilling cycles are "
-        "written out as lines. Other\n"
-        "cycles, threads, probing, G28 and G30 are refused.\n"
+        "of errors, an arc or an\n"
+        "involute becomes several. Comments, feeds, modes, line numbers and subroutines stay; a "
+        "line in a loop or a\n"
+        "subroutine gets a form for each time it runs. Rapids are corrected at their ends. Cycles "
+        "are written out as lines,\n"
+        "G76 as threads. Threads stay whole, with their pitch as much longer as they are. Of G28 "
+        "and G30 the point on the\n"
+        "way is corrected, the reference is the machine's own. G92 and G10 L20 set the offsets "
+        "they would set without\n"
+        "correction. Probing is refused: where it ends is not known. What is cut from where a "
+        "program has been led off the\n"
+        "corrected path, by G28 or by switching layers (M120, M121), leads back onto it by the "
+        "end of its first piece.\n"
         "\n"
         "Layers of [correction] that depend on position take part: matrix, set-up, axes (both "
         "directions' mean), volume.\n"

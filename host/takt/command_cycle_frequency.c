@@ -87,6 +87,19 @@ static bool is_limited_by_hand(const struct option_frequency *given)
     return given->feed_max != NULL || given->acceleration != NULL || given->jerk != NULL;
 }
 
+/* A machine whose limits nobody has published is what it is said to be. */
+static bool takes_given_limits(const struct known_machine *known,
+                               const struct option_frequency *given)
+{
+    if (given->feed_max != NULL && given->acceleration != NULL && given->jerk != NULL)
+        return true;
+    message_command_error(
+        "--machine %s: its limits are not published, only that jerk governs on X at every radius "
+        "and on Z up to 3 mm: give --feed-max, --accel and --jerk",
+        known->name);
+    return false;
+}
+
 static bool use_machine(struct frequency_job *job, const struct options *options)
 {
     const struct known_machine *known =
@@ -95,6 +108,8 @@ static bool use_machine(struct frequency_job *job, const struct options *options
     job->question.resolution_per_mm = 1000;
     if (known != NULL) {
         job->question.machine = known->name;
+        if (!known_machine_has_limits(known))
+            return takes_given_limits(known, &options->frequency);
         job->question.limits = known_machine_limits(known);
         return true;
     }
@@ -293,7 +308,8 @@ static enum command_status command_cycle_frequency_execute(const struct options 
 
 static const struct option_row rows[] = {
     {"machine", OPTION_TEXT, offsetof(struct options, machine), "NAME|FILE",
-     "6R13GN1, FP7M, FP7SMN, MA655SM30A, 16K20F3, or a machine file (default: the built-in mill)"},
+     "6R13GN1, FP7M, FP7SMN, MA655SM30A, 16K20F3, UCP710, or a machine file (default: the built-in "
+     "mill)"},
     {"set", OPTION_LIST, offsetof(struct options, set), "KEY=VALUE",
      "override a key of the machine file"},
     {"feed-max", OPTION_TEXT, offsetof(struct options, frequency.feed_max), "MM_MIN",
@@ -326,7 +342,7 @@ const struct command command_cycle_frequency = {
             "that the machine can drive, as fast as feed, acceleration and jerk let it, is left by "
             "more than the tolerance.\n"
             "Limits that are given replace the machine's; without a machine, those not given do "
-            "not limit.\n"
+            "not limit. UCP710 has no published limits: give all three.\n"
             "\n"
             "Examples:\n"
             "  takt cycle-frequency --machine MA655SM30A --radius-table\n"

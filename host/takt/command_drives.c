@@ -238,6 +238,7 @@ static enum command_status serve(const struct drives_command *command)
         .drives = &command->drives,
         .script = options->inject != NULL ? &command->script : NULL,
         .log = log,
+        .bus_log = options->bus_log,
     });
     if (log != NULL && log != stdout && fclose(log) != 0 && status == STATUS_DONE) {
         message_command_error("--log %s: not everything could be written", options->log);
@@ -273,6 +274,24 @@ static enum command_status serve_with_spindle(const struct drives_command *comma
     return status;
 }
 
+static bool check_logs(const struct options *options)
+{
+    const char *bus_log = options->bus_log;
+
+    if (bus_log == NULL)
+        return true;
+    if (options->bus == NULL) {
+        message_command_error("--bus-log needs --bus: there is nothing to log");
+        return false;
+    }
+    if (options->log != NULL ? strcmp(bus_log, options->log) == 0
+                             : strcmp(bus_log, "-") == 0 && !options->quiet) {
+        message_command_error("--log and --bus-log would go to the same place: %s", bus_log);
+        return false;
+    }
+    return true;
+}
+
 static enum command_status command_drives_execute(const struct options *options)
 {
     static struct drives_command command;
@@ -285,6 +304,8 @@ static enum command_status command_drives_execute(const struct options *options)
                               "needed");
         return STATUS_INPUT;
     }
+    if (!check_logs(options))
+        return STATUS_INPUT;
     if (!machine_file_load(&command.setup, options) || !set_drives(&command) ||
         !load_script(&command))
         return STATUS_INPUT;
@@ -315,6 +336,8 @@ static const struct option_row rows[] = {
      "keep to the wall clock even if SYNC has a period"},
     {"log", OPTION_TEXT, offsetof(struct options, log), "FILE",
      "one line an event (default: standard output)"},
+    {"bus-log", OPTION_TEXT, offsetof(struct options, bus_log), "FILE",
+     "every CAN frame, as candump -L writes it; takt replay reads it"},
     {"quiet", OPTION_FLAG, offsetof(struct options, quiet), NULL, "no log on standard output"},
     OPTIONS_END,
 };
@@ -341,6 +364,7 @@ const struct command command_drives = {
         "  takt drives --bus socketcan:vcan0\n"
         "  takt drives --spindle 127.0.0.1:1503\n"
         "  takt drives --bus slcan:pty:can0.pty --machine mill3.ini --log drives.log\n"
+        "  takt drives --bus socketcan:vcan0 --quiet --bus-log bus.log\n"
         "  takt drives --nodes 1-6 --eds data-sheets\n"
         "  takt drives --bus socketcand:listen:29536 --inject faults.inject\n",
     .options = rows,

@@ -1,16 +1,43 @@
 #include "takt/command.h"
 #include "takt/machine_file.h"
+#include "takt/machine_pack.h"
+#include "takt/message.h"
 
 #include <stdio.h>
+
+/* What goes together. False after a message. */
+static bool check(const struct options *options)
+{
+    const bool packs = options->pack.pack;
+
+    if (packs && options->pack.unpack) {
+        message_command_error("--pack and --unpack: one of them");
+    } else if (packs && options->output == NULL) {
+        message_command_error("--pack needs -o FILE: settings are no text");
+    } else if (!packs && (options->output != NULL || options->pack.sector)) {
+        message_command_error("-o and --sector go with --pack");
+    } else if (options->pack.unpack && (options->operands == 0 || options->set.count > 0)) {
+        message_command_error("--unpack needs the file of settings, and goes with no other option");
+    } else {
+        return true;
+    }
+    return false;
+}
 
 static enum command_status command_machine_execute(const struct options *options)
 {
     static struct machine_setup setup;
     struct options given = *options;
 
+    if (!check(options))
+        return STATUS_INPUT;
+    if (options->pack.unpack)
+        return machine_pack_print(options->operand[0]);
     given.machine = options->operand[0];
     if (!machine_file_load(&setup, &given))
         return STATUS_INPUT;
+    if (options->pack.pack)
+        return machine_pack_write(&setup, options->output, options->pack.sector);
     machine_file_write(stdout, &setup);
     return STATUS_DONE;
 }
@@ -18,18 +45,35 @@ static enum command_status command_machine_execute(const struct options *options
 static const struct option_row rows[] = {
     {"set", OPTION_LIST, offsetof(struct options, set), "KEY=VALUE",
      "override a key: axis.X.max_jerk_mm_s3=20000"},
+    {"pack", OPTION_FLAG, offsetof(struct options, pack.pack), NULL,
+     "write it, with its correction tables, as the settings of a target"},
+    {"output", OPTION_TEXT, offsetof(struct options, output), "FILE", "or -o FILE: of --pack"},
+    {"sector", OPTION_FLAG, offsetof(struct options, pack.sector), NULL,
+     "--pack: as a flash sector, to be flashed; without it: to be loaded over Modbus"},
+    {"unpack", OPTION_FLAG, offsetof(struct options, pack.unpack), NULL,
+     "FILE holds settings: check them and print them as a machine file"},
     OPTIONS_END,
 };
 
 const struct command command_machine = {
     .name = "machine",
     .usage = "[FILE] [options]",
-    .summary = "check a machine file and print it with every key, commented",
+    .summary = "check a machine file and print it with every key, or pack it for a target",
     .help = "Without FILE: the built-in mill. What is printed is a machine file itself.\n"
+            "\n"
+            "A target keeps its machine in flash: --pack makes what is loaded there, by `takt "
+            "panel settings` or "
+            "by\n"
+            "flashing (hal/stm32f405/README.md). It holds limits, drives, bus and correction, with "
+            "all tables; what "
+            "is\n"
+            "said of virtual drives and of this computer stays behind.\n"
             "\n"
             "Examples:\n"
             "  takt machine > my-mill.ini\n"
-            "  takt machine my-mill.ini --set machine.cycle_us=500\n",
+            "  takt machine my-mill.ini --set machine.cycle_us=500\n"
+            "  takt machine my-mill.ini --pack -o my-mill.settings\n"
+            "  takt machine my-mill.settings --unpack\n",
     .options = rows,
     .operands_min = 0,
     .operands_max = 1,

@@ -150,6 +150,15 @@ static enum command_status upload(struct panel_line *line, const struct options 
     return panel_upload_file(line, options->operand[1], options->quiet);
 }
 
+static enum command_status settings(struct panel_line *line, const struct options *options)
+{
+    if (options->operands != 2) {
+        message_command_error("settings: the file of settings is expected");
+        return STATUS_INPUT;
+    }
+    return panel_upload_settings(line, options->operand[1], options->quiet);
+}
+
 static enum command_status on_line(enum command_status (*act)(struct panel_line *line,
                                                               const struct options *options),
                                    const struct options *options)
@@ -166,10 +175,11 @@ static enum command_status on_line(enum command_status (*act)(struct panel_line 
 
 static enum command_status command_panel_execute(const struct options *options)
 {
-    static const char *const names[] = {"read", "write", "watch", "upload", "list", "table"};
+    static const char *const names[] = {"read",     "write", "watch", "upload",
+                                        "settings", "list",  "table"};
     static enum command_status (*const acts[])(
         struct panel_line * line, const struct options *options) = {read_names, write_name, watch,
-                                                                    upload};
+                                                                    upload, settings};
     const char *name = options->operand[0];
 
     for (unsigned i = 0; i < sizeof acts / sizeof acts[0]; i++) {
@@ -206,7 +216,9 @@ static const struct option_row rows[] = {
 
 const struct command command_panel = {
     .name = "panel",
-    .usage = "read NAME...|write NAME VALUE|watch [NAME...]|upload FILE|list|table FORM [options]",
+    .usage =
+        "read NAME...|write NAME VALUE|watch [NAME...]|upload FILE|settings FILE|list|table FORM "
+        "[options]",
     .summary = "read and write the panel of a running controller by name",
     .help = "list names all registers, table markdown and table csv print their documentation. "
             "Values are in the unit\n"
@@ -214,6 +226,7 @@ const struct command command_panel = {
             "\n"
             "Examples:\n"
             "  takt panel upload part.ngc && takt panel write CYCLE_START 1\n"
+            "  takt panel write EMERGENCY_STOP 1 && takt panel settings mill.settings\n"
             "  takt panel watch STATE ACTIVE_LINE POSITION_X\n"
             "  takt panel write FEED_HOLD 1\n"
             "  takt panel write MODE 1 && takt panel write MDI_TEXT 'G0 X10' && takt panel write "

@@ -29,7 +29,7 @@ static const char *kind_name(enum move_kind kind)
 static const char *governor_name(enum governor governor)
 {
     static const char *const names[] = {"program", "velocity", "acceleration", "jerk",
-                                        "chord",   "short",    "ramp"};
+                                        "chord",   "smooth",   "short",        "ramp"};
 
     return names[governor];
 }

@@ -18,7 +18,7 @@
 /* Identifiers that are wanted, 11 bits; frames of 29 bits only when all are. */
 #define IDS_MAX 0x800
 
-struct replay {
+struct bus_replay {
     const struct options *options;
     struct text log;
     struct link *link;
@@ -29,7 +29,7 @@ struct replay {
 };
 
 /* "80,181-183": one entry; *at then stands behind it. */
-static bool take_ids(struct replay *replay, const char **at)
+static bool take_ids(struct bus_replay *replay, const char **at)
 {
     uint32_t id[2];
 
@@ -50,7 +50,7 @@ static bool take_ids(struct replay *replay, const char **at)
     return id[0] <= id[1];
 }
 
-static bool read_ids(struct replay *replay)
+static bool read_ids(struct bus_replay *replay)
 {
     const char *at = replay->options->ids;
 
@@ -68,7 +68,7 @@ static bool read_ids(struct replay *replay)
 }
 
 /* Error messages are the interface's own: nobody can send them. */
-static bool is_wanted(const struct replay *replay, const struct wire_frame *frame)
+static bool is_wanted(const struct bus_replay *replay, const struct wire_frame *frame)
 {
     if (frame->flags & WIRE_ERROR)
         return false;
@@ -79,7 +79,7 @@ static bool is_wanted(const struct replay *replay, const struct wire_frame *fram
  * What the bus answers is of no interest here, but must not fill up. False: interrupted, or the bus
  * is gone.
  */
-static bool wait_until(struct replay *replay, uint64_t time_ns)
+static bool wait_until(struct bus_replay *replay, uint64_t time_ns)
 {
     struct wire_frame frame;
 
@@ -95,7 +95,7 @@ static bool wait_until(struct replay *replay, uint64_t time_ns)
     }
 }
 
-static bool send_frame(struct replay *replay, const struct candump_line *line)
+static bool send_frame(struct bus_replay *replay, const struct candump_line *line)
 {
     if (!replay->options->fast &&
         !wait_until(replay, replay->start_ns + (line->time_ns - replay->log_start_ns)))
@@ -109,7 +109,7 @@ static bool send_frame(struct replay *replay, const struct candump_line *line)
 }
 
 /* The next line that is a frame. False: there is none, or after a message it is wrong (*good). */
-static bool next_frame(const struct replay *replay, size_t *position, uint32_t *number,
+static bool next_frame(const struct bus_replay *replay, size_t *position, uint32_t *number,
                        struct candump_line *line, bool *good)
 {
     const char *text, *wrong;
@@ -131,7 +131,7 @@ static bool next_frame(const struct replay *replay, size_t *position, uint32_t *
 }
 
 /* The whole log is read before its first frame is sent, so that a wrong one sends nothing. */
-static bool check_log(const struct replay *replay)
+static bool check_log(const struct bus_replay *replay)
 {
     struct candump_line line;
     size_t position = 0;
@@ -143,7 +143,7 @@ static bool check_log(const struct replay *replay)
     return good;
 }
 
-static bool send_log(struct replay *replay)
+static bool send_log(struct bus_replay *replay)
 {
     struct candump_line line;
     size_t position = 0;
@@ -165,7 +165,7 @@ static bool send_log(struct replay *replay)
 }
 
 /* A server or an adapter begins when somebody is there to hear it. */
-static bool wait_for_peer(struct replay *replay)
+static bool wait_for_peer(struct bus_replay *replay)
 {
     if (link_has_peer(replay->link))
         return true;
@@ -179,7 +179,7 @@ static bool wait_for_peer(struct replay *replay)
     return true;
 }
 
-static enum command_status report(const struct replay *replay, bool good)
+static enum command_status report(const struct bus_replay *replay, bool good)
 {
     if (interrupt_asked())
         return STATUS_INTERRUPTED;
@@ -195,7 +195,7 @@ static enum command_status report(const struct replay *replay, bool good)
     return STATUS_DONE;
 }
 
-static enum command_status send_to_bus(struct replay *replay)
+static enum command_status send_to_bus(struct bus_replay *replay)
 {
     struct link_config config = {.bitrate = BITRATE, .fd = replay->options->fd};
     struct link_error error;
@@ -217,7 +217,7 @@ static enum command_status send_to_bus(struct replay *replay)
 
 static enum command_status command_replay_execute(const struct options *options)
 {
-    static struct replay replay;
+    static struct bus_replay replay;
     enum command_status status = STATUS_INPUT;
 
     replay.options = options;

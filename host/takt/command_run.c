@@ -1,4 +1,6 @@
+#include "base/maths.h"
 #include "takt/command.h"
+#include "takt/compiled.h"
 #include "takt/error_map.h"
 #include "takt/interrupt.h"
 #include "takt/judge.h"
@@ -9,8 +11,10 @@
 #include "takt/simulation.h"
 #include "takt/stopwatch.h"
 #include "takt/summary.h"
+#include "takt/target_setup.h"
 
 #include <stdlib.h>
+#include <string.h>
 
 /* Cycles between two looks at Ctrl-C, failed writes and the progress bar. */
 #define RUN_LOOK_CYCLES 1024
@@ -20,7 +24,10 @@ struct run {
     struct session_totals totals;
     struct session_reading reading; /* the judge's */
     struct judge judge;
-    uint32_t answers; /* of the run that the judge has been told */
+    struct compiled compiled;
+    struct session_reading tube_reading; /* the tube judge's */
+    struct tube_judge tube;              /* of a compiled program */
+    uint32_t answers;                    /* of the run that the judge has been told */
     struct simulation *simulation;
     struct run_outputs outputs;
     struct progress progress;
@@ -47,6 +54,17 @@ static void set_until(struct run *run)
         run->session.options->until_s > 0 && cycles < 1e18 ? (uint64_t)(cycles + 0.5) : UINT64_MAX;
 }
 
+/* A compiled program rounds corners: the path is judged beside the judge. */
+static void prepare_tube(struct run *run)
+{
+    struct program_config config;
+    struct source source;
+
+    session_begin_reading(&run->session, &run->tube_reading, &config, &source);
+    tube_judge_init(&run->tube, &config, &source, 1 / run->session.setup.machine.resolution_per_mm);
+    run->judge.rounds = true;
+}
+
 /* At most one in a cycle. */
 static void tell_answers(struct run *run)
 {
@@ -66,10 +84,12 @@ static bool run_cycle(struct run *run)
     bool good = simulation_step(run->simulation);
 
     tell_answers(run);
-    record = controller_get_record(&run->simulation->controller);
+    record = simulation_get_record(run->simulation);
     block = controller_get_block(&run->simulation->controller);
-    if (record != NULL)
+    if (record != NULL && block != NULL) /* a target may differ, which is told */
         judge_add(&run->judge, record, block);
+    if (record != NULL && run->judge.rounds)
+        good = tube_judge_add(&run->tube, &record->cmd) && good;
     if (run->outputs.each_cycle) {
         uint64_t start_ns = stopwatch_now_ns();
 
@@ -129,6 +149,14 @@ static void report_fault(const struct run *run, const char *text)
         message_command_error("%s", text);
 }
 
+/* Corners that have not been come to are not judged. */
+static void finish_tube(struct run *run, bool completed)
+{
+    if (completed)
+        tube_judge_finish(&run->tube);
+    run->judge.figures.path_error_mm = maths_max(0, run->tube.figures.beyond_mm);
+}
+
 static enum command_status finish(struct run *run)
 {
     static struct summary summary;
@@ -143,6 +171,8 @@ static enum command_status finish(struct run *run)
     FILE *stream = run_outputs_use_stdout(&run->outputs) ? stderr : stdout;
 
     judge_finish(&run->judge, source.outcome == OUTCOME_COMPLETED);
+    if (run->judge.rounds)
+        finish_tube(run, source.outcome == OUTCOME_COMPLETED);
     summary_set(&summary, &source);
     run->session.parameters.values = run->simulation->parameters;
     if (source.outcome != OUTCOME_COMPLETED)
@@ -170,17 +200,38 @@ static enum command_status simulate(struct run *run)
     if (!run_outputs_open(&run->outputs, &run->session, run->simulation))
         return STATUS_ENVIRONMENT;
     prepare_judge(run);
+    if (run->session.compiled != NULL)
+        prepare_tube(run);
     set_until(run);
     progress_start(&run->progress, !run->session.options->quiet);
     if (run_loop(run))
         return finish(run);
     if (interrupt_asked())
         return STATUS_INTERRUPTED;
-    if (field_get_problem(&run->simulation->field) != NULL)
+    if (run->simulation->target.problem[0] != '\0')
+        message_command_error("--target: %s", run->simulation->target.problem);
+    else if (field_get_problem(&run->simulation->field) != NULL)
         message_command_error("%s", field_get_problem(&run->simulation->field));
     else
         message_command_error("the output files cannot be written");
     return STATUS_ENVIRONMENT;
+}
+
+/* Who plans: the controller as it runs, or takt before it. */
+static enum command_status plan(struct run *run, const char *how)
+{
+    enum command_status status;
+
+    if (how == NULL || strcmp(how, "board") == 0)
+        return STATUS_DONE;
+    if (run->session.options->target != NULL) {
+        message_command_error("--target and --plan %s do not go together yet", how);
+        return STATUS_INPUT;
+    }
+    status = compiled_open(&run->compiled, &run->session, &run->totals,
+                           strcmp(how, "ahead") == 0 ? NULL : how);
+    run->session.compiled = &run->compiled.source;
+    return status;
 }
 
 static enum command_status execute(struct run *run, const struct options *options)
@@ -195,14 +246,20 @@ static enum command_status execute(struct run *run, const struct options *option
         field_check_options(&field) ? session_open(&run->session, options) : STATUS_INPUT;
 
     run->session.runs = true;
+    if (status == STATUS_DONE)
+        status = target_setup_check(&run->session);
     if (status == STATUS_DONE && !run_outputs_plan(&run->outputs, &run->session))
         status = STATUS_INPUT;
     if (status == STATUS_DONE)
         status = session_check(&run->session, 1, &run->totals);
     if (status == STATUS_DONE)
+        status = plan(run, options->plan);
+    if (status == STATUS_DONE)
         status = simulate(run);
     run_outputs_close(&run->outputs);
     simulation_close(run->simulation);
+    tube_judge_free(&run->tube);
+    compiled_close(&run->compiled);
     session_close(&run->session);
     return status;
 }
@@ -234,8 +291,16 @@ static const struct option_row rows[] = {
      "internal on the embedded bus, external on any other"},
     {"realtime", OPTION_FLAG, offsetof(struct options, realtime), NULL,
      "one cycle each cycle time of the clock, not as fast as it goes"},
+    {"plan", OPTION_TEXT, offsetof(struct options, plan), "HOW",
+     "board (default): as it runs; ahead: compiled first; else FILE of takt compile"},
+    {"target", OPTION_TEXT, offsetof(struct options, target), "NAME",
+     "the controller runs in QEMU, on a Cortex-M4 (m4f) or M7 (m7), compared bit for bit"},
+    {"image", OPTION_TEXT, offsetof(struct options, image), "FILE",
+     "its image, takt-desk.elf; host/run --target builds and gives it"},
     {"trace", OPTION_TEXT, offsetof(struct options, trace), "FILE.csv",
      "one row per control cycle"},
+    {"rests", OPTION_TEXT, offsetof(struct options, rests), "FILE.csv",
+     "where the tool's point was at every standstill of 50 ms, on a machine with errors"},
     {"inject", OPTION_TEXT, offsetof(struct options, inject), "FILE",
      "scripted faults of bus and drives; takt help inject explains them"},
     {"probe", OPTION_TEXT, offsetof(struct options, probe), "FILE",

@@ -93,6 +93,8 @@ static const struct option_row rows[] = {
      "embedded (default), socketcan:IF, slcan:PATH, socketcand:HOST:PORT"},
     {"drives", OPTION_TEXT, offsetof(struct options, drives), "WHERE",
      "internal on the embedded bus, external on any other"},
+    {"bus-log", OPTION_TEXT, offsetof(struct options, bus_log), "FILE",
+     "every CAN frame, as candump -L writes it; takt replay reads it"},
     OPTIONS_MACHINE,
     {"tools", OPTION_TEXT, offsetof(struct options, tools), "FILE", "tool table, LinuxCNC's .tbl"},
     {"parameters", OPTION_TEXT, offsetof(struct options, parameters), "FILE",

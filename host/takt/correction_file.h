@@ -16,9 +16,6 @@
  */
 bool correction_file_load(struct correction_tables **tables, const struct machine_setup *setup);
 
-/* An axis can give up this part of its velocity, acceleration or jerk to correction. */
-#define CORRECTION_SHARE_MAX 0.5
-
 /* Reads and checks one file. False after a message that names file, line and cell. */
 bool correction_file_read(struct table *table, const char *path, const struct machine *machine);
 

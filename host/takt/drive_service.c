@@ -3,6 +3,7 @@
 #include "takt/drive_service.h"
 
 #include "drives/eds.h"
+#include "takt/bus_log.h"
 #include "takt/interrupt.h"
 #include "takt/message.h"
 
@@ -25,6 +26,7 @@ struct drive_service {
     struct can_port port;
     uint64_t cycle_ns;
     uint64_t next_ns; /* end of the cycle under way, by link_clock_ns */
+    struct bus_log bus_log;
     struct eds_text eds[VIRTUAL_DRIVES_MAX];
     struct virtual_drives set;
 };
@@ -83,6 +85,9 @@ static enum command_status start(struct drive_service *service)
 
     if (status != STATUS_DONE)
         return status;
+    if (!bus_log_open(&service->bus_log, config->bus_log))
+        return STATUS_ENVIRONMENT;
+    bus_log_observe_link(&service->bus_log, service->link);
     service->cycle_ns = (uint64_t)config->cycle_us * 1000;
     virtual_drives_open(&service->set, &service->port, config->drives);
     for (unsigned i = 0; i < service->set.count; i++) {
@@ -136,6 +141,7 @@ static enum command_status run(struct drive_service *service)
         }
         take_frames(service);
         keep_time(service);
+        bus_log_keep(&service->bus_log);
     }
     return STATUS_DONE;
 }
@@ -154,6 +160,8 @@ enum command_status drive_service_run(const struct drive_service_config *config)
     if (status == STATUS_DONE)
         status = run(service);
     link_close(service->link);
+    if (!bus_log_close(&service->bus_log) && status == STATUS_DONE)
+        status = STATUS_ENVIRONMENT;
     for (unsigned i = 0; i < VIRTUAL_DRIVES_MAX; i++)
         free(service->eds[i].bytes);
     free(service);

@@ -24,6 +24,7 @@ struct drive_service_config {
     const struct virtual_drives_config *drives;
     const struct inject *script; /* NULL: no faults */
     FILE *log;                   /* one line an event; NULL: none */
+    const char *bus_log;         /* takt/bus_log.h */
 };
 
 /* Until a signal comes: STATUS_DONE. Else after a message. */

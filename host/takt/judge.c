@@ -17,6 +17,7 @@ void judge_init(struct judge *j, const struct machine *machine,
     offset_open(&j->offset, program);
     j->rate_hz = 1e6 / (double)machine->cycle_us;
     j->block.end = program->start;
+    j->read_end = program->start;
     j->block.landed = true;
     j->cmd = program->start;
     j->figures.digest = FNV_START;
@@ -35,13 +36,12 @@ static void raise_to(double *largest, double value)
         *largest = value;
 }
 
-/* The next motion of the judge's own reading. False: there is none. */
-static bool next_motion(struct judge *j)
+/* One more motion of the judge's own reading. False: there is none. */
+static bool read_motion(struct judge *j)
 {
+    struct judge_motion *motion = judge_motion_at(&j->motions, j->motions.read);
     struct move move = {0};
     struct diagnostic diagnostic;
-    struct point start = j->block.end;
-
     enum program_result result = PROGRAM_END;
 
     while (!j->program_ended) {
@@ -52,12 +52,32 @@ static bool next_motion(struct judge *j)
     }
     if (result != PROGRAM_MOVE)
         return false;
-    j->block = (struct judge_block){.number = j->block.number + 1,
-                                    .end = move.end,
-                                    .done = 1,
-                                    .landed = true,
-                                    .probing = move.kind == MOVE_PROBE};
-    j->block.has_length = move_curve(&move, &start, &j->block.curve);
+    *motion = (struct judge_motion){
+        .number = j->motions.read + 1, .move = move, .corner_mm = MATHS_INFINITY};
+    motion->has_length = move_curve(&move, &j->read_end, &motion->curve);
+    j->read_end = move.end;
+    j->motions.read++;
+    return true;
+}
+
+/* Takes the next motion. False: there is none. */
+static bool next_motion(struct judge *j)
+{
+    const struct judge_motion *motion = judge_motion_at(&j->motions, j->motions.current);
+    const struct move *move = &motion->move;
+
+    if (j->motions.current == j->motions.read && !read_motion(j))
+        return false;
+    j->motions.current++;
+    j->block = (struct judge_block){
+        .number = motion->number,
+        .end = move->end,
+        .done = 1,
+        .landed = true,
+        .probing = move->kind == MOVE_PROBE,
+        .turning_mm = move->kind == MOVE_TAP ? JUDGE_TURNING_REV * move->feed_rev_mm : 0};
+    j->block.has_length = motion->has_length;
+    j->block.curve = motion->curve;
     return true;
 }
 
@@ -77,13 +97,19 @@ static double missed_end(const struct judge_block *block)
     return judge_distance(&end, &block->end);
 }
 
+/* Has the tap been as deep as the spindle lets it be? The deepest place is that of the last cycle. */
+static bool has_turned(const struct judge *j)
+{
+    return j->block.turning_mm > 0 && judge_distance(&j->cmd, &j->block.end) <= j->block.turning_mm;
+}
+
 /* The block is left: has its end been hit? */
 static void leave_block(struct judge *j)
 {
     const struct judge_block *block = &j->block;
 
     j->figures.path_length_mm += length_of(block);
-    if (block->landed)
+    if (block->landed || has_turned(j) || j->rounds)
         return;
     if (!block->ending && block->has_length)
         raise_to(&j->figures.landing_error_mm, missed_end(block));
@@ -140,6 +166,10 @@ static void judge_path(struct judge *j, const struct cycle_record *record)
 {
     double error;
 
+    if (j->rounds) {
+        j->block.landed = j->block.landed || record->landed;
+        return;
+    }
     if (!j->block.has_length) {
         raise_to(&j->figures.path_error_mm, judge_distance(&record->cmd, &j->block.end));
         return;
@@ -190,14 +220,45 @@ static void judge_axes(struct judge *j, const struct cycle_record *record)
     }
 }
 
+/* A setpoint of a smoothed path: near the motion that it says it is on, and only a chain's last end is hit exactly. */
+static void judge_smoothed(struct judge *j, const struct cycle_record *record,
+                           const struct block *block)
+{
+    if (!j->smoothing)
+        judge_smooth_begin(&j->motions);
+    while (judge_motions_have_room(&j->motions) && read_motion(j))
+        continue;
+    judge_smooth_add(&j->motions, &j->figures.smoothing, &j->cmd, &record->cmd);
+    if (record->landed && point_is_same(&block->curve.end, &block->move.end))
+        raise_to(&j->figures.landing_error_mm, judge_distance(&record->cmd, &j->block.end));
+    j->block.landed = true;
+    j->block.fraction = 1;
+    j->step_inside = false;
+    j->smoothing = true;
+}
+
+static void end_smoothing(struct judge *j)
+{
+    if (j->smoothing)
+        judge_smooth_end(&j->motions, &j->figures.smoothing);
+    j->smoothing = false;
+}
+
 void judge_add(struct judge *j, const struct cycle_record *record, const struct block *block)
 {
+    const bool smoothed = block->curve.kind == CURVE_SPLINE && block_is_motion(block);
+
     if (record->block != j->block.number && !j->strayed)
         enter_block(j, record);
-    if (!j->block.ending && !block->continues && !j->block.landed)
+    if (!smoothed && !j->block.ending && !block->continues && !j->block.landed)
         begin_ending(j, block);
     j->sent[j->figures.cycles % JUDGE_HISTORY] = record->set;
-    judge_path(j, record);
+    if (smoothed) {
+        judge_smoothed(j, record, block);
+    } else {
+        end_smoothing(j);
+        judge_path(j, record);
+    }
     judge_feed(j, record);
     judge_axes(j, record);
     raise_to(&j->figures.correction_mm, judge_distance(&record->cmd, &record->set));
@@ -210,6 +271,7 @@ static void end_probing(struct judge *j, const struct point *rest_at)
 {
     raise_to(&j->figures.landing_error_mm, judge_distance(&j->cmd, rest_at));
     j->block.end = *rest_at;
+    j->read_end = *rest_at;
     j->block.done = j->block.fraction;
     j->block.landed = true;
     j->block.probing = false;
@@ -239,6 +301,7 @@ void judge_answer(struct judge *j, const struct program_answer *answer)
 
 void judge_finish(struct judge *j, bool completed)
 {
+    end_smoothing(j);
     if (completed) {
         j->block.passed = false; /* nothing follows that it could be passed into */
         leave_block(j);

@@ -19,6 +19,7 @@
 #include "offset/offset.h"
 #include "plan/block.h"
 #include "program/program.h"
+#include "takt/judge_smooth.h"
 
 #include <stdbool.h>
 #include <stdint.h>
@@ -30,6 +31,9 @@
 
 #define JUDGE_LANDING_MAX_MM 1e-9
 #define JUDGE_PATH_MAX_MM    1e-6 /* beside the chord error */
+
+/* A tap turns back so much of a revolution above the bottom of its hole at most. */
+#define JUDGE_TURNING_REV 0.1
 
 /* What the judge found. For a rotary axis read rad for mm. */
 struct judge_figures {
@@ -44,6 +48,7 @@ struct judge_figures {
     double chord_error_mm;
     double landing_error_mm;
     double joint_feed_step_mm_s;
+    struct judge_smoothing smoothing;
     double correction_mm; /* largest distance between setpoint before and after correction */
     uint64_t digest;
 };
@@ -54,9 +59,11 @@ struct judge_block {
     bool has_length;
     struct curve curve; /* when it has length */
     struct point end;
-    double fraction;  /* of the block, where the last setpoint was */
-    double done;      /* share of it that is executed: 1, but of a probing move that ended early */
-    bool probing;     /* it may end early: judge_answer */
+    double fraction; /* of the block, where the last setpoint was */
+    double done;     /* share of it that is executed: 1, but of a probing move that ended early */
+    bool probing;    /* it may end early: judge_answer */
+    double
+        turning_mm; /* into a hole the axes turn round with the spindle, so far above its end at most; 0: no hole */
     bool landed;      /* a cycle has ended it exactly */
     bool ending;      /* its last piece is being executed */
     bool passed;      /* then: it is to be left without a cycle at its end */
@@ -74,8 +81,12 @@ struct judge_axis {
 struct judge {
     struct program program; /* the judge's own reading */
     struct offset offset;
+    bool rounds;  /* the path is rounded, and judged elsewhere (tube_judge.h) */
     bool strayed; /* the run executes motions the program does not have */
     bool program_ended;
+    struct judge_motions motions;
+    struct point read_end; /* where the last motion that has been read ends */
+    bool smoothing;        /* the last setpoint was one of a smoothed path */
     struct judge_block block;
     double rate_hz; /* 1 / cycle time */
     unsigned axes;

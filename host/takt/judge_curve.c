@@ -102,6 +102,8 @@ double judge_curve_distance(const struct curve *c, const struct point *p, double
         return arc_distance(c, p, fraction);
     case CURVE_INVOLUTE:
         return involute_distance(c, p, fraction);
+    case CURVE_SPLINE: /* no program has one */
+        break;
     }
     return MATHS_INFINITY;
 }
@@ -166,6 +168,8 @@ double judge_curve_chord_error(const struct curve *c, const struct point *from,
         return arc_chord_error(&c->arc, from, to);
     case CURVE_INVOLUTE:
         return involute_chord_error(c, from, to);
+    case CURVE_SPLINE:
+        break;
     }
     return MATHS_INFINITY;
 }

@@ -35,6 +35,7 @@ enum machine_key_type {
     KEY_STEP_FORM,
     KEY_LAW,
     KEY_LANDING,
+    KEY_LIMITER,
     KEY_OVERRIDE_METHOD,
     KEY_INTERPOLATOR /* words */
 };

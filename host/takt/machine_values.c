@@ -230,7 +230,8 @@ static const char *const *words_of(const struct machine_key *key)
     static const char *const step_forms[] = {"even", "improved", "plain", NULL};
     static const char *const interpolators[] = {"exact", "integrate", "rotate", NULL};
     static const char *const laws[] = {"jerk", "smooth", "gentle", NULL};
-    static const char *const landings[] = {"span", "block", NULL};
+    static const char *const landings[] = {"span", "block", "scale", NULL};
+    static const char *const limiters[] = {"ceiling", "threshold", "smooth", NULL};
     static const char *const methods[] = {"adaptive", "proportional", NULL};
 
     if (key->type == KEY_DRIVE_TYPE)
@@ -239,6 +240,8 @@ static const char *const *words_of(const struct machine_key *key)
         return laws;
     if (key->type == KEY_LANDING)
         return landings;
+    if (key->type == KEY_LIMITER)
+        return limiters;
     if (key->type == KEY_OVERRIDE_METHOD)
         return methods;
     return key->type == KEY_STEP_FORM ? step_forms : interpolators;
@@ -373,6 +376,7 @@ bool machine_key_set(struct machine_setup *setup, struct machine_place place,
     case KEY_STEP_FORM:
     case KEY_LAW:
     case KEY_LANDING:
+    case KEY_LIMITER:
     case KEY_OVERRIDE_METHOD:
     case KEY_INTERPOLATOR:
         return read_word(key, value, field, wrong);
@@ -464,6 +468,7 @@ void machine_key_get(const struct machine_setup *setup, struct machine_place pla
     case KEY_STEP_FORM:
     case KEY_LAW:
     case KEY_LANDING:
+    case KEY_LIMITER:
     case KEY_OVERRIDE_METHOD:
     case KEY_INTERPOLATOR:
         (void)snprintf(text, size, "%s", words_of(key)[*(const uint32_t *)field]);

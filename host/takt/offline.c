@@ -1,5 +1,6 @@
 #include "takt/offline.h"
 
+#include "program/coordinates.h"
 #include "takt/interrupt.h"
 #include "takt/message.h"
 #include "takt/offline_private.h"
@@ -28,6 +29,7 @@ struct offline {
     struct offline_line current;
     /* the source */
     uint64_t at;              /* next byte of the text */
+    uint64_t line_start;      /* of the line handed out last */
     uint32_t reading;         /* counts lines handed to the interpreter */
     struct offline_text line; /* stream: the line being read */
     bool line_waits;          /* stream: it has not been written yet */
@@ -57,6 +59,15 @@ static bool read_stream_line(struct offline *o)
 }
 
 static void finish_line(struct offline *o);
+static void see_setting(struct offline *o);
+
+/* A line can be longer than a piece of the source. */
+static bool begins_line(const struct offline *o)
+{
+    const char *text = o->config->text != NULL ? o->config->text : o->line.bytes;
+
+    return o->at == 0 || text[o->at - 1] == '\n';
+}
 
 /* The interpreter asks for more: all moves of the line before have been fetched. */
 static long read_piece(struct offline *o, const char *text, size_t length, char *buffer,
@@ -64,6 +75,8 @@ static long read_piece(struct offline *o, const char *text, size_t length, char 
 {
     size_t count = 0;
 
+    if (begins_line(o))
+        o->line_start = o->at;
     while (count < size && o->at < length) {
         buffer[count] = text[o->at++];
         if (buffer[count++] == '\n')
@@ -77,6 +90,7 @@ static long read_source(void *context, char *buffer, size_t size)
 {
     struct offline *o = context;
 
+    see_setting(o);
     if (o->config->text != NULL)
         return read_piece(o, o->config->text, o->config->length, buffer, size);
     if (o->at >= o->line.length) {
@@ -110,7 +124,7 @@ static void find_raw(struct offline *o, struct offline_line *line)
 {
     const char *text = o->config->text != NULL ? o->config->text : o->line.bytes;
     const size_t length = o->config->text != NULL ? o->config->length : o->line.length;
-    const size_t from = o->config->text != NULL ? (size_t)o->program.lexer.line_offset : 0;
+    const size_t from = (size_t)o->line_start;
     const char *end = memchr(text + from, '\n', length - from);
 
     line->raw = text + from;
@@ -180,24 +194,39 @@ static bool belongs_to_current(const struct offline *o, const struct move *move)
     return o->current.line == move->line && o->current.reading == o->reading;
 }
 
-static void begin_execution(struct offline *o, const struct move *move)
+static void begin_execution(struct offline *o, uint32_t line)
 {
     finish_execution(o);
-    o->current.line = move->line;
+    o->current.line = line;
     o->current.reading = o->reading;
     o->current.context = o->program;
     find_raw(o, &o->current);
 }
 
+/* A line that has been done, just before the next one is read, may have taken over where the machine stands. */
+static void see_setting(struct offline *o)
+{
+    if (o->reading == 0 || !begins_line(o) || !offline_is_setting(&o->program))
+        return;
+    if (o->current.line != o->program.lexer.line || o->current.reading != o->reading)
+        begin_execution(o, o->program.lexer.line);
+}
+
+/* Motions, and what cycles do between them. */
+static bool is_wanted(const struct offline *o, const struct move *move)
+{
+    return move_is_motion(move) || (belongs_to_current(o, move) && o->current.moves > 0 &&
+                                    offline_is_cycle(&o->current) && offline_is_cycle_event(move));
+}
+
 static void take_move(struct offline *o, const struct move *move)
 {
-    const bool same = belongs_to_current(o, move);
-
-    if (!move_is_motion(move) && !(same && move->kind == MOVE_DWELL && o->current.moves > 0)) {
+    if (move->kind == MOVE_INPUT && o->rewriter.totals.input_line == 0)
+        o->rewriter.totals.input_line = move->line;
+    if (!is_wanted(o, move))
         return;
-    }
-    if (!same)
-        begin_execution(o, move);
+    if (!belongs_to_current(o, move))
+        begin_execution(o, move->line);
     if (o->current.moves == OFFLINE_MOVES_MAX) {
         o->rewriter.wrong = "this line makes too many motions";
         o->rewriter.wrong_line = move->line;
@@ -302,6 +331,16 @@ static bool write_text(const struct offline *o)
 
 /* ---- all of it ---- */
 
+static void note_references(struct offline_rewriter *r, const struct parameters *parameters)
+{
+    static const unsigned first[] = {PARAMETER_REFERENCE_1, PARAMETER_REFERENCE_2};
+
+    for (unsigned i = 0; i < 2 * AXIS_COUNT; i++)
+        r->reference_mm[i / AXIS_COUNT][i % AXIS_COUNT] = coordinates_from_parameter(
+            parameters_get(parameters, first[i / AXIS_COUNT] + i % AXIS_COUNT),
+            (enum axis)(i % AXIS_COUNT));
+}
+
 static void open_program(struct offline *o)
 {
     struct controller_config controller = {
@@ -318,7 +357,9 @@ static void open_program(struct offline *o)
 
     o->parameters = o->config->session->parameters.values;
     controller_program_config(&controller, &config);
+    config.waits = false;
     program_open(&o->program, &config, &source);
+    note_references(r, &o->parameters);
     r->tolerance_mm = o->config->tolerance_mm;
     r->axes = config.axes;
     r->at = r->written = config.start;

@@ -31,6 +31,10 @@ struct offline_totals {
     double error_mm;   /* largest distance of the written path from the corrected one */
     double largest_mm; /* largest correction */
     bool compensated;  /* contours with G41, G42 were among them */
+    double
+        thread_error_mm; /* the same of threads, which are not divided, and where it is largest */
+    uint32_t thread_line;
+    uint32_t input_line; /* the first M66: what it reads is not known; 0: none */
 };
 
 /* STATUS_DONE; else after a message. */

@@ -1,115 +1,29 @@
 /* A line of the program with the words of its motion replaced. */
+#include "program/coordinates.h"
+#include "program/flow.h"
 #include "program/words.h"
 #include "takt/offline_private.h"
 
 #include <stdlib.h>
 #include <string.h>
 
-/* Letters that say where a straight move goes, an arc, a cycle. */
+/* Letters that say where a straight move goes, a curve, a thread. */
 #define WORDS_STRAIGHT LETTERS_AXES
-#define WORDS_ARC      (LETTERS_AXES | LETTERS_CENTRE | LETTER_BIT('r') | LETTER_BIT('p'))
-#define WORDS_CYCLE                                                                                \
-    (LETTERS_AXES | LETTERS_CENTRE | LETTER_BIT('r') | LETTER_BIT('p') | LETTER_BIT('q') |         \
-     LETTER_BIT('l'))
+#define WORDS_CURVE    (LETTERS_AXES | LETTERS_CENTRE | LETTER_BIT('r') | LETTER_BIT('p'))
+#define WORDS_THREAD   (LETTERS_AXES | LETTER_BIT('k'))
 
-static bool is_cycle(const struct offline_line *line)
+static bool refuse(struct offline_rewriter *r, const struct offline_line *line, const char *why)
 {
-    const struct program_code *motion = line->context.modes.motion;
-
-    return motion != NULL && motion->letter == 'g' && motion->number_x10 >= 730 &&
-           motion->number_x10 <= 890 && motion->number_x10 != 800;
-}
-
-static bool refuse(struct offline_rewriter *r, const struct offline_line *line)
-{
-    r->wrong =
-        "this motion cannot be corrected in the program: lines, arcs and drilling cycles can; "
-        "correct others while they run";
+    r->wrong = why;
     r->wrong_line = line->line;
     return false;
 }
 
-/* What can be written: lines and arcs, and cycles that are made of lines and waits. */
-static bool can_write(const struct offline_line *line)
+static uint32_t letters_of(const struct move *move)
 {
-    const bool cycle = is_cycle(line);
-
-    if (words_has_step(&line->context, STEP_REFERENCE))
-        return false;
-    for (unsigned i = 0; i < line->moves; i++) {
-        const struct move *m = &line->move[i];
-
-        if (m->kind > MOVE_ARC_CCW && !(cycle && m->kind == MOVE_DWELL))
-            return false;
-        if (m->feed_rev_mm != 0.0)
-            return false;
-    }
-    return cycle || line->moves == 1;
-}
-
-/* ---- cutting words out of the line ---- */
-
-/* Which bytes of the line go; the place of the first of them gets the new words. */
-struct cuts {
-    bool gone[PROGRAM_LINE_MAX + 2];
-    size_t first; /* the line's length: none is gone */
-};
-
-static void cut(struct cuts *cuts, const struct offline_line *line, const struct program_span *span)
-{
-    const struct program_lexer *lexer = &line->context.lexer;
-    const size_t from = lexer->column[span->begin] - 1U;
-    const size_t to = lexer->column[span->end - 1];
-    unsigned nested = 0;
-
-    for (size_t i = from; i < to && i < line->raw_length; i++) {
-        nested += line->raw[i] == '(' ? 1 : 0;
-        cuts->gone[i] = nested == 0;
-        nested -= line->raw[i] == ')' && nested > 0 ? 1 : 0;
-    }
-    if (from < cuts->first)
-        cuts->first = from;
-}
-
-/* Letters' spans begin at their letter. */
-static void cut_words(struct cuts *cuts, const struct offline_line *line, uint32_t letters)
-{
-    for (unsigned i = 0; i < 26; i++) {
-        if ((line->context.words.given & letters & UINT32_C(1) << i) != 0)
-            cut(cuts, line, &line->context.words.span[i]);
-    }
-}
-
-/* Where new words go when none is taken out: before comments at the end. */
-static size_t end_of_words(const struct offline_line *line)
-{
-    const struct program_lexer *lexer = &line->context.lexer;
-
-    return lexer->length > 0 ? lexer->column[lexer->length - 1] : 0;
-}
-
-static void print_first(const struct offline_line *line, const struct cuts *cuts, const char *words,
-                        struct offline_text *text)
-{
-    size_t place = cuts->first < line->raw_length ? cuts->first : end_of_words(line);
-    size_t from = 0;
-
-    for (size_t i = 0; i <= line->raw_length; i++) {
-        const bool insert = i == place;
-
-        if (insert || i == line->raw_length || cuts->gone[i]) {
-            offline_text_add(text, line->raw + from, i - from);
-            from = i;
-        }
-        if (insert) {
-            const bool spaced = text->length > 0 && text->bytes[text->length - 1] == ' ';
-
-            words += spaced && words[0] == ' ' ? 1 : 0;
-            offline_text_add(text, words, strlen(words));
-        }
-        if (i < line->raw_length && cuts->gone[i])
-            from = i + 1;
-    }
+    if (move_is_arc(move) || move_is_involute(move))
+        return WORDS_CURVE;
+    return move->kind == MOVE_THREAD || move->kind == MOVE_TAP ? WORDS_THREAD : WORDS_STRAIGHT;
 }
 
 /* ---- the lines of all pieces ---- */
@@ -123,36 +37,57 @@ static bool begins_with_slash(const struct offline_line *line)
     return i < line->raw_length && line->raw[i] == '/';
 }
 
-static const char *code_of(const struct move *move)
+static const char *code_of(const struct move *move, const struct offline_piece *piece)
 {
-    if (move->kind == MOVE_ARC_CW)
+    if (piece->straight)
+        return "G1";
+    switch ((int)move->kind) {
+    case MOVE_RAPID:
+        return "G0";
+    case MOVE_ARC_CW:
         return "G2";
-    if (move->kind == MOVE_ARC_CCW)
+    case MOVE_ARC_CCW:
         return "G3";
-    return move->kind == MOVE_RAPID ? "G0" : "G1";
+    case MOVE_INVOLUTE_CW:
+        return "G2.2";
+    case MOVE_INVOLUTE_CCW:
+        return "G3.2";
+    case MOVE_THREAD:
+        return "G33";
+    case MOVE_TAP:
+        return "G33.1";
+    default:
+        return "G1";
+    }
 }
 
 /* G93: a piece takes its part of the time. */
-static void print_feed(const struct offline_line *line, const struct move *move, unsigned n,
+static void print_feed(const struct offline_line *line, const struct move *move, double share,
                        struct offline_text *text)
 {
-    if (line->context.modes.inverse_time && move->kind != MOVE_RAPID && n > 1)
-        offline_text_print(text, " F%.9g", words_value(&line->context, 'f') * n);
+    if (line->context.modes.inverse_time && move->kind != MOVE_RAPID && share < 1.0)
+        offline_text_print(text, " F%.9g", words_value(&line->context, 'f') / share);
 }
 
-/* What comes after the first piece of a move. */
-static void print_rest(struct offline_rewriter *r, const struct offline_line *line,
-                       const struct move *move, const struct offline_piece *pieces, unsigned n,
-                       struct offline_text *text)
+static void print_piece(struct offline_rewriter *r, const struct offline_line *line,
+                        const struct move *move, const struct offline_piece *piece,
+                        struct offline_text *text)
 {
-    for (unsigned k = 1; k < n; k++) {
+    print_feed(line, move, piece->share, text);
+    offline_print_words(r, line, move, piece, text);
+    r->totals.pieces++;
+}
+
+void offline_print_pieces(struct offline_rewriter *r, const struct offline_line *line,
+                          const struct move *move, const struct offline_piece *pieces,
+                          unsigned first, unsigned n, struct offline_text *text)
+{
+    for (unsigned k = first; k < n; k++) {
         offline_text_print(text, "\n%s%s%s", begins_with_slash(line) ? "/" : "",
                            words_has_step(&line->context, STEP_MACHINE) ? "G53 " : "",
-                           code_of(move));
-        print_feed(line, move, n, text);
-        offline_print_words(r, line, move, &pieces[k], text);
-        r->written = pieces[k].end;
-        r->totals.pieces++;
+                           code_of(move, &pieces[k]));
+        r->code = code_of(move, &pieces[k]);
+        print_piece(r, line, move, &pieces[k], text);
     }
 }
 
@@ -162,86 +97,227 @@ static bool has_late_stop(const struct offline_line *line, unsigned n)
     return n > 1 && words_has_step(&line->context, STEP_STOP);
 }
 
-static void print_stop(const struct offline_line *line, struct offline_text *text)
+static void print_span(const struct offline_line *line, const struct program_span *span,
+                       struct offline_text *text)
 {
-    const struct program_span *span = &line->context.words.code_span[STEP_STOP];
-
-    offline_text_print(text, "\n%s%.*s", begins_with_slash(line) ? "/" : "",
-                       (int)(span->end - span->begin), line->context.lexer.text + span->begin);
+    offline_text_add(text, line->context.lexer.text + span->begin,
+                     (size_t)(span->end - span->begin));
 }
 
+/* M98 has words of its own. */
+static uint32_t letters_of_stop(const struct offline_line *line)
+{
+    return line->context.words.given & line->context.words.code[STEP_STOP]->words;
+}
+
+void offline_cut_stop(struct offline_cuts *cuts, const struct offline_line *line)
+{
+    offline_cut_code(cuts, line, STEP_STOP);
+    offline_cut_letters(cuts, line, letters_of_stop(line));
+}
+
+void offline_print_stop(const struct offline_line *line, struct offline_text *text)
+{
+    const struct program_words *words = &line->context.words;
+
+    offline_text_print(text, "\n%s", begins_with_slash(line) ? "/" : "");
+    print_span(line, &words->code_span[STEP_STOP], text);
+    for (unsigned i = 0; i < 26; i++) {
+        if ((letters_of_stop(line) & UINT32_C(1) << i) != 0)
+            print_span(line, &words->span[i], text);
+    }
+}
+
+/* ---- the forms of lines ---- */
+
+/*
+ * The line's own code stays if it is the right one. A line without a code gets one where what has been written before it
+ * has left another one in effect.
+ */
+static void print_code(struct offline_rewriter *r, const struct offline_line *line,
+                       const char *code, struct offline_cuts *cuts, struct offline_text *words)
+{
+    const bool own = words_has_step(&line->context, STEP_MOTION);
+
+    if (own ? strcmp(code, code_of(&line->move[0], &(struct offline_piece){0})) != 0
+            : r->code != NULL && strcmp(code, r->code) != 0) {
+        offline_cut_code(cuts, line, STEP_MOTION);
+        offline_text_print(words, " %s", code);
+    }
+    r->code = code;
+}
+
+/* One motion: a line, an arc, an involute, a thread. G33.1 has two, the way back being that of the way in. */
 static bool rewrite_motion(struct offline_rewriter *r, const struct offline_line *line,
                            struct offline_piece *pieces, struct offline_text *text)
 {
     const struct move *move = &line->move[0];
+    const struct point before = r->written;
     struct offline_text words = {0};
-    struct cuts cuts = {.first = line->raw_length};
-    unsigned n = offline_divide(r, move, pieces);
+    struct offline_cuts cuts;
+    const unsigned n = offline_divide(r, move, pieces);
 
     if (n == 0)
         return false;
-    cut_words(&cuts, line, move_is_arc(move) ? WORDS_ARC : WORDS_STRAIGHT);
+    offline_cuts_init(&cuts, line);
+    offline_cut_letters(&cuts, line, letters_of(move));
     if (has_late_stop(line, n))
-        cut(&cuts, line, &line->context.words.code_span[STEP_STOP]);
+        offline_cut_stop(&cuts, line);
     if (line->context.modes.inverse_time && n > 1)
-        cut_words(&cuts, line, LETTER_BIT('f'));
-    print_feed(line, move, n, &words);
-    offline_print_words(r, line, move, &pieces[0], &words);
-    r->written = pieces[0].end;
-    r->totals.pieces++;
-    print_first(line, &cuts, words.bytes, text);
-    print_rest(r, line, move, pieces, n, text);
+        offline_cut_letters(&cuts, line, LETTER_BIT('f'));
+    print_code(r, line, code_of(move, &pieces[0]), &cuts, &words);
+    print_piece(r, line, move, &pieces[0], &words);
+    offline_print_kept(line, &cuts, words.bytes, text);
+    offline_print_pieces(r, line, move, pieces, 1, n, text);
     if (has_late_stop(line, n))
-        print_stop(line, text);
+        offline_print_stop(line, text);
+    if (move->kind == MOVE_TAP)
+        r->written = before;
     text->failed |= words.failed;
     offline_text_free(&words);
     return true;
 }
 
-/* A cycle's moves one by one, since the hole may lean; its words and code go. */
-static bool rewrite_cycle(struct offline_rewriter *r, const struct offline_line *line,
-                          struct offline_piece *pieces, struct offline_text *text)
+/* Machine coordinates of G28 or G30 of this line; false: the program has changed them. */
+static bool is_reference_known(const struct offline_rewriter *r, const struct offline_line *line,
+                               const double **reference_mm)
 {
-    struct cuts cuts = {.first = line->raw_length};
+    const struct program *p = &line->context;
+    const unsigned first = (unsigned)p->words.code[STEP_REFERENCE]->argument;
 
-    cut_words(&cuts, line, WORDS_CYCLE);
-    if (words_has_step(&line->context, STEP_MOTION))
-        cut(&cuts, line, &line->context.words.code_span[STEP_MOTION]);
-    print_first(line, &cuts, "", text);
-    for (unsigned i = 0; i < line->moves; i++) {
-        const struct move *move = &line->move[i];
-        unsigned n;
-
-        if (move->kind == MOVE_DWELL) {
-            offline_text_print(text, "\nG4 P%.9g", move->dwell_s);
-            continue;
-        }
-        n = offline_divide(r, move, pieces);
-        if (n == 0)
+    *reference_mm = r->reference_mm[first == PARAMETER_REFERENCE_1 ? 0 : 1];
+    for (unsigned i = 0; i < AXIS_COUNT; i++) {
+        if (coordinates_from_parameter(parameters_get(p->config.parameters, first + i),
+                                       (enum axis)i) != (*reference_mm)[i])
             return false;
-        offline_text_print(text, "\n%s", code_of(move));
-        offline_print_words(r, line, move, &pieces[0], text);
-        r->written = pieces[0].end;
-        r->totals.pieces++;
-        print_rest(r, line, move, pieces, n, text);
-        r->at = move->end;
     }
     return true;
+}
+
+/* G28, G30: only the point on the way is corrected. The reference is the machine's own. */
+static bool rewrite_reference(struct offline_rewriter *r, const struct offline_line *line,
+                              struct offline_piece *pieces, struct offline_text *text)
+{
+    const bool all = (line->context.words.given & LETTERS_AXES) == 0;
+    const double *reference_mm;
+    struct offline_text words = {0};
+    struct offline_cuts cuts;
+
+    if (!is_reference_known(r, line, &reference_mm))
+        return refuse(r, line,
+                      "the point of G28 or G30 has been set by this program, where the machine "
+                      "stands corrected: set it outside of the program");
+    offline_cuts_init(&cuts, line);
+    if (!all) {
+        (void)offline_divide(r, &line->move[0], pieces);
+        offline_cut_letters(&cuts, line, LETTERS_AXES);
+        offline_print_words(r, line, &line->move[0], &pieces[0], &words);
+        r->totals.pieces++;
+    }
+    offline_print_kept(line, &cuts, words.bytes != NULL ? words.bytes : "", text);
+    for (unsigned i = 0; i < AXIS_COUNT; i++) {
+        if (all || words_has(&line->context, coordinates_letter((enum axis)i)))
+            r->written.at[i] = (r->axes & 1U << i) != 0 ? reference_mm[i] : 0.0;
+    }
+    text->failed |= words.failed;
+    offline_text_free(&words);
+    return true;
+}
+
+/* ---- settings that take over where the machine stands ---- */
+
+/* L of G10. */
+#define LEAST_BY_POSITION   10.0
+#define SETTING_BY_POSITION 20.0
+
+enum setting { SETTING_NONE, SETTING_WRITABLE, SETTING_OTHER };
+
+static enum setting setting_of(const struct program *p)
+{
+    if (words_has_step(p, STEP_AXIS_OFFSET) && p->words.code[STEP_AXIS_OFFSET]->number_x10 == 920)
+        return SETTING_WRITABLE;
+    if (words_has_step(p, STEP_REFERENCE) && p->words.code[STEP_REFERENCE]->words == 0)
+        return SETTING_OTHER;
+    if (!words_has_step(p, STEP_SETTING) || words_value(p, 'l') < LEAST_BY_POSITION)
+        return SETTING_NONE;
+    if (words_value(p, 'l') == SETTING_BY_POSITION &&
+        (words_value(p, 'p') == 0.0 || words_value(p, 'p') == p->modes.system))
+        return SETTING_WRITABLE;
+    return SETTING_OTHER;
+}
+
+/* Lines that are passed over leave the words of an earlier one in their place. */
+static bool has_words_of_its_own(const struct program *p)
+{
+    const char first = p->lexer.text[0];
+
+    return p->lexer.length > 0 && first != 'o' && first != '%' &&
+           !(first == '/' && p->config.block_delete) && !flow_is_skipping(p);
+}
+
+bool offline_is_setting(const struct program *p)
+{
+    return has_words_of_its_own(p) && setting_of(p) != SETTING_NONE;
+}
+
+/* G92, G10 L20: the same offset comes out when the words grow by what the machine stands off. */
+static bool rewrite_setting(struct offline_rewriter *r, const struct offline_line *line,
+                            struct offline_text *text)
+{
+    struct offline_text words = {0};
+    struct offline_cuts cuts;
+
+    if (setting_of(&line->context) != SETTING_WRITABLE || line->moves > 0)
+        return refuse(
+            r, line,
+            "this line takes over where the machine stands, which is corrected: set "
+            "tools, other coordinate systems and reference points outside of the program");
+    offline_cuts_init(&cuts, line);
+    offline_cut_letters(&cuts, line, LETTERS_AXES);
+    offline_print_setting(r, line, &words);
+    offline_print_kept(line, &cuts, words.bytes != NULL ? words.bytes : "", text);
+    text->failed |= words.failed;
+    offline_text_free(&words);
+    return true;
+}
+
+/* ---- any line ---- */
+
+static bool is_single(const struct offline_line *line)
+{
+    const enum move_kind kind = line->move[0].kind;
+
+    if (line->moves == 2)
+        return kind == MOVE_TAP && line->move[1].kind == MOVE_TAP_OUT;
+    return line->moves == 1 && kind <= MOVE_THREAD;
+}
+
+static bool rewrite(struct offline_rewriter *r, const struct offline_line *line,
+                    struct offline_piece *pieces, struct offline_text *text)
+{
+    if (line->moves > 0 && line->move[0].kind == MOVE_PROBE)
+        return refuse(r, line,
+                      "where a probing motion ends is not known before it is run: correct this "
+                      "program while it runs");
+    if (setting_of(&line->context) != SETTING_NONE)
+        return rewrite_setting(r, line, text);
+    if (words_has_step(&line->context, STEP_REFERENCE))
+        return rewrite_reference(r, line, pieces, text);
+    if (offline_is_cycle(line))
+        return offline_rewrite_cycle(r, line, pieces, text);
+    if (is_single(line))
+        return rewrite_motion(r, line, pieces, text);
+    return refuse(r, line, "this motion cannot be corrected in the program, only while it runs");
 }
 
 bool offline_rewrite_line(struct offline_rewriter *r, const struct offline_line *line,
                           struct offline_text *text)
 {
     struct offline_piece *pieces = malloc(OFFLINE_PIECES_MAX * sizeof *pieces);
-    bool good = pieces != NULL;
+    const bool good = pieces != NULL && rewrite(r, line, pieces, text);
 
-    if (!good)
+    if (pieces == NULL)
         text->failed = true;
-    if (good && !can_write(line))
-        good = refuse(r, line);
-    if (good)
-        good = is_cycle(line) ? rewrite_cycle(r, line, pieces, text)
-                              : rewrite_motion(r, line, pieces, text);
     for (unsigned i = 0; i < line->moves; i++) {
         if (move_is_motion(&line->move[i]))
             r->at = line->move[i].end;

@@ -9,7 +9,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define MM_PER_INCH 25.4
+/* Of a thread's pitch: a thousand turns add up to what a coordinate is rounded by. */
+#define PITCH_PLACES 9
 
 void offline_text_add(struct offline_text *t, const char *bytes, size_t length)
 {
@@ -46,8 +47,8 @@ void offline_text_free(struct offline_text *t)
     *t = (struct offline_text){0};
 }
 
-/* Without the zeros at its end. */
-static void print_word(struct offline_text *text, char letter, double value, int places)
+/* Without the zeros at its end. Returns the value as it will be read. */
+static double print_word(struct offline_text *text, char letter, double value, int places)
 {
     char number[64];
     size_t length = (size_t)snprintf(number, sizeof number, "%.*f", places, value);
@@ -59,11 +60,13 @@ static void print_word(struct offline_text *text, char letter, double value, int
     if (strcmp(number, "-0") == 0 || (length == 2 && number[0] == '-' && number[1] == '0'))
         (void)snprintf(number, sizeof number, "0"), length = 1;
     offline_text_print(text, " %c%.*s", letter, (int)length, number);
+    return strtod(number, NULL);
 }
 
-static bool is_inch(const struct offline_line *line)
+/* A millionth of a millimetre. */
+static int places(const struct offline_line *line)
 {
-    return line->context.modes.unit_mm != 1.0;
+    return line->context.modes.unit_mm != 1.0 ? 8 : 6;
 }
 
 /* In the unit and the coordinates of the line. */
@@ -81,14 +84,36 @@ static void to_program(const struct offline_line *line, const struct point *mach
         value->at[AXIS_X] *= 2.0;
 }
 
-/* Rotary axes are left alone, unless the line turns them or correction does. */
+/* Back. */
+static void to_machine(const struct offline_line *line, const struct point *value,
+                       struct point *machine)
+{
+    struct point work = *value;
+
+    if (line->context.modes.diameter)
+        work.at[AXIS_X] *= 0.5;
+    for (unsigned i = 0; i < AXIS_COUNT; i++)
+        work.at[i] *=
+            i < AXIS_LINEAR_COUNT ? line->context.modes.unit_mm : 1.0 / axis_unit_ratio(i);
+    if (words_has_step(&line->context, STEP_MACHINE))
+        *machine = work;
+    else
+        coordinates_machine_of(&line->context, &work, machine);
+}
+
+/*
+ * Rotary axes are left alone, unless the line turns them or correction does. What G28 does not name stays where it is.
+ */
 static bool is_written(const struct offline_rewriter *r, const struct offline_line *line,
                        const struct offline_piece *piece, unsigned axis)
 {
+    const bool given = words_has(&line->context, coordinates_letter((enum axis)axis));
+
     if ((r->axes & 1U << axis) == 0)
         return false;
-    return axis < AXIS_LINEAR_COUNT || piece->end.at[axis] != r->written.at[axis] ||
-           words_has(&line->context, coordinates_letter((enum axis)axis));
+    if (words_has_step(&line->context, STEP_REFERENCE))
+        return given;
+    return axis < AXIS_LINEAR_COUNT || piece->end.at[axis] != r->written.at[axis] || given;
 }
 
 static void print_centre(const struct offline_line *line, const struct offline_rewriter *r,
@@ -110,25 +135,60 @@ static void print_centre(const struct offline_line *line, const struct offline_r
 
         if (line->context.modes.diameter && axis[i] == AXIS_X)
             value *= 0.5;
-        print_word(text, (char)('I' + (int)axis[i]), value, is_inch(line) ? 8 : 6);
+        (void)print_word(text, (char)('I' + (int)axis[i]), value, places(line));
     }
 }
 
-void offline_print_words(const struct offline_rewriter *r, const struct offline_line *line,
-                         const struct move *move, const struct offline_piece *piece,
-                         struct offline_text *text)
+/* The words of the end; returns it as it will be read: what incremental words are rounded by must not add up. */
+static struct point print_end(const struct offline_rewriter *r, const struct offline_line *line,
+                              const struct offline_piece *piece, struct offline_text *text)
 {
     const bool incremental =
         line->context.modes.incremental && !words_has_step(&line->context, STEP_MACHINE);
-    struct point from, to;
+    struct point from, to, read;
 
     to_program(line, &r->written, &from);
     to_program(line, &piece->end, &to);
+    read = from;
     for (unsigned i = 0; i < AXIS_COUNT; i++) {
+        const double start = incremental ? from.at[i] : 0.0;
+
         if (is_written(r, line, piece, i))
-            print_word(text, AXIS_LETTERS[i], to.at[i] - (incremental ? from.at[i] : 0.0),
-                       is_inch(line) ? 8 : 6);
+            read.at[i] = start + print_word(text, AXIS_LETTERS[i], to.at[i] - start, places(line));
     }
-    if (piece->arc)
+    to_machine(line, &read, &read);
+    return read;
+}
+
+void offline_print_words(struct offline_rewriter *r, const struct offline_line *line,
+                         const struct move *move, const struct offline_piece *piece,
+                         struct offline_text *text)
+{
+    const double unit_mm = line->context.modes.unit_mm;
+    const struct point end = print_end(r, line, piece, text);
+
+    if (!piece->straight && (move_is_arc(move) || move_is_involute(move)))
         print_centre(line, r, move, piece, text);
+    if (!piece->straight && move_is_involute(move))
+        (void)print_word(text, 'R', piece->base_radius_mm / unit_mm, places(line));
+    if (move->kind == MOVE_THREAD || move->kind == MOVE_TAP)
+        (void)print_word(text, 'K', piece->pitch_mm / unit_mm, PITCH_PLACES);
+    r->written = end;
+}
+
+void offline_print_setting(const struct offline_rewriter *r, const struct offline_line *line,
+                           struct offline_text *text)
+{
+    struct point programmed, written;
+
+    to_program(line, &r->at, &programmed);
+    to_program(line, &r->written, &written);
+    for (unsigned i = 0; i < AXIS_COUNT; i++) {
+        const char letter = coordinates_letter((enum axis)i);
+
+        if (words_has(&line->context, letter))
+            (void)print_word(text, AXIS_LETTERS[i],
+                             words_value(&line->context, letter) + written.at[i] - programmed.at[i],
+                             places(line));
+    }
 }

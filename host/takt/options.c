@@ -64,6 +64,16 @@ static bool options_set_number(const struct option_row *row, double *field, cons
     return true;
 }
 
+static bool options_set_positive(const struct option_row *row, double *field, const char *value)
+{
+    if (!options_set_number(row, field, value))
+        return false;
+    if (*field > 0)
+        return true;
+    message_command_error("--%s %s: it must be above 0", row->name, value);
+    return false;
+}
+
 static bool options_set_line(const struct option_row *row, uint32_t *field, const char *value)
 {
     char *end;
@@ -91,6 +101,8 @@ static bool options_set(struct options *options, const struct option_row *row, c
         return options_set_list(row, field, value);
     case OPTION_NUMBER:
         return options_set_number(row, field, value);
+    case OPTION_POSITIVE:
+        return options_set_positive(row, field, value);
     case OPTION_LINE:
         return options_set_line(row, field, value);
     }
@@ -145,11 +157,10 @@ static void options_report_unknown(const struct option_row *rows, const char *ar
 
 static void options_fill_table(const struct option_row *rows, struct option *table)
 {
-    static const int has_value[] = {[OPTION_FLAG] = no_argument,
-                                    [OPTION_TEXT] = required_argument,
-                                    [OPTION_LIST] = required_argument,
-                                    [OPTION_NUMBER] = required_argument,
-                                    [OPTION_LINE] = required_argument};
+    static const int has_value[] = {
+        [OPTION_FLAG] = no_argument,           [OPTION_TEXT] = required_argument,
+        [OPTION_LIST] = required_argument,     [OPTION_NUMBER] = required_argument,
+        [OPTION_POSITIVE] = required_argument, [OPTION_LINE] = required_argument};
     unsigned count = options_count(rows);
 
     for (unsigned i = 0; i < count; i++)

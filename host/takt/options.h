@@ -49,9 +49,14 @@ struct option_frequency {
     const char *svg, *html;
 };
 
+/* Of `takt machine`. */
+struct option_pack {
+    bool pack, unpack, sector;
+};
+
 /* Of `takt calibrate` and `takt correct`. */
 struct option_correction {
-    const char *grid, *axis, *from, *to, *noise, *comp, *table;
+    const char *grid, *axis, *from, *to, *noise, *comp, *table, *tolerance;
     double seed, comp_type;
     bool filter;
 };
@@ -83,7 +88,12 @@ struct options {
     struct option_frequency frequency;
     struct option_correction correction;
     struct option_panel panel;
+    struct option_pack pack;
+    const char *target, *image; /* of `takt run` */
+    const char *plan;           /* of `takt run`: board, ahead, or a compiled program */
+    double ceiling;             /* of `takt compile`, per cent; 0: not given */
     const char *trace;
+    const char *rests;  /* of `takt run`: where the tool stood */
     const char *bus;    /* bus/link.h */
     const char *drives; /* internal, external */
     bool realtime;
@@ -101,11 +111,12 @@ struct options {
 };
 
 enum option_kind {
-    OPTION_FLAG,   /* bool */
-    OPTION_TEXT,   /* const char *, given once */
-    OPTION_LIST,   /* struct option_list, may be repeated */
-    OPTION_NUMBER, /* double, >= 0 */
-    OPTION_LINE    /* uint32_t, >= 1 */
+    OPTION_FLAG,     /* bool */
+    OPTION_TEXT,     /* const char *, given once */
+    OPTION_LIST,     /* struct option_list, may be repeated */
+    OPTION_NUMBER,   /* double, >= 0 */
+    OPTION_POSITIVE, /* double, > 0: 0 says that it is not given */
+    OPTION_LINE      /* uint32_t, >= 1 */
 };
 
 struct option_row {

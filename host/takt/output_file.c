@@ -47,7 +47,7 @@ static FILE *output_file_open_aside(struct output_file *file)
     }
     /* mkstemp makes files only their owner can read; give it the rights any new file would have. */
     (void)fchmod(descriptor, 0666 & ~mask);
-    return fdopen(descriptor, "wb");
+    return fdopen(descriptor, "w+b");
 }
 
 bool output_file_open(struct output_file *file, const char *path)

@@ -14,11 +14,12 @@
 /* The mailbox in registers: offset, length and check before the bytes. */
 #define CHUNK_WORDS (4 + PANEL_CHUNK_MAX / 2)
 
-static bool begin(struct panel_line *line, const struct text *text)
+static bool begin(struct panel_line *line, const struct text *text, enum panel_upload_kind kind)
 {
     const uint32_t crc = crc32_add(CRC32_START, text->bytes, text->length);
 
-    return panel_line_set(line, REGISTER_UPLOAD_SIZE, (int64_t)text->length) &&
+    return panel_line_set(line, REGISTER_UPLOAD_KIND, kind) &&
+           panel_line_set(line, REGISTER_UPLOAD_SIZE, (int64_t)text->length) &&
            panel_line_set(line, REGISTER_UPLOAD_CRC, crc) &&
            panel_line_set(line, REGISTER_UPLOAD_COMMAND, PANEL_UPLOAD_BEGIN);
 }
@@ -46,11 +47,12 @@ static bool send_chunk(struct panel_line *line, const struct text *text, uint32_
     return false;
 }
 
-static enum command_status bring(struct panel_line *line, const struct text *text)
+static enum command_status bring(struct panel_line *line, const struct text *text,
+                                 enum panel_upload_kind kind)
 {
     int64_t received;
 
-    if (!begin(line, text))
+    if (!begin(line, text, kind))
         return STATUS_INPUT;
     do {
         if (interrupt_asked())
@@ -75,9 +77,38 @@ enum command_status panel_upload_file(struct panel_line *line, const char *path,
         message_error(path, 0, 0, "a program of 1 to %d bytes is expected; it has %zu",
                       PANEL_PROGRAM_BYTES_MAX, text.length);
     else
-        status = bring(line, &text);
+        status = bring(line, &text, PANEL_UPLOAD_PROGRAM);
     if (status == STATUS_DONE && !quiet)
         (void)printf("%s: %zu bytes\n", path, text.length);
+    text_free(&text);
+    return status;
+}
+
+/* Why the controller refuses settings stands in a register of its own. */
+static void report_reason(struct panel_line *line)
+{
+    char reason[PANEL_VALUE_MAX + 1];
+
+    if (panel_line_read(line, REGISTER_UPLOAD_TEXT, reason) && reason[0] != '\0')
+        message_command_error("the controller says: %s", reason);
+}
+
+enum command_status panel_upload_settings(struct panel_line *line, const char *path, bool quiet)
+{
+    struct text text;
+    enum command_status status = STATUS_INPUT;
+
+    if (!text_read(&text, path))
+        return STATUS_INPUT;
+    if (text.length == 0 || text.length > PANEL_PROGRAM_BYTES_MAX)
+        message_error(path, 0, 0, "these are no settings: takt machine --pack makes them");
+    else
+        status = bring(line, &text, PANEL_UPLOAD_SETTINGS);
+    if (status == STATUS_INPUT)
+        report_reason(line);
+    if (status == STATUS_DONE && !quiet)
+        (void)printf("%s: %zu bytes; they count from the controller's next start on\n", path,
+                     text.length);
     text_free(&text);
     return status;
 }

@@ -59,6 +59,7 @@ static void read_move(struct planner *p)
         break;
     case PROGRAM_WAIT:
         break; /* a plan takes it that a probing move reaches its end, and an input has come */
+    case PROGRAM_LATER: /* no file has text that is still coming */
     case PROGRAM_END:
     case PROGRAM_ERROR:
         p->ended = true;

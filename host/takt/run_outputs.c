@@ -9,8 +9,8 @@
 #include <string.h>
 #include <sys/stat.h>
 
-static const char *const option_names[RUN_OUTPUT_COUNT] = {"trace", "bus-log", "report",
-                                                           "json",  "junit",   "save-parameters"};
+static const char *const option_names[RUN_OUTPUT_COUNT] = {
+    "trace", "bus-log", "report", "json", "junit", "save-parameters", "rests"};
 
 /* Both exist and are the same, whatever links lead to them. */
 static bool is_same_file(const char *a, const char *b)
@@ -54,6 +54,17 @@ static bool check_pairs(const struct run_outputs *o, unsigned i)
     return true;
 }
 
+/* Only where the machine has errors does the tool stand elsewhere than the drives say. */
+static bool check_rests(const struct session *session)
+{
+    struct tool_point point;
+
+    tool_point_init(&point, &session->setup);
+    if (!point.is_watched)
+        message_command_error("--rests needs a machine with errors: [geometry] of its file");
+    return point.is_watched;
+}
+
 bool run_outputs_plan(struct run_outputs *o, const struct session *session)
 {
     const struct options *options = session->options;
@@ -68,6 +79,9 @@ bool run_outputs_plan(struct run_outputs *o, const struct session *session)
             return false;
         }
     }
+    o->path[RUN_RESTS] = options->rests;
+    if (options->rests != NULL && !check_rests(session))
+        return false;
     for (unsigned i = 0; i < RUN_OUTPUT_COUNT; i++) {
         if (o->path[i] != NULL && (!check_inputs(o, session, i) || !check_pairs(o, i)))
             return false;
@@ -129,6 +143,19 @@ static bool open_writers(struct run_outputs *o, const struct machine *machine,
            (o->path[RUN_REPORT] == NULL || open_report(o, machine));
 }
 
+/* Written by who knows where the tool is. */
+static bool open_rests(struct run_outputs *o, struct simulation *simulation)
+{
+    if (o->path[RUN_RESTS] == NULL)
+        return true;
+    if (!simulation->tool_point.is_watched) {
+        message_command_error("--rests needs drives inside of takt");
+        return false;
+    }
+    tool_point_write_rests(&simulation->tool_point, o->file[RUN_RESTS].stream);
+    return true;
+}
+
 bool run_outputs_open(struct run_outputs *o, const struct session *session,
                       struct simulation *simulation)
 {
@@ -137,6 +164,10 @@ bool run_outputs_open(struct run_outputs *o, const struct session *session,
             run_outputs_close(o);
             return false;
         }
+    }
+    if (!open_rests(o, simulation)) {
+        run_outputs_close(o);
+        return false;
     }
     if (open_writers(o, &session->setup.machine, simulation))
         return true;

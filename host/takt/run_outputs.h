@@ -24,6 +24,7 @@ enum run_output {
     RUN_JSON,
     RUN_JUNIT,
     RUN_PARAMETERS,
+    RUN_RESTS,
     RUN_OUTPUT_COUNT
 };
 

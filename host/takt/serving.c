@@ -79,6 +79,10 @@ static enum command_status open_field(struct serving *s)
                                      : STATUS_INPUT;
 
     s->has_field = status == STATUS_DONE;
+    if (status == STATUS_DONE && !bus_log_open(&s->bus_log, options->bus_log))
+        status = STATUS_ENVIRONMENT;
+    if (status == STATUS_DONE)
+        bus_log_observe_field(&s->bus_log, &s->field);
     return status;
 }
 
@@ -87,6 +91,8 @@ static enum command_status open_spindle(struct serving *s)
     const char *where = s->session.options->panel.spindle;
 
     s->inputs = inputs_idle();
+    if (where != NULL)
+        s->session.setup.machine.spindle_encoder_counts = 0; /* its registers tell no angle */
     return serving_spindle_open(&s->spindle, &s->session.setup, where, 1) ? STATUS_DONE
                                                                           : STATUS_INPUT;
 }
@@ -138,6 +144,7 @@ void serving_close(struct serving *s)
     if (s->has_exchange)
         exchange_close(&s->exchange);
     serving_spindle_close(&s->spindle);
+    (void)bus_log_close(&s->bus_log);
     if (s->has_field)
         field_close(&s->field);
     program_store_close(&s->store);
@@ -206,10 +213,11 @@ enum command_status serving_run(struct serving *s)
     }
     while (good && !interrupt_asked()) {
         serve_cycle(s);
+        bus_log_keep(&s->bus_log);
         good = field_end_cycle(&s->field);
     }
     if (field_get_problem(&s->field) == NULL)
-        return STATUS_DONE;
+        return bus_log_close(&s->bus_log) ? STATUS_DONE : STATUS_ENVIRONMENT;
     message_command_error("%s", field_get_problem(&s->field));
     return STATUS_ENVIRONMENT;
 }

@@ -13,6 +13,7 @@
 #include "serve/program_store.h"
 #include "serve/server.h"
 #include "service/service.h"
+#include "takt/bus_log.h"
 #include "takt/command.h"
 #include "takt/cycle_cost.h"
 #include "takt/field.h"
@@ -36,6 +37,7 @@ struct serving {
     struct panel_host panel;
     struct server server;
     struct cycle_cost cost;
+    struct bus_log bus_log;
     uint64_t cycles;
     bool has_field, has_exchange, has_server; /* are open */
 };

@@ -28,6 +28,7 @@ struct session {
     struct parameter_file parameters;
     bool runs; /* set it when the program is run: a check then ends at the first G38 or M66 */
     struct correction_tables *correction; /* NULL: none */
+    const struct replay_source *compiled; /* the program, planned ahead; NULL: planned as it runs */
 };
 
 /* Reads everything the options name; the first operand is the program. STATUS_DONE, or STATUS_INPUT after messages;

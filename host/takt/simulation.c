@@ -5,6 +5,7 @@
 #include "takt/message.h"
 #include "takt/probe_file.h"
 #include "takt/stopwatch.h"
+#include "takt/target_setup.h"
 
 #include <stdlib.h>
 
@@ -21,6 +22,7 @@ static void start_controller(struct simulation *s, const struct session *session
         .step = field_get_step_port(&s->field),
         .tools = &session->tools.table,
         .correction = session->correction,
+        .compiled = session->compiled,
         .parameters = &s->parameters,
         .exact_path = session->options->exact_path,
         .block_delete = session->options->block_delete,
@@ -31,6 +33,23 @@ static void start_controller(struct simulation *s, const struct session *session
     program_text_read(&session->program, &s->text, &config.source);
     controller_init(&s->controller, &config);
     message_controller_warning(&s->controller);
+}
+
+/* The one of this process; with a target, that as well. */
+static enum command_status start_controllers(struct simulation *s, const struct session *session)
+{
+    const struct can_port bus = field_get_port(&s->field);
+    enum command_status status;
+
+    s->has_target = session->options->target != NULL;
+    if (!s->has_target) {
+        start_controller(s, session, bus);
+        return STATUS_DONE;
+    }
+    status = target_setup_open(&s->target, session, &bus);
+    if (status == STATUS_DONE)
+        start_controller(s, session, target_get_port(&s->target));
+    return status;
 }
 
 static enum command_status load_faults(struct simulation *s, const struct session *session)
@@ -89,7 +108,11 @@ enum command_status simulation_open(const struct session *session, struct simula
         free(s);
         return status;
     }
-    start_controller(s, session, field_get_port(&s->field));
+    status = start_controllers(s, session);
+    if (status != STATUS_DONE) {
+        simulation_close(s);
+        return status;
+    }
     tool_point_init(&s->tool_point, &session->setup);
     correction_watch_init(&s->correction, s->tool_point.cycle_s);
     s->program = session->program.name;
@@ -102,6 +125,8 @@ void simulation_close(struct simulation *s)
 {
     if (s == NULL)
         return;
+    if (s->has_target)
+        target_close(&s->target);
     field_close(&s->field);
     free_overrides(s);
     free(s);
@@ -137,9 +162,10 @@ static void follow_tool_point(struct simulation *s)
         return;
     tool_point_follow(t, &s->field.drives, (double)s->cycles * t->cycle_s,
                       controller_get_record(&s->controller), controller_get_block(&s->controller));
-    for (unsigned i = 0; i < AXIS_LINEAR_COUNT; i++)
-        correction_set_rise(controller_get_correction(&s->controller), (enum axis)i,
-                            deviation_sensor_k(&t->real));
+    for (unsigned i = 0; i < AXIS_LINEAR_COUNT; i++) {
+        s->rise_k[i] = deviation_sensor_k(&t->real);
+        correction_set_rise(controller_get_correction(&s->controller), (enum axis)i, s->rise_k[i]);
+    }
 }
 
 static void watch_correction(struct simulation *s)
@@ -161,14 +187,29 @@ static void step_spindle(struct simulation *s)
         &s->spindle, cycle_s, controller_get_outputs(&s->controller)->spindle_speed_rpm, cut_nm);
 }
 
-bool simulation_step(struct simulation *s)
+/* One cycle of the controller, or of both. */
+static bool control(struct simulation *s)
 {
     controller_background(&s->controller);
     set_inputs(s);
+    if (s->has_target && !target_begin_cycle(&s->target, &s->inputs, s->rise_k))
+        return false;
     if (s->cycles % CYCLE_COST_EVERY == 0)
         measured_cycle(s);
     else
         controller_cycle(&s->controller, &s->inputs);
+    return !s->has_target || target_end_cycle(&s->target, &s->controller);
+}
+
+const struct cycle_record *simulation_get_record(const struct simulation *s)
+{
+    return s->has_target ? target_get_record(&s->target) : controller_get_record(&s->controller);
+}
+
+bool simulation_step(struct simulation *s)
+{
+    if (!control(s))
+        return false;
     step_spindle(s);
     if (!s->has_begun && controller_get_record(&s->controller) != NULL) {
         s->has_begun = true;

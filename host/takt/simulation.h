@@ -16,6 +16,7 @@
 #include "takt/override_file.h"
 #include "takt/session.h"
 #include "takt/tool_point.h"
+#include "target/target.h"
 
 #include <stdbool.h>
 #include <stdint.h>
@@ -31,6 +32,9 @@ struct simulation {
     struct override_file feed_override, rapid_override;
     struct inputs inputs; /* of the next cycle */
     struct virtual_spindle spindle;
+    bool has_target;
+    struct target target;
+    double rise_k[AXIS_COUNT];    /* that the controllers have been told of the axes */
     struct tool_point tool_point; /* on a machine with errors */
     struct correction_watch correction;
     const char *program; /* its name, for warnings */
@@ -45,7 +49,13 @@ struct simulation {
 enum command_status simulation_open(const struct session *session, struct simulation **opened);
 void simulation_close(struct simulation *s); /* NULL: nothing */
 
-/* One control cycle of everything. False: a signal came, or an outside bus is gone (field_get_problem). */
+/*
+ * One control cycle of everything. False: a signal came, an outside bus is gone (field_get_problem), or the target is
+ * (its problem).
+ */
 bool simulation_step(struct simulation *s);
+
+/* What the last cycle did, on the target if there is one; NULL: it was none of the program. */
+const struct cycle_record *simulation_get_record(const struct simulation *s);
 
 #endif

@@ -79,6 +79,11 @@ static void check_path(struct summary *summary)
               JUDGE_LANDING_MAX_MM);
     add_check(summary, "path", AXIS_COUNT, "mm", figures->path_error_mm,
               JUDGE_PATH_MAX_MM + figures->chord_error_mm);
+    if (figures->smoothing.path_part > 0) {
+        add_check(summary, "smoothed_path", AXIS_COUNT, "of P", figures->smoothing.path_part, 1);
+        add_check(summary, "smoothed_corner", AXIS_COUNT, "of P", figures->smoothing.corner_part,
+                  1);
+    }
     add_check(summary, "chord", AXIS_COUNT, "mm", figures->chord_error_mm,
               1.0 / summary->machine->resolution_per_mm + SUMMARY_CHORD_ROOM_MM);
 }
@@ -132,6 +137,15 @@ static void set_pace(struct summary *summary, const struct field *field)
     summary->permission = field->permission;
 }
 
+/* Whatever the image did otherwise than the host, it did wrong. */
+static void set_target(struct summary *summary, const struct simulation *simulation)
+{
+    if (!simulation->has_target)
+        return;
+    summary->target = &simulation->target;
+    add_check(summary, "target", AXIS_COUNT, "cycles", (double)simulation->target.differences, 0);
+}
+
 void summary_set(struct summary *summary, const struct summary_source *source)
 {
     const struct simulation *simulation = source->simulation;
@@ -165,5 +179,6 @@ void summary_set(struct summary *summary, const struct summary_source *source)
     add_check(summary, "bus_load", AXIS_COUNT, "%", summary->bus_load_percent, 100);
     set_responses(summary, &simulation->field);
     set_pace(summary, &simulation->field);
+    set_target(summary, simulation);
     add_check(summary, "fault", AXIS_COUNT, "", source->outcome == OUTCOME_FAULTED ? 1 : 0, 0);
 }

@@ -46,6 +46,7 @@ struct summary {
     bool is_paced;
     struct pace_figures pace;
     struct pace_permission permission;
+    const struct target *target; /* NULL: the run was on none */
     bool cost_measured;
     double cost_min_ns, cost_mean_ns, cost_p99_ns, cost_max_ns;
     unsigned checks;

@@ -180,6 +180,25 @@ static void add_cost(cJSON *root, const struct summary *summary)
     cJSON_AddNumberToObject(cost, "max", summary->cost_max_ns);
 }
 
+static void add_target(cJSON *root, const struct summary *summary)
+{
+    const struct target *target = summary->target;
+    cJSON *object;
+
+    if (target == NULL) {
+        cJSON_AddNullToObject(root, "target");
+        return;
+    }
+    object = cJSON_AddObjectToObject(root, "target");
+    cJSON_AddStringToObject(object, "name", target->name);
+    cJSON_AddNumberToObject(object, "cycles_differing", (double)target->differences);
+    cJSON_AddNumberToObject(object, "cycles_counted", (double)target->cost.cycles);
+    cJSON_AddNumberToObject(object, "cycle_instructions", (double)target->cost.sum);
+    cJSON_AddNumberToObject(object, "cycle_instructions_max", (double)target->cost.max);
+    cJSON_AddNumberToObject(object, "background_instructions", (double)target->cost.background_sum);
+    cJSON_AddNumberToObject(object, "blocks_planned", target->cost.blocks);
+}
+
 static void add_checks(cJSON *root, const struct summary *summary)
 {
     cJSON *checks = cJSON_AddArrayToObject(root, "checks");
@@ -210,6 +229,7 @@ char *summary_json(const struct summary *summary)
     add_bus(root, summary);
     add_pace(root, summary);
     add_cost(root, summary);
+    add_target(root, summary);
     add_checks(root, summary);
     (void)snprintf(digest, sizeof digest, "%016" PRIx64, summary->figures.digest);
     cJSON_AddStringToObject(root, "setpoint_digest", digest);

@@ -99,6 +99,29 @@ static void write_pace(FILE *stream, const struct summary *summary)
                   summary->permission.has_memory ? "locked" : "not locked");
 }
 
+static void write_target(FILE *stream, const struct summary *summary)
+{
+    const struct target *target = summary->target;
+    const struct target_cost *cost = target != NULL ? &target->cost : NULL;
+
+    if (target == NULL)
+        return;
+    (void)fprintf(stream, "  target        %s: ", target->name);
+    if (target->differences == 0)
+        (void)fprintf(stream, "every cycle as on the host, bit for bit\n");
+    else
+        (void)fprintf(stream,
+                      "%" PRIu64 " cycles differ from the host's, the first is number %" PRIu64
+                      " since power-on\n",
+                      target->differences, target->first_difference);
+    if (cost->cycles > 0 && cost->blocks > 0)
+        (void)fprintf(stream,
+                      "                a cycle takes %.0f instructions (max: %" PRIu64
+                      "), planning %.0f a block\n",
+                      (double)cost->sum / (double)cost->cycles, cost->max,
+                      (double)cost->background_sum / (double)cost->blocks);
+}
+
 static void write_path(FILE *stream, const struct summary *summary)
 {
     const struct judge_figures *figures = &summary->figures;
@@ -112,6 +135,7 @@ static void write_path(FILE *stream, const struct summary *summary)
     write_response(stream, summary);
     write_pace(stream, summary);
     summary_steps_write_text(stream, summary);
+    write_target(stream, summary);
 }
 
 static void write_checks(FILE *stream, const struct summary *summary)

@@ -65,10 +65,27 @@ static void wear(struct tool_point *t, const struct cycle_record *record, const 
     deviation_set_wear(&t->nominal, t->cut_mm, t->cut_s);
 }
 
+void tool_point_write_rests(struct tool_point *t, FILE *stream)
+{
+    t->rests = stream;
+    (void)fprintf(stream,
+                  "line,cmd_X_mm,cmd_Y_mm,cmd_Z_mm,tool_X_mm,tool_Y_mm,tool_Z_mm,error_mm\n");
+}
+
+static void write_rest(const struct tool_point *t)
+{
+    (void)fprintf(t->rests, "%u,%.9f,%.9f,%.9f,%.9f,%.9f,%.9f,%.9f\n", (unsigned)t->still_line,
+                  t->cmd.at[AXIS_X], t->cmd.at[AXIS_Y], t->cmd.at[AXIS_Z], t->still_at.at[AXIS_X],
+                  t->still_at.at[AXIS_Y], t->still_at.at[AXIS_Z], t->still_mm);
+}
+
 static void end_standstill(struct tool_point *t)
 {
-    if ((double)t->still * t->cycle_s >= TOOL_POINT_REST_S)
+    if ((double)t->still * t->cycle_s >= TOOL_POINT_REST_S) {
         add_error(&t->at_rest, t->still_mm);
+        if (t->rests != NULL)
+            write_rest(t);
+    }
     t->still = 0;
 }
 
@@ -87,6 +104,8 @@ static void measure(struct tool_point *t, const struct cycle_record *record, dou
     if (t->has_cmd && point_is_same(&record->cmd, &t->cmd)) {
         tool_point_get(t, &record->cmd, &tool);
         t->still_mm = distance(&tool, &record->cmd);
+        t->still_at = tool;
+        t->still_line = record->line;
         t->still++;
     } else {
         end_standstill(t);

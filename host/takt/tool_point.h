@@ -13,6 +13,7 @@
 
 #include <stdbool.h>
 #include <stdint.h>
+#include <stdio.h>
 
 /* Largest and mean distance of the tool's point from the commanded one, X Y Z. */
 struct tool_point_error {
@@ -29,9 +30,12 @@ struct tool_point {
     struct deviation nominal; /* by the setpoints, as if the drives followed at once */
     double cut_mm, cut_s;     /* of cutting so far */
     bool has_cmd;
-    struct point cmd;                /* of the last cycle */
-    uint32_t still;                  /* cycles without motion until now */
-    double still_mm;                 /* error in the last of them */
+    struct point cmd;    /* of the last cycle */
+    uint32_t still;      /* cycles without motion until now */
+    double still_mm;     /* error in the last of them */
+    uint32_t still_line; /* of the program, and where the tool was then */
+    struct point still_at;
+    FILE *rests; /* a row for every standstill; NULL: not wanted. The caller's */
     struct tool_point_error at_rest; /* by the drives, at the end of every standstill of REST_S */
     struct tool_point_error of_setpoints; /* by the setpoints, in every program cycle */
 };
@@ -40,6 +44,9 @@ struct tool_point {
 #define TOOL_POINT_REST_S 0.05
 
 void tool_point_init(struct tool_point *t, const struct machine_setup *setup);
+
+/* Rows of CSV from now on: where each standstill was wanted, and where the tool's point was. */
+void tool_point_write_rests(struct tool_point *t, FILE *stream);
 
 /* After every cycle. drives: the machine's; record and segment: of the program cycle, NULL: there was none. */
 void tool_point_follow(struct tool_point *t, const struct virtual_drives *drives, double time_s,

@@ -5,8 +5,8 @@
 
 #include <stdarg.h>
 
-/* Numbers of a row: cycle, time, block, line, feed, override, limiter, and three of every axis. */
-#define TRACE_ROW_MAX ((size_t)(7 + 3 * AXIS_COUNT) * (DECIMAL_TEXT_MAX + 1))
+/* Numbers of a row: cycle, time, block, line, feed, override, limiter, three of every axis, the spindle's angle. */
+#define TRACE_ROW_MAX ((size_t)(8 + 3 * AXIS_COUNT) * (DECIMAL_TEXT_MAX + 1))
 
 #define TRACE_PLACES_POSITION 9
 #define TRACE_PLACES_TIME     6
@@ -46,7 +46,7 @@ void trace_writer_init(struct trace_writer *w, FILE *stream, unsigned axes, doub
             add_text(w, ",cmd_%c_%s,set_%c_%s,act_%c_%s", letter, unit, letter, unit, letter, unit);
         }
     }
-    add_text(w, "\n");
+    add_text(w, ",spindle_rev\n");
 }
 
 static char *put(char *at, double value, unsigned places)
@@ -79,6 +79,7 @@ void trace_writer_add(struct trace_writer *w, const struct cycle_record *record)
             at = put(at, record->act.at[i] * ratio, TRACE_PLACES_POSITION);
         }
     }
+    at = put(at, record->spindle_rev, TRACE_PLACES_POSITION);
     at[-1] = '\n';
     w->used = (size_t)(at - w->buffer);
 }

@@ -6,14 +6,13 @@
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
 #include <time.h>
 
 #define CYCLES  2000000
 #define CYCLE_S 0.001
 
 static struct table table;
-static struct correction_tables tables;
+static struct correction_tables volume, axes;
 static struct correction correction;
 
 static double now_s(void)
@@ -40,7 +39,7 @@ static void make_volume(void)
     for (uint32_t row = 0; row < table_rows(&table); row++)
         for (unsigned o = 0; o < 3; o++)
             table.value_mm[3 * row + o] = (float)(0.02 * sin(0.7 * row + o));
-    if (!grid_set(&tables.volume, &table, &wrong))
+    if (!grid_set(&volume.volume, &table, &wrong))
         abort();
 }
 
@@ -59,7 +58,7 @@ static void make_axis(uint8_t axis)
         table.value_mm[2 * k] = 0.01F;
         table.value_mm[2 * k + 1] = -0.01F;
     }
-    if (!axis_tables_add(&tables.axes, &table, &wrong))
+    if (!axis_tables_add(&axes.axes, &table, &wrong))
         abort();
 }
 
@@ -98,7 +97,6 @@ static void measure(const char *name, const struct correction_settings *settings
 int main(void)
 {
     struct correction_settings none, matrix;
-    static struct correction_tables axes;
 
     correction_settings_set_default(&none);
     matrix = none;
@@ -106,15 +104,13 @@ int main(void)
     make_axis(AXIS_X);
     make_axis(AXIS_Y);
     make_axis(AXIS_Z);
-    axes = tables;
-    memset(&tables, 0, sizeof tables);
     make_volume();
     measure("nothing", &none, NULL, 30);
     measure("matrix", &matrix, NULL, 30);
     measure("three axis tables, with backlash", &none, &axes, 30);
-    measure("volume 9 x 7 x 6", &none, &tables, 10);
-    measure("volume 9 x 7 x 6", &none, &tables, 30);
-    measure("volume 9 x 7 x 6", &none, &tables, 60);
-    measure("volume 9 x 7 x 6", &none, &tables, 300);
+    measure("volume 9 x 7 x 6", &none, &volume, 10);
+    measure("volume 9 x 7 x 6", &none, &volume, 30);
+    measure("volume 9 x 7 x 6", &none, &volume, 60);
+    measure("volume 9 x 7 x 6", &none, &volume, 300);
     return 0;
 }

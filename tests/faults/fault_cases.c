@@ -81,7 +81,7 @@ const struct fault_case fault_cases[] = {
     GOES_ON("the statusword of Y is stuck", "enabled+0.2s drive 2 freeze object=6041", 0.001),
     STOPS("the statusword of Y is stuck, and the drive fails",
           "enabled+0.5s drive 2 freeze object=6041\nenabled+0.5s drive 2 emcy code=7305\n", DRIVE_FAULT,
-          "the drive of axis Y (node 2) reports 7305: encoder", 150, 2),
+          "the drive of axis Y (node 2) reports 7305: encoder", 150, 1.2),
 
     /* what axes do */
     STOPS("the position of X is stuck", "enabled+0.5s drive 1 freeze object=6064", DRIVE_FOLLOWING,

@@ -64,6 +64,13 @@ static void hear(void *context)
     (void)context;
 }
 
+/* Bytes that a stream takes now: more or less of them. */
+static uint32_t store_room(void *context)
+{
+    (void)context;
+    return changes * 37 % 300;
+}
+
 static bool store_begin(void *context, uint32_t size)
 {
     (void)context;
@@ -73,8 +80,8 @@ static bool store_begin(void *context, uint32_t size)
 
 static bool store_write(void *context, uint32_t offset, const uint8_t *bytes, size_t size)
 {
-    (void)context;
     require(offset <= room && size <= room - offset);
+    require(context == NULL || size <= store_room(context));
     memcpy(stored + offset, bytes, size);
     changes++;
     return true;
@@ -84,6 +91,18 @@ static bool store_done(void *context)
 {
     (void)context;
     return true;
+}
+
+static void store_end(void *context, bool right)
+{
+    (void)context;
+    (void)right;
+}
+
+static const char *store_why(void *context)
+{
+    (void)context;
+    return changes % 2 == 0 ? "there is no room" : NULL;
 }
 
 /* An exception is a promise that nothing has changed. */
@@ -168,11 +187,28 @@ struct world {
     uint32_t now_us;
 };
 
-static void open_world(struct world *world, uint32_t password)
+/* streams: programs may come while they run. */
+static struct panel_store make_store(bool streams)
+{
+    return (struct panel_store){
+        .begin = store_begin,
+        .write = store_write,
+        .prepare = store_done,
+        .place = store_done,
+        .begin_stream = streams ? store_begin : NULL,
+        .end_stream = streams ? store_end : NULL,
+        .why = store_why,
+        .room = streams ? store_room : NULL,
+        .context = streams ? &room : NULL,
+    };
+}
+
+static void open_world(struct world *world, uint32_t password, bool streams)
 {
     const struct panel_config config = {
         .port = {look, order, hear, NULL},
-        .store = {store_begin, store_write, store_done, store_done, NULL},
+        .store = make_store(streams),
+        .settings = make_store(false),
         .password = password,
     };
     struct modbus_map map;
@@ -217,7 +253,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 
     if (size < 2)
         return 0;
-    open_world(&world, data[0] >= 0xF0 ? 0x00010001 : 0);
+    open_world(&world, data[0] >= 0xF0 ? 0x00010001 : 0, (data[0] & 8) != 0);
     how = (enum how)(data[0] % HOWS);
     if (how == AS_TCP)
         run_tcp(&world.client, &world.tcp, data + 1, size - 1);

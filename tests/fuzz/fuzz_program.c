@@ -274,7 +274,8 @@ static bool choose(uint32_t *choice)
 
 static void set_config(struct program_config *config, uint32_t *choice)
 {
-    *config = (struct program_config){.parameters = &parameters, .spindle_max_rpm = 24000.0};
+    *config = (struct program_config){
+        .parameters = &parameters, .spindle_max_rpm = 24000.0, .spindle_encoder = true};
     config->axes = choose(choice) ? 0x3fU : 0x7U;
     config->tools = choose(choice) ? &tool_table : NULL;
     config->block_delete = choose(choice);

@@ -118,6 +118,22 @@ def test_homing():
     check("and comes to 0 before the program", 0 in after[: after.index(-INCREMENTS)])
 
 
+def test_home_offset_of_either_sign():
+    homed = "axis.Z.home_order=1", "axis.Z.home_method=35", "axis.Z.home_offset_mm=5"
+    bench = Bench(*homed)
+    bench.drives[2].offset_is_position = True
+    status, message, _ = bench.finish()
+    expect("a drive that takes the home offset with the other sign is a fault", status, 1)
+    check("that says so", "after homing axis Z (node 3) is at -5 mm" in message and "home_offset_is_position" in message, message)
+    expect("before anything has moved to a target", bench.drives[0].targets[-1:], bench.drives[0].targets[:1])
+
+    bench = Bench(*homed, "axis.Z.home_offset_is_position=1")
+    bench.drives[2].offset_is_position = True
+    status, message, _ = bench.finish()
+    expect("told so, the program completes", (status, message), (0, ""))
+    expect("with its offset as its position", bench.drives[2].get(0x607C), 5 * INCREMENTS)
+
+
 def test_wrong_identity():
     bench = Bench("axis.Y.drive_product=4711")
     status, message, _ = bench.finish()
@@ -143,6 +159,7 @@ def main():
     print(f"python-can {can.__version__}, canopen {canopen.__version__}")
     test_boot_and_run()
     test_homing()
+    test_home_offset_of_either_sign()
     test_wrong_identity()
     test_emergency()
 

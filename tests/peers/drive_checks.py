@@ -173,6 +173,8 @@ def check_profile_position(node):
 def check_homing(node):
     node.sdo[0x6098].raw = 34  # the next index pulse, at 10 mm
     check("homing succeeds", node.homing(timeout=PATIENCE_S))
+    # The library takes an idle drive for a homed one, and may look before the drive has begun.
+    until("homing is attained", lambda: node.check_statusword() & 0x3400 == 0x1400)
     expect("homing is over", node.op_mode, "HOMING")
     check("the drive is homed", node.is_homed())
     check("0 is where the pulse was", abs(actual(node)) < PER_MM, actual(node))

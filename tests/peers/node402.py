@@ -72,6 +72,7 @@ class Drive:
         self.homed_after, self.is_homed, self.homing_syncs = 5, False, 0
         self.fail_at = None  # (number of targets, error code)
         self.silent_after = None  # number of targets
+        self.offset_is_position = False # of its home; CiA 402: minus it
         self.pending = None
         network.subscribe(0x000, self.on_nmt)
         network.subscribe(0x080, self.on_sync)
@@ -175,5 +176,5 @@ class Drive:
         self.homing_syncs -= 1
         if self.homing_syncs == 0:
             offset = struct.unpack("<i", self.node.get_data(0x607C, 0))[0]
-            self.at = self.goal = -offset
+            self.at = self.goal = offset if self.offset_is_position else -offset
             self.is_homed = True

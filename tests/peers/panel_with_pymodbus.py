@@ -5,6 +5,7 @@ provoked; a program uploaded, started, followed to its end."""
 import os
 import struct
 import sys
+import time
 import zlib
 
 import packages
@@ -20,7 +21,7 @@ from pymodbus import FramerType
 from pymodbus.client import ModbusSerialClient, ModbusTcpClient
 
 UNIT = 9
-PROGRAM = b"G21 G90 G61 F1800\nG1 X3 Y2\nG2 X5 Y0 I0 J-2\nG1 X0\nM2\n" + b"(" + b"-" * 400 + b")\n"
+PROGRAM = b"G21 G90 G61 F600\nG1 X3 Y2\nG2 X5 Y0 I0 J-2\nG1 X0\nM2\n" + b"(" + b"-" * 400 + b")\n"
 WAITING = ("UPLOAD_COMMAND", "UPLOAD_CHECK", "PASSWORD", "JOG_AXIS", "WATCHDOG", "TOOL_DIAMETER")
 
 
@@ -72,10 +73,11 @@ class Panel:
         return self.exception
 
     def wait_for(self, name, value):
-        for _ in range(20000):
-            if self.counts(name) == value:
-                return True
-        return False
+        until = time.monotonic() + p.PATIENCE_S
+        while self.counts(name) != value:
+            if time.monotonic() > until:
+                return False
+        return True
 
 
 def check_registers(panel):

@@ -28,7 +28,7 @@ MOTOR_RPM = 24000
 MB2HAL_INI = """[MB2HAL_INIT]
 INIT_DEBUG=0
 VERSION=1.1
-HAL_MODULE_NAME=mb2hal
+HAL_MODULE_NAME={name}
 SLOWDOWN=0.0
 TOTAL_TRANSACTIONS=2
 
@@ -52,6 +52,7 @@ HAL_TX_NAME=override
 """
 
 # LinuxCNC's memory is one for all of a user's processes, and it refuses the superuser without this.
+VFD, MB2HAL = f"vfd{os.getpid()}", f"mb2hal{os.getpid()}" # so names are our own
 ENVIRONMENT = {**os.environ, "RTAPI_UID": "1000"}
 
 
@@ -86,23 +87,23 @@ class Component:
 def check_spindle():
     pair = serial_pair.Pair()
     service = p.Service("--spindle", pair.paths[0] + ",115200,none", "--set", "spindle.ramp_rpm_s=100000", command="drives")
-    component = Component("vfdb_vfd", "-I", t.write("vfd.ini", VFD_INI.format(path=pair.paths[1])), "-n", "vfd")
-    component.wait_for("vfd.modbus-ok", lambda value: value == "TRUE")
-    t.check(float(halcmd("getp", "vfd.max-rpm")) == 24000, "vfdb_vfd knows the highest speed")
-    halcmd("setp", "vfd.enable", "1")
+    component = Component("vfdb_vfd", "-I", t.write("vfd.ini", VFD_INI.format(path=pair.paths[1])), "-n", VFD)
+    component.wait_for(VFD + ".modbus-ok", lambda value: value == "TRUE")
+    t.check(float(halcmd("getp", VFD + ".max-rpm")) == 24000, "vfdb_vfd knows the highest speed")
+    halcmd("setp", VFD + ".enable", "1")
     for speed, direction in ((9000, 0), (-6000, 0x18)):
-        halcmd("setp", "vfd.speed-command", str(speed))
-        halcmd("setp", "vfd.spindle-on", "1")
+        halcmd("setp", VFD + ".speed-command", str(speed))
+        halcmd("setp", VFD + ".spindle-on", "1")
         # The direction first: on its way to the other one the spindle passes this speed too. Each pin is read by a request
         # of its own, so one follows the other.
-        t.check(component.wait_for("vfd.status", lambda value: int(value) & 0x18 == direction), "in the direction told")
-        t.check(component.wait_for("vfd.motor-RPM", lambda value: abs(float(value) - abs(speed)) < 20), f"vfdb_vfd turns it at {speed} rpm")
-        t.check(component.wait_for("vfd.frequency-out", lambda value: abs(float(value) - abs(speed) / 60) < 1), "and reads its frequency")
+        t.check(component.wait_for(VFD + ".status", lambda value: int(value) & 0x18 == direction), "in the direction told")
+        t.check(component.wait_for(VFD + ".motor-RPM", lambda value: abs(float(value) - abs(speed)) < 20), f"vfdb_vfd turns it at {speed} rpm")
+        t.check(component.wait_for(VFD + ".frequency-out", lambda value: abs(float(value) - abs(speed) / 60) < 1), "and reads its frequency")
         if speed > 0:  # vfdb_vfd never says so of a negative speed
-            t.check(component.wait_for("vfd.at-speed", lambda value: value == "TRUE"), "and sees it at speed")
-    halcmd("setp", "vfd.spindle-on", "0")
-    t.check(component.wait_for("vfd.is-stopped", lambda value: value == "TRUE"), "and stops it")
-    t.check(int(halcmd("getp", "vfd.error-count")) == 0, "without an error on the line")
+            t.check(component.wait_for(VFD + ".at-speed", lambda value: value == "TRUE"), "and sees it at speed")
+    halcmd("setp", VFD + ".spindle-on", "0")
+    t.check(component.wait_for(VFD + ".is-stopped", lambda value: value == "TRUE"), "and stops it")
+    t.check(int(halcmd("getp", VFD + ".error-count")) == 0, "without an error on the line")
     component.stop()
     service.stop()
     pair.close()
@@ -112,13 +113,13 @@ def check_panel():
     service = p.serve()
     client = service.client()
     client.wait_for("STATE", p.IDLE)
-    component = Component("mb2hal", "config=" + t.write("mb2hal.ini", MB2HAL_INI.format(port=service.port)))
-    t.check(component.wait_for("mb2hal.state.00.int", lambda value: int(value) == p.IDLE), "mb2hal reads the state")
-    halcmd("setp", "mb2hal.override.00.int", "750")
+    component = Component("mb2hal", "config=" + t.write("mb2hal.ini", MB2HAL_INI.format(name=MB2HAL, port=service.port)))
+    t.check(component.wait_for(MB2HAL + ".state.00.int", lambda value: int(value) == p.IDLE), "mb2hal reads the state")
+    halcmd("setp", MB2HAL + ".override.00.int", "750")
     client.wait_for("FEED_OVERRIDE", 750)
-    t.check(int(halcmd("getp", "mb2hal.override.num_errors"), 0) == 0, "and writes an override")
+    t.check(int(halcmd("getp", MB2HAL + ".override.num_errors"), 0) == 0, "and writes an override")
     client.put("EMERGENCY_STOP", 1)
-    t.check(component.wait_for("mb2hal.state.00.int", lambda value: int(value) == p.EMERGENCY), "and sees it change")
+    t.check(component.wait_for(MB2HAL + ".state.00.int", lambda value: int(value) == p.EMERGENCY), "and sees it change")
     component.stop()
     service.stop()
 

@@ -3,16 +3,15 @@
  * differences, through the start and the end on the base circle too; the end is hit; and wherever no limit binds, equal
  * cycles go equal lengths.
  */
-#include "base/maths.h"
 #include "motion/motion.h"
 #include "plan/path.h"
+#include "random_chain.h"
 
 #include <stdio.h>
 #include <string.h>
 #include <unity.h>
 
 #define CYCLE_S 1e-3
-#define AXES    3
 #define SEEDS   150
 
 static const struct plan_limits machines[] = {
@@ -45,13 +44,7 @@ static const struct plan_limits machines[] = {
 
 static struct path path;
 static struct motion motion;
-static uint64_t seed;
-
-static struct {
-    double history[AXES][4]; /* newest first */
-    double velocity, acceleration, jerk;
-    uint64_t cycles;
-} seen;
+static struct chain_judge seen;
 
 /* What a run is about. */
 struct task {
@@ -71,17 +64,6 @@ void setUp(void)
 
 void tearDown(void)
 {
-}
-
-static double random_between(double low, double high)
-{
-    seed = seed * UINT64_C(6364136223846793005) + UINT64_C(1442695040888963407);
-    return low + (high - low) * (double)(seed >> 11) / 9007199254740992.0;
-}
-
-static double random_decades(double from, double to)
-{
-    return maths_power(10.0, random_between(from, to));
 }
 
 static double heading_of(const struct task *t, double phi)
@@ -131,22 +113,6 @@ static void push_all(const struct task *t, struct point *at)
     *at = m.end;
 }
 
-static void judge_axis(const struct plan_limits *limits, int axis, double x)
-{
-    double *h = seen.history[axis];
-
-    memmove(h + 1, h, 3 * sizeof(*h));
-    h[0] = x;
-    const double v = (h[0] - h[1]) / CYCLE_S;
-    const double a = (h[0] - 2 * h[1] + h[2]) / (CYCLE_S * CYCLE_S);
-    const double j = (h[0] - 3 * h[1] + 3 * h[2] - h[3]) / (CYCLE_S * CYCLE_S * CYCLE_S);
-
-    seen.velocity = maths_max(seen.velocity, maths_abs(v) / limits->velocity_mm_s[axis]);
-    seen.acceleration =
-        maths_max(seen.acceleration, maths_abs(a) / limits->acceleration_mm_s2[axis]);
-    seen.jerk = maths_max(seen.jerk, maths_abs(j) / limits->jerk_mm_s3[axis]);
-}
-
 static struct point start_of(const struct task *t)
 {
     struct point at = point_of(t, t->from_rad);
@@ -174,7 +140,7 @@ static void run(const struct task *t, const struct plan_limits *limits, uint32_t
     memset(&seen, 0, sizeof(seen));
     path_init(&path, limits, &at);
     motion_init(&motion, &path, &at, false);
-    for (int axis = 0; axis < AXES; axis++) {
+    for (int axis = 0; axis < CHAIN_AXES; axis++) {
         for (int i = 0; i < 4; i++) {
             seen.history[axis][i] = at.at[axis];
         }
@@ -199,10 +165,7 @@ static void run(const struct task *t, const struct plan_limits *limits, uint32_t
         if (result != MOTION_CYCLE) {
             break;
         }
-        seen.cycles++;
-        for (int axis = 0; axis < AXES; axis++) {
-            judge_axis(limits, axis, record.cmd.at[axis]);
-        }
+        chain_judge_setpoint(&seen, limits, &record.cmd);
         if (each != NULL) {
             each(t, &record);
         }
@@ -213,21 +176,21 @@ static void run(const struct task *t, const struct plan_limits *limits, uint32_t
 
 static struct task random_task(uint64_t task_seed)
 {
+    struct chain c = {.seed = task_seed};
     struct task t = {0};
 
-    seed = task_seed;
-    t.radius_mm = random_decades(-2.0, 2.0);
-    const double near = random_between(0, 1) < 0.5 ? 0.0 : random_decades(-3, 1);
-    const double far = near + random_decades(-1, 2.0) / maths_sqrt(t.radius_mm);
-    const bool inward = random_between(0, 1) < 0.5;
+    t.radius_mm = chain_decades(&c, -2.0, 2.0);
+    const double near = chain_between(&c, 0, 1) < 0.5 ? 0.0 : chain_decades(&c, -3, 1);
+    const double far = near + chain_decades(&c, -1, 2.0) / maths_sqrt(t.radius_mm);
+    const bool inward = chain_between(&c, 0, 1) < 0.5;
 
     t.from_rad = inward ? far : near;
     t.to_rad = inward ? near : far;
-    t.turned_rad = random_between(-3, 3);
-    t.mirrored = random_between(0, 1) < 0.5;
-    t.rise_mm = random_between(0, 1) < 0.5 ? 0.0 : random_between(-20, 20);
-    t.feed_mm_s = random_between(0, 1) < 0.5 ? 500.0 : random_between(5, 105);
-    t.lines = random_between(0, 1) < 0.5;
+    t.turned_rad = chain_between(&c, -3, 3);
+    t.mirrored = chain_between(&c, 0, 1) < 0.5;
+    t.rise_mm = chain_between(&c, 0, 1) < 0.5 ? 0.0 : chain_between(&c, -20, 20);
+    t.feed_mm_s = chain_between(&c, 0, 1) < 0.5 ? 500.0 : chain_between(&c, 5, 105);
+    t.lines = chain_between(&c, 0, 1) < 0.5;
     return t;
 }
 

@@ -44,6 +44,30 @@ def compare(name, embedded, summary):
         t.check(a.read() == b.read(), name + ": same trace, actual positions included")
 
 
+def read_log(path):
+    """Frames of a bus log: those of the controller, and those of the drives."""
+    frames = ([], [])
+    with open(path) as file:
+        for line in file:
+            frame = line.split()[2]
+            number = int(frame.split("#")[0], 16)
+            of_drive = number & 0x780 in (0x180, 0x280, 0x580, 0x700) or 0x80 < number < 0x100
+            frames[of_drive and number & 0x7F <= 3].append(frame)
+    return frames
+
+
+def check_logs_agree(name, controller_log, drives_log):
+    """What one side has logged the other has, too, in the same order, but for what was under way at begin and end."""
+    sent, answers = read_log(controller_log)
+    heard, answered = read_log(drives_log)
+    t.check(len(heard) > 1000 and heard == sent[: len(heard)], name + ": drives log what the controller has sent", len(heard), len(sent))
+    t.check(len(sent) - len(heard) < 10, name + ": all of it but for the end", len(heard), len(sent))
+    begin = len(answered) - len(answers)
+    while begin > 0 and answered[begin : begin + len(answers)] != answers:
+        begin -= 1
+    t.check(len(answers) > 1000 and answered[begin : begin + len(answers)] == answers, name + ": drives log what they have sent")
+
+
 def check_pair(name, bus, prefix, *options):
     """Separate drives on a bus, in lockstep, do what those of the embedded bus do."""
     status, embedded, err = run_controller("embedded")

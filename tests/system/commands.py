@@ -22,7 +22,7 @@ for words, said in (
     (["run"], "file name is missing"),
     (["run", PROGRAM, "more"], "one argument too many"),
     (["run", PROGRAM, "--jsno", "x"], "did you mean --json?"),
-    (["run", PROGRAM, "--t", "x"], "--tools or --trace"),
+    (["run", PROGRAM, "--t", "x"], "--target or --trace"),
     (["run", PROGRAM, "--json"], "needs a value"),
     (["run", PROGRAM, "--quiet=1"], "takes no value"),
     (["run", PROGRAM, "--until", "soon"], "number"),

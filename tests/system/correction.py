@@ -36,6 +36,20 @@ def visit(points, rest=0.12, code="G0"):
     return t.write("visit.ngc", "\n".join(lines) + "\nM2\n")
 
 
+def tool_points(program, *options):
+    """Where the tool's point stood at each of the points; the first rest is the start."""
+    status, _, err = t.run("run", program, *options, "--rests", "rests.csv", "--quiet")
+    t.check(status == 0, f"{program} runs {options}", err)
+    rests = t.read_trace("rests.csv")
+    return list(zip(*(rests[f"tool_{axis}_mm"][1:] for axis in "XYZ")))
+
+
+def errors_at_points(tool):
+    wanted = [[round(value, 4) for value in point] for point in random_points(POINTS, travel(WORN))]
+    t.check(len(tool) == POINTS, "every point is measured", len(tool))
+    return [math.dist(a, b) for a, b in zip(wanted, tool)]
+
+
 # ---- live: 21 errors of up to 60 um, a table of 9 x 7 x 6 points
 
 status, _, err = t.run("calibrate", "--machine", WORN, "--grid", "9x7x6", "-o", "volume.csv")
@@ -49,6 +63,13 @@ t.check(before["rest_error_max_mm"] > 0.040, "the machine has errors of tens of 
 t.check(after["rests"] >= POINTS, "every point is measured", after)
 t.check(after["rest_error_max_mm"] <= 0.002, "live correction leaves 2 um at most", after)
 t.check(after["rest_error_mean_mm"] <= 0.001, "and one increment in the mean", after)
+status, _, err = t.run("correct", program, "--machine", WORN, "--table", "volume.csv", "-o", "visit-corrected.ngc", "--quiet")
+t.check(status == 0, "a program of points is corrected", err)
+offline = errors_at_points(tool_points("visit-corrected.ngc", "--machine", WORN))
+live = errors_at_points(tool_points(program, *TABLE))
+print("tool point off the points, um: live", 1e3 * max(live), "offline, on a controller without correction", 1e3 * max(offline))
+t.check(abs(max(live) - after["rest_error_max_mm"]) < 1e-6, "what is written of each rest is what the summary tells", max(live), after)
+t.check(all(abs(a - b) <= 0.001 for a, b in zip(live, offline)), "at each point the offline program is as good within 1 um", max(offline))
 off = summary_of(program, *TABLE, "--set", "correction.off=volume")
 t.check(off["correction_max_mm"] == 0, "a layer that the machine file switches off corrects nothing", off["correction_max_mm"])
 
@@ -210,8 +231,8 @@ status, filtered, err = t.run("correct", "-", "--filter", "--machine", WORN, "--
 t.check(status == 0 and filtered == whole, "a filter writes the same, line by line", err)
 status, _, err = t.run("correct", "-", "--filter", "--table", "volume.csv", "--machine", WORN, text=PART.encode())
 t.check(status == 2 and "stream" in err, "a stream cannot go back", err)
-status, _, err = t.run("correct", t.write("tap.ngc", "S100 M3\nG33.1 Z-5 K1\n"), "--machine", WORN, "--table", "volume.csv", "-o", "tap-corrected.ngc")
-t.check(status == 2 and "tap.ngc:2" in err and not os.path.exists("tap-corrected.ngc"), "what cannot be written is refused", err)
+status, _, err = t.run("correct", t.write("probe.ngc", "F100\nG38.2 Z-5\n"), "--machine", WORN, "--table", "volume.csv", "-o", "probe-corrected.ngc")
+t.check(status == 2 and "probe.ngc:2" in err and not os.path.exists("probe-corrected.ngc"), "what cannot be written is refused", err)
 
 # ---- LinuxCNC's files, broken tables, wrong words
 
@@ -229,6 +250,8 @@ for text, message in BROKEN.items():
     t.write("broken.csv", text)
     status, _, err = t.run("run", "visit.ngc", "--set", "correction.volume_table=broken.csv")
     t.check(status == 2 and "broken.csv" in err and message in err, "a broken table is refused", message, err)
+status, _, err = t.run("run", "visit.ngc", "--rests", "none.csv")
+t.check(status == 2 and "[geometry]" in err and not os.path.exists("none.csv"), "without errors no rests are to be told", err)
 for options, word in (((), "--grid"), (("--grid", "9x7"), "9x7x6"), (("--grid", "1x2x2"), "2 to"),
                       (("--grid", "3x3x3", "--from", "0,0"), "3 positions"), (("--grid", "3x3x3", "--to", "0,0,9000"), "travel"),
                       (("--axis", "Q", "--grid", "4"), "--axis Q"), (("--grid", "3x3x3", "--noise-um", "x"), "--noise-um")):

@@ -27,6 +27,13 @@ hertz, out = needed("--accel", "1g", "--jerk", "50")
 t.check(round(hertz) == 1107 and "115404 mm/min" in out, "1 g needs 1107 Hz, not the 1170 printed", out)
 t.check(needed("--accel", "9806.65", "--jerk", "50")[0] == hertz, "1 g is 9806.65 mm/s2")
 
+# A machine without published limits is taken with those that are given.
+for name in ("UCP710", "mikron ucp 710"):
+    status, out, err = t.run("cycle-frequency", "--machine", name, "--jerk", "5")
+    t.check(status == 2 and "not published" in err and "--feed-max" in err, f"{name} has no limits", err)
+    given = needed("--machine", name, "--feed-max", "6000", "--accel", "0.1g", "--jerk", "5")
+    t.check(given[0] == needed("--machine", "MA655SM30A")[0], f"{name} with limits of its own", given)
+
 # Limits given replace the machine's, and the tolerance is an increment unless it is given.
 t.check(needed("--machine", "MA655SM30A", "--feed-max", "9000")[0] > 310, "--feed-max replaces the machine's feed")
 fine = needed("--accel", "0.1g", "--jerk", "5", "--resolution", "4000")

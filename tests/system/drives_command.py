@@ -27,6 +27,10 @@ for nodes in ("0", "128", "3-1", "1,", "1;2", "x", "-1"):
     refused(["--eds", ".", "--nodes=" + nodes], "1 ... 127")
 refused(["--eds", ".", "--nodes", "1-3,2"], "2 is named twice")
 refused(["--eds", ".", "--nodes", "1-40"], "more than 16 drives")
+refused(["--eds", ".", "--bus-log", "bus.log"], "--bus-log needs --bus")
+refused(["--bus", "slcan:pty", "--bus-log", "-"], "same place: -")
+refused(["--bus", "slcan:pty", "--log", "all.log", "--bus-log", "all.log"], "same place: all.log")
+refused(["--bus", "slcan:pty", "--bus-log", "no/such/folder/bus.log"], "no/such/folder/bus.log: it cannot be written: No such", 3)
 refused(["--eds", "no/such/folder/x.eds"], "no/such/folder", 3)
 refused(["--eds", ".", "--inject", "no.inject"], "no.inject")
 for text, said in (

@@ -17,7 +17,8 @@ t.check(abs(summary["path_length_mm"] - 3.0) < 1e-9, "after the probing move", s
 
 path = t.write("thread.ngc", "G21 M3 S300\nG0 Z5\nG33 Z-5 K1\nG33 Z-6 K1\nM2\n")
 status, _, err = t.run("run", path, "--quiet")
-t.check(status == 0, "threads run at the commanded speed", status, err)
-t.check(err.count("warning") == 1 and "thread.ngc:3:1: warning: 'G33' moves at" in err, "with one warning", err)
+t.check(status == 0 and err == "", "threads follow the spindle's encoder", status, err)
+status, _, err = t.run("run", path, "--quiet", "--set", "spindle.encoder_counts_per_revolution=0")
+t.check(status == 2 and "thread.ngc:3:1: error: 'G33' needs a spindle with an encoder" in err, "or are refused", status, err)
 
 t.finish()

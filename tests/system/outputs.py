@@ -82,8 +82,8 @@ t.check(all(re.fullmatch(r"\(\d{10}\.\d{6}\) can0 [0-9A-F]{3}#([0-9A-F]{2}){0,8}
 
 with open("a.csv") as file:
     header, first = file.readline(), file.readline()
-t.check(header == "cycle,time_s,block,line,feed_mm_min,override_percent,limiter," + ",".join(f"{k}_{a}_mm" for a in "XYZ" for k in ("cmd", "set", "act")) + "\n", "columns of the trace", header)
-t.check(re.fullmatch(r"0,0\.000000,1,2,[\d.]+,100\.000000,1\.000000(,-?\d+\.\d{9}){9}\n", first), "a row of the trace", first)
+t.check(header == "cycle,time_s,block,line,feed_mm_min,override_percent,limiter," + ",".join(f"{k}_{a}_mm" for a in "XYZ" for k in ("cmd", "set", "act")) + ",spindle_rev\n", "columns of the trace", header)
+t.check(re.fullmatch(r"0,0\.000000,1,2,[\d.]+,100\.000000,1\.000000(,-?\d+\.\d{9}){10}\n", first), "a row of the trace", first)
 
 # Standard output can be one of the files; then the summary keeps out of its way.
 status, out, err = t.run("run", PROGRAM, "--json", "-")

@@ -189,9 +189,9 @@ class Line:
         os.write(self.near, frame)
 
     def receive(self, size):
-        """Up to size bytes; fewer when the line falls silent."""
+        """So many bytes; fewer when nothing has come for long."""
         data = b""
-        while len(data) < size and select.select([self.near], [], [], 5)[0]:
+        while len(data) < size and select.select([self.near], [], [], PATIENCE_S)[0]:
             data += os.read(self.near, size - len(data))
         return data
 

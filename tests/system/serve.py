@@ -1,5 +1,7 @@
 """takt serve: registers, states, programs, MDI, jog, homing, offsets, faults, as a client on Modbus TCP sees them."""
 
+import re
+
 import panel_client as p
 import takt_test as t
 
@@ -77,12 +79,14 @@ def check_program():
     with open("stored.ngc", "rb") as file:
         t.check(file.read() == PROGRAM, "the file has the program")
     runs = client.counts("RUNS")
+    client.put("FEED_OVERRIDE", 0) # it runs as long as we like
     client.put("CYCLE_START", 1)
     t.check(client.refusal("MODE", 1) == (4, 1), "the mode stays while a program runs")
     t.check(client.refusal("CYCLE_START", 1) == (4, 1), "it cannot be started twice")
     client.begin_upload(b"G0 X1\n")
     client.send_chunk(0, b"G0 X1\n")
     t.check(client.refusal("UPLOAD_COMMAND", 2) == (4, 1), "no program is exchanged while one runs")
+    client.put("FEED_OVERRIDE", 100)
     client.wait_while("RUNS", runs)
     client.put("UPLOAD_COMMAND", 2)
     t.check(client.counts("PROGRAM_SIZE") == 6, "then it is")
@@ -92,6 +96,52 @@ def check_program():
     service, client = ready("--store", "stored.ngc")
     t.check(client.counts("PROGRAM_SIZE") == 6, "the stored program is there again")
     service.stop()
+
+
+def check_single_block():
+    """Switched on and off while a program runs."""
+    service, client = ready()
+    client.upload(b"G21 G90 G64 F6000\n" + b"".join(b"G1 X%d\n" % x for x in range(5, 155, 5)) + b"M2\n")
+    runs = client.counts("RUNS")
+    client.put("FEED_OVERRIDE", 20)
+    client.put("CYCLE_START", 1)
+    while client.get("POSITION_X") < 12:
+        pass
+    client.put("SINGLE_BLOCK", 1)
+    client.wait_for("STATE", p.HELD)
+    client.wait_for("FEED", 0)
+    held = client.get("POSITION_X")
+    t.check(held % 5 == 0 and held < 150 and client.counts("HOLD_REASON") == 2, "the axes hold at a block end", held)
+    client.put("CYCLE_START", 1)
+    client.wait_for("STATE", p.HELD)
+    client.wait_for("FEED", 0)
+    t.check(client.get("POSITION_X") == held + 5, "and at the next", client.get("POSITION_X"))
+    client.put("SINGLE_BLOCK", 0)
+    client.put("FEED_OVERRIDE", 100)
+    client.put("CYCLE_START", 1)
+    client.wait_while("RUNS", runs)
+    t.check(client.counts("OUTCOME") == p.COMPLETED and client.get("POSITION_X") == 150, "switched off they run through")
+    service.stop()
+
+
+def check_bus_log():
+    """Every frame of the embedded bus, readable while the service runs."""
+    service, client = ready("--bus-log", "serve.log")
+    until = p.time.monotonic() + p.PATIENCE_S
+    while not t.os.path.getsize("serve.log"):
+        assert p.time.monotonic() < until, "the log is written while the service runs"
+        p.time.sleep(0.05)
+    status, out, err, _ = service.stop()
+    t.check(status == 0 and err == "", "a logged service ends well", status, err)
+    with open("serve.log") as file:
+        lines = file.read().splitlines()
+    wrong = [line for line in lines if not re.fullmatch(r"\(\d{10}\.\d{6}\) can0 [0-9A-F]{3}#[0-9A-F]*", line)]
+    t.check(not wrong, "lines are those of candump -L", wrong[:3])
+    syncs = sum("can0 080#" in line for line in lines)
+    cycles = int(re.search(r"served (\d+) cycles", out).group(1))
+    t.check(cycles - 2 <= syncs <= cycles, "there is a SYNC for each cycle", syncs, cycles)
+    status, _, err = t.run("serve", "--listen", "127.0.0.1:0", "--bus-log", "no/such/folder/serve.log")
+    t.check(status == 3 and "--bus-log no/such/folder/serve.log: it cannot be written" in err, "a log needs a place", status, err)
 
 
 def check_errors_of_programs():
@@ -121,6 +171,8 @@ def check_by_hand():
     client.put("MODE", 1)
     t.check(run_line(client, "G0 X5 Y-5") == p.COMPLETED, "a line runs", client.text("ALARM_TEXT"))
     t.check((client.get("POSITION_X"), client.get("POSITION_Y")) == (5.0, -5.0), "to where it says")
+    t.check(run_line(client, "G91") == run_line(client, "X1") == p.COMPLETED and client.get("POSITION_X") == 6, "with the modes of the line before")
+    t.check(run_line(client, "G90 X5") == p.COMPLETED, "and back")
     t.check(run_line(client, "G0 X9999") == p.FAILED and "travel" in client.text("ALARM_TEXT"), "not beyond the travel")
     client.put("RESET", 1)
     client.wait_for("STATE", p.IDLE)
@@ -263,6 +315,8 @@ def check_line():
 
 check_registers()
 check_program()
+check_single_block()
+check_bus_log()
 check_errors_of_programs()
 check_by_hand()
 check_offsets()

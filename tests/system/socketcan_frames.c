@@ -4,6 +4,7 @@
  * program may switch off.
  */
 #include "bus/link.h"
+#include "random_frame.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -24,27 +25,6 @@ static int failures;
 
 static uint64_t state = 1;
 
-static uint32_t draw(uint32_t range)
-{
-    state = state * 6364136223846793005u + 1442695040888963407u;
-    return (uint32_t)(state >> 33) % range;
-}
-
-static struct wire_frame random_frame(void)
-{
-    struct wire_frame frame = {.flags = draw(2) ? WIRE_EXTENDED : 0, .length = (uint8_t)draw(9)};
-    frame.id = draw(frame.flags ? 0x20000000u : 0x800u);
-    if (draw(3) == 0) {
-        frame.flags |= draw(2) ? WIRE_FD : WIRE_FD | WIRE_RATE_SWITCH;
-        frame.length = wire_frame_fd_length(draw(65));
-    } else if (draw(4) == 0) {
-        frame.flags |= WIRE_REMOTE;
-    }
-    for (unsigned i = 0; i < frame.length && !(frame.flags & WIRE_REMOTE); i++)
-        frame.data[i] = (uint8_t)draw(256);
-    return frame;
-}
-
 static struct link *open_link(const char *interface, const struct link_config *config)
 {
     char spec[64];
@@ -63,22 +43,16 @@ static bool receive(struct link *link, struct wire_frame *frame)
     return link_wait(link, link_clock_ns() + WAIT_NS) == LINK_READY && link_receive(link, frame);
 }
 
-static bool is_same(const struct wire_frame *a, const struct wire_frame *b)
-{
-    return a->id == b->id && a->flags == b->flags && a->length == b->length &&
-           (a->flags & WIRE_REMOTE || memcmp(a->data, b->data, a->length) == 0);
-}
-
 static void carries_every_kind_of_frame(const char *interface)
 {
     const struct link_config config = {.bitrate = 1000000, .fd = true};
     struct link *a = open_link(interface, &config), *b = open_link(interface, &config);
     for (unsigned i = 0; i < FRAMES; i++) {
-        struct wire_frame sent = random_frame(), got = {0};
-        struct link *from = draw(2) ? a : b, *to = from == a ? b : a;
+        struct wire_frame sent = random_frame(&state), got = {0};
+        struct link *from = random_below(&state, 2) ? a : b, *to = from == a ? b : a;
         CHECK(link_send(from, &sent));
         CHECK(receive(to, &got));
-        CHECK(is_same(&sent, &got));
+        CHECK(random_frame_is_same(&sent, &got));
         CHECK(!link_receive(from, &got)); /* one's own frames do not come back */
     }
     link_close(a);

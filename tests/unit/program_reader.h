@@ -42,6 +42,7 @@ static inline void reader_prepare(struct reader *r)
         r->config.travel_max[i] = limit;
     }
     r->config.spindle_max_rpm = 24000.0;
+    r->config.spindle_encoder = true;
     r->config.tools = &reader_table;
     r->config.parameters = &r->parameters;
 }

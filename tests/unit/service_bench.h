@@ -22,6 +22,7 @@ static struct virtual_drives drives;
 static struct parameters parameters;
 static struct tool tools[1];
 static struct machine machine;
+static const struct correction_tables *correction; /* NULL: none */
 static struct inputs world;
 static struct source_text program_text;
 static const char *program, *staged;
@@ -66,6 +67,7 @@ static void bench_start(void)
         .tools = tools,
         .tools_count = 1,
         .parameters = &parameters,
+        .correction = correction,
         .programs = {bench_open, bench_adopt, NULL},
     };
 
@@ -73,8 +75,8 @@ static void bench_start(void)
     wait_for(PANEL_IDLE);
 }
 
-/* setUp of a test. */
-static void bench_set_up(void)
+/* Everything but the service: the machine may still be changed. */
+static void bench_set_up_machine(void)
 {
     struct virtual_drives_config virtual;
 
@@ -89,6 +91,13 @@ static void bench_set_up(void)
     world = inputs_idle();
     world.spindle.at_speed = true;
     now_ns = 0;
+    correction = NULL;
+}
+
+/* setUp of a test. */
+static inline void bench_set_up(void)
+{
+    bench_set_up_machine();
     bench_start();
 }
 
@@ -133,7 +142,7 @@ static void load(const char *text)
     TEST_ASSERT_EQUAL_INT(PANEL_DONE, service_order(&service, &commit));
 }
 
-static void start_line(const char *line)
+static inline void start_line(const char *line)
 {
     struct panel_order start = {.count = 1, .item = {{REGISTER_MDI_START, 1}}};
 

@@ -6,6 +6,7 @@
 #include "bus/candump_read.h"
 #include "bus/slcan.h"
 #include "bus/socketcand.h"
+#include "random_frame.h"
 #include "unity.h"
 
 #include <stdio.h>
@@ -25,27 +26,6 @@ void tearDown(void)
 {
 }
 
-static uint32_t draw(uint32_t range)
-{
-    state = state * 6364136223846793005u + 1442695040888963407u;
-    return (uint32_t)(state >> 33) % range;
-}
-
-static struct wire_frame random_frame(void)
-{
-    struct wire_frame frame = {.flags = draw(2) ? WIRE_EXTENDED : 0, .length = (uint8_t)draw(9)};
-    frame.id = draw(frame.flags ? 0x20000000u : 0x800u);
-    if (draw(3) == 0) {
-        frame.flags |= draw(2) ? WIRE_FD : WIRE_FD | WIRE_RATE_SWITCH;
-        frame.length = wire_frame_fd_length(draw(65));
-    } else if (draw(4) == 0) {
-        frame.flags |= WIRE_REMOTE;
-    }
-    for (unsigned i = 0; i < frame.length && !(frame.flags & WIRE_REMOTE); i++)
-        frame.data[i] = (uint8_t)draw(256);
-    return frame;
-}
-
 static void expect_same(const struct wire_frame *expected, const struct wire_frame *actual)
 {
     TEST_ASSERT_EQUAL_HEX32(expected->id, actual->id);
@@ -58,7 +38,7 @@ static void expect_same(const struct wire_frame *expected, const struct wire_fra
 static void test_slcan_reads_back_what_it_writes(void)
 {
     for (unsigned i = 0; i < FRAMES; i++) {
-        struct wire_frame frame = random_frame(), back;
+        struct wire_frame frame = random_frame(&state), back;
         char line[SLCAN_LINE_MAX];
         size_t length = slcan_write(line, &frame);
         TEST_ASSERT_LESS_OR_EQUAL_UINT64(sizeof line, length);
@@ -102,7 +82,7 @@ static void test_slcan_refuses_lines_that_are_no_frames(void)
 static void test_socketcand_reads_back_what_it_writes(void)
 {
     for (unsigned i = 0; i < FRAMES; i++) {
-        struct wire_frame frame = random_frame(), back;
+        struct wire_frame frame = random_frame(&state), back;
         char text[SOCKETCAND_MESSAGE_MAX];
         size_t length = socketcand_write_send(text, &frame);
         TEST_ASSERT_LESS_OR_EQUAL_UINT64(sizeof text, length);
@@ -174,8 +154,8 @@ static void test_a_bus_log_reads_back_as_it_was_written(void)
     TEST_ASSERT_NOT_NULL(file);
     candump_init(&dump, file, "vcan0");
     for (unsigned i = 0; i < FRAMES; i++) {
-        frames[i] = random_frame();
-        if (draw(50) == 0)
+        frames[i] = random_frame(&state);
+        if (random_below(&state, 50) == 0)
             frames[i] = (struct wire_frame){.id = 8, .flags = WIRE_ERROR, .length = 8};
         candump_wire(&dump, &frames[i], i * UINT64_C(1234567000));
     }
@@ -222,14 +202,14 @@ static void test_no_bytes_do_harm(void)
 {
     static const char alphabet[] = "tTrRdDbB0123456789abcdefABCDEF<> #().RxO\r\n\a\xFF";
     for (unsigned i = 0; i < 200000; i++) {
-        size_t length = draw(60), begin;
+        size_t length = random_below(&state, 60), begin;
         char *bytes = malloc(length + 2);
         struct wire_frame frame;
         struct candump_line read;
         unsigned column;
         TEST_ASSERT_NOT_NULL(bytes);
         for (size_t k = 0; k < length; k++)
-            bytes[k] = alphabet[draw(sizeof alphabet - 1)];
+            bytes[k] = alphabet[random_below(&state, sizeof alphabet - 1)];
         bytes = realloc(bytes, length ? length : 1);
         TEST_ASSERT_NOT_NULL(bytes);
         (void)slcan_read(bytes, length, &frame);

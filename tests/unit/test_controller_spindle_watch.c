@@ -34,6 +34,23 @@ static void turn(enum spindle_direction direction)
     spindle_watch_pass(&watch, &m);
 }
 
+static void test_feeds_per_revolution_go_by_the_measured_speed_and_not_by_its_ripple(void)
+{
+    spindle.speed_rpm = -600.0;
+    run(500);
+    TEST_ASSERT_DOUBLE_WITHIN(0.03, 10.0, watch.rev_s);
+    const double told = watch.rev_s;
+
+    for (unsigned i = 0; i < 100; i++) {
+        spindle.speed_rpm = -600.0 + (i % 2 == 0 ? 1.0 : -1.0);
+        run(1);
+        TEST_ASSERT_EQUAL_DOUBLE(told, watch.rev_s);
+    }
+    spindle.speed_rpm = 0.0;
+    run(500);
+    TEST_ASSERT_EQUAL_DOUBLE(0.0, watch.rev_s);
+}
+
 static void test_a_load_within_its_limit_leaves_the_feed_alone(void)
 {
     spindle.load_percent = 80.0;
@@ -107,6 +124,7 @@ static void test_a_spindle_that_is_switched_off_is_not_waited_for(void)
 int main(void)
 {
     UNITY_BEGIN();
+    RUN_TEST(test_feeds_per_revolution_go_by_the_measured_speed_and_not_by_its_ripple);
     RUN_TEST(test_a_load_within_its_limit_leaves_the_feed_alone);
     RUN_TEST(test_a_load_beyond_its_limit_lowers_the_feed_the_faster_the_more_it_is);
     RUN_TEST(test_the_feed_is_never_lowered_to_nothing_and_comes_back_when_the_load_is_gone);

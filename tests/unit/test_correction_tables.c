@@ -139,6 +139,30 @@ static void test_a_stored_table_comes_back_to_the_last_bit(void)
     TEST_ASSERT_EQUAL_MEMORY(other.value_mm, table.value_mm, sizeof(float) * 12);
 }
 
+/* Twelve bytes a point; the rest is a head, eight bytes for each position along an axis, and the checksum. */
+static void test_a_volume_of_two_thousand_points_is_stored_in_25_kilobytes(void)
+{
+    static uint8_t bytes[24500];
+
+    table = (struct table){.inputs = 3, .outputs = 3, .knots = {20, 10, 10}};
+    for (uint8_t i = 0; i < 3; i++) {
+        table.input[i] = i;
+        table.output[i] = (struct table_output){i, TABLE_BOTH};
+        for (unsigned k = 0; k < table.knots[i]; k++)
+            table.knot_mm[i][k] = 25.0 * k;
+    }
+    for (uint32_t i = 0; i < 3 * table_rows(&table); i++)
+        table.value_mm[i] = 1e-3F * (float)(i % 7);
+    other = table;
+    TEST_ASSERT_EQUAL_UINT(2000, table_rows(&table));
+    TEST_ASSERT_EQUAL_UINT(12 * 2000 + 8 * 40 + 30, table_store_size(&table));
+    TEST_ASSERT_TRUE(table_store_size(&table) <= sizeof bytes);
+    table_store(&table, bytes);
+    memset(&table, 0, sizeof table);
+    TEST_ASSERT_TRUE(table_restore(bytes, table_store_size(&other), &rules, &table, &wrong));
+    TEST_ASSERT_EQUAL_MEMORY(other.value_mm, table.value_mm, sizeof(float) * 6000);
+}
+
 static void test_every_damaged_byte_and_every_missing_end_of_a_stored_table_is_refused(void)
 {
     static uint8_t bytes[1024];
@@ -301,6 +325,7 @@ int main(void)
     RUN_TEST(test_what_is_written_reads_as_the_same_table);
     RUN_TEST(test_a_changed_byte_breaks_the_checksum_of_a_written_table);
     RUN_TEST(test_a_stored_table_comes_back_to_the_last_bit);
+    RUN_TEST(test_a_volume_of_two_thousand_points_is_stored_in_25_kilobytes);
     RUN_TEST(test_every_damaged_byte_and_every_missing_end_of_a_stored_table_is_refused);
     RUN_TEST(test_measured_triplets_become_corrections_of_both_directions);
     RUN_TEST(test_triplets_of_the_other_type_are_corrections_already);

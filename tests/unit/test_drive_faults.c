@@ -296,11 +296,20 @@ static void test_a_drive_that_never_stands_is_given_up_after_the_timeout(void)
     TEST_ASSERT_EQUAL_INT(DRIVES_FAULTED, drives_get_state(&drives));
 }
 
-/* A fault of Y, from a run at 0.1 mm a cycle, with time for the caller to stop. */
-static void fault_with_time_to_stop(void)
+/* Three axes that do not watch how far each stays behind, and time for the caller to stop. */
+static struct drives_config time_to_stop(void)
 {
     struct drives_config config = three_axes();
     config.stop_timeout_cycles = 40;
+    for (unsigned i = 0; i < 3; i++)
+        config.axis[i].following_error_max_mm = 0;
+    return config;
+}
+
+/* A fault of Y, from a run at 0.1 mm a cycle. */
+static void fault_with_time_to_stop(void)
+{
+    struct drives_config config = time_to_stop();
     boot(&config);
     run_delayed(DRIVES_LATENCY_CYCLES, 50);
     put_all(CIA402_ENABLED, (int32_t)lround(1000 * setpoint.at[AXIS_X]) - 200);
@@ -354,8 +363,7 @@ static void test_all_brake_when_the_path_asks_the_faulty_drive_to_move(void)
 static void test_a_drive_that_only_warns_follows_to_rest(void)
 {
     struct emcy emcy = {.node = 2, .code = 0x8210};
-    struct drives_config config = three_axes();
-    config.stop_timeout_cycles = 40;
+    struct drives_config config = time_to_stop();
     boot(&config);
     run_delayed(DRIVES_LATENCY_CYCLES, 50);
     emcy_write(fake_nodes_add(&nodes), &emcy);
@@ -370,8 +378,7 @@ static void test_a_drive_that_only_warns_follows_to_rest(void)
 static void test_a_warning_from_a_drive_that_falls_silent_is_a_loss(void)
 {
     struct emcy emcy = {.node = 2, .code = 0x8210};
-    struct drives_config config = three_axes();
-    config.stop_timeout_cycles = 40;
+    struct drives_config config = time_to_stop();
     boot(&config);
     run_delayed(DRIVES_LATENCY_CYCLES, 50);
     emcy_write(fake_nodes_add(&nodes), &emcy);
@@ -380,6 +387,39 @@ static void test_a_warning_from_a_drive_that_falls_silent_is_a_loss(void)
         cycle();
     }
     assert_fault(TAKT_ERROR_DRIVE_FAULT, 'Y');
+}
+
+/* Y stands behind its setpoint by before_inc, warns, and is behind by after_inc while the path goes on. */
+static enum drives_state state_after_warning_and_lag(int32_t before_inc, int32_t after_inc)
+{
+    struct emcy emcy = {.node = 2, .code = 0x8210};
+    struct drives_config config = time_to_stop();
+    config.axis[1].following_error_max_mm = 1;
+    boot(&config);
+    enable_at(0);
+    for (unsigned i = 0; i < 8; i++) {
+        put_all(CIA402_ENABLED, 0);
+        put_status(2, CIA402_ENABLED, -before_inc);
+        cycle();
+    }
+    TEST_ASSERT_EQUAL_INT(DRIVES_ENABLED, drives_get_state(&drives));
+    emcy_write(fake_nodes_add(&nodes), &emcy);
+    setpoint.at[AXIS_Y] = 1e-6; /* the path goes on */
+    for (unsigned i = 0; i < 2; i++) {
+        put_all(CIA402_ENABLED, 0);
+        put_status(2, CIA402_ENABLED, -after_inc);
+        cycle();
+        setpoint.at[AXIS_Y] += 1e-6;
+    }
+    return drives_get_state(&drives);
+}
+
+static void test_a_warning_from_a_drive_that_stays_behind_is_a_loss(void)
+{
+    TEST_ASSERT_EQUAL_INT(DRIVES_STOPPING, state_after_warning_and_lag(300, 390));
+    TEST_ASSERT_EQUAL_INT(DRIVES_BRAKING, state_after_warning_and_lag(300, 410));
+    TEST_ASSERT_EQUAL_INT(DRIVES_STOPPING, state_after_warning_and_lag(300, 0));
+    TEST_ASSERT_EQUAL_INT(DRIVES_BRAKING, state_after_warning_and_lag(950, 1010));
 }
 
 static void test_a_refused_setpoint_ends_the_stop_on_the_path(void)
@@ -431,6 +471,7 @@ int main(void)
     RUN_TEST(test_all_brake_when_the_path_asks_the_faulty_drive_to_move);
     RUN_TEST(test_a_drive_that_only_warns_follows_to_rest);
     RUN_TEST(test_a_warning_from_a_drive_that_falls_silent_is_a_loss);
+    RUN_TEST(test_a_warning_from_a_drive_that_stays_behind_is_a_loss);
     RUN_TEST(test_a_refused_setpoint_ends_the_stop_on_the_path);
     RUN_TEST(test_all_drives_brake_when_asked_to_stop_at_once);
     return UNITY_END();

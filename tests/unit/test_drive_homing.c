@@ -95,6 +95,43 @@ static void test_a_drive_that_has_been_homed_is_told_to_stay_where_it_now_is(voi
     TEST_ASSERT_EQUAL_INT32(-1500, target_of_3);
 }
 
+static void test_a_drive_that_takes_the_home_offset_for_its_position_is_told_that(void)
+{
+    home_axes(0, 0, 1);
+    config.axis[2].homing.offset_is_position = true;
+    drives_init(&drives, &config);
+    run_until_homing(3);
+    assert_told(3, SDO_OBJECT(0x607C, 0), (uint32_t)-1500);
+    shown_inc = -1500;
+    shown_bits[3] = 0x1400;
+    run_until(DRIVES_ENABLED);
+}
+
+static void test_a_home_with_the_other_sign_is_a_fault_that_says_so(void)
+{
+    home_axes(0, 0, 1);
+    drives_init(&drives, &config);
+    run_until_homing(3);
+    shown_inc = 1500 + 400; /* 0.4 mm: from 20 mm/s at 500 mm/s2 */
+    shown_bits[3] = 0x1400;
+    run_until(DRIVES_BRAKING);
+    TEST_ASSERT_EQUAL_INT(TAKT_ERROR_DRIVE_HOME_OFFSET, drives_get_fault(&drives)->code);
+    assert_text(
+        "after homing axis Z (node 3) is at 1.9 mm: turn home_offset_is_position, its drive "
+        "means the other");
+}
+
+static void test_a_home_near_zero_has_no_sign(void)
+{
+    home_axes(0, 0, 1);
+    config.axis[2].homing.offset_mm = 0.1;
+    drives_init(&drives, &config);
+    run_until_homing(3);
+    shown_inc = -100;
+    shown_bits[3] = 0x1400;
+    run_until(DRIVES_ENABLED);
+}
+
 static void test_a_homing_error_is_told_with_the_statusword(void)
 {
     home_axes(1, 0, 0);
@@ -147,6 +184,9 @@ int main(void)
     RUN_TEST(test_axes_are_homed_in_their_order_and_those_of_one_order_together);
     RUN_TEST(test_an_attained_bit_from_before_does_not_count_while_the_drive_may_still_answer);
     RUN_TEST(test_a_drive_that_has_been_homed_is_told_to_stay_where_it_now_is);
+    RUN_TEST(test_a_drive_that_takes_the_home_offset_for_its_position_is_told_that);
+    RUN_TEST(test_a_home_with_the_other_sign_is_a_fault_that_says_so);
+    RUN_TEST(test_a_home_near_zero_has_no_sign);
     RUN_TEST(test_a_homing_error_is_told_with_the_statusword);
     RUN_TEST(test_homing_that_does_not_end_is_given_up);
     RUN_TEST(test_a_fault_while_homing_stops_all_axes);

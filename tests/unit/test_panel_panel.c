@@ -72,7 +72,10 @@ static void start_with(uint32_t password)
 {
     const struct panel_config config = {
         .port = {look, order, hear, NULL},
-        .store = {store_begin, store_write, store_prepare, store_place, NULL},
+        .store = {.begin = store_begin,
+                  .write = store_write,
+                  .prepare = store_prepare,
+                  .place = store_place},
         .password = password,
     };
 
@@ -197,7 +200,7 @@ static bool is_own(enum panel_id id)
 {
     return id == REGISTER_VERSION || id == REGISTER_CONTROL || id == REGISTER_REFUSAL ||
            id == REGISTER_PASSWORD || id == REGISTER_PROGRAM_MAX || id == REGISTER_UPLOAD_STATE ||
-           id == REGISTER_UPLOAD_RECEIVED ||
+           id == REGISTER_UPLOAD_RECEIVED || id == REGISTER_UPLOAD_ROOM ||
            (id >= REGISTER_UPLOAD_SIZE && id <= REGISTER_UPLOAD_CHECK);
 }
 
@@ -233,7 +236,7 @@ static void test_addresses_that_are_not_there_are_exception_2(void)
     const struct modbus_map map = panel_client_map(&one);
 
     TEST_ASSERT_EQUAL_INT(MODBUS_ADDRESS, map.read(map.context, MODBUS_COILS, 13, 1, data));
-    TEST_ASSERT_EQUAL_INT(MODBUS_ADDRESS, map.read(map.context, MODBUS_INPUTS, 54, 3, data));
+    TEST_ASSERT_EQUAL_INT(MODBUS_ADDRESS, map.read(map.context, MODBUS_INPUTS, 58, 2, data));
     TEST_ASSERT_EQUAL_INT(MODBUS_ADDRESS, map.write(map.context, MODBUS_HOLDINGS, 39, 1, data));
     TEST_ASSERT_EQUAL_INT(MODBUS_ADDRESS, map.write(map.context, MODBUS_INPUTS, 0, 1, data));
     TEST_ASSERT_EQUAL_INT64(PANEL_REFUSAL_ADDRESS, value_of(&one, REGISTER_REFUSAL));

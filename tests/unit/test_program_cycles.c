@@ -170,6 +170,26 @@ static void test_a_spindle_that_stands_cannot_tap(void)
     TEST_ASSERT_EQUAL_STRING("G84", reader.diagnostic.word);
 }
 
+/* A feed per revolution needs its speed alone. */
+static void test_a_spindle_without_an_encoder_cuts_no_thread(void)
+{
+    static const char *const threads[] = {"M3 S100\nG33 Z-5 K1", "M3 S100\nG33.1 Z-5 K1",
+                                          "M3 S100\nG76 P1 Z-5 I-1 J0.1 K0.5"};
+
+    for (unsigned i = 0; i < 3; i++) {
+        reader_prepare(&reader);
+        reader.config.spindle_encoder = false;
+        reader_text(&reader, threads[i]);
+        (void)reader_next(&reader, MOVE_SPINDLE);
+        reader_expect_error(&reader, TAKT_ERROR_SPINDLE_NO_ENCODER);
+    }
+    reader_prepare(&reader);
+    reader.config.spindle_encoder = false;
+    reader_text(&reader, "M3 S100\nG95 F0.1 G1 X1");
+    (void)reader_next(&reader, MOVE_SPINDLE);
+    (void)reader_next(&reader, MOVE_FEED);
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -185,5 +205,6 @@ int main(void)
     RUN_TEST(test_a_cycle_keeps_to_the_path_whatever_g64_says);
     RUN_TEST(test_a_thread_is_cut_to_equal_areas);
     RUN_TEST(test_a_spindle_that_stands_cannot_tap);
+    RUN_TEST(test_a_spindle_without_an_encoder_cuts_no_thread);
     return UNITY_END();
 }

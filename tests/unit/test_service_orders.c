@@ -90,6 +90,57 @@ static void test_a_line_runs_and_keeps_its_parameters(void)
     TEST_ASSERT_EQUAL_INT64(7000, shown(REGISTER_POSITION_X));
 }
 
+static void run_line(const char *text)
+{
+    start_line(text);
+    wait_for(PANEL_IDLE);
+}
+
+static void test_a_line_goes_on_with_the_modes_of_the_line_before(void)
+{
+    run_line("G91 G1 F600 X2");
+    run_line("X3");
+    TEST_ASSERT_EQUAL_INT64(5000, shown(REGISTER_POSITION_X));
+    run_line("G20");
+    run_line("X1");
+    TEST_ASSERT_EQUAL_INT64(30400, shown(REGISTER_POSITION_X));
+    must(REGISTER_RESET, 1);
+    run_line("G0 X1");
+    TEST_ASSERT_EQUAL_INT64(1000, shown(REGISTER_POSITION_X));
+}
+
+static void test_a_program_between_lines_ends_their_modes(void)
+{
+    run_line("G91 G20 G0 X1");
+    load("G0 X2\nG91\nM2\n");
+    must(REGISTER_MODE, PANEL_MODE_PROGRAM);
+    run_program();
+    TEST_ASSERT_EQUAL_INT64(2000, shown(REGISTER_POSITION_X));
+    run_line("G0 X3");
+    TEST_ASSERT_EQUAL_INT64(3000, shown(REGISTER_POSITION_X));
+}
+
+static void test_jogs_and_homing_neither_use_nor_change_the_modes_of_lines(void)
+{
+    run_line("G91 G20 G0 X1");
+    must(REGISTER_MODE, PANEL_MODE_JOG);
+    must(REGISTER_JOG_DISTANCE, 2500);
+    must(REGISTER_JOG_PLUS, 1);
+    wait_for(PANEL_IDLE);
+    TEST_ASSERT_EQUAL_INT64(27900, shown(REGISTER_POSITION_X));
+    run_line("G0 X1");
+    TEST_ASSERT_EQUAL_INT64(53300, shown(REGISTER_POSITION_X));
+}
+
+static void test_a_line_does_not_go_on_with_cutter_compensation(void)
+{
+    run_line("G41.1 D4");
+    run_line("G1 F1000 X10");
+    run_line("Y10");
+    TEST_ASSERT_EQUAL_INT64(10000, shown(REGISTER_POSITION_X));
+    TEST_ASSERT_EQUAL_INT64(10000, shown(REGISTER_POSITION_Y));
+}
+
 static void test_each_start_needs_its_mode(void)
 {
     load("M2\n");
@@ -354,6 +405,10 @@ int main(void)
     RUN_TEST(test_a_program_begins_where_the_axes_stand);
     RUN_TEST(test_an_error_ends_the_program_after_what_stands_before_it);
     RUN_TEST(test_a_line_runs_and_keeps_its_parameters);
+    RUN_TEST(test_a_line_goes_on_with_the_modes_of_the_line_before);
+    RUN_TEST(test_a_program_between_lines_ends_their_modes);
+    RUN_TEST(test_jogs_and_homing_neither_use_nor_change_the_modes_of_lines);
+    RUN_TEST(test_a_line_does_not_go_on_with_cutter_compensation);
     RUN_TEST(test_each_start_needs_its_mode);
     RUN_TEST(test_a_jog_goes_its_distance_at_its_feed);
     RUN_TEST(test_a_jog_stays_within_the_travel);

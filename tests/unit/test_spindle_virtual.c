@@ -182,9 +182,51 @@ static void test_a_value_out_of_range_is_named(void)
     TEST_ASSERT_EQUAL_STRING("inertia_kg_m2", virtual_spindle_check(&config));
 }
 
+static void test_ripple_swings_the_speed_as_often_as_it_is_told(void)
+{
+    double before_rpm = 0.0;
+    int rises = 0;
+
+    config.ripple_percent = 50;
+    config.ripple_per_revolution = 3;
+    start_anew();
+    run_for(2, 600, 0);
+    for (int i = 0; i < 1000; i++) { /* ten revolutions */
+        run_for(CYCLE_S, 600, 0);
+        rises += feedback.speed_rpm > 600 && before_rpm <= 600 ? 1 : 0;
+        before_rpm = feedback.speed_rpm;
+    }
+    TEST_ASSERT_INT_WITHIN(1, 30, rises);
+}
+
+static void test_the_encoders_noise_is_within_its_counts_and_the_same_again(void)
+{
+    double first[200];
+
+    config.encoder_counts_per_revolution = 1000;
+    config.encoder_noise_counts = 2;
+    for (int run = 0; run < 2; run++) {
+        bool noisy = false;
+
+        start_anew();
+        for (int i = 0; i < 200; i++) {
+            run_for(CYCLE_S, 600, 0);
+            const double off = 1000 * (feedback.angle_rev - spindle.angle_rev);
+
+            TEST_ASSERT_TRUE(off > -3.001 && off < 2.001);
+            noisy = noisy || off > 0 || off < -1;
+            first[i] = run == 0 ? feedback.angle_rev : first[i];
+            TEST_ASSERT_EQUAL_DOUBLE(first[i], feedback.angle_rev);
+        }
+        TEST_ASSERT_TRUE(noisy);
+    }
+}
+
 int main(void)
 {
     UNITY_BEGIN();
+    RUN_TEST(test_ripple_swings_the_speed_as_often_as_it_is_told);
+    RUN_TEST(test_the_encoders_noise_is_within_its_counts_and_the_same_again);
     RUN_TEST(test_it_is_at_speed_when_the_ramp_is);
     RUN_TEST(test_a_reverse_passes_through_standstill);
     RUN_TEST(test_the_angle_is_the_integral_of_the_speed);

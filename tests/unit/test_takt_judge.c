@@ -34,8 +34,10 @@ void tearDown(void)
 /* A judge of this program, before its first cycle. */
 static void begin_as(const char *program, bool waits)
 {
-    struct program_config config = {
-        .axes = machine_axes(&machine), .parameters = &parameters, .waits = waits};
+    struct program_config config = {.axes = machine_axes(&machine),
+                                    .parameters = &parameters,
+                                    .waits = waits,
+                                    .spindle_encoder = true};
     struct source source;
 
     for (int i = 0; i < AXIS_COUNT; i++) {
@@ -93,6 +95,21 @@ static void test_the_history_goes_on_from_block_to_block(void)
     landed_cycle(1, 1, 0); /* arrives at 500 mm/s */
     cycle(2, 1, 0);        /* and stands: a -5e5 */
     TEST_ASSERT_DOUBLE_WITHIN(1e-3, 5e5, judge.figures.acceleration_mm_s2[AXIS_X]);
+}
+
+/* 20 mm deep at 1 mm: turned 0.05 above the bottom, and 0.5 above it. */
+static void test_a_tap_may_turn_back_just_above_its_bottom(void)
+{
+    static const double depth[] = {19.95, 19.5};
+
+    for (unsigned i = 0; i < 2; i++) {
+        begin("M3 S100\nG33.1 X20 K1\n");
+        cycle(1, 10, 0);
+        cycle(1, depth[i], 0);
+        cycle(2, depth[i] - 0.01, 0);
+        TEST_ASSERT_DOUBLE_WITHIN(1e-12, 0, judge.figures.path_error_mm);
+        TEST_ASSERT_DOUBLE_WITHIN(1e-9, i == 0 ? 0 : 0.5, judge.figures.landing_error_mm);
+    }
 }
 
 static void test_a_setpoint_beside_a_line_is_seen(void)
@@ -337,6 +354,7 @@ static void test_nothing_is_missing_before_an_answer(void)
 int main(void)
 {
     UNITY_BEGIN();
+    RUN_TEST(test_a_tap_may_turn_back_just_above_its_bottom);
     RUN_TEST(test_velocity_acceleration_and_jerk_are_differences_from_standstill);
     RUN_TEST(test_the_history_goes_on_from_block_to_block);
     RUN_TEST(test_a_setpoint_beside_a_line_is_seen);

@@ -68,6 +68,7 @@ static void test_rows_have_the_columns_and_places_of_the_format(void)
     record.cmd.at[AXIS_Y] = -1.5;
     record.set.at[AXIS_Y] = 1e-9;
     record.act.at[AXIS_A] = 3.14159265358979323846 / 2;
+    record.spindle_rev = -12.25;
     trace_writer_add(&writer, &record);
     TEST_ASSERT_TRUE(trace_writer_flush(&writer));
     rewind(stream);
@@ -75,10 +76,10 @@ static void test_rows_have_the_columns_and_places_of_the_format(void)
     text[length] = '\0';
     (void)fclose(stream);
     TEST_ASSERT_EQUAL_STRING("cycle,time_s,block,line,feed_mm_min,override_percent,limiter,cmd_Y_"
-                             "mm,set_Y_mm,act_Y_mm,cmd_A_deg,set_A_deg,act_A_deg\n"
+                             "mm,set_Y_mm,act_Y_mm,cmd_A_deg,set_A_deg,act_A_deg,spindle_rev\n"
                              "12,0.012000,3,40,600.000000,100.000000,1.000000,-1.500000000,0."
                              "000000001,0.000000000,0.000000000,0.000000000,"
-                             "90.000000000\n",
+                             "90.000000000,-12.250000000\n",
                              text);
 }
 

@@ -1,0 +1,25 @@
+#include "controller/controller_feed.h"
+
+#include "motion/handover.h"
+
+void controller_feed_init(struct controller *c, const struct replay_source *compiled)
+{
+    const struct product_config config = {.limiter = (enum limiter_form)c->machine.limiter,
+                                          .cycle_s = 1e-6 * (double)c->machine.cycle_us};
+
+    handover_allow(&c->motion);
+    if (c->machine.landing == LANDING_SCALE || c->machine.limiter != LIMITER_CEILING) {
+        handover_allow_all(&c->motion);
+    }
+    product_init(&c->product, &config);
+    c->replays = compiled != NULL;
+    if (c->replays) {
+        replay_init(&c->replay, compiled);
+        handover_allow_all(&c->motion);
+    }
+}
+
+bool controller_feed_is_product(const struct controller *c)
+{
+    return !move_is_locked(&path_at(&c->path, c->path.first)->move);
+}

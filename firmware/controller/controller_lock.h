@@ -1,0 +1,15 @@
+/*
+ * The wiring of threads (room sync) into the controller.
+ */
+#ifndef TAKT_CONTROLLER_CONTROLLER_LOCK_H
+#define TAKT_CONTROLLER_CONTROLLER_LOCK_H
+
+#include "controller/controller.h"
+
+/* From the controller's machine. */
+void controller_lock_init(struct controller *c);
+
+/* Every cycle, after the program's events: what a thread asks of the spindle goes before. */
+void controller_lock_command(struct controller *c);
+
+#endif

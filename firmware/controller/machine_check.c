@@ -1,0 +1,134 @@
+#include "controller/machine_check.h"
+
+#include "base/maths.h"
+#include "drive/drives.h"
+
+#define DEGREE (MATHS_PI / 180.0)
+#define PER_US 1e-6
+#define RANGE  2147483647.0 /* of 32 bits */
+
+/*
+ * Setpoints are doubles: X mm from zero they are rounded, and differences over a cycle t turn that into noise of up to
+ * 4.5e-16 X / t^2 in acceleration and 9e-16 X / t^3 in jerk. The limits are kept to 1e-4 and 1e-3 of themselves, so
+ * they must stand that far above the noise.
+ */
+#define ROUNDING_ACCELERATION 5e-12
+#define ROUNDING_JERK         1e-12
+
+/* An axis of the machine; what its numbers are in a machine file: mm, or degrees. */
+struct checked {
+    const struct machine_axis *axis;
+    char letter;
+    double unit; /* of the file, in mm or rad */
+    double farthest_mm;
+    struct diagnostic *wrong;
+};
+
+static bool refuse(const struct checked *c, enum takt_error code, double value, double limit)
+{
+    diagnostic_set(c->wrong, code, 0, 0, &c->letter, 1, value);
+    diagnostic_set_limit(c->wrong, limit);
+    return false;
+}
+
+static bool check_travel(const struct checked *c)
+{
+    const struct machine_axis *axis = c->axis;
+
+    if (axis->travel_min_mm >= axis->travel_max_mm)
+        return refuse(c, TAKT_ERROR_MACHINE_TRAVEL, 0, 0);
+    if (axis->travel_min_mm > 0 || axis->travel_max_mm < 0)
+        return refuse(c, TAKT_ERROR_MACHINE_TRAVEL_ZERO, 0, 0);
+    if (c->farthest_mm * axis->increments_per_mm > RANGE)
+        return refuse(c, TAKT_ERROR_MACHINE_INCREMENTS, axis->increments_per_mm * c->unit, 0);
+    return true;
+}
+
+static bool check_limits(const struct checked *c, double cycle_s)
+{
+    const double acceleration = ROUNDING_ACCELERATION * c->farthest_mm / (cycle_s * cycle_s);
+    const double jerk = ROUNDING_JERK * c->farthest_mm / (cycle_s * cycle_s * cycle_s);
+
+    if (c->axis->max_acceleration_mm_s2 < acceleration)
+        return refuse(c, TAKT_ERROR_MACHINE_ACCELERATION, acceleration / c->unit, 0);
+    if (c->axis->max_jerk_mm_s3 < jerk)
+        return refuse(c, TAKT_ERROR_MACHINE_JERK, jerk / c->unit, 0);
+    return true;
+}
+
+static bool check_steps(const struct checked *c)
+{
+    const double rate_hz = c->axis->max_velocity_mm_s * c->axis->steps_per_mm;
+
+    if (!machine_axis_is_stepped(c->axis))
+        return true;
+    if (rate_hz > c->axis->step_rate_max_hz * (1 + 1e-9))
+        return refuse(c, TAKT_ERROR_MACHINE_STEP_RATE, rate_hz, c->axis->step_rate_max_hz);
+    if (c->farthest_mm * c->axis->steps_per_mm > RANGE)
+        return refuse(c, TAKT_ERROR_MACHINE_STEPS, 0, 0);
+    return true;
+}
+
+static bool check_home(const struct checked *c)
+{
+    return maths_abs(c->axis->home_offset_mm) * c->axis->increments_per_mm <= RANGE ||
+           refuse(c, TAKT_ERROR_MACHINE_HOME, 0, 0);
+}
+
+/* Each node id once, and none the controller's own. */
+static bool check_node(const struct checked *c, const struct machine *machine, unsigned number)
+{
+    const uint8_t node = c->axis->drive_node;
+
+    for (unsigned i = 0; i < number; i++) {
+        if (machine->axis[i].present && machine->axis[i].drive_node == node) {
+            const char both[] = {AXIS_LETTERS[i], ' ', 'a', 'n', 'd', ' ', c->letter};
+
+            diagnostic_set(c->wrong, TAKT_ERROR_MACHINE_NODES, 0, 0, both, sizeof both, node);
+            return false;
+        }
+    }
+    return node != machine->controller_node ||
+           refuse(c, TAKT_ERROR_MACHINE_CONTROLLER_NODE, node, 0);
+}
+
+static bool check_axis(const struct machine *machine, unsigned i, struct diagnostic *wrong)
+{
+    const struct machine_axis *axis = &machine->axis[i];
+    const struct checked c = {
+        .axis = axis,
+        .letter = AXIS_LETTERS[i],
+        .unit = axis->rotary ? DEGREE : 1.0,
+        .farthest_mm = maths_max(maths_abs(axis->travel_min_mm), maths_abs(axis->travel_max_mm)),
+        .wrong = wrong,
+    };
+
+    return check_travel(&c) && check_limits(&c, PER_US * (double)machine->cycle_us) &&
+           check_steps(&c) && check_home(&c) && check_node(&c, machine, i);
+}
+
+static bool check_bus(const struct machine *machine, struct diagnostic *wrong)
+{
+    struct drives_load load;
+    unsigned drives = 0;
+
+    for (unsigned i = 0; i < AXIS_COUNT; i++)
+        drives += machine_axis_is_on_can(&machine->axis[i]);
+    if (drives_predict_load(drives, machine->can_bitrate, machine->cycle_us, &load))
+        return true;
+    drives_set_overload(&load, wrong);
+    return false;
+}
+
+bool machine_check(const struct machine *machine, struct diagnostic *wrong)
+{
+    if (machine_axes(machine) == 0) {
+        diagnostic_set(wrong, TAKT_ERROR_MACHINE_NO_AXIS, 0, 0, "", 0, 0);
+        return false;
+    }
+    for (unsigned i = 0; i < AXIS_COUNT; i++) {
+        if (machine->axis[i].present && !check_axis(machine, i, wrong))
+            return false;
+    }
+    return check_bus(machine, wrong);
+}

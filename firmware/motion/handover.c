@@ -1,0 +1,53 @@
+#include "motion/handover.h"
+
+#include <string.h>
+
+void handover_allow(struct motion *m)
+{
+    m->hands_over = true;
+}
+
+void handover_allow_all(struct motion *m)
+{
+    m->hands_over_all = true;
+}
+
+void handover_add_cycle(struct motion *m, const struct point *at, double feed_mm_s, bool landed,
+                        struct cycle_record *record)
+{
+    const struct block *b = path_at(m->path, m->path->first);
+    struct lead_start start;
+
+    (void)lead_step(&m->lead, m->setpoint, true, &start); /* it stands, and takes ceilings */
+    m->current = m->path->first;
+    m->at = *at;
+    m->feed = feed_mm_s * m->cycle_s;
+    memset(record, 0, sizeof(*record));
+    record->cycle = m->cycles;
+    record->block = b->number;
+    record->line = b->move.line;
+    record->feed_mm_s = feed_mm_s;
+    record->override_percent = 100.0;
+    record->limiter = 1.0;
+    record->cmd = *at;
+    record->landed = landed;
+    m->cycles++;
+}
+
+void handover_pass_block(struct motion *m)
+{
+    path_pass(m->path);
+    m->current = m->path->first;
+}
+
+void handover_end(struct motion *m)
+{
+    const struct block *b = path_at(m->path, m->path->first);
+
+    lead_stand(&m->lead, b->start + b->length);
+    m->setpoint = m->lead.at;
+    m->feed = 0.0;
+    m->at = b->curve.end;
+    m->done = true;
+    m->rested = 0;
+}

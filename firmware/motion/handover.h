@@ -1,0 +1,28 @@
+/*
+ * Blocks whose setpoints somebody else makes: motion stands before them (MOTION_HANDED_OVER) and is told what becomes of
+ * them.
+ */
+#ifndef TAKT_MOTION_HANDOVER_H
+#define TAKT_MOTION_HANDOVER_H
+
+#include "motion/motion.h"
+
+#include <stdbool.h>
+
+/* From now on motion hands over blocks that follow the spindle; else it runs them at the commanded speed. */
+void handover_allow(struct motion *m);
+
+/* The same of all blocks but probing moves. */
+void handover_allow_all(struct motion *m);
+
+/* A cycle was made in the path's oldest block. feed: along the path. Fills everything of the record but set and act. */
+void handover_add_cycle(struct motion *m, const struct point *at, double feed_mm_s, bool landed,
+                        struct cycle_record *record);
+
+/* The oldest block is left without a stop; the next one is executed from now on. */
+void handover_pass_block(struct motion *m);
+
+/* The axes stand at the end of the oldest block: motion goes on from there. */
+void handover_end(struct motion *m);
+
+#endif

@@ -1,0 +1,286 @@
+/*
+ * Goal: a new ceiling never asks for what cannot be done any more.
+ *
+ * While the lead point is in a piece it may slow down by that piece's acceleration, and what lies ahead could be met from
+ * there when the piece was come to. A new ceiling may show something slow, or with a low acceleration, where only the end
+ * of what was known had been: or begin it earlier, since a higher ceiling c begins c b before its block, b half the window
+ * and a margin. The lead point does not come to such a piece where it begins, but where that can do no harm: with its
+ * block from S on, at
+ *
+ *     w b <= S - s
+ *
+ * for then all that the averages hold when the setpoint comes to S is that piece's. Until then it stays in the piece it
+ * is in and slows down as hard as that one allows: at worst to rest at S, which is what it was promised.
+ */
+#include "motion/lead_private.h"
+
+#include "base/maths.h"
+
+#include <stddef.h>
+
+/* Rounding of ceilings and accelerations. */
+#define SLACK 1e-9
+
+/* -- the lowest ceiling from the setpoint to the lead point -- */
+
+static struct lead_low *low_at(struct lead_place *p, uint32_t i)
+{
+    return &p->low[(p->low_first + i) % LEAD_LOW_MAX];
+}
+
+/* Where there is no room for one more the last two become one: the lower feed until the later place. */
+static void low_push(struct lead_place *p, uint32_t k)
+{
+    const struct ceiling_piece *piece = &p->ceiling->piece[k];
+    const uint64_t leave = p->ceiling->origin + (uint64_t)piece->leave;
+
+    while (p->low_count > 0 && low_at(p, p->low_count - 1)->feed >= piece->feed) {
+        p->low_count--;
+    }
+    if (p->low_count == LEAD_LOW_MAX) {
+        low_at(p, p->low_count - 1)->leave = leave;
+        return;
+    }
+    *low_at(p, p->low_count) = (struct lead_low){piece->feed, leave};
+    p->low_count++;
+}
+
+double lead_low_feed(struct lead *l, uint64_t setpoint)
+{
+    struct lead_place *p = &l->here;
+
+    while (p->low_count > 0 && lead_is_beyond(setpoint, low_at(p, 0)->leave)) {
+        p->low_first = (p->low_first + 1) % LEAD_LOW_MAX;
+        p->low_count--;
+    }
+    return p->low_count > 0 ? low_at(p, 0)->feed : 0.0;
+}
+
+/* -- from piece to piece -- */
+
+/* Is the lead point past the end of piece k? A span's end is exact, the others are where a ceiling begins. */
+static bool has_passed(const struct lead *l, const struct ceiling *c, uint32_t k)
+{
+    const struct ceiling_piece *p = &c->piece[k];
+
+    return lead_is_last_of_span(p) ? lead_is_beyond(l->at, c->origin + (uint64_t)p->leave)
+                                   : path_mm(c->origin, l->at) >= p->end_mm;
+}
+
+/* Where the lead point may brake at the earliest: its feed has then been kept for a window. mm from the origin */
+static double brake_position(const struct lead *l, const struct ceiling *c)
+{
+    const double wait = maths_max(0.0, l->window - (double)l->since_plus);
+
+    return path_mm(c->origin, l->at) + l->feed * wait;
+}
+
+/* Can what lies ahead be met at the highest overrides if the lead point comes to piece k here? */
+static bool can_follow(const struct lead *l, const struct ceiling *c, uint32_t k)
+{
+    const double x = brake_position(l, c);
+    const double energy = l->feed * l->feed * (1.0 - LEAD_ENERGY_SLACK);
+
+    for (uint32_t i = 0; i < LEAD_PIECES_MAX; i++) {
+        const struct ceiling_piece *p = &c->piece[k + i];
+        const bool last = lead_is_last_of_span(p) || k + i + 1 == c->count;
+
+        if (p->end_mm >= x || last) {
+            return energy <= p->end_energy_max + 2.0 * p->acceleration * (p->end_mm - x);
+        }
+        if (energy > p->end_energy_max) {
+            return false;
+        }
+    }
+    return true; /* so many pieces within a window: what ends the last one counts for those behind */
+}
+
+/* Does a piece allow whatever the averages may hold from the one before? */
+static bool is_no_lower(const struct lead *l, const struct ceiling_piece *had,
+                        const struct ceiling_piece *p)
+{
+    const double feed_max = p->feed_max * (1.0 + SLACK);
+    const bool kept = l->feed <= feed_max && l->since_minus >= l->window;
+
+    return (had->feed_max <= feed_max || kept) &&
+           p->acceleration >= had->acceleration * (1.0 - SLACK);
+}
+
+/* Has the lead point come past the end of piece k in this cycle, with the feed that the next one asks for? */
+static bool is_as_planned(const struct lead *l, const struct ceiling *c, uint32_t k)
+{
+    return path_mm(c->origin, l->before) < c->piece[k].end_mm &&
+           l->feed * l->feed <= c->piece[k].end_energy * (1.0 + LEAD_ENERGY_SLACK);
+}
+
+/* From piece k to the next, past its end. */
+static bool may_enter(const struct lead *l, const struct ceiling *c, uint32_t k)
+{
+    const struct ceiling_piece *p = &c->piece[k + 1];
+    const uint64_t start = c->origin + (uint64_t)p->start;
+
+    if (!p->opens || l->feed == 0.0 || lead_is_beyond(l->entered, start) ||
+        is_as_planned(l, c, k) || is_no_lower(l, &c->piece[k], p)) {
+        return true;
+    }
+    return l->feed * lead_entry_cycles(l) <= path_mm(l->at, start) &&
+           l->feed <= p->feed_max * (1.0 + SLACK) && can_follow(l, c, k + 1);
+}
+
+/* The next piece, behind k, that something begins with; 0: there is none in this span. */
+static uint32_t next_opening(const struct ceiling *c, uint32_t k)
+{
+    for (uint32_t i = 0; i < LEAD_PIECES_MAX && !lead_is_last_of_span(&c->piece[k]); i++) {
+        k++;
+        if (k == c->count) {
+            return 0;
+        }
+        if (c->piece[k].opens) {
+            return k;
+        }
+    }
+    return 0;
+}
+
+/*
+ * A lead point that cannot come down to the next ceiling where that begins, because it was lowered just now, has to come
+ * to it earlier: at w b = S - s, as long as what follows can be met from there at the highest overrides.
+ */
+static bool must_enter(const struct lead *l, const struct ceiling *c, uint32_t k)
+{
+    const uint32_t next = next_opening(c, k);
+    const double w = l->feed;
+
+    if (next == 0) {
+        return false;
+    }
+    const struct ceiling_piece *p = &c->piece[next];
+    const struct ceiling_piece *had = &c->piece[next - 1];
+
+    const double gap_mm = had->end_mm - brake_position(l, c);
+
+    return p->feed < w && w <= p->feed_max &&
+           w * (lead_entry_cycles(l) + 1.0) >= path_mm(l->at, c->origin + (uint64_t)p->start) &&
+           w * w * (1.0 - LEAD_ENERGY_SLACK) >
+               had->end_energy + 2.0 * c->piece[k].acceleration * gap_mm &&
+           can_follow(l, c, next);
+}
+
+/* Comes to the piece behind that which the lead point is in, if it is there. False: it stays. */
+static bool go_on(struct lead *l, struct lead_place *p)
+{
+    const struct ceiling *c = p->ceiling;
+    const uint32_t k = p->piece;
+
+    if (lead_is_last_of_span(&c->piece[k])) {
+        return false;
+    }
+    const bool passed = has_passed(l, c, k);
+
+    if (k + 1 == c->count) {
+        p->piece += passed ? 1 : 0;
+        return false;
+    }
+    if (!passed && !must_enter(l, c, k)) {
+        return false;
+    }
+    p->late = !may_enter(l, c, k);
+    if (p->late) {
+        return false;
+    }
+    p->early_a = passed ? MATHS_INFINITY : maths_min(p->early_a, c->piece[k].acceleration);
+    p->piece++;
+    low_push(p, p->piece);
+    return true;
+}
+
+/* What begins for the setpoint at the piece of the lead point has been come to. */
+static void note_entry(struct lead *l)
+{
+    if (lead_has_piece(l)) {
+        const uint64_t start =
+            l->here.ceiling->origin + (uint64_t)lead_piece(l, l->here.piece)->start;
+
+        l->entered = lead_is_beyond(start, l->entered) ? start : l->entered;
+    }
+}
+
+void lead_follow_pieces(struct lead *l)
+{
+    l->here.late = false;
+    if (lead_has_piece(l) && l->here.piece > 0 &&
+        has_passed(l, l->here.ceiling, l->here.piece - 1)) {
+        l->here.early_a = MATHS_INFINITY;
+    }
+    for (unsigned i = 0; i < LEAD_PIECES_MAX && lead_has_piece(l); i++) {
+        if (!go_on(l, &l->here)) {
+            return;
+        }
+        note_entry(l);
+    }
+}
+
+void lead_enter_piece(struct lead *l, uint32_t k)
+{
+    l->here.piece = k;
+    l->here.low_count = 0;
+    l->here.early_a = MATHS_INFINITY;
+    low_push(&l->here, k);
+    l->entered = l->span;
+    lead_follow_pieces(l);
+}
+
+/* -- a new ceiling -- */
+
+void lead_set_ceiling(struct lead *l, const struct ceiling *ceiling)
+{
+    l->coming.ceiling = ceiling;
+    l->coming.piece = 0;
+    l->coming.low_count = 0;
+    l->coming.early_a = MATHS_INFINITY;
+}
+
+/* Goes on by one piece in search of the lead point. False: that one is its own. */
+static bool search(struct lead *l)
+{
+    struct lead_place *p = &l->coming;
+
+    if (p->piece == p->ceiling->count) {
+        return false;
+    }
+    const struct ceiling_piece *piece = &p->ceiling->piece[p->piece];
+    const uint64_t leave = p->ceiling->origin + (uint64_t)piece->leave;
+
+    if (lead_is_beyond(l->standing ? l->at : l->span, leave)) {
+        p->piece++;
+        p->low_count = 0;
+        return true;
+    }
+    if (l->standing) {
+        return false;
+    }
+    if (p->low_count == 0) {
+        low_push(p, p->piece);
+    }
+    return go_on(l, p);
+}
+
+bool lead_take(struct lead *l)
+{
+    unsigned looked = 0;
+
+    if (l->coming.ceiling == NULL) {
+        return false;
+    }
+    l->coming.late = false;
+    while (looked < LEAD_PIECES_MAX && search(l)) {
+        looked++;
+    }
+    if (looked == LEAD_PIECES_MAX) {
+        return true;
+    }
+    l->here = l->coming;
+    l->coming.ceiling = NULL;
+    note_entry(l);
+    return false;
+}

@@ -1,0 +1,52 @@
+#include "panel/panel_private.h"
+
+#include <string.h>
+
+void panel_turn_upload(struct panel *panel, enum panel_upload_kind kind)
+{
+    if (panel->kind == kind)
+        return;
+    panel_upload_abandon(&panel->upload, panel_get_store(panel));
+    panel->kind = kind;
+}
+
+static enum panel_refusal refuse(struct panel *panel, enum panel_refusal refusal)
+{
+    const struct panel_store *store = &panel->config.settings;
+    const char *why = store->why != NULL ? store->why(store->context) : "";
+    size_t length = 0;
+
+    memset(panel->upload_text, 0, sizeof panel->upload_text);
+    while (why[length] != '\0' && length + 1 < sizeof panel->upload_text) {
+        panel->upload_text[length] = why[length];
+        length++;
+    }
+    return refusal;
+}
+
+enum panel_refusal panel_begin_settings(struct panel *panel, const struct panel_mailbox *mailbox)
+{
+    const struct panel_store *store = &panel->config.settings;
+
+    if (store->begin == NULL || mailbox->upload_size == 0)
+        return PANEL_REFUSAL_VALUE;
+    if (!panel_upload_begin(&panel->upload, store, mailbox->upload_size, mailbox->upload_crc))
+        return refuse(panel, PANEL_REFUSAL_STATE);
+    memset(panel->upload_text, 0, sizeof panel->upload_text);
+    return PANEL_REFUSAL_NONE;
+}
+
+/* They are looked at as a whole before they replace those that are there; no order is needed: they count later. */
+enum panel_refusal panel_commit_settings(struct panel *panel)
+{
+    const struct panel_store *store = &panel->config.settings;
+    bool good;
+
+    if (panel->upload.state != PANEL_UPLOAD_WHOLE)
+        return PANEL_REFUSAL_STATE;
+    if (!panel_upload_is_right(&panel->upload))
+        return PANEL_REFUSAL_VALUE;
+    good = store->prepare(store->context) && store->place(store->context);
+    panel_upload_abandon(&panel->upload, store);
+    return good ? PANEL_REFUSAL_NONE : refuse(panel, PANEL_REFUSAL_VALUE);
+}

@@ -1,0 +1,121 @@
+#include "replay/format.h"
+
+#include "base/crc32.h"
+#include "base/maths.h"
+
+#include <string.h>
+
+static const uint8_t magic[8] = {'T', 'A', 'K', 'T', 'P', 'L', 'A', 'N'};
+
+/* Where things are in the header. */
+enum {
+    AT_VERSION = 8,
+    AT_CYCLE = 12,
+    AT_STEP = 16,
+    AT_QUANTUM = 20,
+    AT_CEILING = 24,
+    AT_BLOCKS = 28,
+    AT_SECTIONS = 32,
+    AT_INTERVALS = 36,
+    AT_PROGRAM = 44,
+    AT_KEPT = 52,
+    AT_LIMITS = 60,
+    AT_CRC = REPLAY_HEADER_BYTES - 4
+};
+
+#define QUANTUM_BITS_MAX 40
+#define CEILING_MIN      100
+#define CEILING_MAX      120
+
+void replay_put(uint8_t *bytes, uint64_t value, unsigned size)
+{
+    for (unsigned i = 0; i < size; i++) {
+        bytes[i] = (uint8_t)(value >> (8 * i));
+    }
+}
+
+uint64_t replay_get(const uint8_t *bytes, unsigned size)
+{
+    uint64_t value = 0;
+
+    for (unsigned i = 0; i < size; i++) {
+        value |= (uint64_t)bytes[i] << (8 * i);
+    }
+    return value;
+}
+
+static void put_double(uint8_t *bytes, double value)
+{
+    uint64_t bits;
+
+    memcpy(&bits, &value, sizeof(bits));
+    replay_put(bytes, bits, 8);
+}
+
+static double get_double(const uint8_t *bytes)
+{
+    const uint64_t bits = replay_get(bytes, 8);
+    double value;
+
+    memcpy(&value, &bits, sizeof(value));
+    return value;
+}
+
+void replay_header_write(const struct replay_header *h, uint8_t bytes[REPLAY_HEADER_BYTES])
+{
+    memset(bytes, 0, REPLAY_HEADER_BYTES);
+    memcpy(bytes, magic, sizeof(magic));
+    replay_put(bytes + AT_VERSION, REPLAY_VERSION, 4);
+    replay_put(bytes + AT_CYCLE, h->cycle_us, 4);
+    replay_put(bytes + AT_STEP, h->step_cycles, 4);
+    replay_put(bytes + AT_QUANTUM, h->quantum_bits, 4);
+    replay_put(bytes + AT_CEILING, h->ceiling_percent, 4);
+    replay_put(bytes + AT_BLOCKS, h->blocks, 4);
+    replay_put(bytes + AT_SECTIONS, h->sections, 4);
+    replay_put(bytes + AT_INTERVALS, h->intervals, 8);
+    replay_put(bytes + AT_PROGRAM, h->program, 8);
+    put_double(bytes + AT_KEPT, h->kept);
+    for (int i = 0; i < AXIS_LINEAR_COUNT; i++) {
+        put_double(bytes + AT_LIMITS + (size_t)24 * (size_t)i, h->velocity_mm_s[i]);
+        put_double(bytes + AT_LIMITS + (size_t)24 * (size_t)i + 8, h->acceleration_mm_s2[i]);
+        put_double(bytes + AT_LIMITS + (size_t)24 * (size_t)i + 16, h->jerk_mm_s3[i]);
+    }
+    replay_put(bytes + AT_CRC, crc32_add(CRC32_START, bytes, AT_CRC), 4);
+}
+
+static bool is_sound(const struct replay_header *h)
+{
+    return h->cycle_us > 0 && h->step_cycles > 0 && h->quantum_bits <= QUANTUM_BITS_MAX &&
+           h->ceiling_percent >= CEILING_MIN && h->ceiling_percent <= CEILING_MAX &&
+           h->kept > 0.0 && h->kept < 1.0;
+}
+
+enum replay_fault replay_header_read(struct replay_header *h,
+                                     const uint8_t bytes[REPLAY_HEADER_BYTES])
+{
+    memset(h, 0, sizeof(*h));
+    if (memcmp(bytes, magic, sizeof(magic)) != 0) {
+        return REPLAY_FOREIGN;
+    }
+    if (replay_get(bytes + AT_VERSION, 4) != REPLAY_VERSION) {
+        return REPLAY_OTHER_VERSION;
+    }
+    if (replay_get(bytes + AT_CRC, 4) != crc32_add(CRC32_START, bytes, AT_CRC)) {
+        return REPLAY_DAMAGED;
+    }
+    h->cycle_us = (uint32_t)replay_get(bytes + AT_CYCLE, 4);
+    h->step_cycles = (uint32_t)replay_get(bytes + AT_STEP, 4);
+    h->quantum_bits = (uint32_t)replay_get(bytes + AT_QUANTUM, 4);
+    h->ceiling_percent = (uint32_t)replay_get(bytes + AT_CEILING, 4);
+    h->blocks = (uint32_t)replay_get(bytes + AT_BLOCKS, 4);
+    h->sections = (uint32_t)replay_get(bytes + AT_SECTIONS, 4);
+    h->intervals = replay_get(bytes + AT_INTERVALS, 8);
+    h->program = replay_get(bytes + AT_PROGRAM, 8);
+    h->kept = get_double(bytes + AT_KEPT);
+    for (int i = 0; i < AXIS_LINEAR_COUNT; i++) {
+        h->velocity_mm_s[i] = get_double(bytes + AT_LIMITS + (size_t)24 * (size_t)i);
+        h->acceleration_mm_s2[i] = get_double(bytes + AT_LIMITS + (size_t)24 * (size_t)i + 8);
+        h->jerk_mm_s3[i] = get_double(bytes + AT_LIMITS + (size_t)24 * (size_t)i + 16);
+    }
+    return is_sound(h) ? REPLAY_GOOD : REPLAY_DAMAGED;
+}

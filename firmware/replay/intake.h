@@ -1,0 +1,59 @@
+/*
+ * Reads a compiled program as its bytes come, a record at a time, into rings that the control cycle empties.
+ *
+ * Only the background writes the rings and what counts what has come; only the cycle moves what counts what is taken.
+ */
+#ifndef TAKT_REPLAY_INTAKE_H
+#define TAKT_REPLAY_INTAKE_H
+
+#include "replay/format.h"
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+/* Powers of two. */
+#define INTAKE_INTERVALS_MAX 1024
+#define INTAKE_ENDS_MAX      512
+#define INTAKE_SECTIONS_MAX  8
+
+/* Where the bytes come from, in order. Returns how many there were; fewer than asked for: no more at the moment. */
+struct replay_source {
+    void *context;
+    size_t (*read)(void *context, uint8_t *bytes, size_t size);
+};
+
+struct intake_section {
+    uint32_t first_block;
+    uint32_t blocks;
+    uint32_t intervals;
+    int64_t start[AXIS_LINEAR_COUNT]; /* quanta */
+};
+
+struct intake {
+    struct replay_source source;
+    struct replay_header header;
+    bool has_header;
+    bool ended;              /* the end of the program has come */
+    enum replay_fault fault; /* nothing more is read */
+    uint32_t crc;
+    uint64_t intervals; /* of all sections that came */
+    uint8_t bytes[REPLAY_RECORD_MAX];
+    size_t length; /* of what has come of the next record */
+    uint32_t intervals_came, intervals_taken;
+    uint32_t ends_came, ends_taken;
+    uint32_t sections_came, sections_taken;
+    int16_t third[INTAKE_INTERVALS_MAX][AXIS_LINEAR_COUNT];
+    uint32_t end[INTAKE_ENDS_MAX]; /* behind the end before it */
+    struct intake_section section[INTAKE_SECTIONS_MAX];
+};
+
+void intake_open(struct intake *s, const struct replay_source *source);
+
+/* Is there room for whatever the next record holds? */
+bool intake_has_room(const struct intake *s);
+
+/* Background: reads what has come, as far as there is room. */
+void intake_read(struct intake *s);
+
+#endif

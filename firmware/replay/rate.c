@@ -1,0 +1,89 @@
+#include "replay/rate.h"
+
+#include "base/maths.h"
+
+/* What an evaluation once a cycle may be off the formulas of a rate that changes all the time. */
+#define RATE_MARGIN 0.97
+
+/* Parts of the jerk that is left: for the change of the rate's change. */
+#define ROOM_PART 0.4
+
+/* Cycles that coming to rest takes beyond the way along its limit: to begin it and to end it. */
+#define BRAKE_MORE_CYCLES 400.0
+
+void rate_init(struct rate *r, const struct plan_limits *limits, double kept)
+{
+    struct rate_limits *l = &r->limits;
+
+    *r = (struct rate){.limits = {kept, 1.0, 1.0}, .now = 1.0};
+    for (int i = 0; i < AXIS_LINEAR_COUNT; i++) {
+        const double v = limits->velocity_mm_s[i] * limits->cycle_s;
+        const double a = limits->acceleration_mm_s2[i] * limits->cycle_s * limits->cycle_s;
+        const double j =
+            limits->jerk_mm_s3[i] * limits->cycle_s * limits->cycle_s * limits->cycle_s;
+
+        if ((limits->axes & (1U << i)) == 0) {
+            continue;
+        }
+        l->change = maths_min(l->change, RATE_MARGIN * a / v);
+        l->change = maths_min(l->change, RATE_MARGIN * j / (5.0 * a));
+        l->change = maths_min(l->change, RATE_MARGIN * maths_sqrt(j / (5.0 * v)));
+        l->room = maths_min(l->room, RATE_MARGIN * ROOM_PART * j / v);
+    }
+}
+
+void rate_set(struct rate *r, double to)
+{
+    r->now = to;
+    r->change = 0.0;
+}
+
+/* How much the change may change in a cycle, at a rate. */
+static double room_at(const struct rate_limits *l, double rate)
+{
+    return l->room * (1.0 - l->kept * rate * rate * rate);
+}
+
+/*
+ * The change of the next cycle from which the way is still enough to come to rest, by room every cycle: with s = n room the
+ * cycles to come lead (this one's mean) + s^2 / (2 room).
+ */
+static double landing_change(double way, double change, double room)
+{
+    const double left = way - 0.5 * change;
+
+    return left > 0.0 ? room * (maths_sqrt(0.25 + 2.0 * left / room) - 0.5) : 0.0;
+}
+
+double rate_step(struct rate *r, double to)
+{
+    const struct rate_limits *l = &r->limits;
+    const double high =
+        maths_clamp(r->now + r->change + room_at(l, r->now), r->now, 1.0); /* within this cycle */
+    const double room = room_at(l, high);
+    const double landing = room_at(l, maths_max(high, to));
+    const double way = maths_abs(to - r->now);
+    const double sign = to > r->now ? 1.0 : -1.0;
+    const double before = r->now;
+
+    if (way <= 0.5 * landing && maths_abs(r->change) <= landing) {
+        r->now = to;
+        r->change = 0.0;
+        return 0.5 * (before + to);
+    }
+    const double wanted = maths_min(landing_change(way, sign * r->change, landing),
+                                    l->change * (1.0 - l->kept * high * high));
+    const double bend = maths_clamp(sign * wanted - r->change, -room, room);
+
+    r->now = maths_clamp(r->now + r->change + 0.5 * bend, 0.0, 1.0);
+    r->change += bend;
+    return before + 0.5 * (r->now - before) - bend / 12.0;
+}
+
+/* Along |r'| = L (1 - k r^2): the integral of r dr / (L (1 - k r^2)) is -ln(1 - k) / (2 L k). */
+double rate_brake_cycles(const struct rate *r)
+{
+    const double k = r->limits.kept;
+
+    return -maths_ln(1.0 - k) / (2.0 * r->limits.change * k) + BRAKE_MORE_CYCLES;
+}

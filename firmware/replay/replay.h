@@ -1,0 +1,57 @@
+/*
+ * Replays a compiled program: setpoints out of its curve instead of out of the planner, in the same control cycle.
+ *
+ *     intake (background) -> sections, intervals, block ends -> replay_cycle -> setpoint
+ *
+ * struct motion hands over every motion (motion/handover.h) and does what happens at rest itself. The place on the curve
+ * moves at the rate that rate.h allows.
+ */
+#ifndef TAKT_REPLAY_REPLAY_H
+#define TAKT_REPLAY_REPLAY_H
+
+#include "base/error.h"
+#include "motion/motion.h"
+#include "replay/intake.h"
+#include "replay/rate.h"
+
+#include <stdbool.h>
+#include <stdint.h>
+
+struct replay {
+    struct intake intake;
+    struct rate rate;
+    bool begun;                            /* a section is being executed */
+    struct intake_section section;         /* that */
+    uint32_t interval;                     /* intervals of it that are over */
+    uint32_t taken;                        /* intervals of it taken from the stream */
+    double part;                           /* of the interval */
+    int64_t control[4][AXIS_LINEAR_COUNT]; /* quanta */
+    double quantum_mm;
+    double step;     /* intervals in a cycle at the rate 1 */
+    uint32_t blocks; /* of the section that are over */
+    uint64_t end; /* of the block, in parts of intervals from the section's start; with has_end */
+    bool has_end;
+    uint32_t
+        brake_intervals; /* fewer than these and not the section's end: no more must be driven */
+    uint64_t starved;    /* cycles in which that slowed the axes down */
+    struct diagnostic alarm; /* TAKT_OK: none */
+};
+
+enum replay_result {
+    REPLAY_CYCLE, /* the record holds this cycle */
+    REPLAY_FAILED /* the axes stand, and alarm says why: no cycle was made */
+};
+
+void replay_init(struct replay *r, const struct replay_source *source);
+
+/* Background: a move as it goes onto the path, of which the blocks alone are needed, not the feed or the rounding. */
+void replay_prepare(struct move *move);
+
+/* Background, as often as it likes. */
+void replay_read(struct replay *r, const struct plan_limits *limits);
+
+/* Instead of motion_cycle when that says MOTION_HANDED_OVER. */
+enum replay_result replay_cycle(struct replay *r, struct motion *m,
+                                const struct motion_operator *wanted, struct cycle_record *record);
+
+#endif

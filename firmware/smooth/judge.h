@@ -1,0 +1,40 @@
+/*
+ * What a piece of the curve needs of the axes, and whether it is within the tolerance.
+ */
+#ifndef TAKT_SMOOTH_JUDGE_H
+#define TAKT_SMOOTH_JUDGE_H
+
+#include "smooth/window.h"
+
+/* Most of |dx/du|, |d2x/du2|, |d3x/du3| on a piece, u in s of nominal time. */
+struct judge_need {
+    double first[AXIS_COUNT];
+    double second[AXIS_COUNT];
+    double third[AXIS_COUNT];
+    double feed_mm_s; /* along the path: over X, Y, Z, or over A, B, C where only they move */
+};
+
+/* How fast nominal time may pass on a piece. */
+struct judge_rate {
+    double most;       /* by the axes' limits: never exceeded */
+    double programmed; /* at the programmed feed; infinite for a rapid */
+};
+
+/* How fast the rate of nominal time may change, on every piece of a chain where the axes move: 1/s, 1/s2. */
+struct judge_change {
+    double by;
+    double rounded;
+    double rounding_s; /* over which it is rounded */
+};
+
+/* What a machine's axes are left for changes of rate. */
+void judge_change(const struct smooth_limits *limits, struct judge_change *change);
+void judge_need(const struct window *w, const struct route *r, unsigned piece,
+                struct judge_need *need);
+void judge_rate(const struct judge_need *need, const struct route_element *e,
+                const struct smooth_limits *limits, const struct judge_change *change,
+                struct judge_rate *rate);
+/* Pieces from the first one on, count at most, that keep the tolerance and pass their corners within it. */
+unsigned judge_pieces(const struct window *w, const struct route *r, unsigned count);
+
+#endif

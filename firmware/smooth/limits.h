@@ -1,0 +1,40 @@
+/*
+ * What the smoother needs to know of a machine, and the sizes of its memory.
+ */
+#ifndef TAKT_SMOOTH_LIMITS_H
+#define TAKT_SMOOTH_LIMITS_H
+
+#include "base/point.h"
+
+/* Elements of the programmed path that are known at one time. */
+#define SMOOTH_ELEMENTS_MAX 256
+
+/* Samples that are smoothed together, and how many of them are kept for good each time. */
+#define SMOOTH_SAMPLES_MAX  160
+#define SMOOTH_SAMPLES_KEPT 48
+
+/* Samples at each end of the window that stay where they are: a cubic piece has four. */
+#define SMOOTH_FIXED 3
+
+struct smooth_limits {
+    unsigned axes; /* bit i set: the machine has axis i */
+    double velocity_mm_s[AXIS_COUNT];
+    double acceleration_mm_s2[AXIS_COUNT];
+    double jerk_mm_s3[AXIS_COUNT];
+    double cycle_s; /* control cycle */
+    double
+        chord_mm; /* how far the line through setpoints may leave the curve: A cycle^2/8; set by the smoother */
+};
+
+/*
+ * The tolerance is a distance over all axes, in which a degree counts like a millimetre: what one unit of an axis
+ * (mm, rad) counts.
+ */
+#define SMOOTH_RAD_WEIGHT 57.29577951308232
+
+static inline double smooth_weight(int axis)
+{
+    return axis < AXIS_LINEAR_COUNT ? 1.0 : SMOOTH_RAD_WEIGHT;
+}
+
+#endif

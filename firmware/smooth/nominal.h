@@ -1,0 +1,15 @@
+/*
+ * The nominal feed of a route: where samples are first put. It needs not be exact, only near to what can be done: what
+ * smoothing finds too fast or too slow is timed anew (timing.h).
+ */
+#ifndef TAKT_SMOOTH_NOMINAL_H
+#define TAKT_SMOOTH_NOMINAL_H
+
+#include "smooth/route.h"
+
+/* Feed and acceleration of one element by its programmed feed and its curvature. */
+void nominal_set(struct route_element *e, const struct smooth_limits *limits);
+/* The corner before the newest element, the corners that now have more behind them, and the energies of all. */
+void nominal_update(struct route *r);
+
+#endif

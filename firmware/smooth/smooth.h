@@ -1,0 +1,71 @@
+/*
+ * Smooths chains of motions within a tolerance (G64 P): curves in, pieces of one smooth curve out. See README.md.
+ *
+ *     push -> [ route ] -> [ window of samples ] -> take
+ */
+#ifndef TAKT_SMOOTH_SMOOTH_H
+#define TAKT_SMOOTH_SMOOTH_H
+
+#include "smooth/judge.h"
+#include "smooth/merge.h"
+#include "smooth/relax.h"
+#include "smooth/route.h"
+#include "smooth/timing.h"
+#include "smooth/window.h"
+
+#include <stdbool.h>
+#include <stdint.h>
+
+/* A piece of curve: x(f) = sum of b_k(f) control[k], f = 0 ... 1 in interval_s of nominal time (window.h). */
+struct smooth_piece {
+    const struct move *move; /* the motion it belongs to; valid until the next call */
+    uint32_t number;         /* of that motion */
+    struct point control[4];
+    double interval_s;
+    struct judge_rate rate;
+    struct judge_change change; /* the same in all pieces of a chain */
+    bool
+        stop; /* comes to rest at its end, though the chain goes on: no way on was found in motion */
+    bool last; /* of the chain: ends at rest, in the end of the last motion */
+};
+
+struct smooth {
+    struct smooth_limits limits;
+    struct merge merge; /* the newest line, not on the route yet */
+    struct route route;
+    struct window window;
+    struct window before; /* as the last time left it */
+    struct relax relax;
+    struct timing timing;
+    struct judge_change change;
+    unsigned proved; /* pieces at the window's beginning that keep the tolerance, as they were */
+    unsigned before_proved;
+    unsigned standing; /* pieces that are still to come, in which the axes stand */
+    bool starts;       /* the next piece begins at rest */
+    bool
+        leaves; /* after those the chain goes on; else they end it, or the part of it before a stop */
+    struct smooth_piece stand;
+    bool stops;     /* the last of the ready ones is a stop */
+    bool open;      /* a chain has begun and not been taken to its end */
+    bool finished;  /* nothing follows in this chain */
+    unsigned ready; /* pieces that may be taken */
+    unsigned taken; /* of them */
+};
+
+void smooth_init(struct smooth *s, const struct smooth_limits *limits);
+/* May this motion be part of a smooth chain? */
+bool smooth_takes(const struct move *move, const struct curve *curve);
+/* May it join the chain that is open? True when none is. */
+bool smooth_joins(const struct smooth *s, const struct move *move);
+bool smooth_has_room(const struct smooth *s);
+/* Appends a motion. Needs room and smooth_joins(). */
+void smooth_push(struct smooth *s, const struct move *move, uint32_t number,
+                 const struct curve *curve);
+/* Nothing follows in this chain: it ends at rest. */
+void smooth_finish(struct smooth *s);
+/* The next piece. False: more motions, or the chain's end, must come first, or the chain has been taken to its end. */
+bool smooth_take(struct smooth *s, struct smooth_piece *piece);
+/* Forgets everything. */
+void smooth_reset(struct smooth *s);
+
+#endif

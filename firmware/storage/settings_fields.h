@@ -1,0 +1,37 @@
+/*
+ * The numbers of struct machine as they are stored: one row each. Numbers are never used again for something else.
+ */
+#ifndef TAKT_STORAGE_SETTINGS_FIELDS_H
+#define TAKT_STORAGE_SETTINGS_FIELDS_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+enum settings_type { SETTINGS_TEXT, SETTINGS_FLAG, SETTINGS_U8, SETTINGS_U32, SETTINGS_DOUBLE };
+
+struct settings_field {
+    uint16_t number;
+    bool of_axis; /* offset is in struct machine_axis, else in struct machine */
+    enum settings_type type;
+    size_t offset;
+    uint32_t count;     /* numbers; of a text: its bytes with the zero */
+    double least, most; /* in the units of the struct */
+    bool above;         /* least itself is not allowed */
+    const char *name;   /* as in a machine file */
+};
+
+extern const struct settings_field settings_fields[];
+extern const size_t settings_fields_count;
+
+/* Bytes of a field's value in a record. */
+uint32_t settings_field_bytes(const struct settings_field *field);
+
+/* From the struct to a record, and back. base: the struct the offset is in. */
+void settings_field_get(const struct settings_field *field, const void *base, uint8_t *bytes);
+void settings_field_set(const struct settings_field *field, void *base, const uint8_t *bytes);
+
+/* False: one of its numbers, *value, is out of range or not finite; or the text does not end. */
+bool settings_field_check(const struct settings_field *field, const void *base, double *value);
+
+#endif

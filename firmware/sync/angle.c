@@ -1,0 +1,49 @@
+#include "sync/angle.h"
+
+#include "base/maths.h"
+
+#include <string.h>
+
+/*
+ * All three poles at b = exp(-bandwidth); the gains of the critically damped g-h-k filter:
+ *
+ *     g = 1 - b^3,   h = 3/2 (1 - b)^2 (1 + b),   2 k = (1 - b)^3
+ */
+void angle_tune(struct angle *a, double bandwidth_rad_cycle)
+{
+    const double b = maths_exp(-bandwidth_rad_cycle);
+    const double c = 1.0 - b;
+
+    a->gain_angle = 1.0 - b * b * b;
+    a->gain_speed = 1.5 * c * c * (1.0 + b);
+    a->gain_acceleration = c * c * c;
+}
+
+void angle_init(struct angle *a)
+{
+    memset(a, 0, sizeof(*a));
+}
+
+struct angle_ahead angle_look_ahead(const struct angle *a, double cycles)
+{
+    return (struct angle_ahead){
+        .rev = a->rev + cycles * (a->speed + 0.5 * cycles * a->acceleration),
+        .speed = a->speed + cycles * a->acceleration,
+        .acceleration = a->acceleration,
+    };
+}
+
+void angle_measure(struct angle *a, double measured_rev)
+{
+    const struct angle_ahead expected = angle_look_ahead(a, 1.0);
+    const double off = measured_rev - expected.rev;
+
+    if (!a->begun) {
+        a->begun = true;
+        a->rev = measured_rev;
+        return;
+    }
+    a->rev = expected.rev + a->gain_angle * off;
+    a->speed = expected.speed + a->gain_speed * off;
+    a->acceleration = expected.acceleration + a->gain_acceleration * off;
+}

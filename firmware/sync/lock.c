@@ -1,0 +1,499 @@
+#include "sync/lock.h"
+
+#include "base/maths.h"
+#include "motion/handover.h"
+
+#include <string.h>
+
+#define SECONDS_PER_MINUTE 60.0
+
+/* Rounding of velocities that are compared. */
+#define SLACK 1e-6
+
+/* Counts that an angle may be off by itself. */
+#define COUNTS_OFF 2.0
+
+/* A spindle that was at its limit may be faster than it by this part: the axes lag a little then. */
+#define SPEED_ROOM 0.01
+
+#define COUNT_PART 0.1
+
+/* Feedback is older than the command by less than this. */
+#define FEEDBACK_CYCLES 4
+
+static void tune(struct lock *l, double bandwidth_rad_s)
+{
+    const double rad_cycle =
+        maths_min(bandwidth_rad_s * l->config.cycle_s, ANGLE_BANDWIDTH_RAD_CYCLE);
+
+    angle_tune(&l->angle, rad_cycle);
+    follower_tune(&l->follower, rad_cycle);
+}
+
+void lock_init(struct lock *l, const struct lock_config *config)
+{
+    memset(l, 0, sizeof(*l));
+    l->config = *config;
+    angle_init(&l->angle);
+    follower_init(&l->follower, config->cycle_s);
+    tune(l, ANGLE_BANDWIDTH_RAD_S);
+    l->next_block = UINT32_MAX;
+}
+
+void lock_restart(struct lock *l)
+{
+    l->phase = LOCK_IDLE;
+    l->alarm.code = TAKT_OK;
+    l->next_block = UINT32_MAX;
+}
+
+void lock_measure(struct lock *l, const struct spindle_feedback *spindle)
+{
+    l->spindle = *spindle;
+    l->commands = false;
+    angle_measure(&l->angle, spindle->angle_rev);
+}
+
+bool lock_get_command(const struct lock *l, double *rpm)
+{
+    if (l->commands) {
+        *rpm = l->command_rpm;
+    }
+    return l->commands;
+}
+
+const struct diagnostic *lock_get_alarm(const struct lock *l)
+{
+    return &l->alarm;
+}
+
+static void command(struct lock *l, double rpm)
+{
+    l->commands = true;
+    l->command_rpm = rpm;
+}
+
+/* Of the spindle, in the direction it was commanded: rev, rev/s. */
+struct lock_view {
+    double rev;
+    double speed;
+    double acceleration;
+};
+
+static struct lock_view view(const struct lock *l, double cycles)
+{
+    const struct angle_ahead ahead = angle_look_ahead(&l->angle, cycles);
+    const double rate = l->sense / l->config.cycle_s;
+
+    return (struct lock_view){l->sense * ahead.rev, rate * ahead.speed,
+                              rate * ahead.acceleration / l->config.cycle_s};
+}
+
+/* Axes and spindle stop, and the program ends when the axes stand. */
+static void fail(struct lock *l, enum takt_error code, double value, double limit)
+{
+    const struct block *b = path_at(l->chain.path, l->chain.path->first);
+
+    diagnostic_set(&l->alarm, code, b->move.line, 0, "", 0, value);
+    diagnostic_set_limit(&l->alarm, limit);
+    follower_brake(&l->follower);
+    l->stopped = true;
+}
+
+/* -- before the thread -- */
+
+/*
+ * Steps of an encoder's counts, pitch/counts each, come through the filters as jerk of about their height times the
+ * bandwidth cubed: they get COUNT_PART of the axes' jerk.
+ */
+static double bandwidth_of(const struct lock *l)
+{
+    const double count_mm = l->at.pitch_mm / l->config.counts;
+
+    return maths_min(ANGLE_BANDWIDTH_RAD_S,
+                     maths_cbrt(COUNT_PART * l->chain.limits.jerk_mm_s3 / count_mm));
+}
+
+static void begin(struct lock *l, double commanded_rpm)
+{
+    const struct block *b = path_at(l->chain.path, l->chain.path->first);
+
+    follower_start(&l->follower, &l->chain.limits);
+    l->at = chain_first_leg(&l->chain, 0.0);
+    tune(l, bandwidth_of(l));
+    l->sense = commanded_rpm < 0.0 ? -1.0 : 1.0;
+    l->stood = 0;
+    l->waited = 0;
+    l->stopped = false;
+    l->taps = b->move.kind == MOVE_TAP;
+    l->out = false;
+    l->before_rpm = commanded_rpm;
+    l->phase = LOCK_WAITS;
+}
+
+/*
+ * May it be begun? Not in the cycle that has passed something, which may command the spindle; not before the way out of
+ * the hole is on the path.
+ */
+static bool can_begin(const struct motion *m)
+{
+    const struct path *path = m->path;
+    const bool taps = path_at(path, path->first)->move.kind == MOVE_TAP;
+
+    return m->passed_first == path->first && (!taps || path->closed - path->first >= 2);
+}
+
+static double out_ratio(const struct lock *l)
+{
+    return path_at(l->chain.path, l->chain.path->first + 1)->move.speed_ratio;
+}
+
+static bool is_turning(const struct lock *l)
+{
+    return l->spindle.at_speed && !l->spindle.tripped && !l->spindle.silent &&
+           view(l, 0.0).speed * SECONDS_PER_MINUTE > LOCK_STANDS_RPM;
+}
+
+static bool has_waited(struct lock *l)
+{
+    l->waited++;
+    return (double)l->waited * l->config.cycle_s > l->config.wait_s;
+}
+
+static void set_tap(struct lock *l)
+{
+    const double in_rpm = maths_abs(l->before_rpm);
+    const double out_rpm = in_rpm * out_ratio(l);
+    const double most_rpm = l->config.max_rpm > 0.0 ? l->config.max_rpm : out_rpm;
+
+    l->tap = (struct tap){.in_rev_s = in_rpm / SECONDS_PER_MINUTE,
+                          .out_rev_s = maths_min(out_rpm, most_rpm) / SECONDS_PER_MINUTE,
+                          .ramp_rev_s2 = l->config.ramp_rpm_s / SECONDS_PER_MINUTE};
+}
+
+/* Can the axes be as fast as the spindle asks for? */
+static bool check_speed(struct lock *l, double pitch_mm, double rev_s)
+{
+    const double v = pitch_mm * rev_s;
+
+    if (v <= l->chain.limits.velocity_mm_s * (1.0 + SLACK)) {
+        return true;
+    }
+    fail(l, TAKT_ERROR_THREAD_FAST, v, l->chain.limits.velocity_mm_s);
+    return false;
+}
+
+/* Is there room for the lead-in, and behind it for coming to rest? */
+static bool check_length(struct lock *l, double rev_s)
+{
+    const double pitch_mm = l->at.pitch_mm;
+    const struct brake_state at_speed = {.v_mm_s = pitch_mm * rev_s};
+    const double in_mm = 0.5 * pitch_mm * l->lead_in.way_rev;
+    const double out_mm =
+        l->taps ? pitch_mm * tap_turns(&l->tap) : brake_reach(&at_speed, &l->chain.limits);
+    const bool fits = l->at.end_mm >= in_mm && l->chain.end_mm >= in_mm + out_mm;
+
+    if (!fits) {
+        fail(l, TAKT_ERROR_THREAD_SHORT, l->chain.end_mm, in_mm + out_mm);
+    }
+    return fits;
+}
+
+/*
+ * The zero angle: a whole revolution, where the encoder's index is; for a thread that goes on, where the one before
+ * ended. The next one whose lead-in has not begun.
+ */
+static double zero_angle(const struct lock *l, double rev)
+{
+    const bool goes_on = l->chain.path->first == l->next_block;
+    const double base = goes_on ? l->next_zero_rev : 0.0;
+
+    return base + maths_ceil(rev + 0.5 * l->lead_in.way_rev - base);
+}
+
+static void start(struct lock *l)
+{
+    const struct lock_view now = view(l, l->config.ahead_cycles);
+
+    chain_extend(&l->chain);
+    l->lead_in.pitch_mm = l->at.pitch_mm;
+    l->lead_in.way_rev = lead_in_way(l->at.pitch_mm, now.speed, &l->chain.limits);
+    if (l->taps) {
+        set_tap(l);
+    }
+    if (!check_speed(l, l->at.pitch_mm, now.speed) ||
+        (l->taps && !check_speed(l, l->at.pitch_mm, l->tap.out_rev_s)) ||
+        !check_length(l, now.speed)) {
+        return;
+    }
+    l->lead_in.zero_rev = zero_angle(l, now.rev);
+    l->at.zero_rev = l->lead_in.zero_rev;
+    l->ahead = l->at;
+    l->waited = 0;
+    l->phase = LOCK_FOLLOWS;
+}
+
+static void wait_for_spindle(struct lock *l, const struct motion_operator *wanted)
+{
+    if (wanted->hold || wanted->stop || wanted->wait) {
+        l->waited = 0;
+    } else if (++l->stood > FEEDBACK_CYCLES && is_turning(l)) {
+        start(l);
+    } else if (has_waited(l)) {
+        fail(l, TAKT_ERROR_THREAD_WAITS, l->config.wait_s, 0.0);
+    }
+}
+
+/* -- on the thread -- */
+
+/* The position that belongs to an angle. Out of a hole the thread is left at its start only. */
+static struct lead_in_place place_at(const struct lock *l, double rev)
+{
+    if (!l->out && !lead_in_is_over(&l->lead_in, rev)) {
+        return lead_in_at(&l->lead_in, rev);
+    }
+    return (struct lead_in_place){
+        .x = l->ahead.start_mm + l->ahead.pitch_mm * (rev - l->ahead.zero_rev),
+        .first = l->ahead.pitch_mm,
+    };
+}
+
+/* x' = f' w,  x'' = f'' w^2 + f' a,  x''' = f''' w^3 + 3 f'' w a   by angle, w and a of the spindle */
+static struct follower_target target_of(const struct lock *l)
+{
+    const double before = l->config.ahead_cycles - 1.0;
+    const struct lock_view now = view(l, before);
+    const struct lock_view middle = view(l, before + 0.5);
+    const struct lead_in_place p = place_at(l, now.rev);
+    const struct lead_in_place q = place_at(l, middle.rev);
+    const double w = middle.speed;
+
+    return (struct follower_target){
+        .x_mm = p.x,
+        .v_mm_s = p.first * now.speed,
+        .a_mm_s2 = p.second * now.speed * now.speed + p.first * now.acceleration,
+        .j_mm_s3 = q.third * w * w * w + 3.0 * q.second * w * middle.acceleration,
+    };
+}
+
+/* How far the axes are off the angle just measured. */
+static double lag_of(const struct lock *l)
+{
+    const double before = l->config.ahead_cycles - 1.0;
+    const double off = l->sense * (l->spindle.angle_rev - l->angle.rev);
+
+    return place_at(l, view(l, before).rev + off).x - l->follower.at.x_mm;
+}
+
+static double tolerance_of(const struct lock *l)
+{
+    return l->config.tolerance_mm + COUNTS_OFF * l->ahead.pitch_mm / l->config.counts;
+}
+
+/* Does it turn as it should? Where it turns back it may stand for a while. */
+static bool has_stopped(struct lock *l, const struct lock_view *now)
+{
+    const double rpm = now->speed * SECONDS_PER_MINUTE;
+
+    if (!l->taps || !l->tap.turned) {
+        return rpm < LOCK_STANDS_RPM;
+    }
+    if (-rpm >= LOCK_STANDS_RPM) {
+        l->waited = 0;
+        return false;
+    }
+    return has_waited(l);
+}
+
+static void watch(struct lock *l)
+{
+    const struct lock_view now = view(l, 0.0);
+    const double lag_mm = maths_abs(lag_of(l));
+    const double v = l->ahead.pitch_mm * maths_abs(now.speed);
+
+    if (l->spindle.tripped) {
+        fail(l, TAKT_ERROR_SPINDLE_TRIPPED, 0.0, 0.0);
+    } else if (l->spindle.silent) {
+        fail(l, TAKT_ERROR_SPINDLE_SILENT, 0.0, 0.0);
+    } else if (has_stopped(l, &now)) {
+        fail(l, TAKT_ERROR_THREAD_STOPPED, 0.0, 0.0);
+    } else if (v > l->chain.limits.velocity_mm_s * (1.0 + SPEED_ROOM)) {
+        fail(l, TAKT_ERROR_THREAD_FAST, v, l->chain.limits.velocity_mm_s);
+    } else if (lag_mm > tolerance_of(l)) {
+        fail(l, TAKT_ERROR_THREAD_LAG, lag_mm, tolerance_of(l));
+    }
+}
+
+/* The end that is not passed: of the thread; in a hole a little below the bottom; then the start. */
+static struct follower_end end_of(const struct lock *l)
+{
+    if (l->out) {
+        return (struct follower_end){.sense = -1.0, .x_mm = 0.0};
+    }
+    return (struct follower_end){
+        .sense = 1.0, .x_mm = l->chain.end_mm + (l->taps ? l->config.tolerance_mm : 0.0)};
+}
+
+/* Blocks of the angle, and of the setpoint, that have been left behind. */
+static void pass_blocks(struct lock *l, struct motion *m)
+{
+    const double rev = view(l, l->config.ahead_cycles).rev;
+
+    if (lead_in_is_over(&l->lead_in, rev) && place_at(l, rev).x >= l->ahead.end_mm) {
+        (void)chain_next_leg(&l->chain, &l->ahead);
+    }
+    while (l->follower.at.x_mm >= l->at.end_mm && l->at.block != l->chain.last) {
+        (void)chain_next_leg(&l->chain, &l->at);
+        handover_pass_block(m);
+    }
+}
+
+/* The spindle's part, and the axes' turning round with it. */
+static void follow_tap(struct lock *l, struct motion *m)
+{
+    const struct lock_view now = view(l, 0.0);
+    const double left = (l->chain.end_mm - place_at(l, now.rev).x) / l->at.pitch_mm;
+
+    command(l, l->sense * SECONDS_PER_MINUTE * tap_command(&l->tap, left, now.speed));
+    if (!l->out && l->tap.turned && l->follower.at.v_mm_s <= 0.0) {
+        l->out = true;
+        handover_pass_block(m);
+    }
+}
+
+/* Still at rest before the zero angle, a hold can be obeyed. */
+static bool may_hold(const struct lock *l)
+{
+    const double rev = view(l, l->config.ahead_cycles + 1.0).rev;
+
+    return lead_in_at(&l->lead_in, rev).x == 0.0 && l->follower.at.x_mm == 0.0;
+}
+
+static void follow(struct lock *l, struct motion *m, const struct motion_operator *wanted)
+{
+    if ((wanted->hold || wanted->stop) && may_hold(l)) {
+        l->phase = LOCK_WAITS;
+        return;
+    }
+    if (!l->follower.braking) {
+        chain_extend(&l->chain);
+        watch(l);
+    } else if (l->taps && !l->out && !l->stopped) {
+        fail(l, TAKT_ERROR_TAP_DEEP, l->config.tolerance_mm, 0.0);
+    }
+    if (wanted->stop) {
+        follower_brake(&l->follower);
+        l->stopped = true;
+    }
+    const struct follower_target target = target_of(l);
+    const struct follower_end end = end_of(l);
+
+    follower_step(&l->follower, &target, &end);
+    pass_blocks(l, m);
+    if (l->taps && l->stopped) {
+        command(l, 0.0);
+    } else if (l->taps) {
+        follow_tap(l, m);
+    }
+}
+
+/* -- after it -- */
+
+/* Tapped: not before the spindle turns as it did. */
+static void return_spindle(struct lock *l, struct motion *m)
+{
+    command(l, l->before_rpm);
+    if (is_turning(l)) {
+        l->phase = LOCK_IDLE;
+        handover_end(m);
+    } else if (has_waited(l)) {
+        fail(l, TAKT_ERROR_THREAD_WAITS, l->config.wait_s, 0.0);
+    }
+}
+
+static void finish(struct lock *l, struct motion *m)
+{
+    if (l->taps) {
+        l->phase = LOCK_RETURNS;
+        l->waited = 0;
+        return;
+    }
+    l->next_block = l->at.block + 1;
+    l->next_zero_rev = l->at.zero_rev + (l->at.end_mm - l->at.start_mm) / l->at.pitch_mm;
+    l->phase = LOCK_IDLE;
+    handover_end(m);
+}
+
+/* -- the cycle -- */
+
+static bool has_landed(const struct lock *l)
+{
+    return l->phase == LOCK_FOLLOWS && l->follower.rests && !l->stopped;
+}
+
+/* From the start of the block the setpoint is in: its line is straight. */
+static void set_point(const struct lock *l, struct point *at)
+{
+    const struct block *b = path_at(l->chain.path, l->chain.path->first);
+    const double x = l->follower.at.x_mm;
+    const double way = l->taps ? (l->out ? l->chain.end_mm - x : x) : x - l->at.start_mm;
+
+    for (unsigned i = 0; i < AXIS_COUNT; i++) {
+        at->at[i] =
+            b->curve.start.at[i] + way / b->length_mm * (b->curve.end.at[i] - b->curve.start.at[i]);
+    }
+}
+
+/* The setpoint of this cycle; before_mm: where it was. */
+static void report(struct lock *l, struct motion *m, double before_mm, struct cycle_record *record)
+{
+    const bool landed = has_landed(l);
+    const double feed = maths_abs(l->follower.at.x_mm - before_mm) / l->config.cycle_s;
+    struct point at;
+
+    at = landed ? path_at(m->path, m->path->first)->curve.end : m->at;
+    if (l->phase == LOCK_FOLLOWS && !landed) {
+        set_point(l, &at);
+    }
+    handover_add_cycle(m, &at, feed, landed, record);
+    if (landed) {
+        finish(l, m);
+    }
+}
+
+static void act(struct lock *l, struct motion *m, const struct motion_operator *wanted)
+{
+    switch (l->phase) {
+    case LOCK_IDLE:
+        break;
+    case LOCK_WAITS:
+        wait_for_spindle(l, wanted);
+        break;
+    case LOCK_FOLLOWS:
+        follow(l, m, wanted);
+        break;
+    case LOCK_RETURNS:
+        return_spindle(l, m);
+        break;
+    }
+}
+
+enum lock_result lock_cycle(struct lock *l, struct motion *m, const struct motion_operator *wanted,
+                            double commanded_rpm, struct cycle_record *record)
+{
+    if (l->alarm.code != TAKT_OK) {
+        command(l, 0.0);
+    }
+    if (l->alarm.code != TAKT_OK && (l->phase != LOCK_FOLLOWS || l->follower.rests)) {
+        return LOCK_FAILED;
+    }
+    if (l->phase == LOCK_IDLE && can_begin(m)) {
+        chain_begin(&l->chain, m->path);
+        begin(l, commanded_rpm);
+    }
+    const double before_mm = l->follower.at.x_mm;
+
+    act(l, m, wanted);
+    report(l, m, before_mm, record);
+    return LOCK_CYCLE;
+}

@@ -1,0 +1,22 @@
+/*
+ * The spindle's part in rigid tapping: slower towards the bottom, so that it turns back there and not below, then out.
+ */
+#ifndef TAKT_SYNC_TAP_H
+#define TAKT_SYNC_TAP_H
+
+#include <stdbool.h>
+
+struct tap {
+    double in_rev_s;    /* commanded, > 0 */
+    double out_rev_s;   /* > 0 */
+    double ramp_rev_s2; /* by which the spindle's drive changes its speed, > 0 */
+    bool turned;        /* the order to turn back has been given */
+};
+
+/* Turns that turning back takes at least. */
+double tap_turns(const struct tap *t);
+
+/* Each cycle: the speed to command, positive into the hole. turns_left: to the bottom, speed_rev_s: as measured. */
+double tap_command(struct tap *t, double turns_left, double speed_rev_s);
+
+#endif

@@ -1,0 +1,288 @@
+/*
+ * The image of a run on the desk: the firmware's controller, told every cycle by the desk what its inputs are and what
+ * has come over the bus. It runs as fast as both sides go; time is counted in cycles. remote/remote.h has the messages.
+ *
+ * The words it is started with name four files: setup, program, and the two ends of the talk.
+ */
+#include "correction/table_store.h"
+#include "correction/tables.h"
+#include "mps2/semihosting.h"
+#include "port/cortex_m.h"
+#include "port/image.h"
+#include "remote/remote.h"
+
+#include <stdbool.h>
+#include <string.h>
+
+#define COMMAND_LINE_MAX 256
+#define TOOLS_MAX        1000
+
+/* The SysTick of these boards: 25 MHz. Under -icount shift=0 it counts 40 instructions a tick. */
+#define CLOCK_HZ    25000000U
+#define NS_PER_TICK 40U
+
+/* Of the whole image: one controller and what it stands on. */
+struct desk {
+    int program, in, out;
+    struct remote_setup setup;
+    struct machine machine;
+    struct parameters parameters;
+    struct tool tools[TOOLS_MAX];
+    struct tool_table table;
+    struct correction_tables correction;
+    struct remote_inputs received;
+    struct remote_outputs sent;
+    uint32_t taken; /* frames of received that the controller has had */
+    struct controller controller;
+    /* while tables are read */
+    struct table stored;
+    uint8_t bytes[REMOTE_TABLE_MAX];
+};
+
+static struct desk desk;
+
+/* -- bus and program -- */
+
+static bool bus_send(void *context, const struct can_frame *frame)
+{
+    struct desk *d = context;
+
+    if (d->sent.frames == REMOTE_FRAMES_MAX) {
+        d->sent.refused++;
+        return false;
+    }
+    d->sent.frame[d->sent.frames++] = *frame;
+    return true;
+}
+
+static bool bus_receive(void *context, struct can_frame *frame)
+{
+    struct desk *d = context;
+
+    if (d->taken == d->received.frames)
+        return false;
+    *frame = d->received.frame[d->taken++];
+    return true;
+}
+
+static long program_read(void *context, char *buffer, size_t size)
+{
+    const struct desk *d = context;
+    const size_t count = semihosting_read(d->program, buffer, size);
+
+    return count > 0 ? (long)count : SOURCE_END;
+}
+
+static bool program_seek(void *context, uint64_t offset)
+{
+    const struct desk *d = context;
+
+    return semihosting_seek(d->program, (uint32_t)offset);
+}
+
+/* -- start -- */
+
+/* Takes the next word off a command line. NULL: there is none. */
+static char *next_word(char **line)
+{
+    char *word = *line;
+    char *end;
+
+    while (*word == ' ')
+        word++;
+    if (*word == '\0')
+        return NULL;
+    end = strchr(word, ' ');
+    *line = end == NULL ? word + strlen(word) : end + 1;
+    if (end != NULL)
+        *end = '\0';
+    return word;
+}
+
+static int open_next(char **line, enum semihosting_mode mode)
+{
+    const char *name = next_word(line);
+
+    return name == NULL ? -1 : semihosting_open(name, mode);
+}
+
+/* The handle of the setup; -1: one of the files is not there. The first word is the image's own. */
+static int open_files(struct desk *d)
+{
+    char words[COMMAND_LINE_MAX];
+    char *line = words;
+    int setup;
+
+    if (!semihosting_command_line(words, sizeof words) || next_word(&line) == NULL)
+        return -1;
+    setup = open_next(&line, SEMIHOSTING_READ);
+    d->program = open_next(&line, SEMIHOSTING_READ);
+    d->in = open_next(&line, SEMIHOSTING_READ);
+    d->out = open_next(&line, SEMIHOSTING_WRITE);
+    return d->program < 0 || d->in < 0 || d->out < 0 ? -1 : setup;
+}
+
+/* All of size bytes; a pipe may give them in pieces. */
+static bool read_all(int file, void *bytes, size_t size)
+{
+    uint8_t *at = bytes;
+
+    while (size > 0) {
+        const size_t count = semihosting_read(file, at, size);
+
+        if (count == 0)
+            return false;
+        at += count;
+        size -= count;
+    }
+    return true;
+}
+
+static enum takt_error read_table(struct desk *d, int file)
+{
+    const struct table_rules rules = {
+        .axes = machine_axes(&d->machine),
+        .largest_mm = d->machine.correction.largest_mm,
+        .steepest_ratio = d->machine.correction.steepest_ratio,
+    };
+    struct diagnostic wrong = {.code = TAKT_ERROR_TABLE_DAMAGED};
+    struct remote_table head;
+
+    if (!read_all(file, &head, sizeof head) || head.size > sizeof d->bytes ||
+        !read_all(file, d->bytes, head.size) ||
+        !table_restore(d->bytes, head.size, &rules, &d->stored, &wrong))
+        return wrong.code;
+    if (head.is_volume != 0)
+        return grid_set(&d->correction.volume, &d->stored, &wrong) ? TAKT_OK : wrong.code;
+    return axis_tables_add(&d->correction.axes, &d->stored, &wrong) ? TAKT_OK : wrong.code;
+}
+
+static enum takt_error read_setup(struct desk *d, int file)
+{
+    enum takt_error error = TAKT_OK;
+
+    if (!read_all(file, &d->setup, sizeof d->setup) || d->setup.magic != REMOTE_MAGIC ||
+        !read_all(file, &d->machine, sizeof d->machine) ||
+        !read_all(file, &d->parameters, sizeof d->parameters) || d->setup.tools > TOOLS_MAX ||
+        !read_all(file, d->tools, d->setup.tools * sizeof d->tools[0]))
+        return TAKT_ERROR_SOURCE_UNREADABLE;
+    d->table = (struct tool_table){d->tools, d->setup.tools};
+    for (uint32_t i = 0; i < d->setup.tables && error == TAKT_OK; i++)
+        error = read_table(d, file);
+    return error;
+}
+
+static void open_controller(struct desk *d)
+{
+    const struct controller_config config = {
+        .machine = &d->machine,
+        .source = {.read = program_read, .seek = program_seek, .context = d},
+        .can = {.send = bus_send, .receive = bus_receive, .context = d},
+        .tools = &d->table,
+        .parameters = &d->parameters,
+        .correction = &d->correction,
+        .exact_path = d->setup.exact_path != 0,
+        .block_delete = d->setup.block_delete != 0,
+        .from_line = d->setup.from_line,
+    };
+
+    controller_init(&d->controller, &config);
+}
+
+/* Compares notes with the desk. False: the run ends here. */
+static bool begin(struct desk *d, int setup)
+{
+    const struct remote_hello hello = {REMOTE_MAGIC, sizeof d->machine, sizeof d->parameters,
+                                       sizeof d->tools[0]};
+    struct remote_ready ready = {.clock_hz = CLOCK_HZ};
+    struct diagnostic damage;
+
+    if (!semihosting_write(d->out, &hello, sizeof hello))
+        return false;
+    ready.error = image_is_sound(&damage) ? read_setup(d, setup) : damage.code;
+    if (ready.error == TAKT_OK)
+        open_controller(d);
+    return semihosting_write(d->out, &ready, sizeof ready) && ready.error == TAKT_OK;
+}
+
+/* -- cycles -- */
+
+static uint32_t ns_since(uint32_t start)
+{
+    return NS_PER_TICK * ((start - CORTEX_SYSTICK_VALUE) & CORTEX_SYSTICK_MAX);
+}
+
+static void set_rise(struct desk *d)
+{
+    for (unsigned i = 0; i < AXIS_LINEAR_COUNT; i++)
+        correction_set_rise(controller_get_correction(&d->controller), (enum axis)i,
+                            d->received.rise_k[i]);
+}
+
+static void run_cycle(struct desk *d)
+{
+    uint32_t start = CORTEX_SYSTICK_VALUE;
+
+    controller_background(&d->controller);
+    d->sent.background_ns = ns_since(start);
+    start = CORTEX_SYSTICK_VALUE;
+    controller_cycle(&d->controller, &d->received.inputs);
+    d->sent.cycle_ns = ns_since(start);
+}
+
+static void fill_outputs(struct desk *d)
+{
+    const struct cycle_record *record = controller_get_record(&d->controller);
+
+    d->sent.state = controller_get_state(&d->controller);
+    d->sent.fault = controller_get_fault(&d->controller)->code;
+    d->sent.blocks = d->controller.path.pushed;
+    d->sent.has_record = record != NULL;
+    if (record != NULL)
+        d->sent.record = *record;
+}
+
+/* Without the room for frames that are not there. */
+static bool answer(const struct desk *d)
+{
+    const size_t size =
+        offsetof(struct remote_outputs, frame) + d->sent.frames * sizeof d->sent.frame[0];
+
+    return semihosting_write(d->out, &d->sent, size);
+}
+
+static bool ask(struct desk *d)
+{
+    const size_t head = offsetof(struct remote_inputs, frame);
+
+    return read_all(d->in, &d->received, head) && d->received.frames <= REMOTE_FRAMES_MAX &&
+           read_all(d->in, d->received.frame, d->received.frames * sizeof d->received.frame[0]);
+}
+
+static void run(struct desk *d)
+{
+    while (ask(d) && d->received.go_on != 0) {
+        d->taken = 0;
+        d->sent.frames = 0;
+        set_rise(d);
+        run_cycle(d);
+        fill_outputs(d);
+        if (!answer(d))
+            return;
+    }
+}
+
+int main(void)
+{
+    int setup;
+
+    CORTEX_SYSTICK_RELOAD = CORTEX_SYSTICK_MAX;
+    CORTEX_SYSTICK_VALUE = 0;
+    CORTEX_SYSTICK_CONTROL = CORTEX_SYSTICK_ON | CORTEX_SYSTICK_CORE;
+    setup = open_files(&desk);
+    if (setup < 0)
+        semihosting_exit(2);
+    if (begin(&desk, setup))
+        run(&desk);
+    semihosting_exit(0);
+}

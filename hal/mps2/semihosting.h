@@ -1,0 +1,26 @@
+/*
+ * What QEMU does for an image by semihosting (Semihosting for AArch32 and AArch64, 2.0): files of the computer it runs
+ * on, and the end of the run. Each call stops the image until it is done.
+ */
+#ifndef TAKT_MPS2_SEMIHOSTING_H
+#define TAKT_MPS2_SEMIHOSTING_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+enum semihosting_mode { SEMIHOSTING_READ = 1, SEMIHOSTING_WRITE = 5 };
+
+/* A handle; -1: it cannot be opened. */
+int semihosting_open(const char *path, enum semihosting_mode mode);
+/* Up to size bytes; returns how many, 0 at the end. */
+size_t semihosting_read(int file, void *bytes, size_t size);
+/* False: not all of it could be written. */
+bool semihosting_write(int file, const void *bytes, size_t size);
+bool semihosting_seek(int file, uint32_t offset);
+/* The words the image was started with, zero-terminated. False: there is no room for them. */
+bool semihosting_command_line(char *text, size_t size);
+/* Does not return. */
+_Noreturn void semihosting_exit(uint32_t status);
+
+#endif

@@ -1,0 +1,35 @@
+/*
+ * The CMSDK UARTs of the MPS2 boards (Arm Cortex-M System Design Kit, 4.3), by interrupt in both directions. One byte
+ * each way is all they hold; QEMU makes the other end wait meanwhile, so nothing is lost.
+ */
+#ifndef TAKT_MPS2_UART_H
+#define TAKT_MPS2_UART_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#define UART_COUNT 3
+
+/* Bytes that wait to be sent: a power of two, some cycles' frames. */
+#define UART_OUT_MAX 4096
+
+struct uart {
+    unsigned number;                           /* 0 ... UART_COUNT - 1 */
+    void (*take)(void *context, uint8_t byte); /* from the interrupt; NULL: what comes is dropped */
+    void *context;
+    volatile uint32_t written, sent; /* bytes so far, wrapping */
+    uint8_t out[UART_OUT_MAX];
+};
+
+/* It must not be moved. */
+void uart_open(struct uart *uart, unsigned number, void (*take)(void *context, uint8_t byte),
+               void *context);
+
+/* Queues all of the bytes or, for want of room, none: false. From one level of interrupts alone. */
+bool uart_send(struct uart *uart, const void *bytes, size_t size);
+
+/* Everything queued has gone. */
+bool uart_is_idle(const struct uart *uart);
+
+#endif

@@ -1,0 +1,69 @@
+#include "port/startup.h"
+
+#include "port/cortex_m.h"
+
+#include <stddef.h>
+#include <stdint.h>
+#include <string.h>
+
+/* From image.ld. */
+extern uint8_t image_stack_top[];
+extern uint8_t image_data_begin[], image_data_end[], image_data_values[];
+extern uint8_t image_bss_begin[], image_bss_end[];
+
+/* What a port does not replace. */
+#define WEAK __attribute__((weak))
+
+WEAK void port_begin(void)
+{
+}
+
+WEAK void port_fault(void)
+{
+    for (;;) {
+    }
+}
+
+WEAK void port_nmi(void)
+{
+    port_fault();
+}
+
+WEAK void port_supervisor_call(void)
+{
+    port_fault();
+}
+
+WEAK void port_pending_call(void)
+{
+    port_fault();
+}
+
+WEAK void port_systick(void)
+{
+    port_fault();
+}
+
+/* The core's own vectors (ARMv7-M, B1.5.3); those of the chip follow. */
+struct vectors {
+    uint8_t *stack;
+    startup_vector vector[15];
+};
+
+__attribute__((section(".vectors"), used)) static const struct vectors vectors = {
+    .stack = image_stack_top,
+    .vector = {port_reset, port_nmi, port_fault, port_fault, port_fault, port_fault, NULL, NULL,
+               NULL, NULL, port_supervisor_call, port_fault, NULL, port_pending_call, port_systick},
+};
+
+void port_reset(void)
+{
+    CORTEX_VTOR = (uint32_t)(uintptr_t)&vectors;
+    CORTEX_CPACR |= CORTEX_CPACR_FPU;
+    __asm volatile("dsb\n\tisb" ::: "memory");
+    port_begin();
+    memcpy(image_data_begin, image_data_values, (size_t)(image_data_end - image_data_begin));
+    memset(image_bss_begin, 0, (size_t)(image_bss_end - image_bss_begin));
+    (void)main();
+    port_fault();
+}

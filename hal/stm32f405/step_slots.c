@@ -1,0 +1,58 @@
+#include "stm32f405/step_slots.h"
+
+#include <string.h>
+
+#define NS_PER_US 1000U
+
+#define DIRECTION_PINS 8U
+#define CLEAR          16U
+
+bool step_slots_init(struct step_slots *s, uint32_t cycle_us)
+{
+    memset(s, 0, sizeof *s);
+    s->slots = cycle_us * NS_PER_US / STEP_SLOT_NS;
+    return s->slots > 0 && s->slots <= STEP_SLOTS_MAX && cycle_us * NS_PER_US % STEP_SLOT_NS == 0;
+}
+
+static void turn(struct step_slots *s, unsigned axis, bool backwards, unsigned slot)
+{
+    const unsigned pin = DIRECTION_PINS + axis;
+
+    s->word[slot] |= 1U << (backwards ? pin : pin + CLEAR);
+    s->direction = (uint8_t)((s->direction & ~(1U << axis)) | (unsigned)backwards << axis);
+}
+
+static bool add_axis(struct step_slots *s, unsigned axis, bool backwards, unsigned slot)
+{
+    if ((int32_t)slot < s->free[axis])
+        slot = (unsigned)s->free[axis];
+    if (slot + 1 >= s->slots + STEP_SLOTS_OVERHANG)
+        return false;
+    if (backwards != ((s->direction & 1U << axis) != 0))
+        turn(s, axis, backwards, slot - 1);
+    s->word[slot] |= 1U << axis;
+    s->word[slot + 1] |= 1U << (axis + CLEAR);
+    s->free[axis] = (int32_t)slot + 2;
+    return true;
+}
+
+bool step_slots_add(struct step_slots *s, const struct step_pulse *pulse)
+{
+    const unsigned slot = pulse->time_ns / STEP_SLOT_NS + STEP_SLOTS_DELAY;
+    bool good = true;
+
+    for (unsigned axis = 0; axis < AXIS_COUNT && good; axis++) {
+        if ((pulse->axes >> axis & 1U) != 0)
+            good = add_axis(s, axis, (pulse->direction >> axis & 1U) != 0, slot);
+    }
+    return good;
+}
+
+void step_slots_take(struct step_slots *s, uint32_t *words)
+{
+    memcpy(words, s->word, s->slots * sizeof *words);
+    memmove(s->word, s->word + s->slots, STEP_SLOTS_OVERHANG * sizeof *words);
+    memset(s->word + STEP_SLOTS_OVERHANG, 0, STEP_SLOTS_MAX * sizeof *words);
+    for (unsigned axis = 0; axis < AXIS_COUNT; axis++)
+        s->free[axis] -= (int32_t)s->slots;
+}

@@ -1,0 +1,40 @@
+# Debian's gcc-arm-none-eabi, for a Cortex-M named by TAKT_CPU: cortex-m4 or cortex-m7, both with their unit for
+# floating-point numbers (that of the M4 is for single precision: doubles are computed by libgcc).
+set(CMAKE_SYSTEM_NAME Generic)
+set(CMAKE_SYSTEM_PROCESSOR arm)
+set(CMAKE_TRY_COMPILE_TARGET_TYPE STATIC_LIBRARY)
+list(APPEND CMAKE_TRY_COMPILE_PLATFORM_VARIABLES TAKT_CPU)
+
+set(CMAKE_C_COMPILER arm-none-eabi-gcc)
+set(CMAKE_ASM_COMPILER arm-none-eabi-gcc)
+find_program(CMAKE_AR arm-none-eabi-gcc-ar)
+find_program(CMAKE_RANLIB arm-none-eabi-gcc-ranlib)
+find_program(TAKT_OBJCOPY arm-none-eabi-objcopy)
+find_program(TAKT_SIZE arm-none-eabi-size)
+
+set(TAKT_CPU cortex-m4 CACHE STRING "Processor of the target: cortex-m4 or cortex-m7")
+if(TAKT_CPU STREQUAL cortex-m4)
+  set(TAKT_FPU fpv4-sp-d16)
+elseif(TAKT_CPU STREQUAL cortex-m7)
+  set(TAKT_FPU fpv5-d16)
+else()
+  message(FATAL_ERROR "TAKT_CPU is ${TAKT_CPU}: cortex-m4 or cortex-m7 is expected")
+endif()
+
+set(TAKT_MACHINE_FLAGS "-mcpu=${TAKT_CPU} -mthumb -mfloat-abi=hard -mfpu=${TAKT_FPU}")
+# Every function and object in a section of its own, so that the linker leaves out what no image uses.
+set(CMAKE_C_FLAGS_INIT "${TAKT_MACHINE_FLAGS} -ffunction-sections -fdata-sections -fstack-usage")
+set(CMAKE_ASM_FLAGS_INIT "${TAKT_MACHINE_FLAGS}")
+
+# picolibc is a little smaller than newlib's nano (hal/port/README.md has the figures).
+set(TAKT_LIBC picolibc CACHE STRING "C library of the target: picolibc or newlib")
+if(TAKT_LIBC STREQUAL picolibc)
+  string(APPEND CMAKE_C_FLAGS_INIT " --specs=picolibc.specs")
+else()
+  string(APPEND CMAKE_C_FLAGS_INIT " --specs=nano.specs")
+endif()
+set(CMAKE_EXE_LINKER_FLAGS_INIT "-nostartfiles -Wl,--gc-sections -Wl,--fatal-warnings")
+
+set(CMAKE_FIND_ROOT_PATH_MODE_PROGRAM NEVER)
+set(CMAKE_FIND_ROOT_PATH_MODE_LIBRARY ONLY)
+set(CMAKE_FIND_ROOT_PATH_MODE_INCLUDE ONLY)

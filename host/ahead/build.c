@@ -1,0 +1,249 @@
+#include "ahead/problem.h"
+
+#include "ahead/excess.h"
+#include "ahead/vector.h"
+
+#include <string.h>
+
+/* A foot is beside the curve when the way to it is across the path but for this. */
+#define BESIDE_PART 0.05
+#define BESIDE_MM   1e-6
+
+/* Of the tolerance at least so much is used. */
+#define LEAST_PART 0.3
+
+/* Weights of four control points: derivatives at an interval's first knot, and at its middle. */
+static const double knot_value[4] = {1.0 / 6, 4.0 / 6, 1.0 / 6, 0};
+static const double knot_first[4] = {-0.5, 0, 0.5, 0};
+static const double difference[4] = {-1, 1, 0, 0}; /* of control points: bounds velocity */
+static const double difference_value[4] = {0.5, 0.5, 0, 0};
+static const double knot_second[4] = {1, -2, 1, 0};
+static const double middle_value[4] = {1.0 / 48, 23.0 / 48, 23.0 / 48, 1.0 / 48};
+static const double middle_first[4] = {-1.0 / 8, -5.0 / 8, 5.0 / 8, 1.0 / 8};
+static const double middle_second[4] = {0.5, -0.5, -0.5, 0.5};
+static const double third[4] = {-1, 3, -3, 1};
+
+static double of_axis(double (*control)[3], const double weight[4], int axis)
+{
+    return weight[0] * control[0][axis] + weight[1] * control[1][axis] +
+           weight[2] * control[2][axis] + weight[3] * control[3][axis];
+}
+
+/* The rows of one axis, see problem.h. */
+static void set_axis(const struct problem *p, struct problem_cell *cell, double (*control)[3],
+                     int axis)
+{
+    const double *scale = p->scale[axis];
+    const double d1 = of_axis(control, difference, axis);
+    const double q1 = of_axis(control, knot_first, axis);
+    const double q2 = of_axis(control, knot_second, axis);
+    const double m1 = of_axis(control, middle_first, axis);
+    const double m2 = of_axis(control, middle_second, axis);
+    const double m3 = of_axis(control, third, axis);
+
+    cell->now[axis][FORM_VELOCITY] = scale[FORM_VELOCITY] * d1;
+    cell->now[axis][FORM_ACCELERATION] = scale[FORM_ACCELERATION] * q2;
+    cell->now[axis][FORM_JERK] = scale[FORM_JERK] * m3;
+    for (int k = 0; k < 4; k++) {
+        cell->time[axis][FORM_VELOCITY][k] = scale[FORM_VELOCITY] * 0.5 * d1 * difference_value[k];
+        cell->time[axis][FORM_ACCELERATION][k] =
+            scale[FORM_ACCELERATION] * (q2 * knot_value[k] + 0.5 * q1 * knot_first[k]);
+        cell->time[axis][FORM_JERK][k] =
+            scale[FORM_JERK] *
+            (m3 * middle_value[k] + 1.5 * m2 * middle_first[k] + 0.5 * m1 * middle_second[k]);
+    }
+}
+
+/* |q' + d'| sqrt(y) <= F, by its tangent. */
+static void set_feed(const struct problem_window *w, struct problem_cell *cell,
+                     double (*control)[3], double feed_mm_s)
+{
+    const double limit = feed_mm_s * w->limits->step_s;
+    double way[3];
+    double length;
+
+    trail_sum(control, difference, way);
+    length = vector_length(way);
+    cell->feed = 0;
+    if (!maths_is_finite(limit) || length < 0.5 * limit)
+        return;
+    cell->feed = length / limit;
+    for (int i = 0; i < 3; i++)
+        cell->feed_way[i] = way[i] / (length * limit);
+    for (int k = 0; k < 4; k++)
+        cell->feed_time[k] = 0.5 * cell->feed * difference_value[k];
+}
+
+/*
+ * Between the places that are looked at the curve bends away by a t^2 / 8 at most: half a knot for the path, a cycle for
+ * its joints, which are judged by the straight lines between setpoints.
+ */
+static double radius_of(const struct problem_window *w, const struct ahead_element *e)
+{
+    const double t = 0.5 * w->limits->step_s;
+    const double sag_mm = vector_length(w->limits->acceleration_mm_s2) * t * t / 8;
+    const double least_mm = LEAST_PART * e->tolerance_mm;
+
+    return maths_max(least_mm, maths_min(w->inside * e->tolerance_mm,
+                                         EXCESS_TOLERANCE_PART * e->tolerance_mm - sag_mm));
+}
+
+/* Is x beside its foot, not before or behind it as at a corner? */
+static bool is_beside(const struct problem_ball *ball)
+{
+    const double along = vector_dot(ball->offset, ball->along);
+
+    return maths_abs(along) <= BESIDE_PART * vector_length(ball->offset) + BESIDE_MM;
+}
+
+/* Within reach of its foot: the path may be left sideways only; a corner in no direction. */
+static void set_tube(const struct problem_window *w, struct problem_ball *ball,
+                     double (*control)[3], const double weight[4], double place_mm, size_t *hint)
+{
+    const struct ahead_element *e;
+    double foot[3];
+    double x[3];
+
+    *hint = ahead_path_find(w->path, place_mm, *hint);
+    e = &w->path->element[*hint];
+    ahead_path_at(w->path, *hint, place_mm, foot, ball->along);
+    trail_sum(control, weight, x);
+    vector_from_to(foot, x, ball->offset);
+    if (!is_beside(ball))
+        memset(ball->along, 0, sizeof ball->along);
+    memcpy(ball->weight, weight, sizeof ball->weight);
+    ball->radius_mm = radius_of(w, e);
+}
+
+/* Where the curve is nearest to a point, from the half knot nearest to it on. */
+static double nearest_knot(const struct trail *t, const double corner[3], double u)
+{
+    const double last = (double)t->intervals;
+
+    for (int i = 0; i < 4; i++) {
+        const double v = maths_clamp(u, 0, last - 1e-9);
+        const size_t k = (size_t)v;
+        double weight[4];
+        double x[3];
+        double slope[3];
+        double way[3];
+        double square;
+
+        trail_weights(v - (double)k, weight);
+        trail_sum(t->control + k, weight, x);
+        trail_slopes(v - (double)k, weight);
+        trail_sum(t->control + k, weight, slope);
+        vector_from_to(x, corner, way);
+        square = vector_dot(slope, slope);
+        if (square < 1e-16)
+            return v;
+        u = v + maths_clamp(vector_dot(way, slope) / square, -0.5, 0.5);
+    }
+    return maths_clamp(u, 0, last - 1e-9);
+}
+
+static double distance_at(const struct trail *t, size_t site, const double corner[3])
+{
+    double x[3];
+    double way[3];
+
+    trail_at(t, 0.5 * (double)site, x);
+    vector_from_to(x, corner, way);
+    return vector_length(way);
+}
+
+/*
+ * The half knot nearest to a corner: from where the path's corner is passed downhill, so that another pass of a path that
+ * turns back on itself is not taken for it.
+ */
+static size_t nearest_site(const struct trail *t, const double corner[3], size_t site, size_t first,
+                           size_t last)
+{
+    double here = distance_at(t, site, corner);
+
+    while (site < last && distance_at(t, site + 1, corner) < here)
+        here = distance_at(t, ++site, corner);
+    while (site > first && distance_at(t, site - 1, corner) < here)
+        here = distance_at(t, --site, corner);
+    return site;
+}
+
+/* The curve at u comes within reach of a joint; of a bent one sideways, so that it may still move along. */
+static void add_joint(struct problem *p, const struct problem_window *w,
+                      const struct ahead_element *e, double u)
+{
+    const size_t k = (size_t)u;
+    struct problem_ball *ball;
+    double x[3];
+    double length;
+    int slot = 2;
+
+    if (k < w->first || k >= w->first + p->cells)
+        return;
+    while (slot + 1 < CELL_BALLS && p->cell[k - w->first].ball[slot].radius_mm > 0)
+        slot++;
+    ball = &p->cell[k - w->first].ball[slot];
+    trail_slopes(u - (double)k, ball->weight);
+    trail_sum(w->trail->control + k, ball->weight, ball->along);
+    length = vector_length(ball->along);
+    for (int i = 0; i < 3; i++)
+        ball->along[i] = e->joint == AHEAD_BENT && length > 0 ? ball->along[i] / length : 0;
+    trail_weights(u - (double)k, ball->weight);
+    trail_sum(w->trail->control + k, ball->weight, x);
+    vector_from_to(e->curve.end.at, x, ball->offset);
+    ball->radius_mm = radius_of(w, e);
+}
+
+static void set_joints(struct problem *p, const struct problem_window *w)
+{
+    const struct trail *t = w->trail;
+    const size_t last = 2 * (w->first + p->cells);
+    const size_t first = 2 * w->first;
+    size_t site = first;
+    size_t k = ahead_path_find(w->path, t->place_mm[site], 0);
+
+    for (; k + 1 < w->path->count && w->path->element[k + 1].start_mm < t->place_mm[last]; k++) {
+        const struct ahead_element *e = &w->path->element[k];
+        const double at_mm = w->path->element[k + 1].start_mm;
+        const double *end = e->curve.end.at;
+
+        if (e->joint == AHEAD_SMOOTH)
+            continue;
+        while (site < last && t->place_mm[site] < at_mm)
+            site++;
+        add_joint(p, w, e,
+                  nearest_knot(t, end, 0.5 * (double)nearest_site(t, end, site, first, last)));
+    }
+}
+
+static void set_scales(struct problem *p, const struct ahead_limits *l)
+{
+    const double h = l->step_s;
+
+    for (int i = 0; i < 3; i++) {
+        p->scale[i][FORM_VELOCITY] = 1 / (l->velocity_mm_s[i] * h);
+        p->scale[i][FORM_ACCELERATION] = 1 / (l->acceleration_mm_s2[i] * h * h);
+        p->scale[i][FORM_JERK] = 1 / (l->jerk_mm_s3[i] * h * h * h);
+    }
+}
+
+void problem_build(struct problem *p, const struct problem_window *w)
+{
+    size_t hint = 0;
+
+    set_scales(p, w->limits);
+    for (size_t i = 0; i < p->cells; i++) {
+        double(*control)[3] = w->trail->control + w->first + i;
+        const double *place_mm = &w->trail->place_mm[2 * (w->first + i)];
+        struct problem_cell *cell = &p->cell[i];
+
+        for (int axis = 0; axis < 3; axis++)
+            set_axis(p, cell, control, axis);
+        set_tube(w, &cell->ball[0], control, knot_value, place_mm[0], &hint);
+        set_feed(w, cell, control, w->path->element[hint].feed_mm_s);
+        set_tube(w, &cell->ball[1], control, middle_value, place_mm[1], &hint);
+        for (int k = 2; k < CELL_BALLS; k++)
+            cell->ball[k].radius_mm = 0;
+    }
+    set_joints(p, w);
+}

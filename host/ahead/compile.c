@@ -1,0 +1,280 @@
+#include "ahead/compile.h"
+
+#include "ahead/guess.h"
+#include "ahead/vector.h"
+#include "base/fnv.h"
+#include "base/maths.h"
+
+#include <string.h>
+
+/* Exact path: the axes stop where the direction changes by more than this, and stay within so much of an increment. */
+#define EXACT_CHANGE 1e-6
+#define EXACT_PART   0.5
+
+static uint64_t add_number(uint64_t digest, uint64_t number)
+{
+    return fnv_add_double(digest, (double)number);
+}
+
+uint64_t compile_digest(uint64_t digest, const struct move *m)
+{
+    digest = add_number(digest, (uint64_t)m->kind);
+    if (!move_is_motion(m))
+        return fnv_add_double(digest, m->dwell_s);
+    for (int i = 0; i < AXIS_COUNT; i++)
+        digest = fnv_add_double(digest, m->end.at[i]);
+    digest = fnv_add_double(digest, m->feed_mm_s);
+    digest = add_number(digest, (uint64_t)m->path);
+    digest = fnv_add_double(digest, m->tolerance_mm);
+    digest = add_number(digest, (uint64_t)m->plane);
+    digest = add_number(digest, m->turns);
+    digest = fnv_add_double(digest, m->centre_mm[0]);
+    digest = fnv_add_double(digest, m->centre_mm[1]);
+    return fnv_add_double(digest, m->base_radius_mm);
+}
+
+static uint32_t step_cycles(uint32_t cycle_us)
+{
+    const uint32_t step_us = (uint32_t)(1e6 * COMPILE_STEP_S + 0.5);
+
+    return (step_us + cycle_us - 1) / cycle_us;
+}
+
+/* What the optimiser may use of the machine. */
+static void set_limits(struct compile *c)
+{
+    const struct plan_limits *of = &c->config.limits;
+
+    c->limits.step_s = (double)step_cycles(c->config.cycle_us) * 1e-6 * c->config.cycle_us;
+    for (int i = 0; i < AXIS_LINEAR_COUNT; i++) {
+        c->limits.velocity_mm_s[i] = COMPILE_SPEED_PART * of->velocity_mm_s[i];
+        c->limits.acceleration_mm_s2[i] = (1 - COMPILE_RESERVE) * of->acceleration_mm_s2[i];
+        c->limits.jerk_mm_s3[i] = (1 - COMPILE_RESERVE) * of->jerk_mm_s3[i];
+        if ((of->axes & (1U << i)) == 0) { /* it never moves: any limit will do */
+            c->limits.velocity_mm_s[i] = 1;
+            c->limits.acceleration_mm_s2[i] = 1;
+            c->limits.jerk_mm_s3[i] = 1;
+        }
+    }
+}
+
+static struct replay_header header_of(const struct compile *c)
+{
+    const struct plan_limits *of = &c->config.limits;
+    struct replay_header h = {
+        .cycle_us = c->config.cycle_us,
+        .step_cycles = step_cycles(c->config.cycle_us),
+        .ceiling_percent = c->config.ceiling_percent,
+        .kept = 1 - COMPILE_RESERVE_KEPT,
+    };
+    double jerk = 0;
+
+    for (int i = 0; i < AXIS_LINEAR_COUNT; i++) {
+        if ((of->axes & (1U << i)) == 0)
+            continue;
+        h.velocity_mm_s[i] = of->velocity_mm_s[i];
+        h.acceleration_mm_s2[i] = of->acceleration_mm_s2[i];
+        h.jerk_mm_s3[i] = of->jerk_mm_s3[i];
+        jerk = maths_max(jerk, of->jerk_mm_s3[i]);
+    }
+    h.quantum_bits = encoder_quantum_bits(jerk, c->limits.step_s);
+    return h;
+}
+
+enum compile_result compile_begin(struct compile *c, const struct compile_config *config,
+                                  const struct point *start, FILE *stream)
+{
+    struct replay_header header;
+
+    memset(c, 0, sizeof *c);
+    c->config = *config;
+    c->at = *start;
+    c->digest = FNV_START;
+    ahead_path_init(&c->path);
+    set_limits(c);
+    header = header_of(c);
+    encoder_begin(&c->encoder, stream, &header);
+    c->solver = solver_new(config->workers);
+    return c->solver != NULL ? COMPILE_DONE : COMPILE_MEMORY;
+}
+
+void compile_free(struct compile *c)
+{
+    solver_free(c->solver);
+    ahead_path_free(&c->path);
+}
+
+/* Of all the work: sections done before by their blocks. */
+static bool tell_progress(void *context, double part)
+{
+    const struct compile *c = context;
+    const double all = maths_max(c->config.blocks, c->blocks);
+    const double done = c->solved + part * (double)(c->blocks - c->solved);
+
+    return c->config.progress == NULL ||
+           c->config.progress(c->config.context, done / maths_max(all, 1), c->time_s);
+}
+
+static enum compile_result result_of(struct compile *c, enum solver_result result)
+{
+    double place_mm;
+
+    switch (result) {
+    case SOLVER_DONE:
+        return COMPILE_DONE;
+    case SOLVER_STOPPED:
+        return COMPILE_STOPPED;
+    case SOLVER_MEMORY:
+        return COMPILE_MEMORY;
+    case SOLVER_STUCK:
+        break;
+    }
+    place_mm = solver_stuck_mm(c->solver);
+    c->wrong.line = c->path.element[ahead_path_find(&c->path, place_mm, 0)].line;
+    c->wrong.why = "no motion was found here that keeps limits and tolerance";
+    return COMPILE_STUCK;
+}
+
+/* Plans and writes what has been collected. */
+static enum compile_result end_section(struct compile *c)
+{
+    enum compile_result result;
+    struct trail trail = {0};
+
+    if (c->path.count == 0)
+        return COMPILE_DONE;
+    if (!guess_trail(&c->path, &c->limits, &trail))
+        return COMPILE_MEMORY;
+    result = result_of(c, solver_run(c->solver, &c->path, &c->limits, &trail, tell_progress, c));
+    if (result == COMPILE_DONE) {
+        c->time_s += (double)trail.intervals * c->limits.step_s;
+        encoder_add(&c->encoder, &c->path, &trail);
+        result = c->encoder.failed ? COMPILE_UNWRITTEN : COMPILE_DONE;
+    }
+    trail_free(&trail);
+    ahead_path_clear(&c->path);
+    c->solved = c->blocks;
+    return result;
+}
+
+static enum compile_result unfit(struct compile *c, const struct move *move, const char *why)
+{
+    c->wrong.line = move->line;
+    c->wrong.why = why;
+    return COMPILE_UNFIT;
+}
+
+static bool turns_rotary(const struct move *move, const struct point *from)
+{
+    for (int i = AXIS_LINEAR_COUNT; i < AXIS_COUNT; i++) {
+        if (move->end.at[i] != from->at[i])
+            return true;
+    }
+    return false;
+}
+
+/* NULL: it can be compiled. */
+static const char *why_unfit(const struct compile *c, const struct move *move)
+{
+    if (turns_rotary(move, &c->at))
+        return "motions of rotary axes cannot be planned ahead yet";
+    if (move->feed_rev_mm != 0)
+        return "feed per revolution follows the spindle and cannot be planned ahead";
+    if (move->kind == MOVE_PROBE)
+        return "what follows a probing move cannot be planned ahead";
+    if (move_is_involute(move))
+        return "involutes cannot be planned ahead yet";
+    return NULL;
+}
+
+static bool is_exact(const struct move *move)
+{
+    return move->path != PATH_BLEND || !(move->tolerance_mm > 0);
+}
+
+/* Is the joint between the last element collected and a curve passed without a change of direction? */
+static bool is_tangent(const struct compile *c, const struct curve *next)
+{
+    const struct curve *last = &c->path.element[c->path.count - 1].curve;
+    struct point in;
+    struct point out;
+
+    curve_tangent(last, last->length_mm, &in);
+    curve_tangent(next, 0, &out);
+    for (int i = 0; i < AXIS_LINEAR_COUNT; i++) {
+        if (maths_abs(in.at[i] - out.at[i]) > EXACT_CHANGE)
+            return false;
+    }
+    return true;
+}
+
+/* An exact stop, or a joint that may not be rounded. */
+static bool begins_section(const struct compile *c, const struct ahead_element *e)
+{
+    if (c->path.count == 0)
+        return false;
+    const struct ahead_element *last = &c->path.element[c->path.count - 1];
+
+    return last->stop || ((e->exact || last->exact) && !is_tangent(c, &e->curve));
+}
+
+/* Where the tolerance changes, both neighbours keep the smaller one: what is near to both is in either's. */
+static void share_tolerance(struct compile *c, struct ahead_element *e)
+{
+    const double own_mm = e->tolerance_mm;
+
+    if (c->path.count > 0) {
+        struct ahead_element *last = &c->path.element[c->path.count - 1];
+
+        e->tolerance_mm = maths_min(own_mm, c->tolerance_mm);
+        last->tolerance_mm = maths_min(last->tolerance_mm, own_mm);
+    }
+    c->tolerance_mm = own_mm;
+}
+
+static enum compile_result add_motion(struct compile *c, const struct move *move)
+{
+    const char *why = why_unfit(c, move);
+    struct ahead_element e = {.line = move->line};
+    enum compile_result result = COMPILE_DONE;
+
+    c->blocks++;
+    if (why != NULL)
+        return unfit(c, move, why);
+    if (!move_curve(move, &c->at, &e.curve))
+        return COMPILE_DONE;
+    e.block = c->blocks;
+    e.exact = is_exact(move);
+    e.stop = move->path == PATH_EXACT_STOP;
+    e.tolerance_mm =
+        e.exact ? EXACT_PART * c->config.limits.chord_error_max_mm : move->tolerance_mm;
+    e.feed_mm_s = move->kind == MOVE_RAPID ? MATHS_INFINITY
+                                           : 0.01 * c->config.ceiling_percent * move->feed_mm_s;
+    if (begins_section(c, &e))
+        result = end_section(c);
+    share_tolerance(c, &e);
+    if (result == COMPILE_DONE && !ahead_path_add(&c->path, &e))
+        result = COMPILE_MEMORY;
+    return result;
+}
+
+enum compile_result compile_add(struct compile *c, const struct move *move)
+{
+    enum compile_result result;
+
+    c->digest = compile_digest(c->digest, move);
+    if (!move_is_motion(move))
+        return end_section(c);
+    result = add_motion(c, move);
+    c->at = move->end;
+    return result;
+}
+
+enum compile_result compile_end(struct compile *c)
+{
+    const enum compile_result result = end_section(c);
+
+    if (result != COMPILE_DONE)
+        return result;
+    return encoder_end(&c->encoder, c->digest) ? COMPILE_DONE : COMPILE_UNWRITTEN;
+}

@@ -1,0 +1,71 @@
+/*
+ * A program's canonical moves in, a compiled program out: sections from rest to rest are collected, planned and written
+ * one after the other.
+ */
+#ifndef TAKT_HOST_AHEAD_COMPILE_H
+#define TAKT_HOST_AHEAD_COMPILE_H
+
+#include "ahead/encode.h"
+#include "ahead/solver.h"
+#include "plan/limits.h"
+#include "program/move.h"
+
+#include <stdbool.h>
+#include <stdint.h>
+
+/* Time between knots of the curve, and so three axes' 3 kB a second; a slower control cycle has one knot each. */
+#define COMPILE_STEP_S 0.002
+
+/* Part of acceleration and jerk left to changes of the rate (firmware/replay/rate.h), and of velocity to rounding. */
+#define COMPILE_RESERVE      0.005
+#define COMPILE_RESERVE_KEPT 0.004
+#define COMPILE_SPEED_PART   0.9995
+
+enum compile_result {
+    COMPILE_DONE,
+    COMPILE_STOPPED, /* as asked */
+    COMPILE_MEMORY,
+    COMPILE_UNFIT, /* a move that cannot be compiled: compile.wrong */
+    COMPILE_STUCK, /* no legal motion was found: compile.wrong */
+    COMPILE_UNWRITTEN
+};
+
+struct compile_config {
+    struct plan_limits limits; /* after correction's share */
+    uint32_t cycle_us;
+    uint32_t ceiling_percent;
+    unsigned workers;
+    uint32_t blocks; /* about so many in the program: for the progress */
+    bool (*progress)(void *context, double part, double time_s);
+    void *context;
+};
+
+struct compile {
+    struct compile_config config;
+    struct ahead_limits limits;
+    struct solver *solver;
+    struct encoder encoder;
+    struct ahead_path path; /* of the section that is being collected */
+    double tolerance_mm;    /* of the element collected last, as programmed */
+    struct point at;
+    uint32_t blocks; /* motions so far */
+    uint32_t solved; /* of them, planned */
+    double time_s;   /* of sections planned so far */
+    uint64_t digest;
+    struct {
+        uint32_t line;
+        const char *why;
+    } wrong;
+};
+
+/* COMPILE_DONE or COMPILE_MEMORY. stream: as encoder_begin has it. compile_free is due in either case. */
+enum compile_result compile_begin(struct compile *c, const struct compile_config *config,
+                                  const struct point *start, FILE *stream);
+enum compile_result compile_add(struct compile *c, const struct move *move);
+enum compile_result compile_end(struct compile *c);
+void compile_free(struct compile *c);
+
+/* The digest of canonical moves that binds a compiled program to its program. */
+uint64_t compile_digest(uint64_t digest, const struct move *move);
+
+#endif

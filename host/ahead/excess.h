@@ -1,0 +1,18 @@
+/*
+ * How far a trajectory is beyond what it has to keep.
+ */
+#ifndef TAKT_HOST_AHEAD_EXCESS_H
+#define TAKT_HOST_AHEAD_EXCESS_H
+
+#include "ahead/problem.h"
+
+/* The part of the tolerance that counts as kept at the places that are measured. */
+#define EXCESS_TOLERANCE_PART 0.985
+
+/*
+ * p: the problem built for the window. Sets beyond[i] of every interval: the largest of velocity, acceleration, jerk and feed over its limit and
+ * of the distance over its tolerance; <= 1: legal. Returns the largest.
+ */
+double excess_measure(const struct problem_window *w, const struct problem *p, double *beyond);
+
+#endif

@@ -1,0 +1,26 @@
+/*
+ * Solves the problem of one window by Mehrotra's interior-point method, in time linear in its length.
+ *
+ * Each row is c(z) >= 0 in the unknowns z, or is broken by t at the price PRICE t:
+ *
+ *     c(z) + t = s,   s, t >= 0,   s m = mu,   t (PRICE - m) = mu
+ *
+ * with the multiplier 0 <= m <= PRICE. Eliminating all but z leaves a band matrix (band.h) of four unknowns a knot.
+ */
+#ifndef TAKT_HOST_AHEAD_INTERIOR_H
+#define TAKT_HOST_AHEAD_INTERIOR_H
+
+#include "ahead/problem.h"
+
+#include <stdbool.h>
+
+struct interior; /* memory for windows of up to so many cells */
+
+/* NULL: out of memory. */
+struct interior *interior_new(size_t cells_max);
+void interior_free(struct interior *w);
+
+/* The change (d, e) of control points TRAIL_ENDS ... cells - 1 of the window; valid until the next call. */
+double (*interior_solve(struct interior *w, const struct problem *p))[4];
+
+#endif

@@ -1,0 +1,12 @@
+/* What the optimiser keeps: the limits of the linear axes, and the time between knots. */
+#ifndef TAKT_HOST_AHEAD_LIMITS_H
+#define TAKT_HOST_AHEAD_LIMITS_H
+
+struct ahead_limits {
+    double velocity_mm_s[3];
+    double acceleration_mm_s2[3];
+    double jerk_mm_s3[3];
+    double step_s; /* between knots of the curve */
+};
+
+#endif

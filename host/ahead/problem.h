@@ -1,0 +1,71 @@
+/*
+ * One step of the optimiser on a window of the trajectory: a convex problem in changes of its control points and of its
+ * time.
+ *
+ * The window's curve is q(u), u in knots. Unknown are a change d(u) of the curve and y(u) = 1 + e(u), the square of the
+ * rate at which it is passed, both cubic B-splines on the same knots; the first and last three coefficients are 0. Then
+ * (warp of time, exact in e; products of d and e left out)
+ *
+ *     velocity      |q' + d' + q' e / 2|                                <= V
+ *     acceleration  |q" + d" + q" e + q' e' / 2|                        <= A
+ *     jerk          |q"' + d"' + q"' e + 3/2 q" e' + q' e" / 2| + J e/2 <= J
+ *     tube          |N (q + d - foot)|                                  <= P
+ *
+ * and the time is sum (1 - e / 2 + 3/8 e^2). The bound of jerk is the tangent of J / sqrt(y), which is convex, so that a
+ * change of time alone never leads beyond the limits. Every row may be broken at a price, so that there is a solution
+ * from wherever the trajectory is.
+ */
+#ifndef TAKT_HOST_AHEAD_PROBLEM_H
+#define TAKT_HOST_AHEAD_PROBLEM_H
+
+#include "ahead/limits.h"
+#include "ahead/path.h"
+#include "ahead/trail.h"
+
+#include <stdbool.h>
+#include <stddef.h>
+
+/* Derivatives that have limits. */
+enum problem_form { FORM_VELOCITY, FORM_ACCELERATION, FORM_JERK, FORM_COUNT };
+
+/* Two half knots, and up to four joints of the path. */
+#define CELL_BALLS 6
+
+/* |N (offset + sum_k weight_k d_k)| <= radius, N = 1 - along along^T; along = 0: a ball about a corner. */
+struct problem_ball {
+    double weight[4];
+    double offset[3];
+    double along[3];
+    double radius_mm; /* 0: none */
+};
+
+/* What one interval between knots asks of the four control points that shape it, limits as 1. */
+struct problem_cell {
+    double now[3][FORM_COUNT];     /* of every axis: the derivative as it is */
+    double time[3][FORM_COUNT][4]; /* what e changes of it */
+    double feed;                   /* likewise of the feed; 0: no limit binds */
+    double feed_way[3];            /* its direction, over the limit */
+    double feed_time[4];
+    struct problem_ball ball[CELL_BALLS];
+};
+
+struct problem {
+    size_t cells;                /* intervals of the window: control points - 3 */
+    struct problem_cell *cell;   /* owned by the caller */
+    double scale[3][FORM_COUNT]; /* 1 / limit, knots */
+    bool timed;                  /* false: e = 0 */
+};
+
+/* A window: intervals from first on, of a trail along a path. */
+struct problem_window {
+    const struct ahead_path *path;
+    const struct ahead_limits *limits;
+    const struct trail *trail;
+    size_t first;
+    double inside; /* part of the tolerance that is used */
+};
+
+/* Sets the rows of p, for p->cells intervals; place_mm: of every half knot from 2 first on. */
+void problem_build(struct problem *p, const struct problem_window *w);
+
+#endif

@@ -1,0 +1,38 @@
+/*
+ * The rows of one cell: values, products with a step, and their part of the normal matrix.
+ */
+#ifndef TAKT_HOST_AHEAD_ROWS_H
+#define TAKT_HOST_AHEAD_ROWS_H
+
+#include "ahead/problem.h"
+
+/* Of a cell: both sides of every axis's limits, the feed, the balls, and both bounds of e. */
+#define ROWS_AXIS 0
+enum { ROWS_FEED = 3 * FORM_COUNT * 2 };
+#define ROWS_BALL (ROWS_FEED + 1)
+#define ROWS_TIME (ROWS_BALL + CELL_BALLS)
+#define CELL_ROWS (ROWS_TIME + 2)
+
+/* Unknowns of a cell: of four control points x, y, z and e. */
+#define CELL_UNKNOWNS 16
+
+/* c(z) of every row: > 0 inside. Rows that do not apply are 1. */
+void rows_value(const struct problem *p, const struct problem_cell *cell,
+                const double z[CELL_UNKNOWNS], double c[CELL_ROWS]);
+
+/* G dz of every row, G = -dc/dz at z. */
+void rows_product(const struct problem *p, const struct problem_cell *cell,
+                  const double z[CELL_UNKNOWNS], const double dz[CELL_UNKNOWNS],
+                  double product[CELL_ROWS]);
+
+/* b += G^T v */
+void rows_transpose(const struct problem *p, const struct problem_cell *cell,
+                    const double z[CELL_UNKNOWNS], const double v[CELL_ROWS],
+                    double b[CELL_UNKNOWNS]);
+
+/* The lower triangle of k += G^T W G + sum_i m_i (second derivative of -c_i). */
+void rows_normal(const struct problem *p, const struct problem_cell *cell,
+                 const double z[CELL_UNKNOWNS], const double w[CELL_ROWS],
+                 const double m[CELL_ROWS], double k[CELL_UNKNOWNS][CELL_UNKNOWNS]);
+
+#endif

@@ -1,0 +1,17 @@
+/*
+ * Takes a step of the optimiser: moves the control points of a window and gives the curve new knots, evenly spaced in its
+ * new time.
+ */
+#ifndef TAKT_HOST_AHEAD_WARP_H
+#define TAKT_HOST_AHEAD_WARP_H
+
+#include "ahead/problem.h"
+
+/*
+ * change: (d, e) of the window's control points TRAIL_ENDS ... cells - 1. The first and last three control points stay. The
+ * new time is lengthened to a whole number of knots. False: out of memory. The caller frees result.
+ */
+bool warp_window(const struct problem_window *w, size_t cells, double (*change)[4], bool timed,
+                 struct trail *result);
+
+#endif

@@ -1,0 +1,128 @@
+#include "takt/command.h"
+#include "takt/compiled.h"
+#include "takt/message.h"
+#include "takt/output_file.h"
+#include "takt/session.h"
+
+#include <string.h>
+
+#define CEILING_MIN 100
+#define CEILING_MAX 120
+
+/* False after a message. */
+static bool read_ceiling(const struct options *options, uint32_t *percent)
+{
+    const double given = options->ceiling;
+
+    *percent = given > 0 ? (uint32_t)given : CEILING_MIN;
+    if (given == 0 || (given >= CEILING_MIN && given <= CEILING_MAX && given == (double)*percent))
+        return true;
+    message_command_error("--ceiling %g must be a whole number from %d to %d per cent", given,
+                          CEILING_MIN, CEILING_MAX);
+    return false;
+}
+
+/* False after a message: it has to be a file that can be written at its beginning again. */
+static bool check_output(const struct options *options)
+{
+    if (options->output != NULL && strcmp(options->output, "-") != 0)
+        return true;
+    message_command_error("-o FILE says where the compiled program goes; it cannot go to "
+                          "standard output");
+    return false;
+}
+
+static void print_figures(const struct session *s, const struct compiled_figures *f)
+{
+    (void)printf("%s: %.3f s in %u blocks, compiled in %.1f s, %.2f kB a second of motion\n",
+                 s->program.name, f->time_s, (unsigned)f->blocks, f->compile_s,
+                 f->time_s > 0 ? 1e-3 * (double)f->bytes / f->time_s : 0);
+    (void)printf("  part of the time at an axis's limit  velocity %.0f %%, acceleration %.0f %%, "
+                 "jerk %.0f %%\n",
+                 100 * f->at_velocity, 100 * f->at_acceleration, 100 * f->at_jerk);
+    for (int i = 0; i < AXIS_LINEAR_COUNT; i++) {
+        if (s->setup.machine.axis[i].present)
+            (void)printf("  %c: peak velocity %.4f, acceleration %.4f, jerk %.4f of the limit\n",
+                         AXIS_LETTERS[i], f->velocity[i], f->acceleration[i], f->jerk[i]);
+    }
+    (void)printf(
+        "  setpoints at most %.6f mm off the path, its corners %.6f mm off the setpoints\n",
+        f->tube.deviation_mm, f->tube.corner_mm);
+}
+
+static enum command_status compile_into(const struct session *s,
+                                        const struct session_totals *totals, uint32_t ceiling,
+                                        struct output_file *file)
+{
+    struct compiled_figures figures;
+    enum command_status status = compiled_make(s, totals, ceiling, file->stream, &figures);
+
+    if (status != STATUS_DONE)
+        return status;
+    if (!(output_file_finish(file) && output_file_place(file)))
+        return STATUS_ENVIRONMENT;
+    if (!s->options->quiet)
+        print_figures(s, &figures);
+    return STATUS_DONE;
+}
+
+static enum command_status command_compile_execute(const struct options *options)
+{
+    static struct output_file file;
+    static struct session session;
+    struct session_totals totals;
+    uint32_t ceiling = 0;
+    enum command_status status;
+
+    if (!read_ceiling(options, &ceiling) || !check_output(options))
+        return STATUS_INPUT;
+    status = session_open(&session, options);
+    session.runs = true;
+    if (status == STATUS_DONE && !compiled_check_machine(&session))
+        status = STATUS_INPUT;
+    if (status == STATUS_DONE)
+        status = session_check(&session, 1, &totals);
+    if (status == STATUS_DONE && !output_file_open(&file, options->output))
+        status = STATUS_ENVIRONMENT;
+    if (status == STATUS_DONE)
+        status = compile_into(&session, &totals, ceiling, &file);
+    output_file_discard(&file);
+    session_close(&session);
+    return status;
+}
+
+static const struct option_row rows[] = {
+    OPTIONS_PROGRAM,
+    {"output", OPTION_TEXT, offsetof(struct options, output), "FILE",
+     "the compiled program (also -o)"},
+    {"ceiling", OPTION_NUMBER, offsetof(struct options, ceiling), "PERCENT",
+     "highest feed override it can be run at, 100 (default) to 120"},
+    {"quiet", OPTION_FLAG, offsetof(struct options, quiet), NULL, "no figures, no progress bar"},
+    OPTIONS_END,
+};
+
+const struct command command_compile = {
+    .name = "compile",
+    .usage = "PROGRAM -o FILE [options]",
+    .summary = "plan a program's motion ahead of the run, inside the tolerance of G64",
+    .help = "The whole program is optimised before anything moves: the path within the tolerance "
+            "of G64 P, and the time\n"
+            "it takes, under every axis's velocity, acceleration and jerk. The result is replayed "
+            "and judged, setpoint\n"
+            "by setpoint; what does not keep every limit and the tolerance is not written. The "
+            "file belongs to this\n"
+            "program on this machine, and takt run refuses it for any other.\n"
+            "\n"
+            "With --ceiling 120 the feed override may go up to 120 %; at 100 % the program then "
+            "runs at 1/1.2 of what it\n"
+            "is compiled for.\n"
+            "\n"
+            "Examples:\n"
+            "  takt compile part.ngc -o part.plan\n"
+            "  takt run part.ngc --plan part.plan\n"
+            "  takt run part.ngc --plan ahead\n",
+    .options = rows,
+    .operands_min = 1,
+    .operands_max = 1,
+    .run = command_compile_execute,
+};

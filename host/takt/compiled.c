@@ -1,0 +1,311 @@
+#include "takt/compiled.h"
+
+#include "ahead/compile.h"
+#include "ahead/crew.h"
+#include "base/fnv.h"
+#include "base/maths.h"
+#include "takt/compiled_judge.h"
+#include "takt/interrupt.h"
+#include "takt/message.h"
+#include "takt/progress.h"
+#include "takt/stopwatch.h"
+
+#include <errno.h>
+#include <stdlib.h>
+#include <string.h>
+
+struct making {
+    struct session_reading reading;
+    struct compile compile;
+    struct progress progress;
+};
+
+void compiled_limits(const struct session *s, const struct point *start, struct plan_limits *limits)
+{
+    static struct correction correction;
+
+    controller_plan_limits(&s->setup.machine, limits);
+    correction_init(&correction, &s->setup.machine.correction, limits->axes, limits->cycle_s,
+                    s->correction, start);
+    controller_reserve_correction(&correction, &s->setup.machine, limits);
+}
+
+bool compiled_check_machine(const struct session *s)
+{
+    const struct machine *m = &s->setup.machine;
+
+    if (m->interpolator != INTERPOLATOR_EXACT) {
+        message_command_error("a program planned ahead needs the exact interpolator");
+        return false;
+    }
+    if (m->landing == LANDING_SCALE || m->limiter != LIMITER_CEILING) {
+        message_command_error("a program planned ahead needs machine.landing span or block and "
+                              "machine.limiter ceiling: the others plan while they run");
+        return false;
+    }
+    return true;
+}
+
+static bool show(void *context, double part, double time_s)
+{
+    struct making *m = context;
+
+    progress_show(&m->progress, part, time_s);
+    return !interrupt_asked();
+}
+
+static enum command_status status_of(const struct session *s, const struct compile *c,
+                                     enum compile_result result)
+{
+    switch (result) {
+    case COMPILE_DONE:
+        return STATUS_DONE;
+    case COMPILE_STOPPED:
+        return STATUS_INTERRUPTED;
+    case COMPILE_MEMORY:
+        message_command_error("out of memory");
+        return STATUS_ENVIRONMENT;
+    case COMPILE_UNFIT:
+        message_error(s->program.name, c->wrong.line, 0, "%s", c->wrong.why);
+        return STATUS_INPUT;
+    case COMPILE_STUCK:
+        message_error(s->program.name, c->wrong.line, 0, "%s", c->wrong.why);
+        return STATUS_FAILED;
+    case COMPILE_UNWRITTEN:
+        break;
+    }
+    message_command_error("the compiled program cannot be written: %s", strerror(errno));
+    return STATUS_ENVIRONMENT;
+}
+
+/* Every move of the program into the compiler. */
+static enum compile_result add_moves(struct making *m)
+{
+    enum compile_result result = COMPILE_DONE;
+    struct diagnostic error;
+    struct move move;
+
+    while (result == COMPILE_DONE &&
+           offset_next(&m->reading.offset, &m->reading.program, &move, &error) == PROGRAM_MOVE)
+        result = compile_add(&m->compile, &move);
+    return result == COMPILE_DONE ? compile_end(&m->compile) : result;
+}
+
+static enum command_status compile(struct making *m, const struct session *s,
+                                   const struct session_totals *totals, uint32_t ceiling_percent,
+                                   FILE *stream)
+{
+    struct compile_config config = {.cycle_us = s->setup.machine.cycle_us,
+                                    .ceiling_percent = ceiling_percent,
+                                    .workers = crew_cores(),
+                                    .blocks = totals->motions,
+                                    .progress = show,
+                                    .context = m};
+    struct program_config program;
+    struct source source;
+    enum compile_result result;
+
+    session_begin_reading(s, &m->reading, &program, &source);
+    program_open(&m->reading.program, &program, &source);
+    offset_open(&m->reading.offset, &program);
+    compiled_limits(s, &program.start, &config.limits);
+    progress_start(&m->progress, !s->options->quiet);
+    result = compile_begin(&m->compile, &config, &program.start, stream);
+    if (result == COMPILE_DONE)
+        result = add_moves(m);
+    progress_end(&m->progress);
+    return status_of(s, &m->compile, result);
+}
+
+enum command_status compiled_make(const struct session *s, const struct session_totals *totals,
+                                  uint32_t ceiling_percent, FILE *stream,
+                                  struct compiled_figures *figures)
+{
+    const uint64_t start_ns = stopwatch_now_ns();
+    struct making *m = calloc(1, sizeof *m);
+    enum command_status status;
+
+    if (m == NULL) {
+        message_command_error("out of memory");
+        return STATUS_ENVIRONMENT;
+    }
+    *figures = (struct compiled_figures){0};
+    status = totals->is_open ? STATUS_INPUT : STATUS_DONE;
+    if (status != STATUS_DONE)
+        message_error(s->program.name, 0, 0,
+                      "what follows a probing move or M66 cannot be planned ahead");
+    else
+        status = compile(m, s, totals, ceiling_percent, stream);
+    figures->bytes = m->compile.encoder.bytes;
+    compile_free(&m->compile);
+    free(m);
+    figures->compile_s = 1e-9 * (double)(stopwatch_now_ns() - start_ns);
+    return status == STATUS_DONE ? compiled_judge(s, stream, figures) : status;
+}
+
+/* -- a file that is there -- */
+
+static size_t read_stream(void *context, uint8_t *bytes, size_t size)
+{
+    return fread(bytes, 1, size, context);
+}
+
+static const char *fault_text(enum replay_fault fault)
+{
+    switch (fault) {
+    case REPLAY_FOREIGN:
+        return "this is no compiled program; takt compile writes them";
+    case REPLAY_OTHER_VERSION:
+        return "was compiled by another version of takt: compile the program again";
+    case REPLAY_GOOD:
+    case REPLAY_DAMAGED:
+        break;
+    }
+    return "is damaged: compile the program again";
+}
+
+static uint64_t digest_of(const struct session *s)
+{
+    static struct session_reading reading;
+    struct program_config config;
+    struct source source;
+    struct diagnostic error;
+    struct move move;
+    uint64_t digest = FNV_START;
+
+    session_begin_reading(s, &reading, &config, &source);
+    program_open(&reading.program, &config, &source);
+    offset_open(&reading.offset, &config);
+    while (offset_next(&reading.offset, &reading.program, &move, &error) == PROGRAM_MOVE)
+        digest = compile_digest(digest, &move);
+    return digest;
+}
+
+static bool fits_limit(const struct compiled *c, int axis, const char *what, double compiled,
+                       double machine)
+{
+    if (compiled == machine)
+        return true;
+    message_error(c->name, 0, 0,
+                  "was compiled for another machine: axis %c has a %s of %g there and of %g here",
+                  AXIS_LETTERS[axis], what, compiled, machine);
+    return false;
+}
+
+static bool fits_machine(const struct compiled *c, const struct session *s,
+                         const struct replay_header *h)
+{
+    const struct point start = {{0}};
+    struct plan_limits limits;
+
+    compiled_limits(s, &start, &limits);
+    if (h->cycle_us != s->setup.machine.cycle_us) {
+        message_error(c->name, 0, 0,
+                      "was compiled for another machine: its cycle is %u us there and %u us here",
+                      (unsigned)h->cycle_us, (unsigned)s->setup.machine.cycle_us);
+        return false;
+    }
+    for (int i = 0; i < AXIS_LINEAR_COUNT; i++) {
+        const double is = (limits.axes & (1U << i)) != 0 ? 1 : 0;
+
+        if (!fits_limit(c, i, "velocity", h->velocity_mm_s[i], is * limits.velocity_mm_s[i]) ||
+            !fits_limit(c, i, "acceleration", h->acceleration_mm_s2[i],
+                        is * limits.acceleration_mm_s2[i]) ||
+            !fits_limit(c, i, "jerk", h->jerk_mm_s3[i], is * limits.jerk_mm_s3[i]))
+            return false;
+    }
+    return true;
+}
+
+/* Every record's checksum, before anything moves. */
+static bool is_whole(const struct compiled *c)
+{
+    static struct intake intake;
+
+    intake_open(&intake, &c->source);
+    do {
+        intake.intervals_taken = intake.intervals_came;
+        intake.ends_taken = intake.ends_came;
+        intake.sections_taken = intake.sections_came;
+        intake_read(&intake);
+    } while (intake.fault == REPLAY_GOOD && !intake.ended &&
+             intake.intervals_taken != intake.intervals_came);
+    if (intake.fault == REPLAY_GOOD && intake.ended)
+        return true;
+    message_error(c->name, 0, 0, "%s", fault_text(intake.fault));
+    return false;
+}
+
+static bool read_header(const struct compiled *c, struct replay_header *h)
+{
+    uint8_t bytes[REPLAY_HEADER_BYTES] = {0};
+    enum replay_fault fault;
+
+    (void)fread(bytes, 1, sizeof bytes, c->stream); /* what is missing is 0, and damaged */
+    fault = replay_header_read(h, bytes);
+    if (fault == REPLAY_GOOD)
+        return true;
+    message_error(c->name, 0, 0, "%s", fault_text(fault));
+    return false;
+}
+
+static enum command_status check_file(const struct compiled *c, const struct session *s)
+{
+    struct replay_header h;
+
+    if (!read_header(c, &h) || !fits_machine(c, s, &h))
+        return STATUS_INPUT;
+    rewind(c->stream);
+    if (!is_whole(c))
+        return STATUS_INPUT;
+    rewind(c->stream);
+    if (h.program == digest_of(s))
+        return STATUS_DONE;
+    message_error(c->name, 0, 0,
+                  "was compiled from another program than %s, or with other tools, offsets or "
+                  "options: compile it again",
+                  s->program.name);
+    return STATUS_INPUT;
+}
+
+static enum command_status open_file(struct compiled *c, const struct session *s, const char *path)
+{
+    c->name = path;
+    c->stream = fopen(path, "rb");
+    if (c->stream == NULL) {
+        message_command_error("%s cannot be opened: %s", path, strerror(errno));
+        return STATUS_INPUT;
+    }
+    c->source = (struct replay_source){c->stream, read_stream};
+    return check_file(c, s);
+}
+
+enum command_status compiled_open(struct compiled *c, const struct session *s,
+                                  const struct session_totals *totals, const char *path)
+{
+    struct compiled_figures figures;
+    enum command_status status;
+
+    *c = (struct compiled){0};
+    if (!compiled_check_machine(s))
+        return STATUS_INPUT;
+    if (path != NULL)
+        return open_file(c, s, path);
+    c->name = s->program.name;
+    c->stream = tmpfile();
+    if (c->stream == NULL) {
+        message_command_error("a temporary file cannot be created: %s", strerror(errno));
+        return STATUS_ENVIRONMENT;
+    }
+    c->source = (struct replay_source){c->stream, read_stream};
+    status = compiled_make(s, totals, 100, c->stream, &figures);
+    rewind(c->stream);
+    return status;
+}
+
+void compiled_close(struct compiled *c)
+{
+    if (c->stream != NULL)
+        (void)fclose(c->stream);
+    c->stream = NULL;
+}

@@ -1,0 +1,14 @@
+/*
+ * The judge of a compiled program: it is replayed as the controller would, in virtual time and without drives, and every
+ * setpoint is looked at.
+ */
+#ifndef TAKT_HOST_COMPILED_JUDGE_H
+#define TAKT_HOST_COMPILED_JUDGE_H
+
+#include "takt/compiled.h"
+
+/* STATUS_DONE: it keeps limits, tolerance and order; else after a message that says what it does not. */
+enum command_status compiled_judge(const struct session *s, FILE *stream,
+                                   struct compiled_figures *figures);
+
+#endif

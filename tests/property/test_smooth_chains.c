@@ -1,0 +1,322 @@
+/*
+ * Smoothed paths (G64 P), whatever the operator does: random programs on random machines under random schedules of
+ * overrides and holds. The setpoints keep every axis's limits by differences, are within the tolerance of the programmed
+ * path, pass every programmed corner within it, and end in the programmed end.
+ *
+ * test_smooth_chains NUMBER runs so many programs instead of PROGRAMS, test_smooth_chains NUMBER FIRST from that seed on.
+ */
+#include "motion/motion.h"
+#include "plan/path.h"
+#include "random_chain.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unity.h>
+
+/* Programs in each run of all tests. */
+#define PROGRAMS 12
+
+#define MOVES_MAX 100
+
+/* A program that takes longer stands still for ever. */
+#define CYCLES_MAX 1000000
+
+/* A machine takes no longer to its highest velocity: what room there is for changes of rate goes by that. */
+#define RAMP_MAX_S 0.2
+
+/* Moves around the present one that a setpoint may be beside. */
+#define AROUND 40
+
+static struct path path;
+static struct motion motion;
+static unsigned programs = PROGRAMS;
+static unsigned first_seed = 1;
+
+struct schedule {
+    struct motion_operator now;
+    double target;  /* of a ramp of the feed override */
+    double change;  /* of it in a cycle */
+    uint64_t until; /* the next event */
+    uint64_t free;  /* cycles since anything was held */
+};
+
+struct programmed {
+    struct curve curve;
+    bool has_length;
+    double corner_mm; /* least distance of its end from the setpoints' line */
+};
+
+struct run {
+    struct chain chain;
+    struct plan_limits limits;
+    enum chain_family family;
+    double tolerance_mm;
+    double merge_mm;
+    unsigned moves;
+    unsigned pushed;
+    struct point end;
+    struct programmed move[MOVES_MAX];
+    struct schedule schedule;
+    struct chain_judge judge;
+    struct point last;
+    double path_mm;
+    uint64_t path_cycle;
+    double corner_mm;
+};
+
+static struct run run;
+
+void setUp(void)
+{
+}
+
+void tearDown(void)
+{
+}
+
+static void random_machine(struct run *r)
+{
+    static const double cycles_s[] = {5e-4, 1e-3, 2e-3, 4e-3};
+    struct chain *c = &r->chain;
+    struct plan_limits *l = &r->limits;
+
+    memset(l, 0, sizeof(*l));
+    l->axes = 7;
+    l->cycle_s = cycles_s[(unsigned)chain_between(c, 0, 4)];
+    l->chord_error_max_mm = chain_decades(c, -4, -2);
+    l->law = (enum law)chain_between(c, 0, 3);
+    l->landing = LANDING_SPAN;
+    for (int i = 0; i < CHAIN_AXES; i++) {
+        l->velocity_mm_s[i] = chain_decades(c, 1.3, 2.7);
+        l->acceleration_mm_s2[i] =
+            maths_max(chain_decades(c, 2.3, 4.0), l->velocity_mm_s[i] / RAMP_MAX_S);
+        l->jerk_mm_s3[i] = chain_decades(c, 3.7, 6.0);
+    }
+}
+
+/* Steps, ramps, holds, feed override 0, rapid override 0; then nothing for a while. */
+static void next_event(struct run *r, uint64_t cycle)
+{
+    struct chain *c = &r->chain;
+    struct schedule *s = &r->schedule;
+    const double what = chain_between(c, 0, 1);
+
+    s->until = cycle + 1 + (uint64_t)chain_decades(c, 0, 2.8);
+    s->now.hold = what < 0.15;
+    s->now.rapid_ratio = what > 0.9 ? 0.0 : chain_between(c, 0.01, 1.0);
+    s->target = what > 0.8 && what < 0.9 ? 0.0 : chain_between(c, 0.01, 1.2);
+    s->change = what > 0.5 ? 1.2 : chain_decades(c, -4, -1);
+}
+
+static void follow_schedule(struct run *r, uint64_t cycle)
+{
+    struct schedule *s = &r->schedule;
+
+    if (cycle >= s->until) {
+        next_event(r, cycle);
+    }
+    s->now.feed_ratio += maths_clamp(s->target - s->now.feed_ratio, -s->change, s->change);
+    const bool held = s->now.hold || s->now.feed_ratio <= 0.0 || s->now.rapid_ratio <= 0.0;
+
+    s->free = held ? 0 : s->free + 1;
+}
+
+/* The next move, kept to judge by. */
+static struct move next_move(struct run *r)
+{
+    struct programmed *kept = &r->move[r->pushed];
+    struct move m = chain_next(&r->chain, r->family, r->pushed);
+
+    m.path = PATH_BLEND;
+    m.tolerance_mm = r->tolerance_mm;
+    m.merge_mm = r->merge_mm;
+    kept->has_length = move_curve(&m, &r->end, &kept->curve);
+    kept->corner_mm = MATHS_INFINITY;
+    r->end = m.end;
+    r->pushed++;
+    return m;
+}
+
+static void push_next(struct run *r)
+{
+    struct move m;
+
+    if (r->pushed < r->moves) {
+        m = next_move(r);
+        path_push(&path, &m);
+        return;
+    }
+    memset(&m, 0, sizeof(m));
+    m.kind = MOVE_END;
+    path_push(&path, &m);
+    path_finish(&path);
+}
+
+static void plan(struct run *r)
+{
+    if (motion_wanted(&motion) == NULL) {
+        return;
+    }
+    path_go_on(&path);
+    while (!path.finished && path_has_room(&path)) {
+        push_next(r);
+    }
+    motion_build(&motion);
+}
+
+static double distance(const struct point *a, const struct point *b)
+{
+    double square = 0.0;
+
+    for (int i = 0; i < CHAIN_AXES; i++) {
+        square += (a->at[i] - b->at[i]) * (a->at[i] - b->at[i]);
+    }
+    return maths_sqrt(square);
+}
+
+/* To where p lies across the curve, from s on, by Newton's method. */
+static double distance_across(const struct curve *c, const struct point *p, double s)
+{
+    struct point on;
+    struct point t;
+
+    for (int i = 0; i < 4; i++) {
+        double along = 0.0;
+        double square = 0.0;
+
+        curve_point(c, s, &on);
+        curve_tangent(c, s, &t);
+        for (int axis = 0; axis < CHAIN_AXES; axis++) {
+            along += (p->at[axis] - on.at[axis]) * t.at[axis];
+            square += t.at[axis] * t.at[axis];
+        }
+        s = maths_clamp(s + along / square, 0.0, c->length_mm);
+    }
+    curve_point(c, s, &on);
+    return distance(p, &on);
+}
+
+/* Arcs here have a turn at most: looked at from eight places. */
+static double distance_from(const struct curve *c, const struct point *p)
+{
+    const int places = c->kind == CURVE_LINE ? 1 : 8;
+    double least = MATHS_INFINITY;
+
+    for (int i = 0; i < places; i++) {
+        least = maths_min(least, distance_across(c, p, c->length_mm * (i + 0.5) / places));
+    }
+    return least;
+}
+
+static double segment_distance(const struct point *corner, const struct point *a,
+                               const struct point *b)
+{
+    struct curve c;
+
+    return curve_set_line(&c, a, b) ? distance_across(&c, corner, 0.0) : distance(corner, b);
+}
+
+static void judge_place(struct run *r, const struct cycle_record *record)
+{
+    const unsigned first = record->block > AROUND ? record->block - AROUND : 0;
+    const unsigned last = record->block + AROUND < r->pushed ? record->block + AROUND : r->pushed;
+    double least = MATHS_INFINITY;
+
+    for (unsigned i = first; i < last; i++) {
+        struct programmed *m = &r->move[i];
+
+        if (m->has_length && least > 0.1 * r->tolerance_mm) {
+            least = maths_min(least, distance_from(&m->curve, &record->cmd));
+        }
+        if (m->has_length) {
+            m->corner_mm =
+                maths_min(m->corner_mm, segment_distance(&m->curve.end, &r->last, &record->cmd));
+        }
+    }
+    if (least < MATHS_INFINITY && least > r->path_mm) {
+        r->path_mm = least;
+        r->path_cycle = record->cycle;
+    }
+    r->last = record->cmd;
+}
+
+static void set_up_run(struct run *r, unsigned seed)
+{
+    memset(r, 0, sizeof(*r));
+    r->chain.seed = UINT64_C(0x9e3779b97f4a7c15) * seed;
+    random_machine(r);
+    r->family = (enum chain_family)chain_between(&r->chain, 0, CHAIN_MIXED + 1);
+    r->tolerance_mm = chain_decades(&r->chain, -3, -1);
+    r->merge_mm = chain_between(&r->chain, 0, 1) < 0.5 ? 0.0 : r->tolerance_mm;
+    r->moves = (unsigned)chain_decades(&r->chain, 0.5, 2);
+    r->schedule.now = (struct motion_operator){.feed_ratio = 1.0, .rapid_ratio = 1.0};
+    r->schedule.target = 1.0;
+}
+
+static enum motion_result run_program(struct run *r)
+{
+    const struct point start = {{0}};
+    struct cycle_record record;
+    enum motion_result result;
+
+    path_init(&path, &r->limits, &start);
+    motion_init(&motion, &path, &start, false);
+    do {
+        plan(r);
+        follow_schedule(r, motion.cycles);
+        result = motion_cycle(&motion, &r->schedule.now, &record);
+        if (result == MOTION_CYCLE) {
+            chain_judge_setpoint(&r->judge, &r->limits, &record.cmd);
+            judge_place(r, &record);
+        }
+    } while ((result == MOTION_CYCLE || result == MOTION_NOT_YET) && motion.cycles < CYCLES_MAX);
+    for (unsigned i = 0; i < r->pushed; i++) {
+        if (r->move[i].has_length) {
+            r->corner_mm = maths_max(r->corner_mm, r->move[i].corner_mm);
+        }
+    }
+    return result;
+}
+
+static void check_run(const struct run *r, enum motion_result result, unsigned seed)
+{
+    char message[240];
+
+    (void)snprintf(
+        message, sizeof(message),
+        "seed %u family %d law %d moves %u cycle %g s P %g: %llu cycles, v %.5f a %.5f j %.5f, "
+        "path %.4f P at %llu, corner %.4f P",
+        seed, (int)r->family, (int)r->limits.law, r->moves, r->limits.cycle_s, r->tolerance_mm,
+        (unsigned long long)motion.cycles, r->judge.velocity, r->judge.acceleration, r->judge.jerk,
+        r->path_mm / r->tolerance_mm, (unsigned long long)r->path_cycle,
+        r->corner_mm / r->tolerance_mm);
+    TEST_ASSERT_EQUAL_INT_MESSAGE(MOTION_DONE, result, message);
+    TEST_ASSERT_TRUE_MESSAGE(r->judge.velocity <= 1.0001, message);
+    TEST_ASSERT_TRUE_MESSAGE(r->judge.acceleration <= 1.0001, message);
+    TEST_ASSERT_TRUE_MESSAGE(r->judge.jerk <= 1.001, message);
+    TEST_ASSERT_TRUE_MESSAGE(r->path_mm <= r->tolerance_mm, message);
+    TEST_ASSERT_TRUE_MESSAGE(r->corner_mm <= r->tolerance_mm, message);
+    TEST_ASSERT_TRUE_MESSAGE(distance(&r->last, &r->end) == 0.0, message);
+}
+
+static void test_smoothed_setpoints_keep_limits_and_tolerance_under_any_override(void)
+{
+    for (unsigned seed = first_seed; seed < first_seed + programs; seed++) {
+        set_up_run(&run, seed);
+        check_run(&run, run_program(&run), seed);
+    }
+}
+
+int main(int argc, char **argv)
+{
+    if (argc > 1) {
+        programs = (unsigned)strtoul(argv[1], NULL, 10);
+    }
+    if (argc > 2) {
+        first_seed = (unsigned)strtoul(argv[2], NULL, 10);
+    }
+    UNITY_BEGIN();
+    RUN_TEST(test_smoothed_setpoints_keep_limits_and_tolerance_under_any_override);
+    return UNITY_END();
+}

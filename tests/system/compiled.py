@@ -1,0 +1,200 @@
+"""takt compile and takt run --plan: the file and what it is refused for; random programs on random machines, under random
+schedules of overrides and holds.
+
+compiled.py PROGRAMS SCHEDULES FIRST runs more random programs than the test does, from seed FIRST on."""
+
+import math
+import os
+import random
+import sys
+
+import takt_test as t
+
+PROGRAMS = int(sys.argv[1]) if len(sys.argv) > 1 else 12
+SCHEDULES = int(sys.argv[2]) if len(sys.argv) > 2 else 3
+FIRST = int(sys.argv[3]) if len(sys.argv) > 3 else 1
+
+
+class Chain:
+    """Moves of one family after the other, from the origin."""
+
+    def __init__(self, rng):
+        self.rng, self.at, self.heading = rng, [0.0, 0.0, 0.0], 0.0
+        self.lines = []
+
+    def decades(self, low, high):
+        return 10 ** self.rng.uniform(low, high)
+
+    def go(self, x, y, z, rapid=False):
+        if max(abs(x), abs(y), abs(z)) > 200:  # back into the machine
+            x, y, z = (0.3 * value for value in (x, y, z))
+        self.at = [round(x, 5), round(y, 5), round(z, 5)]
+        self.lines.append("G%d X%.5f Y%.5f Z%.5f" % (0 if rapid else 1, *self.at))
+
+    def line(self, length, rise=0.0, rapid=False):
+        self.go(self.at[0] + length * math.cos(self.heading), self.at[1] + length * math.sin(self.heading), self.at[2] + rise, rapid)
+
+    def corners(self):
+        self.heading = self.rng.uniform(0, 2 * math.pi)
+        length = self.decades(-2, 1.5)
+        self.line(length, self.rng.uniform(-length, length), self.rng.random() < 0.2)
+
+    def retrace(self):
+        self.heading += math.pi
+        self.line(self.decades(-1, 1))
+
+    def polygon(self):
+        self.heading += 0.05
+        self.line(self.decades(-1.5, 0))
+
+    def tiny(self):
+        self.heading += self.rng.uniform(-0.3, 0.3)
+        self.line(self.decades(-3.5, -1))
+
+    def zigzag(self):
+        self.heading += self.rng.choice((-1, 1)) * self.decades(-3, 0.3)
+        self.line(self.rng.uniform(0.05, 2))
+
+    def arc(self):
+        radius, sign = self.decades(-0.7, 1.3), self.rng.choice((-1, 1))
+        sweep = sign * min(6.0, self.decades(-1, 0.8))
+        i, j = -sign * radius * math.sin(self.heading), sign * radius * math.cos(self.heading)
+        angle = self.heading - sign * math.pi / 2 + sweep
+        x = self.at[0] + i + radius * math.cos(angle)
+        y = self.at[1] + j + radius * math.sin(angle)
+        if max(abs(x), abs(y)) > 200:
+            return self.go(0, 0, 0, True)
+        rise = self.rng.choice((0, 0, self.rng.uniform(-3, 3)))
+        centre = self.at[0] + i, self.at[1] + j
+        self.at = [round(x, 5), round(y, 5), round(self.at[2] + rise, 5)]
+        self.lines.append("G90.1 G%d X%.5f Y%.5f Z%.5f I%.5f J%.5f" % (2 if sign < 0 else 3, *self.at, *centre))
+        self.heading += sweep
+        return None
+
+    def event(self):
+        self.lines.append(self.rng.choice(("G4 P0.05", "M3 S1000", "M8", "M9", "G61", "G64 P%.4f" % self.decades(-2.5, -1), "F%d" % self.decades(2.5, 4))))
+
+
+def program(rng):
+    chain = Chain(rng)
+    families = [Chain.corners, Chain.retrace, Chain.polygon, Chain.tiny, Chain.zigzag, Chain.arc]
+    family = rng.choice(families)
+    for _ in range(rng.randint(3, 60)):
+        if rng.random() < 0.1:
+            family = rng.choice(families)
+        (Chain.event if rng.random() < 0.03 else family)(chain)
+    head = "G21 G90 G94 G17 G64 P%.4f F%d\n" % (10 ** rng.uniform(-2.5, -0.7), rng.choice((600, 3000, 6000, 10000)))
+    return head + "\n".join(chain.lines) + "\nM2\n"
+
+
+def machine(rng):
+    words = []
+    for axis in "XYZ":
+        for key, low, high in (("max_velocity_mm_s", 1.3, 2.5), ("max_acceleration_mm_s2", 2.5, 3.8), ("max_jerk_mm_s3", 3.9, 5.5)):
+            words += ["--set", "axis.%s.%s=%.3f" % (axis, key, 10 ** rng.uniform(low, high))]
+        words += ["--set", "axis.%s.following_error_max_mm=0" % axis]
+    return words
+
+
+def schedule(rng, path):
+    rows, time = [], 0.0
+    while time < 40:
+        rows.append("%.3f %d" % (time, rng.choice((0, 0, 5, 30, 60, 90, 100, 100, 100))))
+        time += 10 ** rng.uniform(-2, 0.3)
+    return t.write(path, "\n".join(rows) + "\n40 100\n")
+
+
+def judge(seed):
+    rng = random.Random(seed)
+    t.write("part.ngc", program(rng))
+    options = machine(rng) if seed % 3 else []
+    status, _, err = t.run("compile", "part.ngc", "-o", "part.plan", "--quiet", *options)
+    if not t.check(status == 0, "a random program is compiled", "seed", seed, status, err):
+        return
+    status, _, err = t.run("run", "part.ngc", "--plan", "part.plan", "--quiet", *options)
+    t.check(status == 0, "a compiled program keeps limits and tolerance", "seed", seed, status, err)
+    for number in range(SCHEDULES):
+        feed, rapid = schedule(rng, "feed.txt"), schedule(rng, "rapid.txt")
+        status, _, err = t.run("run", "part.ngc", "--plan", "part.plan", "--quiet", "--json", "s.json", "--override", feed, "--rapid-override", rapid, *options)
+        if status == 0:
+            t.check(t.load_json("s.json")["outcome"] == "completed", "it is completed under any schedule", seed, number)
+        else:
+            t.check(False, "every check is held under any schedule", "seed", seed, number, status, err)
+
+
+PROGRAM = """G21 G90 G17 G64 P0.01 F6000
+M3 S1000
+G0 X10
+G1 X20 Y5
+G4 P0.1
+G3 X20 Y15 I0 J5
+G1 X0 Y15
+G61 X0 Y0
+M2
+"""
+
+
+def summary(*options):
+    status, _, err = t.run("run", "part.ngc", "--quiet", "--json", "s.json", *options)
+    t.check(status == 0, "every check is held", options, status, err)
+    return t.load_json("s.json")
+
+
+def refused(claim, words, *arguments, status=2):
+    got, _, err = t.run(*arguments)
+    t.check(got == status and all(word in err for word in words), claim, got, err)
+
+
+def files():
+    t.write("part.ngc", PROGRAM)
+    status, out, err = t.run("compile", "part.ngc", "-o", "part.plan")
+    t.check(status == 0 and "of the limit" in out, "compiling tells figures", status, out, err)
+    ahead, compiled = summary("--plan", "ahead"), summary("--plan", "part.plan")
+    t.check(ahead["setpoint_digest"] == compiled["setpoint_digest"], "a file runs as what is planned just before", ahead, compiled)
+    t.check(ahead["program_time_s"] < summary("--exact-path")["program_time_s"], "inside the tolerance is faster than on the path")
+    t.check(summary("--plan", "board")["setpoint_digest"] == summary()["setpoint_digest"], "planning as it runs is the default")
+    with open("part.plan", "rb") as file:
+        first = file.read()
+    t.run("compile", "part.ngc", "-o", "again.plan", "--quiet")
+    with open("again.plan", "rb") as file:
+        t.check(file.read() == first, "compiling again writes the same bytes")
+
+    refused("another machine is told", ("part.plan", "axis Y", "jerk"), "run", "part.ngc", "--plan", "part.plan", "--set", "axis.Y.max_jerk_mm_s3=40000")
+    t.write("other.ngc", PROGRAM.replace("X0 Y15", "X1 Y15"))
+    refused("another program is told", ("part.plan", "another program"), "run", "other.ngc", "--plan", "part.plan")
+    for at in (9, 40, len(first) // 2, len(first) - 2):
+        t.write("bad.plan", first[:at] + bytes([first[at] ^ 0x40]) + first[at + 1 :])
+        refused("a changed byte is told", ("bad.plan",), "run", "part.ngc", "--plan", "bad.plan")
+    t.write("short.plan", first[:-20])
+    refused("a file cut short is told", ("short.plan", "damaged"), "run", "part.ngc", "--plan", "short.plan")
+    refused("what is no compiled program is told", ("part.ngc", "no compiled program"), "run", "part.ngc", "--plan", "part.ngc")
+    refused("a missing file is told", ("none.plan",), "run", "part.ngc", "--plan", "none.plan")
+
+
+def ceilings():
+    t.write("part.ngc", PROGRAM)
+    status, _, err = t.run("compile", "part.ngc", "-o", "high.plan", "--quiet", "--ceiling", "120")
+    t.check(status == 0, "a ceiling above 100 % is compiled", status, err)
+    t.write("high.txt", "0 120\n")
+    high, plain = summary("--plan", "high.plan", "--override", "high.txt"), summary("--plan", "high.plan")
+    t.check(high["program_time_s"] < plain["program_time_s"], "120 % is faster than 100 %", high["program_time_s"], plain["program_time_s"])
+    refused("a ceiling beyond 120 % is told", ("--ceiling 130",), "compile", "part.ngc", "-o", "x.plan", "--ceiling", "130")
+    refused("a place for the file is needed", ("-o FILE",), "compile", "part.ngc")
+
+
+def unfit():
+    for text, words in (("G38.2 X-5 F100", ("probing",)), ("G1 A10 F100", ("rotary",)), ("M3 S100\nG95 G1 X5 F0.1", ("revolution",))):
+        t.write("unfit.ngc", "G21\nG1 X1 F100\n" + text + "\nM2\n")
+        options = ("--set", "axis.A.drive_node=4", "--set", "axis.A.max_velocity_deg_s=90") if "A10" in text else ()
+        status, _, err = t.run("compile", "unfit.ngc", "-o", "unfit.plan", *options)
+        t.check(status == 2 and "unfit.ngc" in err and all(word in err for word in words), "what cannot be compiled is told with its line", text, status, err)
+        t.check(not os.path.exists("unfit.plan"), "and nothing is written", text)
+
+
+if len(sys.argv) == 1:
+    files()
+    ceilings()
+    unfit()
+for seed in range(FIRST, FIRST + PROGRAMS):
+    judge(seed)
+t.finish()

@@ -1,0 +1,181 @@
+"""The most stack that an image can use: frames of its functions, along the longest way through its calls.
+
+Frames and calls are read from the disassembly, so libraries count, too; where the compiler has told a frame (-fstack-usage)
+the larger counts. Calls through pointers are those of the table below: who calls, and what may be behind the pointer. A
+call that is in no row, and a recursion without a stated bound, are errors.
+"""
+
+import re
+import subprocess
+
+# Processor state that an interrupt saves: 26 words with the floating-point unit, and a word to align.
+EXCEPTION_BYTES = 27 * 4
+
+# Values inside values of a part program: PROGRAM_NESTING_MAX, and one more for the outermost.
+NESTING = 17
+NESTED = re.compile(r"^(expression_|read_|calculation_|parameters?_|words?_|names_|predefined_|take_operand|value_|reference_).*|^(apply|operate)")
+
+PORT = r"lock|unlock|now_us|now_ns|reply|write_log"
+LAYER = r"(axes|matrix|setup|volume|thermal|wear)_(add|begin|follow|need)"
+CODES = (r"(events|modes|coordinates|cutter|cycles|straight|circular|involute|probe|saved_modes|setting|threading|spline)_.*"
+         r"|calls_run_code")
+OPERATORS = (r"function_.*|add|subtract|multiply|divide|modulo|power|equal|not_equal|greater|greater_or_equal|less"
+             r"|less_or_equal|logic_.*")
+STORE = r"begin|begin_stream|bring|prepare|place|room|end|look|order|hear|settings_.*|may_load"
+CALLS = (
+    (r"answer_.*|modbus_answer", r"panel_read|panel_write"),
+    (r"begin_layer|correction_.*", LAYER),
+    (r"decimal_read", r"wide_.*"),
+    (r"embedded_.*|hear|order|log_.*|serve_line|refuse|forward|lock|unlock", PORT),
+    (r"expression_.*|read_.*", OPERATORS),
+    (r"fill.*|has", r"read_bytes|text_read"),
+    (r"lexer_.*", r"seek|text_seek|read_bytes|text_read"),
+    (r"flow_.*", r"take_(do|else|elseif|endif|endrepeat|endwhile|if|repeat|while)|calls_.*|leave_round"),
+    (r"give_order|panel_.*", STORE),
+    (r"predefined_.*", r"get_.*"),
+    (r"run_line|run_step.*", CODES),
+    (r"send_.*", r"send"),
+    (r"drives_.*", r"receive|send|sdo_.*"),
+    (r"receive", r"slcan_can_take|take_panel_byte"),
+    (r"service_.*", r"text_queue_.*"),
+    (r"steps_.*|read_encoders", r"step_.*"),
+)
+
+FUNCTION = re.compile(r"^[0-9a-f]+ <(.+)>:$")
+INSTRUCTION = re.compile(r"^\s+[0-9a-f]+:\s+(\S+)\s*(.*)$")
+TARGET = re.compile(r"<([^+>]+)>")
+INDIRECT = re.compile(r"^(r\d+|ip|sl|fp|r9)\b")
+
+
+class Function:
+    def __init__(self):
+        self.frame = 0
+        self.calls = set()
+        self.indirect = False
+
+
+def registers(text):
+    count = 0
+    for part in re.search(r"\{(.*)\}", text).group(1).split(","):
+        ends = re.findall(r"[a-z]+(\d+)", part) if "-" in part else []
+        count += int(ends[1]) - int(ends[0]) + 1 if ends else 1
+    return count
+
+
+def frame_bytes(operation, text):
+    if operation.startswith("push") or (operation.startswith("stmdb") and text.startswith("sp!")):
+        return 4 * registers(text)
+    if operation.startswith("vpush"):
+        return (8 if "d" in re.search(r"\{(.*)\}", text).group(1) else 4) * registers(text)
+    pushed = re.match(r"(?:sp, )?sp, #(\d+)", text) if operation.startswith("sub") else None
+    pushed = pushed or (re.match(r"sp, #(\d+)", text) if operation.startswith("sub") else None)
+    stored = re.search(r"\[sp, #-(\d+)\]!", text)
+    return int((pushed or stored).group(1)) if pushed or stored else 0
+
+
+def read_functions(elf):
+    functions, name = {}, None
+    out = subprocess.run(["arm-none-eabi-objdump", "-d", "--no-show-raw-insn", elf], capture_output=True, text=True, check=True).stdout
+    for line in out.splitlines():
+        begun, done = FUNCTION.match(line), INSTRUCTION.match(line)
+        if begun:
+            name = begun.group(1)
+            functions.setdefault(name, Function())
+        elif done and name:
+            read_instruction(functions[name], name, *done.groups())
+    return functions
+
+
+def read_instruction(function, name, operation, text):
+    function.frame += frame_bytes(operation, text)
+    target = TARGET.search(text)
+    if operation in ("bl", "blx", "b", "b.w", "b.n") and target and target.group(1) != name:
+        function.calls.add(target.group(1))
+    if operation in ("blx", "bx") and INDIRECT.match(text):
+        function.indirect = True
+
+
+def add_usage(functions, files):
+    """What the compiler has told."""
+    for path in files:
+        with open(path) as file:
+            for line in file:
+                place, size, _ = line.rstrip("\n").split("\t")
+                name = place.rsplit(":", 1)[1]
+                for known in (known for known in functions if known == name or known.startswith(name + ".")):
+                    functions[known].frame = max(functions[known].frame, int(size))
+
+
+def add_pointers(functions):
+    """Calls through pointers, by the table. Returns the names of those that are in no row."""
+    unknown = []
+    for name, function in functions.items():
+        if not function.indirect:
+            continue
+        rows = [behind for caller, behind in CALLS if re.fullmatch(caller, name)]
+        if not rows:
+            unknown.append(name)
+        for behind in rows:
+            function.calls.update(other for other in functions if re.fullmatch(behind, re.sub(r"\..*", "", other)))
+    return unknown
+
+
+def circles(functions):
+    """Sets of functions that call one another in a circle, callees first (Tarjan, without recursion)."""
+    index, low, on, stack, found = {}, {}, set(), [], []
+    for root in functions:
+        if root in index:
+            continue
+        work = [(root, iter(sorted(functions[root].calls)))]
+        index[root] = low[root] = len(index)
+        stack.append(root)
+        on.add(root)
+        while work:
+            name, calls = work[-1]
+            for callee in calls:
+                if callee not in functions:
+                    continue
+                if callee not in index:
+                    index[callee] = low[callee] = len(index)
+                    stack.append(callee)
+                    on.add(callee)
+                    work.append((callee, iter(sorted(functions[callee].calls))))
+                    break
+                if callee in on:
+                    low[name] = min(low[name], index[callee])
+            else:
+                work.pop()
+                if work:
+                    low[work[-1][0]] = min(low[work[-1][0]], low[name])
+                if low[name] == index[name]:
+                    circle = set()
+                    while name not in circle:
+                        circle.add(stack.pop())
+                    on -= circle
+                    found.append(circle)
+    return found
+
+
+def deepest(functions):
+    """The most stack below and with each function, the way there, and circles without a bound."""
+    depth, way, unbounded = {}, {}, []
+    for circle in circles(functions):
+        own = sum(functions[name].frame for name in circle)
+        if len(circle) > 1 or any(name in functions[name].calls for name in circle):
+            if not any(NESTED.match(name) for name in circle):
+                unbounded.append(sorted(circle))
+            own *= NESTING
+        below = {callee for name in circle for callee in functions[name].calls if callee in depth and callee not in circle}
+        most = max(below, key=depth.get, default=None)
+        for name in circle:
+            depth[name] = own + (depth[most] if most else 0)
+            way[name] = most
+    return depth, way, unbounded
+
+
+def path(way, name):
+    steps = []
+    while name:
+        steps.append(name)
+        name = way[name]
+    return steps

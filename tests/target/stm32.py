@@ -1,0 +1,62 @@
+"""The STM32F405's images in QEMU's netduinoplus2, with what that models: USARTs and timers; everything else reads 0."""
+
+import os
+import struct
+import subprocess
+import zlib
+
+import target
+import serial_pair
+import takt_test as t
+
+MACHINE = "netduinoplus2"
+SETTINGS_ADDRESS = 0x08040000
+
+
+def image(name):
+    path = os.path.join(target.folder("stm32f405"), "hal", "stm32f405", name + ".elf")
+    if not os.path.exists(path):
+        t.skip("there is no image for stm32f405: the cross-compiler is not installed (gcc-arm-none-eabi, picolibc-arm-none-eabi)")
+    return path
+
+
+def sector(settings):
+    """Settings as they lie in flash, with a head that is right for them whatever they are."""
+    head = b"TKS1" + struct.pack("<III", 1, len(settings), zlib.crc32(settings))
+    return head + struct.pack("<I", zlib.crc32(head)) + b"\xff" * 4 + settings
+
+
+class Board:
+    """An image at work; its log is a file, its panel, if it has one, a serial line."""
+
+    def __init__(self, path, flash=None, panel=False, log="log.txt"):
+        target.need_qemu()
+        self.log_path = log
+        self.line = serial_pair.Pair() if panel else None
+        command = [target.QEMU, "-M", MACHINE, "-kernel", path, "-display", "none", "-monitor", "none",
+                   "-chardev", f"file,id=log,path={log}", "-serial", "chardev:log"]
+        if panel:
+            command += ["-chardev", f"serial,id=panel,path={self.line.paths[0]}", "-serial", "chardev:panel"]
+        if flash is not None:
+            with open("flash.bin", "wb") as file:
+                file.write(flash)
+            command += ["-device", f"loader,file=flash.bin,addr={SETTINGS_ADDRESS:#x},force-raw=on"]
+        self.process = subprocess.Popen(command, stdin=subprocess.DEVNULL)
+        self.panel = target.Panel(self.line.paths[1]) if panel else None
+
+    def log(self):
+        if not os.path.exists(self.log_path):
+            return []
+        with open(self.log_path, errors="replace") as file:
+            return file.read().splitlines()
+
+    def wait_for(self, text):
+        target.wait_for(lambda: any(text in line for line in self.log()), f"'{text}' on the log: {self.log()}")
+
+    def stop(self):
+        self.process.terminate()
+        self.process.wait()
+        if self.line is not None:
+            self.line.close()
+        if os.path.exists(self.log_path):
+            os.remove(self.log_path)

@@ -1,0 +1,75 @@
+#!/usr/bin/env python3
+"""What the control cycle costs on a Cortex-M4 and M7, in instructions: mean and worst, and planning a block.
+
+Four axes, a volume table of 2,000 points, and overrides that change. Prints a row each; a budget that is exceeded fails.
+"""
+
+import target
+import takt_test as t
+
+# Instructions of one control cycle: mean, worst.
+BUDGET = {"m4f": (15000, 25000), "m7": (None, 3000)}
+
+MACHINE = """[machine]
+name = four axes with a volume table
+[axis X]
+travel_min_mm = -200
+travel_max_mm = 200
+[axis Y]
+travel_min_mm = -150
+travel_max_mm = 150
+[axis Z]
+travel_min_mm = -150
+travel_max_mm = 100
+[axis A]
+type = rotary
+drive_node = 4
+travel_min_deg = -360
+travel_max_deg = 360
+[geometry]
+exx = 30 0 2 380 20
+eyx = 0 6 2 380 70
+eyy = -40 0 3 380 90
+ezz = 30 0 2 350 130
+squareness_urad = 30 -20 10
+"""
+
+PROGRAM = """G21 G90 G61 F3000
+G1 X20 Y10 Z-2 A10
+G2 X40 Y-10 I10 J-10 A20
+G3 X20 Y-30 I-10 J-10 Z-6 A0
+G1 X10 Y-20 A-15
+G1 X9 Y-19
+G1 X8 Y-19.5
+G1 X0 Y0
+G3 X0 Y0 I12 J5
+G2 X-20 Y-20 Z-10 I-10 J-10 A30
+G0 Z5 A0
+G1 X-30 Y20 Z-5 F6000
+G3 X-30 Y20 I15 J0 Z-8 P2
+G0 X0 Y0 Z0
+M2
+"""
+
+
+def main():
+    target.need_qemu()
+    t.write("mill.ini", MACHINE)
+    t.write("part.ngc", PROGRAM)
+    t.write("override.txt", "".join(f"{0.3 * i} {100 - 70 * (i % 2) + 10 * (i % 3 == 0)}\n" for i in range(40)))
+    status, _, err = t.run("calibrate", "--machine", "mill.ini", "--grid", "20x10x10", "-o", "volume.csv")
+    t.check(status == 0, "a volume table of 2,000 points is measured", err)
+    for processor, (mean_most, worst_most) in BUDGET.items():
+        cost = target.run(processor, "part.ngc", "--machine", "mill.ini", "--override", "override.txt", "--set",
+                          "correction.volume_table=volume.csv")["target"]
+        mean = cost["cycle_instructions"] / cost["cycles_counted"]
+        print(f"{processor:4} cycle: mean {mean:.0f}, worst {cost['cycle_instructions_max']}; block planned: "
+              f"{cost['background_instructions'] / cost['blocks_planned']:.0f}; {cost['cycles_counted']} cycles")
+        t.check(cost["cycles_differing"] == 0, f"{processor}: every cycle is the host's")
+        t.check(mean_most is None or mean <= mean_most, f"{processor}: the mean is within its budget", mean, mean_most)
+        t.check(cost["cycle_instructions_max"] <= worst_most, f"{processor}: the worst is within its budget", cost["cycle_instructions_max"],
+                worst_most)
+    t.finish()
+
+
+main()

@@ -1,0 +1,119 @@
+#!/usr/bin/env python3
+"""The whole image in QEMU, live: three virtual drives on CAN, the panel over Modbus RTU by libmodbus, the log.
+
+It homes, takes a program through the mailbox, runs it while positions are read, and gives the setpoints of takt run.
+With --kernel: the CAN bus is an interface of the kernel (or of user-mode Linux), which slcand makes of the serial line.
+"""
+
+import os
+import shutil
+import signal
+import subprocess
+import sys
+
+import target
+import serial_pair
+import takt_test as t
+
+PROGRAM = "G21 G90 G61 F3000\nG1 X6 Y4\nG2 X10 Y0 I0 J-4\nG1 X0 Z-1\nG0 Z1\nM2\n"
+IDLE, HOMING = "1", "5"
+KERNEL = "--kernel" in sys.argv
+INTERFACE = "slcan0"
+
+
+def start_drives(bus):
+    return subprocess.Popen([t.TAKT, "drives", "--bus", bus], stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL)
+
+
+class Adapter:
+    """The bus that the image's serial line becomes at once: the drives are the adapter."""
+
+    def __init__(self):
+        self.drives = start_drives("slcan:pty:bus")
+        target.wait_for(lambda: os.path.exists("bus"), "the drives' end of the bus")
+        self.path = os.path.realpath("bus")
+
+    def stop(self):
+        self.drives.send_signal(signal.SIGTERM)
+        t.check(self.drives.wait() == 0, "the drives end")
+
+
+class Kernel:
+    """An interface of the kernel at the end of the line, and the drives on that."""
+
+    def __init__(self):
+        self.line = serial_pair.Pair()
+        self.path = self.line.paths[0]
+        self.slcand = subprocess.Popen(["slcand", "-o", "-c", "-s8", "-F", self.line.paths[1], INTERFACE], stdin=subprocess.DEVNULL)
+        target.wait_for(lambda: os.path.exists("/sys/class/net/" + INTERFACE) or self.slcand.poll() is not None, INTERFACE)
+        if self.slcand.poll() is not None:
+            t.skip("slcand cannot make an interface of a serial line here")
+        ip = ["ip"] if shutil.which("ip") else ["busybox", "ip"]
+        subprocess.run([*ip, "link", "set", INTERFACE, "up"], check=True)
+        self.drives = start_drives("socketcan:" + INTERFACE)
+
+    def stop(self):
+        self.drives.send_signal(signal.SIGTERM)
+        t.check(self.drives.wait() == 0, "the drives end")
+        self.slcand.terminate()
+        self.slcand.wait()
+        self.line.close()
+
+
+def home(panel):
+    panel.write("MODE", 2)
+    panel.write("HOME", 1)
+    target.wait_for(lambda: panel.read("STATE")["STATE"].strip() != HOMING, "homing")
+    state = panel.read("STATE")["STATE"].strip()
+    t.check(state == IDLE, "it homes", state, panel.read("ALARM_TEXT"))
+    t.check(panel.number("OUTCOME") == 1, "homing is completed")
+    panel.write("MODE", 0)
+
+
+def run_program(panel):
+    """Positions read on the way; the X of each look."""
+    runs = panel.number("RUNS")
+    seen = []
+    panel.upload("part.ngc")
+    panel.write("CYCLE_START", 1)
+    while panel.number("RUNS") == runs:
+        seen.append(panel.number("POSITION_X"))
+    return seen
+
+
+def check_run(board, panel, digest):
+    target.wait_for(lambda: any("state: idle" in line for line in board.log()), "the drives are enabled")
+    home(panel)
+    seen = run_program(panel)
+    t.check(panel.number("OUTCOME") == 1, "the program is completed", panel.read("ALARM_TEXT"))
+    t.check(panel.digest() == digest, "its setpoints are those of takt run", panel.digest(), digest)
+    t.check(len(set(seen)) > 1, "positions were read in motion", seen)
+    t.check(abs(panel.number("ACTUAL_Z") - 1) < 0.01, "the drive stands where the program ends")
+    log = "\n".join(board.log())
+    t.check("state: running" in log and f"completed, setpoints {digest}" in log, "the log has what happened", log)
+
+
+def main():
+    target.need_qemu()
+    image = target.image("m4f", "takt-mps2")
+    if KERNEL and os.environ.get("TAKT_WITH_CAN") != "yes":
+        if shutil.which("slcand") is None:
+            t.skip("slcand is not installed (Debian and Ubuntu: can-utils)")
+        with_can = os.path.join(t.SOURCE, "tests", "with_can")
+        done = subprocess.run([with_can, sys.executable, *sys.argv], env=dict(os.environ, TAKT_WITH_CAN="yes"), check=False)
+        sys.exit(done.returncode)
+    t.write("part.ngc", PROGRAM)
+    digest = t.json.loads(t.run("run", "part.ngc", "--json", "-", "--quiet")[1])["setpoint_digest"]
+    line = serial_pair.Pair()
+    bus = Kernel() if KERNEL else Adapter()
+    board = target.Board("m4f", image, line.paths[0], bus.path, "log.txt")
+    try:
+        check_run(board, target.Panel(line.paths[1]), digest)
+    finally:
+        board.stop()
+        line.close()
+        bus.stop()
+    t.finish()
+
+
+main()

@@ -1,0 +1,150 @@
+/*
+ * The optimiser: its band solver, and a small path from a first guess to a legal trajectory, the same on any number of
+ * cores.
+ */
+#include "ahead/band.h"
+#include "ahead/guess.h"
+#include "ahead/solver.h"
+#include "ahead/vector.h"
+
+#include <string.h>
+#include <unity.h>
+
+#define SIZE 40
+
+static const struct ahead_limits limits = {.velocity_mm_s = {100, 100, 100},
+                                           .acceleration_mm_s2 = {1000, 1000, 1000},
+                                           .jerk_mm_s3 = {50000, 50000, 50000},
+                                           .step_s = 0.002};
+
+void setUp(void)
+{
+}
+
+void tearDown(void)
+{
+}
+
+static void test_the_band_solver_solves(void)
+{
+    static double a[SIZE][BAND_WIDTH];
+    static double full[SIZE][SIZE];
+    double x[SIZE];
+
+    for (int j = 0; j < SIZE; j++) {
+        x[j] = 0;
+        for (int k = 0; k < BAND_WIDTH && j + k < SIZE; k++) {
+            a[j][k] = k == 0 ? 40 + j : 1.0 / (1 + j + 3 * k);
+            full[j + k][j] = full[j][j + k] = a[j][k];
+        }
+    }
+    for (int i = 0; i < SIZE; i++) {
+        for (int j = 0; j < SIZE; j++)
+            x[i] += full[i][j] * (j - 7);
+    }
+    band_factor(a, SIZE);
+    band_solve(a, SIZE, x);
+    for (int j = 0; j < SIZE; j++)
+        TEST_ASSERT_DOUBLE_WITHIN(1e-9, j - 7, x[j]);
+}
+
+/* A square of 5 mm, closed. */
+static void make_square(struct ahead_path *path)
+{
+    static const double corner[5][2] = {{0, 0}, {5, 0}, {5, 5}, {0, 5}, {0, 0}};
+
+    ahead_path_init(path);
+    for (int i = 0; i < 4; i++) {
+        struct ahead_element e = {.feed_mm_s = 100, .tolerance_mm = 0.01, .block = 1};
+        struct point from = {{corner[i][0], corner[i][1]}};
+        struct point to = {{corner[i + 1][0], corner[i + 1][1]}};
+
+        TEST_ASSERT_TRUE(curve_set_line(&e.curve, &from, &to));
+        TEST_ASSERT_TRUE(ahead_path_add(path, &e));
+    }
+}
+
+static struct trail solve(const struct ahead_path *path, unsigned workers)
+{
+    struct solver *s = solver_new(workers);
+    struct trail t;
+
+    TEST_ASSERT_NOT_NULL(s);
+    TEST_ASSERT_TRUE(guess_trail(path, &limits, &t));
+    TEST_ASSERT_EQUAL(SOLVER_DONE, solver_run(s, path, &limits, &t, NULL, NULL));
+    solver_free(s);
+    return t;
+}
+
+static void test_differences_of_control_points_keep_the_limits(void)
+{
+    const double h = limits.step_s;
+    struct ahead_path path;
+    struct trail t;
+
+    make_square(&path);
+    t = solve(&path, 1);
+    for (size_t k = 0; k < t.intervals; k++) {
+        for (int i = 0; i < 3; i++) {
+            double(*c)[3] = t.control + k;
+            const double a = c[2][i] - 2 * c[1][i] + c[0][i];
+            const double j = c[3][i] - 3 * c[2][i] + 3 * c[1][i] - c[0][i];
+
+            TEST_ASSERT_DOUBLE_WITHIN(100.1 * h, 0, c[1][i] - c[0][i]);
+            TEST_ASSERT_DOUBLE_WITHIN(1000.5 * h * h, 0, a);
+            TEST_ASSERT_DOUBLE_WITHIN(50025 * h * h * h, 0, j);
+        }
+    }
+    trail_free(&t);
+    ahead_path_free(&path);
+}
+
+static void test_every_corner_is_passed_within_the_tolerance(void)
+{
+    struct ahead_path path;
+    struct trail t;
+
+    make_square(&path);
+    t = solve(&path, 1);
+    for (size_t k = 0; k < path.count; k++) {
+        double nearest = 1;
+
+        for (size_t i = 0; i <= 20 * t.intervals; i++) {
+            double x[3];
+            double way[3];
+
+            trail_at(&t, 0.05 * (double)i, x);
+            vector_from_to(path.element[k].curve.end.at, x, way);
+            nearest = maths_min(nearest, vector_length(way));
+        }
+        TEST_ASSERT_TRUE(nearest < 0.01);
+    }
+    trail_free(&t);
+    ahead_path_free(&path);
+}
+
+static void test_two_cores_find_the_same_bits_as_one(void)
+{
+    struct ahead_path path;
+    struct trail one;
+    struct trail two;
+
+    make_square(&path);
+    one = solve(&path, 1);
+    two = solve(&path, 2);
+    TEST_ASSERT_TRUE(one.intervals == two.intervals);
+    TEST_ASSERT_EQUAL_MEMORY(one.control, two.control, (one.intervals + 3) * sizeof *one.control);
+    trail_free(&one);
+    trail_free(&two);
+    ahead_path_free(&path);
+}
+
+int main(void)
+{
+    UNITY_BEGIN();
+    RUN_TEST(test_the_band_solver_solves);
+    RUN_TEST(test_differences_of_control_points_keep_the_limits);
+    RUN_TEST(test_every_corner_is_passed_within_the_tolerance);
+    RUN_TEST(test_two_cores_find_the_same_bits_as_one);
+    return UNITY_END();
+}

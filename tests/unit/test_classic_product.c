@@ -1,0 +1,165 @@
+/* The source's feed: S-curve, diagram of a block with kl, limiter of axis velocities. By hand, and by sums. */
+#include "classic/diagram.h"
+#include "classic/limiter.h"
+#include "classic/s_curve.h"
+
+#include "base/maths.h"
+
+#include <string.h>
+#include <unity.h>
+
+#define CYCLE_S 1e-3
+
+void setUp(void)
+{
+}
+
+void tearDown(void)
+{
+}
+
+static const struct diagram_limits limits = {
+    .length_mm = 10.0, .feed_mm_s = 100.0, .a_mm_s2 = 1000.0, .j_mm_s3 = 50000.0};
+
+/* a = 1000, j = 50000: a is reached from 20 mm/s on. */
+static void test_a_ramp_takes_the_time_of_the_formula(void)
+{
+    TEST_ASSERT_EQUAL_DOUBLE(2.0 * maths_sqrt(10.0 / 50000.0), diagram_ramp_s(&limits, 10.0));
+    TEST_ASSERT_EQUAL_DOUBLE(0.1 + 0.02, diagram_ramp_s(&limits, 100.0));
+    TEST_ASSERT_EQUAL_DOUBLE(0.04, diagram_ramp_s(&limits, 20.0));
+}
+
+static void test_the_integral_of_an_s_curve_is_its_sum(void)
+{
+    static const double rounds[] = {0.1, 0.3, 0.5};
+
+    for (unsigned r = 0; r < 3; r++) {
+        double sum = 0.0;
+
+        for (unsigned i = 0; i < 1000; i++) {
+            sum += 1e-3 * s_curve(1e-3 * (i + 0.5), rounds[r]);
+            TEST_ASSERT_DOUBLE_WITHIN(1e-6, sum, s_curve_integral(1e-3 * (i + 1), rounds[r]));
+        }
+        TEST_ASSERT_DOUBLE_WITHIN(1e-12, 0.5, s_curve_integral(1.0, rounds[r]));
+    }
+}
+
+/* Whole cycles, kl from the way, and mid-cycle samples that add up to the length. */
+static void check_diagram(double length, double start, double end)
+{
+    struct diagram_limits l = limits;
+    struct diagram d;
+    double sum = 0.0;
+
+    l.length_mm = length;
+    diagram_set(&d, &l, start, end, CYCLE_S);
+    const double cycles = diagram_time(&d) / CYCLE_S;
+
+    TEST_ASSERT_DOUBLE_WITHIN(1e-9, maths_round(cycles), cycles);
+    TEST_ASSERT_TRUE(d.kl <= 1.0 + 1e-9 && d.kl > 0.0);
+    TEST_ASSERT_TRUE(d.cruise_mm_s >= start && d.cruise_mm_s >= end && d.cruise_mm_s <= 100.0);
+    for (unsigned i = 0; i < (unsigned)maths_round(cycles); i++) {
+        sum += diagram_feed(&d, (i + 0.5) * CYCLE_S) * CYCLE_S;
+    }
+    TEST_ASSERT_DOUBLE_WITHIN(1e-9 * length, length, diagram_way(&d, diagram_time(&d)));
+    TEST_ASSERT_DOUBLE_WITHIN(1e-3 * length, length, sum);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-9, d.kl * start, diagram_feed(&d, 0.0));
+    TEST_ASSERT_DOUBLE_WITHIN(1e-9, d.kl * end, diagram_feed(&d, diagram_time(&d)));
+}
+
+static void test_a_diagram_lasts_whole_cycles_and_ends_at_the_end(void)
+{
+    check_diagram(10.0, 0.0, 0.0);
+    check_diagram(33.3, 20.0, 100.0);
+    check_diagram(33.3, 100.0, 7.0);
+    check_diagram(0.5, 0.0, 0.0);
+    check_diagram(0.01, 0.0, 0.0);
+    check_diagram(0.25, 100.0, 100.0);
+    check_diagram(123.4, 0.0, 50.0);
+}
+
+/* 0.25 mm at 100 mm/s are 2.5 cycles: three, and kl = 2.5/3. */
+static void test_kl_stretches_a_part_of_a_cycle_to_a_whole_one(void)
+{
+    struct diagram_limits l = limits;
+    struct diagram d;
+
+    l.length_mm = 0.25;
+    diagram_set(&d, &l, 100.0, 100.0, CYCLE_S);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-12, 2.5 / 3.0, d.kl);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-12, 250.0 / 3.0, diagram_feed(&d, 1.5e-3));
+}
+
+static void test_a_block_that_is_too_short_for_its_feed_has_no_even_part(void)
+{
+    struct diagram d;
+
+    diagram_set(&d, &limits, 0.0, 0.0, CYCLE_S);
+    TEST_ASSERT_TRUE(d.cruise_mm_s < 100.0);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-9, d.up_s, d.down_s);
+    TEST_ASSERT_TRUE(diagram_brakes(&d, d.up_s + d.even_s + 0.5 * CYCLE_S));
+    TEST_ASSERT_FALSE(diagram_brakes(&d, d.up_s));
+}
+
+/* (v/a + a/j) v/2 = L */
+static void test_reach_is_the_feed_whose_ramp_is_as_long_as_the_block(void)
+{
+    struct diagram_limits l = limits;
+
+    l.length_mm = 5.0;
+    const double v = diagram_reach(&l, 0.0);
+
+    TEST_ASSERT_DOUBLE_WITHIN(1e-6, 5.0, 0.5 * v * (v / 1000.0 + 0.02));
+    TEST_ASSERT_TRUE(diagram_reach(&l, 95.0) == 100.0);
+}
+
+static void test_the_threshold_cuts_and_nothing_else(void)
+{
+    TEST_ASSERT_TRUE(limiter_axis(LIMITER_THRESHOLD, 99.9, 100.0) == 1.0);
+    TEST_ASSERT_EQUAL_DOUBLE(100.0 / 120.0, limiter_axis(LIMITER_THRESHOLD, 120.0, 100.0));
+    TEST_ASSERT_TRUE(limiter_axis(LIMITER_CEILING, 120.0, 100.0) == 1.0);
+}
+
+/* What comes out, F K: with slope 1 below the band and 0 above it, both of them without a bend. */
+static void test_the_smooth_form_bends_twice_without_a_corner(void)
+{
+    const double h = 1e-3;
+    const double ends[] = {95.0, 105.0};
+
+    for (unsigned i = 0; i < 2; i++) {
+        double out[5];
+
+        for (int k = 0; k < 5; k++) {
+            const double f = ends[i] + (k - 2) * h;
+
+            out[k] = f * limiter_axis(LIMITER_SMOOTH, f, 100.0);
+        }
+        TEST_ASSERT_DOUBLE_WITHIN(1e-3, i == 0 ? 1.0 : 0.0, (out[3] - out[1]) / (2.0 * h));
+        TEST_ASSERT_DOUBLE_WITHIN(1e-3, 0.0, (out[3] - 2.0 * out[2] + out[1]) / (h * h));
+    }
+    TEST_ASSERT_EQUAL_DOUBLE(95.0, 95.0 * limiter_axis(LIMITER_SMOOTH, 95.0, 100.0));
+    TEST_ASSERT_EQUAL_DOUBLE(100.0, 105.0 * limiter_axis(LIMITER_SMOOTH, 105.0, 100.0));
+}
+
+static void test_the_least_factor_of_the_axes_counts(void)
+{
+    const double most[AXIS_COUNT] = {100.0, 50.0, 0.0};
+    const struct point velocity = {{-110.0, 60.0, 1000.0}};
+
+    TEST_ASSERT_EQUAL_DOUBLE(50.0 / 60.0, limiter_factor(LIMITER_THRESHOLD, &velocity, most));
+}
+
+int main(void)
+{
+    UNITY_BEGIN();
+    RUN_TEST(test_a_ramp_takes_the_time_of_the_formula);
+    RUN_TEST(test_the_integral_of_an_s_curve_is_its_sum);
+    RUN_TEST(test_a_diagram_lasts_whole_cycles_and_ends_at_the_end);
+    RUN_TEST(test_kl_stretches_a_part_of_a_cycle_to_a_whole_one);
+    RUN_TEST(test_a_block_that_is_too_short_for_its_feed_has_no_even_part);
+    RUN_TEST(test_reach_is_the_feed_whose_ramp_is_as_long_as_the_block);
+    RUN_TEST(test_the_threshold_cuts_and_nothing_else);
+    RUN_TEST(test_the_smooth_form_bends_twice_without_a_corner);
+    RUN_TEST(test_the_least_factor_of_the_axes_counts);
+    return UNITY_END();
+}

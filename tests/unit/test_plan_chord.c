@@ -1,0 +1,130 @@
+/*
+ * A control cycle that is too slow for a circle: its chord error limits the feed, and is then kept by the setpoints. 4 ms
+ * and 1 um on a radius of 2 mm: (2/cycle) sqrt(2 R d - d^2) = 31.6 mm/s, far below what the axes could do.
+ */
+#include "base/maths.h"
+#include "motion/motion.h"
+#include "plan/path.h"
+
+#include <string.h>
+#include <unity.h>
+
+#define RADIUS_MM 2.0
+#define CHORD_MM  1e-3
+
+static struct path path;
+static struct motion motion;
+
+void setUp(void)
+{
+}
+
+void tearDown(void)
+{
+}
+
+static struct plan_limits machine(double cycle_s)
+{
+    struct plan_limits l;
+
+    memset(&l, 0, sizeof(l));
+    l.axes = 7;
+    l.cycle_s = cycle_s;
+    l.chord_error_max_mm = CHORD_MM;
+    for (int i = 0; i < 3; i++) {
+        l.velocity_mm_s[i] = 500.0;
+        l.acceleration_mm_s2[i] = 20000.0;
+        l.jerk_mm_s3[i] = 1e7;
+    }
+    return l;
+}
+
+/* Ten turns about the origin, and the end of the program. */
+static void push_circle(const struct plan_limits *limits)
+{
+    const struct point start = {{RADIUS_MM}};
+    struct move m;
+
+    path_init(&path, limits, &start);
+    motion_init(&motion, &path, &start, false);
+    memset(&m, 0, sizeof(m));
+    m.kind = MOVE_ARC_CCW;
+    m.plane = PLANE_XY;
+    m.end = start;
+    m.feed_mm_s = 300.0;
+    m.turns = 10;
+    path_push(&path, &m);
+    m.kind = MOVE_END;
+    path_push(&path, &m);
+    path_finish(&path);
+}
+
+/* The largest distance of a chord between two setpoints from the circle. */
+static double run_circle(void)
+{
+    const struct motion_operator as_programmed = {.feed_ratio = 1.0, .rapid_ratio = 1.0};
+    struct cycle_record record;
+    struct point last = {{RADIUS_MM}};
+    double most = 0.0;
+    enum motion_result result;
+
+    do {
+        if (motion_wanted(&motion) != NULL) {
+            motion_build(&motion);
+        }
+        result = motion_cycle(&motion, &as_programmed, &record);
+        if (result == MOTION_CYCLE) {
+            const double x = 0.5 * (record.cmd.at[AXIS_X] + last.at[AXIS_X]);
+            const double y = 0.5 * (record.cmd.at[AXIS_Y] + last.at[AXIS_Y]);
+
+            most = maths_max(most, RADIUS_MM - maths_sqrt(x * x + y * y));
+            last = record.cmd;
+        }
+    } while (result == MOTION_CYCLE && motion.cycles < 100000);
+    TEST_ASSERT_EQUAL(MOTION_DONE, result);
+    return most;
+}
+
+static void test_a_slow_cycle_limits_the_feed_by_the_chord_error(void)
+{
+    const struct plan_limits slow = machine(4e-3);
+
+    push_circle(&slow);
+    const struct block *b = path_at(&path, 0);
+
+    TEST_ASSERT_EQUAL(GOVERNOR_CHORD, block_governor(b, b->feed_program_mm_s));
+    TEST_ASSERT_DOUBLE_WITHIN(1e-9,
+                              500.0 * maths_sqrt(2.0 * RADIUS_MM * CHORD_MM - CHORD_MM * CHORD_MM),
+                              b->feed_max_mm_s);
+}
+
+static void test_setpoints_keep_the_chord_error_and_use_it(void)
+{
+    const struct plan_limits slow = machine(4e-3);
+
+    push_circle(&slow);
+    const double most = run_circle();
+
+    TEST_ASSERT_TRUE(most <= CHORD_MM * (1.0 + 1e-9));
+    TEST_ASSERT_TRUE(most >= CHORD_MM * 0.99);
+}
+
+static void test_a_cycle_that_is_fast_enough_is_not_limited_by_it(void)
+{
+    const struct plan_limits fast = machine(1e-4);
+
+    push_circle(&fast);
+    const struct block *b = path_at(&path, 0);
+
+    TEST_ASSERT_TRUE(block_governor(b, b->feed_program_mm_s) != GOVERNOR_CHORD);
+    TEST_ASSERT_TRUE(run_circle() < 0.5 * CHORD_MM);
+}
+
+int main(void)
+{
+    UNITY_BEGIN();
+    RUN_TEST(test_a_slow_cycle_limits_the_feed_by_the_chord_error);
+    RUN_TEST(test_setpoints_keep_the_chord_error_and_use_it);
+    RUN_TEST(test_a_cycle_that_is_fast_enough_is_not_limited_by_it);
+    return UNITY_END();
+}

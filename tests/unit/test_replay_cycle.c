@@ -1,0 +1,143 @@
+/* Replaying beside a path: what does not fit the program, or is damaged, moves nothing. */
+#include "base/crc32.h"
+#include "motion/handover.h"
+#include "replay/replay.h"
+
+#include <string.h>
+#include <unity.h>
+
+static uint8_t bytes[512];
+static size_t length, given;
+static uint32_t crc;
+static struct path path;
+static struct motion motion;
+static struct replay replay;
+static struct plan_limits limits;
+
+static size_t read_bytes(void *context, uint8_t *to, size_t size)
+{
+    const size_t count = length - given < size ? length - given : size;
+
+    (void)context;
+    memcpy(to, bytes + given, count);
+    given += count;
+    return count;
+}
+
+static void add_record(enum replay_kind kind, const uint8_t *holds, size_t size)
+{
+    uint8_t *record = bytes + length;
+
+    record[0] = (uint8_t)kind;
+    replay_put(record + 1, size, 2);
+    memcpy(record + REPLAY_RECORD_HEAD, holds, size);
+    crc = crc32_add(crc, record, REPLAY_RECORD_HEAD + size);
+    replay_put(record + REPLAY_RECORD_HEAD + size, crc, REPLAY_RECORD_TAIL);
+    length += REPLAY_RECORD_HEAD + size + REPLAY_RECORD_TAIL;
+}
+
+/* A section of one block and four intervals that stands where it starts. */
+static void add_section(uint32_t first_block)
+{
+    uint8_t section[REPLAY_SECTION_BYTES] = {0};
+    uint8_t knots[26] = {4};
+
+    replay_put(section, first_block, 4);
+    replay_put(section + 4, 1, 4);
+    replay_put(section + 8, 4, 4);
+    add_record(REPLAY_SECTION, section, sizeof(section));
+    add_record(REPLAY_KNOTS, knots, sizeof(knots));
+    add_record(REPLAY_END, section, 0);
+}
+
+void setUp(void)
+{
+    const struct replay_header header = {.cycle_us = 1000,
+                                         .step_cycles = 2,
+                                         .quantum_bits = 20,
+                                         .ceiling_percent = 100,
+                                         .intervals = 4,
+                                         .kept = 0.99};
+    const struct point start = {{0}};
+    struct move line = {.kind = MOVE_FEED, .feed_mm_s = 10, .turns = 1};
+
+    memset(&limits, 0, sizeof(limits));
+    limits.axes = 7;
+    limits.cycle_s = 1e-3;
+    limits.chord_error_max_mm = 1e-3;
+    for (int i = 0; i < AXIS_COUNT; i++) {
+        limits.velocity_mm_s[i] = 100;
+        limits.acceleration_mm_s2[i] = 1000;
+        limits.jerk_mm_s3[i] = 50000;
+    }
+    path_init(&path, &limits, &start);
+    motion_init(&motion, &path, &start, false);
+    handover_allow_all(&motion);
+    line.end.at[AXIS_X] = 1;
+    path_push(&path, &line);
+    path_finish(&path);
+    path_go_on(&path);
+    motion_build(&motion);
+    replay_header_write(&header, bytes);
+    length = REPLAY_HEADER_BYTES;
+    given = 0;
+    crc = CRC32_START;
+}
+
+void tearDown(void)
+{
+}
+
+/* Cycles until replaying fails, and how far X has come. */
+static double run_until_it_fails(void)
+{
+    const struct replay_source source = {NULL, read_bytes};
+    const struct motion_operator as_programmed = {.feed_ratio = 1, .rapid_ratio = 1};
+    struct cycle_record record;
+    double farthest = 0;
+
+    replay_init(&replay, &source);
+    for (int i = 0; i < 100; i++) {
+        replay_read(&replay, &limits);
+        if (motion_cycle(&motion, &as_programmed, &record) != MOTION_HANDED_OVER) {
+            continue;
+        }
+        if (replay_cycle(&replay, &motion, &as_programmed, &record) == REPLAY_FAILED) {
+            return farthest;
+        }
+        farthest = record.cmd.at[AXIS_X];
+    }
+    TEST_FAIL_MESSAGE("it went on");
+    return 0;
+}
+
+static void test_a_section_of_another_block_moves_nothing(void)
+{
+    add_section(2);
+    TEST_ASSERT_EQUAL_DOUBLE(0, run_until_it_fails());
+    TEST_ASSERT_EQUAL(TAKT_ERROR_PLAN_STRAYED, replay.alarm.code);
+}
+
+static void test_a_curve_that_does_not_lead_to_the_end_is_told(void)
+{
+    add_section(1);
+    TEST_ASSERT_EQUAL_DOUBLE(0, run_until_it_fails());
+    TEST_ASSERT_EQUAL(TAKT_ERROR_PLAN_STRAYED, replay.alarm.code);
+}
+
+static void test_a_damaged_record_moves_nothing(void)
+{
+    add_section(1);
+    bytes[REPLAY_HEADER_BYTES + 5] ^= 1U;
+    TEST_ASSERT_EQUAL_DOUBLE(0, run_until_it_fails());
+    TEST_ASSERT_EQUAL(TAKT_ERROR_PLAN_DAMAGED, replay.alarm.code);
+}
+
+int main(void)
+{
+    UNITY_BEGIN();
+    RUN_TEST(test_a_section_of_another_block_moves_nothing);
+    RUN_TEST(test_a_curve_that_does_not_lead_to_the_end_is_told);
+    RUN_TEST(test_a_damaged_record_moves_nothing);
+    return UNITY_END();
+}

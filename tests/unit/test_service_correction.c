@@ -1,0 +1,201 @@
+/*
+ * firmware/service/service.h: position-error correction that goes on from one program to the next and between them, and
+ * is switched by the operator.
+ */
+#include "base/maths.h"
+#include "service_bench.h"
+
+#define TAU_S 0.001
+
+/* K_X = X / 2000 by the matrix: 0.05 mm at X 100. */
+#define PITCH 5e-4
+
+/* All fades have ended after so many cycles. */
+#define SETTLED 4000U
+
+static double x, v, a;
+static double most_velocity, most_acceleration, most_jerk;
+
+void setUp(void)
+{
+    bench_set_up_machine();
+    machine.correction.machine[AXIS_X][AXIS_X] = PITCH;
+    bench_start();
+    x = service.controller.setpoint.at[AXIS_X];
+    v = a = 0;
+    most_velocity = most_acceleration = most_jerk = 0;
+}
+
+void tearDown(void)
+{
+}
+
+static void judged_cycle(void)
+{
+    double velocity, acceleration;
+
+    cycle();
+    velocity = (service.controller.setpoint.at[AXIS_X] - x) / TAU_S;
+    acceleration = (velocity - v) / TAU_S;
+    most_jerk = maths_max(most_jerk, maths_abs(acceleration - a) / TAU_S);
+    most_acceleration = maths_max(most_acceleration, maths_abs(acceleration));
+    most_velocity = maths_max(most_velocity, maths_abs(velocity));
+    x = service.controller.setpoint.at[AXIS_X];
+    v = velocity;
+    a = acceleration;
+}
+
+static void judged_cycles(unsigned count)
+{
+    for (unsigned i = 0; i < count; i++)
+        judged_cycle();
+}
+
+static void judged_wait_for(enum panel_state state)
+{
+    for (unsigned i = 0; i < BENCH_CYCLES_MAX && service_get_state(&service) != state; i++)
+        judged_cycle();
+    TEST_ASSERT_EQUAL_INT(state, service_get_state(&service));
+}
+
+static void expect_limits_kept(void)
+{
+    TEST_ASSERT_TRUE(most_velocity <= 100.0 * 1.0001);
+    TEST_ASSERT_TRUE(most_acceleration <= 1000.0 * 1.0001);
+    TEST_ASSERT_TRUE(most_jerk <= 50000.0 * 1.001);
+}
+
+/* What is added to the commanded place. */
+static double correction_now(void)
+{
+    return service.controller.setpoint.at[AXIS_X] - service.at.at[AXIS_X];
+}
+
+static void run_line(const char *line)
+{
+    start_line(line);
+    judged_wait_for(PANEL_IDLE);
+}
+
+static void test_correction_lasts_from_one_program_to_the_next_without_a_jump(void)
+{
+    judged_cycles(SETTLED);
+    run_line("G0 X100");
+    TEST_ASSERT_DOUBLE_WITHIN(1e-7, 100 * PITCH, correction_now());
+    run_line("G0 X60");
+    must(REGISTER_MODE, PANEL_MODE_JOG);
+    must(REGISTER_JOG_DISTANCE, 20000);
+    must(REGISTER_JOG_PLUS, 1);
+    judged_wait_for(PANEL_IDLE);
+    load("G21 F6000\nG1 X200\nM2\n");
+    must(REGISTER_MODE, PANEL_MODE_PROGRAM);
+    must(REGISTER_CYCLE_START, 1);
+    judged_wait_for(PANEL_IDLE);
+    TEST_ASSERT_EQUAL_INT64(200000, shown(REGISTER_POSITION_X));
+    TEST_ASSERT_DOUBLE_WITHIN(1e-7, 200 * PITCH, correction_now());
+    expect_limits_kept();
+}
+
+static void test_layers_fade_in_and_out_while_the_axes_stand(void)
+{
+    run_line("G0 X100");
+    judged_cycles(SETTLED);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-7, 100 * PITCH, correction_now());
+    TEST_ASSERT_EQUAL_INT64(100000, shown(REGISTER_POSITION_X));
+    TEST_ASSERT_INT64_WITHIN(2, 0, shown(REGISTER_FOLLOWING_X));
+    must(REGISTER_CORRECTION_MATRIX, 0);
+    judged_cycles(SETTLED);
+    TEST_ASSERT_EQUAL_DOUBLE(0, correction_now());
+    must(REGISTER_CORRECTION_MATRIX, 1);
+    judged_cycles(SETTLED);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-7, 100 * PITCH, correction_now());
+    expect_limits_kept();
+}
+
+static void test_a_layer_switched_in_a_cut_fades_within_the_limits(void)
+{
+    judged_cycles(SETTLED);
+    load("G21 F6000\nG1 X400\nM2\n");
+    must(REGISTER_CYCLE_START, 1);
+    judged_cycles(1000);
+    must(REGISTER_CORRECTION_MATRIX, 0);
+    judged_cycles(2900);
+    TEST_ASSERT_EQUAL_INT(PANEL_RUNNING, service_get_state(&service));
+    TEST_ASSERT_DOUBLE_WITHIN(1e-6, 0, correction_now());
+    judged_wait_for(PANEL_IDLE);
+    expect_limits_kept();
+}
+
+/* A fade begun in a program goes on where nothing moves, and where a program waits to begin. */
+static void test_a_program_that_ends_in_a_fade_and_one_that_begins_in_it_keep_the_limits(void)
+{
+    judged_cycles(SETTLED);
+    run_line("G0 X300");
+    must(REGISTER_CORRECTION_MATRIX, 0);
+    judged_cycles(200);
+    run_line("G0 X301");
+    must(REGISTER_CORRECTION_MATRIX, 1);
+    judged_cycles(150);
+    run_line("G0 X302");
+    judged_cycles(SETTLED);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-7, 302 * PITCH, correction_now());
+    expect_limits_kept();
+}
+
+static void test_an_error_of_a_program_does_not_stop_a_fade(void)
+{
+    run_line("G0 X300");
+    must(REGISTER_CORRECTION_MATRIX, 0);
+    judged_cycles(100);
+    start_line("G1 X9999 F100");
+    judged_wait_for(PANEL_ALARM);
+    judged_cycles(SETTLED);
+    TEST_ASSERT_EQUAL_DOUBLE(0, correction_now());
+    expect_limits_kept();
+}
+
+static void test_a_program_switches_a_layer_and_the_next_has_it_again(void)
+{
+    judged_cycles(SETTLED);
+    load("G21 F6000\nM121 P1\nG1 X100\nG4 P4\nM2\n");
+    must(REGISTER_CYCLE_START, 1);
+    judged_wait_for(PANEL_IDLE);
+    TEST_ASSERT_EQUAL_DOUBLE(0, correction_now());
+    load("G21\nG1 X100.001 F6000\nG4 P4\nM2\n");
+    must(REGISTER_CYCLE_START, 1);
+    judged_wait_for(PANEL_IDLE);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-7, 100.001 * PITCH, correction_now());
+    expect_limits_kept();
+}
+
+/* The drives are enabled where they stand: what is there is taken for a commanded place, and corrected from it on. */
+static void test_after_a_fault_correction_fades_in_from_where_the_drives_stand(void)
+{
+    run_line("G0 X300");
+    judged_cycles(SETTLED);
+    drives_stop_at_once(&service.controller.drives, TAKT_ERROR_DRIVE_FAULT);
+    judged_wait_for(PANEL_ALARM);
+    must(REGISTER_RESET, 1);
+    wait_for(PANEL_IDLE);
+    TEST_ASSERT_DOUBLE_WITHIN(0.002, 300 * (1 + PITCH), service.at.at[AXIS_X]);
+    x = service.controller.setpoint.at[AXIS_X];
+    v = a = 0;
+    judged_cycles(SETTLED);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-6, 300 * PITCH * (1 + PITCH), correction_now());
+    run_line("G0 X0");
+    TEST_ASSERT_DOUBLE_WITHIN(1e-9, 0, correction_now());
+    expect_limits_kept();
+}
+
+int main(void)
+{
+    UNITY_BEGIN();
+    RUN_TEST(test_correction_lasts_from_one_program_to_the_next_without_a_jump);
+    RUN_TEST(test_layers_fade_in_and_out_while_the_axes_stand);
+    RUN_TEST(test_a_layer_switched_in_a_cut_fades_within_the_limits);
+    RUN_TEST(test_a_program_that_ends_in_a_fade_and_one_that_begins_in_it_keep_the_limits);
+    RUN_TEST(test_an_error_of_a_program_does_not_stop_a_fade);
+    RUN_TEST(test_a_program_switches_a_layer_and_the_next_has_it_again);
+    RUN_TEST(test_after_a_fault_correction_fades_in_from_where_the_drives_stand);
+    return UNITY_END();
+}
