@@ -3,8 +3,7 @@
 #include "base/maths.h"
 
 /* Rounding of limits. */
-#define LIMIT   0.999
-#define LIMIT_V 1.0
+#define LIMIT 0.999
 
 /* Part of its acceleration that an axis at its highest velocity is left for changes of rate (override, hold). */
 #define CHANGE_PART 0.06
@@ -104,8 +103,8 @@ static double most_of_axis(const struct judge_need *need, const struct smooth_li
     const double second = need->second[i];
     const double third = need->third[i];
 
-    if (first * most > LIMIT_V * limits->velocity_mm_s[i]) {
-        most = LIMIT_V * limits->velocity_mm_s[i] / first;
+    if (first * most > limits->velocity_mm_s[i]) {
+        most = limits->velocity_mm_s[i] / first;
     }
     const double a = maths_max(0.0, LIMIT * limits->acceleration_mm_s2[i] - first * change->by);
 

@@ -19,7 +19,7 @@ static unsigned pieces_of(const struct window *w)
     return w->count - 3;
 }
 
-/* Rate at which a piece would just keep every limit, and the programmed feed: x^0.8 of it is taken. */
+/* Rate at which a piece would just keep every limit, and the programmed feed: its power of 3/4 is taken. */
 static double wanted(const struct window *w, const struct route *r,
                      const struct judge_change *change, unsigned piece)
 {
@@ -31,7 +31,6 @@ static double wanted(const struct window *w, const struct route *r,
     const double most = maths_min(rate.most, rate.programmed);
     const double root = maths_sqrt(maths_sqrt(most));
 
-    /* x^(3/4): roots alone are needed */
     return maths_clamp(root * root * root, RATE_LOW, RATE_HIGH);
 }
 

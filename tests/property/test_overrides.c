@@ -8,7 +8,7 @@
  */
 #include "motion/motion.h"
 #include "plan/path.h"
-#include "random_chain.h"
+#include "random_schedule.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -32,14 +32,6 @@ static struct motion motion;
 static unsigned programs = PROGRAMS;
 static unsigned first_seed = 1;
 static uint32_t forced_look_ahead; /* 0: none */
-
-struct schedule {
-    struct motion_operator now;
-    double target;  /* of a ramp of the feed override */
-    double change;  /* of it in a cycle */
-    uint64_t until; /* the next event */
-    uint64_t free;  /* cycles since anything was held */
-};
 
 struct run {
     struct chain chain;
@@ -84,33 +76,6 @@ static void random_machine(struct run *r)
         l->acceleration_mm_s2[i] = chain_decades(c, 2.3, 4.0);
         l->jerk_mm_s3[i] = chain_decades(c, 3.7, 6.0);
     }
-}
-
-/* Steps, ramps, holds, feed override 0, rapid override 0; then nothing for a while. */
-static void next_event(struct run *r, uint64_t cycle)
-{
-    struct chain *c = &r->chain;
-    struct schedule *s = &r->schedule;
-    const double what = chain_between(c, 0, 1);
-
-    s->until = cycle + 1 + (uint64_t)chain_decades(c, 0, 2.8);
-    s->now.hold = what < 0.15;
-    s->now.rapid_ratio = what > 0.9 ? 0.0 : chain_between(c, 0.01, 1.0);
-    s->target = what > 0.8 && what < 0.9 ? 0.0 : chain_between(c, 0.01, 1.2);
-    s->change = what > 0.5 ? 1.2 : chain_decades(c, -4, -1);
-}
-
-static void follow_schedule(struct run *r, uint64_t cycle)
-{
-    struct schedule *s = &r->schedule;
-
-    if (cycle >= s->until) {
-        next_event(r, cycle);
-    }
-    s->now.feed_ratio += maths_clamp(s->target - s->now.feed_ratio, -s->change, s->change);
-    const bool held = s->now.hold || s->now.feed_ratio <= 0.0 || s->now.rapid_ratio <= 0.0;
-
-    s->free = held ? 0 : s->free + 1;
 }
 
 static void push_next(struct run *r)
@@ -199,7 +164,7 @@ static enum motion_result run_program(struct run *r)
     path_init(&path, &r->limits, &start);
     motion_init(&motion, &path, &start, r->proportional);
     do {
-        follow_schedule(r, motion.cycles);
+        schedule_follow(&r->schedule, &r->chain, motion.cycles);
         plan(r);
         result = motion_cycle(&motion, &r->schedule.now, &record);
         if (result == MOTION_CYCLE) {

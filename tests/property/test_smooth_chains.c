@@ -7,23 +7,20 @@
  */
 #include "motion/motion.h"
 #include "plan/path.h"
-#include "random_chain.h"
+#include "random_schedule.h"
 
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unity.h>
 
-/* Programs in each run of all tests. */
+/* Programs in each run of all tests: from seed 24 on some are known not to come to their end (firmware/smooth/README.md). */
 #define PROGRAMS 12
 
 #define MOVES_MAX 100
 
 /* A program that takes longer stands still for ever. */
 #define CYCLES_MAX 1000000
-
-/* A machine takes no longer to its highest velocity: what room there is for changes of rate goes by that. */
-#define RAMP_MAX_S 0.2
 
 /* Moves around the present one that a setpoint may be beside. */
 #define AROUND 40
@@ -32,14 +29,6 @@ static struct path path;
 static struct motion motion;
 static unsigned programs = PROGRAMS;
 static unsigned first_seed = 1;
-
-struct schedule {
-    struct motion_operator now;
-    double target;  /* of a ramp of the feed override */
-    double change;  /* of it in a cycle */
-    uint64_t until; /* the next event */
-    uint64_t free;  /* cycles since anything was held */
-};
 
 struct programmed {
     struct curve curve;
@@ -89,37 +78,9 @@ static void random_machine(struct run *r)
     l->landing = LANDING_SPAN;
     for (int i = 0; i < CHAIN_AXES; i++) {
         l->velocity_mm_s[i] = chain_decades(c, 1.3, 2.7);
-        l->acceleration_mm_s2[i] =
-            maths_max(chain_decades(c, 2.3, 4.0), l->velocity_mm_s[i] / RAMP_MAX_S);
+        l->acceleration_mm_s2[i] = chain_decades(c, 2.3, 4.0);
         l->jerk_mm_s3[i] = chain_decades(c, 3.7, 6.0);
     }
-}
-
-/* Steps, ramps, holds, feed override 0, rapid override 0; then nothing for a while. */
-static void next_event(struct run *r, uint64_t cycle)
-{
-    struct chain *c = &r->chain;
-    struct schedule *s = &r->schedule;
-    const double what = chain_between(c, 0, 1);
-
-    s->until = cycle + 1 + (uint64_t)chain_decades(c, 0, 2.8);
-    s->now.hold = what < 0.15;
-    s->now.rapid_ratio = what > 0.9 ? 0.0 : chain_between(c, 0.01, 1.0);
-    s->target = what > 0.8 && what < 0.9 ? 0.0 : chain_between(c, 0.01, 1.2);
-    s->change = what > 0.5 ? 1.2 : chain_decades(c, -4, -1);
-}
-
-static void follow_schedule(struct run *r, uint64_t cycle)
-{
-    struct schedule *s = &r->schedule;
-
-    if (cycle >= s->until) {
-        next_event(r, cycle);
-    }
-    s->now.feed_ratio += maths_clamp(s->target - s->now.feed_ratio, -s->change, s->change);
-    const bool held = s->now.hold || s->now.feed_ratio <= 0.0 || s->now.rapid_ratio <= 0.0;
-
-    s->free = held ? 0 : s->free + 1;
 }
 
 /* The next move, kept to judge by. */
@@ -264,7 +225,7 @@ static enum motion_result run_program(struct run *r)
     motion_init(&motion, &path, &start, false);
     do {
         plan(r);
-        follow_schedule(r, motion.cycles);
+        schedule_follow(&r->schedule, &r->chain, motion.cycles);
         result = motion_cycle(&motion, &r->schedule.now, &record);
         if (result == MOTION_CYCLE) {
             chain_judge_setpoint(&r->judge, &r->limits, &record.cmd);

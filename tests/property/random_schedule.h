@@ -1,0 +1,41 @@
+/*
+ * Random schedules of what an operator does: steps and ramps of the feed override, holds, the rapid override.
+ */
+#ifndef TAKT_TESTS_RANDOM_SCHEDULE_H
+#define TAKT_TESTS_RANDOM_SCHEDULE_H
+
+#include "motion/motion.h"
+#include "random_chain.h"
+
+struct schedule {
+    struct motion_operator now;
+    double target;  /* of a ramp of the feed override */
+    double change;  /* of it in a cycle */
+    uint64_t until; /* the next event */
+    uint64_t free;  /* cycles since anything was held */
+};
+
+/* Steps, ramps, holds, feed override 0, rapid override 0; then nothing for a while. */
+static inline void schedule_next(struct schedule *s, struct chain *c, uint64_t cycle)
+{
+    const double what = chain_between(c, 0, 1);
+
+    s->until = cycle + 1 + (uint64_t)chain_decades(c, 0, 2.8);
+    s->now.hold = what < 0.15;
+    s->now.rapid_ratio = what > 0.9 ? 0.0 : chain_between(c, 0.01, 1.0);
+    s->target = what > 0.8 && what < 0.9 ? 0.0 : chain_between(c, 0.01, 1.2);
+    s->change = what > 0.5 ? 1.2 : chain_decades(c, -4, -1);
+}
+
+static inline void schedule_follow(struct schedule *s, struct chain *c, uint64_t cycle)
+{
+    if (cycle >= s->until) {
+        schedule_next(s, c, cycle);
+    }
+    s->now.feed_ratio += maths_clamp(s->target - s->now.feed_ratio, -s->change, s->change);
+    const bool held = s->now.hold || s->now.feed_ratio <= 0.0 || s->now.rapid_ratio <= 0.0;
+
+    s->free = held ? 0 : s->free + 1;
+}
+
+#endif
