@@ -2,10 +2,7 @@
  * firmware/service/service.h: position-error correction that goes on from one program to the next and between them, and
  * is switched by the operator.
  */
-#include "base/maths.h"
-#include "service_bench.h"
-
-#define TAU_S 0.001
+#include "service_judge.h"
 
 /* K_X = X / 2000 by the matrix: 0.05 mm at X 100. */
 #define PITCH 5e-4
@@ -13,56 +10,16 @@
 /* All fades have ended after so many cycles. */
 #define SETTLED 4000U
 
-static double x, v, a;
-static double most_velocity, most_acceleration, most_jerk;
-
 void setUp(void)
 {
     bench_set_up_machine();
     machine.correction.machine[AXIS_X][AXIS_X] = PITCH;
     bench_start();
-    x = service.controller.setpoint.at[AXIS_X];
-    v = a = 0;
-    most_velocity = most_acceleration = most_jerk = 0;
+    begin_judging();
 }
 
 void tearDown(void)
 {
-}
-
-static void judged_cycle(void)
-{
-    double velocity, acceleration;
-
-    cycle();
-    velocity = (service.controller.setpoint.at[AXIS_X] - x) / TAU_S;
-    acceleration = (velocity - v) / TAU_S;
-    most_jerk = maths_max(most_jerk, maths_abs(acceleration - a) / TAU_S);
-    most_acceleration = maths_max(most_acceleration, maths_abs(acceleration));
-    most_velocity = maths_max(most_velocity, maths_abs(velocity));
-    x = service.controller.setpoint.at[AXIS_X];
-    v = velocity;
-    a = acceleration;
-}
-
-static void judged_cycles(unsigned count)
-{
-    for (unsigned i = 0; i < count; i++)
-        judged_cycle();
-}
-
-static void judged_wait_for(enum panel_state state)
-{
-    for (unsigned i = 0; i < BENCH_CYCLES_MAX && service_get_state(&service) != state; i++)
-        judged_cycle();
-    TEST_ASSERT_EQUAL_INT(state, service_get_state(&service));
-}
-
-static void expect_limits_kept(void)
-{
-    TEST_ASSERT_TRUE(most_velocity <= 100.0 * 1.0001);
-    TEST_ASSERT_TRUE(most_acceleration <= 1000.0 * 1.0001);
-    TEST_ASSERT_TRUE(most_jerk <= 50000.0 * 1.001);
 }
 
 /* What is added to the commanded place. */
@@ -178,8 +135,7 @@ static void test_after_a_fault_correction_fades_in_from_where_the_drives_stand(v
     must(REGISTER_RESET, 1);
     wait_for(PANEL_IDLE);
     TEST_ASSERT_DOUBLE_WITHIN(0.002, 300 * (1 + PITCH), service.at.at[AXIS_X]);
-    x = service.controller.setpoint.at[AXIS_X];
-    v = a = 0;
+    judge_from_rest();
     judged_cycles(SETTLED);
     TEST_ASSERT_DOUBLE_WITHIN(1e-6, 300 * PITCH * (1 + PITCH), correction_now());
     run_line("G0 X0");

@@ -1,61 +1,16 @@
 /*
  * firmware/service/service.h: coming to rest on the path and going on, for every cause; giving up; jogs that are let go.
  */
-#include "base/maths.h"
-#include "service_bench.h"
-
-#define TAU_S 0.001
-
-/* Limits of the machine's axes, judged by differences of the setpoints. */
-static double most_velocity, most_acceleration, most_jerk;
-static double x, v, a;
+#include "service_judge.h"
 
 void setUp(void)
 {
     bench_set_up();
-    x = service.at.at[AXIS_X];
-    v = a = 0;
-    most_velocity = most_acceleration = most_jerk = 0;
+    begin_judging();
 }
 
 void tearDown(void)
 {
-}
-
-static void judged_cycle(void)
-{
-    double velocity, acceleration;
-
-    cycle();
-    velocity = (service.controller.setpoint.at[AXIS_X] - x) / TAU_S;
-    acceleration = (velocity - v) / TAU_S;
-    most_jerk = maths_max(most_jerk, maths_abs(acceleration - a) / TAU_S);
-    most_acceleration = maths_max(most_acceleration, maths_abs(acceleration));
-    most_velocity = maths_max(most_velocity, maths_abs(velocity));
-    x = service.controller.setpoint.at[AXIS_X];
-    v = velocity;
-    a = acceleration;
-}
-
-static void judged_cycles(unsigned count)
-{
-    for (unsigned i = 0; i < count; i++)
-        judged_cycle();
-}
-
-static void judged_wait_for(enum panel_state state)
-{
-    for (unsigned i = 0; i < BENCH_CYCLES_MAX && service_get_state(&service) != state; i++)
-        judged_cycle();
-    TEST_ASSERT_EQUAL_INT(state, service_get_state(&service));
-}
-
-static void expect_limits_kept(void)
-{
-    TEST_ASSERT_TRUE(most_velocity <= 100.0 * 1.0001);
-    TEST_ASSERT_TRUE(most_acceleration <= 1000.0 * 1.0001);
-    TEST_ASSERT_TRUE(most_jerk <= 50000.0 * 1.001);
-    TEST_ASSERT_GREATER_THAN(10, most_velocity);
 }
 
 /* A cut at 50 mm/s, half a second old. */

@@ -2,34 +2,20 @@
  * firmware/service/service.h: single block, switched on and off while a program runs. It holds at the next block end at
  * which the axes can come to rest within their limits, exactly there, and nowhere else.
  */
-#include "base/maths.h"
-#include "service_bench.h"
+#include "service_judge.h"
 
 #include <stdio.h>
 
-#define TAU_S    0.001
-#define AXES     3U
 #define CORNERS  120U
 #define PLACE_MM 1e-9
 
-/* Setpoints of the last cycles, and the largest differences between them. */
-static double at[AXES][4];
-static double most_velocity, most_acceleration, most_jerk;
 static uint64_t chance;
-
-static void begin_judging(void)
-{
-    for (unsigned i = 0; i < AXES; i++)
-        for (unsigned k = 0; k < 4; k++)
-            at[i][k] = service.at.at[i];
-    most_velocity = most_acceleration = most_jerk = 0;
-    chance = 1;
-}
 
 void setUp(void)
 {
     bench_set_up();
     begin_judging();
+    chance = 1;
 }
 
 void tearDown(void)
@@ -40,43 +26,6 @@ static unsigned draw(unsigned below)
 {
     chance = chance * 6364136223846793005u + 1442695040888963407u;
     return (unsigned)(chance >> 33) % below;
-}
-
-static void judged_cycle(void)
-{
-    cycle();
-    for (unsigned i = 0; i < AXES; i++) {
-        double *p = at[i];
-
-        memmove(p + 1, p, 3 * sizeof p[0]);
-        p[0] = service.controller.setpoint.at[i];
-        most_velocity = maths_max(most_velocity, maths_abs(p[0] - p[1]) / TAU_S);
-        most_acceleration =
-            maths_max(most_acceleration, maths_abs(p[0] - 2 * p[1] + p[2]) / (TAU_S * TAU_S));
-        most_jerk = maths_max(most_jerk, maths_abs(p[0] - 3 * p[1] + 3 * p[2] - p[3]) /
-                                             (TAU_S * TAU_S * TAU_S));
-    }
-}
-
-static void judged_cycles(unsigned count)
-{
-    for (unsigned i = 0; i < count; i++)
-        judged_cycle();
-}
-
-static void judged_wait_for(enum panel_state state)
-{
-    for (unsigned i = 0; i < BENCH_CYCLES_MAX && service_get_state(&service) != state; i++)
-        judged_cycle();
-    TEST_ASSERT_EQUAL_INT(state, service_get_state(&service));
-}
-
-static void expect_limits_kept(void)
-{
-    TEST_ASSERT_TRUE(most_velocity <= 100.0 * 1.0001);
-    TEST_ASSERT_TRUE(most_acceleration <= 1000.0 * 1.0001);
-    TEST_ASSERT_TRUE(most_jerk <= 50000.0 * 1.001);
-    TEST_ASSERT_TRUE(most_velocity > 10);
 }
 
 /* 300 mm along X at 50 mm/s in blocks of so many tenths of a mm, on their way for half a second. */

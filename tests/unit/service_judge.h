@@ -1,0 +1,72 @@
+/*
+ * What the tests of the service share that judge its setpoints: cycles, and the largest differences over them beside the
+ * limits of the built-in mill's X, Y and Z.
+ */
+#ifndef TAKT_TESTS_SERVICE_JUDGE_H
+#define TAKT_TESTS_SERVICE_JUDGE_H
+
+#include "base/maths.h"
+#include "service_bench.h"
+
+#define TAU_S       0.001
+#define JUDGED_AXES 3U
+
+/* Setpoints of the last cycles, newest first, and the largest differences between them. */
+static double judged[JUDGED_AXES][4];
+static double most_velocity, most_acceleration, most_jerk;
+
+/* The axes stand, wherever they have been before. */
+static void judge_from_rest(void)
+{
+    for (unsigned i = 0; i < JUDGED_AXES; i++)
+        for (unsigned k = 0; k < 4; k++)
+            judged[i][k] = service.controller.setpoint.at[i];
+}
+
+static void begin_judging(void)
+{
+    judge_from_rest();
+    most_velocity = most_acceleration = most_jerk = 0;
+}
+
+static void judge_axis(double *p, double at)
+{
+    memmove(p + 1, p, 3 * sizeof p[0]);
+    p[0] = at;
+    most_velocity = maths_max(most_velocity, maths_abs(p[0] - p[1]) / TAU_S);
+    most_acceleration =
+        maths_max(most_acceleration, maths_abs(p[0] - 2 * p[1] + p[2]) / (TAU_S * TAU_S));
+    most_jerk = maths_max(most_jerk,
+                          maths_abs(p[0] - 3 * p[1] + 3 * p[2] - p[3]) / (TAU_S * TAU_S * TAU_S));
+}
+
+static void judged_cycle(void)
+{
+    cycle();
+    for (unsigned i = 0; i < JUDGED_AXES; i++)
+        judge_axis(judged[i], service.controller.setpoint.at[i]);
+}
+
+static void judged_cycles(unsigned count)
+{
+    for (unsigned i = 0; i < count; i++)
+        judged_cycle();
+}
+
+static void judged_wait_for(enum panel_state state)
+{
+    for (unsigned i = 0; i < BENCH_CYCLES_MAX && service_get_state(&service) != state; i++)
+        judged_cycle();
+    TEST_ASSERT_EQUAL_INT(state, service_get_state(&service));
+}
+
+/* And the axes have moved. */
+static void expect_limits_kept(void)
+{
+    TEST_ASSERT_TRUE(most_velocity <= 100.0 * 1.0001);
+    TEST_ASSERT_TRUE(most_acceleration <= 1000.0 * 1.0001);
+    TEST_ASSERT_TRUE(most_jerk <= 50000.0 * 1.001);
+    TEST_ASSERT_GREATER_THAN(10, most_velocity);
+}
+
+#endif
