@@ -9,11 +9,30 @@
 #include <cjson/cJSON.h>
 #include <stdlib.h>
 
+/* What is shown of a block; the pieces of a smoothed curve that belong to one motion are one. */
+struct plan_row {
+    uint32_t first, last; /* motions that became it: several where short ones were merged */
+    uint32_t line;
+    enum move_kind kind;
+    bool motion;
+    bool rotary;
+    unsigned pieces;                          /* of a smoothed curve; 0: the programmed curve */
+    double length;                            /* mm or rad */
+    double feed_start, feed_cruise, feed_end; /* along the curve, mm/s or rad/s */
+    enum joint_kind end;
+    enum governor governor;
+    double governed_s; /* time of the longest piece, which it is the governor of */
+    double time_s;
+};
+
 struct plan_print {
     FILE *table; /* NULL: no table */
     FILE *json;  /* NULL: no JSON */
     double cycle_s;
-    bool any; /* a block has been written: JSON needs a comma */
+    bool any;            /* a block has been written: JSON needs a comma */
+    uint32_t shown;      /* number of the last motion written */
+    bool open;           /* there is a row that may still grow */
+    struct plan_row row; /* that one */
 };
 
 static const char *kind_name(enum move_kind kind)
@@ -41,82 +60,182 @@ static const char *end_name(enum joint_kind end)
     return names[end];
 }
 
+/* Places on a smoothed piece at which its feed and length are looked at. */
+#define PIECE_PARTS 8
+
+/* |dx/ds| over linear axes, or rotary ones when only those move: 1 but for a smoothed piece, whose s is nominal time. */
+static double stretch_at(const struct block *block, double part)
+{
+    const int from = block->rotary ? AXIS_LINEAR_COUNT : 0;
+    const int to = block->rotary ? AXIS_COUNT : AXIS_LINEAR_COUNT;
+    struct point tangent;
+    double square = 0;
+
+    if (block->curve.kind != CURVE_SPLINE)
+        return 1;
+    curve_tangent(&block->curve, part * block->curve.length_mm, &tangent);
+    for (int axis = from; axis < to; axis++)
+        square += tangent.at[axis] * tangent.at[axis];
+    return maths_sqrt(square);
+}
+
+/* Mean and highest of it. */
+static double mean_stretch(const struct block *block, double *most)
+{
+    double sum = 0;
+
+    *most = 0;
+    for (int i = 0; i < PIECE_PARTS; i++) {
+        sum += stretch_at(block, (i + 0.5) / PIECE_PARTS);
+        *most = maths_max(*most, stretch_at(block, (double)i / (PIECE_PARTS - 1)));
+    }
+    return sum / PIECE_PARTS;
+}
+
+static struct plan_row row_of(const struct plan_print *print, const struct planned_block *planned)
+{
+    const struct block *block = planned->block;
+    struct plan_row row = {
+        .line = block->move.line,
+        .kind = block->move.kind,
+        .motion = block_is_motion(block),
+        .time_s = planned->time_s,
+    };
+    double most;
+
+    if (!row.motion)
+        return row;
+    row.last = block->number;
+    row.first = print->shown < row.last ? print->shown + 1 : row.last;
+    row.rotary = block->rotary;
+    row.pieces = block->curve.kind == CURVE_SPLINE ? 1 : 0;
+    row.length = block->curve.length_mm * mean_stretch(block, &most);
+    row.feed_start = planned->feed_start_mm_s * stretch_at(block, 0);
+    row.feed_cruise = planned->feed_cruise_mm_s * most;
+    row.feed_end = planned->feed_end_mm_s * stretch_at(block, 1);
+    row.end = block->end;
+    row.governor = planned->governor;
+    row.governed_s = planned->time_s;
+    return row;
+}
+
+/* The next piece of the same motion. */
+static void row_grow(struct plan_row *row, const struct plan_row *next)
+{
+    if (next->governed_s > row->governed_s) {
+        row->governor = next->governor;
+        row->governed_s = next->governed_s;
+    }
+    row->pieces += next->pieces;
+    row->length += next->length;
+    row->feed_cruise = maths_max(row->feed_cruise, next->feed_cruise);
+    row->feed_end = next->feed_end;
+    row->end = next->end;
+    row->time_s += next->time_s;
+}
+
 /* mm/s to mm/min; of a motion of rotary axes alone rad/s to deg/min. */
-static double shown_feed(const struct block *block, double feed_mm_s)
+static double shown_feed(const struct plan_row *row, double feed_mm_s)
 {
-    return feed_mm_s * 60.0 * (block->rotary ? 180.0 / MATHS_PI : 1.0);
+    return feed_mm_s * 60.0 * (row->rotary ? 180.0 / MATHS_PI : 1.0);
 }
 
-static double shown_length(const struct block *block)
+static double shown_length(const struct plan_row *row)
 {
-    return block->curve.length_mm * (block->rotary ? 180.0 / MATHS_PI : 1.0);
+    return row->length * (row->rotary ? 180.0 / MATHS_PI : 1.0);
 }
 
-static const char *length_unit(const struct block *block)
+static const char *length_unit(const struct plan_row *row)
 {
-    return block->rotary ? "deg" : "mm";
+    return row->rotary ? "deg" : "mm";
 }
 
 static void table_head(FILE *stream)
 {
-    (void)fprintf(stream, "%7s %7s  %-8s %14s %10s %10s %10s  %-8s %-13s %10s\n", "block", "line",
-                  "kind", "length", "F start", "F cruise", "F end", "end", "governor", "time [s]");
+    (void)fprintf(stream, "%11s %7s  %-8s %14s %10s %10s %10s  %-8s %-13s %10s %7s\n", "block",
+                  "line", "kind", "length", "F start", "F cruise", "F end", "end", "governor",
+                  "time [s]", "pieces");
 }
 
-static void table_row(const struct plan_print *print, const struct planned_block *planned)
+static void number_text(const struct plan_row *row, char *text, size_t size)
 {
-    const struct block *block = planned->block;
+    if (row->first < row->last)
+        (void)snprintf(text, size, "%u-%u", (unsigned)row->first, (unsigned)row->last);
+    else
+        (void)snprintf(text, size, "%u", (unsigned)row->last);
+}
 
-    if (!move_is_motion(&block->move)) {
-        (void)fprintf(print->table, "%7s %7u  %-8s %70s %10.6f\n", "-", (unsigned)block->move.line,
-                      kind_name(block->move.kind), "", planned->time_s);
+static void table_row(FILE *stream, const struct plan_row *row)
+{
+    char number[24];
+
+    if (!row->motion) {
+        (void)fprintf(stream, "%11s %7u  %-8s %70s %10.6f\n", "-", (unsigned)row->line,
+                      kind_name(row->kind), "", row->time_s);
         return;
     }
-    (void)fprintf(
-        print->table, "%7u %7u  %-8s %10.6f %-3s %10.3f %10.3f %10.3f  %-8s %-13s %10.6f\n",
-        (unsigned)block->number, (unsigned)block->move.line, kind_name(block->move.kind),
-        shown_length(block), length_unit(block), shown_feed(block, planned->feed_start_mm_s),
-        shown_feed(block, planned->feed_cruise_mm_s), shown_feed(block, planned->feed_end_mm_s),
-        end_name(block->end), governor_name(planned->governor), planned->time_s);
+    number_text(row, number, sizeof number);
+    (void)fprintf(stream, "%11s %7u  %-8s %10.6f %-3s %10.3f %10.3f %10.3f  %-8s %-13s %10.6f",
+                  number, (unsigned)row->line, kind_name(row->kind), shown_length(row),
+                  length_unit(row), shown_feed(row, row->feed_start),
+                  shown_feed(row, row->feed_cruise), shown_feed(row, row->feed_end),
+                  end_name(row->end), governor_name(row->governor), row->time_s);
+    if (row->pieces > 0)
+        (void)fprintf(stream, " %7u", row->pieces);
+    (void)fputc('\n', stream);
 }
 
-static void json_feeds(FILE *stream, const struct planned_block *planned)
+static void json_feeds(FILE *stream, const struct plan_row *row)
 {
-    const struct block *block = planned->block;
-    const char *unit = length_unit(block);
+    const char *unit = length_unit(row);
 
-    (void)fprintf(
-        stream,
-        ", \"length_%s\": %.17g, \"feed_start_%s_min\": %.17g, \"feed_cruise_%s_min\": %.17g, "
-        "\"feed_end_%s_min\": %.17g, \"end\": \"%s\", \"governor\": \"%s\"",
-        unit, shown_length(block), unit, shown_feed(block, planned->feed_start_mm_s), unit,
-        shown_feed(block, planned->feed_cruise_mm_s), unit,
-        shown_feed(block, planned->feed_end_mm_s), end_name(block->end),
-        governor_name(planned->governor));
+    (void)fprintf(stream,
+                  ", \"block_first\": %u, \"pieces\": %u, \"length_%s\": %.17g, "
+                  "\"feed_start_%s_min\": %.17g, "
+                  "\"feed_cruise_%s_min\": %.17g, \"feed_end_%s_min\": %.17g, \"end\": \"%s\", "
+                  "\"governor\": \"%s\"",
+                  (unsigned)row->first, row->pieces, unit, shown_length(row), unit,
+                  shown_feed(row, row->feed_start), unit, shown_feed(row, row->feed_cruise), unit,
+                  shown_feed(row, row->feed_end), end_name(row->end), governor_name(row->governor));
 }
 
-static void json_row(const struct plan_print *print, const struct planned_block *planned)
+static void json_row(const struct plan_print *print, const struct plan_row *row)
 {
-    const struct block *block = planned->block;
-    bool motion = move_is_motion(&block->move);
-
     (void)fprintf(print->json, "%s\n    {\"block\": %u, \"line\": %u, \"kind\": \"%s\"",
-                  print->any ? "," : "", (unsigned)block->number, (unsigned)block->move.line,
-                  kind_name(block->move.kind));
-    if (motion)
-        json_feeds(print->json, planned);
-    (void)fprintf(print->json, ", \"time_s\": %.17g}", planned->time_s);
+                  print->any ? "," : "", (unsigned)row->last, (unsigned)row->line,
+                  kind_name(row->kind));
+    if (row->motion)
+        json_feeds(print->json, row);
+    (void)fprintf(print->json, ", \"time_s\": %.17g}", row->time_s);
 }
 
-static void print_block(void *context, const struct planned_block *planned)
+/* Writes the row that is open. */
+static void print_row(struct plan_print *print)
+{
+    if (!print->open)
+        return;
+    if (print->table != NULL)
+        table_row(print->table, &print->row);
+    if (print->json != NULL)
+        json_row(print, &print->row);
+    print->any = true;
+    print->open = false;
+    if (print->row.motion)
+        print->shown = print->row.last;
+}
+
+static void take_block(void *context, const struct planned_block *planned)
 {
     struct plan_print *print = context;
+    const struct plan_row row = row_of(print, planned);
 
-    if (print->table != NULL)
-        table_row(print, planned);
-    if (print->json != NULL)
-        json_row(print, planned);
-    print->any = true;
+    if (print->open && row.pieces > 0 && print->row.pieces > 0 && row.last == print->row.last) {
+        row_grow(&print->row, &row);
+        return;
+    }
+    print_row(print);
+    print->row = row_of(print, planned);
+    print->open = true;
 }
 
 static void print_totals(const struct plan_print *print, const struct planner_totals *totals)
@@ -162,9 +281,10 @@ static enum command_status plan_into(const struct session *session, struct outpu
     enum command_status status;
 
     print_heads(&print, session);
-    status = planner_walk(session, print_block, &print, &totals);
+    status = planner_walk(session, take_block, &print, &totals);
     if (status != STATUS_DONE)
         return status;
+    print_row(&print);
     print_totals(&print, &totals);
     if (json->stream != NULL && !(output_file_finish(json) && output_file_place(json)))
         return STATUS_ENVIRONMENT;
@@ -205,7 +325,10 @@ const struct command command_plan = {
             "feed and the feed at its end in mm/min, how it ends (passed at full feed, reduced for "
             "the joint, stop),\n"
             "the limit that governs its feed, and its time. An involute has a row for each piece "
-            "of it.\n"
+            "of it. What is smoothed\n"
+            "(G64 P) has the number of its pieces of curve, and the longest one's governor; blocks "
+            "that became one curve\n"
+            "show as FIRST-LAST.\n"
             "\n"
             "Examples:\n"
             "  takt plan part.ngc\n"

@@ -50,6 +50,20 @@ rows_s = sum(block["time_s"] for block in plan["blocks"])
 t.check(abs(rows_s - plan["totals"]["time_s"]) < 1e-9, "the rows' times add up", rows_s, plan["totals"])
 t.check(plan["totals"]["cycles"] == run_cycles, "the plan takes as long as the run", plan["totals"], run_cycles)
 
+# Smoothed: two lines that are nearly one become one row; its length and feed are those of the curve.
+with open("smooth.ngc", "w", encoding="utf-8") as file:
+    file.write("G21 G64 P0.01\nG1 X10 F3000\nX20 Y0.0002\nY10\nM2\n")
+status, out, _ = t.run("plan", "smooth.ngc")
+first, second = (row.split() for row in out.splitlines()[1:3])
+t.check(first[0] == "1-2" and second[0] == "3", "what became one curve", out)
+t.check(int(first[-1]) > 10 and int(second[-1]) > 10, "their pieces", out)
+plan = t.json.loads(t.run("plan", "smooth.ngc", "--json", "-")[1])
+blocks = plan["blocks"]
+t.check([(b.get("block_first"), b["block"]) for b in blocks[:2]] == [(1, 2), (3, 3)], "blocks that became one", blocks)
+t.check(abs(sum(b["length_mm"] for b in blocks[:2]) - 30) < 0.02, "the curve's length", blocks)
+t.check(abs(blocks[0]["feed_cruise_mm_min"] - 3000) < 5, "the curve's feed", blocks)
+t.check(blocks[0]["end"] == "passed" and blocks[1]["end"] == "stop", "how they end", blocks)
+
 status, out, _ = t.run("check", PROGRAM)
 t.check(status == 0 and out.endswith(": no errors, 0 warnings; 3 moves, 30.708 mm\n"), "check", out)
 status, out, _ = t.run("canon", PROGRAM)
