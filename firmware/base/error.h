@@ -199,6 +199,10 @@
     X(PROGRAM_STARVED, "the program did not come fast enough: the axes have waited for it")        \
     X(PLAN_DAMAGED, "the compiled program is damaged")                                             \
     X(PLAN_STRAYED, "the compiled program does not fit the part program here")                     \
+    X(PLAN_FOREIGN, "this is no compiled program")                                                 \
+    X(PLAN_VERSION, "the program was compiled by another version of takt")                         \
+    X(PLAN_MACHINE, "it was compiled for another machine: %w is %v there and %l here")             \
+    X(PLAN_PROGRAM, "it was compiled from another program than the one that is here")              \
     /* machine as a whole, and how it is stored */                                                 \
     X(MACHINE_NO_AXIS, "the machine has no axis")                                                  \
     X(MACHINE_TRAVEL, "axis %w: its travel ends before it begins")                                 \

@@ -6,6 +6,24 @@
 
 #include <stdint.h>
 
+union bits_of_float {
+    float value;
+    uint32_t bits;
+};
+
+/* Floats that are not negative are in the order of their bits. */
+float maths_float_below(double x)
+{
+    union bits_of_float near = {.value = (float)x};
+
+    if ((double)near.value > x)
+        near.bits--;
+    return near.value;
+}
+
+/* Below this an integer has 32 bits, which every processor converts faster than 64. */
+#define SMALL_MAX 0x1p31
+
 /* From 2^52 on every double is an integer. False for NaN. */
 static bool may_have_fraction(double x)
 {
@@ -32,7 +50,7 @@ double maths_round(double x)
 {
     if (!may_have_fraction(x))
         return x;
-    double whole = (double)(int64_t)x;
+    double whole = maths_abs(x) < SMALL_MAX ? (double)(int32_t)x : (double)(int64_t)x;
     double rest = x - whole;
     if (rest >= 0.5)
         return whole + 1.0;

@@ -48,6 +48,9 @@ static inline bool maths_is_finite(double x)
     return x - x == 0.0;
 }
 
+/* The largest number of single precision <= x, x >= 0. */
+float maths_float_below(double x);
+
 /* Largest integer <= x and smallest integer >= x, as doubles; any |x|. Exact. */
 double maths_floor(double x);
 double maths_ceil(double x);

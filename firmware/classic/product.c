@@ -24,30 +24,32 @@ void product_init(struct product *p, const struct product_config *config)
 
 static const struct block *first_block(const struct motion *m)
 {
-    return path_at(m->path, m->path->first);
+    return path_first(m->path);
 }
 
 /* -- the diagram of a block -- */
 
-static struct diagram_limits limits_of(const struct block *b)
+static struct diagram_limits limits_of(const struct path *path, uint32_t index)
 {
+    const struct path_block *b = path_at(path, index);
     const struct ceiling_request as_programmed = {.feed_ratio = 1.0, .rapid_ratio = 1.0};
 
-    return (struct diagram_limits){.length_mm = b->length_mm,
-                                   .feed_mm_s = ceiling_block_feed(b, &as_programmed),
-                                   .a_mm_s2 = b->a_mm_s2,
-                                   .j_mm_s3 = b->j_mm_s3};
+    return (struct diagram_limits){.length_mm = path_length(path, index),
+                                   .feed_mm_s = ceiling_block_feed(path, index, &as_programmed),
+                                   .a_mm_s2 = (double)b->a_mm_s2,
+                                   .j_mm_s3 = (double)b->j_mm_s3};
 }
 
 /* The highest feed at the end of a block when the next one may begin with a feed. */
-static double end_feed(const struct block *b, const struct block *next, double next_start_mm_s)
+static double end_feed(const struct path *path, uint32_t index, double next_start_mm_s)
 {
-    const double joint_mm_s = b->end == JOINT_STOP ? 0.0 : b->feed_joint_mm_s;
+    const struct path_block *b = path_at(path, index);
+    const double joint_mm_s = b->end == JOINT_STOP ? 0.0 : (double)b->feed_joint_mm_s;
 
-    if (!block_is_motion(next)) {
+    if (!path_at(path, index + 1)->motion) {
         return 0.0;
     }
-    return maths_min(maths_min(joint_mm_s, next_start_mm_s), limits_of(b).feed_mm_s);
+    return maths_min(maths_min(joint_mm_s, next_start_mm_s), limits_of(path, index).feed_mm_s);
 }
 
 /* The feed at the end of the oldest block from which the rest can still be stopped (look-ahead). */
@@ -56,24 +58,20 @@ static double plan_end(const struct path *path)
     double start_mm_s = 0.0;
 
     for (uint32_t k = path->closed - 1; k != path->first; k--) {
-        const struct block *b = path_at(path, k);
         const bool is_last = k == path->closed - 1;
 
-        if (block_is_motion(b)) {
-            const struct diagram_limits limits = limits_of(b);
+        if (path_at(path, k)->motion) {
+            const struct diagram_limits limits = limits_of(path, k);
 
-            start_mm_s = diagram_reach(
-                &limits, is_last ? 0.0 : end_feed(b, path_at(path, k + 1), start_mm_s));
+            start_mm_s = diagram_reach(&limits, is_last ? 0.0 : end_feed(path, k, start_mm_s));
         }
     }
-    return path->closed - 1 == path->first
-               ? 0.0
-               : end_feed(path_at(path, path->first), path_at(path, path->first + 1), start_mm_s);
+    return path->closed - 1 == path->first ? 0.0 : end_feed(path, path->first, start_mm_s);
 }
 
 static void begin_block(struct product *p, const struct motion *m, double start_mm_s)
 {
-    const struct diagram_limits limits = limits_of(first_block(m));
+    const struct diagram_limits limits = limits_of(m->path, m->path->first);
     const double end_mm_s = maths_min(plan_end(m->path), diagram_reach(&limits, start_mm_s));
 
     diagram_set(&p->diagram, &limits, start_mm_s, end_mm_s, p->config.cycle_s);
@@ -156,7 +154,7 @@ static bool is_last(const struct motion *m)
     const struct path *path = m->path;
 
     return first_block(m)->end == JOINT_STOP || path->first + 1 == path->closed ||
-           !block_is_motion(path_at(path, path->first + 1));
+           !path_at(path, path->first + 1)->motion;
 }
 
 /*

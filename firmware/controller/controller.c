@@ -300,8 +300,13 @@ static struct motion_operator operator_of(const struct controller *c)
 static void follow_events(struct controller *c)
 {
     for (uint32_t i = c->motion.passed_first; i != c->path.first; i++) {
-        outputs_apply(&c->outputs, &c->surface, &path_at(&c->path, i)->move);
-        spindle_watch_pass(&c->spindle, &path_at(&c->path, i)->move);
+        if (!path_at(&c->path, i)->motion) {
+            struct move move;
+
+            path_read_move(&c->path, i, &move);
+            outputs_apply(&c->outputs, &c->surface, &move);
+            spindle_watch_pass(&c->spindle, &move);
+        }
     }
     outputs_follow(&c->outputs, &c->surface, &c->record.cmd);
 }
@@ -311,7 +316,7 @@ static void end_program(struct controller *c)
 {
     follow_events(c);
     if (!c->keeps_outputs) {
-        outputs_apply(&c->outputs, &c->surface, &path_at(&c->path, c->path.first)->move);
+        outputs_apply(&c->outputs, &c->surface, &path_first(&c->path)->move);
     }
     c->state = CONTROLLER_COMPLETED;
 }
@@ -389,6 +394,9 @@ static struct point uncorrected_actual(const struct controller *c)
 /* What the program has asked of probe and inputs. */
 static void follow_probe(struct controller *c)
 {
+    if (!controller_probe_is_asked(&c->probe)) {
+        return;
+    }
     const struct point actual = uncorrected_actual(c);
 
     if (controller_probe_watch(&c->probe, &motion_block(&c->motion)->move, &c->inputs, &actual)) {
@@ -512,7 +520,8 @@ uint32_t controller_get_answers(const struct controller *c, struct program_answe
 
 bool controller_is_starved(const struct controller *c)
 {
-    return c->program_late && c->motion.has_ceiling && c->path.first == c->path.closed;
+    return (c->replays && c->replay.waits) ||
+           (c->program_late && c->motion.has_ceiling && c->path.first == c->path.closed);
 }
 
 uint64_t controller_get_late(const struct controller *c)

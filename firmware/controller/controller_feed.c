@@ -15,11 +15,11 @@ void controller_feed_init(struct controller *c, const struct replay_source *comp
     c->replays = compiled != NULL;
     if (c->replays) {
         replay_init(&c->replay, compiled);
-        handover_allow_all(&c->motion);
+        handover_allow_linear(&c->motion);
     }
 }
 
 bool controller_feed_is_product(const struct controller *c)
 {
-    return !move_is_locked(&path_at(&c->path, c->path.first)->move);
+    return !move_kind_is_locked(path_kind(&c->path, c->path.first));
 }

@@ -1,5 +1,6 @@
 #include "controller/controller_probe.h"
 
+#include "base/handoff.h"
 #include "base/maths.h"
 
 /* Longer than any machine waits. */
@@ -17,6 +18,7 @@ void controller_probe_ask(struct controller_probe *q, const struct move *move, d
     }
     *q = (struct controller_probe){.move = *move, .answers = q->answers, .taken = q->taken};
     q->cycles_left = (uint64_t)maths_min(maths_ceil(move->timeout_s / cycle_s), CYCLES_MAX);
+    handoff_order();
     q->state = PROBE_ASKED;
 }
 
@@ -30,6 +32,11 @@ static void find(struct controller_probe *q, const struct point *actual)
 {
     q->answer.contact = true;
     q->answer.contact_at = *actual;
+}
+
+bool controller_probe_is_asked(const struct controller_probe *q)
+{
+    return q->state == PROBE_ASKED;
 }
 
 /* As in LinuxCNC, a move that must find what it looks for may not begin where it is found already. */
@@ -122,6 +129,7 @@ bool controller_probe_rest(struct controller_probe *q, const struct inputs *inpu
     } else if (!end_waiting(q, inputs)) {
         return false;
     }
+    handoff_order();
     q->state = PROBE_ANSWERED;
     return true;
 }
@@ -132,10 +140,12 @@ bool controller_probe_take(struct controller_probe *q, struct program_answer *an
     if (q->state != PROBE_ANSWERED) {
         return false;
     }
+    handoff_order();
     *answer = q->answer;
     diagnostic_set(error, q->error, q->move.line, 0, "", 0, 0.0);
-    q->state = PROBE_IDLE;
     q->answers++;
     q->taken = q->answer;
+    handoff_order();
+    q->state = PROBE_IDLE;
     return true;
 }

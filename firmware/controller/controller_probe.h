@@ -43,6 +43,9 @@ struct controller_probe {
 /* A move has come from the program: remembers it when it asks for something. */
 void controller_probe_ask(struct controller_probe *q, const struct move *move, double cycle_s);
 
+/* Is there something to watch, and to answer? */
+bool controller_probe_is_asked(const struct controller_probe *q);
+
 /*
  * In each cycle that executes a motion. actual: where the axes are, by their drives. True, once: the motion is to brake
  * at once and to end where it comes to rest.

@@ -53,10 +53,11 @@ void controller_quieten(struct controller *c)
 bool controller_passed_stop(const struct controller *c, bool *optional)
 {
     for (uint32_t i = c->motion.passed_first; c->has_record && i != c->path.first; i++) {
-        const struct move *move = &path_at(&c->path, i)->move;
+        if (path_kind(&c->path, i) == MOVE_STOP) {
+            struct move move;
 
-        if (move->kind == MOVE_STOP) {
-            *optional = move->optional;
+            path_read_move(&c->path, i, &move);
+            *optional = move.optional;
             return true;
         }
     }

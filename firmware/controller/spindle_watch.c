@@ -14,6 +14,7 @@ void spindle_watch_init(struct spindle_watch *w, double cycle_s, double load_lim
                         double at_speed_s)
 {
     *w = (struct spindle_watch){.cycle_s = cycle_s,
+                                .smoothing = cycle_s / (SPINDLE_SMOOTH_S + cycle_s),
                                 .load_limit_percent = load_limit_percent,
                                 .at_speed_s = at_speed_s,
                                 .ratio = 1.0};
@@ -38,9 +39,12 @@ static double ratio_rate(const struct spindle_watch *w, double load_percent)
 
 static void follow_speed(struct spindle_watch *w, double speed_rpm)
 {
-    const double rev_s = maths_abs(speed_rpm) / SECONDS_PER_MINUTE;
+    const double rev_s = maths_abs(speed_rpm) * (1.0 / SECONDS_PER_MINUTE);
 
-    w->smooth_rev_s += (rev_s - w->smooth_rev_s) * w->cycle_s / (SPINDLE_SMOOTH_S + w->cycle_s);
+    if (rev_s == 0.0 && w->smooth_rev_s == 0.0) {
+        return;
+    }
+    w->smooth_rev_s += (rev_s - w->smooth_rev_s) * w->smoothing;
     if (w->smooth_rev_s < STANDS_REV_S) {
         w->rev_s = 0.0;
     } else if (maths_abs(w->smooth_rev_s - w->rev_s) > SPINDLE_STEP * w->smooth_rev_s) {
@@ -50,8 +54,10 @@ static void follow_speed(struct spindle_watch *w, double speed_rpm)
 
 bool spindle_watch_cycle(struct spindle_watch *w, const struct spindle_feedback *spindle)
 {
-    w->ratio = maths_clamp(w->ratio + ratio_rate(w, spindle->load_percent) * w->cycle_s,
-                           SPINDLE_RATIO_MIN, 1.0);
+    if (w->ratio < 1.0 || w->load_limit_percent > 0.0) {
+        w->ratio = maths_clamp(w->ratio + ratio_rate(w, spindle->load_percent) * w->cycle_s,
+                               SPINDLE_RATIO_MIN, 1.0);
+    }
     follow_speed(w, spindle->speed_rpm);
     if (!w->waits) {
         return true;

@@ -27,6 +27,7 @@
 
 struct spindle_watch {
     double cycle_s;
+    double smoothing;          /* part of a change of speed that a cycle follows */
     double load_limit_percent; /* 0: the load changes nothing */
     double at_speed_s;         /* longest wait for a commanded speed; 0: none is made */
     double ratio;              /* of the feed, SPINDLE_RATIO_MIN ... 1 */

@@ -48,6 +48,9 @@ static void begin_layer(struct correction *c, unsigned i)
     const unsigned bit = 1U << i;
 
     memset(&c->notes[i], 0, sizeof(c->notes[i]));
+    if (i == CORRECTION_VOLUME) {
+        memset(&c->patches, 0, sizeof(c->patches));
+    }
     c->present &= ~bit;
     c->followers &= ~bit;
     if (layers[i]->begin(c, &c->notes[i])) {

@@ -18,7 +18,6 @@ struct layer_notes {
     double number[LAYER_NUMBERS];
     float coefficient[LAYER_COEFFICIENTS];
     bool started; /* the first cycle has been */
-    struct grid_patch patch;
 };
 
 /* Tools whose wear is counted at the same time; the longest unused one makes room. */
@@ -49,6 +48,7 @@ struct correction {
     unsigned fading, running; /* layers whose weight moves; is not 0 */
     struct fade weight[CORRECTION_LAYERS_COUNT];
     struct layer_notes notes[CORRECTION_LAYERS_COUNT];
+    struct grid_patches patches; /* of the volume table */
 
     /* What layers may depend on. */
     const struct point *at; /* commanded, this cycle */

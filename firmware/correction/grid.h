@@ -30,7 +30,12 @@ struct grid_input {
     double first_mm;    /* position of the first point */
     double per_mm;      /* steps per mm or rad */
     double last;        /* position of the last point, in steps */
+    float steps_per_mm; /* per_mm, for short ways */
+    float mm_per_step;
 };
+
+/* Derivatives up to the third order, by any of four inputs: so many are told apart. */
+#define GRID_ORDERS 35
 
 struct grid {
     unsigned inputs;    /* 2 ... TABLE_INPUTS_MAX; 0: no table */
@@ -38,7 +43,8 @@ struct grid {
     uint8_t
         turn_axis; /* enum axis that component 3 corrects; AXIS_COUNT: none. The others are X, Y, Z */
     size_t size;   /* coefficients of one component */
-    float reach;   /* steps from where a patch is made to where it is good, all inputs together */
+    float bound[GRID_COMPONENTS][GRID_ORDERS]; /* of derivatives: grid_bound.h */
+    float reach; /* steps from where a patch is made to where it is good, all inputs together */
     struct grid_input input[TABLE_INPUTS_MAX]; /* the first has stride 1 */
     const float *coefficient;         /* component by component: own, or where they are stored */
     float own[GRID_COEFFICIENTS_MAX]; /* of a spline that grid_set has made */

@@ -4,7 +4,10 @@
  */
 #include "correction/grid_bound.h"
 
-#include "base/maths.h"
+/* How often to differentiate along each input; at most three times. */
+struct grid_order {
+    unsigned along[TABLE_INPUTS_MAX];
+};
 
 /* (-1)^(n-i) over i of n, of differences of up to third order. */
 static const float binomial[4][4] = {{1}, {-1, 1}, {1, -2, 1}, {-1, 3, -3, 1}};
@@ -59,31 +62,95 @@ static bool next_place(const struct grid *grid, const struct grid_order *order,
     return false;
 }
 
-double grid_bound(const struct grid *grid, const struct grid_order *order, unsigned component)
+static float largest(const struct grid *grid, const struct grid_order *order, unsigned component)
 {
     unsigned index[TABLE_INPUTS_MAX] = {0};
     size_t offset = 0;
-    double most = 0.0;
+    float most = 0.0F;
 
     do {
-        most = maths_max(most, maths_abs((double)difference(grid, order, offset, component)));
+        const float size = __builtin_fabsf(difference(grid, order, offset, component));
+
+        most = size > most ? size : most;
     } while (next_place(grid, order, index, &offset));
     return most;
 }
 
-double grid_bound_third(const struct grid *grid, unsigned component)
+/* ---- all of them ---- */
+
+static void sort(unsigned *a, unsigned *b)
 {
-    double most = 0.0;
+    const unsigned least = *a < *b ? *a : *b;
 
-    for (unsigned i = 0; i < grid->inputs; i++) {
-        for (unsigned j = 0; j < grid->inputs; j++) {
-            for (unsigned k = 0; k < grid->inputs; k++) {
-                struct grid_order order = {{0}};
+    *b = *a < *b ? *b : *a;
+    *a = least;
+}
 
-                order.along[i]++;
-                order.along[j]++;
-                order.along[k]++;
-                most = maths_max(most, grid_bound(grid, &order, component));
+/* Of a <= b <= c among the inputs and GRID_NO_INPUT: a + b (b + 1) / 2 + c (c + 1) (c + 2) / 6, each number once. */
+static unsigned index_of(unsigned a, unsigned b, unsigned c)
+{
+    sort(&a, &b);
+    sort(&b, &c);
+    sort(&a, &b);
+    return a + b * (b + 1U) / 2U + c * (c + 1U) * (c + 2U) / 6U;
+}
+
+static bool is_input(const struct grid *grid, unsigned i)
+{
+    return i < grid->inputs || i == GRID_NO_INPUT;
+}
+
+static float bound_of(const struct grid *grid, unsigned component, unsigned a, unsigned b,
+                      unsigned c)
+{
+    const unsigned by[] = {a, b, c};
+    struct grid_order order = {{0}};
+
+    for (unsigned i = 0; i < 3; i++) {
+        if (by[i] != GRID_NO_INPUT) {
+            order.along[by[i]]++;
+        }
+    }
+    return largest(grid, &order, component);
+}
+
+static void bound_component(struct grid *grid, unsigned component)
+{
+    for (unsigned c = 0; c <= GRID_NO_INPUT; c++) {
+        for (unsigned b = 0; b <= c; b++) {
+            for (unsigned a = 0; a <= b; a++) {
+                if (is_input(grid, a) && is_input(grid, b) && is_input(grid, c)) {
+                    grid->bound[component][index_of(a, b, c)] = bound_of(grid, component, a, b, c);
+                }
+            }
+        }
+    }
+}
+
+void grid_bound_all(struct grid *grid)
+{
+    for (unsigned i = 0; i < GRID_COMPONENTS; i++) {
+        if (((unsigned)grid->components >> i & 1U) != 0) {
+            bound_component(grid, i);
+        }
+    }
+}
+
+float grid_bound(const struct grid *grid, unsigned component, unsigned a, unsigned b, unsigned c)
+{
+    return grid->bound[component][index_of(a, b, c)];
+}
+
+float grid_bound_third(const struct grid *grid, unsigned component)
+{
+    float most = 0.0F;
+
+    for (unsigned c = 0; c < grid->inputs; c++) {
+        for (unsigned b = 0; b <= c; b++) {
+            for (unsigned a = 0; a <= b; a++) {
+                const float third = grid_bound(grid, component, a, b, c);
+
+                most = third > most ? third : most;
             }
         }
     }

@@ -1,20 +1,22 @@
 /*
- * Bounds of a grid's derivatives. Private to this room.
+ * Bounds of a grid's derivatives, worked out once when it is loaded: to look through all coefficients for each of them
+ * takes far longer than to plan a block.
  */
 #ifndef TAKT_CORRECTION_GRID_BOUND_H
 #define TAKT_CORRECTION_GRID_BOUND_H
 
 #include "correction/grid.h"
 
-/* How often to differentiate along each input; at most three times. */
-struct grid_order {
-    unsigned along[TABLE_INPUTS_MAX];
-};
+/* In place of an input: the derivative is of a lower order. */
+#define GRID_NO_INPUT TABLE_INPUTS_MAX
 
-/* Largest absolute derivative of a component, per step of the grid: mm or rad. */
-double grid_bound(const struct grid *grid, const struct grid_order *order, unsigned component);
+/* Fills grid->bound. To be called when coefficients and inputs are there. */
+void grid_bound_all(struct grid *grid);
+
+/* Largest absolute derivative of a component by inputs a, b and c, per step of the grid: mm or rad. */
+float grid_bound(const struct grid *grid, unsigned component, unsigned a, unsigned b, unsigned c);
 
 /* Largest third derivative of a component, per step: along one input or mixed. */
-double grid_bound_third(const struct grid *grid, unsigned component);
+float grid_bound_third(const struct grid *grid, unsigned component);
 
 #endif

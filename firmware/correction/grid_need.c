@@ -10,19 +10,6 @@
  */
 #define NEED_MARGIN 2.0
 
-/* Per mm or rad instead of per step. */
-static double largest(const struct grid *grid, const struct grid_order *order, unsigned component)
-{
-    double most = grid_bound(grid, order, component);
-
-    for (unsigned i = 0; i < grid->inputs; i++) {
-        for (unsigned n = 0; n < order->along[i]; n++) {
-            most *= grid->input[i].per_mm;
-        }
-    }
-    return most;
-}
-
 struct sums {
     const struct grid *grid;
     const struct motion_bound *most;
@@ -35,15 +22,24 @@ static unsigned corrected(const struct sums *s)
     return s->component < AXIS_LINEAR_COUNT ? s->component : s->grid->turn_axis;
 }
 
+/* Of the derivative by inputs i, j and k, per mm or rad instead of per step. */
+static double largest(const struct sums *s, unsigned i, unsigned j, unsigned k)
+{
+    const unsigned by[] = {i, j, k};
+    double most = (double)grid_bound(s->grid, s->component, i, j, k);
+
+    for (unsigned n = 0; n < 3; n++) {
+        most *= by[n] != GRID_NO_INPUT ? s->grid->input[by[n]].per_mm : 1.0;
+    }
+    return most;
+}
+
 /* Beyond an edge, d2u/dx2 and d3u/dx3 of the hold come in. */
 static void add_first(const struct sums *s, unsigned i)
 {
     const struct grid_input *input = &s->grid->input[i];
     const double v = s->most->velocity_mm_s[input->axis];
-    struct grid_order order = {{0}};
-
-    order.along[i] = 1;
-    const double slope = largest(s->grid, &order, s->component);
+    const double slope = largest(s, i, GRID_NO_INPUT, GRID_NO_INPUT);
 
     need_add_slope(s->need, corrected(s), input->axis, slope, s->most);
     s->need->acceleration_mm_s2[corrected(s)] += slope * EDGE_SECOND_MAX * input->per_mm * v * v;
@@ -58,11 +54,7 @@ static void add_second(const struct sums *s, unsigned i, unsigned j)
 {
     const unsigned a = s->grid->input[i].axis;
     const unsigned b = s->grid->input[j].axis;
-    struct grid_order order = {{0}};
-
-    order.along[i]++;
-    order.along[j]++;
-    const double q = NEED_MARGIN * largest(s->grid, &order, s->component);
+    const double q = NEED_MARGIN * largest(s, i, j, GRID_NO_INPUT);
 
     s->need->acceleration_mm_s2[corrected(s)] +=
         q * s->most->velocity_mm_s[a] * s->most->velocity_mm_s[b];
@@ -72,12 +64,7 @@ static void add_second(const struct sums *s, unsigned i, unsigned j)
 
 static void add_third(const struct sums *s, unsigned i, unsigned j, unsigned k)
 {
-    struct grid_order order = {{0}};
-
-    order.along[i]++;
-    order.along[j]++;
-    order.along[k]++;
-    s->need->jerk_mm_s3[corrected(s)] += NEED_MARGIN * largest(s->grid, &order, s->component) *
+    s->need->jerk_mm_s3[corrected(s)] += NEED_MARGIN * largest(s, i, j, k) *
                                          s->most->velocity_mm_s[s->grid->input[i].axis] *
                                          s->most->velocity_mm_s[s->grid->input[j].axis] *
                                          s->most->velocity_mm_s[s->grid->input[k].axis];
@@ -85,8 +72,7 @@ static void add_third(const struct sums *s, unsigned i, unsigned j, unsigned k)
 
 static void add_component(const struct sums *s)
 {
-    const struct grid_order none = {{0}};
-    const double size = largest(s->grid, &none, s->component);
+    const double size = largest(s, GRID_NO_INPUT, GRID_NO_INPUT, GRID_NO_INPUT);
 
     s->need->size_mm[corrected(s)] += size;
     s->need->noise_mm[corrected(s)] += NEED_ROUNDING * size + GRID_PATCH_ERROR_MM;

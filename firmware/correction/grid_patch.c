@@ -1,11 +1,27 @@
+/*
+ * With r how far a patch is good (grid->reach) and w the way of a cycle, in steps, all inputs together:
+ *
+ *     |<------- r ------->|<------- r ------->|           a patch, and its anchor
+ *     . . . . . . . . . . A . . . . . . . . x . | . . .   at x, MAKING w before its end, the next one is begun
+ *                                               |<-- 3/4 r -->B
+ *
+ * Its anchor B lies ahead, so that it holds from when it is ready, and for nearly 2 r. A patch that would not last long
+ * enough to make the next one is not made: then the spline itself is evaluated in every cycle.
+ */
 #include "correction/grid_patch.h"
 
 #include "base/maths.h"
 #include "correction/grid_bound.h"
 #include "correction/grid_stencil.h"
 
+/* Cycles that making a patch takes: its cell and weights, then a component in each, then whether it is near an end. */
+#define MAKING (2.0F + (float)GRID_COMPONENTS)
+
 /* A patch that would last fewer cycles than this is not worth making. */
-#define PATCH_CYCLES_MIN 3.0F
+#define LASTING_MIN 8.0F
+
+/* The part of its reach at which a patch begins to hold when it is ready. */
+#define AHEAD_RATIO 0.75F
 
 /* What is left out at the distance r: |third derivative| r^3 / 6, all of them together. */
 float grid_patch_reach(const struct grid *grid)
@@ -16,7 +32,7 @@ float grid_patch_reach(const struct grid *grid)
         if ((grid->components & 1U << i) == 0) {
             continue;
         }
-        third = maths_max(third, grid_bound_third(grid, i));
+        third = maths_max(third, (double)grid_bound_third(grid, i));
     }
     return third > 0.0 ? (float)maths_min(0.5, maths_cbrt(6.0 * GRID_PATCH_ERROR_MM / third))
                        : 0.5F;
@@ -24,17 +40,8 @@ float grid_patch_reach(const struct grid *grid)
 
 /* ---- making a patch ---- */
 
-/* B-splines along one input, and their derivatives. */
-struct jet {
-    four weight[3];
-};
-
 /* Sums over the second and third input, for derivatives (second, third): (0 0) (1 0) (0 1) (2 0) (1 1) (0 2). */
 enum { SUM, SUM_Y, SUM_Z, SUM_YY, SUM_YZ, SUM_ZZ, SUMS };
-
-static const struct {
-    uint8_t y, z;
-} sum_orders[SUMS] = {{0, 0}, {1, 0}, {0, 1}, {2, 0}, {1, 1}, {0, 2}};
 
 /* Each term of a patch: a sum, the derivative by the first input, and the factor of Taylor's series. */
 static const struct {
@@ -45,87 +52,117 @@ static const struct {
     {SUM_YY, 0, 0.5F}, {SUM_ZZ, 0, 0.5F}, {SUM_Y, 1, 1.0F}, {SUM_Z, 1, 1.0F}, {SUM_YZ, 0, 1.0F},
 };
 
-/* One plane of the stencil, for the derivatives of order 0, 1, 2 along the second input. */
-static inline void sum_plane(const struct grid *grid, const float *at, const struct jet *y,
-                             four plane[3])
+/* One row of the stencil, for the derivatives of order 0, 1, 2 along the second input. */
+static inline void add_row(const float *at, const float *weight, lanes plane[3])
 {
-    plane[0] = plane[1] = plane[2] = all(0.0F);
-    for (unsigned j = 0; j < STENCIL; j++) {
-        const four row = load(at);
+    const lanes row = load(at);
 
-        for (unsigned n = 0; n < 3; n++) {
-            plane[n] += all(y->weight[n][j]) * row;
-        }
-        at += grid->input[1].stride;
-    }
+    plane[0] += weight[0] * row;
+    plane[1] += weight[FIRST_ORDER] * row;
+    plane[2] += weight[SECOND_ORDER] * row;
 }
 
-static void sum_stencil(const struct grid *grid, const float *at, const struct jet jet[],
-                        four sum[SUMS])
+/* One plane of it, with its weights for the orders 0, 1, 2 along the third. */
+static inline void add_plane(const float *at, size_t stride, const float *y, const float *z,
+                             lanes sum[SUMS])
 {
-    four plane[3];
+    lanes plane[3];
 
-    for (unsigned n = 0; n < SUMS; n++) {
-        sum[n] = all(0.0F);
-    }
-    for (unsigned i = 0; i < STENCIL; i++) {
-        sum_plane(grid, at, &jet[1], plane);
+    memset(plane, 0, sizeof(plane));
+    add_row(at, y, plane);
+    add_row(at + stride, y + 1, plane);
+    add_row(at + 2 * stride, y + 2, plane);
+    add_row(at + 3 * stride, y + 3, plane);
+    sum[SUM] += z[0] * plane[0];
+    sum[SUM_Y] += z[0] * plane[1];
+    sum[SUM_Z] += z[FIRST_ORDER] * plane[0];
+    sum[SUM_YY] += z[0] * plane[2];
+    sum[SUM_YZ] += z[FIRST_ORDER] * plane[1];
+    sum[SUM_ZZ] += z[SECOND_ORDER] * plane[0];
+}
+
+static void sum_stencil(const struct grid *grid, const struct grid_patches *p, const float *first,
+                        float total[SUMS][STENCIL])
+{
+    for (unsigned x = 0; x < STENCIL; x += GRID_LANES) {
+        const float *at = first + x;
+        lanes sum[SUMS];
+
+        memset(sum, 0, sizeof(sum));
+        for (unsigned i = 0; i < STENCIL; i++) {
+            add_plane(at, grid->input[1].stride, p->weight[1], &p->weight[2][i], sum);
+            at += grid->input[2].stride;
+        }
         for (unsigned n = 0; n < SUMS; n++) {
-            sum[n] += all(jet[2].weight[sum_orders[n].z][i]) * plane[sum_orders[n].y];
+            store(&total[n][x], sum[n]);
         }
-        at += grid->input[2].stride;
     }
 }
 
-static void set_jet(float t, struct jet *jet)
+static void make_component(const struct grid *grid, struct grid_patches *p, unsigned k)
 {
-    jet->weight[0] = weights(t);
-    jet->weight[1] = weights_first(t);
-    jet->weight[2] = weights_second(t);
+    float total[SUMS][STENCIL];
+
+    sum_stencil(grid, p, grid->coefficient + p->first + k * grid->size, total);
+    for (unsigned n = 0; n < GRID_PATCH_TERMS; n++) {
+        p->next.term[n][k] = terms[n].factor * finish(total[terms[n].sum],
+                                                      p->weight[0] + (size_t)terms[n].x * STENCIL);
+    }
 }
 
-/* False: the point is outside. */
-static bool make_patch(const struct grid *grid, const struct point *at, struct grid_patch *patch)
+static unsigned components_of(const struct grid *grid)
 {
-    struct jet jet[GRID_PATCH_INPUTS];
-    unsigned outside = 0;
-    size_t first = 0;
-    four sum[SUMS];
+    return grid->turn_axis < AXIS_COUNT ? GRID_COMPONENTS : AXIS_LINEAR_COUNT;
+}
 
+/* Patches know nothing of what holds beyond the ends of the table. */
+static bool is_inside(const struct grid *grid, const double at_mm[GRID_PATCH_INPUTS], double margin)
+{
+    bool inside = true;
+
+    for (unsigned i = 0; i < GRID_PATCH_INPUTS; i++) {
+        const struct grid_input *input = &grid->input[i];
+        const double position = (at_mm[i] - input->first_mm) * input->per_mm;
+
+        inside = inside && position >= margin && position <= input->last - margin;
+    }
+    return inside;
+}
+
+/* Cell and weights at the anchor. */
+static void begin_patch(const struct grid *grid, struct grid_patches *p)
+{
+    struct point anchor;
+    unsigned outside = 0;
+
+    p->first = 0;
     for (unsigned i = 0; i < GRID_PATCH_INPUTS; i++) {
         float t;
 
-        first += find_cell(&grid->input[i], at, &t, &outside);
-        set_jet(t, &jet[i]);
-        patch->anchor_mm[i] = at->at[grid->input[i].axis];
+        anchor.at[grid->input[i].axis] = p->next.anchor_mm[i];
+        p->first += find_cell(&grid->input[i], &anchor, &t, &outside);
+        set_weights(t, p->weight[i]);
+        set_weights_first(t, &p->weight[i][FIRST_ORDER]);
+        set_weights_second(t, &p->weight[i][SECOND_ORDER]);
     }
-    const unsigned components = grid->turn_axis < AXIS_COUNT ? GRID_COMPONENTS : AXIS_LINEAR_COUNT;
-
-    for (unsigned k = 0; k < components && outside == 0; k++) {
-        sum_stencil(grid, grid->coefficient + first + k * grid->size, jet, sum);
-        for (unsigned n = 0; n < GRID_PATCH_TERMS; n++) {
-            patch->term[n][k] =
-                terms[n].factor * finish(sum[terms[n].sum], jet[0].weight[terms[n].x]);
-        }
-    }
-    return outside == 0;
+    p->stage = outside == 0 ? 1 : 0;
 }
 
 /* ---- using it ---- */
 
-static inline float length(float x, float y, float z)
+static inline float length(const float way[GRID_PATCH_INPUTS])
 {
-    return __builtin_fabsf(x) + __builtin_fabsf(y) + __builtin_fabsf(z);
+    return __builtin_fabsf(way[0]) + __builtin_fabsf(way[1]) + __builtin_fabsf(way[2]);
 }
 
-/* Way from a place, in steps of each input. */
-static inline void way_from(const struct grid *grid, const double from_mm[GRID_PATCH_INPUTS],
+/* From the anchor, in steps of each input. */
+static inline void way_from(const struct grid *grid, const struct grid_patch *patch,
                             const struct point *at, float way[GRID_PATCH_INPUTS])
 {
     for (unsigned i = 0; i < GRID_PATCH_INPUTS; i++) {
         const struct grid_input *input = &grid->input[i];
 
-        way[i] = (float)((at->at[input->axis] - from_mm[i]) * input->per_mm);
+        way[i] = (float)(at->at[input->axis] - patch->anchor_mm[i]) * input->steps_per_mm;
     }
 }
 
@@ -133,75 +170,130 @@ static inline void way_from(const struct grid *grid, const double from_mm[GRID_P
  * Taylor's series to the second order, in Horner's form. The value at the anchor comes last, so that what changes from
  * cycle to cycle is added up before it is rounded to the size of the whole.
  */
-static inline four patch_value(const struct grid_patch *p, const float way[GRID_PATCH_INPUTS])
+static inline float value_of(const struct grid_patch *p, const float way[GRID_PATCH_INPUTS],
+                             unsigned k)
 {
-    const four x = all(way[0]);
-    const four y = all(way[1]);
-    const four z = all(way[2]);
-    const four of_x =
-        load(p->term[1]) + x * load(p->term[4]) + y * load(p->term[7]) + z * load(p->term[8]);
-    const four of_y = load(p->term[2]) + y * load(p->term[5]) + z * load(p->term[9]);
-    const four of_z = load(p->term[3]) + z * load(p->term[6]);
+    const float of_x =
+        p->term[1][k] + way[0] * p->term[4][k] + way[1] * p->term[7][k] + way[2] * p->term[8][k];
+    const float of_y = p->term[2][k] + way[1] * p->term[5][k] + way[2] * p->term[9][k];
+    const float of_z = p->term[3][k] + way[2] * p->term[6][k];
 
-    return load(p->term[0]) + (x * of_x + (y * of_y + z * of_z));
+    return p->term[0][k] + (way[0] * of_x + (way[1] * of_y + way[2] * of_z));
 }
 
-static void add_value(const struct grid *grid, four value, float weight, float k[AXIS_COUNT])
+static void add_value(const struct grid *grid, const struct grid_patches *p, float weight,
+                      float k[AXIS_COUNT])
 {
-    for (unsigned i = 0; i < AXIS_LINEAR_COUNT; i++) {
-        k[i] += weight * value[i];
-    }
+    k[0] += weight * value_of(&p->used, p->way, 0);
+    k[1] += weight * value_of(&p->used, p->way, 1);
+    k[2] += weight * value_of(&p->used, p->way, 2);
     if (grid->turn_axis < AXIS_COUNT) {
-        k[grid->turn_axis] += weight * value[AXIS_LINEAR_COUNT];
+        k[grid->turn_axis] += weight * value_of(&p->used, p->way, AXIS_LINEAR_COUNT);
     }
 }
 
-/* Patches know nothing of what holds beyond the ends of the table. */
-static bool is_inside(const struct grid *grid, const struct point *at, double margin)
+static void get_inputs(const struct grid *grid, const struct point *at,
+                       double at_mm[GRID_PATCH_INPUTS])
 {
-    bool inside = true;
-
     for (unsigned i = 0; i < GRID_PATCH_INPUTS; i++) {
-        const struct grid_input *input = &grid->input[i];
-        const double position = (at->at[input->axis] - input->first_mm) * input->per_mm;
-
-        inside = inside && position >= margin && position <= input->last - margin;
+        at_mm[i] = at->at[grid->input[i].axis];
     }
-    return inside;
 }
 
-/* The patch is left, or there is none: makes one if it will last, else evaluates the spline itself. */
-static unsigned renew(const struct grid *grid, struct grid_patch *patch, const struct point *at,
-                      float weight, float k[AXIS_COUNT])
+static bool holds(const struct grid *grid, const struct grid_patch *patch, float distance,
+                  const struct point *at)
+{
+    double at_mm[GRID_PATCH_INPUTS];
+
+    if (!patch->valid || distance > grid->reach || !patch->near_end) {
+        return patch->valid && distance <= grid->reach;
+    }
+    get_inputs(grid, at, at_mm);
+    return is_inside(grid, at_mm, 0.0);
+}
+
+/* Where the axes will be when the next patch is ready, and most of its reach further on; or here, close to an end. */
+static void set_anchor(const struct grid *grid, struct grid_patches *p, const struct point *at,
+                       const float step[GRID_PATCH_INPUTS], float speed)
+{
+    const float cycles = speed > 0.0F ? MAKING + AHEAD_RATIO * grid->reach / speed : 0.0F;
+
+    get_inputs(grid, at, p->next.anchor_mm);
+    if (!(cycles < 1e6F)) {
+        return;
+    }
+    for (unsigned i = 0; i < GRID_PATCH_INPUTS; i++) {
+        p->next.anchor_mm[i] += (double)(cycles * step[i] * grid->input[i].mm_per_step);
+    }
+    if (!is_inside(grid, p->next.anchor_mm, 0.0)) {
+        get_inputs(grid, at, p->next.anchor_mm);
+    }
+}
+
+/* One cycle of making the next patch. */
+static void make(const struct grid *grid, struct grid_patches *p, const struct point *at)
+{
+    if (p->stage <= components_of(grid)) {
+        make_component(grid, p, p->stage - 1U);
+        p->stage++;
+        return;
+    }
+    p->next.near_end = !is_inside(grid, p->next.anchor_mm, (double)grid->reach);
+    p->next.valid = true;
+    p->used = p->next;
+    p->stage = 0;
+    way_from(grid, &p->used, at, p->way);
+}
+
+/* Begins the next patch when this one will soon be left, and if that will last. before: the way a cycle ago. */
+static void look_ahead(const struct grid *grid, struct grid_patches *p, const struct point *at,
+                       const float before[GRID_PATCH_INPUTS], float distance)
 {
     float step[GRID_PATCH_INPUTS];
 
-    way_from(grid, patch->before_mm, at, step);
-    patch->valid = PATCH_CYCLES_MIN * length(step[0], step[1], step[2]) <= grid->reach &&
-                   make_patch(grid, at, patch);
-    if (!patch->valid) {
-        return grid_add(grid, at, weight, k);
+    for (unsigned i = 0; i < GRID_PATCH_INPUTS; i++) {
+        step[i] = p->way[i] - before[i];
     }
-    patch->near_end = !is_inside(grid, at, (double)grid->reach);
-    add_value(grid, load(patch->term[0]), weight, k);
-    return 0;
+    const float speed = length(step);
+    const bool leaves = distance > length(before) && distance + MAKING * speed > grid->reach;
+
+    if ((leaves || !p->used.valid) && LASTING_MIN * speed <= grid->reach) {
+        set_anchor(grid, p, at, step, speed);
+        begin_patch(grid, p);
+    }
 }
 
-unsigned grid_patch_add(const struct grid *grid, struct grid_patch *patch, const struct point *at,
+/* Without a patch its anchor is where the axes are, so that the way from it is that of a cycle. */
+static unsigned add_spline(const struct grid *grid, struct grid_patches *p, const struct point *at,
+                           float weight, float k[AXIS_COUNT])
+{
+    p->used.valid = false;
+    get_inputs(grid, at, p->used.anchor_mm);
+    return grid_add(grid, at, weight, k);
+}
+
+unsigned grid_patch_add(const struct grid *grid, struct grid_patches *p, const struct point *at,
                         float weight, float k[AXIS_COUNT])
 {
-    float way[GRID_PATCH_INPUTS];
+    float before[GRID_PATCH_INPUTS];
     unsigned outside = 0;
 
-    way_from(grid, patch->anchor_mm, at, way);
-    if (patch->valid && length(way[0], way[1], way[2]) <= grid->reach &&
-        (!patch->near_end || is_inside(grid, at, 0.0))) {
-        add_value(grid, patch_value(patch, way), weight, k);
+    memcpy(before, p->way, sizeof(before));
+    way_from(grid, &p->used, at, p->way);
+    const float distance = length(p->way);
+
+    if (holds(grid, &p->used, distance, at)) {
+        add_value(grid, p, weight, k);
     } else {
-        outside = renew(grid, patch, at, weight, k);
+        outside = add_spline(grid, p, at, weight, k);
     }
-    for (unsigned i = 0; i < GRID_PATCH_INPUTS; i++) {
-        patch->before_mm[i] = at->at[grid->input[i].axis];
+    if (p->stage != 0) {
+        make(grid, p, at);
+    } else if (outside == 0) {
+        look_ahead(grid, p, at, before, distance);
+    }
+    if (!p->used.valid) {
+        memset(p->way, 0, sizeof(p->way));
     }
     return outside;
 }

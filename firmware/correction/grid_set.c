@@ -1,5 +1,6 @@
 /* From a table's values to the coefficients of its spline. */
 #include "correction/grid.h"
+#include "correction/grid_bound.h"
 #include "correction/grid_patch.h"
 #include "correction/spline.h"
 
@@ -113,14 +114,18 @@ static bool set_inputs(struct grid *grid, const struct table *table)
         const double *knot = table->knot_mm[i];
         const unsigned last = table->knots[i] - 1U;
 
+        const double per_mm = last / (knot[last] - knot[0]);
+
         grid->input[i] = (struct grid_input){
             .axis = table->input[i],
             .points = table->knots[i],
             .last_cell = last - 1U,
             .stride = stride,
             .first_mm = knot[0],
-            .per_mm = last / (knot[last] - knot[0]),
+            .per_mm = per_mm,
             .last = last,
+            .steps_per_mm = (float)per_mm,
+            .mm_per_step = (float)(1.0 / per_mm),
         };
         stride *= (size_t)table->knots[i] + MARGIN;
         if (stride > GRID_COEFFICIENTS_MAX) {
@@ -181,6 +186,7 @@ bool grid_set(struct grid *grid, const struct table *table, struct diagnostic *w
     for (unsigned i = 0; i < grid->inputs; i++) {
         transform_along(grid, i);
     }
+    grid_bound_all(grid);
     grid->reach = grid_patch_reach(grid);
     return true;
 }

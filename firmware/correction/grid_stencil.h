@@ -11,50 +11,78 @@
 
 #define STENCIL 4
 
-/*
- * Four numbers side by side: processors that can work on four at once do so, others one after the other, with the same
- * bits.
- */
-typedef float four __attribute__((vector_size(sizeof(float) * STENCIL)));
+/* Where the weights of derivatives stand behind those of the value. */
+#define FIRST_ORDER  STENCIL
+#define SECOND_ORDER (STENCIL + STENCIL)
 
-static inline four all(float value)
+/*
+ * Numbers side by side along the first input that are worked on at once, 1 or 4: as many as suit the processor. The bits
+ * are the same. A build for a processor that has no vectors says 1.
+ */
+#ifndef GRID_LANES
+#define GRID_LANES STENCIL
+#endif
+
+/* Coefficients that stand side by side: load and store. */
+#if GRID_LANES == 1
+typedef float lanes;
+
+static inline lanes load(const float *at)
 {
-    return (four){value, value, value, value};
+    return *at;
 }
 
-/* Four coefficients that stand side by side along the first input. */
-static inline four load(const float *at)
+static inline void store(float *to, lanes values)
 {
-    four values;
+    *to = values;
+}
+#else
+typedef float lanes __attribute__((vector_size(sizeof(float) * GRID_LANES)));
+
+static inline lanes load(const float *at)
+{
+    lanes values;
 
     memcpy(&values, at, sizeof(values));
     return values;
 }
 
-static const four weights_c0 = {1.0F / 6.0F, 4.0F / 6.0F, 1.0F / 6.0F, 0.0F};
-static const four weights_c1 = {-0.5F, 0.0F, 0.5F, 0.0F};
-static const four weights_c2 = {0.5F, -1.0F, 0.5F, 0.0F};
-static const four weights_c3 = {-1.0F / 6.0F, 0.5F, -0.5F, 1.0F / 6.0F};
+static inline void store(float *to, lanes values)
+{
+    memcpy(to, &values, sizeof(values));
+}
+#endif
 
 /*
- * The four B-splines that are not 0 in a cell, at t = 0 ... 1 in it (C. de Boor, 1978, chapter IX):
+ * The four B-splines that are not 0 in a cell, at t = 0 ... 1 in it, and their first and second derivatives by t
+ * (C. de Boor, 1978, chapter IX):
  *
  *     w0 = (1 - t)^3 / 6   w1 = (4 - 6 t^2 + 3 t^3) / 6   w2 = (1 + 3 t + 3 t^2 - 3 t^3) / 6   w3 = t^3 / 6
+ *
+ * as c0 + t (c1 + t (c2 + t c3)).
  */
-static inline four weights(float t)
+static inline void set_weights(float t, float weight[STENCIL])
 {
-    return weights_c0 + all(t) * (weights_c1 + all(t) * (weights_c2 + all(t) * weights_c3));
+    weight[0] = 1.0F / 6.0F + t * (-0.5F + t * (0.5F - t * (1.0F / 6.0F)));
+    weight[1] = 4.0F / 6.0F + t * t * (-1.0F + t * 0.5F);
+    weight[2] = 1.0F / 6.0F + t * (0.5F + t * (0.5F - t * 0.5F));
+    weight[3] = t * t * t * (1.0F / 6.0F);
 }
 
-/* Their derivatives by t. */
-static inline four weights_first(float t)
+static inline void set_weights_first(float t, float weight[STENCIL])
 {
-    return weights_c1 + all(t) * (2.0F * weights_c2 + all(t) * (3.0F * weights_c3));
+    weight[0] = -0.5F + t * (1.0F - t * 0.5F);
+    weight[1] = t * (-2.0F + t * 1.5F);
+    weight[2] = 0.5F + t * (1.0F - t * 1.5F);
+    weight[3] = t * t * 0.5F;
 }
 
-static inline four weights_second(float t)
+static inline void set_weights_second(float t, float weight[STENCIL])
 {
-    return 2.0F * weights_c2 + all(t) * (6.0F * weights_c3);
+    weight[0] = 1.0F - t;
+    weight[1] = -2.0F + t * 3.0F;
+    weight[2] = 1.0F - t * 3.0F;
+    weight[3] = t;
 }
 
 /* Beyond an end, or in the last cell: the same with all that holds there. */
@@ -85,11 +113,9 @@ static inline size_t find_cell(const struct grid_input *input, const struct poin
     return (size_t)(uint32_t)cell * input->stride;
 }
 
-static inline float finish(four sum, four weight)
+static inline float finish(const float sum[STENCIL], const float weight[STENCIL])
 {
-    const four product = sum * weight;
-
-    return (product[0] + product[1]) + (product[2] + product[3]);
+    return (sum[0] * weight[0] + sum[1] * weight[1]) + (sum[2] * weight[2] + sum[3] * weight[3]);
 }
 
 #endif

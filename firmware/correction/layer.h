@@ -30,7 +30,7 @@ struct correction_layer {
     /* Once per cycle, before the sum, whether the layer is on or off. NULL: it follows nothing. */
     void (*follow)(struct correction *c, struct layer_notes *notes);
     /* Adds weight (0 ... 1) times its correction. */
-    void (*add)(const struct correction *c, struct layer_notes *notes, double weight,
+    void (*add)(struct correction *c, struct layer_notes *notes, double weight,
                 struct correction_sum *sum);
     /* Adds what it takes of the axes at full weight. */
     void (*need)(const struct correction *c, const struct layer_notes *notes,

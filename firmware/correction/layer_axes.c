@@ -49,7 +49,7 @@ static void axes_follow(struct correction *c, struct layer_notes *notes)
     }
 }
 
-static void axes_add(const struct correction *c, struct layer_notes *notes, double weight,
+static void axes_add(struct correction *c, struct layer_notes *notes, double weight,
                      struct correction_sum *sum)
 {
     sum->outside |=

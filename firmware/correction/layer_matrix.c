@@ -80,7 +80,7 @@ static void matrix_follow(struct correction *c, struct layer_notes *notes)
     }
 }
 
-static void matrix_add(const struct correction *c, struct layer_notes *notes, double weight,
+static void matrix_add(struct correction *c, struct layer_notes *notes, double weight,
                        struct correction_sum *sum)
 {
     const float *row = notes->coefficient;

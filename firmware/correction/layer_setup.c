@@ -45,7 +45,7 @@ static bool setup_begin(const struct correction *c, struct layer_notes *notes)
     return any;
 }
 
-static void setup_add(const struct correction *c, struct layer_notes *notes, double weight,
+static void setup_add(struct correction *c, struct layer_notes *notes, double weight,
                       struct correction_sum *sum)
 {
     const struct correction_settings *s = &c->settings;

@@ -29,7 +29,7 @@ static void thermal_follow(struct correction *c, struct layer_notes *notes)
     }
 }
 
-static void thermal_add(const struct correction *c, struct layer_notes *notes, double weight,
+static void thermal_add(struct correction *c, struct layer_notes *notes, double weight,
                         struct correction_sum *sum)
 {
     for (unsigned i = 0; i < AXIS_LINEAR_COUNT; i++) {

@@ -7,13 +7,14 @@ static bool volume_begin(const struct correction *c, struct layer_notes *notes)
     return c->tables != NULL && c->tables->volume.inputs > 0;
 }
 
-static void volume_add(const struct correction *c, struct layer_notes *notes, double weight,
+static void volume_add(struct correction *c, struct layer_notes *notes, double weight,
                        struct correction_sum *sum)
 {
+    (void)notes;
     const struct grid *grid = &c->tables->volume;
 
     sum->outside |= grid->inputs == GRID_PATCH_INPUTS
-                        ? grid_patch_add(grid, &notes->patch, c->at, (float)weight, sum->fine)
+                        ? grid_patch_add(grid, &c->patches, c->at, (float)weight, sum->fine)
                         : grid_add(grid, c->at, (float)weight, sum->fine);
 }
 

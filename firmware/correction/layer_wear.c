@@ -133,7 +133,7 @@ static void wear_follow(struct correction *c, struct layer_notes *notes)
     }
 }
 
-static void wear_add(const struct correction *c, struct layer_notes *notes, double weight,
+static void wear_add(struct correction *c, struct layer_notes *notes, double weight,
                      struct correction_sum *sum)
 {
     (void)c;

@@ -156,11 +156,6 @@ void drives_complete_fault(struct drives *d, unsigned index, uint16_t code)
     d->fault.meaning = emcy_text(code);
 }
 
-double drives_axis_actual_mm(const struct drives_axis *axis)
-{
-    return axis->actual_inc / axis->config.increments_per_mm;
-}
-
 bool drives_axis_is_enabled(const struct drives_axis *axis)
 {
     return axis->heard && cia402_is_enabled(axis->statusword);
@@ -195,7 +190,7 @@ void drives_get_actual(const struct drives *d, struct point *actual)
 {
     memset(actual, 0, sizeof *actual);
     for (unsigned i = 0; i < d->count; i++)
-        actual->at[d->axis[i].config.axis] = drives_axis_actual_mm(&d->axis[i]);
+        actual->at[d->axis[i].config.axis] = d->axis[i].actual_mm;
 }
 
 const struct diagnostic *drives_get_fault(const struct drives *d)

@@ -67,7 +67,7 @@ static void check_following(struct drives *d, unsigned index)
     if (axis->config.following_error_max_mm <= 0 || axis->silent_cycles != 0)
         return;
     double set_mm = axis->sent_mm[(d->cycle - DRIVES_LATENCY_CYCLES) & (DRIVES_HISTORY - 1)];
-    double lag_mm = maths_abs(set_mm - drives_axis_actual_mm(axis));
+    double lag_mm = maths_abs(set_mm - axis->actual_mm);
     if (lag_mm > allowed_lag_mm(d, axis))
         drives_raise(d, index, TAKT_ERROR_DRIVE_FOLLOWING, drives_axis_shown(axis, lag_mm), NULL);
     if (d->state == DRIVES_ENABLED)

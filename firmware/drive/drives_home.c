@@ -67,7 +67,7 @@ static void begin_homing(struct drives *d)
     d->state = DRIVES_ENABLED;
     for (unsigned i = 0; i < d->count; i++)
         for (unsigned k = 0; k < DRIVES_HISTORY; k++)
-            d->axis[i].sent_mm[k] = drives_axis_actual_mm(&d->axis[i]);
+            d->axis[i].sent_mm[k] = d->axis[i].actual_mm;
 }
 
 static void check_links(struct drives *d)
@@ -115,7 +115,7 @@ static bool is_mirrored(const struct drives_axis *axis)
 {
     double offset_mm = axis->config.homing.offset_mm;
     double most_mm = overshoot_mm(&axis->config);
-    double actual_mm = drives_axis_actual_mm(axis);
+    double actual_mm = axis->actual_mm;
     return maths_abs(actual_mm + offset_mm) <= most_mm &&
            maths_abs(actual_mm - offset_mm) > most_mm;
 }
@@ -126,7 +126,7 @@ static void take_home(struct drives *d, unsigned index)
     axis->homed = true;
     if (is_mirrored(axis))
         drives_raise(d, index, TAKT_ERROR_DRIVE_HOME_OFFSET,
-                     drives_axis_shown(axis, drives_axis_actual_mm(axis)), NULL);
+                     drives_axis_shown(axis, axis->actual_mm), NULL);
 }
 
 static void follow_homing(struct drives *d, unsigned index)

@@ -36,7 +36,6 @@ void drives_brake(struct drives *d);
 void drives_watch_stop(struct drives *d);
 void drives_watch_brakes(struct drives *d);
 
-double drives_axis_actual_mm(const struct drives_axis *axis);
 /* For people: a rotary axis in degrees. */
 double drives_axis_shown(const struct drives_axis *axis, double value_mm);
 bool drives_axis_is_enabled(const struct drives_axis *axis);

@@ -14,6 +14,7 @@ static void take_status(struct drives_axis *axis, const struct can_frame *frame)
         return;
     axis->statusword = little_endian_read16(frame->data);
     axis->actual_inc = (int32_t)little_endian_read32(frame->data + 2);
+    axis->actual_mm = axis->actual_inc / axis->config.increments_per_mm;
     axis->heard = true;
     axis->silent_cycles = 0;
 }

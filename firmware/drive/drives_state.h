@@ -36,6 +36,7 @@ struct drives_axis {
     uint32_t heartbeat_cycles; /* since the last heartbeat */
     uint16_t statusword;
     int32_t actual_inc;
+    double actual_mm;   /* the same */
     uint16_t emcy_code; /* last emergency; 0: none, or all gone */
 
     uint8_t mode;         /* that the drive is to be in */

@@ -158,26 +158,49 @@ bool curve_set_arc(struct curve *c, const struct point *start, const struct poin
     return c->length_mm >= CURVE_LENGTH_MIN_MM;
 }
 
+static bool is_bent(const struct curve *c)
+{
+    return c->arc.bend_start != 0.0 || c->arc.bend_end != 0.0;
+}
+
+/* f, u = s / L */
+static double fraction(const struct curve *c, double u)
+{
+    if (!is_bent(c)) {
+        return u;
+    }
+    return u + u * (1.0 - u) * (c->arc.bend_start * (1.0 - u) - c->arc.bend_end * u);
+}
+
+/* All but the derivatives of f. */
+static void locate_point(const struct curve *c, double s_mm, struct arc_state *a)
+{
+    a->f = fraction(c, s_mm / c->length_mm);
+    a->radius_mm = c->arc.radius_start_mm + c->arc.radius_change_mm * a->f;
+    maths_sincos(c->arc.angle_start_rad + c->arc.sweep_rad * a->f, &a->sine, &a->cosine);
+}
+
 static void arc_locate(const struct curve *c, double s_mm, struct arc_state *a)
 {
     const double u = s_mm / c->length_mm;
     const double p = c->arc.bend_start;
     const double q = c->arc.bend_end;
 
-    a->f = u + u * (1.0 - u) * (p * (1.0 - u) - q * u);
+    locate_point(c, s_mm, a);
     a->f1 = (1.0 + p * (1.0 - 4.0 * u + 3.0 * u * u) - q * (2.0 * u - 3.0 * u * u)) / c->length_mm;
     a->f2 = (p * (6.0 * u - 4.0) - q * (2.0 - 6.0 * u)) / (c->length_mm * c->length_mm);
-    a->radius_mm = c->arc.radius_start_mm + c->arc.radius_change_mm * a->f;
-    maths_sincos(c->arc.angle_start_rad + c->arc.sweep_rad * a->f, &a->sine, &a->cosine);
 }
 
 void arc_point(const struct curve *c, double s_mm, struct point *p)
 {
     struct arc_state a;
 
-    arc_locate(c, s_mm, &a);
+    locate_point(c, s_mm, &a);
+    *p = c->start;
     for (int i = 0; i < AXIS_COUNT; i++) {
-        p->at[i] = c->start.at[i] + c->slope.at[i] * c->length_mm * a.f;
+        if (c->slope.at[i] != 0.0) {
+            p->at[i] += c->slope.at[i] * c->length_mm * a.f;
+        }
     }
     p->at[c->arc.first] = c->arc.centre_mm[0] + a.radius_mm * a.cosine;
     p->at[c->arc.second] = c->arc.centre_mm[1] + a.radius_mm * a.sine;

@@ -3,8 +3,9 @@
 /* The sum over n inputs at, at - step, ... is n at - step n (n - 1) / 2, and moves by n step a cycle. */
 void average_start(struct average *a, enum law law, uint32_t cycles, uint64_t at, uint64_t step)
 {
+    uint32_t first = 0;
+
     a->law = law;
-    a->next = 0;
     a->at = at;
     a->product = 1.0;
     for (unsigned b = 0; b < law_boxes(law); b++) {
@@ -12,9 +13,12 @@ void average_start(struct average *a, enum law law, uint32_t cycles, uint64_t at
         const uint64_t n = law_box_cycles(b, cycles);
 
         box->cycles = (uint32_t)n;
+        box->first = first;
+        box->next = 0;
         for (uint64_t i = 0; i < n; i++) {
-            box->input[LAW_CYCLES_MAX - 1 - i] = at - i * step;
+            a->input[first + n - 1 - i] = at - i * step;
         }
+        first += box->cycles;
         box->sum = n * at - n * (n - 1) / 2 * step;
         at = box->sum;
         step *= n;
@@ -28,11 +32,13 @@ void average_push(struct average *a, uint64_t at)
     for (unsigned b = 0; b < law_boxes(a->law); b++) {
         struct average_box *box = &a->box[b];
 
-        box->sum += at - box->input[(a->next - box->cycles) % LAW_CYCLES_MAX];
-        box->input[a->next] = at;
+        uint64_t *oldest = &a->input[box->first + box->next];
+
+        box->sum += at - *oldest;
+        *oldest = at;
+        box->next = box->next + 1 == box->cycles ? 0 : box->next + 1;
         at = box->sum;
     }
-    a->next = (a->next + 1) % LAW_CYCLES_MAX;
 }
 
 /* The last sum is product times the average, modulo 2^64; product times the newest input minus it is small. */

@@ -9,18 +9,22 @@
 
 #include <stdint.h>
 
+/* Two boxes of LAW_SMOOTH need most: the second is half as long. Those of LAW_GENTLE are much shorter (law_cycles_max). */
+#define AVERAGE_INPUTS_MAX (LAW_CYCLES_MAX + LAW_CYCLES_MAX / 2)
+
 struct average_box {
     uint32_t cycles;
-    uint64_t sum; /* of the last cycles inputs */
-    uint64_t input[LAW_CYCLES_MAX];
+    uint64_t sum;   /* of the last cycles inputs */
+    uint32_t first; /* of the places of those inputs */
+    uint32_t next;  /* of these places: the oldest input, that of the next one */
 };
 
 struct average {
     enum law law;
-    uint32_t next;  /* place of the next input in the rings */
     uint64_t at;    /* newest input */
     double product; /* of the boxes' cycles */
     struct average_box box[LAW_BOXES_MAX];
+    uint64_t input[AVERAGE_INPUTS_MAX]; /* of all boxes, one after the other */
 };
 
 /*

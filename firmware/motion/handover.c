@@ -12,10 +12,17 @@ void handover_allow_all(struct motion *m)
     m->hands_over_all = true;
 }
 
+void handover_allow_linear(struct motion *m)
+{
+    m->hands_over_all = true;
+    m->keeps_rotary = true;
+    m->path->divides_rotary = true;
+}
+
 void handover_add_cycle(struct motion *m, const struct point *at, double feed_mm_s, bool landed,
                         struct cycle_record *record)
 {
-    const struct block *b = path_at(m->path, m->path->first);
+    const struct block *b = path_first(m->path);
     struct lead_start start;
 
     (void)lead_step(&m->lead, m->setpoint, true, &start); /* it stands, and takes ceilings */
@@ -42,7 +49,7 @@ void handover_pass_block(struct motion *m)
 
 void handover_end(struct motion *m)
 {
-    const struct block *b = path_at(m->path, m->path->first);
+    const struct block *b = path_first(m->path);
 
     lead_stand(&m->lead, b->start + b->length);
     m->setpoint = m->lead.at;

@@ -15,6 +15,9 @@ void handover_allow(struct motion *m);
 /* The same of all blocks but probing moves. */
 void handover_allow_all(struct motion *m);
 
+/* The same, but blocks in which rotary axes move stay motion's. Before anything is pushed onto its path. */
+void handover_allow_linear(struct motion *m);
+
 /* A cycle was made in the path's oldest block. feed: along the path. Fills everything of the record but set and act. */
 void handover_add_cycle(struct motion *m, const struct point *at, double feed_mm_s, bool landed,
                         struct cycle_record *record);

@@ -107,7 +107,9 @@ static void run_on(struct lead *l, uint64_t setpoint, bool hold)
         run_landing(l);
         return;
     }
-    if (b.rest || b.feed < l->feed - LEAD_CHANGE_MIN * b.a) {
+    const bool stops = b.feed == 0.0 && l->feed > 0.0; /* however little is left of the feed */
+
+    if (b.rest || stops || b.feed < l->feed - LEAD_CHANGE_MIN * b.a) {
         slow_down(l, &b);
     } else {
         go(l, hold || l->here.late ? l->feed : lead_speed_up(l, low));

@@ -21,6 +21,9 @@
 /* Cycles beside two windows within which a landing is looked into. */
 #define LANDING_CYCLES 64.0
 
+/* Cycles that a feed can be kept before braking to the end of what is known: more comes in that time. */
+#define OPEN_CYCLES 16.0
+
 /* Halvings in search of a feed to land from. */
 #define LANDING_TRIES 5
 
@@ -93,6 +96,30 @@ static void brake_late(const struct lead *l, struct lead_brake *b)
     }
 }
 
+/* Does the span go on beyond what is known? */
+static bool is_open(const struct lead *l)
+{
+    return l->here.piece >= l->here.ceiling->open_from;
+}
+
+/*
+ * The highest feed v up to top that can be kept for K cycles and then be braked from to the end of what is known:
+ * v K + v^2 / 2a <= x_end - x, x = s + (w + v)/2. So it is neared ever slower, and not come to rest at as long as more
+ * comes in time.
+ */
+static double feed_to_wait(const struct lead *l, double top)
+{
+    const struct ceiling *c = l->here.ceiling;
+    const double a = lead_piece(l, l->here.piece)->acceleration;
+    const double m = a * (OPEN_CYCLES + 0.5);
+    const double gap_mm = c->piece[c->count - 1].end_mm - path_mm(c->origin, l->at) - 0.5 * l->feed;
+
+    if (top * top <= 2.0 * (a * gap_mm - m * top)) {
+        return top;
+    }
+    return gap_mm > 0.0 ? maths_min(top, maths_sqrt(m * m + 2.0 * a * gap_mm) - m) : 0.0;
+}
+
 struct lead_brake lead_brake_ahead(const struct lead *l)
 {
     const double s = path_mm(l->here.ceiling->origin, l->at);
@@ -112,6 +139,9 @@ struct lead_brake lead_brake_ahead(const struct lead *l)
             k + 1 == l->here.ceiling->count || k == l->here.piece + LEAD_PIECES_MAX) {
             break;
         }
+    }
+    if (!b.rest && is_open(l)) {
+        b.feed = maths_min(b.feed, feed_to_wait(l, l->feed));
     }
     b.a = maths_min(b.a, l->here.early_a);
     return b;
@@ -336,7 +366,8 @@ double lead_speed_up(const struct lead *l, double low)
     if (l->since_minus < l->window || low <= l->feed * (1.0 + 1e-12)) {
         return l->feed;
     }
-    const double v = feed_to_keep(l, l->feed + a, low);
+    const double top = is_open(l) ? feed_to_wait(l, l->feed + a) : l->feed + a;
+    const double v = feed_to_keep(l, top, low);
 
     return v > l->feed + LEAD_CHANGE_MIN * a ? maths_max(l->feed, feed_to_land(l, v)) : l->feed;
 }

@@ -75,24 +75,49 @@ static double brake_position(const struct lead *l, const struct ceiling *c)
     return path_mm(c->origin, l->at) + l->feed * wait;
 }
 
-/* Can what lies ahead be met at the highest overrides if the lead point comes to piece k here? */
-static bool can_follow(const struct lead *l, const struct ceiling *c, uint32_t k)
+/* Can what lies ahead be met by braking at this feed squared from x on, in piece k? highest: at the highest overrides. */
+static bool can_meet(const struct ceiling *c, uint32_t k, double x, double energy, bool highest)
 {
-    const double x = brake_position(l, c);
-    const double energy = l->feed * l->feed * (1.0 - LEAD_ENERGY_SLACK);
-
     for (uint32_t i = 0; i < LEAD_PIECES_MAX; i++) {
         const struct ceiling_piece *p = &c->piece[k + i];
+        const double end_energy = highest ? p->end_energy_max : p->end_energy;
         const bool last = lead_is_last_of_span(p) || k + i + 1 == c->count;
 
         if (p->end_mm >= x || last) {
-            return energy <= p->end_energy_max + 2.0 * p->acceleration * (p->end_mm - x);
+            return energy <= end_energy + 2.0 * p->acceleration * (p->end_mm - x);
         }
-        if (energy > p->end_energy_max) {
+        if (energy > end_energy) {
             return false;
         }
     }
     return true; /* so many pieces within a window: what ends the last one counts for those behind */
+}
+
+/* Without rounding. */
+static double energy_of(const struct lead *l)
+{
+    return l->feed * l->feed * (1.0 - LEAD_ENERGY_SLACK);
+}
+
+/* Can what lies ahead be met at the highest overrides if the lead point comes to piece k here? */
+static bool can_follow(const struct lead *l, const struct ceiling *c, uint32_t k)
+{
+    return can_meet(c, k, brake_position(l, c), energy_of(l), true);
+}
+
+/* Likewise from piece k to next, before that begins: until there it brakes as the pieces allow that it leaves. */
+static bool can_follow_early(const struct lead *l, const struct ceiling *c, uint32_t k,
+                             uint32_t next)
+{
+    const double begin_mm = c->piece[next - 1].end_mm;
+    const double x = brake_position(l, c);
+    double a = l->here.early_a;
+
+    for (uint32_t i = k; i < next; i++) {
+        a = maths_min(a, c->piece[i].acceleration);
+    }
+    return x < begin_mm ? can_meet(c, next, begin_mm, energy_of(l) - 2.0 * a * (begin_mm - x), true)
+                        : can_meet(c, next, x, energy_of(l), true);
 }
 
 /* Does a piece allow whatever the averages may hold from the one before? */
@@ -106,11 +131,17 @@ static bool is_no_lower(const struct lead *l, const struct ceiling_piece *had,
            p->acceleration >= had->acceleration * (1.0 - SLACK);
 }
 
-/* Has the lead point come past the end of piece k in this cycle, with the feed that the next one asks for? */
+/*
+ * Has the lead point come past the end of piece k in this cycle, with a feed from which everything behind can be met? A
+ * ceiling taken in between may begin the next piece, of less acceleration, so early that it is too fast there.
+ */
 static bool is_as_planned(const struct lead *l, const struct ceiling *c, uint32_t k)
 {
-    return path_mm(c->origin, l->before) < c->piece[k].end_mm &&
-           l->feed * l->feed <= c->piece[k].end_energy * (1.0 + LEAD_ENERGY_SLACK);
+    const struct ceiling_piece *had = &c->piece[k];
+
+    return path_mm(c->origin, l->before) < had->end_mm &&
+           l->feed * l->feed <= had->end_energy * (1.0 + LEAD_ENERGY_SLACK) &&
+           can_meet(c, k + 1, path_mm(c->origin, l->at), energy_of(l), false);
 }
 
 /* From piece k to the next, past its end. */
@@ -163,7 +194,7 @@ static bool must_enter(const struct lead *l, const struct ceiling *c, uint32_t k
            w * (lead_entry_cycles(l) + 1.0) >= path_mm(l->at, c->origin + (uint64_t)p->start) &&
            w * w * (1.0 - LEAD_ENERGY_SLACK) >
                had->end_energy + 2.0 * c->piece[k].acceleration * gap_mm &&
-           can_follow(l, c, next);
+           can_follow_early(l, c, k, next);
 }
 
 /* Comes to the piece behind that which the lead point is in, if it is there. False: it stays. */

@@ -1,5 +1,6 @@
 #include "motion/motion.h"
 
+#include "base/handoff.h"
 #include "base/maths.h"
 #include "plan/path_unit.h"
 
@@ -7,6 +8,9 @@
 
 /* A setpoint this close to the end of a landed block is on it: rounding of the lead point's positions, path units. */
 #define LANDED_UNITS 8.0
+
+/* A ceiling that had no room for all blocks is made anew when the lead point has gone this part of its length. */
+#define RENEW_PART 0.25
 
 /* Waits without a cycle, and blocks, that one cycle passes at most. */
 #define PASS_MAX 64
@@ -38,19 +42,19 @@ void motion_stop_each(struct motion *m)
 
 static const struct block *first_block(const struct motion *m)
 {
-    return path_at(m->path, m->path->first);
+    return path_first(m->path);
 }
 
 const struct block *motion_block(const struct motion *m)
 {
-    return path_at(m->path, m->current);
+    return path_read(m->path, m->current);
 }
 
 /* -- background -- */
 
 const struct ceiling_request *motion_wanted(const struct motion *m)
 {
-    return m->wanted && !m->built ? &m->request : NULL;
+    return handoff_get_flag(&m->wanted) && !handoff_get_flag(&m->built) ? &m->request : NULL;
 }
 
 uint32_t motion_ahead(struct motion *m)
@@ -59,9 +63,7 @@ uint32_t motion_ahead(struct motion *m)
         m->ahead = m->request.first;
     }
     while (m->ahead != m->path->closed) {
-        const struct block *b = path_at(m->path, m->ahead);
-
-        if ((int64_t)(b->start + b->length - m->request.lead) > 0) {
+        if ((int64_t)(path_end(m->path, m->ahead) - m->request.lead) > 0) {
             break;
         }
         m->ahead++;
@@ -69,27 +71,51 @@ uint32_t motion_ahead(struct motion *m)
     return m->path->closed == m->ahead ? 0 : m->path->closed - m->ahead - 1;
 }
 
+/* What is asked for, whole: a late background may have been asked anew while it took it. */
+static struct ceiling_request take_request(const struct motion *m, uint64_t *room,
+                                           uint32_t *restarts)
+{
+    struct ceiling_request request;
+    uint32_t times;
+
+    do {
+        times = handoff_get_count(&m->asked);
+        request = m->request;
+        *room = m->room;
+        *restarts = m->asked_restarts;
+    } while (times != handoff_get_count(&m->asked));
+    return request;
+}
+
+/* Over all blocks, or as far as there was room and the lead point has not come near the end of that. */
+static bool reaches_far(const struct motion *m, const struct ceiling *c, uint64_t lead)
+{
+    if (c->complete) {
+        return m->made_closed == m->path->closed;
+    }
+    return path_mm(c->origin, lead) < RENEW_PART * c->piece[c->count - 1].end_mm;
+}
+
 /* Would a new ceiling be the one that is there? */
-static bool is_unchanged(const struct motion *m)
+static bool is_unchanged(const struct motion *m, const struct ceiling_request *request)
 {
     const struct ceiling *c = &m->ceiling[m->active];
 
-    return m->made_holds && c->complete && m->made_closed == m->path->closed &&
-           m->made.feed_ratio == m->request.feed_ratio &&
-           m->made.rapid_ratio == m->request.rapid_ratio && m->made.stops == m->request.stops &&
-           m->made.spindle_rev_s == m->request.spindle_rev_s;
+    return m->made_holds && reaches_far(m, c, request->lead) &&
+           m->made.feed_ratio == request->feed_ratio &&
+           m->made.rapid_ratio == request->rapid_ratio && m->made.stops == request->stops &&
+           m->made.spindle_rev_s == request->spindle_rev_s;
 }
 
 /* The first block that can still be stopped at: its end is beyond the room that braking may take. */
-static uint32_t first_stop(const struct motion *m)
+static uint32_t first_stop(const struct motion *m, const struct ceiling_request *request,
+                           uint64_t room)
 {
-    const uint64_t from = m->request.lead + m->room;
-    uint32_t i = m->request.first;
+    const uint64_t from = request->lead + room;
+    uint32_t i = request->first;
 
     for (; i != m->path->closed; i++) {
-        const struct block *b = path_at(m->path, i);
-
-        if ((int64_t)(b->start + b->length - from) >= 0) {
+        if ((int64_t)(path_end(m->path, i) - from) >= 0) {
             break;
         }
     }
@@ -98,19 +124,23 @@ static uint32_t first_stop(const struct motion *m)
 
 void motion_build(struct motion *m)
 {
-    if (is_unchanged(m)) {
-        m->wanted = false;
+    uint64_t room;
+    uint32_t restarts;
+    struct ceiling_request request = take_request(m, &room, &restarts);
+
+    if (is_unchanged(m, &request)) {
+        handoff_set_flag(&m->wanted, false);
         return;
     }
-    m->built_restarts = m->asked_restarts;
-    if (m->request.stops) {
-        m->request.stops_from = m->used.stops ? m->used.stops_from : first_stop(m);
+    m->built_restarts = restarts;
+    if (request.stops) {
+        request.stops_from = m->used.stops ? m->used.stops_from : first_stop(m, &request, room);
     }
-    ceiling_build(&m->ceiling[1 - m->active], m->path, &m->request);
-    m->made = m->request;
+    ceiling_build(&m->ceiling[1 - m->active], m->path, &request);
+    m->made = request;
     m->made_closed = m->path->closed;
     m->made_holds = true;
-    m->built = true;
+    handoff_set_flag(&m->built, true);
 }
 
 /* -- exchange with the background -- */
@@ -131,7 +161,7 @@ static void offer_ceiling(struct motion *m)
         m->used = m->made;
         lead_set_ceiling(&m->lead, &m->ceiling[m->active]);
     }
-    m->built = false;
+    handoff_set_flag(&m->built, false);
 }
 
 /* Where the ceiling ends that the lead point is under. */
@@ -189,8 +219,9 @@ static void ask(struct motion *m, const struct motion_operator *wanted)
     m->request.lead = m->lead.at;
     m->request.span = m->lead.span;
     m->request.cycles = m->lead.cycles;
-    m->path->kept = m->path->first;
-    m->wanted = true;
+    m->asked++;
+    handoff_set_count(&m->path->kept, m->path->first);
+    handoff_set_flag(&m->wanted, true);
 }
 
 /* While a ceiling is being taken none is free to be made: then a new one is asked for some cycles later. */
@@ -220,10 +251,21 @@ static bool is_wait_over(const struct motion *m, const struct block *b)
     return (double)m->waited >= cycles;
 }
 
+static bool turns_rotary(const struct block *b)
+{
+    for (int i = AXIS_LINEAR_COUNT; i < AXIS_COUNT; i++) {
+        if (b->curve.slope.at[i] != 0.0) {
+            return true;
+        }
+    }
+    return false;
+}
+
 static bool is_handed_over(const struct motion *m, const struct block *b)
 {
     return (m->hands_over && move_is_locked(&b->move)) ||
-           (m->hands_over_all && b->move.kind != MOVE_PROBE);
+           (m->hands_over_all && b->move.kind != MOVE_PROBE &&
+            !(m->keeps_rotary && turns_rotary(b)));
 }
 
 /* Goes through what happens at rest. MOTION_CYCLE: the axes move on, or wait when *waits is set. */
@@ -284,7 +326,7 @@ static bool is_held(const struct motion *m, const struct motion_operator *wanted
 /* Is the end of the oldest block a stop? */
 static bool ends_at_rest(const struct motion *m)
 {
-    return ceiling_stops(&m->used, first_block(m), m->path->first);
+    return ceiling_stops(&m->used, m->path, m->path->first);
 }
 
 /* The setpoint's distance from the start of its block, path units, after passing the blocks it has left. */

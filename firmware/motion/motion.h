@@ -63,7 +63,8 @@ struct motion {
     unsigned active;  /* the one in use */
     bool has_ceiling; /* there has been one */
     bool asks;        /* the background is to be asked for one as soon as there is room */
-    bool wanted;      /* it has been asked */
+    uint32_t asked;   /* times it has been asked */
+    bool wanted;      /* it has been asked, and has not answered that it needs no other */
     bool built;       /* and has made it */
     struct ceiling_request request;
     uint64_t asked_leave;        /* of the piece the lead point was in then */
@@ -78,6 +79,7 @@ struct motion {
     bool ending;         /* comes to rest where it is, and the rest of the path is dropped */
     bool hands_over;     /* blocks that follow the spindle are executed by others: handover.h */
     bool hands_over_all; /* and so are all others but probing moves */
+    bool keeps_rotary;   /* but motions of rotary axes */
 };
 
 /* start: where the machine stands. The path is read here, and passed; it must outlive m. */

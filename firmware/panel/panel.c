@@ -38,7 +38,15 @@ void panel_look(struct panel *panel, struct panel_snapshot *snapshot)
 
 const struct panel_store *panel_get_store(const struct panel *panel)
 {
-    return panel->kind == PANEL_UPLOAD_SETTINGS ? &panel->config.settings : &panel->config.store;
+    switch (panel->kind) {
+    case PANEL_UPLOAD_SETTINGS:
+        return &panel->config.settings;
+    case PANEL_UPLOAD_PLAN:
+        return &panel->config.plans;
+    case PANEL_UPLOAD_PROGRAM:
+        break;
+    }
+    return &panel->config.store;
 }
 
 static enum panel_control control_of(const struct panel_client *client,

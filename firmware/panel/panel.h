@@ -17,6 +17,7 @@ struct panel_config {
     struct panel_port port;
     struct panel_store store;
     struct panel_store settings; /* begin is NULL: none can be brought */
+    struct panel_store plans;    /* programs planned ahead; begin_stream is NULL: likewise */
     uint32_t password; /* clients must write it before anything else; 0: none is asked for */
 };
 

@@ -18,6 +18,9 @@ const struct panel_store *panel_get_store(const struct panel *panel);
 /* An upload of another kind is given up. */
 void panel_turn_upload(struct panel *panel, enum panel_upload_kind kind);
 
+/* The reason, as the store of this kind has it, for UPLOAD_TEXT. Returns the refusal. */
+enum panel_refusal panel_tell_why(struct panel *panel, enum panel_refusal refusal);
+
 /* Settings: refused with a reason for UPLOAD_TEXT. */
 enum panel_refusal panel_begin_settings(struct panel *panel, const struct panel_mailbox *mailbox);
 enum panel_refusal panel_commit_settings(struct panel *panel);

@@ -10,9 +10,9 @@ void panel_turn_upload(struct panel *panel, enum panel_upload_kind kind)
     panel->kind = kind;
 }
 
-static enum panel_refusal refuse(struct panel *panel, enum panel_refusal refusal)
+enum panel_refusal panel_tell_why(struct panel *panel, enum panel_refusal refusal)
 {
-    const struct panel_store *store = &panel->config.settings;
+    const struct panel_store *store = panel_get_store(panel);
     const char *why = store->why != NULL ? store->why(store->context) : "";
     size_t length = 0;
 
@@ -31,7 +31,7 @@ enum panel_refusal panel_begin_settings(struct panel *panel, const struct panel_
     if (store->begin == NULL || mailbox->upload_size == 0)
         return PANEL_REFUSAL_VALUE;
     if (!panel_upload_begin(&panel->upload, store, mailbox->upload_size, mailbox->upload_crc))
-        return refuse(panel, PANEL_REFUSAL_STATE);
+        return panel_tell_why(panel, PANEL_REFUSAL_STATE);
     memset(panel->upload_text, 0, sizeof panel->upload_text);
     return PANEL_REFUSAL_NONE;
 }
@@ -48,5 +48,5 @@ enum panel_refusal panel_commit_settings(struct panel *panel)
         return PANEL_REFUSAL_VALUE;
     good = store->prepare(store->context) && store->place(store->context);
     panel_upload_abandon(&panel->upload, store);
-    return good ? PANEL_REFUSAL_NONE : refuse(panel, PANEL_REFUSAL_VALUE);
+    return good ? PANEL_REFUSAL_NONE : panel_tell_why(panel, PANEL_REFUSAL_VALUE);
 }

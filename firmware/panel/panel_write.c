@@ -217,12 +217,35 @@ static enum panel_refusal hand_over(struct panel_request *r, uint32_t size, uint
     return give_order(r);
 }
 
+/* A program planned ahead: the controller makes room for it, if it can take one now. */
+static enum panel_refusal begin_plan(struct panel_request *r)
+{
+    struct panel *panel = r->client->panel;
+    const struct panel_store *store = &panel->config.plans;
+    enum panel_refusal refusal;
+
+    if (store->begin_stream == NULL || r->mailbox.upload_size == 0)
+        return PANEL_REFUSAL_VALUE;
+    panel_upload_abandon(&panel->upload, panel_get_store(panel));
+    panel->kind = PANEL_UPLOAD_PLAN;
+    add_order(r, REGISTER_UPLOAD_KIND, PANEL_UPLOAD_PLAN);
+    refusal = give_order(r);
+    if (refusal != PANEL_REFUSAL_NONE)
+        return refusal;
+    memset(panel->upload_text, 0, sizeof panel->upload_text);
+    return panel_upload_stream(&panel->upload, store, r->mailbox.upload_size, r->mailbox.upload_crc)
+               ? PANEL_REFUSAL_NONE
+               : PANEL_REFUSAL_VALUE;
+}
+
 /* The program before is gone as soon as the first byte of this one may come. */
 static enum panel_refusal begin_stream(struct panel_request *r)
 {
     struct panel *panel = r->client->panel;
     const struct panel_mailbox *mailbox = &r->mailbox;
 
+    if (mailbox->upload_kind == PANEL_UPLOAD_PLAN)
+        return begin_plan(r);
     if (panel->config.store.begin_stream == NULL || mailbox->upload_size == 0)
         return PANEL_REFUSAL_VALUE;
     panel_turn_upload(panel, PANEL_UPLOAD_PROGRAM);
@@ -260,6 +283,8 @@ static enum panel_refusal begin(const struct panel_request *r)
     struct panel *panel = r->client->panel;
     const struct panel_mailbox *mailbox = &r->mailbox;
 
+    if (mailbox->upload_kind == PANEL_UPLOAD_PLAN)
+        return PANEL_REFUSAL_VALUE;
     panel_turn_upload(panel, mailbox->upload_kind);
     if (panel->kind == PANEL_UPLOAD_SETTINGS)
         return panel_begin_settings(panel, mailbox);
@@ -298,10 +323,11 @@ static enum panel_refusal take_chunk(const struct panel_request *r)
                                       panel_upload_room(&panel->upload, panel_get_store(panel)) &&
         r->mailbox.chunk_length <= panel->upload.size - r->mailbox.chunk_offset)
         return PANEL_REFUSAL_BUSY;
-    return panel_upload_take(&panel->upload, panel_get_store(panel), r->mailbox.chunk_offset,
-                             r->mailbox.chunk, r->mailbox.chunk_length, r->check)
-               ? PANEL_REFUSAL_NONE
-               : PANEL_REFUSAL_VALUE;
+    if (panel_upload_take(&panel->upload, panel_get_store(panel), r->mailbox.chunk_offset,
+                          r->mailbox.chunk, r->mailbox.chunk_length, r->check))
+        return PANEL_REFUSAL_NONE;
+    return panel->kind == PANEL_UPLOAD_PLAN ? panel_tell_why(panel, PANEL_REFUSAL_VALUE)
+                                            : PANEL_REFUSAL_VALUE;
 }
 
 /* The table keeps chunk, upload command and orders so far apart that a request has one of them at most. */

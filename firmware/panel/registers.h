@@ -87,7 +87,7 @@ enum panel_upload_command {
 };
 
 /* Register UPLOAD_KIND. */
-enum panel_upload_kind { PANEL_UPLOAD_PROGRAM, PANEL_UPLOAD_SETTINGS };
+enum panel_upload_kind { PANEL_UPLOAD_PROGRAM, PANEL_UPLOAD_SETTINGS, PANEL_UPLOAD_PLAN };
 
 /* Register UPLOAD_STATE. */
 enum panel_upload_state { PANEL_UPLOAD_NONE, PANEL_UPLOAD_OPEN, PANEL_UPLOAD_WHOLE };
@@ -249,7 +249,7 @@ enum panel_form {
     ROW(ALARM_TEXT, MODBUS_INPUTS, 200, PANEL_TEXT, PANEL_ALARM_TEXT_MAX / 2, "", 0, 0, 0, PANEL_NEVER, \
         "what is wrong, in words") \
     ROW(UPLOAD_TEXT, MODBUS_INPUTS, 300, PANEL_TEXT, PANEL_ALARM_TEXT_MAX / 2, "", 0, 0, 0, PANEL_NEVER, \
-        "why the last upload of settings was refused, in words; empty: it was not")
+        "why the last upload of settings or of a compiled program was refused, in words; empty: it was not")
 
 #define PANEL_HOLDING_ROWS(ROW) \
     PANEL_SET16(ROW, FEED_OVERRIDE, 0, "%", 1, 0, 1200, PANEL_ANY, "%F") \
@@ -277,8 +277,8 @@ enum panel_form {
         "CRC-32 (ISO 3309) of the program to come") \
     PANEL_SET16(ROW, UPLOAD_COMMAND, 54, "", 0, 1, 4, PANEL_ANY, \
         "1 begin, or go on with an open upload of the same size and CRC; 2 commit (when idle); 3 abandon; 4 begin, and CYCLE_START runs it while it comes (when idle). Reads 0") \
-    PANEL_SET16(ROW, UPLOAD_KIND, 55, "", 0, 0, 1, PANEL_ANY, \
-        "what the next upload brings: 0 a program, 1 settings of `takt machine --pack`, which are taken while the drives are off (emergency stop) and count from the next start on") \
+    PANEL_SET16(ROW, UPLOAD_KIND, 55, "", 0, 0, 2, PANEL_ANY, \
+        "what the next upload brings: 0 a program, 1 settings of `takt machine --pack`, which are taken while the drives are off (emergency stop) and count from the next start on, 2 what `takt compile` has made of the program that is there, which takes UPLOAD_COMMAND 4") \
     PANEL_AXIS_ROWS(ROW, RISE, MODBUS_HOLDINGS, 60, PANEL_S32, 2, "K", 3, -1000000, 1000000, PANEL_ANY, \
         "how much warmer than at calibration its sensor finds it: for the thermal layer of the correction") \
     ROW(UPLOAD_OFFSET, MODBUS_HOLDINGS, 100, PANEL_U32, 2, "byte", 0, 0, PANEL_PROGRAM_BYTES_MAX, PANEL_ANY, \

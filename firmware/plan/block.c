@@ -104,6 +104,14 @@ double block_top_feed(const struct block *b)
     return block_ceiling(b, 0.0, BLOCK_OVERRIDE_MAX * b->feed_program_mm_s).feed_mm_s;
 }
 
+double block_limit(const struct block *b, enum governor *governor)
+{
+    const struct bound c = block_ceiling(b, b->share, MATHS_INFINITY);
+
+    *governor = c.governor;
+    return c.feed_mm_s;
+}
+
 enum governor block_governor(const struct block *b, double program_mm_s)
 {
     return block_ceiling(b, b->share, program_mm_s).governor;
@@ -258,7 +266,7 @@ void block_set_motion(struct block *b, const struct move *move, const struct cur
 /* Its limits hold for every rate of nominal time up to the highest one. */
 void block_set_smooth(struct block *b, const struct smooth_piece *piece, double unit_mm)
 {
-    const struct judge_rate *rate = &piece->rate;
+    const struct smooth_rate *rate = &piece->rate;
 
     memset(b, 0, sizeof(*b));
     b->move = *piece->move;

@@ -55,7 +55,6 @@ struct block {
     uint64_t start;   /* path position, path units (path_unit.h) */
     uint64_t length;  /* path units; 0: a wait, the axes stand */
     struct curve curve;
-    double from_mm; /* where on the move's curve it begins: not 0 for later pieces of it */
     bool continues; /* another piece of the same move follows */
     double length_mm;
     bool rotary; /* the path is counted in rad: no linear axis moves */
@@ -69,11 +68,10 @@ struct block {
     double a_mm_s2;    /* along the path, what curvature and share leave at that feed */
     double j_mm_s3;
 
-    uint16_t
-        cycles; /* averaging window of the span that begins here, as planned last; 0: not yet */
     enum joint_kind end;
-    double share_start;     /* part of the jerk limit used by the joint at the start */
-    double share;           /* part of the jerk limit left to both joints, 0 ... BLOCK_SHARE_MAX */
+    double
+        share_joint; /* part of the jerk limit that blocks near the joint at the end must leave */
+    double share;    /* part left to joints: BLOCK_SHARE_MAX until the block is closed */
     double feed_joint_mm_s; /* highest feed at which the joint at the end may be passed */
 };
 
@@ -107,6 +105,9 @@ void block_set_share(struct block *b, double share);
 
 /* The most this block will ever be allowed: if no joint took a share. */
 double block_top_feed(const struct block *b);
+
+/* The ceiling of the feed whatever is programmed, and what governs it; GOVERNOR_PROGRAM: there is none. */
+double block_limit(const struct block *b, enum governor *governor);
 
 /* What governs a feed ceiling of program_mm_s (programmed feed with the override) on this block. */
 enum governor block_governor(const struct block *b, double program_mm_s);

@@ -10,6 +10,7 @@
 
 #include "base/maths.h"
 #include "plan/path_unit.h"
+#include "plan/span.h"
 
 /*
  * Between being asked for and being taken a ceiling grows so many cycles old at most (MOTION_EXCHANGE_CYCLES and the
@@ -39,95 +40,81 @@ struct builder {
     unsigned overrides; /* of the block being laid, */
     double feed_max;    /* and its highest feed whatever they are, mm/cycle */
     double fastest;     /* the highest of those laid so far */
+    double gentlest;    /* and the lowest acceleration */
     int64_t start;      /* path units from the origin: of what is being laid */
     unsigned heads;
     struct head head[HEADS_MAX]; /* both rising */
 };
 
 /* As programmed, or so much per revolution as it turns now. */
-static double program_feed(const struct block *b, const struct ceiling_request *request)
+static double program_feed(const struct path *path, uint32_t index,
+                           const struct ceiling_request *request)
 {
-    const double measured = b->move.feed_rev_mm * request->spindle_rev_s;
+    const struct path_block *b = path_at(path, index);
+    const double measured =
+        b->per_revolution ? path_feed_rev(path, index) * request->spindle_rev_s : 0.0;
 
-    return measured > 0.0 ? measured : b->feed_program_mm_s;
+    return measured > 0.0 ? measured : (double)b->feed_program_mm_s;
 }
 
-double ceiling_block_feed(const struct block *b, const struct ceiling_request *request)
+double ceiling_block_feed(const struct path *path, uint32_t index,
+                          const struct ceiling_request *request)
 {
-    const bool rapid = b->move.kind == MOVE_RAPID;
-    const bool obeys = rapid || (b->move.overrides & OVERRIDE_FEED) != 0;
-    const double ratio = rapid ? request->rapid_ratio : obeys ? request->feed_ratio : 1.0;
-    const double program = program_feed(b, request);
+    const struct path_block *b = path_at(path, index);
+    const double ratio = b->rapid ? request->rapid_ratio : b->may_feed ? request->feed_ratio : 1.0;
+    const double program = program_feed(path, index, request);
+    const double top = path_block_top(b);
 
-    if (rapid || (request->proportional && ratio < 1.0)) {
-        return ratio * maths_min(program, b->feed_max_mm_s);
+    if (b->rapid || (request->proportional && ratio < 1.0)) {
+        return ratio * maths_min(program, top);
     }
-    return maths_min(ratio * program, b->feed_max_mm_s);
+    return maths_min(ratio * program, top);
 }
 
-bool ceiling_stops(const struct ceiling_request *request, const struct block *b, uint32_t index)
+bool ceiling_stops(const struct ceiling_request *request, const struct path *path, uint32_t index)
 {
+    const struct path_block *b = path_at(path, index);
+
     return b->end == JOINT_STOP ||
            (request->stops && !b->continues && (int32_t)(index - request->stops_from) >= 0);
 }
 
-/* Does a span end with this block, at a joint that is passed and landed on? */
-static bool is_landed(const struct builder *s, const struct block *b)
-{
-    return b->end == JOINT_REDUCED ||
-           (b->end == JOINT_PASSED && s->path->limits.landing == LANDING_BLOCK);
-}
-
 /*
- * Averaging window for a span, from one landed end to the next: A/J lets a ramp reach its full acceleration; a ramp to a feed F that
- * does not needs sqrt(F/J), a span of length L cbrt(L/2J). A longer window would only cost time.
+ * Could the lead point not come to rest before a place any more when this ceiling is taken? By then it has gone on at its
+ * feed, which it keeps for a window before it brakes: w t + w^2 / 2 a.
  */
-static uint32_t span_cycles(const struct builder *s, uint32_t index)
-{
-    double full_s = 0.0;
-    double j_min = MATHS_INFINITY;
-    double length_mm = 0.0;
-    bool known = false;
-
-    for (; index != s->path->closed && !known; index++) {
-        const struct block *b = path_at(s->path, index);
-
-        if (!block_is_motion(b)) {
-            break;
-        }
-        full_s = maths_max(
-            full_s, maths_min(b->a_mm_s2 / b->j_mm_s3, maths_sqrt(b->feed_max_mm_s / b->j_mm_s3)));
-        j_min = maths_min(j_min, b->j_mm_s3);
-        length_mm += b->length_mm;
-        known = ceiling_stops(s->request, b, index) || is_landed(s, b);
-    }
-    if (known) {
-        full_s = maths_min(full_s, maths_cbrt(length_mm / (2.0 * j_min)));
-    }
-    return (uint32_t)maths_clamp(maths_ceil(full_s / s->cycle_s - 1e-9), 1.0,
-                                 law_cycles_max(s->path->limits.law));
-}
-
-/* May the lead point come to a place before this ceiling is taken? */
 static bool is_near(const struct builder *s, uint64_t at)
 {
-    return path_mm(s->request->lead, at) <= AGE_CYCLES * s->fastest;
+    const double cycles = AGE_CYCLES + 2.0 * s->behind + 0.5 * s->fastest / s->gentlest;
+
+    return path_mm(s->request->lead, at) <= s->fastest * cycles;
 }
 
 /*
- * The window of a span is a promise to a lead point that has begun it, or may begin it under the ceiling made before; to
- * others it is found anew, from all that is known of the span by now.
+ * The window of a span is a promise to a lead point that has begun it, or may begin it or land at its start under the
+ * ceiling made before; to others it is found anew until all of the span is known.
  */
-static uint32_t window_cycles(const struct builder *s, uint32_t index)
+static struct span_window find_window(const struct builder *s, uint32_t index)
 {
     const struct ceiling_request *request = s->request;
-    const struct block *b = path_at(s->path, index);
+    const struct path_block *b = path_at(s->path, index);
     const bool inside = index == request->first && (int64_t)(request->lead - b->start) > 0;
 
     if (inside || (int64_t)(request->span - b->start) >= 0) {
-        return request->cycles;
+        return (struct span_window){request->cycles, b->cycles_known};
     }
-    return b->cycles > 0 && is_near(s, b->start) ? b->cycles : span_cycles(s, index);
+    if (b->cycles > 0 && (b->cycles_known || is_near(s, b->start))) {
+        return (struct span_window){b->cycles, b->cycles_known};
+    }
+    return span_window(s->path, request, index);
+}
+
+static uint32_t promise_window(struct builder *s, uint32_t index)
+{
+    const struct span_window window = find_window(s, index);
+
+    path_promise(s->path, index, window.cycles, window.known);
+    return window.cycles;
 }
 
 /* The span that begins with the block at index. */
@@ -135,8 +122,7 @@ static void begin_span(struct builder *s, uint32_t index)
 {
     const uint64_t start = path_at(s->path, index)->start;
 
-    s->cycles = window_cycles(s, index);
-    path_promise(s->path, index, s->cycles);
+    s->cycles = promise_window(s, index);
     s->behind = 0.5 * ((double)law_window_cycles(s->path->limits.law, s->cycles) - 1.0) +
                 CEILING_MARGIN_CYCLES;
     s->begin_mm = path_mm(s->c->origin, start);
@@ -157,9 +143,27 @@ static struct ceiling_piece *append(struct builder *s, double end_mm, double fee
         .leave = leave,
         .cycles = (uint16_t)s->cycles,
         .landing = CEILING_NONE,
-        .overrides = s->overrides,
+        .overrides = (uint16_t)s->overrides,
     };
     return p;
+}
+
+/*
+ * Of the pieces from k on, those that nothing is left of go, or a cycle would come to more than it looks at: all but the
+ * first of a ceiling, which still binds until the setpoint has left it.
+ */
+static void drop_empty(struct ceiling *c, uint32_t k)
+{
+    uint32_t kept = k;
+
+    for (; k < c->count; k++) {
+        const double begin_mm = kept > 0 ? c->piece[kept - 1].end_mm : 0.0;
+
+        if (c->piece[k].opens || c->piece[k].end_mm > begin_mm) {
+            c->piece[kept++] = c->piece[k];
+        }
+    }
+    c->count = kept;
 }
 
 /*
@@ -170,17 +174,21 @@ static struct ceiling_piece *append(struct builder *s, double end_mm, double fee
 static void begin_ceiling(struct builder *s, double at_mm, double lead_mm)
 {
     s->begin_mm = maths_max(s->begin_mm, at_mm - lead_mm);
-    for (uint32_t k = s->c->count; k-- > 0 && s->c->piece[k].end_mm > s->begin_mm;) {
-        s->c->piece[k].end_mm = s->begin_mm;
+    uint32_t k = s->c->count;
+
+    for (; k > 0 && s->c->piece[k - 1].end_mm > s->begin_mm; k--) {
+        s->c->piece[k - 1].end_mm = s->begin_mm;
     }
+    drop_empty(s->c, k);
 }
 
 /* mm/cycle2: A tau^2, and the jerk J over the first box: J tau^3 N. */
-static double block_acceleration(const struct builder *s, const struct block *b)
+static double block_acceleration(const struct builder *s, const struct path_block *b)
 {
     const double t = s->cycle_s;
 
-    return maths_min(b->a_mm_s2 * t * t, b->j_mm_s3 * t * t * t * (double)s->cycles);
+    return maths_min((double)b->a_mm_s2 * t * t,
+                     (double)b->j_mm_s3 * t * t * t * (double)s->cycles);
 }
 
 /*
@@ -240,28 +248,30 @@ static bool continues(const struct builder *s, double feed, double a)
            last->acceleration == a && last->overrides == s->overrides;
 }
 
-static unsigned block_overrides(const struct block *b)
+static unsigned block_overrides(const struct path_block *b)
 {
-    const unsigned follows = b->move.feed_rev_mm != 0.0 ? CEILING_SPINDLE : 0U;
-    const unsigned hold = (b->move.overrides & OVERRIDE_HOLD) | follows;
+    const unsigned follows = b->per_revolution ? CEILING_SPINDLE : 0U;
+    const unsigned hold = (b->may_hold ? OVERRIDE_HOLD : 0U) | follows;
 
-    return b->move.kind == MOVE_RAPID ? hold | CEILING_RAPID
-                                      : hold | (b->move.overrides & OVERRIDE_FEED);
+    return b->rapid ? hold | CEILING_RAPID : hold | (b->may_feed ? OVERRIDE_FEED : 0U);
 }
 
-static void lay_block(struct builder *s, const struct block *b)
+static void lay_block(struct builder *s, uint32_t index)
 {
-    const double feed = ceiling_block_feed(b, s->request) * s->cycle_s;
+    const struct path_block *b = path_at(s->path, index);
+    const double feed = ceiling_block_feed(s->path, index, s->request) * s->cycle_s;
     const double a = block_acceleration(s, b);
     const double start_mm = path_mm(s->c->origin, b->start);
-    const int64_t leave = (int64_t)(b->start + b->length - s->c->origin);
-    const double end_mm = path_mm(s->c->origin, b->start + b->length);
+    const uint64_t end = path_end(s->path, index);
+    const int64_t leave = (int64_t)(end - s->c->origin);
+    const double end_mm = path_mm(s->c->origin, end);
 
     s->overrides = block_overrides(b);
-    s->feed_max = b->feed_max_mm_s * s->cycle_s;
+    s->feed_max = path_block_top(b) * s->cycle_s;
     const double reach_mm = end_mm + s->feed_max * s->behind;
 
     s->fastest = maths_max(s->fastest, s->feed_max);
+    s->gentlest = maths_min(s->gentlest, a);
     s->start = (int64_t)(b->start - s->c->origin);
     if (continues(s, feed, a)) {
         s->c->piece[s->c->count - 1].end_mm = end_mm;
@@ -287,24 +297,27 @@ static double landing_ramp(double feed, double a, double window)
 /*
  * A joint that is landed: the lead point passes it at constant feed for a whole window, so that a setpoint can be put
  * on it; before that it makes up for the fraction of a cycle's way that is missing, and for the cycle in which it comes
- * into the piece. Two such joints need room between. after: the block behind it.
+ * into the piece. Two such joints need room between.
  */
-static void lay_landed_joint(struct builder *s, const struct block *b, uint32_t after)
+static void lay_landed_joint(struct builder *s, uint32_t index)
 {
-    const struct block *next = path_at(s->path, after);
+    const struct path_block *b = path_at(s->path, index);
+    const struct path_block *next = path_at(s->path, index + 1);
     const double a = maths_min(block_acceleration(s, b), block_acceleration(s, next));
     const double window = 2.0 * (s->behind - CEILING_MARGIN_CYCLES) + 1.0;
     const double wider =
-        maths_max(window, law_window_cycles(s->path->limits.law, window_cycles(s, after)));
-    const double shorter_mm = maths_min(b->length_mm, next->length_mm);
-    const double end_mm = path_mm(s->c->origin, b->start + b->length);
-    double feed = b->feed_joint_mm_s * s->cycle_s;
+        maths_max(window, law_window_cycles(s->path->limits.law, promise_window(s, index + 1)));
+    const double shorter_mm =
+        maths_min(path_length(s->path, index), path_length(s->path, index + 1));
+    const uint64_t end = path_end(s->path, index);
+    const double end_mm = path_mm(s->c->origin, end);
+    double feed = (double)b->feed_joint_mm_s * s->cycle_s;
 
     feed = maths_min(feed, shorter_mm / (wider + 4.0 + landing_ramp(feed, a, wider)));
     feed = feed < PASS_WORTH * a ? 0.0 : feed;
     begin_ceiling(s, end_mm, feed * (0.5 * (window + 1.0) + landing_ramp(feed, a, window) + 1.0));
     s->feed_max = 0.0;
-    s->start = (int64_t)(b->start + b->length - s->c->origin);
+    s->start = (int64_t)(end - s->c->origin);
     struct ceiling_piece *p = append(s, end_mm, feed, a, s->start);
 
     p->opens = true;
@@ -319,22 +332,20 @@ static void lay_blocks(struct builder *s)
     uint32_t i = s->request->first;
 
     for (; i != s->path->closed && s->c->count < room; i++) {
-        const struct block *b = path_at(s->path, i);
-
-        if (!block_is_motion(b)) {
+        if (!path_at(s->path, i)->motion) {
             continue;
         }
         if (fresh) {
             begin_span(s, i);
         }
-        lay_block(s, b);
-        const bool stops = ceiling_stops(s->request, b, i);
+        lay_block(s, i);
+        const bool stops = ceiling_stops(s->request, s->path, i);
 
-        fresh = stops || is_landed(s, b);
+        fresh = stops || span_lands(s->path, i);
         if (stops) {
             s->c->piece[s->c->count - 1].stop = true;
         } else if (fresh) {
-            lay_landed_joint(s, b, i + 1);
+            lay_landed_joint(s, i);
         }
     }
     s->c->complete = i == s->path->closed;
@@ -429,7 +440,9 @@ static void plan_backward(struct ceiling *c, enum law law)
     double energy = 0.0;
     double energy_max = 0.0;
     uint16_t landing = CEILING_NONE;
+    bool open = true;
 
+    c->open_from = c->count;
     for (uint32_t k = c->count; k-- > 0;) {
         struct ceiling_piece *p = &c->piece[k];
 
@@ -438,6 +451,8 @@ static void plan_backward(struct ceiling *c, enum law law)
             energy_max = 0.0;
             landing = CEILING_NONE;
         }
+        open = open && !p->stop && (!p->landed || k + 1 == c->count);
+        c->open_from = open ? k : c->open_from;
         p->end_energy = energy;
         p->end_energy_max = p->stop ? 0.0 : highest_energy(c, k, energy_max);
         if (p->landed) {
@@ -454,7 +469,11 @@ static void plan_backward(struct ceiling *c, enum law law)
 
 void ceiling_build(struct ceiling *c, struct path *path, const struct ceiling_request *request)
 {
-    struct builder s = {.c = c, .path = path, .request = request, .cycle_s = path->limits.cycle_s};
+    struct builder s = {.c = c,
+                        .path = path,
+                        .request = request,
+                        .cycle_s = path->limits.cycle_s,
+                        .gentlest = MATHS_INFINITY};
 
     c->count = 0;
     c->origin =

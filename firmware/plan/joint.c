@@ -17,7 +17,8 @@
  * block beside a joint at its ceiling, a joint may use f of the share. If several fall into three cycles, each block
  * between them, of time D_b, bounds f by D_b / (6 cycles) for the joints at its two ends, and the D_b add up to less than three
  * cycles: the sum of all f is below 1. That needs the ceilings of short blocks to agree with d, so they are lowered.
- * A block's share is the largest of (what a joint takes) / f, so that what all joints take together is at most that.
+ * Each block that can fall into the same three cycles as a joint (share.c) leaves it (what the joint takes) / f: what all
+ * joints of those three cycles take together is then at most what each block in them leaves.
  *
  * Rejected: one fixed corner feed (wrong for every other cycle time and angle); using the limit in full at each joint
  * (two joints in three cycles then break it, seen as jerk of 1.4 times the limit on chains of 0.1 mm blocks).
@@ -29,11 +30,13 @@
 /* Part of the acceleration limit a joint may use, when its share of jerk is BLOCK_SHARE_MAX. */
 #define JOINT_ACCELERATION 0.1
 
-/* Joints closer than this many cycles add up, with the margin of the proof above. */
-#define JOINT_CYCLES_APART 6.0
-#define JOINT_CYCLES_SPAN  3.0
+/* Twice JOINT_CYCLES_NEAR: joints whose blocks last less are crowded, by the proof above. */
+#define JOINT_CYCLES_APART (2.0 * JOINT_CYCLES_NEAR)
 
-/* A joint feed that one or two cycles of full jerk reach from rest is not worth passing: the axes stop. */
+/*
+ * A joint feed below so many times jerk x cycle^2, the jerk that the largest share leaves, is not worth landing at: the
+ * axes stop.
+ */
 #define JOINT_STOP_CYCLES 4.0
 
 struct joint_steps {
@@ -124,17 +127,6 @@ static double joint_share(const struct joint_steps *steps, double v, double crow
     return maths_min(BLOCK_SHARE_MAX, maths_max(jerk, acceleration) * crowding);
 }
 
-static bool is_short(const struct block *b, double cycle_s)
-{
-    return b->length_mm < JOINT_CYCLES_SPAN * cycle_s * block_top_feed(b);
-}
-
-/* A block beside a short one may share three cycles with joints it does not touch: it leaves the largest share. */
-static double neighbour_share(double share, const struct block *neighbour, double cycle_s)
-{
-    return is_short(neighbour, cycle_s) ? BLOCK_SHARE_MAX : share;
-}
-
 /* Keeps d true: a block of length L is passed no faster than L / d, or than it would be if it were not short. */
 static double short_ceiling(const struct block *b, double v, double shorter_mm, double apart_s)
 {
@@ -145,18 +137,16 @@ void joint_stop(struct block *b)
 {
     b->end = JOINT_STOP;
     b->feed_joint_mm_s = 0.0;
-    block_set_share(b, b->share_start);
+    b->share_joint = 0.0;
 }
 
-static void joint_pass(struct block *before, struct block *after, double v, double share,
-                       double cycle_s)
+static void joint_pass(struct block *before, const struct block *after, double v, double share)
 {
     const double top = maths_min(block_top_feed(before), block_top_feed(after));
 
     before->end = v >= top ? JOINT_PASSED : JOINT_REDUCED;
     before->feed_joint_mm_s = v;
-    after->share_start = neighbour_share(share, before, cycle_s);
-    block_set_share(before, maths_max(before->share_start, neighbour_share(share, after, cycle_s)));
+    before->share_joint = share;
 }
 
 void joint_form(struct block *before, struct block *after, const struct plan_limits *limits)
@@ -187,6 +177,5 @@ void joint_form(struct block *before, struct block *after, const struct plan_lim
     block_cap_feed(before, short_ceiling(before, v, shorter_mm, apart_s), GOVERNOR_SHORT);
     block_cap_feed(after, short_ceiling(after, v, shorter_mm, apart_s), GOVERNOR_SHORT);
     joint_pass(before, after, v,
-               joint_share(&steps, maths_min(v, top), joint_crowding(before, after, apart_s)),
-               limits->cycle_s);
+               joint_share(&steps, maths_min(v, top), joint_crowding(before, after, apart_s)));
 }

@@ -1,10 +1,16 @@
 #include "plan/path.h"
 
+#include "base/handoff.h"
 #include "base/maths.h"
 #include "plan/joint.h"
+#include "plan/path_unit.h"
+#include "plan/share.h"
 
 #include <assert.h>
 #include <string.h>
+
+static_assert(SHARE_BLOCKS_MAX <= PATH_MODES_MAX,
+              "blocks that are not closed leave room for more, without which they never are");
 
 /* Path counts as much as the fastest axis goes in that time: a length that looks like mm. */
 static void init_smooth(struct path *p)
@@ -36,7 +42,7 @@ static bool is_splitting(const struct path *p)
 
 static bool has_slot(const struct path *p)
 {
-    return p->pushed - p->kept < PATH_BLOCKS_MAX;
+    return ring_has_room(&p->ring, handoff_get_count(&p->kept), p->pushed);
 }
 
 bool path_has_room(const struct path *p)
@@ -44,58 +50,86 @@ bool path_has_room(const struct path *p)
     return has_slot(p) && !is_splitting(p) && !p->has_next && smooth_has_room(&p->smooth);
 }
 
-static struct block *slot(struct path *p, uint32_t index)
+/* The newest block, or the one that becomes it. */
+static struct block *edge(struct path *p, uint32_t index)
 {
-    return &p->block[index % PATH_BLOCKS_MAX];
+    return &p->edge[index % 2];
 }
 
-const struct block *path_at(const struct path *p, uint32_t index)
+double path_length(const struct path *p, uint32_t index)
 {
-    return &p->block[index % PATH_BLOCKS_MAX];
+    return path_mm(path_at(p, index)->start, path_end(p, index));
 }
 
-void path_promise(struct path *p, uint32_t index, uint32_t cycles)
+enum move_kind path_kind(const struct path *p, uint32_t index)
 {
-    slot(p, index)->cycles = (uint16_t)cycles;
+    return record_kind(ring_record(&p->ring, index));
+}
+
+double path_feed_rev(const struct path *p, uint32_t index)
+{
+    return record_feed_rev(ring_record(&p->ring, index));
+}
+
+void path_read_move(const struct path *p, uint32_t index, struct move *move)
+{
+    ring_read_move(&p->ring, index, move);
+}
+
+void path_promise(struct path *p, uint32_t index, uint32_t cycles, bool known)
+{
+    ring_promise(&p->ring, index, cycles, known);
 }
 
 /* Nothing joins the newest block: it ends at rest. */
 static void close_newest(struct path *p)
 {
     if (p->closed < p->pushed) {
-        joint_stop(slot(p, p->pushed - 1));
-        p->closed = p->pushed;
+        joint_stop(edge(p, p->pushed - 1));
+        share_note(p, p->pushed - 1, edge(p, p->pushed - 1));
+        share_close(p);
     }
+}
+
+/* control: of a piece of a smoothed curve, else NULL. */
+static void append(struct path *p, const struct block *b, const struct point control[4])
+{
+    ring_push(&p->ring, handoff_get_count(&p->kept), p->pushed, b, control);
+    share_begin(p, p->pushed, b);
+    handoff_set_count(&p->pushed, p->pushed + 1U);
+    handoff_order(); /* until then position is the end of the block before */
+    p->position += b->length;
 }
 
 static void push_wait(struct path *p, const struct move *move)
 {
-    struct block *b = slot(p, p->pushed);
+    struct block *b = edge(p, p->pushed);
 
     close_newest(p);
     block_set_wait(b, move);
     b->number = p->motions;
     b->start = p->position;
-    p->pushed++;
-    p->closed = p->pushed;
+    append(p, b, NULL);
+    handoff_set_count(&p->closed, p->pushed);
 }
 
 /* The next piece of the motion being split. */
 static void push_piece(struct path *p, const struct curve *curve, double to_mm)
 {
-    struct block *b = slot(p, p->pushed);
+    struct block *b = edge(p, p->pushed);
 
     block_set_motion(b, &p->split, curve, &p->limits);
     b->number = p->motions;
     b->start = p->position;
-    b->from_mm = p->split_mm;
     b->continues = to_mm < p->whole.length_mm;
     if (p->closed < p->pushed) {
-        joint_form(slot(p, p->pushed - 1), b, &p->limits);
-        p->closed = p->pushed;
+        joint_form(edge(p, p->pushed - 1), b, &p->limits);
+        share_note(p, p->pushed - 1, edge(p, p->pushed - 1));
     }
-    p->pushed++;
-    p->position += b->length;
+    append(p, b, NULL);
+    if (p->pushed - p->closed > 1) {
+        share_spread(p);
+    }
     p->split_mm = to_mm;
 }
 
@@ -129,22 +163,22 @@ static void push_motion(struct path *p, const struct move *move, const struct cu
 /* The next piece of the smoothed chain. Nothing joins its first and its last one. */
 static void push_smooth_piece(struct path *p, const struct smooth_piece *piece)
 {
-    struct block *b = slot(p, p->pushed);
+    struct block *b = edge(p, p->pushed);
 
     block_set_smooth(b, piece, p->unit_mm);
     b->start = p->position;
     if (p->smoothing) {
-        block_join_smooth(slot(p, p->pushed - 1), b);
-        p->closed = p->pushed;
+        block_join_smooth(edge(p, p->pushed - 1), b);
+        share_note(p, p->pushed - 1, edge(p, p->pushed - 1));
+        share_close(p);
     } else {
         close_newest(p);
     }
-    p->pushed++;
-    p->position += b->length;
-    p->smoothing = !piece->last && !piece->stop;
     if (piece->last) {
         b->curve.end = piece->move->end;
     }
+    append(p, b, piece->control);
+    p->smoothing = !piece->last && !piece->stop;
     if (!p->smoothing) {
         close_newest(p);
     }
@@ -159,13 +193,27 @@ static void push_smooth_pieces(struct path *p)
     }
 }
 
-/* Where position begins or ceases to follow the spindle the axes stand; so they do in the hole, and out of it. */
+static bool turns_rotary(const struct path *p, const struct move *move)
+{
+    for (int i = AXIS_LINEAR_COUNT; i < AXIS_COUNT; i++) {
+        if (move->end.at[i] != p->end.at[i]) {
+            return true;
+        }
+    }
+    return false;
+}
+
+/*
+ * Where position begins or ceases to follow the spindle the axes stand; so they do in the hole, and out of it; and where
+ * others than the planner move the linear axes, but not the rotary ones.
+ */
 static bool is_divided(const struct path *p, const struct move *move)
 {
-    const struct move *newest = &path_at(p, p->pushed - 1)->move;
+    const struct move *newest = &p->edge[(p->pushed - 1) % 2].move;
 
     return p->closed < p->pushed &&
-           (newest->kind == MOVE_TAP_OUT || move_is_locked(newest) != move_is_locked(move));
+           (newest->kind == MOVE_TAP_OUT || move_is_locked(newest) != move_is_locked(move) ||
+            (p->divides_rotary && turns_rotary(p, move) != p->newest_turns));
 }
 
 static void push_move(struct path *p, const struct move *move)
@@ -182,6 +230,7 @@ static void push_move(struct path *p, const struct move *move)
         close_newest(p);
     }
     if (move_curve(move, &p->end, &curve)) {
+        p->newest_turns = turns_rotary(p, move);
         if (smooth_takes(move, &curve)) {
             p->end = move->end;
             smooth_push(&p->smooth, move, p->motions, &curve);
@@ -264,5 +313,5 @@ void path_finish(struct path *p)
 void path_pass(struct path *p)
 {
     assert(p->first != p->pushed);
-    p->first++;
+    handoff_set_count(&p->first, p->first + 1U);
 }

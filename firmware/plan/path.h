@@ -3,33 +3,31 @@
  *
  *     push -> [ block | block | ... | block ] -> pass
  *
- * Only the background writes blocks, and count; only the cycle moves first. A block is seen by others when its end is
- * known: what joins it has been pushed, or nothing will.
+ * Only the background writes blocks, and count; only the cycle moves first. A block is closed, and seen by
+ * others, when the joints at its end and near it are known: what is there has been pushed, or nothing will be.
  */
 #ifndef TAKT_PLAN_PATH_H
 #define TAKT_PLAN_PATH_H
 
 #include "plan/block.h"
 #include "plan/limits.h"
+#include "plan/ring.h"
+#include "plan/share.h"
 
 #include <stdbool.h>
 #include <stdint.h>
-
-/*
- * Blocks in the ring: the look-ahead, and those between the setpoint and the lead point that runs ahead of it
- * (firmware/motion), both ends included.
- */
-#define PATH_BLOCKS_MAX 512
 
 struct path {
     struct plan_limits limits;
     uint32_t first; /* blocks passed so far: the oldest one's number in the ring, modulo its size */
     uint32_t kept;  /* <= first: the oldest that must not be overwritten yet */
     uint32_t pushed;  /* blocks appended so far */
-    uint32_t closed;  /* blocks so far whose end is known: first <= closed <= pushed */
+    uint32_t closed;  /* blocks so far whose limits are settled: first <= closed <= pushed */
     uint32_t motions; /* pushed so far: the number of the newest */
     bool finished;
     bool has_revolution_feed; /* a feed per revolution has been pushed */
+    bool divides_rotary;      /* the axes stand where motion of rotary axes begins or ceases */
+    bool newest_turns;        /* the newest motion moves rotary axes */
     struct point end;         /* where everything pushed ends */
     struct smooth smooth;     /* motions that are not in the ring yet: a chain being smoothed */
     bool has_next; /* a move that is not part of that chain waits until it has been taken */
@@ -40,7 +38,10 @@ struct path {
     struct curve whole; /* its curve */
     double split_mm;    /* how much of it is in the ring; the length of whole: all */
     uint64_t position;  /* likewise, on the path */
-    struct block block[PATH_BLOCKS_MAX];
+    struct block
+        edge[2]; /* the newest block, whose end may still change, and the one before or behind it */
+    struct share_block open[SHARE_BLOCKS_MAX]; /* those that are not closed */
+    struct path_ring ring;
 };
 
 /* start: where the machine stands. */
@@ -55,10 +56,38 @@ void path_go_on(struct path *p);
 void path_finish(struct path *p);
 /* Forgets every block: the axes have come to rest at a point, and what comes next starts there. */
 void path_restart(struct path *p, const struct point *at, uint64_t position);
-/* The block with a number first <= index < pushed. */
-const struct block *path_at(const struct path *p, uint32_t index);
-/* Background: the averaging window that a span beginning with this block was planned with. */
-void path_promise(struct path *p, uint32_t index, uint32_t cycles);
+/* Limits of the block with a number kept <= index < pushed. */
+static inline const struct path_block *path_at(const struct path *p, uint32_t index)
+{
+    return ring_at(&p->ring, index);
+}
+/* Path position of its end, and its length, mm. */
+static inline uint64_t path_end(const struct path *p, uint32_t index)
+{
+    return index + 1 == p->pushed ? p->position : path_at(p, index + 1)->start;
+}
+double path_length(const struct path *p, uint32_t index);
+/* Of its move: what it is, and its feed per revolution, 0: none. */
+enum move_kind path_kind(const struct path *p, uint32_t index);
+double path_feed_rev(const struct path *p, uint32_t index);
+/* Its move, but for its feed: that is 0. */
+void path_read_move(const struct path *p, uint32_t index, struct move *move);
+/*
+ * Control cycle: the whole block as it is executed, valid until the one two further on or two before is read. Of what its
+ * limits are made of only feed_cap_mm_s and cap are filled.
+ */
+static inline const struct block *path_read(struct path *p, uint32_t index)
+{
+    return ring_is_read(&p->ring, index) ? &p->ring.view[index % 2].block
+                                         : ring_read(&p->ring, index, path_end(p, index));
+}
+/* Control cycle: likewise the oldest one. */
+static inline const struct block *path_first(struct path *p)
+{
+    return path_read(p, p->first);
+}
+/* Background: the averaging window that a span beginning with this block was planned with; known: to its end. */
+void path_promise(struct path *p, uint32_t index, uint32_t cycles, bool known);
 /* The oldest block has been passed. */
 void path_pass(struct path *p);
 

@@ -126,9 +126,14 @@ static inline bool move_is_involute(const struct move *m)
 }
 
 /* Does its position follow the spindle's angle, and not only its feed the spindle's speed? */
+static inline bool move_kind_is_locked(enum move_kind kind)
+{
+    return kind == MOVE_THREAD || kind == MOVE_TAP || kind == MOVE_TAP_OUT;
+}
+
 static inline bool move_is_locked(const struct move *m)
 {
-    return m->kind == MOVE_THREAD || m->kind == MOVE_TAP || m->kind == MOVE_TAP_OUT;
+    return move_kind_is_locked(m->kind);
 }
 
 /* The geometry of a motion that starts at start. False when it has no length. */

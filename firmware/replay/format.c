@@ -20,6 +20,8 @@ enum {
     AT_PROGRAM = 44,
     AT_KEPT = 52,
     AT_LIMITS = 60,
+    AT_TEXT_SIZE = AT_LIMITS + 3 * 24,
+    AT_TEXT_CRC = AT_TEXT_SIZE + 4,
     AT_CRC = REPLAY_HEADER_BYTES - 4
 };
 
@@ -40,6 +42,27 @@ uint64_t replay_get(const uint8_t *bytes, unsigned size)
 
     for (unsigned i = 0; i < size; i++) {
         value |= (uint64_t)bytes[i] << (8 * i);
+    }
+    return value;
+}
+
+void replay_put_bits(struct replay_bits *b, unsigned value, unsigned count)
+{
+    for (unsigned i = 0; i < count; i++, b->at++) {
+        if (b->at / 8 < b->size) {
+            b->bytes[b->at / 8] |= (uint8_t)((value >> i & 1U) << b->at % 8);
+        }
+    }
+}
+
+unsigned replay_get_bits(struct replay_bits *b, unsigned count)
+{
+    unsigned value = 0;
+
+    for (unsigned i = 0; i < count; i++, b->at++) {
+        if (b->at / 8 < b->size) {
+            value |= ((unsigned)b->bytes[b->at / 8] >> b->at % 8 & 1U) << i;
+        }
     }
     return value;
 }
@@ -74,6 +97,8 @@ void replay_header_write(const struct replay_header *h, uint8_t bytes[REPLAY_HEA
     replay_put(bytes + AT_SECTIONS, h->sections, 4);
     replay_put(bytes + AT_INTERVALS, h->intervals, 8);
     replay_put(bytes + AT_PROGRAM, h->program, 8);
+    replay_put(bytes + AT_TEXT_SIZE, h->text_size, 4);
+    replay_put(bytes + AT_TEXT_CRC, h->text_crc, 4);
     put_double(bytes + AT_KEPT, h->kept);
     for (int i = 0; i < AXIS_LINEAR_COUNT; i++) {
         put_double(bytes + AT_LIMITS + (size_t)24 * (size_t)i, h->velocity_mm_s[i]);
@@ -111,6 +136,8 @@ enum replay_fault replay_header_read(struct replay_header *h,
     h->sections = (uint32_t)replay_get(bytes + AT_SECTIONS, 4);
     h->intervals = replay_get(bytes + AT_INTERVALS, 8);
     h->program = replay_get(bytes + AT_PROGRAM, 8);
+    h->text_size = (uint32_t)replay_get(bytes + AT_TEXT_SIZE, 4);
+    h->text_crc = (uint32_t)replay_get(bytes + AT_TEXT_CRC, 4);
     h->kept = get_double(bytes + AT_KEPT);
     for (int i = 0; i < AXIS_LINEAR_COUNT; i++) {
         h->velocity_mm_s[i] = get_double(bytes + AT_LIMITS + (size_t)24 * (size_t)i);

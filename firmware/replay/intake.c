@@ -1,11 +1,9 @@
 #include "replay/intake.h"
 
 #include "base/crc32.h"
+#include "base/handoff.h"
 
 #include <string.h>
-
-/* Ends of no block: an interval longer than any. */
-#define END_SHIFT_MAX 28
 
 void intake_open(struct intake *s, const struct replay_source *source)
 {
@@ -54,61 +52,121 @@ static void take_section(struct intake *s, const uint8_t *bytes, size_t length)
         section->start[i] = (int64_t)replay_get(bytes + 12 + (size_t)8 * (size_t)i, 8);
     }
     s->intervals += section->intervals;
-    s->sections_came++;
+    s->place = 0;
+    s->last_end = 0;
+    handoff_set_count(&s->sections_came, s->sections_came + 1U);
 }
 
-/* Ends, 7 bits a byte. */
-static void take_ends(struct intake *s, const uint8_t *bytes, size_t length)
+/* A block ends at a place. Ends come in order. */
+static void take_end(struct intake *s, uint64_t place)
 {
-    const unsigned count = bytes[0];
-    size_t at = 1;
+    s->end[s->ends_came % INTAKE_ENDS_MAX] = (uint32_t)(place - s->last_end);
+    s->last_end = place;
+    handoff_set_count(&s->ends_came, s->ends_came + 1U);
+}
 
-    for (unsigned i = 0; i < count; i++) {
-        uint32_t value = 0;
-        unsigned shift = 0;
-        bool more = true;
+/* The part of an interval, from 1, that bits tell. */
+static unsigned get_part(struct replay_bits *b, unsigned bits)
+{
+    return (replay_get_bits(b, bits) + 1U) << (REPLAY_END_BITS - bits);
+}
 
-        for (; more && at < length && shift <= END_SHIFT_MAX; shift += 7) {
-            value |= (uint32_t)(bytes[at] & 0x7fU) << shift;
-            more = (bytes[at++] & 0x80U) != 0;
-        }
-        if (more) {
+/* How many blocks end in an interval: no more than a record holds, or the record is damaged. */
+static unsigned get_count(struct replay_bits *b, unsigned k)
+{
+    unsigned high = 0;
+
+    while (high <= REPLAY_RECORD_ENDS && replay_get_bits(b, 1) == 1U) {
+        high++;
+    }
+    return (high << k) + replay_get_bits(b, k);
+}
+
+/* count ends, the last in a part of the interval that is coming, evenly. */
+static void take_even_ends(struct intake *s, unsigned count, unsigned last)
+{
+    for (unsigned i = 1; i <= count; i++) {
+        take_end(s, s->place + last * i / count);
+    }
+}
+
+static void take_interval_ends(struct intake *s, struct replay_bits *b, unsigned count)
+{
+    if (count >= REPLAY_ENDS_CROWD) {
+        take_even_ends(s, count, REPLAY_END_PARTS);
+    } else if (count > 2) {
+        take_even_ends(s, count, get_part(b, REPLAY_END_BITS_COARSE));
+    } else if (count == 2) {
+        take_end(s, s->place + get_part(b, REPLAY_END_BITS_COARSE));
+        take_end(s, s->place + get_part(b, REPLAY_END_BITS_COARSE));
+    } else if (count == 1) {
+        take_end(s, s->place + get_part(b, REPLAY_END_BITS));
+    }
+}
+
+/* The ends of all intervals of a record. */
+static void take_ends(struct intake *s, struct replay_bits *b, unsigned intervals)
+{
+    const unsigned k = replay_get_bits(b, REPLAY_RICE_BITS);
+    unsigned left = REPLAY_RECORD_ENDS;
+
+    for (unsigned i = 0; i < intervals; i++) {
+        const unsigned count = get_count(b, k);
+
+        if (count > left || b->at > 8 * b->size) {
             damaged(s);
             return;
         }
-        s->end[s->ends_came % INTAKE_ENDS_MAX] = value;
-        s->ends_came++;
+        left -= count;
+        take_interval_ends(s, b, count);
+        s->place += REPLAY_END_PARTS;
     }
-    if (at != length) {
+    if ((b->at + 7) / 8 != b->size) {
         damaged(s);
     }
 }
 
-static void take_knots(struct intake *s, const uint8_t *bytes, size_t length)
+static void take_third(struct intake *s, const uint8_t *bytes)
+{
+    int16_t *third = s->third[s->intervals_came % INTAKE_INTERVALS_MAX];
+
+    for (unsigned axis = 0; axis < AXIS_LINEAR_COUNT; axis++) {
+        third[axis] = (int16_t)(uint16_t)replay_get(bytes + (size_t)2 * axis, 2);
+    }
+    handoff_set_count(&s->intervals_came, s->intervals_came + 1U);
+}
+
+static void take_knots(struct intake *s, uint8_t *bytes, size_t length)
 {
     const unsigned count = length > 0 ? bytes[0] : 0;
     const size_t ends_at = 1 + (size_t)count * 2 * AXIS_LINEAR_COUNT;
+    struct replay_bits bits;
 
-    if (ends_at >= length || count > REPLAY_RECORD_INTERVALS ||
-        bytes[ends_at] > REPLAY_RECORD_ENDS) {
+    if (ends_at >= length || count > REPLAY_RECORD_INTERVALS) {
         damaged(s);
         return;
     }
-    take_ends(s, bytes + ends_at, length - ends_at);
+    bits = (struct replay_bits){.bytes = bytes + ends_at, .size = length - ends_at};
+    take_ends(s, &bits, count);
     for (unsigned i = 0; i < count; i++) {
-        int16_t *third = s->third[s->intervals_came % INTAKE_INTERVALS_MAX];
+        take_third(s, bytes + 1 + (size_t)2 * AXIS_LINEAR_COUNT * i);
+    }
+}
 
-        for (unsigned axis = 0; axis < AXIS_LINEAR_COUNT; axis++) {
-            third[axis] = (int16_t)(uint16_t)replay_get(
-                bytes + 1 + (size_t)2 * ((size_t)AXIS_LINEAR_COUNT * (size_t)i + (size_t)axis), 2);
-        }
-        s->intervals_came++;
+static void take_more(struct intake *s, const uint8_t *bytes, size_t length)
+{
+    if (length != 1 || bytes[0] > REPLAY_RECORD_ENDS) {
+        damaged(s);
+        return;
+    }
+    for (unsigned i = 0; i < bytes[0]; i++) {
+        take_end(s, s->place);
     }
 }
 
 static void take_record(struct intake *s, size_t length)
 {
-    const uint8_t *bytes = s->bytes + REPLAY_RECORD_HEAD;
+    uint8_t *bytes = s->bytes + REPLAY_RECORD_HEAD;
 
     switch (s->bytes[0]) {
     case REPLAY_SECTION:
@@ -116,6 +174,9 @@ static void take_record(struct intake *s, size_t length)
         break;
     case REPLAY_KNOTS:
         take_knots(s, bytes, length);
+        break;
+    case REPLAY_MORE:
+        take_more(s, bytes, length);
         break;
     case REPLAY_END:
         s->ended = true;

@@ -21,6 +21,8 @@
 struct replay_source {
     void *context;
     size_t (*read)(void *context, uint8_t *bytes, size_t size);
+    /* No more will ever come, or what came was not what was announced. NULL: that cannot be. */
+    bool (*is_lost)(void *context);
 };
 
 struct intake_section {
@@ -43,6 +45,9 @@ struct intake {
     uint32_t intervals_came, intervals_taken;
     uint32_t ends_came, ends_taken;
     uint32_t sections_came, sections_taken;
+    uint64_t
+        place; /* of the next interval that comes, and of the last end, in parts from the section's start */
+    uint64_t last_end;
     int16_t third[INTAKE_INTERVALS_MAX][AXIS_LINEAR_COUNT];
     uint32_t end[INTAKE_ENDS_MAX]; /* behind the end before it */
     struct intake_section section[INTAKE_SECTIONS_MAX];

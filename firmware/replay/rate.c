@@ -11,6 +11,9 @@
 /* Cycles that coming to rest takes beyond the way along its limit: to begin it and to end it. */
 #define BRAKE_MORE_CYCLES 400.0
 
+/* Of the search for the rate that can be braked from. */
+#define HIGHEST_HALVINGS 20
+
 void rate_init(struct rate *r, const struct plan_limits *limits, double kept)
 {
     struct rate_limits *l = &r->limits;
@@ -55,6 +58,22 @@ static double landing_change(double way, double change, double room)
     return left > 0.0 ? room * (maths_sqrt(0.25 + 2.0 * left / room) - 0.5) : 0.0;
 }
 
+/* Of the cycle that changes the rate towards to, by room at most and to a change of most. */
+static double bend_towards(const struct rate *r, double to, double room, double landing,
+                           double most)
+{
+    const double sign = to > r->now ? 1.0 : -1.0;
+    const double way = maths_abs(to - r->now);
+    const double wanted = maths_min(landing_change(way, sign * r->change, landing), most);
+
+    return maths_clamp(sign * wanted - r->change, -room, room);
+}
+
+double rate_bend(const struct rate *r, double to, double room, double most)
+{
+    return bend_towards(r, to, room, room, most);
+}
+
 double rate_step(struct rate *r, double to)
 {
     const struct rate_limits *l = &r->limits;
@@ -62,18 +81,15 @@ double rate_step(struct rate *r, double to)
         maths_clamp(r->now + r->change + room_at(l, r->now), r->now, 1.0); /* within this cycle */
     const double room = room_at(l, high);
     const double landing = room_at(l, maths_max(high, to));
-    const double way = maths_abs(to - r->now);
-    const double sign = to > r->now ? 1.0 : -1.0;
     const double before = r->now;
 
-    if (way <= 0.5 * landing && maths_abs(r->change) <= landing) {
+    if (maths_abs(to - r->now) <= 0.5 * landing && maths_abs(r->change) <= landing) {
         r->now = to;
         r->change = 0.0;
         return 0.5 * (before + to);
     }
-    const double wanted = maths_min(landing_change(way, sign * r->change, landing),
-                                    l->change * (1.0 - l->kept * high * high));
-    const double bend = maths_clamp(sign * wanted - r->change, -room, room);
+    const double bend =
+        bend_towards(r, to, room, landing, l->change * (1.0 - l->kept * high * high));
 
     r->now = maths_clamp(r->now + r->change + 0.5 * bend, 0.0, 1.0);
     r->change += bend;
@@ -81,9 +97,34 @@ double rate_step(struct rate *r, double to)
 }
 
 /* Along |r'| = L (1 - k r^2): the integral of r dr / (L (1 - k r^2)) is -ln(1 - k) / (2 L k). */
-double rate_brake_cycles(const struct rate *r)
+static double brake_cycles_from(const struct rate *r, double rate)
 {
     const double k = r->limits.kept;
 
-    return -maths_ln(1.0 - k) / (2.0 * r->limits.change * k) + BRAKE_MORE_CYCLES;
+    return -maths_ln(1.0 - k * rate * rate) / (2.0 * r->limits.change * k) + BRAKE_MORE_CYCLES;
+}
+
+double rate_brake_cycles(const struct rate *r)
+{
+    return brake_cycles_from(r, 1.0);
+}
+
+double rate_highest(const struct rate *r, double cycles)
+{
+    double low = 0.0;
+    double high = 1.0;
+
+    if (rate_brake_cycles(r) <= cycles) {
+        return 1.0;
+    }
+    for (int i = 0; i < HIGHEST_HALVINGS; i++) {
+        const double middle = 0.5 * (low + high);
+
+        if (brake_cycles_from(r, middle) <= cycles) {
+            low = middle;
+        } else {
+            high = middle;
+        }
+    }
+    return low;
 }

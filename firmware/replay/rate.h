@@ -46,8 +46,14 @@ void rate_set(struct rate *r, double to);
 /* One cycle towards the rate to, 0 ... 1. Returns how far on the curve it leads, in cycles of the curve. */
 double rate_step(struct rate *r, double to);
 
+/* How much the change changes in a cycle on the way to the rate to: by room at most, and to a change of most at most. */
+double rate_bend(const struct rate *r, double to, double room, double most);
+
 /* How far on the curve it leads to come to rest from the rate 1, in cycles of the curve, at most. */
 double rate_brake_cycles(const struct rate *r);
+
+/* The highest rate, up to 1, from which it comes to rest within so many cycles of the curve, 500 or more. */
+double rate_highest(const struct rate *r, double cycles);
 
 /* Does it stand? */
 static inline bool rate_rests(const struct rate *r)

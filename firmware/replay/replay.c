@@ -38,6 +38,9 @@ static void begin_intake(struct replay *r, const struct plan_limits *limits)
     }
     r->step = 1.0 / (double)h->step_cycles;
     rate_init(&r->rate, limits, h->kept);
+    r->highest = r->intake.source.is_lost != NULL
+                     ? rate_highest(&r->rate, BRAKE_INTERVALS_MAX / r->step)
+                     : 1.0;
     r->brake_intervals = (uint32_t)maths_min(maths_ceil(rate_brake_cycles(&r->rate) * r->step) + 2,
                                              BRAKE_INTERVALS_MAX);
 }
@@ -48,7 +51,8 @@ void replay_read(struct replay *r, const struct plan_limits *limits)
     if (r->intake.has_header && r->step == 0.0) {
         begin_intake(r, limits);
     }
-    if (r->intake.fault != REPLAY_GOOD) {
+    if (r->intake.fault != REPLAY_GOOD ||
+        (r->intake.source.is_lost != NULL && r->intake.source.is_lost(r->intake.source.context))) {
         fail(r, TAKT_ERROR_PLAN_DAMAGED);
     }
 }
@@ -146,15 +150,16 @@ static void begin_section(struct replay *r, const struct motion *m)
         memcpy(r->control[k], r->section.start, sizeof(r->control[k]));
     }
     r->begun = true;
+    r->has_begun = true;
     r->interval = 0;
     r->taken = 0;
     r->part = 0.0;
+    r->stop = REPLAY_NO_STOP;
     r->blocks = 0;
     r->end = 0;
     take_end(r);
     shift(r);
-    if (r->section.first_block != path_at(m->path, m->path->first)->number ||
-        !starts_at(r, &m->at)) {
+    if (r->section.first_block != path_first(m->path)->number || !starts_at(r, &m->at)) {
         fail(r, TAKT_ERROR_PLAN_STRAYED);
         r->begun = false;
     }
@@ -178,7 +183,7 @@ static double wanted_rate(const struct replay *r, const struct block *b,
     } else if ((may & OVERRIDE_FEED) != 0) {
         ratio = wanted->feed_ratio;
     }
-    return maths_clamp(ratio / compiled, 0.0, 1.0);
+    return maths_clamp(ratio / compiled, 0.0, r->highest);
 }
 
 /* Nothing must be driven that could not be come to rest on: the stream is late. */
@@ -191,14 +196,86 @@ static bool is_starving(const struct replay *r)
            intake_has_room(s);
 }
 
+/* -- single block -- */
+
+/* From here to a place, in cycles of the curve. */
+static double way_to(const struct replay *r, uint64_t end)
+{
+    return ((double)end / REPLAY_END_PARTS - (double)r->interval - r->part) / r->step;
+}
+
+/* The first end of a block, but the section's, that can be braked for: it is known if its intervals have come. */
+static void find_stop(struct replay *r)
+{
+    const struct intake *s = &r->intake;
+    const double way = halt_way(&r->rate);
+    const uint64_t from =
+        (uint64_t)maths_ceil(((double)r->interval + r->part + way * r->step) * REPLAY_END_PARTS);
+    uint64_t end = r->end;
+    uint32_t i = s->ends_taken;
+    uint32_t left = r->section.blocks - r->blocks - 1;
+
+    if (!r->has_end) {
+        return;
+    }
+    for (; end < from && i != s->ends_came && left > 1; i++, left--) {
+        end += s->end[i % INTAKE_ENDS_MAX];
+    }
+    if (end >= from && end < (uint64_t)r->section.intervals * REPLAY_END_PARTS) {
+        r->stop = REPLAY_STOP_AHEAD;
+        r->stop_end = end;
+        r->halt = (struct halt){0};
+    }
+}
+
+/* The cycle leads to the stop or towards it; without one, as slowly as leaves the next one possible. */
+static double step_to_stop(struct replay *r, double rate)
+{
+    const double to = maths_min(rate, HALT_RATE);
+
+    if (r->stop == REPLAY_NO_STOP && halt_is_possible(&r->rate)) {
+        find_stop(r);
+    }
+    if (r->stop != REPLAY_STOP_AHEAD) {
+        return rate_step(&r->rate, to);
+    }
+    const double way = maths_max(way_to(r, r->stop_end), 0.0);
+    const double here = halt_step(&r->halt, &r->rate, to, way);
+
+    if (here == way && rate_rests(&r->rate)) {
+        r->stop = REPLAY_STOP_REACHED;
+    }
+    return here;
+}
+
+/* At the stop, whatever rounding says. */
+static void stand_at_stop(struct replay *r)
+{
+    r->part = (double)r->stop_end / REPLAY_END_PARTS - (double)r->interval;
+}
+
+/* Nothing of the curve moves where a section begins: at once at the rate, if the first stop can then be braked for. */
+static void begin_rate(struct replay *r, double rate, bool single_block)
+{
+    rate_set(&r->rate, single_block ? maths_min(rate, HALT_RATE) : rate);
+    if (single_block && r->has_end && halt_way(&r->rate) > way_to(r, r->end)) {
+        rate_set(&r->rate, 0.0);
+    }
+}
+
 /* -- the cycle -- */
 
 /*
  * True: the section's end has been reached. Where nothing more is known, in spite of is_starving, the axes stand at once.
  */
-static bool advance(struct replay *r, double rate)
+static bool advance(struct replay *r, double rate, bool single_block)
 {
-    r->part += rate_step(&r->rate, rate) * r->step;
+    const double way = single_block ? step_to_stop(r, rate) : rate_step(&r->rate, rate);
+
+    r->part += way * r->step;
+    if (r->stop == REPLAY_STOP_REACHED) {
+        stand_at_stop(r);
+    }
     while (r->part >= 1.0) {
         r->interval++;
         if (r->interval == r->section.intervals) {
@@ -217,28 +294,36 @@ static bool advance(struct replay *r, double rate)
     return false;
 }
 
-/* All pieces of the oldest motion but, of the section's last one, the piece that ends it. */
-static void pass_motion(struct motion *m)
+/* The pieces of the oldest motion but the one that ends it. False: the path does not know them all yet. */
+static bool pass_pieces(struct motion *m)
 {
-    bool more = true;
-
-    for (unsigned i = 0; i < PASS_MAX && more; i++) {
-        more = path_at(m->path, m->path->first)->continues;
+    for (unsigned i = 0; i < PASS_MAX; i++) {
+        if (!path_at(m->path, m->path->first)->continues) {
+            return true;
+        }
+        if (m->path->first + 1 == m->path->closed) {
+            return false;
+        }
         handover_pass_block(m);
     }
+    return false;
 }
 
-/* Blocks whose ends have been passed, as far as the path knows what follows. */
+/* Blocks whose ends have been passed, as far as the path knows what follows; at the section's end all but its last piece. */
 static void pass_blocks(struct replay *r, struct motion *m, bool ended)
 {
     const double here = ((double)r->interval + r->part) * REPLAY_END_PARTS;
 
     for (unsigned i = 0; i < PASS_MAX || ended; i++) {
-        if (r->blocks + 1 >= r->section.blocks || m->path->first + 1 == m->path->closed ||
-            (!ended && (!r->has_end || here < (double)r->end))) {
+        if (!ended &&
+            (r->blocks + 1 >= r->section.blocks || !r->has_end || here < (double)r->end)) {
             break;
         }
-        pass_motion(m);
+        if (!pass_pieces(m) || r->blocks + 1 >= r->section.blocks ||
+            m->path->first + 1 == m->path->closed) {
+            break;
+        }
+        handover_pass_block(m);
         r->blocks++;
         take_end(r);
     }
@@ -261,29 +346,31 @@ static bool ends_well(const struct replay *r, const struct motion *m)
 
     point_at(r, &at);
     return r->blocks + 1 == r->section.blocks &&
-           distance(&at, &path_at(m->path, m->path->first)->curve.end) <= START_MAX_MM;
+           distance(&at, &path_first(m->path)->curve.end) <= START_MAX_MM;
 }
 
 static void end_section(struct replay *r, struct motion *m, struct point *at)
 {
     r->part = 1.0;
     if (ends_well(r, m)) {
-        *at = path_at(m->path, m->path->first)->curve.end;
+        *at = path_first(m->path)->curve.end;
     } else {
         fail(r, TAKT_ERROR_PLAN_STRAYED);
     }
     r->begun = false;
 }
 
-/* The rate until the next section begins is what the operator wants: nothing moves yet. */
-static void drive(struct replay *r, struct motion *m, double rate, struct cycle_record *record)
+static void drive(struct replay *r, struct motion *m, double rate, bool single_block,
+                  struct cycle_record *record)
 {
     const struct point before = m->at;
     struct point at = m->at;
     bool ended;
 
-    ended = advance(r, rate);
-    pass_blocks(r, m, ended);
+    ended = advance(r, rate, single_block);
+    if (r->stop != REPLAY_STOP_REACHED) {
+        pass_blocks(r, m, ended);
+    }
     if (ended) {
         end_section(r, m, &at);
     } else {
@@ -303,6 +390,25 @@ static void stand(struct motion *m, struct cycle_record *record)
     handover_add_cycle(m, &at, 0.0, false, record);
 }
 
+/* A cycle at the end of a single block, from which the operator may go on after it has been told. */
+static bool stands_at_stop(struct replay *r, struct motion *m, double rate,
+                           const struct motion_operator *wanted, struct cycle_record *record)
+{
+    const struct point at = m->at;
+
+    if (r->stop < REPLAY_STOP_REACHED) {
+        return false;
+    }
+    if (r->stop == REPLAY_STOP_TOLD && rate > 0.0 && !wanted->wait) {
+        r->stop = REPLAY_NO_STOP;
+        pass_blocks(r, m, false);
+        return false;
+    }
+    handover_add_cycle(m, &at, 0.0, r->stop == REPLAY_STOP_REACHED, record);
+    r->stop = REPLAY_STOP_TOLD;
+    return true;
+}
+
 /* The axes stand, and may not go on. */
 static bool has_failed(const struct replay *r)
 {
@@ -312,27 +418,36 @@ static bool has_failed(const struct replay *r)
 enum replay_result replay_cycle(struct replay *r, struct motion *m,
                                 const struct motion_operator *wanted, struct cycle_record *record)
 {
-    double rate = wanted_rate(r, path_at(m->path, m->path->first), wanted);
+    double rate = wanted_rate(r, path_first(m->path), wanted);
 
     if (has_failed(r)) {
         return REPLAY_FAILED;
     }
+    r->waits = false;
     if (!r->begun) {
-        if (wanted->wait || rate == 0.0 || !has_begin(r)) {
-            r->starved += has_begin(r) ? 0 : 1;
+        if (wanted->wait || rate == 0.0 || !has_begin(r) || !motion_rests(m)) {
+            r->waits = r->has_begun && rate > 0.0 && !has_begin(r);
+            r->starved += r->waits ? 1 : 0;
             stand(m, record);
             return REPLAY_CYCLE;
         }
         begin_section(r, m);
-        rate_set(&r->rate, rate);
+        begin_rate(r, rate, wanted->single_block);
         if (!r->begun) {
             return REPLAY_FAILED;
         }
     }
+    if (stands_at_stop(r, m, rate, wanted, record)) {
+        return REPLAY_CYCLE;
+    }
     if (is_starving(r)) {
         r->starved++;
+        r->waits = rate > 0.0 && rate_rests(&r->rate);
         rate = 0.0;
     }
-    drive(r, m, rate, record);
+    if (!wanted->single_block) {
+        r->stop = REPLAY_NO_STOP;
+    }
+    drive(r, m, rate, wanted->single_block, record);
     return REPLAY_CYCLE;
 }

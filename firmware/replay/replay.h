@@ -11,15 +11,27 @@
 
 #include "base/error.h"
 #include "motion/motion.h"
+#include "replay/halt.h"
 #include "replay/intake.h"
 #include "replay/rate.h"
 
 #include <stdbool.h>
 #include <stdint.h>
 
+/* Single block: a stop at the end of a block that is passed without one otherwise. */
+enum replay_stop {
+    REPLAY_NO_STOP,
+    REPLAY_STOP_AHEAD,   /* at stop_end */
+    REPLAY_STOP_REACHED, /* the axes stand there */
+    REPLAY_STOP_TOLD     /* and a record has said so */
+};
+
 struct replay {
     struct intake intake;
     struct rate rate;
+    struct halt halt;
+    enum replay_stop stop;
+    uint64_t stop_end;                     /* in parts of intervals from the section's start */
     bool begun;                            /* a section is being executed */
     struct intake_section section;         /* that */
     uint32_t interval;                     /* intervals of it that are over */
@@ -33,7 +45,10 @@ struct replay {
     bool has_end;
     uint32_t
         brake_intervals; /* fewer than these and not the section's end: no more must be driven */
-    uint64_t starved;    /* cycles in which that slowed the axes down */
+    double highest;   /* rate: from there it can be braked within what the rings hold of a stream */
+    uint64_t starved; /* cycles in which that slowed the axes down */
+    bool has_begun;   /* a section has been begun at all */
+    bool waits;       /* the axes stand because the stream is late; they go on by themselves */
     struct diagnostic alarm; /* TAKT_OK: none */
 };
 

@@ -37,6 +37,8 @@ void service_end_job(struct service *s, enum panel_outcome outcome)
 {
     if (s->job == SERVICE_MDI && outcome == PANEL_OUTCOME_COMPLETED)
         keep_modes(s);
+    if (s->job == SERVICE_PROGRAM)
+        service_forget_plan(s);
     if (s->job != SERVICE_NOTHING) {
         s->outcome = outcome;
         s->runs++;
@@ -55,11 +57,27 @@ void service_give_up(struct service *s)
         s->giving_up = true;
 }
 
+enum service_plan service_open_plan(const struct service *s, struct replay_source *source)
+{
+    const struct service_plans *plans = &s->config.plans;
+
+    return plans->open != NULL ? plans->open(plans->context, source) : SERVICE_PLAN_NONE;
+}
+
+void service_forget_plan(struct service *s)
+{
+    if (s->config.plans.forget != NULL)
+        s->config.plans.forget(s->config.plans.context);
+}
+
 bool service_start_program(struct service *s)
 {
     struct controller_config config = service_controller_config(s);
     const struct service_programs *programs = &s->config.programs;
+    struct replay_source plan;
 
+    if (service_open_plan(s, &plan) == SERVICE_PLAN_READY)
+        config.compiled = &plan;
     if (s->program_size == 0 || !programs->open(programs->context, &config.source))
         return false;
     controller_start_program(&s->controller, &config, &s->at);

@@ -45,10 +45,12 @@ static enum panel_verdict verdict_on(bool allowed)
 
 static enum panel_verdict check_start(const struct service *s)
 {
+    struct replay_source plan;
+
     if (service_get_state(s) == PANEL_HELD)
         return verdict_on(may_go_on(s));
     return verdict_on(s->settings.mode == PANEL_MODE_PROGRAM && s->alarm == PANEL_ALARM_NONE &&
-                      s->program_size > 0);
+                      s->program_size > 0 && service_open_plan(s, &plan) != SERVICE_PLAN_UNFIT);
 }
 
 /* A jog without a distance ends when its coil is cleared: whoever starts it must be known to be there. */
@@ -92,6 +94,18 @@ static enum panel_verdict check_coil(const struct service *s, enum panel_id id)
     return PANEL_DONE;
 }
 
+/* A plan for the program that is there, on a machine that can replay it. */
+static enum panel_verdict check_plan(const struct service *s)
+{
+    const struct machine *machine = &s->controller.machine;
+
+    if (s->config.plans.announce == NULL || s->config.exact_path ||
+        machine->interpolator != INTERPOLATOR_EXACT || machine->landing == LANDING_SCALE ||
+        machine->limiter != LIMITER_CEILING)
+        return PANEL_WRONG_VALUE;
+    return verdict_on(s->job == SERVICE_NOTHING && s->program_size > 0);
+}
+
 static enum panel_verdict check_holding(const struct service *s, enum panel_id id, int64_t value)
 {
     if (id == REGISTER_JOG_AXIS)
@@ -100,6 +114,8 @@ static enum panel_verdict check_holding(const struct service *s, enum panel_id i
         return selected_tool(s) != NULL ? PANEL_DONE : PANEL_WRONG_VALUE;
     if (id == REGISTER_UPLOAD_COMMAND)
         return verdict_on(s->job == SERVICE_NOTHING);
+    if (id == REGISTER_UPLOAD_KIND)
+        return check_plan(s);
     return PANEL_DONE;
 }
 
@@ -132,6 +148,7 @@ static void reset(struct service *s)
 {
     acknowledge(s);
     s->has_modes = false;
+    service_forget_plan(s);
     if (!s->failed) {
         service_give_up(s);
         return;
@@ -268,6 +285,13 @@ static void set_rise(struct service *s, unsigned axis, int64_t value)
                         (double)value * UNITS_PER_COUNT);
 }
 
+/* A plan of the program before does not fit any more. */
+static void adopt_program(struct service *s)
+{
+    service_forget_plan(s);
+    s->config.programs.adopt(s->config.programs.context);
+}
+
 /* The other holding registers. */
 static bool set_holding(struct service *s, enum panel_id id, int64_t value)
 {
@@ -284,7 +308,9 @@ static bool set_holding(struct service *s, enum panel_id id, int64_t value)
     else if (id == REGISTER_UPLOAD_CRC)
         s->program_crc = (uint32_t)value;
     else if (id == REGISTER_UPLOAD_COMMAND)
-        s->config.programs.adopt(s->config.programs.context);
+        adopt_program(s);
+    else if (id == REGISTER_UPLOAD_KIND)
+        s->config.plans.announce(s->config.plans.context);
     return true;
 }
 

@@ -29,6 +29,21 @@ struct service_programs {
     void *context; /* owned by whoever made it */
 };
 
+enum service_plan {
+    SERVICE_PLAN_NONE,  /* the program is planned as it runs */
+    SERVICE_PLAN_READY, /* it fits */
+    SERVICE_PLAN_UNFIT  /* it has been announced, but cannot be started, or not yet */
+};
+
+/* A program planned ahead that comes while it runs. All in the control thread. */
+struct service_plans {
+    /* One for the program that is there is about to come; what was there before is dropped. NULL: none can come. */
+    void (*announce)(void *context);
+    enum service_plan (*open)(void *context, struct replay_source *source);
+    void (*forget)(void *context);
+    void *context; /* owned by whoever made it */
+};
+
 struct service_config {
     const struct machine *machine; /* copied */
     struct step_port step;         /* pulses; not used by a machine without step drives */
@@ -38,6 +53,7 @@ struct service_config {
     struct parameters *parameters;              /* read and written */
     const struct correction_tables *correction; /* NULL: none; must outlive the service */
     struct service_programs programs;
+    struct service_plans plans;
     bool exact_path; /* every G64 is treated as G61 */
 };
 

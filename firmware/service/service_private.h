@@ -16,6 +16,9 @@ void service_start_home(struct service *s);
 void service_go_to_zero(struct service *s);
 /* What ran has ended by itself, or has been given up. */
 void service_end_job(struct service *s, enum panel_outcome outcome);
+/* The plan that has come, if any; and what comes of it is dropped. */
+enum service_plan service_open_plan(const struct service *s, struct replay_source *source);
+void service_forget_plan(struct service *s);
 /* What runs comes to rest and is dropped. */
 void service_give_up(struct service *s);
 

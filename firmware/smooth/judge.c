@@ -1,21 +1,27 @@
 #include "smooth/judge.h"
 
-#include "base/maths.h"
+#include "smooth/single.h"
+
+#include <stddef.h>
 
 /* Rounding of limits. */
-#define LIMIT 0.999
+#define LIMIT 0.999f
 
 /* Part of its acceleration that an axis at its highest velocity is left for changes of rate (override, hold). */
 #define CHANGE_PART 0.06
 
+/* Parts of the jerk that beginning to change the rate may need, and changing it in a bend: the curve needs the rest. */
+#define ROUNDING_PART 0.3
+#define TURNING_PART  0.4f
+
 /* Where the axes nearly stand, nothing else bounds the rate. */
-#define RATE_MAX 4.0
+#define RATE_MAX 4.0f
 
 /* Changes of rate are not rounded over more cycles than these. */
 #define ROUNDING_CYCLES_MAX 64.0
 
 /* Between the places looked at the curve goes on by less than this part of the tolerance. */
-#define JUDGED 0.985
+#define JUDGED 0.985f
 
 /* Places looked at in a piece. */
 #define PLACES 4
@@ -24,54 +30,60 @@
 #define CORNER_PIECES 3
 
 /* Corners that turn less are within the tube anyway. */
-#define CORNER_MIN 0.005
+#define CORNER_MIN 0.005f
 
-static double larger(double a, double b)
+static float larger(float a, float b)
 {
-    return maths_max(maths_abs(a), maths_abs(b));
+    return single_max(single_abs(a), single_abs(b));
 }
 
 /* The derivative is a parabola in a piece: it exceeds both its ends by |third difference| / 8 at most. */
-static void need_of_axis(const double *c, double interval_s, struct judge_need *need, int axis)
+static void need_of_axis(const struct window *w, unsigned slot, unsigned piece,
+                         struct judge_need *need)
 {
-    const double bend0 = c[0] - 2.0 * c[1] + c[2];
-    const double bend1 = c[1] - 2.0 * c[2] + c[3];
-    const double twist = maths_abs(bend1 - bend0);
+    const unsigned lane = slot % SMOOTH_LANES;
+    const lanes_int *c = w->x + (size_t)(slot / SMOOTH_LANES) * w->capacity + piece;
+    const int32_t step0 = c[1][lane] - c[0][lane];
+    const int32_t step1 = c[2][lane] - c[1][lane];
+    const int32_t step2 = c[3][lane] - c[2][lane];
+    const float bend0 = (float)(step1 - step0);
+    const float bend1 = (float)(step2 - step1);
+    const float twist = single_abs((float)(step2 - 2 * step1 + step0));
+    const float per_s = 1.0f / (float)w->interval_s;
+    const float first = (float)w->unit_mm[slot] * per_s;
 
-    need->first[axis] =
-        (larger(0.5 * (c[2] - c[0]), 0.5 * (c[3] - c[1])) + twist / 8.0) / interval_s;
-    need->second[axis] = larger(bend0, bend1) / (interval_s * interval_s);
-    need->third[axis] = twist / (interval_s * interval_s * interval_s);
+    need->first[slot] =
+        (0.5f * larger((float)(step0 + step1), (float)(step1 + step2)) + twist / 8.0f) * first;
+    need->second[slot] = larger(bend0, bend1) * first * per_s;
+    need->third[slot] = twist * first * per_s * per_s;
 }
 
-static double length_over(const double *v, int from, int to)
+/* Over the linear axes, or over the others. */
+static float feed_of(const struct route *r, const struct judge_need *need, bool rotary)
 {
-    double square = 0.0;
+    float square = 0.0f;
 
-    for (int i = from; i < to; i++) {
-        square += v[i] * v[i];
+    for (unsigned i = 0; i < r->slots.count; i++) {
+        if ((r->slots.axis[i] >= AXIS_LINEAR_COUNT) == rotary) {
+            square += need->first[i] * need->first[i];
+        }
     }
-    return maths_sqrt(square);
+    return single_sqrt(square);
 }
 
 void judge_need(const struct window *w, const struct route *r, unsigned piece,
                 struct judge_need *need)
 {
-    for (int axis = 0; axis < AXIS_COUNT; axis++) {
-        need_of_axis(w->x[axis] + piece, w->interval_s, need, axis);
+    for (unsigned i = 0; i < r->slots.count; i++) {
+        need_of_axis(w, i, piece, need);
     }
-    const bool rotary = curve_is_rotary(&route_element(r, w->element[piece + 1])->curve);
-
-    need->feed_mm_s = rotary ? length_over(need->first, AXIS_LINEAR_COUNT, AXIS_COUNT)
-                             : length_over(need->first, 0, AXIS_LINEAR_COUNT);
+    need->feed_mm_s = feed_of(r, need, route_element(r, w->element[piece + 1])->rotary);
 }
 
-static bool has_axis(const struct smooth_limits *limits, int axis)
-{
-    return (limits->axes >> axis & 1U) != 0;
-}
-
-/* Rounded over what the axes need from no acceleration to all of it, A/J. */
+/*
+ * Rounded over what the axes need from no acceleration to all of it, A/J; where that is too long, a change is so much
+ * slower that no axis needs more than its part of the jerk for it.
+ */
 void judge_change(const struct smooth_limits *limits, struct judge_change *change)
 {
     double rounding_s = limits->cycle_s;
@@ -80,12 +92,13 @@ void judge_change(const struct smooth_limits *limits, struct judge_change *chang
     for (int i = 0; i < AXIS_COUNT; i++) {
         const double a = limits->acceleration_mm_s2[i];
 
-        if (has_axis(limits, i)) {
+        if ((limits->axes >> i & 1U) != 0) {
             change->by = maths_min(change->by, CHANGE_PART * a / limits->velocity_mm_s[i]);
             rounding_s = maths_max(rounding_s, a / limits->jerk_mm_s3[i]);
         }
     }
     change->rounding_s = maths_min(rounding_s, ROUNDING_CYCLES_MAX * limits->cycle_s);
+    change->by *= maths_min(1.0, ROUNDING_PART / CHANGE_PART * change->rounding_s / rounding_s);
     change->rounded = change->by / change->rounding_s;
 }
 
@@ -94,103 +107,99 @@ void judge_change(const struct smooth_limits *limits, struct judge_change *chang
  *     velocity      x' r                             <= V
  *     acceleration  x' r' + x'' r^2                  <= A
  *     jerk          x' r'' + 3 x'' r r' + x''' r^3   <= J
- * In the jerk's middle term stands what the other two leave of r.
+ * Each of the jerk's terms has a part for itself: a curve that needed all of it for one could not be gone along.
  */
-static double most_of_axis(const struct judge_need *need, const struct smooth_limits *limits,
-                           const struct judge_change *change, int i, double most)
+static float most_of_axis(const struct judge_need *need, const struct route_slots *slots,
+                          const struct judge_change *change, unsigned i, float most)
 {
-    const double first = need->first[i];
-    const double second = need->second[i];
-    const double third = need->third[i];
+    const float first = need->first[i];
+    const float second = need->second[i];
+    const float third = need->third[i];
+    const float by = (float)change->by;
 
-    if (first * most > limits->velocity_mm_s[i]) {
-        most = limits->velocity_mm_s[i] / first;
+    if (first * most > slots->velocity_mm_s[i]) {
+        most = slots->velocity_mm_s[i] / first;
     }
-    const double a = maths_max(0.0, LIMIT * limits->acceleration_mm_s2[i] - first * change->by);
+    const float a = single_max(0.0f, LIMIT * slots->acceleration_mm_s2[i] - first * by);
 
     if (second * most * most > a) {
-        most = maths_sqrt(a / second);
+        most = single_sqrt(a / second);
     }
-    const double j = maths_max(0.0, LIMIT * limits->jerk_mm_s3[i] - first * change->rounded -
-                                        3.0 * second * most * change->by);
+    const float turning = TURNING_PART * slots->jerk_mm_s3[i];
 
-    return third * most * most * most > j ? maths_cbrt(j / third) : most;
+    if (3.0f * second * most * by > turning) {
+        most = turning / (3.0f * second * by);
+    }
+    const float j = single_max(0.0f, LIMIT * slots->jerk_mm_s3[i] - first * (float)change->rounded -
+                                         3.0f * second * most * by);
+
+    return third * most * most * most > j ? single_cbrt(j / third) : most;
 }
 
-void judge_rate(const struct judge_need *need, const struct route_element *e,
-                const struct smooth_limits *limits, const struct judge_change *change,
-                struct judge_rate *rate)
+void judge_rate(const struct judge_need *need, const struct route *r, uint32_t element,
+                const struct judge_change *change, struct judge_rate *rate)
 {
     rate->most = RATE_MAX;
-    for (int i = 0; i < AXIS_COUNT; i++) {
-        if (has_axis(limits, i)) {
-            rate->most = most_of_axis(need, limits, change, i, rate->most);
-        }
+    for (unsigned i = 0; i < r->slots.count; i++) {
+        rate->most = most_of_axis(need, &r->slots, change, i, rate->most);
     }
-    rate->programmed = e->move.kind == MOVE_RAPID || need->feed_mm_s <= 0.0
-                           ? MATHS_INFINITY
-                           : e->move.feed_mm_s / need->feed_mm_s;
+    rate->programmed =
+        need->feed_mm_s > 0.0f ? route_programmed(r, element) / need->feed_mm_s : SINGLE_INFINITY;
 }
 
-static bool place_is_near(const struct window *w, const struct route *r, unsigned piece, double f)
+static bool place_is_near(const struct window *w, const struct route *r, unsigned piece,
+                          const float weight[4], const struct window_spot *spot)
 {
-    struct route_foot foot = {.element = w->element[piece + 1], .at_mm = window_at(w, piece, f)};
+    struct route_foot foot = {.element = w->element[piece + 1],
+                              .at_mm = window_at(w, piece, weight)};
     double from;
     double to;
     double ignored;
-    struct point p;
+    double p[AXIS_COUNT];
 
     window_reach(w, piece + 1, &from, &ignored);
     window_reach(w, piece + 2 < w->count - 1 ? piece + 2 : piece + 1, &ignored, &to);
-    window_point(w, piece, f, &p);
-    route_foot(r, &p, from, to, &foot);
-    return foot.distance_mm <= JUDGED * r->tolerance_mm;
+    window_place(w, r, spot, p);
+    route_foot(r, p, from, to, &foot);
+    return foot.distance_mm <= JUDGED * (float)r->tolerance_mm;
 }
 
-/* Weighted distance of a corner from the chord between two points of the curve. */
-static double chord_distance(const struct point *corner, const struct point *a,
-                             const struct point *b)
+/* Is a chord between the places looked at in a piece near enough to the corner? */
+static bool piece_passes_corner(const struct window *w, const struct route *r, unsigned piece,
+                                uint32_t element)
 {
-    double dot = 0.0;
-    double square = 0.0;
-    double rest = 0.0;
+    const float within = JUDGED * (float)r->tolerance_mm - (float)r->limits.chord_mm;
+    struct window_spot a;
+    struct window_spot b;
+    float weight[4];
 
-    for (int i = 0; i < AXIS_COUNT; i++) {
-        const double d = smooth_weight(i) * (b->at[i] - a->at[i]);
-
-        dot += smooth_weight(i) * (corner->at[i] - a->at[i]) * d;
-        square += d * d;
+    window_weights(0.0f, weight);
+    window_spot(w, r, piece, weight, &a);
+    for (unsigned k = 1; k <= PLACES; k++) {
+        window_weights((float)k / PLACES, weight);
+        window_spot(w, r, piece, weight, &b);
+        if (window_chord_square(w, r, element, &a, &b) <= within * within) {
+            return true;
+        }
+        a = b;
     }
-    const double part = square > 0.0 ? maths_clamp(dot / square, 0.0, 1.0) : 0.0;
-
-    for (int i = 0; i < AXIS_COUNT; i++) {
-        const double d =
-            smooth_weight(i) * (corner->at[i] - a->at[i] - part * (b->at[i] - a->at[i]));
-
-        rest += d * d;
-    }
-    return maths_sqrt(rest);
+    return false;
 }
 
-/* Looks for a place near enough to the corner in a piece and its neighbours. */
+/* The piece beside the corner mostly does; else one of its neighbours may. */
 static bool passes_corner(const struct window *w, const struct route *r, unsigned piece,
                           uint32_t element)
 {
-    const struct point *corner = &route_element(r, element)->curve.start;
     const unsigned first = piece > CORNER_PIECES ? piece - CORNER_PIECES : 0;
     const unsigned last =
         piece + CORNER_PIECES + 4 < w->count ? piece + CORNER_PIECES : w->count - 4;
-    struct point a;
-    struct point b;
 
-    window_point(w, first, 0.0, &a);
+    if (piece_passes_corner(w, r, piece, element)) {
+        return true;
+    }
     for (unsigned i = first; i <= last; i++) {
-        for (unsigned k = 1; k <= PLACES; k++) {
-            window_point(w, i, (double)k / PLACES, &b);
-            if (chord_distance(corner, &a, &b) <= JUDGED * r->tolerance_mm - r->limits.chord_mm) {
-                return true;
-            }
-            a = b;
+        if (i != piece && piece_passes_corner(w, r, i, element)) {
+            return true;
         }
     }
     return false;
@@ -199,7 +208,12 @@ static bool passes_corner(const struct window *w, const struct route *r, unsigne
 static bool piece_is_good(const struct window *w, const struct route *r, unsigned piece)
 {
     for (unsigned k = 1; k <= PLACES; k++) {
-        if (!place_is_near(w, r, piece, (double)k / PLACES)) {
+        struct window_spot spot;
+        float weight[4];
+
+        window_weights((float)k / PLACES, weight);
+        window_spot(w, r, piece, weight, &spot);
+        if (!place_is_near(w, r, piece, weight, &spot)) {
             return false;
         }
     }

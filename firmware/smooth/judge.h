@@ -6,18 +6,18 @@
 
 #include "smooth/window.h"
 
-/* Most of |dx/du|, |d2x/du2|, |d3x/du3| on a piece, u in s of nominal time. */
+/* Most of |dx/du|, |d2x/du2|, |d3x/du3| on a piece, u in s of nominal time; by slot. */
 struct judge_need {
-    double first[AXIS_COUNT];
-    double second[AXIS_COUNT];
-    double third[AXIS_COUNT];
-    double feed_mm_s; /* along the path: over X, Y, Z, or over A, B, C where only they move */
+    float first[AXIS_COUNT];
+    float second[AXIS_COUNT];
+    float third[AXIS_COUNT];
+    float feed_mm_s; /* along the path: over X, Y, Z, or over A, B, C where only they move */
 };
 
 /* How fast nominal time may pass on a piece. */
 struct judge_rate {
-    double most;       /* by the axes' limits: never exceeded */
-    double programmed; /* at the programmed feed; infinite for a rapid */
+    float most;       /* by the axes' limits: never exceeded */
+    float programmed; /* at the programmed feed; infinite for a rapid */
 };
 
 /* How fast the rate of nominal time may change, on every piece of a chain where the axes move: 1/s, 1/s2. */
@@ -31,9 +31,8 @@ struct judge_change {
 void judge_change(const struct smooth_limits *limits, struct judge_change *change);
 void judge_need(const struct window *w, const struct route *r, unsigned piece,
                 struct judge_need *need);
-void judge_rate(const struct judge_need *need, const struct route_element *e,
-                const struct smooth_limits *limits, const struct judge_change *change,
-                struct judge_rate *rate);
+void judge_rate(const struct judge_need *need, const struct route *r, uint32_t element,
+                const struct judge_change *change, struct judge_rate *rate);
 /* Pieces from the first one on, count at most, that keep the tolerance and pass their corners within it. */
 unsigned judge_pieces(const struct window *w, const struct route *r, unsigned count);
 

@@ -4,14 +4,20 @@
 #ifndef TAKT_SMOOTH_LIMITS_H
 #define TAKT_SMOOTH_LIMITS_H
 
-#include "base/point.h"
+#include "smooth/lanes.h"
 
-/* Elements of the programmed path that are known at one time. */
-#define SMOOTH_ELEMENTS_MAX 256
+/* Elements of the programmed path that are known at one time, and how many of them may be bent. */
+#define SMOOTH_ELEMENTS_MAX 128
+#define SMOOTH_BENT_MAX     64
 
-/* Samples that are smoothed together, and how many of them are kept for good each time. */
-#define SMOOTH_SAMPLES_MAX  160
-#define SMOOTH_SAMPLES_KEPT 48
+/* Coordinates of their starts: with more than three axes there are half as many elements. */
+#define SMOOTH_COORDINATES_MAX (3 * SMOOTH_ELEMENTS_MAX)
+
+/* Kinds of motion among them: rapids, feeds, arcs in both senses, different offsets and so on. */
+#define SMOOTH_MODES_MAX 5
+
+/* Samples that are smoothed together; half as many where a machine has more axes than lanes. */
+#define SMOOTH_SAMPLES_MAX 128
 
 /* Samples at each end of the window that stay where they are: a cubic piece has four. */
 #define SMOOTH_FIXED 3

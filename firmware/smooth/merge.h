@@ -13,7 +13,7 @@
 #include <stdint.h>
 
 /* Ends of lines that one merged line may pass over. */
-#define MERGE_POINTS_MAX 32
+#define MERGE_POINTS_MAX 24
 
 /* A line that may still grow. */
 struct merge {

@@ -1,15 +1,18 @@
 #include "smooth/nominal.h"
 
-#include "base/maths.h"
+#include "smooth/single.h"
 
 /* Part of the axes' acceleration for the nominal feed along the path; smoothing needs the rest to round its ramps. */
-#define ALONG 0.95
+#define ALONG 0.95f
 
 /* Part of the axes' limits for the curvature of arcs. */
-#define BENT 0.9
+#define BENT 0.9f
 
 /* A corner may use the tolerance on both sides: the curve swings out before it and cuts in at it. */
-#define SIDES 2.0
+#define SIDES 2.0f
+
+/* Where directions differ by less, rounding of them is what differs. */
+#define TURN_MIN 1e-6f
 
 /* How many elements a corner is looked at together with, and when: so many elements after it have come. */
 #define NEIGHBOURS 8
@@ -17,112 +20,122 @@
 
 static struct route_element *at(struct route *r, uint32_t index)
 {
-    return &r->element[index % SMOOTH_ELEMENTS_MAX];
+    return &r->element[index & (r->capacity - 1)];
+}
+
+static float length_of(const struct route *r, uint32_t index)
+{
+    return (float)(route_end_of(r, index) - route_element(r, index)->start_mm);
 }
 
 /* v <= V/|x_s|, sqrt(A/|x_ss|), cbrt(J/|x_sss|) on every axis. */
-static double feed_of(const struct curve_bounds *b, const struct smooth_limits *limits)
+static float feed_of(const struct curve_bounds *b, const struct route_slots *slots)
 {
-    double feed = MATHS_INFINITY;
+    float feed = SINGLE_INFINITY;
 
-    for (int i = 0; i < AXIS_COUNT; i++) {
-        if (b->first[i] > 0.0) {
-            feed = maths_min(feed, limits->velocity_mm_s[i] / b->first[i]);
+    for (unsigned i = 0; i < slots->count; i++) {
+        const float first = (float)b->first[slots->axis[i]];
+        const float second = (float)b->second[slots->axis[i]];
+        const float third = (float)b->third[slots->axis[i]];
+
+        if (first > 0.0f) {
+            feed = single_min(feed, slots->velocity_mm_s[i] / first);
         }
-        if (b->second[i] > 0.0) {
-            feed = maths_min(feed, maths_sqrt(BENT * limits->acceleration_mm_s2[i] / b->second[i]));
+        if (second > 0.0f) {
+            feed = single_min(feed, single_sqrt(BENT * slots->acceleration_mm_s2[i] / second));
         }
-        if (b->third[i] > 0.0) {
-            feed = maths_min(feed, maths_cbrt(BENT * limits->jerk_mm_s3[i] / b->third[i]));
+        if (third > 0.0f) {
+            feed = single_min(feed, single_cbrt(BENT * slots->jerk_mm_s3[i] / third));
         }
     }
     return feed;
 }
 
 /* a = sqrt(A^2 - (x_ss v^2)^2) / |x_s| */
-static double along_of(const struct curve_bounds *b, const struct smooth_limits *limits,
-                       double feed)
+static float along_of(const struct curve_bounds *b, const struct route_slots *slots, float feed)
 {
-    double along = MATHS_INFINITY;
+    float along = SINGLE_INFINITY;
 
-    for (int i = 0; i < AXIS_COUNT; i++) {
-        const double a = limits->acceleration_mm_s2[i];
-        const double normal = b->second[i] * feed * feed;
+    for (unsigned i = 0; i < slots->count; i++) {
+        const float a = slots->acceleration_mm_s2[i];
+        const float first = (float)b->first[slots->axis[i]];
+        const float normal = (float)b->second[slots->axis[i]] * feed * feed;
 
-        if (b->first[i] > 0.0) {
-            along = maths_min(along, maths_sqrt(a * a - normal * normal) / b->first[i]);
+        if (first > 0.0f) {
+            along = single_min(along, single_sqrt(a * a - normal * normal) / first);
         }
     }
     return ALONG * along;
 }
 
-void nominal_set(struct route_element *e, const struct smooth_limits *limits)
+void nominal_set(struct route_element *e, const struct curve *curve, const struct route *r)
 {
     struct curve_bounds b;
-    const double programmed = e->move.kind == MOVE_RAPID ? MATHS_INFINITY : e->move.feed_mm_s;
 
-    curve_bound(&e->curve, &b);
-    e->feed_mm_s = maths_min(programmed, feed_of(&b, limits));
-    e->along_mm_s2 = along_of(&b, limits, e->feed_mm_s);
+    curve_bound(curve, &b);
+    e->feed_mm_s = single_min(e->programmed_mm_s, feed_of(&b, &r->slots));
+    e->along_mm_s2 = along_of(&b, &r->slots, e->feed_mm_s);
 }
 
 /*
  * A change of direction d, rounded over w mm to both sides with curvature that rises and falls evenly, bends the path by
  * d/w at most and leaves the corner by |d| w / 6: v <= sqrt(A w/|d_i|), cbrt(J w^2/|d_i|) on every axis.
  */
-static double feed_over(const struct smooth_limits *limits, const struct point *d, double w_mm)
+static float feed_over(const struct route_slots *slots, const float d[], float w_mm)
 {
-    double feed = MATHS_INFINITY;
+    float square = SINGLE_INFINITY;
+    float cube = SINGLE_INFINITY;
 
-    for (int i = 0; i < AXIS_COUNT; i++) {
-        const double turn = maths_abs(d->at[i]) / smooth_weight(i);
+    for (unsigned i = 0; i < slots->count; i++) {
+        const float turn = single_abs(d[i]) / slots->weight[i];
 
-        if (turn > 0.0) {
-            feed = maths_min(feed, maths_sqrt(limits->acceleration_mm_s2[i] * w_mm / turn));
-            feed = maths_min(feed, maths_cbrt(limits->jerk_mm_s3[i] * w_mm * w_mm / turn));
+        if (turn > 0.0f) {
+            square = single_min(square, slots->acceleration_mm_s2[i] * w_mm / turn);
+            cube = single_min(cube, slots->jerk_mm_s3[i] * w_mm * w_mm / turn);
         }
     }
-    return feed;
+    if (square == SINGLE_INFINITY) {
+        return square;
+    }
+    return single_min(single_sqrt(square), single_cbrt(cube));
 }
 
 /* Both sides of a corner while it is looked at from farther and farther away. */
 struct surroundings {
     uint32_t left, right; /* elements reached */
-    double left_mm, right_mm;
-    struct point before, after; /* directions there */
+    float left_mm, right_mm;
+    float before[AXIS_COUNT], after[AXIS_COUNT]; /* directions there */
 };
 
-static double turn_of(const struct surroundings *s, struct point *d)
+static float turn_of(const struct surroundings *s, unsigned count, float d[])
 {
-    double square = 0.0;
+    float square = 0.0f;
 
-    for (int i = 0; i < AXIS_COUNT; i++) {
-        d->at[i] = s->after.at[i] - s->before.at[i];
-        square += d->at[i] * d->at[i];
+    for (unsigned i = 0; i < count; i++) {
+        d[i] = s->after[i] - s->before[i];
+        square += d[i] * d[i];
     }
-    return maths_sqrt(square);
+    return single_sqrt(square);
 }
 
 /* The shorter side grows by an element. False when there is none. */
 static bool widen(const struct route *r, struct surroundings *s)
 {
-    struct point ignored;
-
     if (s->left_mm < s->right_mm) {
         if (s->left <= r->first + 1) {
             return false;
         }
-        route_corner(r, s->left, &s->before, &ignored);
         s->left--;
-        s->left_mm += route_element(r, s->left)->curve.length_mm;
+        (void)route_direction(r, s->left, route_end_of(r, s->left), s->before);
+        s->left_mm += length_of(r, s->left);
         return true;
     }
     if (s->right + 1 >= r->count) {
         return false;
     }
     s->right++;
-    route_corner(r, s->right, &ignored, &s->after);
-    s->right_mm += route_element(r, s->right)->curve.length_mm;
+    (void)route_direction(r, s->right, route_element(r, s->right)->start_mm, s->after);
+    s->right_mm += length_of(r, s->right);
     return true;
 }
 
@@ -130,34 +143,35 @@ static bool widen(const struct route *r, struct surroundings *s)
  * The highest feed at the start of an element: the best of all widths over which the corner may be rounded. Many small
  * corners in a row are one bend, and some that go to and fro nearly none: so the directions are also compared farther off.
  */
-static double corner_feed(struct route *r, uint32_t index)
+static float corner_feed(struct route *r, uint32_t index)
 {
     struct surroundings s = {.left = index - 1, .right = index};
-    const double enough =
-        maths_min(route_element(r, index - 1)->feed_mm_s, route_element(r, index)->feed_mm_s);
-    double best = 0.0;
-    struct point d;
+    const float enough =
+        single_min(route_element(r, index - 1)->feed_mm_s, route_element(r, index)->feed_mm_s);
+    const float tolerance_mm = (float)r->tolerance_mm;
+    float best = 0.0f;
+    float d[AXIS_COUNT];
 
-    route_corner(r, index, &s.before, &s.after);
-    s.left_mm = route_element(r, index - 1)->curve.length_mm;
-    s.right_mm = route_element(r, index)->curve.length_mm;
-    at(r, index)->turn = turn_of(&s, &d);
+    route_corner(r, index, s.before, s.after);
+    s.left_mm = length_of(r, index - 1);
+    s.right_mm = length_of(r, index);
+    at(r, index)->turn = turn_of(&s, r->slots.count, d);
     for (unsigned i = 0; i < NEIGHBOURS && best < enough; i++) {
-        const double turn = turn_of(&s, &d);
-        const double allowed = 6.0 * SIDES * r->tolerance_mm / maths_max(turn, 1e-12);
-        const double width = maths_min(s.left_mm, s.right_mm);
+        const float turn = turn_of(&s, r->slots.count, d);
+        const float allowed = 6.0f * SIDES * tolerance_mm / single_max(turn, TURN_MIN);
+        const float width = single_min(s.left_mm, s.right_mm);
 
-        best = maths_max(best, feed_over(&r->limits, &d, maths_min(allowed, width)));
+        best = single_max(best, feed_over(&r->slots, d, single_min(allowed, width)));
         if (allowed < width || !widen(r, &s)) {
             break;
         }
     }
-    return maths_min(best, enough);
+    return single_min(best, enough);
 }
 
 static void set_corner(struct route *r, uint32_t index)
 {
-    const double feed = corner_feed(r, index);
+    const float feed = corner_feed(r, index);
 
     at(r, index)->energy_cap = feed * feed;
 }
@@ -165,12 +179,12 @@ static void set_corner(struct route *r, uint32_t index)
 /* u = min(cap, u_next + 2 a L), backwards until nothing changes any more. */
 static void pass_back(struct route *r, uint32_t changed)
 {
-    double next = 0.0;
+    float next = 0.0f;
 
     for (uint32_t i = r->count; i > r->first; i--) {
         struct route_element *e = at(r, i - 1);
-        const double energy =
-            maths_min(e->energy_cap, next + 2.0 * e->along_mm_s2 * e->curve.length_mm);
+        const float energy =
+            single_min(e->energy_cap, next + 2.0f * e->along_mm_s2 * length_of(r, i - 1));
 
         if (energy == e->energy && i - 1 < changed) {
             return;

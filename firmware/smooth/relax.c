@@ -2,409 +2,497 @@
  * Looks for control points c that keep all of these (alternating directions, Boyd et al. 2011, section 5):
  *     the curve at every sample (c[i-1] + 4 c[i] + c[i+1])/6 and at every corner within the tolerance of the route,
  *     |c[i-1] - 2 c[i] + c[i+1]| <= A d^2 and |c[i+2] - 3 c[i+1] + 3 c[i] - c[i-1]| <= J d^3 on every axis.
- * With K the rows, z the nearest values that are allowed, u the sums of what was missing and R the weights, one
- * iteration is c += (K' R K)^-1 K' R (z - u - K c), z = nearest(K c + u), u += K c - z. The matrix has three bands beside
- * its diagonal. Where the timing asks for too much there is no such c; the last iterations then favour the tolerance,
- * and the timing is changed.
+ * With K the rows, z the nearest values that are allowed, u the sums of what was missing, R the weights and a the
+ * over-relaxation, one iteration is
+ *     c += (K' R K)^-1 K' R (z - u - K c),    t = a K c + (1 - a) z + u,    z = nearest(t),    u = t - z.
+ * Of z and u only p = (1 - a) z + u is kept. The rows are counted so that R is 1 but for the tolerance. The matrix has
+ * three bands beside its diagonal (bands.c). Where the timing asks for too much there is no such c; the last iterations
+ * then favour the tolerance, and the timing is changed.
  */
 #include "smooth/relax.h"
 
-#include "base/maths.h"
+#include "smooth/bands.h"
+#include "smooth/single.h"
 
 #include <string.h>
 
 /* Over-relaxation. */
-#define OVER 1.6
+#define OVER 1.6f
 
 /* The last iterations weigh the tolerance so many times more. */
-#define LAST        8
-#define LAST_FAVOUR 30.0
+#define LAST        4
+#define LAST_FAVOUR 30.0f
 
 /* Part of the axes' limits the boxes have: feed changes need the rest (judge.c). */
-#define BOX_BEND  0.965
-#define BOX_TWIST 0.945
+#define BOX_BEND  0.94f
+#define BOX_TWIST 0.945f
 
 /* How much less acceleration and jerk are preferred to more, inside their boxes. */
-#ifndef CALM
-#define CALM 0.3
-#endif
+#define CALM 0.3f
+
+/* Nor do those that leave the chord of two samples by a small part of the tolerance: turn times spacing. */
+#define CORNER_LEAVES 0.5f
 
 /* Corners that turn less need no condition of their own. */
-#define CORNER_MIN 0.005
+#define CORNER_MIN 0.005f
 
 /* A mean direction shorter than this belongs to a reversal. */
-#define REVERSAL 0.3
+#define REVERSAL 0.3f
 
-/* Weights beyond this, relative to that of the tolerance, would leave too few digits. */
-#define WEIGHT_MAX 1e5
+/* Rows that count more than this, relative to the tolerance, would leave too few digits. */
+#define SCALE_MAX 300.0f
 
-/* On the diagonal: this sample stays where it is. */
-#define FIXED 1e30
+/* What a bent route may leave its tangent by for that to stand for it, as a part of the tolerance. */
+#define BENT 0.05f
 
-static bool has_axis(const struct route *r, int axis)
+/* How one iteration forms t and p; weight: of the tolerance. */
+struct relax_pass {
+    float over;
+    float calm;
+    float keep_boxes; /* part of their sums that is kept */
+    float keep_near;
+    float weight;
+    float corner_most; /* tolerance of corners, as a part of the tolerance */
+};
+
+static void set_scale(struct relax_scale *s, const struct window *w, const struct route *r,
+                      float tolerance_mm)
 {
-    return (r->limits.axes >> axis & 1U) != 0;
+    const float d = (float)w->interval_s;
+
+    memset(s, 0, sizeof(*s));
+    for (unsigned i = 0; i < SMOOTH_SLOTS_MAX; i++) {
+        s->bend_per_near[i / SMOOTH_LANES][i % SMOOTH_LANES] = 1.0f;
+        s->twist_per_near[i / SMOOTH_LANES][i % SMOOTH_LANES] = 1.0f;
+    }
+    for (unsigned i = 0; i < r->slots.count; i++) {
+        const float per_near = tolerance_mm / r->slots.weight[i];
+        const float bend = BOX_BEND * r->slots.acceleration_mm_s2[i] * d * d;
+        const float twist = BOX_TWIST * r->slots.jerk_mm_s3[i] * d * d * d;
+
+        s->near_per_unit[i / SMOOTH_LANES][i % SMOOTH_LANES] =
+            w->weighted_unit_mm[i] / tolerance_mm;
+        s->unit_per_near[i / SMOOTH_LANES][i % SMOOTH_LANES] =
+            tolerance_mm / w->weighted_unit_mm[i];
+        s->bend_per_near[i / SMOOTH_LANES][i % SMOOTH_LANES] =
+            single_min(per_near / bend, SCALE_MAX);
+        s->twist_per_near[i / SMOOTH_LANES][i % SMOOTH_LANES] =
+            single_min(per_near / twist, SCALE_MAX);
+        s->bend_most[i / SMOOTH_LANES][i % SMOOTH_LANES] =
+            bend / per_near * s->bend_per_near[i / SMOOTH_LANES][i % SMOOTH_LANES];
+        s->twist_most[i / SMOOTH_LANES][i % SMOOTH_LANES] =
+            twist / per_near * s->twist_per_near[i / SMOOTH_LANES][i % SMOOTH_LANES];
+    }
 }
 
-static double near_of(const double *c, unsigned i)
+static void set_along(struct relax_corners *c, const struct route *r, uint32_t element)
 {
-    return (c[i - 1] + 4.0 * c[i] + c[i + 1]) / 6.0;
+    float before[AXIS_COUNT];
+    float after[AXIS_COUNT];
+    float square = 0.0f;
+
+    route_corner(r, element, before, after);
+    for (unsigned i = 0; i < r->slots.count; i++) {
+        before[i] += after[i];
+        square += before[i] * before[i];
+    }
+    const float length = single_sqrt(square);
+    const float per_length = length > REVERSAL ? 1.0f / length : 0.0f;
+
+    for (unsigned i = 0; i < r->slots.count; i++) {
+        c->along[i / SMOOTH_LANES * c->capacity + c->count][i % SMOOTH_LANES] =
+            before[i] * per_length;
+    }
 }
 
-static double bend_of(const double *c, unsigned i)
+static void set_spot(struct relax_corners *c, const struct window *w, const struct route *r,
+                     uint32_t element)
 {
-    return c[i - 1] - 2.0 * c[i] + c[i + 1];
-}
+    struct window_spot spot;
 
-static double twist_of(const double *c, unsigned i)
-{
-    return c[i + 2] - 3.0 * c[i + 1] + 3.0 * c[i] - c[i - 1];
-}
-
-static double corner_of(const struct relax_corner *k, const double *c)
-{
-    const double *at = c + k->piece;
-
-    return k->weight[0] * at[0] + k->weight[1] * at[1] + k->weight[2] * at[2] +
-           k->weight[3] * at[3];
-}
-
-static double box_bend(const struct route *r, const struct window *w, int axis)
-{
-    return BOX_BEND * r->limits.acceleration_mm_s2[axis] * w->interval_s * w->interval_s;
-}
-
-static double box_twist(const struct route *r, const struct window *w, int axis)
-{
-    const double d = w->interval_s;
-
-    return BOX_TWIST * r->limits.jerk_mm_s3[axis] * d * d * d;
+    window_nearest(w, r, route_start(r, element), &spot);
+    for (unsigned i = 0; i < r->slots.count; i++) {
+        c->spot[i / SMOOTH_LANES * c->capacity + c->count][i % SMOOTH_LANES] = spot.at[i];
+    }
 }
 
 /* Where the curve passes the start of an element: the piece and the fraction by the places of its samples. */
-static bool set_corner(struct relax_corner *k, const struct window *w, const struct route *r,
+static void add_corner(struct relax_corners *c, const struct window *w, const struct route *r,
                        uint32_t element, unsigned *sample)
 {
     const double at = route_element(r, element)->start_mm;
     unsigned i = *sample;
-    struct point before;
-    struct point after;
-    double square = 0.0;
 
     while (i + 2 < w->count && w->at_mm[i + 1] <= at) {
         i++;
     }
     *sample = i;
     if (i + 2 >= w->count || w->at_mm[i] > at) {
-        return false;
+        return;
     }
-    k->piece = i - 1;
-    k->element = element;
-    window_weights((at - w->at_mm[i]) / (w->at_mm[i + 1] - w->at_mm[i]), k->weight);
-    route_corner(r, element, &before, &after);
-    for (int axis = 0; axis < AXIS_COUNT; axis++) {
-        k->along.at[axis] = before.at[axis] + after.at[axis];
-        square += k->along.at[axis] * k->along.at[axis];
-    }
-    const double length = maths_sqrt(square);
+    const float spacing = (float)(w->at_mm[i + 1] - w->at_mm[i]);
 
-    for (int axis = 0; axis < AXIS_COUNT; axis++) {
-        k->along.at[axis] = length > REVERSAL ? k->along.at[axis] / length : 0.0;
+    if (route_element(r, element)->turn * spacing < CORNER_LEAVES * (float)r->tolerance_mm) {
+        return;
     }
-    return true;
+    c->piece[c->count] = (unsigned char)(i - 1);
+    window_weights((float)(at - w->at_mm[i]) / spacing, c->weight[c->count]);
+    set_along(c, r, element);
+    set_spot(c, w, r, element);
+    c->count++;
 }
 
-static void find_corners(struct relax *x, const struct window *w, const struct route *r)
+static void find_corners(struct relax_corners *c, const struct window *w, const struct route *r)
 {
     unsigned sample = 1;
 
-    x->corners = 0;
-    for (uint32_t e = w->element[1] + 1; e < r->count && x->corners < RELAX_CORNERS_MAX; e++) {
+    memset(c, 0, sizeof(*c));
+    c->capacity = RELAX_CORNERS_MAX / r->slots.groups;
+    for (uint32_t e = w->element[1] + 1; e < r->count && c->count < c->capacity; e++) {
         if (route_element(r, e)->start_mm > w->at_mm[w->count - 2]) {
             return;
         }
-        if (route_element(r, e)->turn > CORNER_MIN &&
-            set_corner(&x->corner[x->corners], w, r, e, &sample)) {
-            x->corners++;
+        if (route_element(r, e)->turn > CORNER_MIN) {
+            add_corner(c, w, r, e, &sample);
         }
     }
 }
 
-static void start_axis(struct relax *x, const struct window *w, const struct route *r, int axis)
+/* Direction of the route at a foot, and tolerances in a mm of the route there. */
+struct relax_ahead {
+    uint32_t element; /* of a line it still holds for; else UINT32_MAX */
+    float along[SMOOTH_SLOTS_MAX];
+    float per_mm;
+};
+
+static void look_ahead(struct relax_ahead *a, const struct route *r, const struct route_foot *foot,
+                       float tolerance_mm)
 {
-    const double *c = w->x[axis];
-    const double bend = box_bend(r, w, axis);
-    const double twist = box_twist(r, w, axis);
+    if (foot->element != a->element) {
+        a->per_mm = route_direction(r, foot->element, foot->at_mm, a->along) / tolerance_mm;
+        a->element = route_element(r, foot->element)->bent ? UINT32_MAX : foot->element;
+    }
+}
+
+/* The route beside sample i: the nearest point, and as far as the direction there serves for it. */
+static void set_foot(struct relax *x, const struct window *w, const struct route *r, unsigned i,
+                     float tolerance_mm, struct relax_ahead *ahead)
+{
+    static const float at_sample[4] = {1.0f / 6.0f, 4.0f / 6.0f, 1.0f / 6.0f, 0.0f};
+    struct route_foot foot = {.element = w->element[i], .at_mm = w->at_mm[i]};
+    struct window_spot spot;
+    double from;
+    double to;
+    double p[AXIS_COUNT];
+
+    window_reach(w, i, &from, &to);
+    window_spot(w, r, i - 1, at_sample, &spot);
+    window_place(w, r, &spot, p);
+    route_foot(r, p, from, to, &foot);
+    look_ahead(ahead, r, &foot, tolerance_mm);
+    const float straight =
+        route_straight(r, foot.element, foot.at_mm, BENT * tolerance_mm) / tolerance_mm;
+    const double start = maths_max(from, route_element(r, foot.element)->start_mm);
+    const double end = maths_min(to, route_end_of(r, foot.element));
+
+    x->low[i] = single_max((float)(start - foot.at_mm) * ahead->per_mm, -straight);
+    x->high[i] = single_min((float)(end - foot.at_mm) * ahead->per_mm, straight);
+    for (unsigned k = 0; k < r->slots.count; k++) {
+        const unsigned row = k / SMOOTH_LANES * w->capacity + i;
+
+        x->foot[row][k % SMOOTH_LANES] =
+            spot.at[k] + single_round(foot.off[k] / w->weighted_unit_mm[k]);
+        x->along[row][k % SMOOTH_LANES] = ahead->along[k];
+    }
+}
+
+/* t, z, u of rows that must lie in -most ... most; p is replaced, z - u - k returned. */
+static inline lanes into_box(const struct relax_pass *pass, lanes k, lanes most, lanes *p)
+{
+    const lanes t = pass->over * k + *p;
+    const lanes z = lanes_clamp(t * pass->calm, most);
+    const lanes u = (t - z) * pass->keep_boxes;
+
+    *p = (1.0f - OVER) * z + u;
+    return z - u - k;
+}
+
+/*
+ * R (z - u - K c) of the curve at a sample. Where nothing is missing, z = t, that is t - now, and p = (1 - a) t;
+ * elsewhere pull() has put other values in the place of t and now.
+ */
+static inline lanes near_of(lanes *near, lanes now, float weight)
+{
+    const lanes e = weight * (*near - now);
+
+    *near *= 1.0f - OVER;
+    return e;
+}
+
+/*
+ * K' R (z - u - K c) of all rows but corners. A third difference is that of two second ones, and (1 4 1)/6 is a sixth of
+ * (1 -2 1) more than the sample itself: so what all rows of a sample ask for is first put together as second differences.
+ */
+static void gather(struct relax *x, const struct window *w, const struct relax_pass *pass,
+                   unsigned group)
+{
+    const unsigned first = group * w->capacity;
+    const struct relax_pass now = *pass;
+    const lanes_int *restrict c = w->x + first;
+    lanes *restrict step = x->step + first;
+    lanes *restrict near = x->near + first;
+    lanes *restrict bend = x->bend + first;
+    lanes *restrict twist = x->twist + first;
+    const lanes bend_per_near = x->scale.bend_per_near[group];
+    const lanes twist_per_near = x->scale.twist_per_near[group];
+    const lanes bend_per_unit = bend_per_near * x->scale.near_per_unit[group];
+    const lanes twist_per_unit = twist_per_near * x->scale.near_per_unit[group];
+    const lanes bend_most = x->scale.bend_most[group];
+    const lanes twist_most = x->scale.twist_most[group];
+    lanes_int b0 = c[0] - 2 * c[1] + c[2];
+    lanes before = {
+        0.0f}; /* twist, bow and near of the sample before, bow of the one before that */
+    lanes bow1 = before;
+    lanes bow2 = before;
+    lanes near1 = before;
 
     for (unsigned i = 1; i + 2 < w->count; i++) {
-        x->near.goal[axis][i] = near_of(c, i);
-        x->bend.goal[axis][i] = maths_clamp(bend_of(c, i), -bend, bend);
-        x->twist.goal[axis][i] = maths_clamp(twist_of(c, i), -twist, twist);
-    }
-    for (unsigned k = 0; k < x->corners; k++) {
-        x->corner[k].goal.at[axis] = corner_of(&x->corner[k], c);
-        x->corner[k].sum.at[axis] = 0.0;
-    }
-    memset(x->near.sum[axis], 0, sizeof x->near.sum[axis]);
-    memset(x->bend.sum[axis], 0, sizeof x->bend.sum[axis]);
-    memset(x->twist.sum[axis], 0, sizeof x->twist.sum[axis]);
-    x->weight_bend[axis] = maths_min(1.0 / (bend * bend), WEIGHT_MAX * x->weight_near);
-    x->weight_twist[axis] = maths_min(1.0 / (twist * twist), WEIGHT_MAX * x->weight_near);
-}
+        const lanes_int b1 = c[i] - 2 * c[i + 1] + c[i + 2];
+        const lanes b = into_box(&now, lanes_of(b0) * bend_per_unit, bend_most, &bend[i]);
+        const lanes t = into_box(&now, lanes_of(b1 - b0) * twist_per_unit, twist_most, &twist[i]);
+        const lanes e = near_of(&near[i], step[i], now.weight);
+        const lanes after = twist_per_near * t;
+        const lanes bow = before + bend_per_near * b - after + e * (1.0f / 6.0f);
 
-/* Adds weight (row' row) to the bands, for a row of so many neighbours from first on. */
-static void add_row(struct relax_bands *b, unsigned first, const double *row, unsigned width,
-                    double weight)
-{
-    double *const band[4] = {b->d0, b->d1, b->d2, b->d3};
-
-    for (unsigned i = 0; i < width; i++) {
-        for (unsigned k = i; k < width; k++) {
-            band[k - i][first + i] += weight * row[i] * row[k];
-        }
+        step[i - 1] = near1 + bow2 - 2.0f * bow1 + bow;
+        before = after;
+        bow2 = bow1;
+        bow1 = bow;
+        near1 = e;
+        b0 = b1;
     }
 }
 
-static void build(struct relax_bands *b, const struct relax *x, const struct window *w, int axis)
-{
-    static const double near[3] = {1.0 / 6.0, 4.0 / 6.0, 1.0 / 6.0};
-    static const double bend[3] = {1.0, -2.0, 1.0};
-    static const double twist[4] = {-1.0, 3.0, -3.0, 1.0};
-
-    memset(b, 0, sizeof(*b));
-    for (unsigned i = 1; i + 2 < w->count; i++) {
-        add_row(b, i - 1, near, 3, x->weight_near);
-        add_row(b, i - 1, bend, 3, x->weight_bend[axis]);
-        add_row(b, i - 1, twist, 4, x->weight_twist[axis]);
-    }
-    for (unsigned k = 0; k < x->corners; k++) {
-        add_row(b, x->corner[k].piece, x->corner[k].weight, 4, x->weight_near);
-    }
-    for (unsigned i = 0; i < SMOOTH_FIXED; i++) {
-        b->d0[i] = FIXED;
-        b->d0[w->count - 1 - i] = FIXED;
-    }
-}
-
-/* L D L' with three bands; the multipliers take the bands' places. Nothing lies beyond the last sample. */
-static void factor(struct relax_bands *b, unsigned count)
-{
-    for (unsigned i = 0; i < count; i++) {
-        const double l1 = b->d1[i] / b->d0[i];
-        const double l2 = b->d2[i] / b->d0[i];
-        const double l3 = b->d3[i] / b->d0[i];
-
-        if (i + 1 < count) {
-            b->d0[i + 1] -= l1 * b->d1[i];
-            b->d1[i + 1] -= l1 * b->d2[i];
-            b->d2[i + 1] -= l1 * b->d3[i];
-        }
-        if (i + 2 < count) {
-            b->d0[i + 2] -= l2 * b->d2[i];
-            b->d1[i + 2] -= l2 * b->d3[i];
-        }
-        if (i + 3 < count) {
-            b->d0[i + 3] -= l3 * b->d3[i];
-        }
-        b->d1[i] = l1;
-        b->d2[i] = l2;
-        b->d3[i] = l3;
-    }
-}
-
-static void solve(const struct relax_bands *b, double *v, unsigned count)
-{
-    for (unsigned i = 0; i + 3 < count; i++) {
-        v[i + 1] -= b->d1[i] * v[i];
-        v[i + 2] -= b->d2[i] * v[i];
-        v[i + 3] -= b->d3[i] * v[i];
-    }
-    v[count - 2] -= b->d1[count - 3] * v[count - 3];
-    v[count - 1] -= b->d2[count - 3] * v[count - 3] + b->d1[count - 2] * v[count - 2];
-    for (unsigned i = 0; i < count; i++) {
-        v[i] /= b->d0[i];
-    }
-    v[count - 2] -= b->d1[count - 2] * v[count - 1];
-    v[count - 3] -= b->d1[count - 3] * v[count - 2] + b->d2[count - 3] * v[count - 1];
-    for (unsigned i = count - 3; i > 0; i--) {
-        v[i - 1] -= b->d1[i - 1] * v[i] + b->d2[i - 1] * v[i + 1] + b->d3[i - 1] * v[i + 2];
-    }
-}
-
-/* K' R (z - u - K c) of one axis. */
-static void residual(const struct relax *x, const struct window *w, int axis, double *v)
-{
-    const double *c = w->x[axis];
-
-    memset(v, 0, w->count * sizeof v[0]);
-    for (unsigned i = 1; i + 2 < w->count; i++) {
-        const double near =
-            x->weight_near / 6.0 * (x->near.goal[axis][i] - x->near.sum[axis][i] - near_of(c, i));
-        const double bend =
-            x->weight_bend[axis] * (x->bend.goal[axis][i] - x->bend.sum[axis][i] - bend_of(c, i));
-        const double twist = x->weight_twist[axis] *
-                             (x->twist.goal[axis][i] - x->twist.sum[axis][i] - twist_of(c, i));
-
-        v[i - 1] += near + bend - twist;
-        v[i] += 4.0 * near - 2.0 * bend + 3.0 * twist;
-        v[i + 1] += near + bend - 3.0 * twist;
-        v[i + 2] += twist;
-    }
-    for (unsigned k = 0; k < x->corners; k++) {
-        const struct relax_corner *q = &x->corner[k];
-        const double e = x->weight_near * (q->goal.at[axis] - q->sum.at[axis] - corner_of(q, c));
-
-        for (unsigned i = 0; i < 4; i++) {
-            v[q->piece + i] += q->weight[i] * e;
-        }
-    }
-    for (unsigned i = 0; i < SMOOTH_FIXED; i++) {
-        v[i] = 0.0;
-        v[w->count - 1 - i] = 0.0;
-    }
-}
-
-static void move_axis(struct relax *x, struct window *w, int axis)
-{
-    double *v = x->step[axis];
-
-    residual(x, w, axis, v);
-    solve(&x->bands[axis], v, w->count);
-    for (unsigned i = SMOOTH_FIXED; i + SMOOTH_FIXED < w->count; i++) {
-        w->x[axis][i] += v[i];
-    }
-}
-
-/* z and u of a row whose value is now and must lie in -limit ... limit. */
-static void into_box(double now, double limit, double *goal, double *sum)
-{
-    const double t = OVER * now + (1.0 - OVER) * *goal + *sum;
-
-    *goal = maths_clamp(t / (1.0 + CALM), -limit, limit);
-    *sum = t - *goal;
-}
-
-static void boxes(struct relax *x, const struct window *w, const struct route *r, int axis)
-{
-    const double *c = w->x[axis];
-    const double bend = box_bend(r, w, axis);
-    const double twist = box_twist(r, w, axis);
-
-    for (unsigned i = 1; i + 2 < w->count; i++) {
-        into_box(bend_of(c, i), bend, &x->bend.goal[axis][i], &x->bend.sum[axis][i]);
-        into_box(twist_of(c, i), twist, &x->twist.goal[axis][i], &x->twist.sum[axis][i]);
-    }
-}
-
-/* z and u of the curve at a sample: within the tolerance of its foot. */
-static void into_tube(struct relax *x, const struct window *w, const struct route *r,
-                      double tolerance_mm, unsigned i)
+/* z of a place t beside sample i, where the route is not straight enough there: within the tolerance of its foot. */
+static void pull_to_route(const struct relax *x, const struct window *w, const struct route *r,
+                          float tolerance_mm, unsigned i, lanes z[])
 {
     struct route_foot foot = {.element = w->element[i], .at_mm = w->at_mm[i]};
-    struct point t;
+    double p[AXIS_COUNT];
     double from;
     double to;
 
-    for (int axis = 0; axis < AXIS_COUNT; axis++) {
-        t.at[axis] = OVER * near_of(w->x[axis], i) + (1.0 - OVER) * x->near.goal[axis][i] +
-                     x->near.sum[axis][i];
+    for (unsigned k = 0; k < r->slots.count; k++) {
+        const unsigned row = k / SMOOTH_LANES * w->capacity + i;
+        const unsigned g = k / SMOOTH_LANES;
+        const unsigned l = k % SMOOTH_LANES;
+
+        p[k] = w->origin[k] +
+               w->unit_mm[k] * ((double)x->foot[row][l] +
+                                (double)(x->near[row][l] * x->scale.unit_per_near[g][l]));
     }
     window_reach(w, i, &from, &to);
-    route_foot(r, &t, from, to, &foot);
-    const double part = foot.distance_mm > tolerance_mm ? tolerance_mm / foot.distance_mm : 1.0;
+    route_foot(r, p, from, to, &foot);
+    const float less =
+        foot.distance_mm > tolerance_mm ? 1.0f - tolerance_mm / foot.distance_mm : 0.0f;
 
-    for (int axis = 0; axis < AXIS_COUNT; axis++) {
-        const double goal = foot.point.at[axis] + part * (t.at[axis] - foot.point.at[axis]);
-
-        x->near.goal[axis][i] = goal;
-        x->near.sum[axis][i] = t.at[axis] - goal;
+    for (unsigned k = 0; k < r->slots.count; k++) {
+        z[k / SMOOTH_LANES][k % SMOOTH_LANES] =
+            x->near[k / SMOOTH_LANES * w->capacity + i][k % SMOOTH_LANES] +
+            less * foot.off[k] / tolerance_mm;
     }
 }
 
-/* z and u of the curve at a corner: what lies across the mean direction is within the tolerance. */
-static void into_corner(struct relax_corner *k, const struct window *w, const struct route *r,
-                        double tolerance_mm)
+/* The curve at the samples, less their feet: now to step, t to near. */
+static void measure_near(struct relax *x, const struct window *w, const struct relax_pass *pass,
+                         unsigned group)
 {
-    const struct point *corner = &route_element(r, k->element)->curve.start;
-    struct point t;
-    double along = 0.0;
-    double square = 0.0;
+    const unsigned first = group * w->capacity;
+    const lanes_int *restrict c = w->x + first;
+    const lanes_int *restrict foot = x->foot + first;
+    lanes *restrict near = x->near + first;
+    lanes *restrict step = x->step + first;
+    const float over = pass->over;
+    const lanes per_unit = x->scale.near_per_unit[group];
 
-    for (int axis = 0; axis < AXIS_COUNT; axis++) {
-        t.at[axis] =
-            OVER * corner_of(k, w->x[axis]) + (1.0 - OVER) * k->goal.at[axis] + k->sum.at[axis];
-        along += smooth_weight(axis) * (t.at[axis] - corner->at[axis]) * k->along.at[axis];
-    }
-    struct point across;
-
-    for (int axis = 0; axis < AXIS_COUNT; axis++) {
-        across.at[axis] =
-            t.at[axis] - corner->at[axis] - along * k->along.at[axis] / smooth_weight(axis);
-        square += across.at[axis] * across.at[axis] * smooth_weight(axis) * smooth_weight(axis);
-    }
-    const double distance = maths_sqrt(square);
-    const double less = distance > tolerance_mm ? 1.0 - tolerance_mm / distance : 0.0;
-
-    for (int axis = 0; axis < AXIS_COUNT; axis++) {
-        k->sum.at[axis] = less * across.at[axis];
-        k->goal.at[axis] = t.at[axis] - k->sum.at[axis];
-    }
-}
-
-static void build_all(struct relax *x, const struct window *w, const struct route *r)
-{
-    for (int axis = 0; axis < AXIS_COUNT; axis++) {
-        if (has_axis(r, axis)) {
-            build(&x->bands[axis], x, w, axis);
-            factor(&x->bands[axis], w->count);
-        }
-    }
-}
-
-/* From here on the tolerance counts more; what it has summed up is in units of its weight. */
-static void favour_tolerance(struct relax *x, const struct window *w, const struct route *r)
-{
-    x->weight_near *= LAST_FAVOUR;
-    for (int axis = 0; axis < AXIS_COUNT; axis++) {
-        for (unsigned i = 0; i < w->count; i++) {
-            x->near.sum[axis][i] /= LAST_FAVOUR;
-        }
-        for (unsigned k = 0; k < x->corners; k++) {
-            x->corner[k].sum.at[axis] /= LAST_FAVOUR;
-        }
-    }
-    build_all(x, w, r);
-}
-
-static void iterate(struct relax *x, struct window *w, const struct route *r, double tolerance_mm)
-{
-    for (int axis = 0; axis < AXIS_COUNT; axis++) {
-        if (has_axis(r, axis)) {
-            move_axis(x, w, axis);
-            boxes(x, w, r, axis);
-        }
-    }
     for (unsigned i = 1; i + 2 < w->count; i++) {
-        into_tube(x, w, r, tolerance_mm, i);
+        const lanes_int bend = c[i - 1] - 2 * c[i] + c[i + 1];
+        const lanes now = (lanes_of(c[i] - foot[i]) + lanes_of(bend) * (1.0f / 6.0f)) * per_unit;
+
+        step[i] = now;
+        near[i] += over * now;
     }
-    for (unsigned k = 0; k < x->corners; k++) {
-        into_corner(&x->corner[k], w, r, tolerance_mm - r->limits.chord_mm);
+}
+
+/* z of t beside a straight piece of route, in the tube of radius 1 around it. False: it reaches to its ends. */
+static bool pull_to_line(const struct relax *x, const struct window *w, unsigned groups, unsigned i,
+                         float s, lanes z[])
+{
+    lanes off[SMOOTH_GROUPS_MAX];
+    float square = 0.0f;
+
+    for (unsigned g = 0; g < groups; g++) {
+        off[g] = x->near[g * w->capacity + i] - s * x->along[g * w->capacity + i];
+        square += lanes_sum(off[g] * off[g]);
+    }
+    const float distance = single_sqrt(square);
+    const float less = distance > 1.0f ? 1.0f - 1.0f / distance : 0.0f;
+
+    for (unsigned g = 0; g < groups; g++) {
+        z[g] = x->near[g * w->capacity + i] - off[g] * less;
+    }
+    return s - x->low[i] > distance && x->high[i] - s > distance;
+}
+
+/*
+ * Where something is missing beside sample i: t and now are replaced so that near_of() comes to (1 - a) z + u and z - u -
+ * now. s: t along the route.
+ */
+static void pull(struct relax *x, const struct window *w, const struct route *r,
+                 const struct relax_pass *pass, float tolerance_mm, unsigned i, float s)
+{
+    lanes z[SMOOTH_GROUPS_MAX] = {{0.0f}};
+
+    if (!pull_to_line(x, w, r->slots.groups, i, s, z)) {
+        pull_to_route(x, w, r, tolerance_mm, i, z);
+    }
+    for (unsigned g = 0; g < r->slots.groups; g++) {
+        const unsigned row = g * w->capacity + i;
+        const lanes u = (x->near[row] - z[g]) * pass->keep_near;
+        const lanes e = z[g] - u - x->step[row];
+
+        x->near[row] = z[g] + u * (1.0f / (1.0f - OVER));
+        x->step[row] = x->near[row] - e;
+    }
+}
+
+/* Places t that are not within the tube beside their sample, or where it is not that straight, are pulled there. */
+static void into_tube(struct relax *x, const struct window *w, const struct route *r,
+                      const struct relax_pass *pass, float tolerance_mm)
+{
+    for (unsigned i = 1; i + 2 < w->count; i++) {
+        lanes both = {0.0f};
+
+        for (unsigned g = 0; g < r->slots.groups; g++) {
+            const lanes t = x->near[g * w->capacity + i];
+            const lanes a = t * x->along[g * w->capacity + i];
+            const lanes b = t * t;
+
+            both += (lanes){a[0], b[0], a[1], b[1]} + (lanes){a[2], b[2], a[3], b[3]};
+        }
+        const float s = both[0] + both[2];
+        const float square = both[1] + both[3];
+
+        if (!(s >= x->low[i] && s <= x->high[i] &&
+              square - s * s <= (1.0f - BENT) * (1.0f - BENT))) {
+            pull(x, w, r, pass, tolerance_mm, i, s);
+        }
+    }
+}
+
+/* How far the curve is from corner k. */
+static lanes corner_of(const struct relax *x, const struct window *w, unsigned group, unsigned k)
+{
+    const lanes_int *c = &w->x[group * w->capacity + x->corners.piece[k]];
+    const lanes_int spot = x->corners.spot[group * x->corners.capacity + k];
+    const float *row = x->corners.weight[k];
+
+    return (row[0] * lanes_of(c[0] - spot) + row[1] * lanes_of(c[1] - spot) +
+            row[2] * lanes_of(c[2] - spot) + row[3] * lanes_of(c[3] - spot)) *
+           x->scale.near_per_unit[group];
+}
+
+/* The same of the curve at a corner: what lies across the mean direction is within the tolerance. */
+static void into_corner(struct relax *x, const struct window *w, const struct relax_pass *pass,
+                        unsigned groups, unsigned k)
+{
+    lanes now[SMOOTH_GROUPS_MAX];
+    lanes t[SMOOTH_GROUPS_MAX];
+    float along = 0.0f;
+    float square = 0.0f;
+
+    for (unsigned g = 0; g < groups; g++) {
+        const unsigned row = g * x->corners.capacity + k;
+
+        now[g] = corner_of(x, w, g, k);
+        t[g] = pass->over * now[g] + x->corners.state[row];
+        along += lanes_sum(t[g] * x->corners.along[row]);
+        square += lanes_sum(t[g] * t[g]);
+    }
+    const float distance = single_sqrt(single_max(0.0f, square - along * along));
+    const float less = distance > pass->corner_most ? 1.0f - pass->corner_most / distance : 0.0f;
+
+    for (unsigned g = 0; g < groups; g++) {
+        const unsigned row = g * x->corners.capacity + k;
+        const lanes z = t[g] - less * (t[g] - along * x->corners.along[row]);
+        const lanes u = (t[g] - z) * pass->keep_near;
+        const lanes e = pass->weight * (z - u - now[g]);
+        lanes *step = &x->step[g * w->capacity + x->corners.piece[k]];
+
+        x->corners.state[row] = (1.0f - OVER) * z + u;
+        for (unsigned j = 0; j < 4; j++) {
+            step[j] += x->corners.weight[k][j] * e;
+        }
+    }
+}
+
+static void project(struct relax *x, const struct window *w, const struct route *r,
+                    float tolerance_mm, const struct relax_pass *pass)
+{
+    for (unsigned g = 0; g < r->slots.groups; g++) {
+        measure_near(x, w, pass, g);
+    }
+    into_tube(x, w, r, pass, tolerance_mm);
+    for (unsigned g = 0; g < r->slots.groups; g++) {
+        gather(x, w, pass, g);
+    }
+    for (unsigned k = 0; k < x->corners.count; k++) {
+        into_corner(x, w, pass, r->slots.groups, k);
+    }
+}
+
+static void begin(struct relax *x, const struct window *w, const struct route *r,
+                  float tolerance_mm)
+{
+    struct relax_ahead ahead = {.element = UINT32_MAX};
+
+    set_scale(&x->scale, w, r, tolerance_mm);
+    find_corners(&x->corners, w, r);
+    memset(x->near, 0, sizeof x->near);
+    memset(x->bend, 0, sizeof x->bend);
+    memset(x->twist, 0, sizeof x->twist);
+    memset(x->foot, 0, sizeof x->foot);
+    memset(x->along, 0, sizeof x->along);
+    memset(x->band, 0, sizeof x->band);
+    for (unsigned i = 1; i + 2 < w->count; i++) {
+        set_foot(x, w, r, i, tolerance_mm, &ahead);
     }
 }
 
 void relax_window(struct relax *x, struct window *w, const struct route *r, double tolerance_mm,
                   unsigned iterations)
 {
-    find_corners(x, w, r);
-    x->weight_near = 1.0 / (tolerance_mm * tolerance_mm);
-    for (int axis = 0; axis < AXIS_COUNT; axis++) {
-        start_axis(x, w, r, axis);
-    }
-    build_all(x, w, r);
-    for (unsigned i = 0; i < iterations; i++) {
-        if (i + LAST == iterations) {
-            favour_tolerance(x, w, r);
+    const float tolerance = (float)tolerance_mm;
+    struct relax_pass pass = {.over = 1.0f, .calm = 1.0f, .weight = 1.0f};
+
+    pass.corner_most = 1.0f - (float)r->limits.chord_mm / tolerance;
+    begin(x, w, r, tolerance);
+    bands_build(x, w, r, pass.weight);
+    project(x, w, r, tolerance, &pass);
+    pass.over = OVER;
+    pass.calm = 1.0f / (1.0f + CALM);
+    pass.keep_boxes = 1.0f;
+    for (unsigned i = iterations; i > 0; i--) {
+        for (unsigned g = 0; g < r->slots.groups; g++) {
+            bands_step(x, w, g);
         }
-        iterate(x, w, r, tolerance_mm);
+        if (i == LAST + 1) {
+            pass.weight = LAST_FAVOUR;
+            bands_build(x, w, r, pass.weight);
+        }
+        pass.keep_near = i == LAST + 1 ? 1.0f / LAST_FAVOUR : 1.0f;
+        if (i > 1) {
+            project(x, w, r, tolerance, &pass);
+        }
     }
 }

@@ -6,41 +6,52 @@
 
 #include "smooth/window.h"
 
-/* Corners of the route in a window: sharper ones are looked at one by one. */
-#define RELAX_CORNERS_MAX SMOOTH_ELEMENTS_MAX
+/*
+ * Corners of the route in a window that are looked at one by one, half as many where there are two groups of lanes; of
+ * those behind them the judge alone knows.
+ */
+#define RELAX_CORNERS_MAX 64
 
-/* One kind of condition: what it should be, and how far it has been from that, summed up. */
-struct relax_rows {
-    double goal[AXIS_COUNT][SMOOTH_SAMPLES_MAX];
-    double sum[AXIS_COUNT][SMOOTH_SAMPLES_MAX];
+/* Values of all lanes at every sample: one group of lanes after the other. */
+typedef lanes relax_rows[SMOOTH_SAMPLES_MAX];
+
+/* Corners, and the places of the curve that pass them; lengths as parts of the tolerance, groups as of the rows. */
+struct relax_corners {
+    unsigned count;
+    unsigned capacity;
+    unsigned char piece
+        [RELAX_CORNERS_MAX]; /* in which the curve passes it, and what its samples weigh there */
+    float weight[RELAX_CORNERS_MAX][4];
+    lanes along[RELAX_CORNERS_MAX]; /* mean direction; 0 at a reversal */
+    lanes state[RELAX_CORNERS_MAX];
+    lanes_int spot[RELAX_CORNERS_MAX];
 };
 
-struct relax_corner {
-    unsigned piece; /* in which the curve passes it */
-    double weight[4];
-    uint32_t element;   /* that begins at it */
-    struct point along; /* mean direction; 0 at a reversal */
-    struct point goal;
-    struct point sum;
-};
-
-struct relax_bands {
-    double d0[SMOOTH_SAMPLES_MAX];
-    double d1[SMOOTH_SAMPLES_MAX];
-    double d2[SMOOTH_SAMPLES_MAX];
-    double d3[SMOOTH_SAMPLES_MAX];
+/*
+ * What the rows of one axis count. A unit of a coordinate is near_per_unit parts of the tolerance, and the two others are
+ * relative to that.
+ */
+struct relax_scale {
+    lanes near_per_unit[SMOOTH_GROUPS_MAX];
+    lanes unit_per_near[SMOOTH_GROUPS_MAX];
+    lanes bend_per_near[SMOOTH_GROUPS_MAX];
+    lanes twist_per_near[SMOOTH_GROUPS_MAX];
+    lanes bend_most[SMOOTH_GROUPS_MAX]; /* the boxes, in those */
+    lanes twist_most[SMOOTH_GROUPS_MAX];
 };
 
 /* Working memory; holds nothing between calls. */
 struct relax {
-    struct relax_rows near;  /* the curve at the samples: in the tube */
-    struct relax_rows bend;  /* second differences: in the box of acceleration */
-    struct relax_rows twist; /* third differences: in the box of jerk */
-    struct relax_corner corner[RELAX_CORNERS_MAX];
-    unsigned corners;
-    struct relax_bands bands[AXIS_COUNT];
-    double step[AXIS_COUNT][SMOOTH_SAMPLES_MAX];
-    double weight_near, weight_bend[AXIS_COUNT], weight_twist[AXIS_COUNT];
+    struct relax_scale scale;
+    relax_rows near;  /* the curve at the samples: in the tube */
+    relax_rows bend;  /* second differences: in the box of acceleration */
+    relax_rows twist; /* third differences: in the box of jerk */
+    relax_rows step;
+    relax_rows band[4];
+    lanes_int foot[SMOOTH_SAMPLES_MAX];                      /* beside each sample on the route */
+    relax_rows along;                                        /* direction of the route there */
+    float low[SMOOTH_SAMPLES_MAX], high[SMOOTH_SAMPLES_MAX]; /* as far as it is straight */
+    struct relax_corners corners;
 };
 
 void relax_window(struct relax *x, struct window *w, const struct route *r, double tolerance_mm,

@@ -1,64 +1,200 @@
 #include "smooth/route.h"
 
-#include "base/maths.h"
 #include "smooth/nominal.h"
+#include "smooth/single.h"
 
 #include <assert.h>
+#include <string.h>
 
 #define NEWTON_STEPS 3
 
 /* Part of the tolerance by which the neighbour of an element must be nearer. */
-#define NEARER 0.2
+#define NEARER 0.2f
+
+/* A turn up to which the angle can be told by it, and how much more than that times the distance is looked at. */
+#define SLIGHT       0.5f
+#define SLIGHT_REACH 1.25f
+
+static void set_slots(struct route_slots *s, const struct smooth_limits *limits)
+{
+    memset(s, 0, sizeof(*s));
+    for (int axis = 0; axis < AXIS_COUNT; axis++) {
+        const unsigned i = s->count;
+
+        if ((limits->axes >> axis & 1U) != 0) {
+            s->axis[i] = (unsigned char)axis;
+            s->weight[i] = (float)smooth_weight(axis);
+            s->velocity_mm_s[i] = (float)limits->velocity_mm_s[axis];
+            s->acceleration_mm_s2[i] = (float)limits->acceleration_mm_s2[axis];
+            s->jerk_mm_s3[i] = (float)limits->jerk_mm_s3[axis];
+            s->count++;
+        }
+    }
+    s->groups = (s->count + SMOOTH_LANES - 1) / SMOOTH_LANES;
+}
 
 void route_init(struct route *r, const struct smooth_limits *limits, double tolerance_mm)
 {
     r->limits = *limits;
+    set_slots(&r->slots, limits);
     r->tolerance_mm = tolerance_mm;
     r->first = 0;
     r->count = 0;
+    r->bent_first = 0;
+    r->bent_count = 0;
+    r->capacity = r->slots.count > 3 ? SMOOTH_ELEMENTS_MAX / 2 : SMOOTH_ELEMENTS_MAX;
+    for (unsigned i = 0; i < SMOOTH_MODES_MAX; i++) {
+        r->mode[i].used = 0;
+    }
+}
+
+static bool has_free_mode(const struct route *r)
+{
+    for (unsigned i = 0; i < SMOOTH_MODES_MAX; i++) {
+        if (r->mode[i].used == 0) {
+            return true;
+        }
+    }
+    return false;
 }
 
 bool route_has_room(const struct route *r)
 {
-    return r->count - r->first < SMOOTH_ELEMENTS_MAX;
+    return r->count - r->first < r->capacity && r->bent_count - r->bent_first < SMOOTH_BENT_MAX &&
+           has_free_mode(r);
 }
 
 const struct route_element *route_element(const struct route *r, uint32_t index)
 {
-    return &r->element[index % SMOOTH_ELEMENTS_MAX];
+    return &r->element[(index & (r->capacity - 1))];
 }
 
-static double end_of(const struct route_element *e)
+const double *route_start(const struct route *r, uint32_t index)
 {
-    return e->start_mm + e->curve.length_mm;
+    return &r->start[(size_t)(index & (r->capacity - 1)) * r->slots.count];
+}
+
+static const double *end_point(const struct route *r, uint32_t index)
+{
+    return index + 1 < r->count ? route_start(r, index + 1) : r->end;
+}
+
+double route_end_of(const struct route *r, uint32_t index)
+{
+    return index + 1 < r->count ? route_element(r, index + 1)->start_mm : r->end_mm;
 }
 
 double route_end(const struct route *r)
 {
-    return r->count == 0 ? 0.0 : end_of(route_element(r, r->count - 1));
+    return r->count == 0 ? 0.0 : r->end_mm;
+}
+
+static void gather(const struct route *r, const struct point *p, double by_slot[])
+{
+    for (unsigned i = 0; i < r->slots.count; i++) {
+        by_slot[i] = p->at[r->slots.axis[i]];
+    }
+}
+
+static void scatter(const struct route *r, const double by_slot[], struct point *p)
+{
+    memset(p, 0, sizeof(*p));
+    for (unsigned i = 0; i < r->slots.count; i++) {
+        p->at[r->slots.axis[i]] = by_slot[i];
+    }
+}
+
+static bool is_alike(const struct move *a, const struct move *b)
+{
+    bool same = a->kind == b->kind && a->overrides == b->overrides && a->plane == b->plane &&
+                a->correction_off == b->correction_off && a->contour_side == b->contour_side &&
+                a->tool == b->tool;
+
+    for (int i = 0; i < AXIS_LINEAR_COUNT; i++) {
+        same = same && a->work_mm[i] == b->work_mm[i] && a->overhang_mm[i] == b->overhang_mm[i];
+    }
+    return same;
+}
+
+/* The index of a mode like this motion's; a new one takes the place of one that is not used. */
+static unsigned char find_mode(struct route *r, const struct move *move)
+{
+    unsigned found = 0;
+
+    for (unsigned i = 0; i < SMOOTH_MODES_MAX; i++) {
+        if (r->mode[i].used > 0 && is_alike(&r->mode[i].move, move)) {
+            r->mode[i].used++;
+            return (unsigned char)i;
+        }
+        found = r->mode[i].used == 0 ? i : found;
+    }
+    r->mode[found].move = *move;
+    r->mode[found].used = 1;
+    return (unsigned char)found;
+}
+
+void route_move(const struct route *r, uint32_t index, struct move *move)
+{
+    const struct route_element *e = route_element(r, index);
+
+    *move = r->mode[e->mode].move;
+    move->line = e->line;
+    move->feed_mm_s = move->kind == MOVE_RAPID ? move->feed_mm_s : (double)e->programmed_mm_s;
+    scatter(r, end_point(r, index), &move->end);
+}
+
+float route_programmed(const struct route *r, uint32_t index)
+{
+    return route_element(r, index)->programmed_mm_s;
+}
+
+static void keep_bent(struct route *r, const struct curve *curve)
+{
+    struct route_bent *b = &r->bent[r->bent_count % SMOOTH_BENT_MAX];
+
+    b->kind = curve->kind;
+    if (curve->kind == CURVE_ARC) {
+        b->arc = curve->arc;
+    } else {
+        b->involute = curve->involute;
+    }
+    r->bent_count++;
 }
 
 void route_push(struct route *r, const struct move *move, uint32_t number,
                 const struct curve *curve)
 {
-    struct route_element *e = &r->element[r->count % SMOOTH_ELEMENTS_MAX];
+    struct route_element *e = &r->element[(r->count & (r->capacity - 1))];
+    const double start_mm = route_end(r);
 
     assert(route_has_room(r));
-    e->move = *move;
+    gather(r, &curve->start, &r->start[(size_t)(r->count & (r->capacity - 1)) * r->slots.count]);
+    gather(r, &curve->end, r->end);
+    memset(e, 0, sizeof(*e));
+    e->start_mm = start_mm;
+    r->end_mm = start_mm + curve->length_mm;
+    e->line = move->line;
     e->number = number;
-    e->curve = *curve;
-    e->start_mm = route_end(r);
-    e->energy_cap = 0.0;
-    e->energy = 0.0;
-    e->turn = 0.0;
-    nominal_set(e, &r->limits);
+    e->mode = find_mode(r, move);
+    e->rotary = curve_is_rotary(curve);
+    e->bent = curve->kind != CURVE_LINE;
+    e->bent_number = (unsigned char)r->bent_count;
+    if (e->bent) {
+        keep_bent(r, curve);
+    }
+    e->programmed_mm_s = move->kind == MOVE_RAPID ? SINGLE_INFINITY : (float)move->feed_mm_s;
+    nominal_set(e, curve, r);
     r->count++;
     nominal_update(r);
 }
 
 void route_forget(struct route *r, double at_mm)
 {
-    while (r->first + 1 < r->count && end_of(route_element(r, r->first)) < at_mm) {
+    while (r->first + 1 < r->count && route_end_of(r, r->first) < at_mm) {
+        const struct route_element *e = route_element(r, r->first);
+
+        r->mode[e->mode].used--;
+        r->bent_first += e->bent ? 1 : 0;
         r->first++;
     }
 }
@@ -79,110 +215,247 @@ uint32_t route_find(const struct route *r, double at_mm, uint32_t hint)
     return i;
 }
 
-static double on_curve(const struct route_element *e, double at_mm)
+/* The curve of a bent element: outside its plane every axis goes in proportion to the length. */
+static void bent_curve(const struct route *r, uint32_t index, struct curve *c)
 {
-    return maths_clamp(at_mm - e->start_mm, 0.0, e->curve.length_mm);
+    const struct route_element *e = route_element(r, index);
+    const struct route_bent *b = &r->bent[e->bent_number % SMOOTH_BENT_MAX];
+
+    c->kind = b->kind;
+    c->rotary = e->rotary;
+    c->length_mm = route_end_of(r, index) - e->start_mm;
+    scatter(r, route_start(r, index), &c->start);
+    scatter(r, end_point(r, index), &c->end);
+    for (int axis = 0; axis < AXIS_COUNT; axis++) {
+        c->slope.at[axis] = (c->end.at[axis] - c->start.at[axis]) / c->length_mm;
+    }
+    if (b->kind == CURVE_ARC) {
+        c->arc = b->arc;
+        c->slope.at[b->arc.first] = 0.0;
+        c->slope.at[b->arc.second] = 0.0;
+    } else {
+        c->involute = b->involute;
+        c->slope.at[b->involute.first] = 0.0;
+        c->slope.at[b->involute.second] = 0.0;
+    }
 }
 
-void route_point(const struct route *r, double at_mm, uint32_t *hint, struct point *p)
+void route_point(const struct route *r, double at_mm, uint32_t *hint, double p[])
 {
     *hint = route_find(r, at_mm, *hint);
     const struct route_element *e = route_element(r, *hint);
+    const double length = route_end_of(r, *hint) - e->start_mm;
+    const double s = maths_clamp(at_mm - e->start_mm, 0.0, length);
 
-    curve_point(&e->curve, on_curve(e, at_mm), p);
-}
+    if (e->bent) {
+        struct curve c;
+        struct point q;
 
-/* Weighted, of unit length. */
-static void direction(const struct curve *c, double s_mm, struct point *t)
-{
-    double square = 0.0;
-
-    curve_tangent(c, s_mm, t);
-    for (int i = 0; i < AXIS_COUNT; i++) {
-        t->at[i] *= smooth_weight(i);
-        square += t->at[i] * t->at[i];
+        bent_curve(r, *hint, &c);
+        curve_point(&c, s, &q);
+        gather(r, &q, p);
+        return;
     }
-    for (int i = 0; i < AXIS_COUNT; i++) {
-        t->at[i] /= maths_sqrt(square);
+    const double *start = route_start(r, *hint);
+    const double *end = end_point(r, *hint);
+    const double part = s / length;
+
+    for (unsigned i = 0; i < r->slots.count; i++) {
+        p[i] = part < 1.0 ? start[i] + part * (end[i] - start[i]) : end[i];
     }
 }
 
-void route_corner(const struct route *r, uint32_t index, struct point *before, struct point *after)
+static void bent_direction(const struct route *r, uint32_t index, double at_mm, float direction[])
 {
-    const struct curve *last = &route_element(r, index - 1)->curve;
+    struct curve c;
+    struct point t;
 
-    direction(last, last->length_mm, before);
-    direction(&route_element(r, index)->curve, 0.0, after);
+    bent_curve(r, index, &c);
+    curve_tangent(&c, maths_clamp(at_mm - route_element(r, index)->start_mm, 0.0, c.length_mm), &t);
+    for (unsigned i = 0; i < r->slots.count; i++) {
+        direction[i] = (float)t.at[r->slots.axis[i]];
+    }
 }
 
-static double distance_between(const struct point *a, const struct point *b)
+float route_direction(const struct route *r, uint32_t index, double at_mm, float direction[])
 {
-    double square = 0.0;
+    float square = 0.0f;
+    float length = 1.0f;
 
-    for (int i = 0; i < AXIS_COUNT; i++) {
-        const double d = (a->at[i] - b->at[i]) * smooth_weight(i);
+    if (route_element(r, index)->bent) {
+        bent_direction(r, index, at_mm, direction);
+    } else {
+        const double *start = route_start(r, index);
+        const double *end = end_point(r, index);
+
+        for (unsigned i = 0; i < r->slots.count; i++) {
+            direction[i] = (float)(end[i] - start[i]);
+        }
+        length = (float)(route_end_of(r, index) - route_element(r, index)->start_mm);
+    }
+    for (unsigned i = 0; i < r->slots.count; i++) {
+        direction[i] *= r->slots.weight[i];
+        square += direction[i] * direction[i];
+    }
+    const float weighted = single_sqrt(square);
+    const float per_weighted = 1.0f / weighted;
+
+    for (unsigned i = 0; i < r->slots.count; i++) {
+        direction[i] *= per_weighted;
+    }
+    return weighted / length;
+}
+
+/* s^2 |x''| / 2 = within */
+float route_straight(const struct route *r, uint32_t index, double at_mm, float within_mm)
+{
+    struct curve c;
+    struct point k;
+    float square = 0.0f;
+
+    if (!route_element(r, index)->bent) {
+        return SINGLE_INFINITY;
+    }
+    bent_curve(r, index, &c);
+    curve_curvature(&c, maths_clamp(at_mm - route_element(r, index)->start_mm, 0.0, c.length_mm),
+                    &k);
+    for (unsigned i = 0; i < r->slots.count; i++) {
+        const float d = r->slots.weight[i] * (float)k.at[r->slots.axis[i]];
 
         square += d * d;
     }
-    return maths_sqrt(square);
+    return single_sqrt(2.0f * within_mm / single_sqrt(square));
 }
 
-/* How far along the tangent x lies from p: (x - p) t / (t t), weighted. */
-static double step_along(const struct point *x, const struct point *p, const struct point *t)
+void route_corner(const struct route *r, uint32_t index, float before[], float after[])
 {
-    double dot = 0.0;
-    double square = 0.0;
+    const double at_mm = route_element(r, index)->start_mm;
 
-    for (int i = 0; i < AXIS_COUNT; i++) {
-        const double w = smooth_weight(i) * t->at[i];
-
-        dot += smooth_weight(i) * (x->at[i] - p->at[i]) * w;
-        square += w * w;
-    }
-    return dot / square;
+    (void)route_direction(r, index - 1, at_mm, before);
+    (void)route_direction(r, index, at_mm, after);
 }
 
-/* The nearest point of one element between two places of the route, by Newton's method from at_mm; exact on a line. */
-static void foot_on(const struct route *r, uint32_t index, const struct point *x, double from_mm,
+static void set_distance(const struct route *r, struct route_foot *f)
+{
+    float square = 0.0f;
+
+    for (unsigned i = 0; i < r->slots.count; i++) {
+        square += f->off[i] * f->off[i];
+    }
+    f->distance_mm = single_sqrt(square);
+}
+
+/* x + (start - x) + s/length (end - start), s from the nearest place of the whole line. */
+static void foot_on_line(const struct route *r, uint32_t index, const double x[], float low,
+                         float high, struct route_foot *f)
+{
+    const double *start = route_start(r, index);
+    const double *end = end_point(r, index);
+    const float length = (float)(route_end_of(r, index) - route_element(r, index)->start_mm);
+    float line[AXIS_COUNT];
+    float dot = 0.0f;
+    float square = 0.0f;
+
+    for (unsigned i = 0; i < r->slots.count; i++) {
+        line[i] = r->slots.weight[i] * (float)(end[i] - start[i]);
+        f->off[i] = r->slots.weight[i] * (float)(start[i] - x[i]);
+        dot -= line[i] * f->off[i];
+        square += line[i] * line[i];
+    }
+    const float s = single_clamp(dot / square * length, low, high);
+    const float part = s / length;
+
+    for (unsigned i = 0; i < r->slots.count; i++) {
+        f->off[i] += part * line[i];
+    }
+    f->at_mm = s < length ? route_element(r, index)->start_mm + (double)s : route_end_of(r, index);
+}
+
+/* By Newton's method: s += (x - p) t / (t t), weighted. */
+static void foot_on_bent(const struct route *r, uint32_t index, const double x[], double low,
+                         double high, double s, struct route_foot *f)
+{
+    struct curve c;
+    struct point p;
+
+    bent_curve(r, index, &c);
+    s = maths_clamp(s, low, high);
+    curve_point(&c, s, &p);
+    for (unsigned k = 0; k < NEWTON_STEPS; k++) {
+        struct point t;
+        float dot = 0.0f;
+        float square = 0.0f;
+
+        curve_tangent(&c, s, &t);
+        for (unsigned i = 0; i < r->slots.count; i++) {
+            const unsigned axis = r->slots.axis[i];
+            const float w = r->slots.weight[i] * (float)t.at[axis];
+
+            dot += r->slots.weight[i] * (float)(x[i] - p.at[axis]) * w;
+            square += w * w;
+        }
+        s = maths_clamp(s + (double)(dot / square), low, high);
+        curve_point(&c, s, &p);
+    }
+    for (unsigned i = 0; i < r->slots.count; i++) {
+        f->off[i] = r->slots.weight[i] * (float)(p.at[r->slots.axis[i]] - x[i]);
+    }
+    f->at_mm = s < c.length_mm ? route_element(r, index)->start_mm + s : route_end_of(r, index);
+}
+
+/* The nearest point of one element between two places of the route, looked for from at_mm on. */
+static void foot_on(const struct route *r, uint32_t index, const double x[], double from_mm,
                     double to_mm, double at_mm, struct route_foot *f)
 {
     const struct route_element *e = route_element(r, index);
-    const double low = on_curve(e, from_mm);
-    const double high = on_curve(e, to_mm);
-    const unsigned steps = e->curve.kind == CURVE_LINE ? 1 : NEWTON_STEPS;
-    double s = maths_clamp(at_mm - e->start_mm, low, high);
-    struct point t;
+    const double length = route_end_of(r, index) - e->start_mm;
+    const double low = maths_clamp(from_mm - e->start_mm, 0.0, length);
+    const double high = maths_clamp(to_mm - e->start_mm, 0.0, length);
 
-    curve_point(&e->curve, s, &f->point);
-    for (unsigned i = 0; i < steps; i++) {
-        curve_tangent(&e->curve, s, &t);
-        s = maths_clamp(s + step_along(x, &f->point, &t), low, high);
-        curve_point(&e->curve, s, &f->point);
-    }
     f->element = index;
-    f->at_mm = e->start_mm + s;
-    f->distance_mm = distance_between(x, &f->point);
+    if (e->bent) {
+        foot_on_bent(r, index, x, low, high, at_mm - e->start_mm, f);
+    } else {
+        foot_on_line(r, index, x, (float)low, (float)high, f);
+    }
+    set_distance(r, f);
+}
+
+/*
+ * Can the element on the other side of a joint be nearer than the foot? From a foot before the joint, a line that goes on
+ * at an angle t cannot, unless the joint is within distance tan t; and tan t < 1.2 |turn| of slight turns.
+ */
+static bool is_near_joint(const struct route *r, uint32_t next, double joint, float turn,
+                          const struct route_foot *f)
+{
+    const float away = single_abs((float)(joint - f->at_mm));
+
+    return f->at_mm == joint || turn > SLIGHT || away < SLIGHT_REACH * turn * f->distance_mm ||
+           route_element(r, next)->bent || route_element(r, f->element)->bent;
 }
 
 /*
  * Goes to the neighbour while that is nearer: by more than rounding of a corner can make it, unless the foot is at the
  * joint already. Near a reversal both sides are near, and the curve is on the first until it has turned.
  */
-static void walk(const struct route *r, const struct point *x, double from_mm, double to_mm,
-                 bool onward, struct route_foot *f)
+static void walk(const struct route *r, const double x[], double from_mm, double to_mm, bool onward,
+                 struct route_foot *f)
 {
     for (;;) {
-        const struct route_element *e = route_element(r, f->element);
         const uint32_t next = onward ? f->element + 1 : f->element - 1;
-        const double joint = onward ? end_of(e) : e->start_mm;
+        const double joint =
+            onward ? route_end_of(r, f->element) : route_element(r, f->element)->start_mm;
         struct route_foot other;
 
         if (onward ? next >= r->count || joint > to_mm
                    : f->element == r->first || joint < from_mm) {
             return;
         }
+        if (!is_near_joint(r, next, joint, route_element(r, onward ? next : f->element)->turn, f)) {
+            return;
+        }
         foot_on(r, next, x, from_mm, to_mm, joint, &other);
-        const double more = f->at_mm == joint ? 0.0 : NEARER * r->tolerance_mm;
+        const float more = f->at_mm == joint ? 0.0f : NEARER * (float)r->tolerance_mm;
 
         if (!(other.distance_mm + more < f->distance_mm)) {
             return;
@@ -191,7 +464,7 @@ static void walk(const struct route *r, const struct point *x, double from_mm, d
     }
 }
 
-void route_foot(const struct route *r, const struct point *x, double from_mm, double to_mm,
+void route_foot(const struct route *r, const double x[], double from_mm, double to_mm,
                 struct route_foot *f)
 {
     const double at = maths_clamp(f->at_mm, from_mm, to_mm);
@@ -204,17 +477,12 @@ void route_foot(const struct route *r, const struct point *x, double from_mm, do
     }
 }
 
-double route_feed(const struct route *r, double at_mm, uint32_t *hint)
+float route_feed(const struct route *r, double at_mm, uint32_t *hint)
 {
     *hint = route_find(r, at_mm, *hint);
     const struct route_element *e = route_element(r, *hint);
-    const double end_energy = *hint + 1 < r->count ? route_element(r, *hint + 1)->energy : 0.0;
-    const double ahead = maths_max(0.0, end_of(e) - at_mm);
+    const float end_energy = *hint + 1 < r->count ? route_element(r, *hint + 1)->energy : 0.0f;
+    const float ahead = single_max(0.0f, (float)(route_end_of(r, *hint) - at_mm));
 
-    return maths_min(e->feed_mm_s, maths_sqrt(end_energy + 2.0 * e->along_mm_s2 * ahead));
-}
-
-double route_acceleration(const struct route *r, uint32_t index)
-{
-    return route_element(r, index)->along_mm_s2;
+    return single_min(e->feed_mm_s, single_sqrt(end_energy + 2.0f * e->along_mm_s2 * ahead));
 }

@@ -3,7 +3,8 @@
  *
  *     push -> [ element | element | ... ] -> forget
  *
- * Places on it are told by the length from the chain's start, mm (rad where only rotary axes move).
+ * Places on it are told by the length from the chain's start, mm (rad where only rotary axes move). Points have a slot
+ * for every axis the machine has, in the order of the axes; distances are weighted (limits.h).
  */
 #ifndef TAKT_SMOOTH_ROUTE_H
 #define TAKT_SMOOTH_ROUTE_H
@@ -15,32 +16,71 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+/* The axes of the machine, and their limits, by slot. Slots that no axis has are for filling groups of lanes. */
+struct route_slots {
+    unsigned count;
+    unsigned groups; /* of lanes */
+    unsigned char axis[AXIS_COUNT];
+    float weight[SMOOTH_SLOTS_MAX];
+    float velocity_mm_s[SMOOTH_SLOTS_MAX];
+    float acceleration_mm_s2[SMOOTH_SLOTS_MAX];
+    float jerk_mm_s3[SMOOTH_SLOTS_MAX];
+};
+
+/* What a curve has that a line between the same two points does not have; its slope is found from those. */
+struct route_bent {
+    enum curve_kind kind;
+    union {
+        struct curve_arc arc;
+        struct curve_involute involute;
+    };
+};
+
+/* Its start stands in the route's coordinates, its end is the start of the next one. */
 struct route_element {
+    double start_mm;       /* on the route */
+    uint32_t line;         /* of the program */
+    uint32_t number;       /* of the motion */
+    float programmed_mm_s; /* feed; infinite for a rapid */
+    float feed_mm_s;       /* highest nominal feed: programmed, and what its curvature allows */
+    float along_mm_s2;     /* nominal acceleration along it */
+    float energy_cap;      /* highest feed squared at its start, for the corner there, mm2/s2 */
+    float energy;          /* from which everything known that follows can be met */
+    float turn;            /* |change of direction| at its start */
+    unsigned char mode;    /* index among the route's modes */
+    bool bent;
+    bool rotary;               /* its length counts radians */
+    unsigned char bent_number; /* bent elements before it, modulo 256 */
+};
+
+/* Motions that are alike but for where they go and how fast. */
+struct route_mode {
     struct move move;
-    uint32_t number; /* of the motion */
-    struct curve curve;
-    double start_mm;    /* on the route */
-    double feed_mm_s;   /* highest nominal feed: programmed, and what its curvature allows */
-    double along_mm_s2; /* nominal acceleration along it */
-    double energy_cap;  /* highest feed squared at its start, for the corner there, mm2/s2 */
-    double energy;      /* from which everything known that follows can be met */
-    double turn;        /* |change of direction| at its start */
+    unsigned used; /* elements of it */
 };
 
 struct route {
     struct smooth_limits limits;
+    struct route_slots slots;
     double tolerance_mm;
-    uint32_t first; /* elements forgotten so far */
-    uint32_t count; /* elements pushed so far */
+    uint32_t first;                  /* elements forgotten so far */
+    uint32_t count;                  /* elements pushed so far */
+    uint32_t capacity;               /* elements there is room for */
+    unsigned bent_first, bent_count; /* bent ones forgotten, and pushed */
+    double end_mm;
+    double end[AXIS_COUNT]; /* of the newest element; by slot */
+    double start[SMOOTH_COORDINATES_MAX];
     struct route_element element[SMOOTH_ELEMENTS_MAX];
+    struct route_bent bent[SMOOTH_BENT_MAX];
+    struct route_mode mode[SMOOTH_MODES_MAX];
 };
 
 /* A place on the route near to a point. */
 struct route_foot {
-    uint32_t element;   /* index of an element */
-    double at_mm;       /* on the route */
-    double distance_mm; /* weighted (limits.h) */
-    struct point point;
+    uint32_t element;            /* index of an element */
+    double at_mm;                /* on the route */
+    float off[SMOOTH_SLOTS_MAX]; /* from the point to it, weighted */
+    float distance_mm;
 };
 
 void route_init(struct route *r, const struct smooth_limits *limits, double tolerance_mm);
@@ -52,20 +92,30 @@ void route_push(struct route *r, const struct move *move, uint32_t number,
 void route_forget(struct route *r, double at_mm);
 
 const struct route_element *route_element(const struct route *r, uint32_t index);
+/* Its start, by slot. */
+const double *route_start(const struct route *r, uint32_t index);
+double route_end_of(const struct route *r, uint32_t index);
 double route_end(const struct route *r);
+/* The motion it belongs to, but for centres and turns of arcs. */
+void route_move(const struct route *r, uint32_t index, struct move *move);
+/* The programmed feed; infinite for a rapid. */
+float route_programmed(const struct route *r, uint32_t index);
 /* Index of the element at a place; the later one at a joint. hint: an index near by. */
 uint32_t route_find(const struct route *r, double at_mm, uint32_t hint);
-void route_point(const struct route *r, double at_mm, uint32_t *hint, struct point *p);
-/* Unit vectors (weighted) at both sides of the start of an element that is not the first. */
-void route_corner(const struct route *r, uint32_t index, struct point *before, struct point *after);
+void route_point(const struct route *r, double at_mm, uint32_t *hint, double p[]);
+/* Unit vector (weighted) along an element; a place outside is its nearer end. Weighted length for a mm of it. */
+float route_direction(const struct route *r, uint32_t index, double at_mm, float direction[]);
+/* How far from that place to both sides an element leaves its tangent by no more than so much. */
+float route_straight(const struct route *r, uint32_t index, double at_mm, float within_mm);
+/* Those at both sides of the start of an element that is not the first. */
+void route_corner(const struct route *r, uint32_t index, float before[], float after[]);
 /*
  * The nearest place to x between from_mm and to_mm that can be walked to from f->at_mm in f->element without moving
  * away: at a retrace it stays on the branch it is on.
  */
-void route_foot(const struct route *r, const struct point *x, double from_mm, double to_mm,
+void route_foot(const struct route *r, const double x[], double from_mm, double to_mm,
                 struct route_foot *f);
-/* Highest nominal feed at a place, and the acceleration there. */
-double route_feed(const struct route *r, double at_mm, uint32_t *hint);
-double route_acceleration(const struct route *r, uint32_t index);
+/* Highest nominal feed at a place. */
+float route_feed(const struct route *r, double at_mm, uint32_t *hint);
 
 #endif

@@ -1,14 +1,22 @@
 #include "smooth/smooth.h"
 
 #include "base/maths.h"
+#include "smooth/single.h"
 
 #include <assert.h>
 #include <string.h>
 
-/* Rounds of smoothing and timing a window, and iterations of each; a chain's first window begins from nothing. */
-#define ROUNDS       1
-#define ROUNDS_FIRST 4
-#define ITERATIONS   24
+/*
+ * Rounds of smoothing and timing a window, and iterations of each. A chain's first window begins from nothing; for timing
+ * one that goes on fewer are enough than for judging it.
+ */
+#define ROUNDS           1
+#define ROUNDS_FIRST     4
+#define ITERATIONS       16
+#define ITERATIONS_ROUND 13
+
+/* One in so many of the window's pieces is kept each time. */
+#define KEPT_PART 2
 
 /* Lines are merged within this part of the tolerance at most. */
 #define MERGED 0.05
@@ -26,8 +34,18 @@
 /* Part of the tolerance that the chords between setpoints may take, for each axis. */
 #define CHORD_PART 0.1
 
+/* A curve goes on by this part of the tolerance, or of the way at nominal feed, in so many windows, or it never will. */
+#define STALL_PART    0.1
+#define STALL_WINDOWS 2
+
+/* A bent element counts as straight where it leaves its tangent by no more than this part of the tolerance. */
+#define STRAIGHT_PART 0.02f
+
 /* Nominal time between samples, as a part of the time in which the jerk crosses the tolerance, cbrt(P/J). */
 #define INTERVAL_PART 0.7
+
+/* What a microcontroller is ready to give for smoothing. */
+_Static_assert(sizeof(struct smooth) <= 48UL * 1024UL, "too much memory");
 
 void smooth_init(struct smooth *s, const struct smooth_limits *limits)
 {
@@ -125,10 +143,14 @@ static void begin(struct smooth *s, const struct move *move)
     s->stops = false;
     s->starts = true;
     s->standing = 0;
+    s->known_mm = 0.0;
+    s->tried_mm = 0.0;
+    s->tried = 0;
+    s->mark_mm = 0.0;
+    s->idle = 0;
     judge_change(&s->route.limits, &s->change);
     s->merge.open = false;
-    s->window.count = 0;
-    s->window.interval_s = interval_of(&limits, move->tolerance_mm);
+    window_init(&s->window, &s->route, interval_of(&limits, move->tolerance_mm));
 }
 
 /* The newest line will not grow any more. */
@@ -162,17 +184,40 @@ void smooth_finish(struct smooth *s)
     }
 }
 
-/* Is the end known, or so far away that the nominal feed does not feel it yet? */
-static bool is_far_sighted(const struct smooth *s)
+/* Is the nominal feed at a place lower because the route is known no farther than so? */
+static bool feels_end(const struct smooth *s, double at_mm, uint32_t element, double known_mm)
 {
-    const struct window *w = &s->window;
-    const struct route_element *e = route_element(&s->route, w->element[w->count - 1]);
-    const double ahead = route_end(&s->route) - w->at_mm[w->count - 1];
+    const struct route_element *e = route_element(&s->route, element);
+    const float ahead = (float)(known_mm - at_mm);
 
-    if (s->finished || !route_has_room(&s->route)) {
-        return true;
+    return e->feed_mm_s * e->feed_mm_s > 2.0f * e->along_mm_s2 * ahead;
+}
+
+static bool last_feels_end(const struct smooth *s, double known_mm)
+{
+    const unsigned last = s->window.count - 1;
+
+    return feels_end(s, s->window.at_mm[last], s->window.element[last], known_mm);
+}
+
+/* Is the end known, or no more of the route can be? */
+static bool is_all_known(const struct smooth *s)
+{
+    return s->finished || !route_has_room(&s->route);
+}
+
+/* The route has gone on since: samples that were slow before its end only, or that end itself, are taken anew. */
+static void forget_end(struct smooth *s)
+{
+    struct window *w = &s->window;
+
+    if (w->count <= SMOOTH_FIXED || !(s->known_mm < route_end(&s->route))) {
+        return;
     }
-    return !w->at_end && e->feed_mm_s * e->feed_mm_s <= 2.0 * e->along_mm_s2 * ahead;
+    w->at_end = false;
+    while (w->count > SMOOTH_FIXED && last_feels_end(s, s->known_mm)) {
+        w->count--;
+    }
 }
 
 /* Fills the window; false when more of the route must be known first. */
@@ -180,31 +225,31 @@ static bool fill(struct smooth *s)
 {
     struct window *w = &s->window;
 
-    if (s->route.count == 0) {
+    if (s->route.count == 0 ||
+        (!is_all_known(s) && feels_end(s, s->tried_mm, s->tried, route_end(&s->route)))) {
         return false;
     }
     if (w->count == 0) {
         window_start(w, &s->route);
     }
-    /* The route's end was in the window, and it has gone on since. */
-    if (w->at_end && w->at_mm[w->count - 1] < route_end(&s->route)) {
-        w->count = SMOOTH_FIXED;
-        w->at_end = false;
-    }
+    forget_end(s);
     const unsigned before = w->count;
 
     window_extend(w, &s->route);
-    if (!is_far_sighted(s)) {
+    s->tried_mm = w->at_mm[w->count - 1];
+    s->tried = w->element[w->count - 1];
+    if (!is_all_known(s) && (w->at_end || last_feels_end(s, route_end(&s->route)))) {
         w->count = before;
         w->at_end = false;
         return false;
     }
+    s->known_mm = route_end(&s->route);
     return true;
 }
 
-static void relax_and_locate(struct smooth *s)
+static void relax_and_locate(struct smooth *s, unsigned iterations)
 {
-    relax_window(&s->relax, &s->window, &s->route, AIM * s->route.tolerance_mm, ITERATIONS);
+    relax_window(&s->work.relax, &s->window, &s->route, AIM * s->route.tolerance_mm, iterations);
     window_locate(&s->window, &s->route);
 }
 
@@ -214,13 +259,18 @@ static void relax_and_locate(struct smooth *s)
 /* Pieces before one that leaves the tolerance that are tried again with it: what they begin with binds it. */
 #define MARGIN 12
 
+static unsigned kept_most(const struct smooth *s)
+{
+    return s->window.capacity / KEPT_PART;
+}
+
 /* Pieces that should keep the tolerance: more than are kept, so that the next ones can do it as well. */
 static unsigned wanted(const struct smooth *s)
 {
     const unsigned pieces = s->window.count - 3;
+    const unsigned enough = kept_most(s) + MARGIN;
 
-    return s->window.at_end || pieces < SMOOTH_SAMPLES_KEPT + MARGIN ? pieces
-                                                                     : SMOOTH_SAMPLES_KEPT + MARGIN;
+    return s->window.at_end || pieces < enough ? pieces : enough;
 }
 
 static unsigned judged(const struct smooth *s)
@@ -239,26 +289,112 @@ static unsigned kept(const struct smooth *s, unsigned good)
     if (w->at_end && good == w->count - 3) {
         return good;
     }
-    if (good >= SMOOTH_SAMPLES_KEPT + MARGIN) {
-        return SMOOTH_SAMPLES_KEPT;
+    if (good >= kept_most(s) + MARGIN) {
+        return kept_most(s);
     }
     return good > MARGIN ? good - MARGIN : 0;
 }
 
+static void keep_head(struct smooth *s)
+{
+    struct smooth_head *h = &s->head;
+    const struct window *w = &s->window;
+
+    h->proved =
+        s->proved + SMOOTH_FIXED < SMOOTH_HEAD_MAX ? s->proved : SMOOTH_HEAD_MAX - SMOOTH_FIXED;
+    memcpy(h->origin, w->origin, sizeof h->origin);
+    for (unsigned i = 0; i < SMOOTH_HEAD_MAX && i < w->count; i++) {
+        h->at_mm[i] = w->at_mm[i];
+        h->element[i] = w->element[i];
+        for (unsigned g = 0; g < s->route.slots.groups; g++) {
+            h->spot[i].group[g] = w->x[g * w->capacity + i];
+        }
+    }
+}
+
+/* The end of the element, or as far as it is straight, or as an interval at its feed goes. */
+static double next_rest(const struct smooth *s, uint32_t element)
+{
+    const struct window *w = &s->window;
+    const double at = w->at_mm[SMOOTH_FIXED - 1];
+    const float straight =
+        route_straight(&s->route, element, at, STRAIGHT_PART * (float)s->route.tolerance_mm);
+    const float once = route_element(&s->route, element)->feed_mm_s * (float)w->interval_s;
+
+    return maths_min(route_end_of(&s->route, element), at + (double)single_min(straight, once));
+}
+
+/* From rest straight on, and to rest again; in motion to rest right here. */
+static void go_straight(struct smooth *s)
+{
+    struct window *w = &s->window;
+    const unsigned last = SMOOTH_FIXED - 1;
+    uint32_t element = route_find(&s->route, w->at_mm[last], w->element[last]);
+    double at = w->at_mm[last];
+    double p[AXIS_COUNT];
+    struct window_spot spot;
+
+    window_sample(w, &s->route, last, p);
+    if (w->at_mm[0] == at) {
+        at = next_rest(s, element);
+        route_point(&s->route, at, &element, p);
+    }
+    window_nearest(w, &s->route, p, &spot);
+    w->count = 2 * SMOOTH_FIXED;
+    w->at_end = false;
+    for (unsigned i = SMOOTH_FIXED; i < w->count; i++) {
+        w->at_mm[i] = at;
+        w->element[i] = element;
+        window_set(w, &s->route, i, &spot);
+    }
+    s->ready = SMOOTH_FIXED;
+}
+
 /*
  * No way on has been found in motion: what was proved the last time is gone to its end, and come to rest there. From rest,
- * inside the tolerance, every way is open again.
+ * inside the tolerance, every way is open again; and where there seems to be none, straight on is one.
  */
 static void fall_back(struct smooth *s)
 {
-    s->ready = s->before_proved;
+    const struct smooth_head *h = &s->head;
+    struct window *w = &s->window;
+
+    s->ready = h->proved;
     s->proved = 0;
-    s->stops = s->ready > 0;
-    if (s->stops) {
-        s->window = s->before;
-    } else {
-        s->ready = 1;
+    s->stops = true;
+    s->idle = 0;
+    if (s->ready == 0) {
+        go_straight(s);
+        return;
     }
+    memcpy(w->origin, h->origin, sizeof h->origin);
+    w->count = h->proved + SMOOTH_FIXED;
+    w->at_end = false;
+    for (unsigned i = 0; i < w->count; i++) {
+        w->at_mm[i] = h->at_mm[i];
+        w->element[i] = h->element[i];
+        window_set(w, &s->route, i, &h->spot[i]);
+    }
+}
+
+/*
+ * Does the curve stand where it is? Slowed down again and again before a place that it cannot pass, it keeps every limit
+ * and the tolerance there for ever.
+ */
+static bool stands_still(struct smooth *s)
+{
+    const struct window *w = &s->window;
+    const unsigned pieces = STALL_WINDOWS * kept_most(s);
+    const double at_mm = w->at_mm[s->ready];
+    const double feed_mm_s = (double)route_element(&s->route, w->element[s->ready])->feed_mm_s;
+    const double way_mm = maths_min(s->route.tolerance_mm, pieces * w->interval_s * feed_mm_s);
+
+    s->idle += s->ready;
+    if (at_mm > s->mark_mm + STALL_PART * way_mm || w->at_end) {
+        s->mark_mm = at_mm;
+        s->idle = 0;
+    }
+    return s->idle > pieces;
 }
 
 /*
@@ -267,50 +403,66 @@ static void fall_back(struct smooth *s)
  */
 static void smooth_window(struct smooth *s)
 {
-    const unsigned rounds = s->proved > 0 ? ROUNDS : ROUNDS_FIRST;
+    const bool goes_on = s->head.proved > 0;
+    const unsigned rounds = goes_on ? ROUNDS : ROUNDS_FIRST;
     unsigned good = 0;
 
-    s->before = s->window;
-    s->before_proved = s->proved;
     for (unsigned i = 0; i < rounds; i++) {
-        relax_and_locate(s);
-        timing_again(&s->timing, &s->window, &s->route, &s->change);
+        relax_and_locate(s, goes_on ? ITERATIONS_ROUND : ITERATIONS);
+        timing_again(&s->work.timing, &s->window, &s->route, &s->change);
         window_extend(&s->window, &s->route);
     }
-    relax_and_locate(s);
+    relax_and_locate(s, ITERATIONS);
     good = judged(s);
     for (unsigned i = 0; i < ATTEMPTS && good < wanted(s); i++) {
-        timing_slow(&s->timing, &s->window, good);
+        timing_slow(&s->work.timing, &s->window, &s->route, good);
         window_extend(&s->window, &s->route);
-        relax_and_locate(s);
+        relax_and_locate(s, ITERATIONS);
         good = judged(s);
     }
+    s->ends = s->finished && s->window.at_end;
     s->ready = kept(s, good);
     s->proved = good - s->ready;
-    if (s->ready == 0) {
+    if (s->ready == 0 || stands_still(s)) {
         fall_back(s);
     }
 }
 
-static void set_piece(const struct smooth *s, struct smooth_piece *piece)
+/* Control point of a piece; exactly the programmed end where it is that. */
+static void set_control(const struct smooth *s, unsigned i, struct point *control)
+{
+    const struct window *w = &s->window;
+    const bool end = s->ends && w->at_end && i + SMOOTH_FIXED >= w->count;
+    double p[AXIS_COUNT];
+
+    window_sample(w, &s->route, i, p);
+    memset(control, 0, sizeof(*control));
+    for (unsigned k = 0; k < s->route.slots.count; k++) {
+        control->at[s->route.slots.axis[k]] = end ? s->route.end[k] : p[k];
+    }
+}
+
+static void set_piece(struct smooth *s, struct smooth_piece *piece)
 {
     const struct window *w = &s->window;
     const unsigned i = s->taken;
-    const struct route_element *e = route_element(&s->route, w->element[i + 1]);
+    const uint32_t element = w->element[i + 1];
     struct judge_need need;
+    struct judge_rate rate;
 
-    piece->move = &e->move;
-    piece->number = e->number;
+    route_move(&s->route, element, &s->move);
+    piece->move = &s->move;
+    piece->number = route_element(&s->route, element)->number;
     piece->interval_s = w->interval_s;
-    for (int axis = 0; axis < AXIS_COUNT; axis++) {
-        for (unsigned k = 0; k < 4; k++) {
-            piece->control[k].at[axis] = w->x[axis][i + k];
-        }
+    for (unsigned k = 0; k < 4; k++) {
+        set_control(s, i + k, &piece->control[k]);
     }
     judge_need(w, &s->route, i, &need);
-    judge_rate(&need, e, &s->route.limits, &s->change, &piece->rate);
-    piece->change = s->change;
-    piece->rate.most = maths_min(piece->rate.most, 1.0);
+    judge_rate(&need, &s->route, element, &s->change, &rate);
+    piece->rate.most = maths_min((double)rate.most, 1.0);
+    piece->rate.programmed = (double)rate.programmed;
+    piece->change.by = s->change.by;
+    piece->change.rounded = s->change.rounded;
     piece->stop = s->stops && s->taken + 1 == s->ready;
     piece->last = s->finished && w->at_end && i + 4 == w->count;
 }
@@ -355,20 +507,28 @@ static void take_standing(struct smooth *s, struct smooth_piece *piece)
     smooth_reset(s);
 }
 
-/* The window for the next pieces; false when more must be known first. */
-static bool next_window(struct smooth *s)
+/* Pieces that have been taken leave the window, elements that they have passed the route. */
+static void drop_taken(struct smooth *s)
 {
-    window_drop(&s->window, s->taken);
+    window_drop(&s->window, &s->route, s->taken);
     s->taken = 0;
     s->ready = 0;
     if (s->stops) {
-        window_rest(&s->window);
+        window_rest(&s->window, &s->route);
         s->stops = false;
         s->starts = true;
+        s->proved = 0;
     }
     if (s->window.count > 0) {
         route_forget(&s->route, s->window.at_mm[0]);
     }
+}
+
+/* The window for the next pieces; false when more must be known first. */
+static bool next_window(struct smooth *s)
+{
+    drop_taken(s);
+    keep_head(s);
     if (!fill(s)) {
         return false;
     }

@@ -16,17 +16,40 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+/* How fast nominal time may pass on a piece. */
+struct smooth_rate {
+    double most;       /* by the axes' limits: never exceeded */
+    double programmed; /* at the programmed feed; infinite for a rapid */
+};
+
+/* How fast the rate of nominal time may change on a piece: 1/s, 1/s2. */
+struct smooth_change {
+    double by;
+    double rounded;
+};
+
 /* A piece of curve: x(f) = sum of b_k(f) control[k], f = 0 ... 1 in interval_s of nominal time (window.h). */
 struct smooth_piece {
     const struct move *move; /* the motion it belongs to; valid until the next call */
     uint32_t number;         /* of that motion */
     struct point control[4];
     double interval_s;
-    struct judge_rate rate;
-    struct judge_change change; /* the same in all pieces of a chain */
+    struct smooth_rate rate;
+    struct smooth_change change; /* the same in all pieces of a chain in which the axes move */
     bool
         stop; /* comes to rest at its end, though the chain goes on: no way on was found in motion */
     bool last; /* of the chain: ends at rest, in the end of the last motion */
+};
+
+/* Samples at the window's beginning as they were proved, to fall back on. */
+#define SMOOTH_HEAD_MAX 16
+
+struct smooth_head {
+    unsigned proved; /* pieces */
+    double origin[AXIS_COUNT];
+    double at_mm[SMOOTH_HEAD_MAX];
+    uint32_t element[SMOOTH_HEAD_MAX];
+    struct window_spot spot[SMOOTH_HEAD_MAX];
 };
 
 struct smooth {
@@ -34,18 +57,26 @@ struct smooth {
     struct merge merge; /* the newest line, not on the route yet */
     struct route route;
     struct window window;
-    struct window before; /* as the last time left it */
-    struct relax relax;
-    struct timing timing;
+    struct smooth_head head;
+    union {
+        struct relax relax;
+        struct timing timing;
+    } work;
     struct judge_change change;
-    unsigned proved; /* pieces at the window's beginning that keep the tolerance, as they were */
-    unsigned before_proved;
+    struct move move;  /* of the piece taken last */
+    unsigned proved;   /* pieces at the window's beginning that keep the tolerance, as they were */
+    double known_mm;   /* end of the route when the window was filled */
+    double tried_mm;   /* place its last sample had when the route was not known far enough yet, */
+    uint32_t tried;    /* and the element there */
+    double mark_mm;    /* place on the route that the curve had come to when it went on last, */
+    unsigned idle;     /* and pieces kept since then */
     unsigned standing; /* pieces that are still to come, in which the axes stand */
     bool starts;       /* the next piece begins at rest */
     bool
         leaves; /* after those the chain goes on; else they end it, or the part of it before a stop */
     struct smooth_piece stand;
     bool stops;     /* the last of the ready ones is a stop */
+    bool ends;      /* the window's end is that of the chain */
     bool open;      /* a chain has begun and not been taken to its end */
     bool finished;  /* nothing follows in this chain */
     unsigned ready; /* pieces that may be taken */

@@ -7,9 +7,10 @@
 #include "smooth/judge.h"
 #include "smooth/window.h"
 
+/* Working memory; holds nothing between calls. */
 struct timing {
-    double rate[SMOOTH_SAMPLES_MAX]; /* of each piece */
-    double least[SMOOTH_SAMPLES_MAX];
+    float rate[SMOOTH_SAMPLES_MAX]; /* of each piece */
+    float least[SMOOTH_SAMPLES_MAX];
     struct window window; /* the one before */
 };
 
@@ -17,6 +18,6 @@ struct timing {
 void timing_again(struct timing *t, struct window *w, const struct route *r,
                   const struct judge_change *change);
 /* Everything about a piece, and before it, takes longer: nothing else helped. */
-void timing_slow(struct timing *t, struct window *w, unsigned piece);
+void timing_slow(struct timing *t, struct window *w, const struct route *r, unsigned piece);
 
 #endif

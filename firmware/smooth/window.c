@@ -1,6 +1,6 @@
 #include "smooth/window.h"
 
-#include "base/maths.h"
+#include "smooth/single.h"
 
 #include <assert.h>
 #include <string.h>
@@ -10,34 +10,101 @@
 #define REACH_MIN_MM 0.01
 
 /* A corner that turns by more than this must be passed by the curve before its samples are beyond it. */
-#define SHARP 0.2
+#define SHARP 0.2f
 
 /* So many tolerances from a corner is near it: the chord of two samples cannot tell more. */
-#define NEAR_CORNER 3.0
+#define NEAR_CORNER 3.0f
+
+/* A window as long as the fastest feed makes it takes so many units; coordinates may be a few times that. */
+#define UNITS 268435456.0
+
+/* Coordinates are never farther from the origin. */
+#define UNITS_MAX 1073741824.0
 
 /* b0 = (1-f)^3/6, b1 = (4 - 6f^2 + 3f^3)/6, b2 = (1 + 3f + 3f^2 - 3f^3)/6, b3 = f^3/6 (uniform cubic B-spline). */
-void window_weights(double f, double weight[4])
+void window_weights(float f, float weight[4])
 {
-    const double g = 1.0 - f;
+    const float g = 1.0f - f;
 
-    weight[0] = g * g * g / 6.0;
-    weight[1] = (4.0 - 6.0 * f * f + 3.0 * f * f * f) / 6.0;
-    weight[2] = (4.0 - 6.0 * g * g + 3.0 * g * g * g) / 6.0;
-    weight[3] = f * f * f / 6.0;
+    weight[0] = g * g * g * (1.0f / 6.0f);
+    weight[1] = 2.0f / 3.0f - f * f * (1.0f - 0.5f * f);
+    weight[2] = 2.0f / 3.0f - g * g * (1.0f - 0.5f * g);
+    weight[3] = f * f * f * (1.0f / 6.0f);
+}
+
+/* The largest power of two of which UNITS are at least this long. */
+static double unit_for(double length_mm)
+{
+    double unit = 1.0;
+
+    while (unit * UNITS > length_mm) {
+        unit *= 0.5;
+    }
+    while (unit * UNITS < length_mm) {
+        unit *= 2.0;
+    }
+    return unit;
+}
+
+void window_init(struct window *w, const struct route *r, double interval_s)
+{
+    w->count = 0;
+    w->at_end = false;
+    w->capacity = SMOOTH_SAMPLES_MAX / r->slots.groups;
+    w->interval_s = interval_s;
+    memset(w->x, 0, sizeof w->x);
+    memset(w->weighted_unit_mm, 0, sizeof w->weighted_unit_mm);
+    for (unsigned i = 0; i < r->slots.count; i++) {
+        w->unit_mm[i] =
+            unit_for((double)(r->slots.velocity_mm_s[i] * (float)w->capacity) * interval_s);
+        w->weighted_unit_mm[i] = r->slots.weight[i] * (float)w->unit_mm[i];
+    }
+}
+
+void window_nearest(const struct window *w, const struct route *r, const double p[],
+                    struct window_spot *s)
+{
+    memset(s, 0, sizeof(*s));
+    for (unsigned i = 0; i < r->slots.count; i++) {
+        const double u = maths_clamp((p[i] - w->origin[i]) / w->unit_mm[i], -UNITS_MAX, UNITS_MAX);
+
+        s->at[i] = (int32_t)(u < 0.0 ? u - 0.5 : u + 0.5);
+    }
+}
+
+void window_place(const struct window *w, const struct route *r, const struct window_spot *s,
+                  double p[])
+{
+    for (unsigned i = 0; i < r->slots.count; i++) {
+        p[i] = w->origin[i] + w->unit_mm[i] * (double)s->at[i];
+    }
+}
+
+void window_set(struct window *w, const struct route *r, unsigned i, const struct window_spot *s)
+{
+    for (unsigned g = 0; g < r->slots.groups; g++) {
+        w->x[g * w->capacity + i] = s->group[g];
+    }
+}
+
+void window_sample(const struct window *w, const struct route *r, unsigned i, double p[])
+{
+    for (unsigned k = 0; k < r->slots.count; k++) {
+        p[k] = w->origin[k] + w->unit_mm[k] * (double)window_x(w, k, i);
+    }
 }
 
 static void append(struct window *w, const struct route *r, double at_mm)
 {
     const unsigned i = w->count;
-    uint32_t element = i == 0 ? r->first : w->element[i - 1];
-    struct point p;
+    struct window_spot spot;
+    double p[AXIS_COUNT];
 
-    route_point(r, at_mm, &element, &p);
     w->at_mm[i] = at_mm;
-    w->element[i] = element;
-    for (int axis = 0; axis < AXIS_COUNT; axis++) {
-        w->x[axis][i] = p.at[axis];
-    }
+    w->element[i] = i == 0 ? r->first : w->element[i - 1];
+    route_point(r, at_mm, &w->element[i], p);
+    window_nearest(w, r, p, &spot);
+    window_set(w, r, i, &spot);
     w->count++;
 }
 
@@ -45,26 +112,32 @@ void window_start(struct window *w, const struct route *r)
 {
     w->count = 0;
     w->at_end = false;
+    memcpy(w->origin, route_start(r, r->first), r->slots.count * sizeof w->origin[0]);
     for (unsigned i = 0; i < SMOOTH_FIXED; i++) {
         append(w, r, 0.0);
     }
 }
 
-void window_rest(struct window *w)
+/* The spline at sample 1 is x[1] + (x[0] - 2 x[1] + x[2])/6, exactly x[1] where it rests already: the new origin. */
+void window_rest(struct window *w, const struct route *r)
 {
-    struct point p;
-    const double at = window_at(w, 0, 0.0);
+    const double at = w->at_mm[1] + (w->at_mm[0] - 2.0 * w->at_mm[1] + w->at_mm[2]) / 6.0;
     const uint32_t element = w->element[1];
+    double p[3][AXIS_COUNT];
+    static const struct window_spot nowhere;
 
-    window_point(w, 0, 0.0, &p);
+    for (unsigned i = 0; i < SMOOTH_FIXED; i++) {
+        window_sample(w, r, i, p[i]);
+    }
+    for (unsigned k = 0; k < r->slots.count; k++) {
+        w->origin[k] = p[1][k] + (p[0][k] - 2.0 * p[1][k] + p[2][k]) / 6.0;
+    }
     w->at_end = false;
     w->count = SMOOTH_FIXED;
-    for (unsigned i = 0; i < w->count; i++) {
+    for (unsigned i = 0; i < SMOOTH_FIXED; i++) {
         w->at_mm[i] = at;
         w->element[i] = element;
-        for (int axis = 0; axis < AXIS_COUNT; axis++) {
-            w->x[axis][i] = p.at[axis];
-        }
+        window_set(w, r, i, &nowhere);
     }
 }
 
@@ -73,21 +146,22 @@ static double next_place(const struct window *w, const struct route *r)
 {
     const unsigned last = w->count - 1;
     const double here = w->at_mm[last];
-    const double moved = (here - w->at_mm[last - 1]) / w->interval_s;
+    const float interval = (float)w->interval_s;
+    const float moved = (float)(here - w->at_mm[last - 1]) / interval;
     uint32_t hint = w->element[last];
-    const double along = route_acceleration(r, hint);
-    double feed = moved + along * w->interval_s;
+    const float along = route_element(r, hint)->along_mm_s2;
+    float feed = moved + along * interval;
 
-    feed = maths_min(feed, route_feed(r, here, &hint) + 0.5 * along * w->interval_s);
-    feed = maths_min(feed, route_feed(r, here + feed * w->interval_s, &hint));
-    return here + maths_max(feed, 0.25 * along * w->interval_s) * w->interval_s;
+    feed = single_min(feed, route_feed(r, here, &hint) + 0.5f * along * interval);
+    feed = single_min(feed, route_feed(r, here + (double)(feed * interval), &hint));
+    return here + (double)(single_max(feed, 0.25f * along * interval) * interval);
 }
 
 void window_extend(struct window *w, const struct route *r)
 {
     const double end = route_end(r);
 
-    while (!w->at_end && w->count + SMOOTH_FIXED <= SMOOTH_SAMPLES_MAX) {
+    while (!w->at_end && w->count + SMOOTH_FIXED <= w->capacity) {
         const double at = next_place(w, r);
 
         if (at < end) {
@@ -101,36 +175,67 @@ void window_extend(struct window *w, const struct route *r)
     }
 }
 
-void window_drop(struct window *w, unsigned count)
+/* The origin goes along, so that coordinates stay small. */
+static void move_origin(struct window *w, const struct route *r)
+{
+    for (unsigned k = 0; k < r->slots.count; k++) {
+        const int32_t by = window_x(w, k, 0);
+        lanes_int *x = &w->x[(size_t)(k / SMOOTH_LANES) * w->capacity];
+
+        w->origin[k] += w->unit_mm[k] * (double)by;
+        for (unsigned i = 0; i < w->count; i++) {
+            x[i][k % SMOOTH_LANES] -= by;
+        }
+    }
+}
+
+void window_drop(struct window *w, const struct route *r, unsigned count)
 {
     assert(count <= w->count);
+    if (count == 0) {
+        return;
+    }
     w->count -= count;
     memmove(w->at_mm, w->at_mm + count, w->count * sizeof w->at_mm[0]);
     memmove(w->element, w->element + count, w->count * sizeof w->element[0]);
-    for (int axis = 0; axis < AXIS_COUNT; axis++) {
-        memmove(w->x[axis], w->x[axis] + count, w->count * sizeof w->x[axis][0]);
+    for (unsigned g = 0; g < r->slots.groups; g++) {
+        memmove(&w->x[(size_t)g * w->capacity], &w->x[g * w->capacity + count],
+                w->count * sizeof w->x[0]);
+    }
+    if (w->count > 0) {
+        move_origin(w, r);
     }
 }
 
-void window_point(const struct window *w, unsigned i, double f, struct point *p)
+/* The nearest integers, halves away from zero; |x| < 2^31. */
+static lanes_int nearest(lanes x)
 {
-    double weight[4];
+    static const lanes half = {0.5f, 0.5f, 0.5f, 0.5f};
+    static const lanes_int sign = {INT32_MIN, INT32_MIN, INT32_MIN, INT32_MIN};
 
-    window_weights(f, weight);
-    for (int axis = 0; axis < AXIS_COUNT; axis++) {
-        const double *x = w->x[axis] + i;
+    return lanes_int_of(x + (lanes)(((lanes_int)x & sign) | (lanes_int)half));
+}
 
-        p->at[axis] = weight[0] * x[0] + weight[1] * x[1] + weight[2] * x[2] + weight[3] * x[3];
+void window_spot(const struct window *w, const struct route *r, unsigned i, const float weight[4],
+                 struct window_spot *s)
+{
+    memset(s, 0, sizeof(*s));
+    for (unsigned g = 0; g < r->slots.groups; g++) {
+        const lanes_int *x = &w->x[g * w->capacity + i];
+        const lanes off = weight[0] * lanes_of(x[0] - x[1]) + weight[2] * lanes_of(x[2] - x[1]) +
+                          weight[3] * lanes_of(x[3] - x[1]);
+
+        s->group[g] = x[1] + nearest(off);
     }
 }
 
-double window_at(const struct window *w, unsigned i, double f)
+double window_at(const struct window *w, unsigned i, const float weight[4])
 {
     const double *at = w->at_mm + i;
-    double weight[4];
 
-    window_weights(f, weight);
-    return weight[0] * at[0] + weight[1] * at[1] + weight[2] * at[2] + weight[3] * at[3];
+    return at[1] +
+           (double)(weight[0] * (float)(at[0] - at[1]) + weight[2] * (float)(at[2] - at[1]) +
+                    weight[3] * (float)(at[3] - at[1]));
 }
 
 void window_reach(const struct window *w, unsigned i, double *from_mm, double *to_mm)
@@ -141,29 +246,41 @@ void window_reach(const struct window *w, unsigned i, double *from_mm, double *t
     *to_mm = w->at_mm[i] + reach;
 }
 
-/* Does the curve pass a corner between sample i - 1 and i, as far as their chord can tell? */
-static bool passes_near(const struct point *from, const struct point *to,
-                        const struct point *corner, double tolerance_mm)
+float window_chord_square(const struct window *w, const struct route *r, uint32_t element,
+                          const struct window_spot *from, const struct window_spot *to)
 {
-    double dot = 0.0;
-    double square = 0.0;
-    double rest = 0.0;
+    const double *corner = route_start(r, element);
+    float chord[AXIS_COUNT];
+    float off[AXIS_COUNT];
+    float dot = 0.0f;
+    float square = 0.0f;
+    float rest = 0.0f;
 
-    for (int i = 0; i < AXIS_COUNT; i++) {
-        const double d = smooth_weight(i) * (to->at[i] - from->at[i]);
+    for (unsigned i = 0; i < r->slots.count; i++) {
+        const double here = w->origin[i] + w->unit_mm[i] * (double)from->at[i];
 
-        dot += smooth_weight(i) * (corner->at[i] - from->at[i]) * d;
-        square += d * d;
+        chord[i] = w->weighted_unit_mm[i] * (float)(to->at[i] - from->at[i]);
+        off[i] = r->slots.weight[i] * (float)(corner[i] - here);
+        dot += off[i] * chord[i];
+        square += chord[i] * chord[i];
     }
-    const double part = square > 0.0 ? maths_clamp(dot / square, 0.0, 1.0) : 0.0;
+    const float part = square > 0.0f ? single_clamp(dot / square, 0.0f, 1.0f) : 0.0f;
 
-    for (int i = 0; i < AXIS_COUNT; i++) {
-        const double d =
-            smooth_weight(i) * (corner->at[i] - from->at[i] - part * (to->at[i] - from->at[i]));
+    for (unsigned i = 0; i < r->slots.count; i++) {
+        const float d = off[i] - part * chord[i];
 
         rest += d * d;
     }
-    return rest <= NEAR_CORNER * NEAR_CORNER * tolerance_mm * tolerance_mm;
+    return rest;
+}
+
+/* Does the curve pass a corner between two samples, as far as their chord can tell? */
+static bool passes_near(const struct window *w, const struct route *r, uint32_t element,
+                        const struct window_spot *from, const struct window_spot *to)
+{
+    const float near_mm = NEAR_CORNER * (float)r->tolerance_mm;
+
+    return window_chord_square(w, r, element, from, to) <= near_mm * near_mm;
 }
 
 /*
@@ -171,18 +288,13 @@ static bool passes_near(const struct point *from, const struct point *to,
  * be nearer to the far side while it is still on its way to the corner.
  */
 static void stop_at_corner(const struct window *w, const struct route *r, unsigned i,
-                           const struct point *here, struct route_foot *foot)
+                           const struct window_spot *before, const struct window_spot *here,
+                           struct route_foot *foot)
 {
-    struct point before;
-
-    window_point(w, i - 2, 0.0, &before);
     for (uint32_t e = w->element[i - 1] + 1; e <= foot->element; e++) {
-        const struct route_element *next = route_element(r, e);
-
-        if (next->turn > SHARP &&
-            !passes_near(&before, here, &next->curve.start, r->tolerance_mm)) {
+        if (route_element(r, e)->turn > SHARP && !passes_near(w, r, e, before, here)) {
             foot->element = e - 1;
-            foot->at_mm = next->start_mm;
+            foot->at_mm = route_element(r, e)->start_mm;
             return;
         }
     }
@@ -191,17 +303,24 @@ static void stop_at_corner(const struct window *w, const struct route *r, unsign
 /* Fixed samples have their place already; places never go back. */
 void window_locate(struct window *w, const struct route *r)
 {
+    static const float at_sample[4] = {1.0f / 6.0f, 4.0f / 6.0f, 1.0f / 6.0f, 0.0f};
+    struct window_spot before;
+
+    window_spot(w, r, SMOOTH_FIXED - 2, at_sample, &before);
     for (unsigned i = SMOOTH_FIXED; i + SMOOTH_FIXED < w->count; i++) {
         struct route_foot foot = {.element = w->element[i], .at_mm = w->at_mm[i]};
+        struct window_spot here;
         double from;
         double to;
-        struct point p;
+        double p[AXIS_COUNT];
 
         window_reach(w, i, &from, &to);
-        window_point(w, i - 1, 0.0, &p);
-        route_foot(r, &p, maths_max(from, w->at_mm[i - 1]), maths_max(to, w->at_mm[i - 1]), &foot);
-        stop_at_corner(w, r, i, &p, &foot);
+        window_spot(w, r, i - 1, at_sample, &here);
+        window_place(w, r, &here, p);
+        route_foot(r, p, maths_max(from, w->at_mm[i - 1]), maths_max(to, w->at_mm[i - 1]), &foot);
+        stop_at_corner(w, r, i, &before, &here, &foot);
         w->at_mm[i] = foot.at_mm;
         w->element[i] = foot.element;
+        before = here;
     }
 }

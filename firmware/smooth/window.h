@@ -3,6 +3,10 @@
  *
  *     q(u) = sum of b_k(f) x[i + k], k = 0..3, for u = i + 1 + f: the piece i lies between samples i + 1 and i + 2
  *
+ * Coordinates are integers: so many units from the window's origin, a unit being a power of two that is small enough for
+ * differences of every order to be exact. What is handed on is rounded in this way once and for all, so pieces of
+ * different windows fit together.
+ *
  * at_mm tells where on the route the curve is beside each sample. The first SMOOTH_FIXED samples are kept for good, the
  * last ones as well while they are in the window.
  */
@@ -15,28 +19,61 @@
 
 struct window {
     unsigned count;
+    unsigned capacity;
     bool at_end; /* its last samples are the end of the route, where the path comes to rest */
     double interval_s;
+    double origin[AXIS_COUNT];                /* by slot, mm */
+    double unit_mm[AXIS_COUNT];               /* by slot */
+    float weighted_unit_mm[SMOOTH_SLOTS_MAX]; /* what it counts in a distance (limits.h) */
     double at_mm[SMOOTH_SAMPLES_MAX];
     uint32_t element[SMOOTH_SAMPLES_MAX]; /* of the route, at at_mm */
-    double x[AXIS_COUNT][SMOOTH_SAMPLES_MAX];
+    lanes_int x[SMOOTH_SAMPLES_MAX];      /* one group of lanes after the other */
 };
 
-/* Weights of four neighbours at fraction f of a piece; first derivative by f. */
-void window_weights(double f, double weight[4]);
+/* Where a sample, or a place of the curve, is: units from the origin, by slot; 0 in lanes that no slot has. */
+struct window_spot {
+    union {
+        int32_t at[SMOOTH_SLOTS_MAX];
+        lanes_int group[SMOOTH_GROUPS_MAX];
+    };
+};
 
+/* Weights of four neighbours at fraction f of a piece. */
+void window_weights(float f, float weight[4]);
+
+/* Sets sizes and units for a chain on this route. Empty. */
+void window_init(struct window *w, const struct route *r, double interval_s);
 /* Begins at rest at the start of the route. */
 void window_start(struct window *w, const struct route *r);
 /* Begins anew at rest where the curve has come to: at the end of its first three samples. */
-void window_rest(struct window *w);
+void window_rest(struct window *w, const struct route *r);
 /* Appends samples at the nominal feed until the window is full or the route's end is in it. */
 void window_extend(struct window *w, const struct route *r);
 /* Drops the oldest samples. */
-void window_drop(struct window *w, unsigned count);
-/* The curve at fraction f of the piece that begins with sample i, and where that is on the route. */
-void window_point(const struct window *w, unsigned i, double f, struct point *p);
-double window_at(const struct window *w, unsigned i, double f);
-/* Finds every sample's place on the route anew, from the curve beside it. */
+void window_drop(struct window *w, const struct route *r, unsigned count);
+
+/* Coordinates of sample i from slot to slot: lane slot % SMOOTH_LANES of group slot / SMOOTH_LANES. */
+static inline int32_t window_x(const struct window *w, unsigned slot, unsigned i)
+{
+    return w->x[slot / SMOOTH_LANES * w->capacity + i][slot % SMOOTH_LANES];
+}
+
+void window_set(struct window *w, const struct route *r, unsigned i, const struct window_spot *s);
+/* A sample in mm. */
+void window_sample(const struct window *w, const struct route *r, unsigned i, double p[]);
+/* The curve at a piece's fraction that has these weights, and where that is on the route. */
+void window_spot(const struct window *w, const struct route *r, unsigned i, const float weight[4],
+                 struct window_spot *s);
+double window_at(const struct window *w, unsigned i, const float weight[4]);
+/* A spot in mm; a place in mm as the nearest spot. */
+void window_place(const struct window *w, const struct route *r, const struct window_spot *s,
+                  double p[]);
+void window_nearest(const struct window *w, const struct route *r, const double p[],
+                    struct window_spot *s);
+/* Square of the distance of the start of an element from the chord between two spots, weighted. */
+float window_chord_square(const struct window *w, const struct route *r, uint32_t element,
+                          const struct window_spot *from, const struct window_spot *to);
+/* The curve beside every sample: its place on the route anew. */
 void window_locate(struct window *w, const struct route *r);
 
 /* How far a sample may be from where it was thought to be, along the route. */

@@ -1,6 +1,7 @@
 #include "storage/settings_tables.h"
 
 #include "base/maths.h"
+#include "correction/grid_bound.h"
 #include "correction/grid_patch.h"
 #include "storage/little_words.h"
 
@@ -99,19 +100,23 @@ static bool take_input(const uint8_t *bytes, unsigned i, const struct table_rule
     const uint8_t *range = bytes + RANGES + (size_t)RANGE_BYTES * i;
     const uint32_t axis = little_get32(place);
     const uint32_t points = little_get32(place + 4);
+    const double first_mm = get_double(range);
+    const double per_mm = get_double(range + 8);
 
-    if (!has_axis(rules, axis) || points < 2 || points > TABLE_KNOTS_MAX)
+    if (!has_axis(rules, axis) || points < 2 || points > TABLE_KNOTS_MAX ||
+        !maths_is_finite(first_mm) || !maths_is_finite(per_mm) || !(per_mm > 0.0))
         return false;
     *input = (struct grid_input){
         .axis = (uint8_t)axis,
         .points = (uint16_t)points,
         .last_cell = points - 2,
-        .first_mm = get_double(range),
-        .per_mm = get_double(range + 8),
+        .first_mm = first_mm,
+        .per_mm = per_mm,
         .last = points - 1,
+        .steps_per_mm = (float)per_mm,
+        .mm_per_step = (float)(1.0 / per_mm),
     };
-    return maths_is_finite(input->first_mm) && maths_is_finite(input->per_mm) &&
-           input->per_mm > 0.0;
+    return true;
 }
 
 static bool take_inputs(const uint8_t *bytes, const struct table_rules *rules, struct grid *grid)
@@ -235,9 +240,13 @@ const char *settings_volume_take(const uint8_t *bytes, uint32_t size,
     }
     grid->coefficient = (const float *)(const void *)(bytes + COEFFICIENTS);
     wrong = check_points(grid, rules);
-    grid->reach = wrong == NULL ? grid_patch_reach(grid) : 0.0F;
-    grid->inputs = wrong == NULL ? grid->inputs : 0;
-    return wrong;
+    if (wrong != NULL) {
+        grid->inputs = 0;
+        return wrong;
+    }
+    grid_bound_all(grid);
+    grid->reach = grid_patch_reach(grid);
+    return NULL;
 }
 
 /* ---- tables over one axis ---- */

@@ -35,6 +35,9 @@ struct angle_ahead angle_look_ahead(const struct angle *a, double cycles)
 
 void angle_measure(struct angle *a, double measured_rev)
 {
+    if (a->begun && measured_rev == a->rev && a->speed == 0.0 && a->acceleration == 0.0) {
+        return; /* it stands, as it did */
+    }
     const struct angle_ahead expected = angle_look_ahead(a, 1.0);
     const double off = measured_rev - expected.rev;
 

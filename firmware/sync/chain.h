@@ -20,14 +20,14 @@ struct chain_leg {
 };
 
 struct chain {
-    const struct path *path;
+    struct path *path;
     struct brake_limits limits; /* of its first block: the others can do as much */
     uint32_t last;              /* the newest block that belongs to it */
     double end_mm;              /* where that ends */
 };
 
 /* The path's oldest block begins a chain. */
-void chain_begin(struct chain *c, const struct path *path);
+void chain_begin(struct chain *c, struct path *path);
 
 /* Takes in blocks that have come since. A few each time. */
 void chain_extend(struct chain *c);

@@ -92,7 +92,7 @@ static struct lock_view view(const struct lock *l, double cycles)
 /* Axes and spindle stop, and the program ends when the axes stand. */
 static void fail(struct lock *l, enum takt_error code, double value, double limit)
 {
-    const struct block *b = path_at(l->chain.path, l->chain.path->first);
+    const struct block *b = path_first(l->chain.path);
 
     diagnostic_set(&l->alarm, code, b->move.line, 0, "", 0, value);
     diagnostic_set_limit(&l->alarm, limit);
@@ -116,7 +116,7 @@ static double bandwidth_of(const struct lock *l)
 
 static void begin(struct lock *l, double commanded_rpm)
 {
-    const struct block *b = path_at(l->chain.path, l->chain.path->first);
+    const struct block *b = path_first(l->chain.path);
 
     follower_start(&l->follower, &l->chain.limits);
     l->at = chain_first_leg(&l->chain, 0.0);
@@ -138,14 +138,14 @@ static void begin(struct lock *l, double commanded_rpm)
 static bool can_begin(const struct motion *m)
 {
     const struct path *path = m->path;
-    const bool taps = path_at(path, path->first)->move.kind == MOVE_TAP;
+    const bool taps = path_kind(path, path->first) == MOVE_TAP;
 
     return m->passed_first == path->first && (!taps || path->closed - path->first >= 2);
 }
 
 static double out_ratio(const struct lock *l)
 {
-    return path_at(l->chain.path, l->chain.path->first + 1)->move.speed_ratio;
+    return path_read(l->chain.path, l->chain.path->first + 1)->move.speed_ratio;
 }
 
 static bool is_turning(const struct lock *l)
@@ -434,7 +434,7 @@ static bool has_landed(const struct lock *l)
 /* From the start of the block the setpoint is in: its line is straight. */
 static void set_point(const struct lock *l, struct point *at)
 {
-    const struct block *b = path_at(l->chain.path, l->chain.path->first);
+    const struct block *b = path_first(l->chain.path);
     const double x = l->follower.at.x_mm;
     const double way = l->taps ? (l->out ? l->chain.end_mm - x : x) : x - l->at.start_mm;
 
@@ -451,7 +451,7 @@ static void report(struct lock *l, struct motion *m, double before_mm, struct cy
     const double feed = maths_abs(l->follower.at.x_mm - before_mm) / l->config.cycle_s;
     struct point at;
 
-    at = landed ? path_at(m->path, m->path->first)->curve.end : m->at;
+    at = landed ? path_first(m->path)->curve.end : m->at;
     if (l->phase == LOCK_FOLLOWS && !landed) {
         set_point(l, &at);
     }

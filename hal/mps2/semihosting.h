@@ -9,7 +9,8 @@
 #include <stddef.h>
 #include <stdint.h>
 
-enum semihosting_mode { SEMIHOSTING_READ = 1, SEMIHOSTING_WRITE = 5 };
+/* UPDATE: of a file that exists, for reading and writing anywhere in it. */
+enum semihosting_mode { SEMIHOSTING_READ = 1, SEMIHOSTING_UPDATE = 3, SEMIHOSTING_WRITE = 5 };
 
 /* A handle; -1: it cannot be opened. */
 int semihosting_open(const char *path, enum semihosting_mode mode);

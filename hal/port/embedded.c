@@ -144,6 +144,7 @@ static void init_service(struct embedded *e)
         .parameters = &e->parameters,
         .correction = config->correction,
         .programs = {text_queue_open, text_queue_adopt, &e->queue},
+        .plans = plan_queue_get_plans(&e->plan),
     };
 
     parameters_clear(&e->parameters);
@@ -156,6 +157,7 @@ static void init_panel(struct embedded *e)
         .port = {.look = look, .order = order, .alive = hear, .context = e},
         .store = text_queue_get_store(&e->queue),
         .settings = e->config.settings,
+        .plans = plan_queue_get_store(&e->plan),
         .password = e->config.password,
     };
     struct modbus_map map;
@@ -173,6 +175,7 @@ void embedded_init(struct embedded *e, const struct embedded_config *config)
     e->cycle_min_ns = UINT32_MAX;
     e->logged_state = PANEL_STATES;
     text_queue_init(&e->queue);
+    plan_queue_init(&e->plan, &e->service);
     init_service(e);
     init_panel(e);
     e->config.port.log(e->config.port.context, config->name);

@@ -15,6 +15,7 @@
 #include "modbus/rtu.h"
 #include "panel/panel.h"
 #include "port/line_ring.h"
+#include "port/plan_queue.h"
 #include "port/text_queue.h"
 #include "service/service.h"
 
@@ -66,6 +67,7 @@ struct embedded {
     struct line_ring received; /* on the panel's line */
     uint32_t line_us;          /* the latest time known of it */
     struct text_queue queue;
+    struct plan_queue plan;
     bool refused;
     struct diagnostic refusal;
     volatile uint32_t cycles; /* begun since power-on */

@@ -35,17 +35,15 @@
 #define HELPER __attribute__((pcs("aapcs")))
 
 HELPER double __real___aeabi_dadd(double a, double b);
-HELPER double __wrap___aeabi_dadd(double a, double b);
-HELPER double __wrap___aeabi_dsub(double a, double b);
-HELPER double __wrap___aeabi_drsub(double a, double b);
+HELPER double soft_double_add(double a, double b);
 HELPER double __real___aeabi_ddiv(double a, double b);
 HELPER double __wrap___aeabi_ddiv(double a, double b);
 double sqrt(double value);
 HELPER int __wrap___aeabi_dcmpeq(double a, double b);
-HELPER int __wrap___aeabi_dcmplt(double a, double b);
-HELPER int __wrap___aeabi_dcmple(double a, double b);
-HELPER int __wrap___aeabi_dcmpge(double a, double b);
-HELPER int __wrap___aeabi_dcmpgt(double a, double b);
+HELPER int soft_double_is_less(double a, double b);
+HELPER int soft_double_is_not_more(double a, double b);
+HELPER int soft_double_is_not_less(double a, double b);
+HELPER int soft_double_is_more(double a, double b);
 
 static uint64_t bits_of(double value)
 {
@@ -154,50 +152,19 @@ static double sum_of(uint64_t a, uint64_t b)
     return round_sum(a & SIGN_BIT, exponent, sum);
 }
 
-/*
- * libgcc loses a bit where a difference falls below the power of two under its larger number, which then has a fraction
- * near 0, and no more than that bit. So it adds, and subtracts where both fractions are larger than 2^-20: in half the
- * instructions.
- */
-#define NEAR_POWER_MASK 0xFFFFF00000000ULL
-
-static bool may_fall(uint64_t bits)
-{
-    return (bits & NEAR_POWER_MASK) == 0;
-}
-
 static bool is_finite(uint64_t bits)
 {
     return exponent_of(bits) != EXPONENT_MASK;
 }
 
-static double add_finite(uint64_t a, uint64_t b)
-{
-    return a << 1 >= b << 1 ? sum_of(a, b) : sum_of(b, a);
-}
-
-/* Is libgcc's sum of these not to be trusted? */
-static bool is_own_sum(uint64_t a, uint64_t b)
-{
-    return (int64_t)(a ^ b) < 0 && (may_fall(a) || may_fall(b)) && is_finite(a) && is_finite(b);
-}
-
-HELPER double __wrap___aeabi_dadd(double a, double b)
+HELPER double soft_double_add(double a, double b)
 {
     const uint64_t a_bits = bits_of(a);
     const uint64_t b_bits = bits_of(b);
 
-    return is_own_sum(a_bits, b_bits) ? add_finite(a_bits, b_bits) : __real___aeabi_dadd(a, b);
-}
-
-HELPER double __wrap___aeabi_dsub(double a, double b)
-{
-    return __wrap___aeabi_dadd(a, from_bits(bits_of(b) ^ SIGN_BIT));
-}
-
-HELPER double __wrap___aeabi_drsub(double a, double b)
-{
-    return __wrap___aeabi_dadd(b, from_bits(bits_of(a) ^ SIGN_BIT));
+    if (!is_finite(a_bits) || !is_finite(b_bits))
+        return __real___aeabi_dadd(a, b);
+    return a_bits << 1 >= b_bits << 1 ? sum_of(a_bits, b_bits) : sum_of(b_bits, a_bits);
 }
 
 /* -- division -- */
@@ -361,22 +328,22 @@ HELPER int __wrap___aeabi_dcmpeq(double a, double b)
     return rank(bits_of(a)) == rank(bits_of(b)) && is_number(bits_of(a));
 }
 
-HELPER int __wrap___aeabi_dcmplt(double a, double b)
+HELPER int soft_double_is_less(double a, double b)
 {
     return is_less(bits_of(a), bits_of(b));
 }
 
-HELPER int __wrap___aeabi_dcmple(double a, double b)
+HELPER int soft_double_is_not_more(double a, double b)
 {
     return is_not_above(bits_of(a), bits_of(b));
 }
 
-HELPER int __wrap___aeabi_dcmpge(double a, double b)
+HELPER int soft_double_is_not_less(double a, double b)
 {
     return is_not_above(bits_of(b), bits_of(a));
 }
 
-HELPER int __wrap___aeabi_dcmpgt(double a, double b)
+HELPER int soft_double_is_more(double a, double b)
 {
     return is_less(bits_of(b), bits_of(a));
 }

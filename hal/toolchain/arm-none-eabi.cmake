@@ -24,6 +24,9 @@ endif()
 set(TAKT_MACHINE_FLAGS "-mcpu=${TAKT_CPU} -mthumb -mfloat-abi=hard -mfpu=${TAKT_FPU}")
 # Every function and object in a section of its own, so that the linker leaves out what no image uses.
 set(CMAKE_C_FLAGS_INIT "${TAKT_MACHINE_FLAGS} -ffunction-sections -fdata-sections -fstack-usage")
+# An assertion that fails names its file: within the project.
+get_filename_component(TAKT_ROOT ${CMAKE_CURRENT_LIST_DIR}/../.. ABSOLUTE)
+string(APPEND CMAKE_C_FLAGS_INIT " -fmacro-prefix-map=${TAKT_ROOT}/=")
 set(CMAKE_ASM_FLAGS_INIT "${TAKT_MACHINE_FLAGS}")
 
 # picolibc is a little smaller than newlib's nano (hal/port/README.md has the figures).
@@ -38,3 +41,10 @@ set(CMAKE_EXE_LINKER_FLAGS_INIT "-nostartfiles -Wl,--gc-sections -Wl,--fatal-war
 set(CMAKE_FIND_ROOT_PATH_MODE_PROGRAM NEVER)
 set(CMAKE_FIND_ROOT_PATH_MODE_LIBRARY ONLY)
 set(CMAKE_FIND_ROOT_PATH_MODE_INCLUDE ONLY)
+
+# What every control cycle is in is built for speed, all else for size.
+set(TAKT_FAST_SOURCES
+  base/maths.c geometry/arc.c geometry/curve.c geometry/line.c
+  motion/average.c motion/lead.c motion/lead_feed.c motion/lead_place.c motion/motion.c
+  correction/correction.c correction/fade.c correction/grid.c correction/grid_patch.c
+  drive/drives_check.c drive/drives_receive.c drive/drives_send.c controller/controller.c)

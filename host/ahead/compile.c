@@ -65,6 +65,8 @@ static struct replay_header header_of(const struct compile *c)
         .cycle_us = c->config.cycle_us,
         .step_cycles = step_cycles(c->config.cycle_us),
         .ceiling_percent = c->config.ceiling_percent,
+        .text_size = c->config.text_size,
+        .text_crc = c->config.text_crc,
         .kept = 1 - COMPILE_RESERVE_KEPT,
     };
     double jerk = 0;
@@ -174,16 +176,12 @@ static bool turns_rotary(const struct move *move, const struct point *from)
 }
 
 /* NULL: it can be compiled. */
-static const char *why_unfit(const struct compile *c, const struct move *move)
+static const char *why_unfit(const struct move *move)
 {
-    if (turns_rotary(move, &c->at))
-        return "motions of rotary axes cannot be planned ahead yet";
     if (move->feed_rev_mm != 0)
         return "feed per revolution follows the spindle and cannot be planned ahead";
     if (move->kind == MOVE_PROBE)
         return "what follows a probing move cannot be planned ahead";
-    if (move_is_involute(move))
-        return "involutes cannot be planned ahead yet";
     return NULL;
 }
 
@@ -234,7 +232,7 @@ static void share_tolerance(struct compile *c, struct ahead_element *e)
 
 static enum compile_result add_motion(struct compile *c, const struct move *move)
 {
-    const char *why = why_unfit(c, move);
+    const char *why = why_unfit(move);
     struct ahead_element e = {.line = move->line};
     enum compile_result result = COMPILE_DONE;
 
@@ -243,6 +241,8 @@ static enum compile_result add_motion(struct compile *c, const struct move *move
         return unfit(c, move, why);
     if (!move_curve(move, &c->at, &e.curve))
         return COMPILE_DONE;
+    if (turns_rotary(move, &c->at)) /* left to the planner on board, from rest to rest */
+        return end_section(c);
     e.block = c->blocks;
     e.exact = is_exact(move);
     e.stop = move->path == PATH_EXACT_STOP;

@@ -34,6 +34,9 @@ struct compile_config {
     struct plan_limits limits; /* after correction's share */
     uint32_t cycle_us;
     uint32_t ceiling_percent;
+    uint32_t
+        text_size; /* of the program, and its CRC-32: for whoever has no time to read it twice */
+    uint32_t text_crc;
     unsigned workers;
     uint32_t blocks; /* about so many in the program: for the progress */
     bool (*progress)(void *context, double part, double time_s);

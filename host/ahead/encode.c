@@ -4,6 +4,7 @@
 #include "base/maths.h"
 
 #include <stdlib.h>
+#include <string.h>
 
 /* Largest third difference, with room for the rounding of four control points. */
 #define THIRD_MAX 32700.0
@@ -101,36 +102,143 @@ static uint64_t pass(struct passing *p, double place_mm)
     return (uint64_t)maths_ceil(((double)p->site + maths_clamp(part, 0, 1)) * REPLAY_END_PARTS / 2);
 }
 
-static void put_end(struct record *r, uint64_t value)
+/* The interval in which a place lies, its end included. */
+static size_t interval_of(uint64_t end)
 {
-    for (; value >= 0x80; value >>= 7)
-        put(r, (value & 0x7f) | 0x80, 1);
-    put(r, value, 1);
+    return end > 0 ? (size_t)((end - 1) / REPLAY_END_PARTS) : 0;
 }
 
-/* Everything of a section from interval first and block end *end on that fits into one record; returns the intervals. */
-static size_t write_knots(struct encoder *e, const struct ahead_path *path, const struct trail *t,
-                          size_t first, const uint64_t *ends, size_t *end)
-{
-    const size_t left = t->intervals - first;
-    size_t count = left < REPLAY_RECORD_INTERVALS ? left : REPLAY_RECORD_INTERVALS;
-    struct record r;
-    size_t last = *end;
+/* Blocks of a section and how many of their ends have been written. */
+struct endings {
+    const uint64_t *end;
+    size_t count; /* the last block's is not among them */
+    size_t next;
+};
 
-    while (last + 1 < path->count && last - *end < REPLAY_RECORD_ENDS &&
-           ends[last] < (first + count) * REPLAY_END_PARTS)
-        last++;
-    if (last - *end == REPLAY_RECORD_ENDS) /* the intervals behind them come in the next record */
-        count = (size_t)(ends[last - 1] / REPLAY_END_PARTS) - first;
+/* Ends within an interval that are still to be written. */
+static size_t ends_in(const struct endings *ends, size_t from, size_t interval)
+{
+    size_t count = 0;
+
+    while (from + count < ends->count && interval_of(ends->end[from + count]) <= interval)
+        count++;
+    return count;
+}
+
+/* The part of its interval that an end is in, from 0; an end of an interval before counts as its begin. */
+static unsigned part_of(uint64_t end, size_t interval, unsigned bits)
+{
+    const uint64_t from = (uint64_t)interval * REPLAY_END_PARTS;
+    const uint64_t parts = end > from ? end - from - 1 : 0;
+
+    return (unsigned)(parts >> (REPLAY_END_BITS - bits));
+}
+
+static void put_count(struct replay_bits *b, size_t count, unsigned k)
+{
+    for (size_t i = 0; i < count >> k; i++)
+        replay_put_bits(b, 1, 1);
+    replay_put_bits(b, 0, 1);
+    replay_put_bits(b, (unsigned)count, k);
+}
+
+static void put_interval_ends(struct replay_bits *b, const uint64_t *end, size_t count,
+                              size_t interval)
+{
+    if (count == 1) {
+        replay_put_bits(b, part_of(end[0], interval, REPLAY_END_BITS), REPLAY_END_BITS);
+        return;
+    }
+    if (count == 2)
+        replay_put_bits(b, part_of(end[0], interval, REPLAY_END_BITS_COARSE),
+                        REPLAY_END_BITS_COARSE);
+    if (count >= 2 && count < REPLAY_ENDS_CROWD)
+        replay_put_bits(b, part_of(end[count - 1], interval, REPLAY_END_BITS_COARSE),
+                        REPLAY_END_BITS_COARSE);
+}
+
+/* All ends of some intervals, with the parameter k; returns the bytes. */
+static size_t put_ends(struct record *r, const struct endings *ends, size_t first, size_t count,
+                       unsigned k)
+{
+    struct replay_bits b = {.bytes = r->bytes + r->length,
+                            .size = sizeof r->bytes - r->length - REPLAY_RECORD_TAIL};
+    size_t next = ends->next;
+
+    memset(b.bytes, 0, b.size);
+    replay_put_bits(&b, k, REPLAY_RICE_BITS);
+    for (size_t i = first; i < first + count; i++) {
+        const size_t here = ends_in(ends, next, i);
+
+        put_count(&b, here, k);
+        put_interval_ends(&b, ends->end + next, here, i);
+        next += here;
+    }
+    return (b.at + 7) / 8;
+}
+
+static unsigned best_k(struct record *r, const struct endings *ends, size_t first, size_t count)
+{
+    unsigned best = 0;
+    size_t least = SIZE_MAX;
+
+    for (unsigned k = 0; k < 1U << REPLAY_RICE_BITS; k++) {
+        const size_t bytes = put_ends(r, ends, first, count, k);
+
+        if (bytes < least) {
+            least = bytes;
+            best = k;
+        }
+    }
+    return best;
+}
+
+/* More ends in one interval than a record holds: as if at its begin. */
+static void write_crowd(struct encoder *e, struct endings *ends, size_t interval)
+{
+    while (ends_in(ends, ends->next, interval) > REPLAY_RECORD_ENDS) {
+        struct record r;
+
+        begin_record(&r, REPLAY_MORE);
+        put(&r, REPLAY_RECORD_ENDS, 1);
+        write_record(e, &r);
+        ends->next += REPLAY_RECORD_ENDS;
+    }
+}
+
+/* Intervals from first on that fit into one record with their ends. */
+static size_t fitting(const struct endings *ends, size_t first, size_t intervals)
+{
+    size_t count = 0;
+    size_t next = ends->next;
+
+    while (count < REPLAY_RECORD_INTERVALS && first + count < intervals) {
+        next += ends_in(ends, next, first + count);
+        if (next - ends->next > REPLAY_RECORD_ENDS)
+            break;
+        count++;
+    }
+    return count;
+}
+
+/* Everything of a section from interval first on that fits into one record; returns the intervals. */
+static size_t write_knots(struct encoder *e, const struct trail *t, size_t first,
+                          struct endings *ends)
+{
+    struct record r;
+    size_t count;
+
+    write_crowd(e, ends, first);
+    count = fitting(ends, first, t->intervals);
     begin_record(&r, REPLAY_KNOTS);
     put(&r, count, 1);
     for (size_t i = first; i < first + count; i++) {
         for (int axis = 0; axis < AXIS_LINEAR_COUNT; axis++)
             put(&r, (uint64_t)third_of(e, t->control + i, axis) & 0xffff, 2);
     }
-    put(&r, last - *end, 1);
-    for (; *end < last; (*end)++)
-        put_end(&r, ends[*end] - (*end > 0 ? ends[*end - 1] : 0));
+    r.length += put_ends(&r, ends, first, count, best_k(&r, ends, first, count));
+    for (size_t i = first; i < first + count; i++)
+        ends->next += ends_in(ends, ends->next, i);
     write_record(e, &r);
     return count;
 }
@@ -145,22 +253,22 @@ static void find_ends(const struct ahead_path *path, const struct trail *t, uint
 
 void encoder_add(struct encoder *e, const struct ahead_path *path, const struct trail *t)
 {
-    uint64_t *ends = calloc(path->count, sizeof *ends);
+    uint64_t *end = calloc(path->count, sizeof *end);
+    struct endings ends = {.end = end, .count = path->count - 1};
     size_t first = 0;
-    size_t end = 0;
 
-    if (ends == NULL) {
+    if (end == NULL) {
         e->failed = true;
         return;
     }
-    find_ends(path, t, ends);
+    find_ends(path, t, end);
     write_section(e, path, t);
     while (first < t->intervals && !e->failed)
-        first += write_knots(e, path, t, first, ends, &end);
+        first += write_knots(e, t, first, &ends);
     e->header.blocks += (uint32_t)path->count;
     e->header.intervals += t->intervals;
     e->header.sections++;
-    free(ends);
+    free(end);
 }
 
 bool encoder_end(struct encoder *e, uint64_t program)

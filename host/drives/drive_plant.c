@@ -325,6 +325,19 @@ void drive_plant_begin_brake(struct drive_plant *plant, double deceleration_mm_s
     plant->torque_offset_mm_s2 = 0;
 }
 
+/*
+ * The motor has moved in the cycle by no more than at standstill, or a step of the encoder, and does not move faster at
+ * its end: where it overshoots and turns round, way out and way back may cancel.
+ */
+static bool stands(const struct drive_plant *plant, double moved_mm)
+{
+    double still_mm = maths_max(plant->standstill_mm_s * plant->cycle_s, plant->encoder_step_mm);
+    double still_mm_s =
+        maths_max(plant->standstill_mm_s, plant->encoder_step_mm * plant->per_step_s);
+    return maths_abs(moved_mm) <= still_mm &&
+           maths_abs(plant->measured_velocity_mm_s) <= still_mm_s;
+}
+
 /* The command covers (v0 + v1) / 2 of a cycle while it slows from v0 to v1. */
 bool drive_plant_brake(struct drive_plant *plant, uint32_t cycle_ns)
 {
@@ -335,9 +348,7 @@ bool drive_plant_brake(struct drive_plant *plant, uint32_t cycle_ns)
     double way_mm = (v0_mm_s + v1_mm_s) / 2 * cycle_s;
     drive_plant_follow(plant, plant->command_mm + way_mm, cycle_ns);
     plant->command_velocity_mm_s = v1_mm_s;
-    double moved_mm = maths_abs(plant->measured_mm - before_mm);
-    double still_mm = maths_max(plant->standstill_mm_s * cycle_s, plant->encoder_step_mm);
-    return v1_mm_s == 0 && moved_mm <= still_mm;
+    return v1_mm_s == 0 && stands(plant, plant->measured_mm - before_mm);
 }
 
 void drive_plant_coast(struct drive_plant *plant, uint32_t cycle_ns)

@@ -17,6 +17,7 @@ extern const struct asset asset_summary;
 extern const struct asset asset_charts;
 extern const struct asset asset_path;
 extern const struct asset asset_map;
+extern const struct asset asset_shares;
 extern const struct asset asset_start;
 extern const struct asset asset_plotly;
 

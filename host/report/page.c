@@ -11,8 +11,7 @@
 struct page {
     FILE *file;
     const struct recording *recording;
-    const char *summary_json;
-    const char *map_json;
+    const struct page_texts *texts;
 };
 
 bool page_has_plots(void)
@@ -25,9 +24,11 @@ static bool write_bytes(FILE *file, const unsigned char *bytes, size_t size)
     return fwrite(bytes, 1, size, file) == size;
 }
 
-/* '<' stands only inside strings of JSON; escaped there, no text can end the script element it lies in. */
-static bool write_summary(FILE *file, const char *json)
+/* '<' stands only inside strings of JSON; escaped there, no text can end the script element it lies in. NULL: none. */
+static bool write_json(FILE *file, const char *json)
 {
+    if (json == NULL)
+        json = "null";
     while (*json != '\0') {
         const size_t plain = strcspn(json, "<");
         if (fwrite(json, 1, plain, file) != plain)
@@ -53,12 +54,14 @@ static bool page_fill(const struct page *page, const unsigned char *name, size_t
     } place[] = {
         {"STYLE", &asset_style},   {"PLOTLY", &asset_plotly}, {"SUMMARY_SCRIPT", &asset_summary},
         {"CHARTS", &asset_charts}, {"PATH", &asset_path},     {"MAP", &asset_map},
-        {"START", &asset_start},
+        {"SHARES", &asset_shares}, {"START", &asset_start},
     };
     if (place_is(name, length, "SUMMARY"))
-        return write_summary(page->file, page->summary_json);
+        return write_json(page->file, page->texts->summary_json);
     if (place_is(name, length, "MAP_DATA"))
-        return write_summary(page->file, page->map_json != NULL ? page->map_json : "null");
+        return write_json(page->file, page->texts->map_json);
+    if (place_is(name, length, "SHARES_DATA"))
+        return write_json(page->file, page->texts->shares_json);
     if (place_is(name, length, "DATA"))
         return data_write(page->file, page->recording);
     for (size_t i = 0; i < sizeof place / sizeof place[0]; i++) {
@@ -77,10 +80,9 @@ static const unsigned char *find_mark(const unsigned char *text, const unsigned 
     return end - text >= 2 ? text : end;
 }
 
-bool page_write(FILE *file, const struct recording *rec, const char *summary_json,
-                const char *map_json)
+bool page_write(FILE *file, const struct recording *rec, const struct page_texts *texts)
 {
-    const struct page page = {file, rec, summary_json, map_json};
+    const struct page page = {file, rec, texts};
     const unsigned char *text = asset_page.bytes;
     const unsigned char *end = text + asset_page.size;
     while (text < end) {

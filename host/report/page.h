@@ -12,8 +12,14 @@
 /* Was the plotting library built in? */
 bool page_has_plots(void);
 
-/* map_json: NULL, none. False: the file could not be written (errno may say why) or memory is short. */
-bool page_write(FILE *file, const struct recording *rec, const char *summary_json,
-                const char *map_json);
+/* JSON; NULL, but for the summary: none. */
+struct page_texts {
+    const char *summary_json;
+    const char *map_json;
+    const char *shares_json;
+};
+
+/* False: the file could not be written (errno may say why) or memory is short. */
+bool page_write(FILE *file, const struct recording *rec, const struct page_texts *texts);
 
 #endif

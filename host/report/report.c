@@ -8,7 +8,7 @@
 
 struct report {
     struct recording recording;
-    const char *map_json; /* NULL: none */
+    struct page_texts texts;
 };
 
 struct report *report_open(const struct plan_limits *limits)
@@ -36,14 +36,20 @@ void report_add(struct report *r, const struct cycle_record *record, bool rapid)
 
 void report_set_map(struct report *r, const char *map_json)
 {
-    r->map_json = map_json;
+    r->texts.map_json = map_json;
+}
+
+void report_set_shares(struct report *r, const char *shares_json)
+{
+    r->texts.shares_json = shares_json;
 }
 
 int report_write(struct report *r, FILE *file, const char *summary_json)
 {
     trail_finish(&r->recording.trail);
     errno = 0;
-    if (page_write(file, &r->recording, summary_json, r->map_json) && fflush(file) == 0)
+    r->texts.summary_json = summary_json;
+    if (page_write(file, &r->recording, &r->texts) && fflush(file) == 0)
         return 0;
     return errno != 0 ? errno : EIO;
 }

@@ -40,6 +40,12 @@ void report_add(struct report *r, const struct cycle_record *record, bool rapid)
 void report_set_map(struct report *r, const char *map_json);
 
 /*
+ * Who planned what share of the time at each limit, as JSON: {"board": {"time_s": ..., "velocity": 0 ... 1, "acceleration":
+ * ..., "jerk": ...}, "ahead": {likewise}}. It must outlive report_write.
+ */
+void report_set_shares(struct report *r, const char *shares_json);
+
+/*
  * Writes the page, to be called once, at the end. summary_json: the run's summary, zero-terminated, as `takt run --json`
  * writes it. 0 or an errno; the file is flushed and stays the caller's.
  */

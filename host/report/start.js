@@ -44,6 +44,7 @@ async function start() {
   listenForTheme();
   showSummary();
   showMap();
+  showShares();
   if (typeof Plotly === "undefined") {
     leaveOutPlots("Plots are missing: the takt that wrote this report was built without the plotting library. Configure "
       + "its build with -DTAKT_PLOTLY_TARBALL=FILE (host/report/README.md says which) and run it again.");

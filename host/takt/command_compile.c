@@ -40,7 +40,7 @@ static void print_figures(const struct session *s, const struct compiled_figures
     (void)printf("  part of the time at an axis's limit  velocity %.0f %%, acceleration %.0f %%, "
                  "jerk %.0f %%\n",
                  100 * f->at_velocity, 100 * f->at_acceleration, 100 * f->at_jerk);
-    for (int i = 0; i < AXIS_LINEAR_COUNT; i++) {
+    for (int i = 0; i < AXIS_COUNT; i++) {
         if (s->setup.machine.axis[i].present)
             (void)printf("  %c: peak velocity %.4f, acceleration %.4f, jerk %.4f of the limit\n",
                          AXIS_LETTERS[i], f->velocity[i], f->acceleration[i], f->jerk[i]);

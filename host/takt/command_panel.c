@@ -159,6 +159,15 @@ static enum command_status settings(struct panel_line *line, const struct option
     return panel_upload_settings(line, options->operand[1], options->quiet);
 }
 
+static enum command_status stream(struct panel_line *line, const struct options *options)
+{
+    if (options->operands != 2) {
+        message_command_error("stream: the file of a compiled program is expected");
+        return STATUS_INPUT;
+    }
+    return panel_upload_plan(line, options->operand[1], options->quiet);
+}
+
 static enum command_status on_line(enum command_status (*act)(struct panel_line *line,
                                                               const struct options *options),
                                    const struct options *options)
@@ -175,11 +184,11 @@ static enum command_status on_line(enum command_status (*act)(struct panel_line 
 
 static enum command_status command_panel_execute(const struct options *options)
 {
-    static const char *const names[] = {"read",     "write", "watch", "upload",
-                                        "settings", "list",  "table"};
-    static enum command_status (*const acts[])(
-        struct panel_line * line, const struct options *options) = {read_names, write_name, watch,
-                                                                    upload, settings};
+    static const char *const names[] = {"read",     "write",  "watch", "upload",
+                                        "settings", "stream", "list",  "table"};
+    static enum command_status (*const acts[])(struct panel_line * line,
+                                               const struct options *options) = {
+        read_names, write_name, watch, upload, settings, stream};
     const char *name = options->operand[0];
 
     for (unsigned i = 0; i < sizeof acts / sizeof acts[0]; i++) {
@@ -210,15 +219,16 @@ static const struct option_row rows[] = {
      "of watch (default 0.5 s)"},
     {"count", OPTION_NUMBER, offsetof(struct options, panel.count), "N",
      "watch: so many lines (default: until Ctrl-C)"},
-    {"quiet", OPTION_FLAG, offsetof(struct options, quiet), NULL, "upload: print errors alone"},
+    {"quiet", OPTION_FLAG, offsetof(struct options, quiet), NULL,
+     "upload, stream: print errors alone"},
     OPTIONS_END,
 };
 
 const struct command command_panel = {
     .name = "panel",
-    .usage =
-        "read NAME...|write NAME VALUE|watch [NAME...]|upload FILE|settings FILE|list|table FORM "
-        "[options]",
+    .usage = "read NAME...|write NAME VALUE|watch [NAME...]|upload FILE|settings FILE|stream "
+             "FILE|list|table FORM "
+             "[options]",
     .summary = "read and write the panel of a running controller by name",
     .help = "list names all registers, table markdown and table csv print their documentation. "
             "Values are in the unit\n"
@@ -226,6 +236,8 @@ const struct command command_panel = {
             "\n"
             "Examples:\n"
             "  takt panel upload part.ngc && takt panel write CYCLE_START 1\n"
+            "  takt compile part.ngc -o part.plan && takt panel stream part.plan\n"
+            "      (brings it while it runs: CYCLE_START meanwhile, in another window)\n"
             "  takt panel write EMERGENCY_STOP 1 && takt panel settings mill.settings\n"
             "  takt panel watch STATE ACTIVE_LINE POSITION_X\n"
             "  takt panel write FEED_HOLD 1\n"

@@ -1,6 +1,7 @@
 #include "base/maths.h"
 #include "takt/command.h"
 #include "takt/compiled.h"
+#include "takt/compiled_judge.h"
 #include "takt/error_map.h"
 #include "takt/interrupt.h"
 #include "takt/judge.h"
@@ -180,6 +181,9 @@ static enum command_status finish(struct run *run)
                          RUN_PARAMETERS); /* the program is read ahead of what has been done */
     if (run->session.options->report != NULL)
         run_outputs_set_map(&run->outputs, error_map_json(&run->session, run->simulation));
+    if (run->session.options->report != NULL && run->session.compiled != NULL)
+        run_outputs_set_shares(&run->outputs,
+                               compiled_shares_json(&run->session, run->compiled.stream));
     if (!run_outputs_commit(&run->outputs, &summary, &run->session.parameters))
         return STATUS_ENVIRONMENT;
     if (source.outcome == OUTCOME_FAULTED)

@@ -2,8 +2,10 @@
 
 #include "ahead/compile.h"
 #include "ahead/crew.h"
+#include "base/crc32.h"
 #include "base/fnv.h"
 #include "base/maths.h"
+#include "replay/fit.h"
 #include "takt/compiled_judge.h"
 #include "takt/interrupt.h"
 #include "takt/message.h"
@@ -91,6 +93,22 @@ static enum compile_result add_moves(struct making *m)
     return result == COMPILE_DONE ? compile_end(&m->compile) : result;
 }
 
+/* Size and CRC-32 of the program's text, which is what a controller knows of it. */
+static void set_text(const struct session *s, struct compile_config *config)
+{
+    static struct program_text_reader reader;
+    struct source source;
+    char bytes[PROGRAM_TEXT_PIECE];
+    long length;
+
+    program_text_read(&s->program, &reader, &source);
+    config->text_crc = CRC32_START;
+    while ((length = source.read(source.context, bytes, sizeof bytes)) > 0) {
+        config->text_crc = crc32_add(config->text_crc, bytes, (size_t)length);
+        config->text_size += (uint32_t)length;
+    }
+}
+
 static enum command_status compile(struct making *m, const struct session *s,
                                    const struct session_totals *totals, uint32_t ceiling_percent,
                                    FILE *stream)
@@ -109,6 +127,7 @@ static enum command_status compile(struct making *m, const struct session *s,
     program_open(&m->reading.program, &program, &source);
     offset_open(&m->reading.offset, &program);
     compiled_limits(s, &program.start, &config.limits);
+    set_text(s, &config);
     progress_start(&m->progress, !s->options->quiet);
     result = compile_begin(&m->compile, &config, &program.start, stream);
     if (result == COMPILE_DONE)
@@ -150,20 +169,6 @@ static size_t read_stream(void *context, uint8_t *bytes, size_t size)
     return fread(bytes, 1, size, context);
 }
 
-static const char *fault_text(enum replay_fault fault)
-{
-    switch (fault) {
-    case REPLAY_FOREIGN:
-        return "this is no compiled program; takt compile writes them";
-    case REPLAY_OTHER_VERSION:
-        return "was compiled by another version of takt: compile the program again";
-    case REPLAY_GOOD:
-    case REPLAY_DAMAGED:
-        break;
-    }
-    return "is damaged: compile the program again";
-}
-
 static uint64_t digest_of(const struct session *s)
 {
     static struct session_reading reading;
@@ -181,14 +186,12 @@ static uint64_t digest_of(const struct session *s)
     return digest;
 }
 
-static bool fits_limit(const struct compiled *c, int axis, const char *what, double compiled,
-                       double machine)
+static bool report(const struct compiled *c, const struct diagnostic *why)
 {
-    if (compiled == machine)
-        return true;
-    message_error(c->name, 0, 0,
-                  "was compiled for another machine: axis %c has a %s of %g there and of %g here",
-                  AXIS_LETTERS[axis], what, compiled, machine);
+    char text[DIAGNOSTIC_TEXT_MAX];
+
+    (void)diagnostic_text(why, text);
+    message_error(c->name, 0, 0, "%s: takt compile writes what fits", text);
     return false;
 }
 
@@ -196,31 +199,18 @@ static bool fits_machine(const struct compiled *c, const struct session *s,
                          const struct replay_header *h)
 {
     const struct point start = {{0}};
-    struct plan_limits limits;
+    struct replay_fit here = {.cycle_us = s->setup.machine.cycle_us};
+    struct diagnostic why;
 
-    compiled_limits(s, &start, &limits);
-    if (h->cycle_us != s->setup.machine.cycle_us) {
-        message_error(c->name, 0, 0,
-                      "was compiled for another machine: its cycle is %u us there and %u us here",
-                      (unsigned)h->cycle_us, (unsigned)s->setup.machine.cycle_us);
-        return false;
-    }
-    for (int i = 0; i < AXIS_LINEAR_COUNT; i++) {
-        const double is = (limits.axes & (1U << i)) != 0 ? 1 : 0;
-
-        if (!fits_limit(c, i, "velocity", h->velocity_mm_s[i], is * limits.velocity_mm_s[i]) ||
-            !fits_limit(c, i, "acceleration", h->acceleration_mm_s2[i],
-                        is * limits.acceleration_mm_s2[i]) ||
-            !fits_limit(c, i, "jerk", h->jerk_mm_s3[i], is * limits.jerk_mm_s3[i]))
-            return false;
-    }
-    return true;
+    compiled_limits(s, &start, &here.limits);
+    return replay_fit_machine(h, &here, &why) || report(c, &why);
 }
 
 /* Every record's checksum, before anything moves. */
 static bool is_whole(const struct compiled *c)
 {
     static struct intake intake;
+    struct diagnostic why;
 
     intake_open(&intake, &c->source);
     do {
@@ -232,21 +222,17 @@ static bool is_whole(const struct compiled *c)
              intake.intervals_taken != intake.intervals_came);
     if (intake.fault == REPLAY_GOOD && intake.ended)
         return true;
-    message_error(c->name, 0, 0, "%s", fault_text(intake.fault));
-    return false;
+    diagnostic_set(&why, TAKT_ERROR_PLAN_DAMAGED, 0, 0, "", 0, 0.0);
+    return report(c, &why);
 }
 
 static bool read_header(const struct compiled *c, struct replay_header *h)
 {
     uint8_t bytes[REPLAY_HEADER_BYTES] = {0};
-    enum replay_fault fault;
+    struct diagnostic why;
 
     (void)fread(bytes, 1, sizeof bytes, c->stream); /* what is missing is 0, and damaged */
-    fault = replay_header_read(h, bytes);
-    if (fault == REPLAY_GOOD)
-        return true;
-    message_error(c->name, 0, 0, "%s", fault_text(fault));
-    return false;
+    return replay_fit_read(h, bytes, &why) || report(c, &why);
 }
 
 static enum command_status check_file(const struct compiled *c, const struct session *s)
@@ -276,7 +262,7 @@ static enum command_status open_file(struct compiled *c, const struct session *s
         message_command_error("%s cannot be opened: %s", path, strerror(errno));
         return STATUS_INPUT;
     }
-    c->source = (struct replay_source){c->stream, read_stream};
+    c->source = (struct replay_source){.context = c->stream, .read = read_stream};
     return check_file(c, s);
 }
 
@@ -297,7 +283,7 @@ enum command_status compiled_open(struct compiled *c, const struct session *s,
         message_command_error("a temporary file cannot be created: %s", strerror(errno));
         return STATUS_ENVIRONMENT;
     }
-    c->source = (struct replay_source){c->stream, read_stream};
+    c->source = (struct replay_source){.context = c->stream, .read = read_stream};
     status = compiled_make(s, totals, 100, c->stream, &figures);
     rewind(c->stream);
     return status;

@@ -19,9 +19,9 @@ struct compiled_figures {
     double time_s;
     double compile_s; /* of the wall clock */
     uint64_t bytes;
-    double velocity[AXIS_LINEAR_COUNT]; /* largest over the limit */
-    double acceleration[AXIS_LINEAR_COUNT];
-    double jerk[AXIS_LINEAR_COUNT];
+    double velocity[AXIS_COUNT]; /* largest over the limit */
+    double acceleration[AXIS_COUNT];
+    double jerk[AXIS_COUNT];
     double at_velocity, at_acceleration,
         at_jerk; /* share of cycles in which an axis is at that limit */
     struct tube_figures tube;

@@ -18,6 +18,12 @@
 /* Cycles between two looks at Ctrl-C. */
 #define WATCH_CYCLES 4096
 
+/* Read in pieces, as the controller does. */
+#define TOP_UP_PART 8
+
+/* Text of what one planner does. */
+#define SHARES_MAX 160
+
 /* Replayed a second time at this rate, so that the curve is seen between the setpoints of the first. */
 #define SLOW_RATE 0.23
 
@@ -32,10 +38,11 @@ struct trial {
     struct plan_limits limits;
     uint32_t look_ahead;
     double rate;
+    bool on_board; /* nothing is replayed: for comparison */
     bool ended;
     bool out_of_order;
     uint32_t block; /* of the last cycle */
-    double x[AXIS_LINEAR_COUNT], v[AXIS_LINEAR_COUNT], a[AXIS_LINEAR_COUNT];
+    double x[AXIS_COUNT], v[AXIS_COUNT], a[AXIS_COUNT];
     uint64_t at_velocity, at_acceleration, at_jerk;
     struct compiled_figures *figures;
 };
@@ -47,7 +54,7 @@ static size_t read_stream(void *context, uint8_t *bytes, size_t size)
 
 static void begin(struct trial *t, FILE *stream)
 {
-    const struct replay_source compiled = {stream, read_stream};
+    const struct replay_source compiled = {.context = stream, .read = read_stream};
     struct program_config config;
     struct source source;
 
@@ -60,11 +67,13 @@ static void begin(struct trial *t, FILE *stream)
     compiled_limits(t->session, &config.start, &t->limits);
     path_init(&t->path, &t->limits, &config.start);
     motion_init(&t->motion, &t->path, &config.start, false);
-    handover_allow(&t->motion);
-    handover_allow_all(&t->motion);
-    replay_init(&t->replay, &compiled);
+    if (!t->on_board) {
+        handover_allow(&t->motion);
+        handover_allow_linear(&t->motion);
+        replay_init(&t->replay, &compiled);
+    }
     t->look_ahead = t->session->setup.machine.look_ahead_blocks;
-    for (int i = 0; i < AXIS_LINEAR_COUNT; i++)
+    for (int i = 0; i < AXIS_COUNT; i++)
         t->x[i] = config.start.at[i];
 }
 
@@ -74,7 +83,8 @@ static void read_move(struct trial *t)
     struct move move;
 
     if (offset_next(&t->reading.offset, &t->reading.program, &move, &error) == PROGRAM_MOVE) {
-        replay_prepare(&move);
+        if (!t->on_board)
+            replay_prepare(&move);
         path_push(&t->path, &move);
         return;
     }
@@ -84,12 +94,15 @@ static void read_move(struct trial *t)
 
 static void background(struct trial *t)
 {
-    replay_read(&t->replay, &t->limits);
+    if (!t->on_board)
+        replay_read(&t->replay, &t->limits);
     if (motion_wanted(&t->motion) == NULL)
         return;
     path_go_on(&t->path);
-    while (!t->ended && path_has_room(&t->path) && motion_ahead(&t->motion) < t->look_ahead)
-        read_move(t);
+    if (motion_ahead(&t->motion) + t->look_ahead / TOP_UP_PART <= t->look_ahead) {
+        while (!t->ended && path_has_room(&t->path) && motion_ahead(&t->motion) < t->look_ahead)
+            read_move(t);
+    }
     motion_build(&t->motion);
 }
 
@@ -104,7 +117,7 @@ static void judge_axes(struct trial *t, const struct point *cmd)
     const double rate_hz = 1 / t->limits.cycle_s;
     bool at[3] = {false, false, false};
 
-    for (int i = 0; i < AXIS_LINEAR_COUNT; i++) {
+    for (int i = 0; i < AXIS_COUNT; i++) {
         const double v = (cmd->at[i] - t->x[i]) * rate_hz;
         const double a = (v - t->v[i]) * rate_hz;
         const double j = (a - t->a[i]) * rate_hz;
@@ -134,7 +147,7 @@ static bool judge_cycle(struct trial *t, const struct cycle_record *record)
     t->out_of_order = t->out_of_order || record->block < t->block;
     t->block = record->block;
     t->figures->cycles++;
-    return tube_judge_add(&t->tube, &record->cmd);
+    return t->on_board || tube_judge_add(&t->tube, &record->cmd);
 }
 
 /* MOTION_CYCLE: goes on. */
@@ -194,7 +207,7 @@ static bool keeps_limits(const struct trial *t)
 {
     const struct compiled_figures *f = t->figures;
 
-    for (int i = 0; i < AXIS_LINEAR_COUNT; i++) {
+    for (int i = 0; i < AXIS_COUNT; i++) {
         if (!keeps(t, "velocity", i, f->velocity[i], JUDGE_VELOCITY_RATIO) ||
             !keeps(t, "acceleration", i, f->acceleration[i], JUDGE_ACCELERATION_RATIO) ||
             !keeps(t, "jerk", i, f->jerk[i], JUDGE_JERK_RATIO))
@@ -203,18 +216,27 @@ static bool keeps_limits(const struct trial *t)
     return true;
 }
 
-static enum command_status conclude(struct trial *t)
+static void set_shares(const struct trial *t)
 {
     struct compiled_figures *f = t->figures;
     const double cycles = maths_max((double)f->cycles, 1);
 
-    tube_judge_finish(&t->tube);
-    f->tube = t->tube.figures;
     f->blocks = t->block;
     f->time_s = (double)f->cycles * t->limits.cycle_s;
     f->at_velocity = (double)t->at_velocity / cycles;
     f->at_acceleration = (double)t->at_acceleration / cycles;
     f->at_jerk = (double)t->at_jerk / cycles;
+}
+
+static enum command_status conclude(struct trial *t)
+{
+    struct compiled_figures *f = t->figures;
+
+    set_shares(t);
+    if (t->on_board)
+        return STATUS_DONE;
+    tube_judge_finish(&t->tube);
+    f->tube = t->tube.figures;
     if (f->tube.beyond_mm > BEYOND_MAX_MM) {
         message_error(t->session->program.name, f->tube.beyond_line, 0,
                       "the compiled motion is %.6f mm beyond the tolerance here: nothing is "
@@ -230,7 +252,7 @@ static enum command_status conclude(struct trial *t)
     return keeps_limits(t) ? STATUS_DONE : STATUS_FAILED;
 }
 
-/* One replay at a rate. */
+/* One replay at a rate; without a stream the planner on board instead. */
 static enum command_status judge_at(const struct session *s, FILE *stream, double rate,
                                     struct compiled_figures *figures)
 {
@@ -241,7 +263,9 @@ static enum command_status judge_at(const struct session *s, FILE *stream, doubl
         message_command_error("out of memory");
         return STATUS_ENVIRONMENT;
     }
-    rewind(stream);
+    if (stream != NULL)
+        rewind(stream);
+    t->on_board = stream == NULL;
     t->session = s;
     t->figures = figures;
     t->rate = rate;
@@ -264,4 +288,31 @@ enum command_status compiled_judge(const struct session *s, FILE *stream,
         status = judge_at(s, stream, SLOW_RATE, &slow);
     figures->tube.deviation_mm = maths_max(figures->tube.deviation_mm, slow.tube.deviation_mm);
     return status;
+}
+
+static int write_shares(char *text, size_t size, const char *name, const struct compiled_figures *f)
+{
+    return snprintf(text, size,
+                    "\"%s\": {\"time_s\": %.6f, \"velocity\": %.6f, \"acceleration\": %.6f, "
+                    "\"jerk\": %.6f}",
+                    name, f->time_s, f->at_velocity, f->at_acceleration, f->at_jerk);
+}
+
+char *compiled_shares_json(const struct session *s, FILE *stream)
+{
+    struct compiled_figures board = {0};
+    struct compiled_figures ahead = {0};
+    char first[SHARES_MAX];
+    char second[SHARES_MAX];
+    char *json = malloc(2 * SHARES_MAX + 8);
+
+    if (json == NULL || judge_at(s, NULL, 1, &board) != STATUS_DONE ||
+        judge_at(s, stream, 1, &ahead) != STATUS_DONE) {
+        free(json);
+        return NULL;
+    }
+    (void)write_shares(first, sizeof first, "board", &board);
+    (void)write_shares(second, sizeof second, "ahead", &ahead);
+    (void)snprintf(json, 2 * SHARES_MAX + 8, "{%s, %s}", first, second);
+    return json;
 }

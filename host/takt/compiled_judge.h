@@ -11,4 +11,10 @@
 enum command_status compiled_judge(const struct session *s, FILE *stream,
                                    struct compiled_figures *figures);
 
+/*
+ * The time, and the shares of it at each limit, that the planner on board and the compiled program in the stream take, as
+ * report_set_shares wants them; to be freed by the caller. NULL: they are not known.
+ */
+char *compiled_shares_json(const struct session *s, FILE *stream);
+
 #endif

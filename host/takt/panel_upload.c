@@ -1,8 +1,11 @@
+#define _POSIX_C_SOURCE 200809L
+
 #include "takt/panel_upload.h"
 
 #include "base/crc32.h"
 #include "modbus/crc.h"
 #include "panel/registers.h"
+#include "replay/format.h"
 #include "takt/interrupt.h"
 #include "takt/message.h"
 #include "takt/text.h"
@@ -10,18 +13,23 @@
 #include <inttypes.h>
 #include <stdio.h>
 #include <string.h>
+#include <time.h>
+
+/* Looks for room so often while there is none. */
+#define ROOM_WAIT_NS 5000000
 
 /* The mailbox in registers: offset, length and check before the bytes. */
 #define CHUNK_WORDS (4 + PANEL_CHUNK_MAX / 2)
 
-static bool begin(struct panel_line *line, const struct text *text, enum panel_upload_kind kind)
+static bool begin(struct panel_line *line, const struct text *text, enum panel_upload_kind kind,
+                  enum panel_upload_command command)
 {
     const uint32_t crc = crc32_add(CRC32_START, text->bytes, text->length);
 
     return panel_line_set(line, REGISTER_UPLOAD_KIND, kind) &&
            panel_line_set(line, REGISTER_UPLOAD_SIZE, (int64_t)text->length) &&
            panel_line_set(line, REGISTER_UPLOAD_CRC, crc) &&
-           panel_line_set(line, REGISTER_UPLOAD_COMMAND, PANEL_UPLOAD_BEGIN);
+           panel_line_set(line, REGISTER_UPLOAD_COMMAND, command);
 }
 
 static void pack_bytes(uint16_t *word, const uint8_t *bytes, size_t length)
@@ -52,7 +60,7 @@ static enum command_status bring(struct panel_line *line, const struct text *tex
 {
     int64_t received;
 
-    if (!begin(line, text, kind))
+    if (!begin(line, text, kind, PANEL_UPLOAD_BEGIN))
         return STATUS_INPUT;
     do {
         if (interrupt_asked())
@@ -84,7 +92,36 @@ enum command_status panel_upload_file(struct panel_line *line, const char *path,
     return status;
 }
 
-/* Why the controller refuses settings stands in a register of its own. */
+/* Waits until there is room for the next chunk. */
+static enum command_status wait_for_room(struct panel_line *line, size_t left)
+{
+    const int64_t wanted = (int64_t)(left < PANEL_CHUNK_MAX ? left : PANEL_CHUNK_MAX);
+    const struct timespec pause = {.tv_nsec = ROOM_WAIT_NS};
+    int64_t room;
+
+    while (panel_line_get(line, REGISTER_UPLOAD_ROOM, &room)) {
+        if (room >= wanted)
+            return STATUS_DONE;
+        if (interrupt_asked())
+            return STATUS_INTERRUPTED;
+        (void)nanosleep(&pause, NULL);
+    }
+    return STATUS_ENVIRONMENT;
+}
+
+static enum command_status stream(struct panel_line *line, const struct text *text)
+{
+    enum command_status status = STATUS_DONE;
+
+    for (size_t at = 0; at < text->length && status == STATUS_DONE; at += PANEL_CHUNK_MAX) {
+        status = wait_for_room(line, text->length - at);
+        if (status == STATUS_DONE && !send_chunk(line, text, (uint32_t)at))
+            status = STATUS_INPUT;
+    }
+    return status;
+}
+
+/* Why the controller refuses settings or a compiled program stands in a register of its own. */
 static void report_reason(struct panel_line *line)
 {
     char reason[PANEL_VALUE_MAX + 1];
@@ -109,6 +146,25 @@ enum command_status panel_upload_settings(struct panel_line *line, const char *p
     if (status == STATUS_DONE && !quiet)
         (void)printf("%s: %zu bytes; they count from the controller's next start on\n", path,
                      text.length);
+    text_free(&text);
+    return status;
+}
+
+enum command_status panel_upload_plan(struct panel_line *line, const char *path, bool quiet)
+{
+    struct text text;
+    enum command_status status = STATUS_INPUT;
+
+    if (!text_read(&text, path))
+        return STATUS_INPUT;
+    if (text.length < REPLAY_HEADER_BYTES || text.length > PANEL_PROGRAM_BYTES_MAX)
+        message_error(path, 0, 0, "this is no compiled program; takt compile writes them");
+    else if (begin(line, &text, PANEL_UPLOAD_PLAN, PANEL_UPLOAD_STREAM))
+        status = stream(line, &text);
+    if (status == STATUS_INPUT)
+        report_reason(line);
+    if (status == STATUS_DONE && !quiet)
+        (void)printf("%s: %zu bytes\n", path, text.length);
     text_free(&text);
     return status;
 }

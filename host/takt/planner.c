@@ -78,21 +78,24 @@ static void fill_path(struct planner *p)
     motion_build(&p->motion);
 }
 
-static void count_block(struct planner_totals *totals, const struct block *block)
+static void count_block(struct planner_totals *totals, const struct path *path, uint32_t index)
 {
-    if (!block_is_motion(block))
+    const struct path_block *block = path_at(path, index);
+
+    if (!block->motion)
         return;
     totals->motions += block->continues ? 0 : 1;
     totals->stops += block->end == JOINT_STOP ? 1 : 0;
     if (!block->rotary)
-        totals->length_mm += block->length_mm;
+        totals->length_mm += path_length(path, index);
 }
 
 /* A block that never reaches its ceiling is governed by its ramps. */
-static enum governor governor_of(const struct planned_block *planned)
+static enum governor governor_of(const struct path *path, uint32_t index,
+                                 const struct planned_block *planned)
 {
     const struct ceiling_request program = {.feed_ratio = 1, .rapid_ratio = 1};
-    const double feed_mm_s = ceiling_block_feed(planned->block, &program);
+    const double feed_mm_s = ceiling_block_feed(path, index, &program);
 
     if (planned->feed_cruise_mm_s < feed_mm_s * (1 - 1e-6))
         return GOVERNOR_RAMP;
@@ -123,16 +126,17 @@ static void enter(struct planner *p, double feed_mm_s, double now_s)
 }
 
 /* Hands on one block that this cycle has passed. */
-static void leave(struct planner *p, const struct block *block, double feed_mm_s,
+static void leave(struct planner *p, uint32_t index, double feed_mm_s,
                   void (*take)(void *context, const struct planned_block *planned), void *context)
 {
+    const struct block *block = path_read(&p->path, index);
     const double now_s = passed_at(p, block, feed_mm_s);
 
     p->planned.block = block;
     p->planned.feed_end_mm_s = block->end == JOINT_STOP ? 0 : feed_mm_s;
     p->planned.time_s = maths_max(0, now_s - p->entered_s);
     if (block_is_motion(block))
-        p->planned.governor = governor_of(&p->planned);
+        p->planned.governor = governor_of(&p->path, index, &p->planned);
     take(context, &p->planned);
     enter(p, p->planned.feed_end_mm_s, now_s);
 }
@@ -156,13 +160,13 @@ static void walk(struct planner *p,
     while ((result == MOTION_CYCLE || result == MOTION_NOT_YET) && !interrupt_asked()) {
         result = step(p, &record);
         for (uint32_t i = p->motion.passed_first; i != p->path.first; i++) {
-            count_block(totals, path_at(&p->path, i));
-            leave(p, path_at(&p->path, i), record.feed_mm_s, take, context);
+            count_block(totals, &p->path, i);
+            leave(p, i, record.feed_mm_s, take, context);
         }
         p->planned.feed_cruise_mm_s = maths_max(p->planned.feed_cruise_mm_s, record.feed_mm_s);
     }
     if (result == MOTION_DONE) /* the end of the program itself is never passed */
-        leave(p, motion_block(&p->motion), 0, take, context);
+        leave(p, p->motion.current, 0, take, context);
     totals->cycles = p->motion.cycles;
 }
 
@@ -175,7 +179,7 @@ static void measure_path(struct planner *p, struct planner_totals *totals)
         while (!p->ended && path_has_room(path))
             read_move(p);
         for (; path->first != path->closed; path_pass(path))
-            count_block(totals, path_at(path, path->first));
+            count_block(totals, path, path->first);
         path->kept = path->first;
     } while ((!p->ended || path->first != path->pushed) && !interrupt_asked());
 }

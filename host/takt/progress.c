@@ -11,6 +11,7 @@
 #define PROGRESS_FIRST_NS UINT64_C(1000000000)
 #define PROGRESS_EVERY_NS UINT64_C(100000000)
 #define PROGRESS_WIDTH    40
+#define PROGRESS_FIGURES  48 /* characters behind the bar */
 
 void progress_start(struct progress *p, bool wanted)
 {
@@ -18,6 +19,15 @@ void progress_start(struct progress *p, bool wanted)
     p->shown = false;
     p->start_ns = stopwatch_now_ns();
     p->next_ns = p->start_ns + PROGRESS_FIRST_NS;
+}
+
+/* What is left takes as long as what is done, for its part. */
+static void show_left(double done, double passed_s)
+{
+    const unsigned left_s = done > 0 ? (unsigned)(passed_s * (1 - done) / done + 0.5) : 0;
+
+    if (done > 0 && done < 1)
+        (void)fprintf(stderr, " %u:%02u:%02u left ", left_s / 3600, left_s / 60 % 60, left_s % 60);
 }
 
 void progress_show(struct progress *p, double done, double program_time_s)
@@ -36,6 +46,7 @@ void progress_show(struct progress *p, double done, double program_time_s)
     bar[PROGRESS_WIDTH] = '\0';
     (void)fprintf(stderr, "\r[%s] %3.0f %%  %.0f x real time ", bar, 100 * done,
                   program_time_s * 1e9 / (double)(now_ns - p->start_ns));
+    show_left(done, 1e-9 * (double)(now_ns - p->start_ns));
     (void)fflush(stderr);
     p->shown = true;
     p->next_ns = now_ns + PROGRESS_EVERY_NS;
@@ -44,6 +55,6 @@ void progress_show(struct progress *p, double done, double program_time_s)
 void progress_end(struct progress *p)
 {
     if (p->shown)
-        (void)fprintf(stderr, "\r%*s\r", PROGRESS_WIDTH + 32, "");
+        (void)fprintf(stderr, "\r%*s\r", PROGRESS_WIDTH + PROGRESS_FIGURES, "");
     p->shown = false;
 }

@@ -205,6 +205,11 @@ void run_outputs_set_map(struct run_outputs *o, char *map)
     o->map = map;
 }
 
+void run_outputs_set_shares(struct run_outputs *o, char *shares)
+{
+    o->shares = shares;
+}
+
 /* False: out of memory, or errno says what the report could not do. */
 static bool write_end(struct run_outputs *o, const struct summary *summary,
                       const struct parameter_file *parameters)
@@ -216,6 +221,7 @@ static bool write_end(struct run_outputs *o, const struct summary *summary,
         (void)fprintf(o->file[RUN_JSON].stream, "%s\n", json);
     if (good && o->report != NULL) {
         report_set_map(o->report, o->map);
+        report_set_shares(o->report, o->shares);
         good = report_write(o->report, o->file[RUN_REPORT].stream, json) == 0;
     }
     free(json);
@@ -281,7 +287,9 @@ void run_outputs_close(struct run_outputs *o)
     free(o->frames);
     report_close(o->report);
     free(o->map);
+    free(o->shares);
     o->map = NULL;
+    o->shares = NULL;
     o->trace = NULL;
     o->bus_log = NULL;
     o->frames = NULL;

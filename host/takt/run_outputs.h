@@ -35,6 +35,7 @@ struct run_outputs {
     struct candump *bus_log;
     struct frame_buffer *frames;
     struct report *report;
+    char *shares;    /* of the time at each limit, as JSON; NULL: none. Owned */
     char *map;       /* error of the tool's point, as JSON; NULL: none. Owned */
     bool each_cycle; /* something is to be written every cycle */
 };
@@ -57,6 +58,8 @@ bool run_outputs_failed(const struct run_outputs *o);
 void run_outputs_drop(struct run_outputs *o, enum run_output which);
 /* For the report, before run_outputs_commit: as error_map_json gives it; the text becomes the outputs'. */
 void run_outputs_set_map(struct run_outputs *o, char *map);
+/* The same of what compiled_shares_json gives. */
+void run_outputs_set_shares(struct run_outputs *o, char *shares);
 /* Writes what comes at the end and puts all files in place. False after a message. */
 bool run_outputs_commit(struct run_outputs *o, const struct summary *summary,
                         const struct parameter_file *parameters);

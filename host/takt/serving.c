@@ -59,9 +59,11 @@ static void open_service(struct serving *s)
         .parameters = &s->session.parameters.values,
         .correction = s->session.correction,
         .programs = {program_store_read, program_store_adopt, &s->store},
+        .plans = plan_queue_get_plans(&s->plan),
         .exact_path = s->session.options->exact_path,
     };
 
+    plan_queue_init(&s->plan, &s->service);
     service_init(&s->service, &config);
     message_controller_warning(&s->service.controller);
     if (s->store.program != NULL)
@@ -102,6 +104,7 @@ static enum command_status open_server(struct serving *s)
     const struct panel_config panel = {
         .port = exchange_get_port(&s->exchange),
         .store = program_store_get_staging(&s->store),
+        .plans = plan_queue_get_store(&s->plan),
         .password = s->session.setup.panel.password,
     };
     struct server_config config = {.host = panel_host_get(&s->panel)};

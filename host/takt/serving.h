@@ -8,6 +8,7 @@
 #ifndef TAKT_HOST_SERVING_H
 #define TAKT_HOST_SERVING_H
 
+#include "port/plan_queue.h"
 #include "serve/exchange.h"
 #include "serve/panel_host.h"
 #include "serve/program_store.h"
@@ -33,6 +34,7 @@ struct serving {
     struct serving_spindle spindle;
     struct inputs inputs; /* of the next cycle */
     struct program_store store;
+    struct plan_queue plan;
     struct exchange exchange;
     struct panel_host panel;
     struct server server;

@@ -116,11 +116,11 @@ static double segment_distance(const struct point *a, const struct point *b, con
     double way = 0;
     double square = 0;
 
-    for (int i = 0; i < AXIS_LINEAR_COUNT; i++) {
+    for (int i = 0; i < AXIS_COUNT; i++) {
         way += (p->at[i] - a->at[i]) * (b->at[i] - a->at[i]);
         square += (b->at[i] - a->at[i]) * (b->at[i] - a->at[i]);
     }
-    for (int i = 0; i < AXIS_LINEAR_COUNT && square > 0; i++)
+    for (int i = 0; i < AXIS_COUNT && square > 0; i++)
         nearest.at[i] += maths_clamp(way / square, 0, 1) * (b->at[i] - a->at[i]);
     return judge_distance(&nearest, p);
 }

@@ -91,7 +91,7 @@ const struct fault_case fault_cases[] = {
           "axis X (node 1) lags ", 400, 2),
     GOES_ON("the encoder of X jumps by 0.5 mm", "enabled+0.5s drive 1 encoder_jump by_mm=0.5", 0.4),
     STOPS("the encoder of X jumps by 5 mm", "enabled+0.5s drive 1 encoder_jump by_mm=5", DRIVE_FAULT,
-          "the drive of axis X (node 1) reports 8611: following error", 700, 1),
+          "the drive of axis X (node 1) reports 8611: following error", 150, 1),
 
     /* at start */
     REFUSED("the drive of Y is absent", "power bus cut node=2", DRIVE_ABSENT,

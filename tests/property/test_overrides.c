@@ -216,8 +216,10 @@ static void check_pinned(unsigned seed, uint32_t look_ahead)
     const uint32_t forced = forced_look_ahead;
 
     forced_look_ahead = look_ahead;
-    check_program(seed);
+    const bool held = check_program(seed);
+
     forced_look_ahead = forced;
+    TEST_ASSERT_TRUE(held);
 }
 
 /* Found by longer runs of this test, each for another reason. */
@@ -233,6 +235,10 @@ static void test_rare_programs_keep_the_limits(void)
     check_pinned(467, 1);    /* what had been come to was not known for that by the next ceiling */
     check_pinned(1153, 1);   /* too early in a block of less acceleration to stop in it */
     check_pinned(1951, 256); /* the last cycle of braking reaches far beyond where it had to end */
+    check_pinned(8545,
+                 8); /* less acceleration was come to too fast, under an override just raised */
+    check_pinned(6805, 8);  /* what was known ended before the next ceiling came */
+    check_pinned(14807, 8); /* and so, while a slow block could not be come to yet */
 }
 
 int main(int argc, char **argv)

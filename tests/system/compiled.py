@@ -5,7 +5,11 @@ compiled.py PROGRAMS SCHEDULES FIRST runs more random programs than the test doe
 
 import math
 import os
+import pty
 import random
+import re
+import signal
+import subprocess
 import sys
 
 import takt_test as t
@@ -71,13 +75,41 @@ class Chain:
         self.heading += sweep
         return None
 
+    def involute(self):
+        """Unrolled outward from any place on it; the curve is along the radius to where its string leaves the base circle."""
+        radius, sign = self.decades(-1, 0.7), self.rng.choice((-1, 1))
+        first = self.rng.choice((0, self.rng.uniform(0.1, 3)))
+        last, base = first + self.rng.uniform(0.5, 8), self.heading - sign * first
+
+        def at(phi):
+            c, s = math.cos(base + sign * phi), math.sin(base + sign * phi)
+            return radius * (c + sign * phi * s), radius * (s - sign * phi * c)
+
+        begin, end = at(first), at(last)
+        i, j = -begin[0], -begin[1]
+        x, y = self.at[0] + end[0] - begin[0], self.at[1] + end[1] - begin[1]
+        if max(abs(x), abs(y)) > 200:
+            return self.go(0, 0, 0, True)
+        self.at = [round(x, 6), round(y, 6), self.at[2]]
+        self.lines.append("G91.1 G%s X%.6f Y%.6f I%.7f J%.7f R%.7f" % ("2.2" if sign < 0 else "3.2", self.at[0], self.at[1], i, j, radius))
+        self.heading = base + sign * last
+        return None
+
+    def rotary(self):
+        """On and off the planner on board; the rotary axis alone, or with others."""
+        self.heading += self.rng.uniform(-1, 1)
+        if self.rng.random() < 0.6:
+            self.line(self.decades(-1, 1.3))
+        if self.rng.random() < 0.6:
+            self.lines.append("G1 A%.4f" % self.rng.uniform(-90, 90))
+
     def event(self):
         self.lines.append(self.rng.choice(("G4 P0.05", "M3 S1000", "M8", "M9", "G61", "G64 P%.4f" % self.decades(-2.5, -1), "F%d" % self.decades(2.5, 4))))
 
 
 def program(rng):
     chain = Chain(rng)
-    families = [Chain.corners, Chain.retrace, Chain.polygon, Chain.tiny, Chain.zigzag, Chain.arc]
+    families = [Chain.corners, Chain.retrace, Chain.polygon, Chain.tiny, Chain.zigzag, Chain.arc, Chain.involute, Chain.rotary]
     family = rng.choice(families)
     for _ in range(rng.randint(3, 60)):
         if rng.random() < 0.1:
@@ -85,6 +117,9 @@ def program(rng):
         (Chain.event if rng.random() < 0.03 else family)(chain)
     head = "G21 G90 G94 G17 G64 P%.4f F%d\n" % (10 ** rng.uniform(-2.5, -0.7), rng.choice((600, 3000, 6000, 10000)))
     return head + "\n".join(chain.lines) + "\nM2\n"
+
+
+ROTARY = ["--set", "axis.A.drive_node=4", "--set", "axis.A.max_velocity_deg_s=90"]
 
 
 def machine(rng):
@@ -107,7 +142,7 @@ def schedule(rng, path):
 def judge(seed):
     rng = random.Random(seed)
     t.write("part.ngc", program(rng))
-    options = machine(rng) if seed % 3 else []
+    options = ROTARY + (machine(rng) if seed % 3 else [])
     status, _, err = t.run("compile", "part.ngc", "-o", "part.plan", "--quiet", *options)
     if not t.check(status == 0, "a random program is compiled", "seed", seed, status, err):
         return
@@ -159,7 +194,7 @@ def files():
     with open("again.plan", "rb") as file:
         t.check(file.read() == first, "compiling again writes the same bytes")
 
-    refused("another machine is told", ("part.plan", "axis Y", "jerk"), "run", "part.ngc", "--plan", "part.plan", "--set", "axis.Y.max_jerk_mm_s3=40000")
+    refused("another machine is told", ("part.plan", "another machine", "Y jerk is 50000 there and 40000 here"), "run", "part.ngc", "--plan", "part.plan", "--set", "axis.Y.max_jerk_mm_s3=40000")
     t.write("other.ngc", PROGRAM.replace("X0 Y15", "X1 Y15"))
     refused("another program is told", ("part.plan", "another program"), "run", "other.ngc", "--plan", "part.plan")
     for at in (9, 40, len(first) // 2, len(first) - 2):
@@ -182,11 +217,73 @@ def ceilings():
     refused("a place for the file is needed", ("-o FILE",), "compile", "part.ngc")
 
 
+def stretches():
+    """What the planner on board drives between two stretches that are compiled, and involutes."""
+    t.write("part.ngc", "G21 G90 G17 G64 P0.01 F3000\nG0 X10\nG1 X20 Y5 A0\nX30\nA45\nX40 A90\nX45\nA0 X50 Y5\nX60\nM2\n")
+    plan = summary("--plan", "ahead", *ROTARY)
+    t.check(plan["outcome"] == "completed" and any(a["name"] == "A" and a["max_velocity_deg_s"] > 0 for a in plan["axes"]), "motions of a rotary axis run between others", plan)
+    t.write("part.ngc", "G21 G90 G91.1 G17 G64 P0.01 F3000\nG3.2 X0 Y-10 I-1.591549431 J0 R1.591549431\nG3 X0 Y-10 I0 J10\nG3.2 X0 Y0 I1.591549431 J10 R1.591549431\nM2\n")
+    t.check(summary("--plan", "ahead")["program_time_s"] < summary()["program_time_s"], "involutes through the centre are planned ahead")
+
+
+def figure():
+    """The report of a compiled run shows both planners."""
+    t.write("part.ngc", PROGRAM)
+    ahead = summary("--plan", "ahead", "--report", "part.html")
+    with open("part.html", encoding="utf-8") as file:
+        shares = t.json.loads(re.search(r'id="run-shares">([^<]*)<', file.read()).group(1))
+    t.check(abs(shares["ahead"]["time_s"] - ahead["program_time_s"]) < 1e-6, "the figure has the time planned ahead", shares)
+    t.check(abs(shares["board"]["time_s"] - summary()["program_time_s"]) < 1e-6, "and that on board", shares)
+    t.check(all(0 <= shares[who][what] <= 1 for who in shares for what in ("velocity", "acceleration", "jerk")), "shares are shares", shares)
+    t.check(shares["ahead"]["jerk"] > shares["board"]["jerk"], "ahead is at the limits more", shares)
+    summary("--report", "part.html")
+    with open("part.html", encoding="utf-8") as file:
+        t.check('id="run-shares">null<' in file.read(), "a run that is not compiled has no such figure")
+
+
+def long_program():
+    rng, heading, at, lines = random.Random(7), 0.0, [0.0, 0.0], []
+    for _ in range(3000):
+        heading += rng.uniform(-0.3, 0.3)
+        at = [a + 0.08 * d for a, d in zip(at, (math.cos(heading), math.sin(heading)))]
+        lines.append("G1 X%.4f Y%.4f" % tuple(at))
+    return "G21 G90 G17 G64 P0.01 F6000\n" + "\n".join(lines) + "\nM2\n"
+
+
+def aside_bytes():
+    """Of the file that is being written beside its place; -1: there is none."""
+    names = [name for name in os.listdir(".") if name.startswith("long.plan.part-")]
+    return max((os.path.getsize(name) for name in names), default=-1)
+
+
+def ended():
+    """What ends a compile before its time leaves the file that was there; the bar tells the time left."""
+    t.write("long.ngc", long_program())
+    t.write("long.plan", b"as before")
+    for end, size in ((signal.SIGKILL, 0), (signal.SIGKILL, 1), (signal.SIGINT, 0), (signal.SIGTERM, 1)):
+        near, far = pty.openpty()
+        compiling = subprocess.Popen([t.TAKT, "compile", "long.ngc", "-o", "long.plan"], stderr=far, stdout=subprocess.DEVNULL)
+        os.close(far)
+        while aside_bytes() < size and compiling.poll() is None:
+            pass
+        seen = b""
+        while b"left" not in seen and size == 0 and end == signal.SIGINT:
+            seen += os.read(near, 1000)
+        compiling.send_signal(end)
+        compiling.wait()
+        os.close(near)
+        with open("long.plan", "rb") as file:
+            t.check(file.read() == b"as before", "the file that was there is still there", end, size)
+        t.check(end == signal.SIGKILL or aside_bytes() < 0, "and nothing is left beside it", end, os.listdir("."))
+        for name in os.listdir("."):
+            if name.startswith("long.plan.part-"):
+                os.remove(name)
+
+
 def unfit():
-    for text, words in (("G38.2 X-5 F100", ("probing",)), ("G1 A10 F100", ("rotary",)), ("M3 S100\nG95 G1 X5 F0.1", ("revolution",))):
+    for text, words in (("G38.2 X-5 F100", ("probing",)), ("M3 S100\nG95 G1 X5 F0.1", ("revolution",))):
         t.write("unfit.ngc", "G21\nG1 X1 F100\n" + text + "\nM2\n")
-        options = ("--set", "axis.A.drive_node=4", "--set", "axis.A.max_velocity_deg_s=90") if "A10" in text else ()
-        status, _, err = t.run("compile", "unfit.ngc", "-o", "unfit.plan", *options)
+        status, _, err = t.run("compile", "unfit.ngc", "-o", "unfit.plan")
         t.check(status == 2 and "unfit.ngc" in err and all(word in err for word in words), "what cannot be compiled is told with its line", text, status, err)
         t.check(not os.path.exists("unfit.plan"), "and nothing is written", text)
 
@@ -195,6 +292,9 @@ if len(sys.argv) == 1:
     files()
     ceilings()
     unfit()
+    stretches()
+    figure()
+    ended()
 for seed in range(FIRST, FIRST + PROGRAMS):
     judge(seed)
 t.finish()

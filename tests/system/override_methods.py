@@ -11,7 +11,7 @@ PERCENT = 50
 
 # Where one landed joint follows the other: the feed falls to each of them and ends up to a cycle's deceleration lower
 # than it might, which a slower approach does not need.
-KNOWN_SLOWER = {"tangent_lines_smooth.ngc": 0.002}
+KNOWN_SLOWER = {"tangent_lines_smooth.ngc": 0.001}
 
 
 def circles():

@@ -68,6 +68,7 @@ PROBE = """
     dispatchEvent(new Event("afterprint"));
     await pause(200);
   }
+  page.dataset.shares = [...document.querySelectorAll("#shares-section .share-text, #shares-section p")].map((text) => text.textContent).join("|");
   page.dataset.probed = "true";
 })();
 """
@@ -122,6 +123,12 @@ def check_tables(name, dom):
     check(f"{name}: text of the summary stays text", "9f86d081884c7d65&lt;/script&gt;&lt;b&gt;" in dom, "")
 
 
+def check_shares(name, root):
+    wanted = ("velocity|10 %|40 %", "acceleration|20 %|50 %", "jerk|0 %|25 %", "on board, 2.000 s", "ahead, 1.500 s")
+    seen = root.get("data-shares", "")
+    check(f"{name}: shares of the time at each limit", all(text in seen for text in wanted), seen)
+
+
 def check_plots(dom, root):
     plots = {plot["id"]: plot for plot in map(attributes, re.findall(r"<div[^>]*data-points=[^>]*>", dom))}
     for name, points in EXPECTED.items():
@@ -168,6 +175,7 @@ def main():
     dom = open_page(browser, bare)
     check_common("without plots", root_of(dom))
     check_tables("without plots", dom)
+    check_shares("without plots", root_of(dom))
     check("without plots: the page says so", "Plots are missing" in dom.split("<script")[0], "")
 
     if failures:

@@ -146,6 +146,9 @@ int main(int argc, char **argv)
         return 2;
     add_cycles(r, cycles, cycles < 10000 ? 4000 : 20000);
     FILE *file = fopen(argv[2], "wb");
+    report_set_shares(r, "{\"board\": {\"time_s\": 2, \"velocity\": 0.1, \"acceleration\": 0.2, "
+                         "\"jerk\": 0}, \"ahead\": {\"time_s\": 1.5, \"velocity\": 0.4, "
+                         "\"acceleration\": 0.5, \"jerk\": 0.25}}");
     int error = file != NULL ? report_write(r, file, summary) : errno;
     if (file != NULL && fclose(file) != 0)
         error = errno;

@@ -33,11 +33,12 @@ CALLS = (
     (r"flow_.*", r"take_(do|else|elseif|endif|endrepeat|endwhile|if|repeat|while)|calls_.*|leave_round"),
     (r"give_order|panel_.*", STORE),
     (r"predefined_.*", r"get_.*"),
+    (r"replay_read|intake_.*", r"take|is_lost"),
     (r"run_line|run_step.*", CODES),
     (r"send_.*", r"send"),
     (r"drives_.*", r"receive|send|sdo_.*"),
     (r"receive", r"slcan_can_take|take_panel_byte"),
-    (r"service_.*", r"text_queue_.*"),
+    (r"service_.*", r"text_queue_.*|open|announce|forget"),
     (r"steps_.*|read_encoders", r"step_.*"),
 )
 
@@ -63,9 +64,9 @@ def registers(text):
 
 
 def frame_bytes(operation, text):
-    if operation.startswith("push") or (operation.startswith("stmdb") and text.startswith("sp!")):
+    if operation in ("push", "push.w") or (operation.startswith("stmdb") and text.startswith("sp!")):
         return 4 * registers(text)
-    if operation.startswith("vpush"):
+    if operation == "vpush":
         return (8 if "d" in re.search(r"\{(.*)\}", text).group(1) else 4) * registers(text)
     pushed = re.match(r"(?:sp, )?sp, #(\d+)", text) if operation.startswith("sub") else None
     pushed = pushed or (re.match(r"sp, #(\d+)", text) if operation.startswith("sub") else None)

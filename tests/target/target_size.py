@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """The image: flash, memory and stack within their budgets, and nothing in it that has no place in a control cycle.
 
-With --memory also the budget of all of its memory.
+The budget of all of its memory is what it takes now; with --memory it is that of an STM32F405, which is not reached.
 """
 
 import glob
@@ -16,6 +16,7 @@ import takt_test as t
 
 FLASH_MAX = 256 * 1024
 MEMORY_MAX = 128 * 1024
+MEMORY_NOW = 304 * 1024
 
 FORBIDDEN = re.compile(
     r"^_?(malloc|calloc|realloc|free|_?sbrk|v?f?s?n?printf|puts|putchar|fopen|fwrite|fread|scanf|getc|exit|atexit"
@@ -40,12 +41,13 @@ def check_sizes(elf):
     memory = sum(part.get(name, 0) for name in (".stack", ".data", ".bss", ".noinit"))
     print(f"{os.path.basename(elf)}: flash {flash} of {FLASH_MAX}, memory {memory} of {MEMORY_MAX}")
     t.check(flash <= FLASH_MAX, "the flash memory is enough", flash)
-    t.check("--memory" not in sys.argv or memory <= MEMORY_MAX, "the memory is enough", memory)
+    t.check(memory <= (MEMORY_MAX if "--memory" in sys.argv else MEMORY_NOW), "the memory is enough", memory)
 
 
 def check_names(names):
     wrong = sorted(name for name in names if FORBIDDEN.match(name))
     t.check(wrong == [], "no heap, no libm, no stdio", wrong)
+    t.check("__assert_func" in names, "assertions are there: a broken one stops the image")
 
 
 def check_stack(elf, names, folder):

@@ -486,6 +486,24 @@ static void test_results_have_the_same_bits_on_every_processor_and_compiler(void
     TEST_ASSERT_TRUE_MESSAGE(all_equal, "some digest differs, see above");
 }
 
+static void test_the_float_below_a_number_is_the_nearest_that_is_not_above_it(void)
+{
+    uint64_t state = 21;
+
+    for (int k = 0; k < RANDOM_COUNT; k++) {
+        const double x = fabs(random_finite(&state));
+        const float f = maths_float_below(x);
+
+        TEST_ASSERT_TRUE((double)f <= x);
+        TEST_ASSERT_TRUE((double)nextafterf(f, INFINITY) > x);
+    }
+    TEST_ASSERT_TRUE(maths_float_below(0.1) < 0.1F);
+    TEST_ASSERT_TRUE(maths_float_below(0.5) == 0.5F);
+    TEST_ASSERT_TRUE(maths_float_below(0.0) == 0.0F);
+    TEST_ASSERT_TRUE(maths_float_below(1e300) == FLT_MAX);
+    TEST_ASSERT_TRUE(maths_float_below((double)INFINITY) == INFINITY);
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -507,6 +525,7 @@ int main(void)
     RUN_TEST(test_exp_and_ln_have_the_stated_special_values);
     RUN_TEST(test_arguments_outside_the_domain_give_not_a_number);
     RUN_TEST(test_rising_functions_never_fall);
+    RUN_TEST(test_the_float_below_a_number_is_the_nearest_that_is_not_above_it);
     RUN_TEST(test_results_have_the_same_bits_on_every_processor_and_compiler);
     return UNITY_END();
 }

@@ -207,7 +207,7 @@ static void test_a_way_through_cells_and_edges_has_no_jump_in_acceleration(void)
 
 static void test_patches_are_the_grid_to_a_few_nanometres(void)
 {
-    struct grid_patch patch = {0};
+    struct grid_patches patches = {0};
     unsigned valid = 0;
     double worst = 0;
 
@@ -219,8 +219,8 @@ static void test_patches_are_the_grid_to_a_few_nanometres(void)
         float direct[AXIS_COUNT] = {0}, near[AXIS_COUNT] = {0};
 
         TEST_ASSERT_EQUAL_UINT(grid_add(&grid, &at, 1.0F, direct),
-                               grid_patch_add(&grid, &patch, &at, 1.0F, near));
-        valid += patch.valid ? 1 : 0;
+                               grid_patch_add(&grid, &patches, &at, 1.0F, near));
+        valid += patches.used.valid ? 1 : 0;
         for (unsigned o = 0; o < 3; o++)
             worst = fmax(worst, fabs((double)(near[o] - direct[o])));
     }

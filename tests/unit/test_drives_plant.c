@@ -142,6 +142,23 @@ static void test_braking_stops_with_the_quick_stop_deceleration_and_then_stands(
     TEST_ASSERT_TRUE(fabs(plant.velocity_mm_s) < 0.02);
 }
 
+/*
+ * At the end of a stop the motor overshoots and turns round. In the cycle in which it does, way out and way back may
+ * cancel, although it moves. What the encoder cannot tell from standstill is less than two steps in a loop period.
+ */
+static void test_a_motor_that_is_said_to_stand_does_not_run_on_without_torque(void)
+{
+    double unseen_mm_s = 2 * plant.encoder_step_mm / (config.loop_period_us * 1e-6);
+    for (unsigned i = 1; i <= 2000; i++) {
+        drive_plant_init(&plant, &config);
+        follow_for(200, 0.05 * i);
+        drive_plant_begin_brake(&plant, config.quick_stop_deceleration_mm_s2);
+        for (unsigned cycles = 0; !drive_plant_brake(&plant, CYCLE_NS); cycles++)
+            TEST_ASSERT_TRUE(cycles < 250);
+        TEST_ASSERT_TRUE(fabs(plant.velocity_mm_s) < unseen_mm_s);
+    }
+}
+
 static void test_braking_begins_at_the_motor_however_far_the_command_was(void)
 {
     unsigned cycles = 0;
@@ -330,6 +347,7 @@ int main(void)
     RUN_TEST(test_the_encoder_reports_whole_steps_of_its_own);
     RUN_TEST(test_without_encoder_steps_the_position_itself_is_measured);
     RUN_TEST(test_braking_stops_with_the_quick_stop_deceleration_and_then_stands);
+    RUN_TEST(test_a_motor_that_is_said_to_stand_does_not_run_on_without_torque);
     RUN_TEST(test_braking_begins_at_the_motor_however_far_the_command_was);
     RUN_TEST(test_without_torque_friction_stops_the_motor_and_the_command_stays_with_it);
     RUN_TEST(test_any_cycle_from_100_us_to_10_ms_follows);

@@ -87,29 +87,24 @@ static void test_feed_squared_falls_linearly_towards_a_stop(void)
 
 static void test_the_override_scales_the_programmed_feed_alone(void)
 {
-    struct block b;
-
     push(MOVE_FEED, 50.0, 80.0);
     build();
-    b = *path_at(&path, 0);
-    b.feed_max_mm_s = 50.0; /* by geometry */
+    path.ring.block[0].feed_limit_mm_s = 50.0F; /* by geometry */
     request.feed_ratio = 0.75;
-    TEST_ASSERT_DOUBLE_WITHIN(1e-12, 50.0, ceiling_block_feed(&b, &request));
+    TEST_ASSERT_DOUBLE_WITHIN(1e-12, 50.0, ceiling_block_feed(&path, 0, &request));
     request.feed_ratio = 0.5;
-    TEST_ASSERT_DOUBLE_WITHIN(1e-12, 40.0, ceiling_block_feed(&b, &request));
+    TEST_ASSERT_DOUBLE_WITHIN(1e-12, 40.0, ceiling_block_feed(&path, 0, &request));
     request.proportional = true;
-    TEST_ASSERT_DOUBLE_WITHIN(1e-12, 25.0, ceiling_block_feed(&b, &request));
+    TEST_ASSERT_DOUBLE_WITHIN(1e-12, 25.0, ceiling_block_feed(&path, 0, &request));
 }
 
 static void test_a_move_without_override_keeps_its_feed(void)
 {
     push(MOVE_FEED, 50.0, 80.0);
     build();
-    struct block b = *path_at(&path, 0);
-
-    b.move.overrides = 0;
+    path.ring.block[0].may_feed = 0;
     request.feed_ratio = 0.5;
-    TEST_ASSERT_DOUBLE_WITHIN(1e-12, 80.0, ceiling_block_feed(&b, &request));
+    TEST_ASSERT_DOUBLE_WITHIN(1e-12, 80.0, ceiling_block_feed(&path, 0, &request));
 }
 
 static void test_a_rapid_obeys_the_rapid_override(void)
@@ -118,7 +113,7 @@ static void test_a_rapid_obeys_the_rapid_override(void)
     request.rapid_ratio = 0.25;
     request.feed_ratio = 0.5;
     build();
-    TEST_ASSERT_DOUBLE_WITHIN(1e-12, 25.0, ceiling_block_feed(path_at(&path, 0), &request));
+    TEST_ASSERT_DOUBLE_WITHIN(1e-12, 25.0, ceiling_block_feed(&path, 0, &request));
     TEST_ASSERT_EQUAL(CEILING_RAPID | OVERRIDE_HOLD, ceiling.piece[0].overrides);
     TEST_ASSERT_DOUBLE_WITHIN(1e-12, 0.1, ceiling.piece[0].feed_max);
 }

@@ -91,7 +91,7 @@ void tearDown(void)
 /* Cycles until replaying fails, and how far X has come. */
 static double run_until_it_fails(void)
 {
-    const struct replay_source source = {NULL, read_bytes};
+    const struct replay_source source = {.read = read_bytes};
     const struct motion_operator as_programmed = {.feed_ratio = 1, .rapid_ratio = 1};
     struct cycle_record record;
     double farthest = 0;

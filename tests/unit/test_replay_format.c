@@ -56,7 +56,7 @@ static size_t read_slowly(void *context, uint8_t *to, size_t size)
 
 static struct intake read_all(void)
 {
-    const struct replay_source source = {NULL, read_slowly};
+    const struct replay_source source = {.read = read_slowly};
     static struct intake intake;
 
     intake_open(&intake, &source);

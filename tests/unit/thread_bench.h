@@ -175,7 +175,7 @@ static inline void bench_check_limits(const struct bench *b)
 static inline void bench_apply_events(struct bench *b)
 {
     for (uint32_t i = b->motion.passed_first; i != b->path.first; i++) {
-        const struct move *m = &path_at(&b->path, i)->move;
+        const struct move *m = &path_read(&b->path, i)->move;
 
         if (m->kind == MOVE_SPINDLE) {
             b->command_rpm = m->direction == SPINDLE_CCW ? -m->speed_rpm : m->speed_rpm;

@@ -1,0 +1,81 @@
+/*
+ * What a block is executed by, in as few bytes as it takes: its move and its curve.
+ *
+ *     head | end | start, where that is not where the block before ends | what the kind of move needs
+ *
+ * A point takes 8 bytes for each coordinate that is not 0. What can be found again to the last bit is left out: a line
+ * and an arc are made of their move anew, and a piece of a smoothed curve shares three of its four control points with
+ * the piece before. Records have the same size in every build: when a ring of them is full decides how far is planned.
+ */
+#ifndef TAKT_PLAN_RECORD_H
+#define TAKT_PLAN_RECORD_H
+
+#include "plan/block.h"
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+/* Bytes of a record at most: an involute of six axes with start, end and a feed per revolution takes 318. */
+#define RECORD_MAX 320
+
+/* Control points that a piece shares with those before it: so many records back must be kept. */
+#define RECORD_BEFORE 3
+
+/* What many moves in a row have in common. No padding: compared as bytes. */
+struct record_modes {
+    double tolerance_mm;
+    double merge_mm;
+    double cutter_radius_mm;
+    float work_mm[AXIS_LINEAR_COUNT];
+    float overhang_mm[AXIS_LINEAR_COUNT];
+    uint32_t tool;
+    uint8_t overrides;
+    uint8_t path;
+    uint8_t plane;
+    uint8_t cutter_side;
+    uint8_t cutter_orientation;
+    uint8_t cutter_entry;
+    uint8_t correction_off;
+    uint8_t contour_side;
+    uint32_t none;
+};
+
+/* The same bits? What is remade from a record is to be what it was, 0 and -0 too. Of what has no padding. */
+bool record_is_same(const void *a, const void *b, size_t size);
+
+void record_modes_of(const struct move *move, struct record_modes *modes);
+
+/* What the record before leaves for the next one. */
+struct record_chain {
+    bool has_end;     /* end is where the block before ends */
+    bool has_control; /* control are the last three control points of a piece of a smoothed curve */
+    struct point end;
+    struct point control[RECORD_BEFORE];
+};
+
+/*
+ * Writes the record of a block; control: of a piece of a smoothed curve, else NULL. modes: by which number those of its
+ * move are kept. Returns the bytes it takes, <= RECORD_MAX, and tells what it leaves for the next one.
+ */
+uint32_t record_write(uint8_t bytes[RECORD_MAX], const struct block *b,
+                      const struct point control[4], unsigned modes, struct record_chain *chain);
+
+/* Parts of records that are needed alone. */
+enum move_kind record_kind(const uint8_t *record);
+unsigned record_modes_number(const uint8_t *record);
+/* 0: the feed does not follow the spindle. */
+double record_feed_rev(const uint8_t *record);
+void record_set_governor(uint8_t *record, enum governor governor);
+
+/* The move, but for its feed: that is 0. */
+void record_read_move(const uint8_t *record, const struct record_modes *modes, struct move *move);
+
+/*
+ * Number, move, curve, length, and what governs the feed of a block. before: the records of the RECORD_BEFORE blocks
+ * before it, the nearest first; NULL where there is none.
+ */
+void record_read(const uint8_t *record, const uint8_t *const before[RECORD_BEFORE],
+                 const struct record_modes *modes, struct block *b);
+
+#endif

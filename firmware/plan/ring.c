@@ -1,0 +1,190 @@
+#include "plan/ring.h"
+
+#include "base/maths.h"
+
+#include <assert.h>
+#include <string.h>
+
+static_assert(PATH_BYTES_MAX / PATH_BYTES_STEP <= 1 << 12, "places fit into path_block.record");
+static_assert(LAW_CYCLES_MAX < 1 << 9, "windows fit into path_block.cycles");
+static_assert(sizeof(struct path_block) == 32, "no padding");
+
+double path_block_top(const struct path_block *b)
+{
+    return maths_min(BLOCK_OVERRIDE_MAX * (double)b->feed_program_mm_s, (double)b->feed_limit_mm_s);
+}
+
+/* -- room -- */
+
+/* The oldest block whose record must stay: those before the oldest one are needed to read it. */
+static uint32_t oldest_record(uint32_t kept)
+{
+    return kept > RECORD_BEFORE ? kept - RECORD_BEFORE : 0;
+}
+
+/* Where a record of that size begins that is written now: it does not wrap around. False: no room. */
+static bool find_place(const struct path_ring *r, uint32_t tail, uint32_t size, uint32_t *place)
+{
+    *place = r->place;
+    if (r->place >= tail && r->place + size <= PATH_BYTES_MAX) {
+        return true;
+    }
+    if (r->place >= tail) {
+        *place = 0;
+    }
+    return *place + size < tail;
+}
+
+/* Modes that no block has any more; PATH_MODES_MAX: there are none. */
+static unsigned free_modes(const struct path_ring *r, uint32_t kept)
+{
+    unsigned k = 0;
+
+    while (k < PATH_MODES_MAX && r->modes_used[k] != 0 && (int32_t)(r->modes_used[k] - kept) > 0) {
+        k++;
+    }
+    return k;
+}
+
+bool ring_has_room(const struct path_ring *r, uint32_t kept, uint32_t pushed)
+{
+    const uint32_t oldest = oldest_record(kept);
+    const uint32_t tail =
+        oldest == pushed ? PATH_BYTES_MAX : ring_at(r, oldest)->record * PATH_BYTES_STEP;
+    uint32_t place;
+
+    return pushed - kept < PATH_BLOCKS_MAX - RECORD_BEFORE &&
+           find_place(r, tail, RECORD_MAX, &place) && free_modes(r, kept) < PATH_MODES_MAX;
+}
+
+/* -- writing -- */
+
+/* Of the new modes, which are most often those of the newest block. */
+static unsigned find_modes(struct path_ring *r, uint32_t kept, const struct record_modes *modes)
+{
+    unsigned k = r->modes_newest;
+
+    for (unsigned i = 0; i < PATH_MODES_MAX; i++, k = (k + 1) % PATH_MODES_MAX) {
+        if (r->modes_used[k] != 0 && record_is_same(&r->modes[k], modes, sizeof(*modes))) {
+            return k;
+        }
+    }
+    k = free_modes(r, kept);
+    assert(k < PATH_MODES_MAX);
+    r->modes[k] = *modes;
+    return k;
+}
+
+static unsigned push_modes(struct path_ring *r, uint32_t kept, uint32_t pushed,
+                           const struct move *move)
+{
+    struct record_modes modes;
+
+    record_modes_of(move, &modes);
+    r->modes_newest = find_modes(r, kept, &modes);
+    r->modes_used[r->modes_newest] = pushed + 1;
+    return r->modes_newest;
+}
+
+static uint32_t push_record(struct path_ring *r, const struct block *b,
+                            const struct point control[4], unsigned modes)
+{
+    uint8_t bytes[RECORD_MAX];
+    const uint32_t size = record_write(bytes, b, control, modes, &r->chain);
+    const uint32_t place = r->place + size <= PATH_BYTES_MAX ? r->place : 0;
+
+    memcpy(&r->byte[place], bytes, size);
+    r->place = (place + size + PATH_BYTES_STEP - 1) / PATH_BYTES_STEP * PATH_BYTES_STEP;
+    return place;
+}
+
+void ring_push(struct path_ring *r, uint32_t kept, uint32_t pushed, const struct block *b,
+               const struct point control[4])
+{
+    assert(ring_has_room(r, kept, pushed));
+    const unsigned modes = push_modes(r, kept, pushed, &b->move);
+    const uint32_t place = push_record(r, b, control, modes);
+    const unsigned may = b->move.overrides;
+
+    r->block[pushed % PATH_BLOCKS_MAX] = (struct path_block){
+        .start = b->start,
+        .feed_program_mm_s = maths_float_below(b->feed_program_mm_s),
+        .record = (place / PATH_BYTES_STEP) & 0xfffU,
+        .motion = block_is_motion(b),
+        .rapid = b->move.kind == MOVE_RAPID,
+        .rotary = b->rotary,
+        .may_feed = (may & OVERRIDE_FEED) != 0,
+        .may_hold = (may & OVERRIDE_HOLD) != 0,
+        .per_revolution = b->move.feed_rev_mm != 0.0,
+    };
+}
+
+void ring_limit(struct path_ring *r, uint32_t index, const struct block *b)
+{
+    struct path_block *to = &r->block[index % PATH_BLOCKS_MAX];
+    enum governor governor = GOVERNOR_PROGRAM;
+    const double limit_mm_s = block_limit(b, &governor);
+
+    to->feed_limit_mm_s = maths_float_below(limit_mm_s);
+    to->a_mm_s2 = maths_float_below(b->a_mm_s2);
+    to->j_mm_s3 = maths_float_below(b->j_mm_s3);
+    record_set_governor(&r->byte[(size_t)to->record * PATH_BYTES_STEP], governor);
+}
+
+void ring_join(struct path_ring *r, uint32_t index, const struct block *b)
+{
+    struct path_block *to = &r->block[index % PATH_BLOCKS_MAX];
+
+    to->feed_joint_mm_s = maths_float_below(b->feed_joint_mm_s);
+    to->end = (unsigned)b->end & 3U;
+    to->continues = b->continues;
+}
+
+void ring_promise(struct path_ring *r, uint32_t index, uint32_t cycles, bool known)
+{
+    struct path_block *b = &r->block[index % PATH_BLOCKS_MAX];
+
+    b->cycles = cycles & 0x1ffU;
+    b->cycles_known = known;
+}
+
+/* -- reading -- */
+
+static const struct record_modes *modes_of(const struct path_ring *r, uint32_t index)
+{
+    return &r->modes[record_modes_number(ring_record(r, index))];
+}
+
+void ring_read_move(const struct path_ring *r, uint32_t index, struct move *move)
+{
+    record_read_move(ring_record(r, index), modes_of(r, index), move);
+}
+
+static void read_limits(const struct path_block *from, uint64_t end, struct block *b)
+{
+    b->start = from->start;
+    b->length = from->motion ? end - from->start : 0;
+    b->feed_program_mm_s = (double)from->feed_program_mm_s;
+    b->feed_cap_mm_s = (double)from->feed_limit_mm_s;
+    b->feed_max_mm_s = path_block_top(from);
+    b->a_mm_s2 = (double)from->a_mm_s2;
+    b->j_mm_s3 = (double)from->j_mm_s3;
+    b->feed_joint_mm_s = (double)from->feed_joint_mm_s;
+    b->end = (enum joint_kind)from->end;
+    b->continues = from->continues;
+}
+
+const struct block *ring_read(struct path_ring *r, uint32_t index, uint64_t end)
+{
+    struct path_view *view = &r->view[index % 2];
+    const uint8_t *before[RECORD_BEFORE] = {NULL};
+
+    for (uint32_t i = 0; i < RECORD_BEFORE && i < index; i++) {
+        before[i] = ring_record(r, index - 1 - i);
+    }
+    record_read(ring_record(r, index), before, modes_of(r, index), &view->block);
+    read_limits(ring_at(r, index), end, &view->block);
+    view->valid = true;
+    view->index = index;
+    return &view->block;
+}

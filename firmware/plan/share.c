@@ -1,0 +1,112 @@
+/*
+ * Goal: wherever three cycles fall, the joints in them take no more of the jerk limit than each block in them has left
+ * to joints.
+ *
+ * A joint and a block fall into the same three cycles only if what lies between them is passed in less. So a block
+ * leaves the largest share_joint (joint.c) of the joints at its ends and of those that are nearer to it than that, with
+ * the blocks between at their highest feed. It is closed, and seen by others, when so much has been pushed behind it that
+ * no further joint is near.
+ *
+ * A walk back has few steps: a block lasts at least an eighth of a cycle (block.c).
+ *
+ * Rejected: the largest share for each block beside a short one, whatever its joints. That needs no walk, but halves the
+ * jerk of ramps beside every short block of a straight line.
+ */
+#include "plan/share.h"
+
+#include "base/handoff.h"
+#include "base/maths.h"
+#include "plan/joint.h"
+#include "plan/path.h"
+
+#include <assert.h>
+#include <string.h>
+
+static struct share_block *open_block(struct path *p, uint32_t index)
+{
+    return &p->open[index % SHARE_BLOCKS_MAX];
+}
+
+void share_note(struct path *p, uint32_t index, const struct block *b)
+{
+    struct share_block *o = open_block(p, index);
+
+    o->shape = b->shape;
+    o->feed_program_mm_s = b->feed_program_mm_s;
+    o->feed_cap_mm_s = b->feed_cap_mm_s;
+    o->cap = b->cap;
+    o->share_joint = b->share_joint;
+    o->least_s = b->length_mm > 0.0 ? b->length_mm / block_top_feed(b) : 0.0;
+    ring_limit(&p->ring, index, b);
+    ring_join(&p->ring, index, b);
+}
+
+void share_begin(struct path *p, uint32_t index, const struct block *b)
+{
+    open_block(p, index)->share_near = 0.0;
+    share_note(p, index, b);
+}
+
+/* The limits of a block with the share it leaves. */
+static void settle(struct path *p, uint32_t index)
+{
+    const struct share_block *o = open_block(p, index);
+    struct block b;
+
+    memset(&b, 0, sizeof(b));
+    b.shape = o->shape;
+    b.feed_program_mm_s = o->feed_program_mm_s;
+    b.feed_cap_mm_s = o->feed_cap_mm_s;
+    b.cap = o->cap;
+    block_set_share(&b, o->share_near);
+    ring_limit(&p->ring, index, &b);
+}
+
+/* Closes the blocks before this one. */
+static void close_until(struct path *p, uint32_t end)
+{
+    while (p->closed != end) {
+        settle(p, p->closed);
+        handoff_set_count(&p->closed, p->closed + 1U);
+    }
+}
+
+/* The first block behind whose start the path is not known for so long. */
+static uint32_t settled_end(struct path *p, double near_s)
+{
+    uint32_t i = p->pushed - 1;
+    double time_s = open_block(p, i)->least_s;
+
+    while (i != p->closed && time_s < near_s) {
+        i--;
+        time_s += open_block(p, i)->least_s;
+    }
+    return i;
+}
+
+void share_spread(struct path *p)
+{
+    const double near_s = JOINT_CYCLES_NEAR * p->limits.cycle_s;
+    const double share = open_block(p, p->pushed - 2)->share_joint;
+    struct share_block *newest = open_block(p, p->pushed - 1);
+    double time_s = 0.0;
+
+    if (path_at(p, p->pushed - 2)->end == JOINT_STOP) {
+        close_until(p, p->pushed - 1);
+        return;
+    }
+    for (uint32_t i = p->pushed - 1; i != p->closed && time_s < near_s; i--) {
+        struct share_block *o = open_block(p, i - 1);
+
+        o->share_near = maths_max(o->share_near, share);
+        newest->share_near = maths_max(newest->share_near, o->share_joint);
+        time_s += o->least_s;
+    }
+    close_until(p, settled_end(p, near_s));
+    assert(p->pushed - p->closed < SHARE_BLOCKS_MAX);
+}
+
+void share_close(struct path *p)
+{
+    close_until(p, p->pushed);
+}

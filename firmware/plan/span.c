@@ -1,0 +1,351 @@
+/*
+ * Goal: the averaging window with which a span takes the least time, without running the lead point through it.
+ *
+ * A long window lets ramps reach a high acceleration; with a short one the lead point comes later to a slow block,
+ * leaves it earlier, and waits less between speeding up and slowing down. For some windows the time is predicted, by
+ * parts of equal limits laid where the lead point feels them. With N the first box, W the whole window, h = (W - 1)/2,
+ * c a feed a cycle:
+ *
+ *     feed |   ______ c1             into a slower part   h + 2 cycles before it, at that part's feed:  c2 (h + 2)
+ *          |         |        ____   out of it            h cycles behind it:                           c2 h
+ *          |         |_______|       a = min(A, J N)
+ *          +---------+-------+----> lead point
+ *
+ * Feed squared where parts begin is what both ends of the span and all ceilings allow, backwards and then forwards:
+ * u = min(c^2, u_next + 2 a L). Where the feed rises and falls again without being kept for W cycles, the peak is lower:
+ * W q = l + (p^2 - q^2)/a, l the way at the old peak p, q the new one. A stop is come to W - 1 cycles after the lead point.
+ *
+ * Each window costs one step for each part. Rejected: to lay the pieces of the ceiling themselves for each window (ten
+ * times the cost, and no better choice); the window of the fastest block for all (up to 17 % slower).
+ */
+#include "plan/span.h"
+
+#include "base/maths.h"
+
+/* Parts looked at: what lies behind them counts as unknown. */
+#define PARTS_MAX 32
+
+/* Cycles by which a slower part begins earlier, beside h. */
+#define MARGIN CEILING_MARGIN_CYCLES
+
+/* A change of feed by less than this part of it is rounding. */
+#define CHANGE_MIN 1e-6
+
+/* Limits of blocks are of single precision: so much may be missing of a quotient of two. */
+#define SINGLE 2.4e-7
+
+/* mm and cycles */
+struct part {
+    double end_mm; /* of its blocks, from the start of the span */
+    double feed;
+    double a;
+    double j;
+};
+
+struct span {
+    double cycle_s;
+    enum law law;
+    double feed_start;
+    double feed_end;
+    bool known; /* the parts reach to its end, */
+    bool stops; /* where it rests */
+    bool fixed; /* and will always end */
+    unsigned count;
+    struct part part[PARTS_MAX];
+};
+
+/* A part where the lead point feels it. */
+struct laid {
+    const struct part *part;
+    double from_mm; /* the way of the lead point from the start of the span */
+    double a;
+    double energy; /* feed squared there */
+};
+
+struct trial {
+    const struct span *span;
+    double box;    /* N */
+    double window; /* W */
+    double behind; /* h */
+    double end_mm; /* where the lead point ends */
+    unsigned count;
+    struct laid laid[PARTS_MAX];
+};
+
+bool span_lands(const struct path *path, uint32_t index)
+{
+    const struct path_block *b = path_at(path, index);
+
+    return b->end == JOINT_REDUCED ||
+           (b->end == JOINT_PASSED && path->limits.landing == LANDING_BLOCK);
+}
+
+/* -- the parts of a span -- */
+
+/* False: there is no room for one more. */
+static bool add_block(struct span *s, const struct path *path, uint32_t index,
+                      const struct ceiling_request *asked)
+{
+    const struct path_block *b = path_at(path, index);
+    const double t = s->cycle_s;
+    struct part part = {
+        .end_mm = path_length(path, index),
+        .feed = ceiling_block_feed(path, index, asked) * t,
+        .a = (double)b->a_mm_s2 * t * t,
+        .j = (double)b->j_mm_s3 * t * t * t,
+    };
+
+    if (s->count > 0) {
+        struct part *last = &s->part[s->count - 1];
+
+        part.end_mm += last->end_mm;
+        if (last->feed == part.feed && last->a == part.a && last->j == part.j) {
+            last->end_mm = part.end_mm;
+            return true;
+        }
+    }
+    if (s->count == PARTS_MAX) {
+        return false;
+    }
+    s->part[s->count++] = part;
+    return true;
+}
+
+/* Closed blocks up to the end of the span; the first one even if it is not closed. */
+static void survey(struct span *s, const struct path *path, const struct ceiling_request *request,
+                   uint32_t index)
+{
+    const struct ceiling_request asked = {
+        .feed_ratio = 1.0, .rapid_ratio = 1.0, .spindle_rev_s = request->spindle_rev_s};
+
+    for (; !s->known; index++) {
+        const struct path_block *b = path_at(path, index);
+
+        if ((s->count > 0 && index == path->closed) || !b->motion ||
+            !add_block(s, path, index, &asked) || index == path->closed) {
+            return;
+        }
+        s->stops = ceiling_stops(request, path, index);
+        s->known = s->stops || span_lands(path, index);
+        s->fixed = b->end == JOINT_STOP || span_lands(path, index);
+        s->feed_end = s->stops ? 0.0 : (double)b->feed_joint_mm_s * s->cycle_s;
+    }
+}
+
+/* Feed at which the span begins: of the joint before it, or rest. */
+static double feed_at_start(const struct path *path, const struct ceiling_request *request,
+                            uint32_t index)
+{
+    return index == request->first || ceiling_stops(request, path, index - 1)
+               ? 0.0
+               : (double)path_at(path, index - 1)->feed_joint_mm_s * path->limits.cycle_s;
+}
+
+/* -- the time it takes with a window -- */
+
+/* Where a part begins for the lead point, behind a part laid before. */
+static double part_begin(const struct trial *t, const struct part *before, const struct part *part)
+{
+    const double early = part[-1].end_mm - part->feed * (t->behind + MARGIN);
+
+    return part->feed < before->feed ? early
+                                     : maths_max(early, before->end_mm + before->feed * t->behind);
+}
+
+/* Lays the parts for the lead point; one that others cover, up to the end or in between, is left out. */
+static void lay_parts(struct trial *t)
+{
+    const struct span *s = t->span;
+
+    for (unsigned k = 0; k < s->count; k++) {
+        const struct part *part = &s->part[k];
+        double from_mm = s->feed_start * t->behind;
+
+        for (; t->count > 0; t->count--) {
+            const struct laid *last = &t->laid[t->count - 1];
+
+            from_mm = part_begin(t, last->part, part);
+            if (from_mm > last->from_mm) {
+                break;
+            }
+            from_mm = last->from_mm;
+        }
+        t->laid[t->count++] =
+            (struct laid){part, from_mm, maths_min(part->a, part->j * t->box), 0.0};
+    }
+    while (t->count > 1 && t->laid[t->count - 1].from_mm >= t->end_mm) {
+        t->count--;
+    }
+}
+
+static double square(double x)
+{
+    return x * x;
+}
+
+/* The way of the lead point through what is laid. */
+static double laid_length(const struct trial *t, unsigned k)
+{
+    const double to_mm = k + 1 == t->count ? t->end_mm : t->laid[k + 1].from_mm;
+
+    return maths_max(0.0, to_mm - t->laid[k].from_mm);
+}
+
+/* Feed squared at the end of the span, if the ceilings and the way to it allow. */
+static double last_energy(const struct trial *t)
+{
+    const struct laid *last = &t->laid[t->count - 1];
+    const double ceiling = square(last->part->feed);
+    const double asked = t->span->known ? maths_min(ceiling, square(t->span->feed_end)) : ceiling;
+
+    return maths_min(asked, last->energy + 2.0 * last->a * laid_length(t, t->count - 1));
+}
+
+static void plan_energies(struct trial *t)
+{
+    double energy = t->span->known ? square(t->span->feed_end) : MATHS_INFINITY;
+
+    for (unsigned k = t->count; k-- > 0;) {
+        struct laid *p = &t->laid[k];
+        const double ceiling = square(p->part->feed);
+
+        energy = maths_min(ceiling, maths_min(energy, ceiling) + 2.0 * p->a * laid_length(t, k));
+        p->energy = energy;
+    }
+    energy = square(t->span->feed_start);
+    for (unsigned k = 0; k < t->count; k++) {
+        struct laid *p = &t->laid[k];
+
+        p->energy = maths_min(p->energy, energy);
+        energy = maths_min(square(p->part->feed), p->energy + 2.0 * p->a * laid_length(t, k));
+    }
+}
+
+struct walk {
+    double cycles; /* so far */
+    bool rose;     /* and has kept its feed since for so many mm */
+    double kept_mm;
+};
+
+/* Falls from a peak that was kept for too short: what the lower peak takes more. */
+static void lower_peak(struct walk *w, double window, double peak, double a)
+{
+    const double half = 0.5 * a * window;
+    const double lower = maths_sqrt(half * half + peak * peak + a * w->kept_mm) - half;
+    const double had = 2.0 * (peak - lower) / a + w->kept_mm / peak;
+
+    w->cycles += maths_max(0.0, window - had);
+}
+
+/* Up from the feed at the start of what is laid to its highest, p^2 = (u + u_end)/2 + a L <= c^2, and down again. */
+static void pass_part(struct walk *w, const struct trial *t, unsigned k)
+{
+    const struct laid *p = &t->laid[k];
+    const double length_mm = laid_length(t, k);
+    const double end_energy = k + 1 == t->count ? last_energy(t) : t->laid[k + 1].energy;
+    const double both = p->energy + end_energy;
+    const double from = maths_sqrt(p->energy);
+    const double to = maths_sqrt(end_energy);
+    const double peak = maths_min(p->part->feed, maths_sqrt(0.5 * both + p->a * length_mm));
+    const double kept_mm = maths_max(0.0, length_mm - (2.0 * peak * peak - both) / (2.0 * p->a));
+
+    if (!(peak > 0.0)) {
+        return;
+    }
+    w->cycles += (2.0 * peak - from - to) / p->a + kept_mm / peak;
+    if (peak - from > CHANGE_MIN * peak) {
+        w->rose = true;
+        w->kept_mm = 0.0;
+    }
+    w->kept_mm += kept_mm;
+    if (peak - to > CHANGE_MIN * peak) {
+        if (w->rose && w->kept_mm < t->window * peak) {
+            lower_peak(w, t->window, peak, p->a);
+        }
+        w->rose = false;
+    }
+}
+
+/* Cycles that the span takes with a first box of so many. */
+static double predict(const struct span *s, uint32_t box)
+{
+    const double window = (double)law_window_cycles(s->law, box);
+    const double behind = 0.5 * (window - 1.0);
+    struct walk walk = {.cycles = s->known && s->stops ? window - 1.0 : 0.0};
+    struct trial t = {
+        .span = s,
+        .box = (double)box,
+        .window = window,
+        .behind = behind,
+        .end_mm = s->part[s->count - 1].end_mm + s->feed_end * behind,
+    };
+
+    lay_parts(&t);
+    plan_energies(&t);
+    for (unsigned k = 0; k < t.count; k++) {
+        pass_part(&walk, &t, k);
+    }
+    return walk.cycles;
+}
+
+/* -- the window -- */
+
+/*
+ * The longest window that can be of use: A/J lets a ramp reach its full acceleration; a ramp to a feed F that does not
+ * needs sqrt(F/J), a span of length L cbrt(L/2J).
+ */
+static uint32_t longest_box(const struct span *s)
+{
+    double cycles = 0.0;
+    double j = MATHS_INFINITY;
+
+    for (unsigned k = 0; k < s->count; k++) {
+        const struct part *p = &s->part[k];
+
+        cycles = maths_max(cycles, maths_min(p->a / p->j, maths_sqrt(p->feed / p->j)));
+        j = maths_min(j, p->j);
+    }
+    if (s->known) {
+        cycles = maths_min(cycles, maths_cbrt(s->part[s->count - 1].end_mm / (2.0 * j)));
+    }
+    return (uint32_t)maths_clamp(maths_ceil(cycles * (1.0 - SINGLE) - 1e-9), 1.0,
+                                 law_cycles_max(s->law));
+}
+
+/*
+ * For one part from rest to rest the longest is the best: seven segments, or four, of the closed form. So it is where the
+ * end of the span is out of sight: what is in sight may be a way up to speed alone, on which every short window looks good.
+ */
+static uint32_t best_box(const struct span *s)
+{
+    static const double shorter[] = {0.85, 0.7, 0.55, 0.4, 0.25};
+    const uint32_t longest = longest_box(s);
+
+    if (!s->known || (s->count == 1 && s->stops && s->feed_start == 0.0)) {
+        return longest;
+    }
+    double least = predict(s, longest);
+    uint32_t best = longest;
+
+    for (unsigned i = 0; i < sizeof(shorter) / sizeof(shorter[0]); i++) {
+        const uint32_t box = (uint32_t)maths_max(1.0, maths_round(shorter[i] * (double)longest));
+        const double cycles = predict(s, box);
+
+        if (cycles < least) {
+            least = cycles;
+            best = box;
+        }
+    }
+    return best;
+}
+
+struct span_window span_window(const struct path *path, const struct ceiling_request *request,
+                               uint32_t index)
+{
+    struct span s = {.cycle_s = path->limits.cycle_s, .law = path->limits.law};
+
+    survey(&s, path, request, index);
+    s.feed_start = maths_min(feed_at_start(path, request, index), s.part[0].feed);
+    s.feed_end = maths_min(s.feed_end, s.part[s.count - 1].feed);
+    return (struct span_window){best_box(&s), s.fixed};
+}

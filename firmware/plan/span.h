@@ -1,0 +1,28 @@
+/*
+ * The averaging window of a span. See spans.md.
+ */
+#ifndef TAKT_PLAN_SPAN_H
+#define TAKT_PLAN_SPAN_H
+
+#include "plan/ceiling.h"
+
+#include <stdbool.h>
+#include <stdint.h>
+
+struct span_window {
+    uint32_t cycles; /* of the first averaging box */
+    bool known;      /* found with all of the span known: more blocks do not change it */
+};
+
+/* Does a span end with a block, at a joint that is passed and landed on? */
+bool span_lands(const struct path *path, uint32_t index);
+
+/*
+ * The window for the span that begins with the motion at index: the one with which the span is predicted to take the
+ * least time, as far as it is known; of a span that begins behind the closed blocks its first block is. Feeds count as
+ * programmed: the overrides do not change the window.
+ */
+struct span_window span_window(const struct path *path, const struct ceiling_request *request,
+                               uint32_t index);
+
+#endif

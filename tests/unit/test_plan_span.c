@@ -1,0 +1,159 @@
+/* The averaging window of a span. */
+#include "plan/span.h"
+
+#include <string.h>
+#include <unity.h>
+
+/* A/J is 20 cycles. */
+static const struct plan_limits limits = {
+    7,    {100, 100, 100}, {1000, 1000, 1000}, {50000, 50000, 50000}, 1e-3,
+    1e-3, LAW_JERK,        LANDING_SPAN};
+
+static struct path path;
+static struct ceiling ceiling;
+static struct ceiling_request request;
+static double x_mm;
+
+void setUp(void)
+{
+    const struct point start = {{0}};
+
+    path_init(&path, &limits, &start);
+    x_mm = 0.0;
+    request = (struct ceiling_request){
+        .lead = path.position, .span = path.position - 1, .feed_ratio = 1.0, .rapid_ratio = 1.0};
+}
+
+void tearDown(void)
+{
+}
+
+static void push(double length_mm, double feed_mm_s)
+{
+    struct move m;
+
+    memset(&m, 0, sizeof(m));
+    m.kind = MOVE_FEED;
+    m.feed_mm_s = feed_mm_s;
+    m.overrides = OVERRIDE_FEED | OVERRIDE_HOLD;
+    m.turns = 1;
+    x_mm += length_mm;
+    m.end.at[AXIS_X] = x_mm;
+    path_push(&path, &m);
+}
+
+static void push_dwell(void)
+{
+    struct move m;
+
+    memset(&m, 0, sizeof(m));
+    m.kind = MOVE_DWELL;
+    path_push(&path, &m);
+}
+
+static uint32_t cycles_of_first(void)
+{
+    return span_window(&path, &request, 0).cycles;
+}
+
+static void test_a_long_fast_span_has_the_window_of_full_acceleration(void)
+{
+    push(100.0, 100.0);
+    path_finish(&path);
+    TEST_ASSERT_EQUAL(20, cycles_of_first());
+}
+
+/* A ramp to F needs no more than sqrt(F / J) = sqrt(5 / 50,000) = 10 ms. */
+static void test_a_slow_span_has_the_window_of_its_ramp(void)
+{
+    push(100.0, 5.0);
+    path_finish(&path);
+    TEST_ASSERT_EQUAL(10, cycles_of_first());
+}
+
+/* A slow end is come to earlier by half a window at its feed: here 0.7 of the longest window is the fastest. */
+static void test_a_slow_block_at_the_end_asks_for_a_shorter_window(void)
+{
+    push(0.5, 50.0);
+    push(2.0, 10.0);
+    path_finish(&path);
+    TEST_ASSERT_EQUAL(14, cycles_of_first());
+}
+
+/* From rest up through ever faster parts: with the end in sight, a stop, a shorter window would do. */
+static void test_a_span_whose_end_is_out_of_sight_has_the_longest_window(void)
+{
+    for (int i = 0; i < 60; i++) {
+        push(0.1, 5.0 + i);
+    }
+    TEST_ASSERT_EQUAL(20, cycles_of_first());
+}
+
+static void test_the_override_does_not_change_the_window(void)
+{
+    push(2.0, 60.0);
+    push(1.0, 5.0);
+    path_finish(&path);
+    const uint32_t cycles = cycles_of_first();
+
+    request.feed_ratio = 0.3;
+    TEST_ASSERT_EQUAL(cycles, cycles_of_first());
+}
+
+static void test_a_window_is_known_when_the_end_of_the_span_is(void)
+{
+    push(100.0, 100.0);
+    push(100.0, 100.0);
+    TEST_ASSERT_FALSE(span_window(&path, &request, 0).known);
+    push_dwell();
+    TEST_ASSERT_TRUE(span_window(&path, &request, 0).known);
+}
+
+/* An operator's stop may be taken back. */
+static void test_a_stop_asked_for_makes_no_window_known(void)
+{
+    push(1.0, 100.0);
+    push(100.0, 100.0);
+    request.stops = true;
+    TEST_ASSERT_FALSE(span_window(&path, &request, 0).known);
+}
+
+/* The window that a ceiling was made with is kept when more of the span is seen, by a lead point close to it. */
+static void test_a_window_once_promised_is_kept_close_by(void)
+{
+    push(0.5, 50.0);
+    push(1.0, 10.0);
+    push(1.0, 10.0);
+    ceiling_build(&ceiling, &path, &request);
+    const uint32_t cycles = path_at(&path, 0)->cycles;
+
+    path_finish(&path);
+    TEST_ASSERT_TRUE(span_window(&path, &request, 0).cycles != cycles);
+    ceiling_build(&ceiling, &path, &request);
+    TEST_ASSERT_EQUAL(cycles, path_at(&path, 0)->cycles);
+}
+
+/* Each part another feed, more of them than are looked at: no part is written beyond the last. */
+static void test_a_span_of_many_parts_has_a_window(void)
+{
+    for (int i = 0; i < 200; i++) {
+        push(0.5 + 0.001 * i, 10.0 + i % 60);
+    }
+    path_finish(&path);
+    TEST_ASSERT_TRUE(cycles_of_first() >= 5 && cycles_of_first() <= 20);
+}
+
+int main(void)
+{
+    UNITY_BEGIN();
+    RUN_TEST(test_a_long_fast_span_has_the_window_of_full_acceleration);
+    RUN_TEST(test_a_slow_span_has_the_window_of_its_ramp);
+    RUN_TEST(test_a_slow_block_at_the_end_asks_for_a_shorter_window);
+    RUN_TEST(test_a_span_whose_end_is_out_of_sight_has_the_longest_window);
+    RUN_TEST(test_the_override_does_not_change_the_window);
+    RUN_TEST(test_a_window_is_known_when_the_end_of_the_span_is);
+    RUN_TEST(test_a_stop_asked_for_makes_no_window_known);
+    RUN_TEST(test_a_window_once_promised_is_kept_close_by);
+    RUN_TEST(test_a_span_of_many_parts_has_a_window);
+    return UNITY_END();
+}
