@@ -5,6 +5,7 @@
  *
  * test_smooth_chains NUMBER runs so many programs instead of PROGRAMS, test_smooth_chains NUMBER FIRST from that seed on.
  */
+#include "chain_distance.h"
 #include "motion/motion.h"
 #include "plan/path.h"
 #include "random_schedule.h"
@@ -126,70 +127,18 @@ static void plan(struct run *r)
     motion_build(&motion);
 }
 
-static double distance(const struct point *a, const struct point *b)
-{
-    double square = 0.0;
-
-    for (int i = 0; i < CHAIN_AXES; i++) {
-        square += (a->at[i] - b->at[i]) * (a->at[i] - b->at[i]);
-    }
-    return maths_sqrt(square);
-}
-
-/* To where p lies across the curve, from s on, by Newton's method. */
-static double distance_across(const struct curve *c, const struct point *p, double s)
-{
-    struct point on;
-    struct point t;
-
-    for (int i = 0; i < 4; i++) {
-        double along = 0.0;
-        double square = 0.0;
-
-        curve_point(c, s, &on);
-        curve_tangent(c, s, &t);
-        for (int axis = 0; axis < CHAIN_AXES; axis++) {
-            along += (p->at[axis] - on.at[axis]) * t.at[axis];
-            square += t.at[axis] * t.at[axis];
-        }
-        s = maths_clamp(s + along / square, 0.0, c->length_mm);
-    }
-    curve_point(c, s, &on);
-    return distance(p, &on);
-}
-
-/* Arcs here have a turn at most: looked at from eight places. */
-static double distance_from(const struct curve *c, const struct point *p)
-{
-    const int places = c->kind == CURVE_LINE ? 1 : 8;
-    double least = MATHS_INFINITY;
-
-    for (int i = 0; i < places; i++) {
-        least = maths_min(least, distance_across(c, p, c->length_mm * (i + 0.5) / places));
-    }
-    return least;
-}
-
-static double segment_distance(const struct point *corner, const struct point *a,
-                               const struct point *b)
-{
-    struct curve c;
-
-    return curve_set_line(&c, a, b) ? distance_across(&c, corner, 0.0) : distance(corner, b);
-}
-
 /* Lowers *least to the distance of p from the curve, which is never farther from its start than its length. */
 static void judge_curve(const struct curve *c, const struct point *p, double *least)
 {
-    if (distance(p, &c->start) - c->length_mm < *least) {
-        *least = maths_min(*least, distance_from(c, p));
+    if (chain_distance(p, &c->start) - c->length_mm < *least) {
+        *least = maths_min(*least, chain_distance_from(c, p));
     }
 }
 
 static void judge_corner(struct programmed *m, const struct point *from, const struct point *to)
 {
-    if (distance(to, &m->curve.end) - distance(from, to) < m->corner_mm) {
-        m->corner_mm = maths_min(m->corner_mm, segment_distance(&m->curve.end, from, to));
+    if (chain_distance(to, &m->curve.end) - chain_distance(from, to) < m->corner_mm) {
+        m->corner_mm = maths_min(m->corner_mm, chain_corner_distance(&m->curve.end, from, to));
     }
 }
 
@@ -277,7 +226,7 @@ static void check_run(const struct run *r, enum motion_result result, unsigned s
     TEST_ASSERT_TRUE_MESSAGE(r->judge.jerk <= 1.001, message);
     TEST_ASSERT_TRUE_MESSAGE(r->path_mm <= r->tolerance_mm, message);
     TEST_ASSERT_TRUE_MESSAGE(r->corner_mm <= r->tolerance_mm, message);
-    TEST_ASSERT_TRUE_MESSAGE(distance(&r->last, &r->end) == 0.0, message);
+    TEST_ASSERT_TRUE_MESSAGE(chain_distance(&r->last, &r->end) == 0.0, message);
 }
 
 static void test_smoothed_setpoints_keep_limits_and_tolerance_under_any_override(void)
