@@ -48,6 +48,9 @@ struct run {
     struct point end;
     struct programmed move[MOVES_MAX];
     struct schedule schedule;
+    uint64_t single_cycles; /* single block is switched every so many; 0: never */
+    bool rests;
+    unsigned singles; /* times the axes have come to rest under single block alone */
     struct chain_judge judge;
     struct point last;
     double path_mm;
@@ -170,6 +173,15 @@ static void judge_place(struct run *r, const struct cycle_record *record)
     r->last = record->cmd;
 }
 
+static void count_rests(struct run *r)
+{
+    const bool rests =
+        motion_rests(&motion) && r->schedule.now.single_block && r->schedule.free > 0;
+
+    r->singles += rests && !r->rests ? 1 : 0;
+    r->rests = rests;
+}
+
 static void set_up_run(struct run *r, unsigned seed)
 {
     memset(r, 0, sizeof(*r));
@@ -194,10 +206,13 @@ static enum motion_result run_program(struct run *r)
     do {
         plan(r);
         schedule_follow(&r->schedule, &r->chain, motion.cycles);
+        r->schedule.now.single_block =
+            r->single_cycles > 0 && motion.cycles / r->single_cycles % 2 == 1;
         result = motion_cycle(&motion, &r->schedule.now, &record);
         if (result == MOTION_CYCLE) {
             chain_judge_setpoint(&r->judge, &r->limits, &record.cmd);
             judge_place(r, &record);
+            count_rests(r);
         }
     } while ((result == MOTION_CYCLE || result == MOTION_NOT_YET) && motion.cycles < CYCLES_MAX);
     for (unsigned i = 0; i < r->pushed; i++) {
@@ -237,6 +252,19 @@ static void test_smoothed_setpoints_keep_limits_and_tolerance_under_any_override
     }
 }
 
+static void test_single_block_switched_inside_chains_keeps_all_of_it(void)
+{
+    unsigned singles = 0;
+
+    for (unsigned seed = first_seed; seed < first_seed + programs / 3; seed++) {
+        set_up_run(&run, seed);
+        run.single_cycles = 200 + 100 * (seed % 7);
+        check_run(&run, run_program(&run), seed);
+        singles += run.singles;
+    }
+    TEST_ASSERT_TRUE(singles > programs / 10);
+}
+
 static void test_chains_that_once_stood_for_ever_come_to_their_end(void)
 {
     static const unsigned seeds[] = {
@@ -260,6 +288,7 @@ int main(int argc, char **argv)
     }
     UNITY_BEGIN();
     RUN_TEST(test_smoothed_setpoints_keep_limits_and_tolerance_under_any_override);
+    RUN_TEST(test_single_block_switched_inside_chains_keeps_all_of_it);
     RUN_TEST(test_chains_that_once_stood_for_ever_come_to_their_end);
     return UNITY_END();
 }
