@@ -248,6 +248,7 @@ static void text_of(enum takt_error code, char *why)
 
 static void test_a_plan_for_something_else_is_refused_with_the_reason(void)
 {
+    struct diagnostic machine_why;
     char why[DIAGNOSTIC_TEXT_MAX];
 
     write_text(2);
@@ -267,7 +268,10 @@ static void test_a_plan_for_something_else_is_refused_with_the_reason(void)
     write_text(2);
     compile_text();
     upload_text();
-    check_refused(MODBUS_VALUE, "another machine: Y jerk is 40000 there and 50000 here");
+    diagnostic_set(&machine_why, TAKT_ERROR_PLAN_MACHINE, 0, 0, "Y jerk", 6, 40000.0);
+    diagnostic_set_limit(&machine_why, 50000.0);
+    (void)diagnostic_text(&machine_why, why);
+    check_refused(MODBUS_VALUE, why);
     TEST_ASSERT_EQUAL_UINT(0, set(REGISTER_RESET, 1));
     TEST_ASSERT_EQUAL_UINT(0, set(REGISTER_CYCLE_START, 1));
 }
