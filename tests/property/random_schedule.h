@@ -1,11 +1,13 @@
 /*
- * Random schedules of what an operator does: steps and ramps of the feed override, holds, the rapid override.
+ * Random machines, and random schedules of what an operator does: steps and ramps of the feed override, holds, the rapid override.
  */
 #ifndef TAKT_TESTS_RANDOM_SCHEDULE_H
 #define TAKT_TESTS_RANDOM_SCHEDULE_H
 
 #include "motion/motion.h"
 #include "random_chain.h"
+
+#include <string.h>
 
 struct schedule {
     struct motion_operator now;
@@ -14,6 +16,27 @@ struct schedule {
     uint64_t until; /* the next event */
     uint64_t free;  /* cycles since anything was held */
 };
+
+/* A machine to try it on, with every law: its cycle; its axes. What is drawn in between is the test's. */
+static inline void schedule_random_control(struct chain *c, struct plan_limits *l)
+{
+    static const double cycles_s[] = {5e-4, 1e-3, 2e-3, 4e-3};
+
+    memset(l, 0, sizeof(*l));
+    l->axes = 7;
+    l->cycle_s = cycles_s[(unsigned)chain_between(c, 0, 4)];
+    l->chord_error_max_mm = chain_decades(c, -4, -2);
+    l->law = (enum law)chain_between(c, 0, 3);
+}
+
+static inline void schedule_random_axes(struct chain *c, struct plan_limits *l)
+{
+    for (int i = 0; i < CHAIN_AXES; i++) {
+        l->velocity_mm_s[i] = chain_decades(c, 1.3, 2.7);
+        l->acceleration_mm_s2[i] = chain_decades(c, 2.3, 4.0);
+        l->jerk_mm_s3[i] = chain_decades(c, 3.7, 6.0);
+    }
+}
 
 /* Steps, ramps, holds, feed override 0, rapid override 0; then nothing for a while. */
 static inline void schedule_next(struct schedule *s, struct chain *c, uint64_t cycle)

@@ -61,21 +61,11 @@ void tearDown(void)
 
 static void random_machine(struct run *r)
 {
-    static const double cycles_s[] = {5e-4, 1e-3, 2e-3, 4e-3};
-    struct chain *c = &r->chain;
     struct plan_limits *l = &r->limits;
 
-    memset(l, 0, sizeof(*l));
-    l->axes = 7;
-    l->cycle_s = cycles_s[(unsigned)chain_between(c, 0, 4)];
-    l->chord_error_max_mm = chain_decades(c, -4, -2);
-    l->law = (enum law)chain_between(c, 0, 3);
-    l->landing = chain_between(c, 0, 1) < 0.8 ? LANDING_SPAN : LANDING_BLOCK;
-    for (int i = 0; i < CHAIN_AXES; i++) {
-        l->velocity_mm_s[i] = chain_decades(c, 1.3, 2.7);
-        l->acceleration_mm_s2[i] = chain_decades(c, 2.3, 4.0);
-        l->jerk_mm_s3[i] = chain_decades(c, 3.7, 6.0);
-    }
+    schedule_random_control(&r->chain, l);
+    l->landing = chain_between(&r->chain, 0, 1) < 0.8 ? LANDING_SPAN : LANDING_BLOCK;
+    schedule_random_axes(&r->chain, l);
 }
 
 static void push_next(struct run *r)
