@@ -8,6 +8,7 @@ import os
 import pty
 import random
 import re
+import resource
 import signal
 import subprocess
 import sys
@@ -242,42 +243,69 @@ def figure():
 
 
 def long_program():
+    """Long enough that compiling it takes seconds: whoever ends it when the bar first tells the time left is in time."""
     rng, heading, at, lines = random.Random(7), 0.0, [0.0, 0.0], []
-    for _ in range(3000):
+    for _ in range(30000):
         heading += rng.uniform(-0.3, 0.3)
         at = [a + 0.08 * d for a, d in zip(at, (math.cos(heading), math.sin(heading)))]
         lines.append("G1 X%.4f Y%.4f" % tuple(at))
     return "G21 G90 G17 G64 P0.01 F6000\n" + "\n".join(lines) + "\nM2\n"
 
 
-def aside_bytes():
-    """Of the file that is being written beside its place; -1: there is none."""
-    names = [name for name in os.listdir(".") if name.startswith("long.plan.part-")]
-    return max((os.path.getsize(name) for name in names), default=-1)
+def files_aside():
+    """What is being written beside its place."""
+    return [name for name in os.listdir(".") if ".plan.part-" in name]
+
+
+def ended_by(end):
+    """Ends a compile as soon as its bar tells the time left."""
+    near, far = pty.openpty()
+    compiling = subprocess.Popen([t.TAKT, "compile", "long.ngc", "-o", "long.plan"], stderr=far, stdout=subprocess.DEVNULL)
+    os.close(far)
+    seen = b""
+    while b"left" not in seen:
+        seen += os.read(near, 1000)
+    t.check(len(files_aside()) == 1, "the file is written beside its place", end)
+    compiling.send_signal(end)
+    compiling.wait()
+    os.close(near)
 
 
 def ended():
-    """What ends a compile before its time leaves the file that was there; the bar tells the time left."""
+    """What ends a compile before its time leaves the file that was there."""
     t.write("long.ngc", long_program())
     t.write("long.plan", b"as before")
-    for end, size in ((signal.SIGKILL, 0), (signal.SIGKILL, 1), (signal.SIGINT, 0), (signal.SIGTERM, 1)):
-        near, far = pty.openpty()
-        compiling = subprocess.Popen([t.TAKT, "compile", "long.ngc", "-o", "long.plan"], stderr=far, stdout=subprocess.DEVNULL)
-        os.close(far)
-        while aside_bytes() < size and compiling.poll() is None:
-            pass
-        seen = b""
-        while b"left" not in seen and size == 0 and end == signal.SIGINT:
-            seen += os.read(near, 1000)
-        compiling.send_signal(end)
-        compiling.wait()
-        os.close(near)
+    for end in (signal.SIGKILL, signal.SIGINT, signal.SIGTERM):
+        ended_by(end)
         with open("long.plan", "rb") as file:
-            t.check(file.read() == b"as before", "the file that was there is still there", end, size)
-        t.check(end == signal.SIGKILL or aside_bytes() < 0, "and nothing is left beside it", end, os.listdir("."))
-        for name in os.listdir("."):
-            if name.startswith("long.plan.part-"):
-                os.remove(name)
+            t.check(file.read() == b"as before", "the file that was there is still there", end)
+        t.check(end == signal.SIGKILL or not files_aside(), "and nothing is left beside it", end, os.listdir("."))
+        for name in files_aside():
+            os.remove(name)
+
+
+def cut_short():
+    """A file that may not grow beyond half of what is written: the kernel ends the compile there, or fails its writing."""
+    t.write("part.ngc", PROGRAM)
+    t.run("compile", "part.ngc", "-o", "part.plan", "--quiet")
+    half = os.path.getsize("part.plan") // 2
+    t.write("part.plan", b"as before")
+
+    def limit():
+        resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
+        resource.setrlimit(resource.RLIMIT_FSIZE, (half, half))
+
+    for killed in (True, False):
+        done = subprocess.run([t.TAKT, "compile", "part.ngc", "-o", "part.plan"], preexec_fn=limit, restore_signals=killed, capture_output=True, check=False)
+        if killed:
+            t.check(done.returncode == -signal.SIGXFSZ, "it is ended while it writes", done)
+        else:
+            t.check(done.returncode == 3 and b"cannot be written" in done.stderr, "a disk that is full is told", done)
+            t.check(not files_aside(), "and nothing is left beside the file", os.listdir("."))
+        with open("part.plan", "rb") as file:
+            t.check(file.read() == b"as before", "the file that was there is still there", killed)
+        for name in files_aside():
+            os.remove(name)
 
 
 def unfit():
@@ -295,6 +323,7 @@ if len(sys.argv) == 1:
     stretches()
     figure()
     ended()
+    cut_short()
 for seed in range(FIRST, FIRST + PROGRAMS):
     judge(seed)
 t.finish()
