@@ -314,6 +314,9 @@ static void pass_blocks(struct replay *r, struct motion *m, bool ended)
 {
     const double here = ((double)r->interval + r->part) * REPLAY_END_PARTS;
 
+    if (!r->has_end) { /* of a block longer than the ring of intervals the end comes later than the begin */
+        take_end(r);
+    }
     for (unsigned i = 0; i < PASS_MAX || ended; i++) {
         if (!ended &&
             (r->blocks + 1 >= r->section.blocks || !r->has_end || here < (double)r->end)) {

@@ -227,6 +227,18 @@ def stretches():
     t.check(summary("--plan", "ahead")["program_time_s"] < summary()["program_time_s"], "involutes through the centre are planned ahead")
 
 
+def long_blocks():
+    """The end of a block that takes longer than what is kept of a plan ahead is not known when the block begins."""
+    lines = "".join("G1 X%.2f F3000\n" % (30 + 0.5 * k) for k in range(1, 330))
+    t.write("part.ngc", "G21 G90 G17 G64 P0.01 F600\nG1 X30\n" + lines + "M2\n")
+    status, _, err = t.run("run", "part.ngc", "--plan", "ahead", "--quiet", "--trace", "s.csv", *ROTARY)
+    if not t.check(status == 0, "more blocks follow a long one than the path holds", status, err):
+        return
+    with open("s.csv", encoding="utf-8") as file:
+        rows = [(int(row["line"]), float(row["set_X_mm"])) for row in t.csv.DictReader(file)]
+    t.check(all(abs(x - (30 + 0.5 * (line - 2.5))) < 0.3 for line, x in rows if line > 3), "each is told while it is driven", rows[-1])
+
+
 def figure():
     """The report of a compiled run shows both planners."""
     t.write("part.ngc", PROGRAM)
@@ -321,6 +333,7 @@ if len(sys.argv) == 1:
     ceilings()
     unfit()
     stretches()
+    long_blocks()
     figure()
     ended()
     cut_short()
