@@ -219,6 +219,7 @@
       "axis %w: its home_offset_mm does not fit a drive's 32 bits (home_offset_deg when rotary)")  \
     X(MACHINE_NODES, "axes %w have the same drive_node %v")                                        \
     X(MACHINE_CONTROLLER_NODE, "controller_node %v is the drive_node of axis %w")                  \
+    X(MACHINE_FORM, "'%w' of this machine is for comparison: this image has its default alone")    \
     X(SETTINGS_ABSENT, "no settings are stored: make them with takt machine --pack and load them") \
     X(SETTINGS_KIND, "these are no settings of this version")                                      \
     X(SETTINGS_CHECKSUM, "the settings are damaged: their checksum is wrong")                      \

@@ -104,6 +104,7 @@ void controller_init(struct controller *c, const struct controller_config *confi
     memset(c, 0, sizeof(*c));
     c->machine = *config->machine;
     c->can = config->can;
+    c->reader = config->reader;
     correction_init(&c->correction, &c->machine.correction, machine_axes(&c->machine),
                     cycle_s(&c->machine), config->correction, &start);
     controller_start_program(c, config, &start);
@@ -136,7 +137,7 @@ static void read_move(struct controller *c)
 {
     struct move move;
 
-    switch (offset_next(&c->offset, &c->program, &move, &c->program_error)) {
+    switch (offset_next(&c->reader->offset, &c->reader->program, &move, &c->program_error)) {
     case PROGRAM_MOVE:
         take_move(c, &move);
         break;
@@ -172,7 +173,7 @@ static void take_answer(struct controller *c)
         path_finish(&c->path);
         return;
     }
-    offset_answer(&c->offset, &c->program, &answer);
+    offset_answer(&c->reader->offset, &c->reader->program, &answer);
 }
 
 static bool can_read(struct controller *c)

@@ -18,6 +18,7 @@
 
 #include "accuracy/cycle_frequency.h"
 #include "base/error.h"
+#include "controller/controller_reader.h"
 #include "controller/machine.h"
 #include "correction/correction.h"
 #include "drive/drives.h"
@@ -34,12 +35,13 @@
 #include <stdint.h>
 
 struct controller_config {
-    const struct machine *machine;  /* copied */
-    struct source source;           /* text of the program; its context stays the caller's */
-    struct can_port can;            /* the drives' bus */
-    struct step_port step;          /* pulses; not used by a machine without step drives */
-    const struct tool_table *tools; /* NULL: empty. Must outlive the controller */
-    struct parameters *parameters;  /* never NULL; read and written. Must outlive the controller */
+    const struct machine *machine;    /* copied */
+    struct controller_reader *reader; /* never NULL; its alone. Must outlive the controller */
+    struct source source;             /* text of the program; its context stays the caller's */
+    struct can_port can;              /* the drives' bus */
+    struct step_port step;            /* pulses; not used by a machine without step drives */
+    const struct tool_table *tools;   /* NULL: empty. Must outlive the controller */
+    struct parameters *parameters; /* never NULL; read and written. Must outlive the controller */
     const struct correction_tables *correction; /* NULL: no tables; see correction_init */
     const struct replay_source *compiled; /* of the same program: replayed. NULL: planned here */
     const struct program_modes *modes;    /* the program goes on with; NULL: those it begins with */

@@ -14,7 +14,7 @@ void controller_feed_init(struct controller *c, const struct replay_source *comp
     product_init(&c->product, &config);
     c->replays = compiled != NULL;
     if (c->replays) {
-        replay_init(&c->replay, compiled);
+        replay_init(&c->replay, path_lend(&c->path, sizeof(struct intake)), compiled);
         handover_allow_linear(&c->motion);
     }
 }

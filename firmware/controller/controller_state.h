@@ -8,6 +8,7 @@
 #include "classic/product.h"
 #include "controller/approach.h"
 #include "controller/controller_probe.h"
+#include "controller/controller_reader.h"
 #include "controller/outputs.h"
 #include "controller/spindle_watch.h"
 #include "correction/correction.h"
@@ -15,7 +16,6 @@
 #include "hal/inputs.h"
 #include "hal/outputs.h"
 #include "motion/motion.h"
-#include "offset/offset.h"
 #include "plan/path.h"
 #include "replay/replay.h"
 #include "step/steps.h"
@@ -42,8 +42,7 @@ struct controller {
     struct point setpoint;
     struct point rest; /* where the axes stand by the program, while nothing of it moves them */
     struct cycle_record record;
-    struct program program;
-    struct offset offset;
+    struct controller_reader *reader;
     struct path path;
     struct motion motion;
     struct correction correction;

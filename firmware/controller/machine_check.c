@@ -1,6 +1,9 @@
 #include "controller/machine_check.h"
 
 #include "base/maths.h"
+#include "classic/classic.h"
+#include "classic/interpolator.h"
+#include "classic/limiter.h"
 #include "drive/drives.h"
 
 #define DEGREE (MATHS_PI / 180.0)
@@ -120,6 +123,26 @@ static bool check_bus(const struct machine *machine, struct diagnostic *wrong)
     return false;
 }
 
+/* size: of the name with its zero */
+static bool check_form(bool is_there, const char *name, size_t size, struct diagnostic *wrong)
+{
+    if (!is_there)
+        diagnostic_set(wrong, TAKT_ERROR_MACHINE_FORM, 0, 0, name, size - 1, 0);
+    return is_there;
+}
+
+/* Not every build has all forms of interpolation and feed. */
+static bool check_forms(const struct machine *machine, struct diagnostic *wrong)
+{
+    static const char interpolator[] = "interpolator", limiter[] = "limiter", landing[] = "landing";
+    const bool all = classic_is_there();
+
+    return check_form(all || machine->interpolator == INTERPOLATOR_EXACT, interpolator,
+                      sizeof interpolator, wrong) &&
+           check_form(all || machine->limiter == LIMITER_CEILING, limiter, sizeof limiter, wrong) &&
+           check_form(all || machine->landing != LANDING_SCALE, landing, sizeof landing, wrong);
+}
+
 bool machine_check(const struct machine *machine, struct diagnostic *wrong)
 {
     if (machine_axes(machine) == 0) {
@@ -130,5 +153,5 @@ bool machine_check(const struct machine *machine, struct diagnostic *wrong)
         if (machine->axis[i].present && !check_axis(machine, i, wrong))
             return false;
     }
-    return check_bus(machine, wrong);
+    return check_forms(machine, wrong) && check_bus(machine, wrong);
 }

@@ -11,7 +11,7 @@
 
 /*
  * Order of travel ends, positions beyond the drives' 32 bits, limits below the rounding of setpoints, step rates, nodes
- * used twice, a bus that cannot carry the cycle. False: *wrong says why.
+ * used twice, forms of interpolation and feed that this build does not have, a bus that cannot carry the cycle. False: *wrong says why.
  */
 bool machine_check(const struct machine *machine, struct diagnostic *wrong);
 

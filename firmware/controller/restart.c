@@ -13,8 +13,8 @@ void controller_start_program(struct controller *c, const struct controller_conf
 
     controller_program_config(config, &program);
     program.start = *start;
-    program_open(&c->program, &program, &config->source);
-    offset_open(&c->offset, &program);
+    program_open(&c->reader->program, &program, &config->source);
+    offset_open(&c->reader->offset, &program);
     controller_plan_limits(&c->machine, &limits);
     controller_reserve_correction(&c->correction, &c->machine, &limits);
     path_init(&c->path, &limits, start);

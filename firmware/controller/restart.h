@@ -9,7 +9,7 @@
 
 /*
  * Reads another program, from start on: the last setpoint, without correction, which goes on as it is. The axes are at
- * rest there, and the last program has been completed or dropped. machine and can of the configuration are those of controller_init. The drives,
+ * rest there, and the last program has been completed or dropped. machine, reader and can of the configuration are those of controller_init. The drives,
  * the outputs and the parameters stay as they are.
  */
 void controller_start_program(struct controller *c, const struct controller_config *config,

@@ -97,20 +97,26 @@ static unsigned wanted(const struct correction *c)
     return c->present & ~(c->off | c->program_off | loading);
 }
 
+/* The lowest layer of a set that is not empty. */
+static unsigned first_of(unsigned set)
+{
+    return (unsigned)__builtin_ctz(set);
+}
+
 static __attribute__((noinline)) void fade_layers(struct correction *c)
 {
     const unsigned on = wanted(c);
 
-    c->fading = c->running = 0;
-    for (unsigned i = 0; i < CORRECTION_LAYERS_COUNT; i++) {
+    unsigned rest = on | c->running | c->fading;
+
+    for (c->fading = 0; rest != 0; rest &= rest - 1U) {
+        const unsigned i = first_of(rest);
         const unsigned bit = 1U << i;
 
         if (fade_cycle(&c->weight[i], (on & bit) != 0 ? 1.0 : 0.0, &c->layer_pace)) {
             c->fading |= bit;
         }
-        if (c->weight[i].value != 0.0) {
-            c->running |= bit;
-        }
+        c->running = c->weight[i].value != 0.0 ? c->running | bit : c->running & ~bit;
     }
 }
 
@@ -121,12 +127,6 @@ static __attribute__((noinline)) void exchange_tables(struct correction *c)
     c->pending = NULL;
     begin_layer(c, CORRECTION_AXES);
     begin_layer(c, CORRECTION_VOLUME);
-}
-
-/* The lowest layer of a set that is not empty. */
-static unsigned first_of(unsigned set)
-{
-    return (unsigned)__builtin_ctz(set);
 }
 
 static void follow(struct correction *c)

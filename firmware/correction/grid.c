@@ -10,28 +10,43 @@ struct place {
 
 /* ---- the sum over the stencil: first over all inputs but the first, side by side along that one ---- */
 
-/* One row of it, for X, Y and Z. */
-static inline void add_row(const struct grid *grid, const float *at, float weight, lanes plane[3])
+/* One column of a plane, over its rows. */
+static GRID_INLINE void add_column(const float *at, size_t row, const float *y, float z, lanes *sum)
 {
-    plane[0] += weight * load(at);
-    plane[1] += weight * load(at + grid->size);
-    plane[2] += weight * load(at + 2 * grid->size);
+    lanes column = y[0] * load(at);
+
+    column += y[1] * load(at + row);
+    column += y[2] * load(at + 2 * row);
+    column += y[3] * load(at + 3 * row);
+    *sum += z * column;
 }
 
-static inline void add_plane(const struct grid *grid, const float *at, const float *y, float z,
-                             lanes sum[3])
+/* All columns, which stand at constant places. */
+static GRID_INLINE void add_plane(const float *at, size_t row, const float *y, float z,
+                                  lanes sum[STENCIL / GRID_LANES])
 {
-    const size_t row = grid->input[1].stride;
-    lanes plane[AXIS_LINEAR_COUNT];
+    add_column(at, row, y, z, &sum[0]);
+    if (GRID_LANES == 1) {
+        add_column(at + 1, row, y, z, &sum[1 / GRID_LANES]);
+        add_column(at + 2, row, y, z, &sum[2 / GRID_LANES]);
+        add_column(at + 3, row, y, z, &sum[3 / GRID_LANES]);
+    }
+}
 
-    memset(plane, 0, sizeof(plane));
-    add_row(grid, at, y[0], plane);
-    add_row(grid, at + row, y[1], plane);
-    add_row(grid, at + 2 * row, y[2], plane);
-    add_row(grid, at + 3 * row, y[3], plane);
-    sum[0] += z * plane[0];
-    sum[1] += z * plane[1];
-    sum[2] += z * plane[2];
+/* One component. */
+static GRID_INLINE float add_planes(const struct grid *grid, const float *at,
+                                    const struct place *place)
+{
+    lanes sum[STENCIL / GRID_LANES];
+    float total[STENCIL];
+
+    memset(sum, 0, sizeof(sum));
+    for (unsigned i = 0; i < STENCIL; i++) {
+        add_plane(at, grid->input[1].stride, place->weight[1], place->weight[2][i], sum);
+        at += grid->input[2].stride;
+    }
+    memcpy(total, sum, sizeof(total));
+    return finish(total, place->weight[0]);
 }
 
 /* The common case: X, Y, Z over X, Y, Z. */
@@ -39,7 +54,6 @@ static unsigned add_three(const struct grid *grid, const struct point *at, float
                           float k[AXIS_COUNT])
 {
     struct place place;
-    float total[AXIS_LINEAR_COUNT][STENCIL];
     unsigned outside = 0;
     float t;
 
@@ -48,21 +62,8 @@ static unsigned add_three(const struct grid *grid, const struct point *at, float
         place.first += find_cell(&grid->input[i], at, &t, &outside);
         set_weights(t, place.weight[i]);
     }
-    for (unsigned x = 0; x < STENCIL; x += GRID_LANES) {
-        const float *plane = grid->coefficient + place.first + x;
-        lanes sum[AXIS_LINEAR_COUNT];
-
-        memset(sum, 0, sizeof(sum));
-        for (unsigned i = 0; i < STENCIL; i++) {
-            add_plane(grid, plane, place.weight[1], place.weight[2][i], sum);
-            plane += grid->input[2].stride;
-        }
-        store(&total[0][x], sum[0]);
-        store(&total[1][x], sum[1]);
-        store(&total[2][x], sum[2]);
-    }
     for (unsigned i = 0; i < AXIS_LINEAR_COUNT; i++) {
-        k[i] += weight * finish(total[i], place.weight[0]);
+        k[i] += weight * add_planes(grid, grid->coefficient + place.first + i * grid->size, &place);
     }
     return outside;
 }

@@ -14,8 +14,16 @@
 #include "correction/grid_bound.h"
 #include "correction/grid_stencil.h"
 
-/* Cycles that making a patch takes: its cell and weights, then a component in each, then whether it is near an end. */
-#define MAKING (2.0F + (float)GRID_COMPONENTS)
+/* Steps in which a component is made: half of its stencil, the other half, its terms. */
+enum { STEP_FIRST, STEP_SECOND, STEP_TERMS, STEPS };
+
+/*
+ * Cycles that making a patch takes: its anchor, its cell and weights, then a step in each, then whether it is near an end.
+ */
+#define MAKING (3.0F + (float)(STEPS * GRID_COMPONENTS))
+
+/* The first of these stages is that with cell and weights, the second that with the first step. */
+#define FIRST_STEP 2U
 
 /* A patch that would last fewer cycles than this is not worth making. */
 #define LASTING_MIN 8.0F
@@ -41,7 +49,7 @@ float grid_patch_reach(const struct grid *grid)
 /* ---- making a patch ---- */
 
 /* Sums over the second and third input, for derivatives (second, third): (0 0) (1 0) (0 1) (2 0) (1 1) (0 2). */
-enum { SUM, SUM_Y, SUM_Z, SUM_YY, SUM_YZ, SUM_ZZ, SUMS };
+enum { SUM, SUM_Y, SUM_Z, SUM_YY, SUM_YZ, SUM_ZZ };
 
 /* Each term of a patch: a sum, the derivative by the first input, and the factor of Taylor's series. */
 static const struct {
@@ -52,62 +60,62 @@ static const struct {
     {SUM_YY, 0, 0.5F}, {SUM_ZZ, 0, 0.5F}, {SUM_Y, 1, 1.0F}, {SUM_Z, 1, 1.0F}, {SUM_YZ, 0, 1.0F},
 };
 
-/* One row of the stencil, for the derivatives of order 0, 1, 2 along the second input. */
-static inline void add_row(const float *at, const float *weight, lanes plane[3])
+/* One column of a plane, weighted. */
+static GRID_INLINE lanes weigh(const lanes column[STENCIL], const float *weight)
 {
-    const lanes row = load(at);
+    lanes sum = weight[0] * column[0];
 
-    plane[0] += weight[0] * row;
-    plane[1] += weight[FIRST_ORDER] * row;
-    plane[2] += weight[SECOND_ORDER] * row;
+    sum += weight[1] * column[1];
+    sum += weight[2] * column[2];
+    sum += weight[3] * column[3];
+    return sum;
 }
 
-/* One plane of it, with its weights for the orders 0, 1, 2 along the third. */
-static inline void add_plane(const float *at, size_t stride, const float *y, const float *z,
-                             lanes sum[SUMS])
+static GRID_INLINE void add_to(float *sum, lanes values)
 {
-    lanes plane[3];
-
-    memset(plane, 0, sizeof(plane));
-    add_row(at, y, plane);
-    add_row(at + stride, y + 1, plane);
-    add_row(at + 2 * stride, y + 2, plane);
-    add_row(at + 3 * stride, y + 3, plane);
-    sum[SUM] += z[0] * plane[0];
-    sum[SUM_Y] += z[0] * plane[1];
-    sum[SUM_Z] += z[FIRST_ORDER] * plane[0];
-    sum[SUM_YY] += z[0] * plane[2];
-    sum[SUM_YZ] += z[FIRST_ORDER] * plane[1];
-    sum[SUM_ZZ] += z[SECOND_ORDER] * plane[0];
+    store(sum, load(sum) + values);
 }
 
-static void sum_stencil(const struct grid *grid, const struct grid_patches *p, const float *first,
-                        float total[SUMS][STENCIL])
+/* Adds a column with its weights for the orders 0, 1, 2 along the second input and the third to the sums at x. */
+static GRID_INLINE void add_column(const float *at, size_t row, const float *y, const float *z,
+                                   float sum[GRID_PATCH_SUMS][STENCIL], unsigned x)
 {
-    for (unsigned x = 0; x < STENCIL; x += GRID_LANES) {
-        const float *at = first + x;
-        lanes sum[SUMS];
+    const lanes column[STENCIL] = {load(at), load(at + row), load(at + 2 * row),
+                                   load(at + 3 * row)};
+    const lanes value = weigh(column, y);
+    const lanes first = weigh(column, y + FIRST_ORDER);
+    const lanes second = weigh(column, y + SECOND_ORDER);
 
-        memset(sum, 0, sizeof(sum));
-        for (unsigned i = 0; i < STENCIL; i++) {
-            add_plane(at, grid->input[1].stride, p->weight[1], &p->weight[2][i], sum);
-            at += grid->input[2].stride;
+    add_to(&sum[SUM][x], z[0] * value);
+    add_to(&sum[SUM_Y][x], z[0] * first);
+    add_to(&sum[SUM_Z][x], z[FIRST_ORDER] * value);
+    add_to(&sum[SUM_YY][x], z[0] * second);
+    add_to(&sum[SUM_YZ][x], z[FIRST_ORDER] * first);
+    add_to(&sum[SUM_ZZ][x], z[SECOND_ORDER] * value);
+}
+
+/* Adds half of the stencil of a component: two of its planes. */
+static void sum_half(const struct grid *grid, struct grid_patches *p, unsigned k, unsigned plane)
+{
+    const size_t row = grid->input[1].stride;
+    const float *at = grid->coefficient + p->first + k * grid->size + plane * grid->input[2].stride;
+
+    for (unsigned i = plane; i < plane + STENCIL / 2; i++) {
+        for (unsigned x = 0; x < STENCIL; x += GRID_LANES) {
+            add_column(at + x, row, p->weight[1], &p->weight[2][i], p->sum, x);
         }
-        for (unsigned n = 0; n < SUMS; n++) {
-            store(&total[n][x], sum[n]);
-        }
+        at += grid->input[2].stride;
     }
 }
 
-static void make_component(const struct grid *grid, struct grid_patches *p, unsigned k)
+/* From the sums of a component; the next one begins with none. */
+static void set_terms(struct grid_patches *p, unsigned k)
 {
-    float total[SUMS][STENCIL];
-
-    sum_stencil(grid, p, grid->coefficient + p->first + k * grid->size, total);
     for (unsigned n = 0; n < GRID_PATCH_TERMS; n++) {
-        p->next.term[n][k] = terms[n].factor * finish(total[terms[n].sum],
+        p->next.term[n][k] = terms[n].factor * finish(p->sum[terms[n].sum],
                                                       p->weight[0] + (size_t)terms[n].x * STENCIL);
     }
+    memset(p->sum, 0, sizeof(p->sum));
 }
 
 static unsigned components_of(const struct grid *grid)
@@ -136,6 +144,7 @@ static void begin_patch(const struct grid *grid, struct grid_patches *p)
     unsigned outside = 0;
 
     p->first = 0;
+    memset(p->sum, 0, sizeof(p->sum));
     for (unsigned i = 0; i < GRID_PATCH_INPUTS; i++) {
         float t;
 
@@ -145,7 +154,7 @@ static void begin_patch(const struct grid *grid, struct grid_patches *p)
         set_weights_first(t, &p->weight[i][FIRST_ORDER]);
         set_weights_second(t, &p->weight[i][SECOND_ORDER]);
     }
-    p->stage = outside == 0 ? 1 : 0;
+    p->stage = outside == 0 ? FIRST_STEP : 0;
 }
 
 /* ---- using it ---- */
@@ -230,12 +239,34 @@ static void set_anchor(const struct grid *grid, struct grid_patches *p, const st
     }
 }
 
-/* One cycle of making the next patch. */
+/* A step of a component. */
+static void make_step(const struct grid *grid, struct grid_patches *p, unsigned k, unsigned step)
+{
+    switch (step) {
+    case STEP_FIRST:
+        sum_half(grid, p, k, 0);
+        break;
+    case STEP_SECOND:
+        sum_half(grid, p, k, STENCIL / 2);
+        break;
+    default:
+        set_terms(p, k);
+        break;
+    }
+    p->stage++;
+}
+
+/* One cycle of making the next patch. When it is ready it takes over. */
 static void make(const struct grid *grid, struct grid_patches *p, const struct point *at)
 {
-    if (p->stage <= components_of(grid)) {
-        make_component(grid, p, p->stage - 1U);
-        p->stage++;
+    if (p->stage < FIRST_STEP) {
+        begin_patch(grid, p);
+        return;
+    }
+    const unsigned k = (p->stage - FIRST_STEP) / STEPS;
+
+    if (k < components_of(grid)) {
+        make_step(grid, p, k, (p->stage - FIRST_STEP) % STEPS);
         return;
     }
     p->next.near_end = !is_inside(grid, p->next.anchor_mm, (double)grid->reach);
@@ -259,7 +290,7 @@ static void look_ahead(const struct grid *grid, struct grid_patches *p, const st
 
     if ((leaves || !p->used.valid) && LASTING_MIN * speed <= grid->reach) {
         set_anchor(grid, p, at, step, speed);
-        begin_patch(grid, p);
+        p->stage = 1;
     }
 }
 

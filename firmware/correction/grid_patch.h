@@ -12,6 +12,9 @@
 #define GRID_PATCH_TERMS  10
 #define GRID_PATCH_INPUTS 3
 
+/* Sums that they are made of. */
+#define GRID_PATCH_SUMS 6
+
 /* B-splines and their first and second derivatives, 4 of each. */
 #define GRID_PATCH_WEIGHTS 12
 
@@ -35,6 +38,7 @@ struct grid_patches {
     uint8_t stage;           /* of making next; 0: it is not being made */
     size_t first;            /* where its stencil begins */
     float weight[GRID_PATCH_INPUTS][GRID_PATCH_WEIGHTS];
+    float sum[GRID_PATCH_SUMS][4]; /* of the component being made, along the first input */
 };
 
 /* How far patches of a grid are good, by its bounds. */

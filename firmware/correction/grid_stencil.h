@@ -11,6 +11,9 @@
 
 #define STENCIL 4
 
+/* What a sum over the stencil consists of: inline where sources are built for size, too. */
+#define GRID_INLINE inline __attribute__((always_inline))
+
 /* Where the weights of derivatives stand behind those of the value. */
 #define FIRST_ORDER  STENCIL
 #define SECOND_ORDER (STENCIL + STENCIL)
@@ -27,19 +30,19 @@
 #if GRID_LANES == 1
 typedef float lanes;
 
-static inline lanes load(const float *at)
+static GRID_INLINE lanes load(const float *at)
 {
     return *at;
 }
 
-static inline void store(float *to, lanes values)
+static GRID_INLINE void store(float *to, lanes values)
 {
     *to = values;
 }
 #else
 typedef float lanes __attribute__((vector_size(sizeof(float) * GRID_LANES)));
 
-static inline lanes load(const float *at)
+static GRID_INLINE lanes load(const float *at)
 {
     lanes values;
 
@@ -47,7 +50,7 @@ static inline lanes load(const float *at)
     return values;
 }
 
-static inline void store(float *to, lanes values)
+static GRID_INLINE void store(float *to, lanes values)
 {
     memcpy(to, &values, sizeof(values));
 }
@@ -61,7 +64,7 @@ static inline void store(float *to, lanes values)
  *
  * as c0 + t (c1 + t (c2 + t c3)).
  */
-static inline void set_weights(float t, float weight[STENCIL])
+static GRID_INLINE void set_weights(float t, float weight[STENCIL])
 {
     weight[0] = 1.0F / 6.0F + t * (-0.5F + t * (0.5F - t * (1.0F / 6.0F)));
     weight[1] = 4.0F / 6.0F + t * t * (-1.0F + t * 0.5F);
@@ -99,8 +102,8 @@ static __attribute__((noinline)) size_t find_edge_cell(const struct grid_input *
 }
 
 /* The cell a point is in along one input: where it begins, and how far in it the point is, in steps. */
-static inline size_t find_cell(const struct grid_input *input, const struct point *at, float *t,
-                               unsigned *outside)
+static GRID_INLINE size_t find_cell(const struct grid_input *input, const struct point *at,
+                                    float *t, unsigned *outside)
 {
     const double position = (at->at[input->axis] - input->first_mm) * input->per_mm;
 
@@ -113,7 +116,7 @@ static inline size_t find_cell(const struct grid_input *input, const struct poin
     return (size_t)(uint32_t)cell * input->stride;
 }
 
-static inline float finish(const float sum[STENCIL], const float weight[STENCIL])
+static GRID_INLINE float finish(const float sum[STENCIL], const float weight[STENCIL])
 {
     return (sum[0] * weight[0] + sum[1] * weight[1]) + (sum[2] * weight[2] + sum[3] * weight[3]);
 }

@@ -26,21 +26,42 @@ static void raise_state(struct drives *d, unsigned index)
         drives_raise(d, index, TAKT_ERROR_DRIVE_STATE, axis->statusword, cia402_state_text(state));
 }
 
-bool drives_check_links(struct drives *d, unsigned index)
+static inline bool is_silent(const struct drives *d, const struct drives_axis *axis)
+{
+    return axis->silent_cycles > d->answer_timeout_cycles;
+}
+
+static inline bool has_lost_heart(const struct drives *d, const struct drives_axis *axis)
+{
+    return d->heartbeat_cycles > 0 &&
+           axis->heartbeat_cycles > d->heartbeat_cycles * DRIVES_HEARTBEATS_LOST;
+}
+
+static void raise_link(struct drives *d, unsigned index)
 {
     const struct drives_axis *axis = &d->axis[index];
-    uint32_t lost_cycles = d->heartbeat_cycles * DRIVES_HEARTBEATS_LOST;
     if (!cia402_is_enabled(axis->statusword))
         raise_state(d, index);
-    else if (axis->silent_cycles > d->answer_timeout_cycles)
+    else if (is_silent(d, axis))
         drives_raise(d, index, TAKT_ERROR_DRIVE_SILENT, drives_cycles_ms(d, axis->silent_cycles),
                      NULL);
-    else if (lost_cycles > 0 && axis->heartbeat_cycles > lost_cycles)
+    else
         drives_raise(d, index, TAKT_ERROR_DRIVE_HEARTBEAT,
                      drives_cycles_ms(d, axis->heartbeat_cycles), NULL);
-    else
+}
+
+static inline bool check_links(struct drives *d, unsigned index)
+{
+    const struct drives_axis *axis = &d->axis[index];
+    if (cia402_is_enabled(axis->statusword) && !is_silent(d, axis) && !has_lost_heart(d, axis))
         return true;
+    raise_link(d, index);
     return false;
+}
+
+bool drives_check_links(struct drives *d, unsigned index)
+{
+    return check_links(d, index);
 }
 
 /*
@@ -77,7 +98,7 @@ static void check_following(struct drives *d, unsigned index)
 void drives_check_operation(struct drives *d)
 {
     for (unsigned i = 0; i < d->count; i++)
-        if (drives_check_links(d, i))
+        if (check_links(d, i))
             check_following(d, i);
 }
 

@@ -157,13 +157,22 @@ static void send_starting(struct drives *d, const struct can_port *port)
     }
 }
 
-/* increments = round(setpoint increments_per_mm), half away from zero. NaN fails the comparison. */
+/* Nearest whole number, halves away from zero. x: within INCREMENTS_MAX and a half. */
+static int32_t nearest(double x)
+{
+    const int32_t whole = (int32_t)x;
+    const double rest = x - whole;
+
+    return rest >= 0.5 ? whole + 1 : rest <= -0.5 ? whole - 1 : whole;
+}
+
+/* increments = round(setpoint increments_per_mm). NaN fails the comparison. */
 static void set_target(struct drives *d, unsigned index, double set_mm)
 {
     struct drives_axis *axis = &d->axis[index];
-    double increments = maths_round(set_mm * axis->config.increments_per_mm);
-    if (maths_abs(increments) <= INCREMENTS_MAX)
-        axis->target_inc = (int32_t)increments;
+    const double increments = set_mm * axis->config.increments_per_mm;
+    if (maths_abs(increments) < INCREMENTS_MAX + 0.5)
+        axis->target_inc = nearest(increments);
     else
         drives_raise(d, index, TAKT_ERROR_DRIVE_RANGE, drives_axis_shown(axis, set_mm), NULL);
     axis->sent_mm[d->cycle & (DRIVES_HISTORY - 1)] = set_mm;

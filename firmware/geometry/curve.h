@@ -58,8 +58,9 @@ struct curve_involute {
 
 /* The part of a cubic that a line does not have (spline.c). Its s is no arc length. */
 struct curve_spline {
-    struct point second; /* d2 axis / d s2 at s = 0 */
-    struct point third;  /* d3 axis / d s3 */
+    unsigned char moves; /* bit i set: axis i does */
+    struct point square; /* half of d2 axis / d s2 at s = 0 */
+    struct point cube;   /* a sixth of d3 axis / d s3 */
 };
 
 struct curve {

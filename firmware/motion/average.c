@@ -15,8 +15,11 @@ void average_start(struct average *a, enum law law, uint32_t cycles, uint64_t at
         box->cycles = (uint32_t)n;
         box->first = first;
         box->next = 0;
-        for (uint64_t i = 0; i < n; i++) {
-            a->input[first + n - 1 - i] = at - i * step;
+        uint64_t input = at;
+
+        for (uint32_t i = first + box->cycles; i-- > first;) {
+            a->input[i] = input;
+            input -= step;
         }
         first += box->cycles;
         box->sum = n * at - n * (n - 1) / 2 * step;

@@ -27,7 +27,8 @@ void lead_stand(struct lead *l, uint64_t at)
 
 void lead_release(struct lead *l)
 {
-    l->released = true;
+    l->released = !l->abrupt;
+    l->abrupt = false;
 }
 
 /* -- one cycle -- */
@@ -35,7 +36,7 @@ void lead_release(struct lead *l)
 /* The joint that the span ends with keeps the feed that was promised for it, as long as the axes can do it. */
 static void follow_landing(struct lead *l)
 {
-    const uint16_t k = lead_landing(l);
+    const uint32_t k = lead_landing(l);
 
     if (k == CEILING_NONE) {
         l->landing_feed = 0.0;
@@ -44,7 +45,8 @@ static void follow_landing(struct lead *l)
     const struct ceiling_piece *joint = lead_piece(l, k);
 
     l->landing_feed = lead_leave_of(l, k) == l->joint ? l->landing_feed : 0.0;
-    l->landing_feed = maths_min(maths_max(l->landing_feed, joint->feed), joint->feed_max);
+    l->landing_feed = maths_min(maths_max(l->landing_feed, lead_feed(l, joint->feed_mm_s)),
+                                lead_feed(l, joint->feed_max_mm_s));
     l->joint = lead_leave_of(l, k);
 }
 
@@ -56,14 +58,19 @@ static void count_changes(struct lead *l, double change)
 
 static void go(struct lead *l, double feed)
 {
+    l->abrupt = l->abrupt && feed == 0.0;
     l->at += path_units(0.5 * (l->feed + feed));
     count_changes(l, feed - l->feed);
     l->feed = feed;
 }
 
-/* Comes to rest in this cycle at a position that is less than half a cycle's way ahead. */
+/*
+ * Comes to rest in this cycle at a position that is less than half a cycle's way ahead. If it is there already, the last
+ * way was longer by what was left of the feed, and speeding up in the very next cycle would add to that.
+ */
 static void come_to_rest(struct lead *l, uint64_t position)
 {
+    l->abrupt = l->at == position;
     l->at = position;
     count_changes(l, -1.0);
     l->feed = 0.0;
@@ -98,6 +105,8 @@ static void run_on(struct lead *l, uint64_t setpoint, bool hold)
 {
     const double low = lead_low_feed(l, setpoint);
     struct lead_brake b = lead_brake_ahead(l);
+
+    l->rest_a = maths_max(l->rest_a, (double)lead_piece(l, l->here.piece)->acceleration);
 
     if (hold) {
         b.feed = 0.0;
@@ -134,12 +143,14 @@ static void enter_span(struct lead *l, uint32_t k, uint64_t from, struct lead_st
     l->span = from;
     l->cycles = lead_piece(l, k)->cycles;
     l->window = (double)law_window_cycles(l->law, l->cycles);
+    l->rest_a = l->feed > 0.0 ? MATHS_INFINITY : 0.0;
     l->before = from;
     l->at = from + start->step * (law_window_cycles(l->law, l->cycles) - 1) / 2;
     l->feed = (double)start->step / PATH_UNITS_PER_MM;
     l->since_plus = LONG_AGO;
     l->since_minus = LONG_AGO;
     l->run.over = false;
+    l->abrupt = false;
     start->at = l->at;
     lead_enter_piece(l, k);
 }
@@ -164,19 +175,19 @@ static bool leave_stop(struct lead *l, struct lead_start *start)
 static bool is_at_joint(const struct lead *l, uint64_t joint)
 {
     return l->run.over ? l->run.joint == joint
-                       : l->at == joint && l->feed == 0.0 && l->since_minus >= l->window;
+                       : l->at == joint && l->feed == 0.0 && lead_has_rested(l);
 }
 
 /* Goes over from a landed joint to the span behind it. False: that is not known yet. */
 static bool leave_joint(struct lead *l, struct lead_start *start)
 {
-    const uint16_t k = lead_landing(l);
+    const uint32_t k = lead_landing(l);
 
-    if (k == CEILING_NONE || k + 1U >= l->here.ceiling->count ||
+    if (k == CEILING_NONE || k + 1 >= l->here.ceiling->count ||
         !is_at_joint(l, lead_leave_of(l, k))) {
         return false;
     }
-    enter_span(l, k + 1U, lead_leave_of(l, k), start);
+    enter_span(l, k + 1, lead_leave_of(l, k), start);
     return true;
 }
 

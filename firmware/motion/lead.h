@@ -47,8 +47,10 @@ struct lead {
     uint64_t entered;     /* where what the lead point has come to last starts for the setpoint */
     double feed;          /* at the end of the last cycle */
     bool standing;        /* at a stop, or where the machine was switched on: between two spans */
+    bool abrupt;          /* came to rest where it was: waits for a cycle more before it moves on */
     bool released;        /* and may leave it */
     uint32_t cycles;      /* of the first averaging box, in this span */
+    double rest_a;        /* highest acceleration in it if it began at rest; infinite: it did not */
     double window;        /* cycles that the averages reach over */
     uint32_t since_plus;  /* cycles since it sped up */
     uint32_t since_minus; /* and since it slowed down */

@@ -35,46 +35,78 @@
 
 /* -- braking -- */
 
-/* Feed squared at the end of a piece: 0 at a joint that is only come to rest at, whatever follows. */
-static double end_energy(const struct ceiling_piece *p)
+/* Feed at the end of a piece: 0 at a joint that is only come to rest at, whatever follows. */
+static double end_feed(const struct lead *l, const struct ceiling_piece *p)
 {
-    return p->feed == 0.0 ? 0.0 : p->end_energy;
+    return p->feed_mm_s == 0.0F ? 0.0 : lead_feed(l, p->end_feed_mm_s);
 }
 
-/* Highest feed at the end of the cycle at which what piece k ends in can be met from there by a. */
-static double feed_to_meet(const struct ceiling_piece *p, double gap_mm, double w)
+/* A place ahead, how hard it is braked for, and the feed there. */
+struct place {
+    double gap_mm;
+    double a;
+    double feed;
+};
+
+/* Highest feed at the end of the cycle at which the place can be met from there. */
+static double feed_to_meet(const struct place *p, double w)
 {
-    const double a = p->acceleration;
-    const double energy = end_energy(p);
-    const double root = 0.25 * a * a - a * w + energy + 2.0 * a * gap_mm;
+    const double a = p->a;
+    const double root = 0.25 * a * a - a * w + lead_square(p->feed) + 2.0 * a * p->gap_mm;
     const double v = root > 0.0 ? maths_sqrt(root) - 0.5 * a : -1.0;
 
-    return gap_mm < 0.5 * (w + v) || v < 0.0 ? maths_sqrt(energy) : v;
+    return p->gap_mm < 0.5 * (w + v) || v < 0.0 ? p->feed : v;
 }
 
-/* Where the end of a piece is come to rest at: the end of its block exactly, if that is where it ends. */
-static uint64_t rest_position(const struct lead *l, const struct ceiling_piece *p)
+/*
+ * Brakes for it. True: it is to be come to rest at in this cycle, a little early perhaps, so that no feed is left that is
+ * lost in the rounding of positions.
+ */
+static bool brake_for(const struct lead *l, const struct place *p, struct lead_brake *b)
 {
-    const uint64_t end = path_units(p->end_mm);
-    const uint64_t leave = (uint64_t)p->leave;
+    const double feed = feed_to_meet(p, l->feed);
+
+    b->a = maths_max(b->a, p->a);
+    b->feed = maths_min(b->feed, feed);
+    return p->feed == 0.0 && feed < maths_max(REST_PART * p->a, l->feed - p->a) &&
+           l->feed < p->a * (1.0 + 2.0 * REST_PART);
+}
+
+static void rest_at(const struct lead *l, uint64_t position, struct lead_brake *b)
+{
+    b->rest_at = position;
+    b->rest = l->feed > 0.0 || l->at != position;
+}
+
+/* Brakes to come to rest at a position, by a at most. */
+static void brake_to_rest(const struct lead *l, uint64_t position, double a, struct lead_brake *b)
+{
+    const struct place place = {.gap_mm = path_mm(l->at, position), .a = a};
+
+    if (brake_for(l, &place, b)) {
+        rest_at(l, position, b);
+    }
+}
+
+/* Where the end of piece k is come to rest at: the end of its block exactly, if that is where it ends. */
+static uint64_t rest_position(const struct lead *l, uint32_t k)
+{
+    const uint64_t end = l->here.ceiling->origin + path_units(lead_end_mm(l, k));
+    const uint64_t leave = lead_leave_of(l, k);
     const bool same = maths_abs((double)(int64_t)(end - leave)) <= END_UNITS;
 
-    return l->here.ceiling->origin + (p->stop || same ? leave : end);
+    return lead_piece(l, k)->stop || same ? leave : end;
 }
 
-/* Rest may come a little early, so that no feed is left that is lost in the rounding of positions. */
-static void brake_for_piece(const struct lead *l, const struct ceiling_piece *p, double gap_mm,
-                            struct lead_brake *b)
+/* Brakes for what piece k ends in. */
+static void brake_for_piece(const struct lead *l, uint32_t k, double gap_mm, struct lead_brake *b)
 {
-    const double a = p->acceleration;
-    const double feed = feed_to_meet(p, gap_mm, l->feed);
+    const struct ceiling_piece *p = lead_piece(l, k);
+    const struct place place = {
+        .gap_mm = gap_mm, .a = (double)p->acceleration, .feed = end_feed(l, p)};
 
-    b->a = maths_max(b->a, a);
-    b->feed = maths_min(b->feed, feed);
-    if (end_energy(p) == 0.0 && feed < maths_max(REST_PART * a, l->feed - a) &&
-        l->feed < a * (1.0 + 2.0 * REST_PART)) {
-        b->rest_at = rest_position(l, p);
-        b->rest = l->feed > 0.0 || l->at != b->rest_at;
+    if (brake_for(l, &place, b)) {
+        rest_at(l, rest_position(l, k), b);
     }
 }
 
@@ -84,15 +116,15 @@ static void brake_for_piece(const struct lead *l, const struct ceiling_piece *p,
  */
 static void brake_late(const struct lead *l, struct lead_brake *b)
 {
-    const struct ceiling_piece *next = lead_piece(l, l->here.piece + 1);
-    const double gap_mm = path_mm(l->at, l->here.ceiling->origin + (uint64_t)next->start);
-    const double harmless =
-        maths_min((gap_mm - 0.5 * l->feed) / (lead_entry_cycles(l) + 0.5), next->feed_max);
-    const struct ceiling_piece stop = {.acceleration = b->a, .stop = true, .leave = next->start};
+    const uint32_t next = l->here.piece + 1;
+    const uint64_t start = ceiling_start(l->here.ceiling, next);
+    const double gap_mm = path_mm(l->at, start);
+    const double harmless = maths_min((gap_mm - 0.5 * l->feed) / (lead_entry_cycles(l) + 0.5),
+                                      lead_feed(l, lead_piece(l, next)->feed_max_mm_s));
 
     b->feed = harmless < l->feed ? maths_max(0.0, harmless) : 0.0;
     if (gap_mm >= 0.0) {
-        brake_for_piece(l, &stop, gap_mm, b);
+        brake_to_rest(l, start, b->a, b);
     }
 }
 
@@ -110,9 +142,9 @@ static bool is_open(const struct lead *l)
 static double feed_to_wait(const struct lead *l, double top)
 {
     const struct ceiling *c = l->here.ceiling;
-    const double a = lead_piece(l, l->here.piece)->acceleration;
+    const double a = (double)lead_piece(l, l->here.piece)->acceleration;
     const double m = a * (OPEN_CYCLES + 0.5);
-    const double gap_mm = c->piece[c->count - 1].end_mm - path_mm(c->origin, l->at) - 0.5 * l->feed;
+    const double gap_mm = c->end_mm[c->count - 1] - path_mm(c->origin, l->at) - 0.5 * l->feed;
 
     if (top * top <= 2.0 * (a * gap_mm - m * top)) {
         return top;
@@ -123,20 +155,22 @@ static double feed_to_wait(const struct lead *l, double top)
 struct lead_brake lead_brake_ahead(const struct lead *l)
 {
     const double s = path_mm(l->here.ceiling->origin, l->at);
-    struct lead_brake b = {.feed = maths_min(l->feed, lead_piece(l, l->here.piece)->feed),
-                           .a = lead_piece(l, l->here.piece)->acceleration};
+    struct lead_brake b = {
+        .feed = maths_min(l->feed, lead_feed(l, lead_piece(l, l->here.piece)->feed_mm_s)),
+        .a = (double)lead_piece(l, l->here.piece)->acceleration};
 
     if (l->here.late) {
         brake_late(l, &b);
     }
     for (uint32_t k = l->here.piece; !b.rest; k++) {
         const struct ceiling_piece *p = lead_piece(l, k);
+        const double gap_mm = lead_end_mm(l, k) - s;
 
         if (!l->here.late || p->stop) {
-            brake_for_piece(l, p, p->end_mm - s, &b);
+            brake_for_piece(l, k, gap_mm, &b);
         }
-        if (lead_is_last_of_span(p) || p->end_mm - s >= l->feed ||
-            k + 1 == l->here.ceiling->count || k == l->here.piece + LEAD_PIECES_MAX) {
+        if (lead_is_last_of_span(p) || gap_mm >= l->feed || k + 1 == l->here.ceiling->count ||
+            k == l->here.piece + LEAD_PIECES_MAX) {
             break;
         }
     }
@@ -152,9 +186,9 @@ struct lead_brake lead_brake_ahead(const struct lead *l)
 /* A joint that nothing is known behind is only come to rest at: the ceiling ends with it. */
 static bool has_landing(const struct lead *l)
 {
-    const uint16_t k = lead_landing(l);
+    const uint32_t k = lead_landing(l);
 
-    return k != CEILING_NONE && k + 1U < l->here.ceiling->count;
+    return k != CEILING_NONE && k + 1 < l->here.ceiling->count;
 }
 
 static double landing_gap(const struct lead *l)
@@ -165,10 +199,11 @@ static double landing_gap(const struct lead *l)
 /* How hard the lead point may slow down on its way to the joint: above its feed as in the piece that it is in. */
 static double landing_acceleration(const struct lead *l, double feed)
 {
-    const double here = lead_piece(l, l->here.piece)->acceleration;
+    const double here = (double)lead_piece(l, l->here.piece)->acceleration;
 
-    return feed > l->landing_feed ? here
-                                  : maths_min(here, lead_piece(l, lead_landing(l))->acceleration);
+    return feed > l->landing_feed
+               ? here
+               : maths_min(here, (double)lead_piece(l, lead_landing(l))->acceleration);
 }
 
 static bool landing_from(const struct lead *l, double gap_mm, double feed, double feed_max,
@@ -185,14 +220,10 @@ static bool landing_from(const struct lead *l, double gap_mm, double feed, doubl
     return landing_solve(&landing, run);
 }
 
-/* A joint that cannot be landed on in motion any more, because of a hold close to it, is a stop. */
-static struct ceiling_piece joint_as_stop(const struct lead *l)
+/* A joint that cannot be landed on in motion any more, because of a hold close to it, is a stop: how hard to brake. */
+static double stop_acceleration(const struct lead *l)
 {
-    return (struct ceiling_piece){
-        .acceleration = landing_acceleration(l, 0.0),
-        .stop = true,
-        .leave = lead_piece(l, lead_landing(l))->leave,
-    };
+    return landing_acceleration(l, 0.0);
 }
 
 /*
@@ -228,7 +259,7 @@ static double feed_to_land(const struct lead *l, double v)
     if (low > l->feed) {
         return low;
     }
-    const double a = joint_as_stop(l).acceleration;
+    const double a = stop_acceleration(l);
     const double m = a * (l->window + 1.5);
     const double root = m * m + 2.0 * a * (landing_gap(l) - 0.5 * l->feed);
 
@@ -247,9 +278,15 @@ static double landing_reach(const struct lead *l)
 static bool is_way_free(const struct lead *l, bool highest)
 {
     const struct ceiling_piece *p = lead_piece(l, l->here.piece);
-    const double energy = (double)(highest ? p->way_energy_max : p->way_energy);
+    const uint32_t k = highest ? p->way_max : p->way;
 
-    return energy >= l->feed * l->feed * (1.0 - LEAD_ENERGY_SLACK);
+    if (k == CEILING_NONE) {
+        return true;
+    }
+    const struct ceiling_piece *lowest = lead_piece(l, k);
+    const double feed = lead_feed(l, highest ? lowest->end_feed_max_mm_s : lowest->end_feed_mm_s);
+
+    return lead_square(feed) >= lead_square(l->feed) * (1.0 - LEAD_ENERGY_SLACK);
 }
 
 /* The feed at the end of this cycle if nothing else but braking happens. */
@@ -271,7 +308,7 @@ static bool can_land_after(const struct lead *l, const struct lead_brake *b, dou
 /* Braking from now on, does the lead point come to rest before the joint? */
 static bool can_rest_before(const struct lead *l, double gap_mm)
 {
-    return l->feed * l->feed <= 2.0 * joint_as_stop(l).acceleration * gap_mm;
+    return l->feed * l->feed <= 2.0 * stop_acceleration(l) * gap_mm;
 }
 
 /*
@@ -281,7 +318,7 @@ static bool can_rest_before(const struct lead *l, double gap_mm)
 static bool must_land(const struct lead *l, const struct lead_brake *b, double gap_mm,
                       struct landing_run *run)
 {
-    const double highest = lead_piece(l, lead_landing(l))->feed_max;
+    const double highest = lead_feed(l, lead_piece(l, lead_landing(l))->feed_max_mm_s);
 
     if (landing_from(l, gap_mm, l->feed, l->landing_feed, run) && is_way_free(l, false)) {
         return true;
@@ -315,20 +352,18 @@ void lead_approach_landing(struct lead *l, bool hold, struct lead_brake *b)
         l->run.active = must_land(l, b, gap_mm, &l->run);
     }
     if (!l->run.active && (hold || (must_stop(l) && is_way_free(l, false)))) {
-        const struct ceiling_piece stop = joint_as_stop(l);
-
-        brake_for_piece(l, &stop, gap_mm, b);
+        brake_to_rest(l, lead_leave_of(l, lead_landing(l)), stop_acceleration(l), b);
     }
 }
 
 /* -- speeding up -- */
 
-/* Highest feed v with v^2 <= u + 2 a (x_end - x), x = s + (w + v)/2 + N v: what the piece's end asks for. */
-static double feed_in_piece(const struct lead *l, const struct ceiling_piece *p, double s_mm)
+/* Highest feed v with v^2 <= u + 2 a (x_end - x), x = s + (w + v)/2 + N v: what a piece's end asks for. */
+static double feed_in_piece(const struct lead *l, const struct ceiling_piece *p, double gap_mm)
 {
-    const double m = p->acceleration * (l->window + 0.5);
-    const double root =
-        m * m + p->end_energy + 2.0 * p->acceleration * (p->end_mm - s_mm - 0.5 * l->feed);
+    const double a = (double)p->acceleration;
+    const double m = a * (l->window + 0.5);
+    const double root = m * m + lead_square(lead_feed(l, p->end_feed_mm_s)) + 2.0 * a * gap_mm;
 
     return root > 0.0 ? maths_sqrt(root) - m : 0.0;
 }
@@ -344,13 +379,13 @@ static double feed_to_keep(const struct lead *l, double top, double low)
 
     for (uint32_t k = l->here.piece; k < l->here.ceiling->count; k++) {
         const struct ceiling_piece *p = lead_piece(l, k);
-        const double gap_mm = p->end_mm - s - 0.5 * l->feed;
+        const double gap_mm = lead_end_mm(l, k) - s - 0.5 * l->feed;
 
-        low = maths_min(low, p->feed);
+        low = maths_min(low, lead_feed(l, p->feed_mm_s));
         top = maths_min(top, low);
         if (lead_is_last_of_span(p) || gap_mm >= top * way ||
-            gap_mm * gap_mm > p->end_energy * way * way || k + 1 == l->here.ceiling->count) {
-            return maths_min(top, feed_in_piece(l, p, s));
+            gap_mm > lead_feed(l, p->end_feed_mm_s) * way || k + 1 == l->here.ceiling->count) {
+            return maths_min(top, feed_in_piece(l, p, gap_mm));
         }
         if (k - l->here.piece >= AHEAD_PIECES_MAX) {
             return gap_mm / way;
@@ -361,9 +396,9 @@ static double feed_to_keep(const struct lead *l, double top, double low)
 
 double lead_speed_up(const struct lead *l, double low)
 {
-    const double a = lead_piece(l, l->here.piece)->acceleration;
+    const double a = (double)lead_piece(l, l->here.piece)->acceleration;
 
-    if (l->since_minus < l->window || low <= l->feed * (1.0 + 1e-12)) {
+    if (!lead_has_rested(l) || low <= l->feed * (1.0 + 1e-12)) {
         return l->feed;
     }
     const double top = is_open(l) ? feed_to_wait(l, l->feed + a) : l->feed + a;

@@ -31,17 +31,17 @@ static struct lead_low *low_at(struct lead_place *p, uint32_t i)
 /* Where there is no room for one more the last two become one: the lower feed until the later place. */
 static void low_push(struct lead_place *p, uint32_t k)
 {
-    const struct ceiling_piece *piece = &p->ceiling->piece[k];
-    const uint64_t leave = p->ceiling->origin + (uint64_t)piece->leave;
+    const double feed = ceiling_feed(p->ceiling, p->ceiling->piece[k].feed_mm_s);
+    const uint64_t leave = ceiling_leave(p->ceiling, k);
 
-    while (p->low_count > 0 && low_at(p, p->low_count - 1)->feed >= piece->feed) {
+    while (p->low_count > 0 && low_at(p, p->low_count - 1)->feed >= feed) {
         p->low_count--;
     }
     if (p->low_count == LEAD_LOW_MAX) {
         low_at(p, p->low_count - 1)->leave = leave;
         return;
     }
-    *low_at(p, p->low_count) = (struct lead_low){piece->feed, leave};
+    *low_at(p, p->low_count) = (struct lead_low){feed, leave};
     p->low_count++;
 }
 
@@ -61,10 +61,8 @@ double lead_low_feed(struct lead *l, uint64_t setpoint)
 /* Is the lead point past the end of piece k? A span's end is exact, the others are where a ceiling begins. */
 static bool has_passed(const struct lead *l, const struct ceiling *c, uint32_t k)
 {
-    const struct ceiling_piece *p = &c->piece[k];
-
-    return lead_is_last_of_span(p) ? lead_is_beyond(l->at, c->origin + (uint64_t)p->leave)
-                                   : path_mm(c->origin, l->at) >= p->end_mm;
+    return lead_is_last_of_span(&c->piece[k]) ? lead_is_beyond(l->at, ceiling_leave(c, k))
+                                              : path_mm(c->origin, l->at) >= c->end_mm[k];
 }
 
 /* Where the lead point may brake at the earliest: its feed has then been kept for a window. mm from the origin */
@@ -80,11 +78,12 @@ static bool can_meet(const struct ceiling *c, uint32_t k, double x, double energ
 {
     for (uint32_t i = 0; i < LEAD_PIECES_MAX; i++) {
         const struct ceiling_piece *p = &c->piece[k + i];
-        const double end_energy = highest ? p->end_energy_max : p->end_energy;
+        const double end_energy =
+            lead_square(ceiling_feed(c, highest ? p->end_feed_max_mm_s : p->end_feed_mm_s));
         const bool last = lead_is_last_of_span(p) || k + i + 1 == c->count;
 
-        if (p->end_mm >= x || last) {
-            return energy <= end_energy + 2.0 * p->acceleration * (p->end_mm - x);
+        if (c->end_mm[k + i] >= x || last) {
+            return energy <= end_energy + 2.0 * (double)p->acceleration * (c->end_mm[k + i] - x);
         }
         if (energy > end_energy) {
             return false;
@@ -109,26 +108,26 @@ static bool can_follow(const struct lead *l, const struct ceiling *c, uint32_t k
 static bool can_follow_early(const struct lead *l, const struct ceiling *c, uint32_t k,
                              uint32_t next)
 {
-    const double begin_mm = c->piece[next - 1].end_mm;
+    const double begin_mm = c->end_mm[next - 1];
     const double x = brake_position(l, c);
     double a = l->here.early_a;
 
     for (uint32_t i = k; i < next; i++) {
-        a = maths_min(a, c->piece[i].acceleration);
+        a = maths_min(a, (double)c->piece[i].acceleration);
     }
     return x < begin_mm ? can_meet(c, next, begin_mm, energy_of(l) - 2.0 * a * (begin_mm - x), true)
                         : can_meet(c, next, x, energy_of(l), true);
 }
 
 /* Does a piece allow whatever the averages may hold from the one before? */
-static bool is_no_lower(const struct lead *l, const struct ceiling_piece *had,
-                        const struct ceiling_piece *p)
+static bool is_no_lower(const struct lead *l, const struct ceiling *c, uint32_t k)
 {
-    const double feed_max = p->feed_max * (1.0 + SLACK);
+    const struct ceiling_piece *had = &c->piece[k - 1];
+    const struct ceiling_piece *p = &c->piece[k];
+    const double feed_max = ceiling_feed(c, p->feed_max_mm_s) * (1.0 + SLACK);
     const bool kept = l->feed <= feed_max && l->since_minus >= l->window;
 
-    return (had->feed_max <= feed_max || kept) &&
-           p->acceleration >= had->acceleration * (1.0 - SLACK);
+    return (had->feed_max_mm_s <= p->feed_max_mm_s || kept) && p->acceleration >= had->acceleration;
 }
 
 /*
@@ -137,10 +136,10 @@ static bool is_no_lower(const struct lead *l, const struct ceiling_piece *had,
  */
 static bool is_as_planned(const struct lead *l, const struct ceiling *c, uint32_t k)
 {
-    const struct ceiling_piece *had = &c->piece[k];
+    const double energy = lead_square(ceiling_feed(c, c->piece[k].end_feed_mm_s));
 
-    return path_mm(c->origin, l->before) < had->end_mm &&
-           l->feed * l->feed <= had->end_energy * (1.0 + LEAD_ENERGY_SLACK) &&
+    return path_mm(c->origin, l->before) < c->end_mm[k] &&
+           l->feed * l->feed <= energy * (1.0 + LEAD_ENERGY_SLACK) &&
            can_meet(c, k + 1, path_mm(c->origin, l->at), energy_of(l), false);
 }
 
@@ -148,14 +147,14 @@ static bool is_as_planned(const struct lead *l, const struct ceiling *c, uint32_
 static bool may_enter(const struct lead *l, const struct ceiling *c, uint32_t k)
 {
     const struct ceiling_piece *p = &c->piece[k + 1];
-    const uint64_t start = c->origin + (uint64_t)p->start;
+    const uint64_t start = ceiling_start(c, k + 1);
 
     if (!p->opens || l->feed == 0.0 || lead_is_beyond(l->entered, start) ||
-        is_as_planned(l, c, k) || is_no_lower(l, &c->piece[k], p)) {
+        is_as_planned(l, c, k) || is_no_lower(l, c, k + 1)) {
         return true;
     }
     return l->feed * lead_entry_cycles(l) <= path_mm(l->at, start) &&
-           l->feed <= p->feed_max * (1.0 + SLACK) && can_follow(l, c, k + 1);
+           l->feed <= ceiling_feed(c, p->feed_max_mm_s) * (1.0 + SLACK) && can_follow(l, c, k + 1);
 }
 
 /* The next piece, behind k, that something begins with; 0: there is none in this span. */
@@ -186,14 +185,13 @@ static bool must_enter(const struct lead *l, const struct ceiling *c, uint32_t k
         return false;
     }
     const struct ceiling_piece *p = &c->piece[next];
-    const struct ceiling_piece *had = &c->piece[next - 1];
+    const double end = ceiling_feed(c, c->piece[next - 1].end_feed_mm_s);
+    const double gap_mm = c->end_mm[next - 1] - brake_position(l, c);
 
-    const double gap_mm = had->end_mm - brake_position(l, c);
-
-    return p->feed < w && w <= p->feed_max &&
-           w * (lead_entry_cycles(l) + 1.0) >= path_mm(l->at, c->origin + (uint64_t)p->start) &&
+    return ceiling_feed(c, p->feed_mm_s) < w && w <= ceiling_feed(c, p->feed_max_mm_s) &&
+           w * (lead_entry_cycles(l) + 1.0) >= path_mm(l->at, ceiling_start(c, next)) &&
            w * w * (1.0 - LEAD_ENERGY_SLACK) >
-               had->end_energy + 2.0 * c->piece[k].acceleration * gap_mm &&
+               end * end + 2.0 * (double)c->piece[k].acceleration * gap_mm &&
            can_follow_early(l, c, k, next);
 }
 
@@ -219,7 +217,7 @@ static bool go_on(struct lead *l, struct lead_place *p)
     if (p->late) {
         return false;
     }
-    p->early_a = passed ? MATHS_INFINITY : maths_min(p->early_a, c->piece[k].acceleration);
+    p->early_a = passed ? MATHS_INFINITY : maths_min(p->early_a, (double)c->piece[k].acceleration);
     p->piece++;
     low_push(p, p->piece);
     return true;
@@ -229,8 +227,7 @@ static bool go_on(struct lead *l, struct lead_place *p)
 static void note_entry(struct lead *l)
 {
     if (lead_has_piece(l)) {
-        const uint64_t start =
-            l->here.ceiling->origin + (uint64_t)lead_piece(l, l->here.piece)->start;
+        const uint64_t start = ceiling_start(l->here.ceiling, l->here.piece);
 
         l->entered = lead_is_beyond(start, l->entered) ? start : l->entered;
     }
@@ -279,8 +276,7 @@ static bool search(struct lead *l)
     if (p->piece == p->ceiling->count) {
         return false;
     }
-    const struct ceiling_piece *piece = &p->ceiling->piece[p->piece];
-    const uint64_t leave = p->ceiling->origin + (uint64_t)piece->leave;
+    const uint64_t leave = ceiling_leave(p->ceiling, p->piece);
 
     if (lead_is_beyond(l->standing ? l->at : l->span, leave)) {
         p->piece++;

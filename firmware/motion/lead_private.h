@@ -35,10 +35,27 @@ static inline bool lead_has_piece(const struct lead *l)
     return l->here.ceiling != NULL && l->here.piece < l->here.ceiling->count;
 }
 
+/* A feed of its pieces, mm/cycle. */
+static inline double lead_feed(const struct lead *l, float feed_mm_s)
+{
+    return ceiling_feed(l->here.ceiling, feed_mm_s);
+}
+
+/* Where piece k ends, mm from the origin. */
+static inline double lead_end_mm(const struct lead *l, uint32_t k)
+{
+    return l->here.ceiling->end_mm[k];
+}
+
 /* Where the setpoint leaves what piece k is made of. */
 static inline uint64_t lead_leave_of(const struct lead *l, uint32_t k)
 {
-    return l->here.ceiling->origin + (uint64_t)lead_piece(l, k)->leave;
+    return ceiling_leave(l->here.ceiling, k);
+}
+
+static inline double lead_square(double x)
+{
+    return x * x;
 }
 
 /* Path position at or beyond another. */
@@ -53,9 +70,15 @@ static inline bool lead_is_last_of_span(const struct ceiling_piece *p)
 }
 
 /* The joint that this span ends with, if it is one to land on; CEILING_NONE: a stop, or it is not known. */
-static inline uint16_t lead_landing(const struct lead *l)
+static inline uint32_t lead_landing(const struct lead *l)
 {
     return lead_has_piece(l) ? lead_piece(l, l->here.piece)->landing : CEILING_NONE;
+}
+
+/* Has it not slowed down for so long that it may speed up? */
+static inline bool lead_has_rested(const struct lead *l)
+{
+    return l->since_minus >= l->window + (l->abrupt ? 1.0 : 0.0);
 }
 
 /* Half the window and the margin but for one cycle: that in which the lead point comes to a piece. */

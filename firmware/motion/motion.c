@@ -3,7 +3,9 @@
 #include "base/handoff.h"
 #include "base/maths.h"
 #include "plan/path_unit.h"
+#include "plan/span.h"
 
+#include <assert.h>
 #include <string.h>
 
 /* A setpoint this close to the end of a landed block is on it: rounding of the lead point's positions, path units. */
@@ -52,9 +54,19 @@ const struct block *motion_block(const struct motion *m)
 
 /* -- background -- */
 
-const struct ceiling_request *motion_wanted(const struct motion *m)
+/* One of the path's two ceilings: the cycle is in one, and may be going over to the other. */
+static struct ceiling *ceiling_of(const struct motion *m, unsigned which)
 {
-    return handoff_get_flag(&m->wanted) && !handoff_get_flag(&m->built) ? &m->request : NULL;
+    assert(which != m->path->spare);
+    return &m->path->turn[which].ceiling;
+}
+
+const struct ceiling_request *motion_wanted(struct motion *m)
+{
+    const bool wanted = handoff_get_flag(&m->wanted) && !handoff_get_flag(&m->built);
+
+    m->path->spare = wanted ? 1 - m->active : PATH_NO_SPARE;
+    return wanted ? &m->request : NULL;
 }
 
 uint32_t motion_ahead(struct motion *m)
@@ -93,13 +105,13 @@ static bool reaches_far(const struct motion *m, const struct ceiling *c, uint64_
     if (c->complete) {
         return m->made_closed == m->path->closed;
     }
-    return path_mm(c->origin, lead) < RENEW_PART * c->piece[c->count - 1].end_mm;
+    return path_mm(c->origin, lead) < RENEW_PART * c->end_mm[c->count - 1];
 }
 
 /* Would a new ceiling be the one that is there? */
 static bool is_unchanged(const struct motion *m, const struct ceiling_request *request)
 {
-    const struct ceiling *c = &m->ceiling[m->active];
+    const struct ceiling *c = ceiling_of(m, m->active);
 
     return m->made_holds && reaches_far(m, c, request->lead) &&
            m->made.feed_ratio == request->feed_ratio &&
@@ -128,6 +140,7 @@ void motion_build(struct motion *m)
     uint32_t restarts;
     struct ceiling_request request = take_request(m, &room, &restarts);
 
+    m->path->spare = PATH_NO_SPARE;
     if (is_unchanged(m, &request)) {
         handoff_set_flag(&m->wanted, false);
         return;
@@ -136,31 +149,39 @@ void motion_build(struct motion *m)
     if (request.stops) {
         request.stops_from = m->used.stops ? m->used.stops_from : first_stop(m, &request, room);
     }
-    ceiling_build(&m->ceiling[1 - m->active], m->path, &request);
+    ceiling_build(ceiling_of(m, 1 - m->active), m->path, &request);
     m->made = request;
     m->made_closed = m->path->closed;
     m->made_holds = true;
+    if (!m->has_ceiling) {
+        (void)first_block(m); /* until the first ceiling is there, the cycle reads none */
+    }
     handoff_set_flag(&m->built, true);
 }
 
 /* -- exchange with the background -- */
 
-/* The lead point stands at the end of a single block and the setpoint has not come there: that stop is still one. */
-static bool comes_to_stop(const struct motion *m)
+/*
+ * Does the ceiling that was made take away a single block's end that is a stop for the lead point: it stands there and the
+ * setpoint has not come, or it has left it since the ceiling was asked for, with the window of the span behind?
+ */
+static bool takes_stop(const struct motion *m)
 {
-    return m->used.stops && !m->made.stops && m->lead.standing && m->lag != 0.0;
+    return m->used.stops && !m->made.stops &&
+           (m->made.span != m->lead.span || (m->lead.standing && m->lag != 0.0));
 }
 
 /* A ceiling of a path that has been dropped since is of no use. */
 static void offer_ceiling(struct motion *m)
 {
-    m->made_holds = m->built_restarts == m->restarts && !comes_to_stop(m);
+    m->made_holds = m->built_restarts == m->restarts && !takes_stop(m);
     if (m->made_holds) {
         m->active = 1 - m->active;
         m->has_ceiling = true;
         m->used = m->made;
-        lead_set_ceiling(&m->lead, &m->ceiling[m->active]);
+        lead_set_ceiling(&m->lead, ceiling_of(m, m->active));
     }
+    handoff_set_flag(&m->wanted, false);
     handoff_set_flag(&m->built, false);
 }
 
@@ -172,7 +193,7 @@ static uint64_t piece_leave(const struct motion *m)
     if (here->ceiling == NULL || here->piece >= here->ceiling->count) {
         return m->lead.at;
     }
-    return here->ceiling->origin + (uint64_t)here->ceiling->piece[here->piece].leave;
+    return ceiling_leave(here->ceiling, here->piece);
 }
 
 /*
@@ -188,12 +209,12 @@ static uint64_t braking_room(const struct motion *m)
         return 0;
     }
     const struct ceiling_piece *p = &here->ceiling->piece[here->piece];
+    const double a = (double)p->acceleration;
     const double cycles = 2.0 * MOTION_EXCHANGE_CYCLES;
-    const double v =
-        maths_clamp(l->feed + cycles * p->acceleration, l->feed, maths_max(l->feed, p->feed_max));
+    const double v = maths_clamp(l->feed + cycles * a, l->feed,
+                                 maths_max(l->feed, ceiling_feed(here->ceiling, p->feed_max_mm_s)));
 
-    return (uint64_t)((v * (l->window + cycles) + 0.5 * v * v / p->acceleration) *
-                      PATH_UNITS_PER_MM);
+    return (uint64_t)((v * (l->window + cycles) + 0.5 * v * v / a) * PATH_UNITS_PER_MM);
 }
 
 /* An override asked for while the lead point brakes waits for the next block (seed 003 section 2). 0 is a hold. */
@@ -219,6 +240,7 @@ static void ask(struct motion *m, const struct motion_operator *wanted)
     m->request.lead = m->lead.at;
     m->request.span = m->lead.span;
     m->request.cycles = m->lead.cycles;
+    m->request.rest_a = m->lead.rest_a;
     m->asked++;
     handoff_set_count(&m->path->kept, m->path->first);
     handoff_set_flag(&m->wanted, true);
@@ -235,6 +257,7 @@ static void exchange(struct motion *m, const struct motion_operator *wanted)
         }
         m->asks = true;
     }
+    m->busy = m->busy || m->lead.coming.ceiling != NULL;
     if (!lead_take(&m->lead) && m->asks) {
         ask(m, wanted);
         m->asks = false;
@@ -243,12 +266,10 @@ static void exchange(struct motion *m, const struct motion_operator *wanted)
 
 /* -- stops, and what happens at them -- */
 
-static bool is_wait_over(const struct motion *m, const struct block *b)
+static bool is_wait_over(const struct motion *m, enum move_kind kind)
 {
-    const double cycles =
-        b->move.kind == MOVE_DWELL ? maths_ceil(b->move.dwell_s / m->cycle_s - 1e-9) : 0.0;
-
-    return (double)m->waited >= cycles;
+    return kind != MOVE_DWELL ||
+           (double)m->waited >= maths_ceil(first_block(m)->move.dwell_s / m->cycle_s - 1e-9);
 }
 
 static bool turns_rotary(const struct block *b)
@@ -268,7 +289,10 @@ static bool is_handed_over(const struct motion *m, const struct block *b)
             !(m->keeps_rotary && turns_rotary(b)));
 }
 
-/* Goes through what happens at rest. MOTION_CYCLE: the axes move on, or wait when *waits is set. */
+/*
+ * Goes through what happens at rest; of that only dwells are read. MOTION_CYCLE: the axes move on, or wait when *waits is
+ * set.
+ */
 static enum motion_result serve(struct motion *m, bool *waits)
 {
     *waits = true;
@@ -280,17 +304,17 @@ static enum motion_result serve(struct motion *m, bool *waits)
         if (m->path->first == m->path->closed) {
             return m->path->finished ? MOTION_EMPTY : MOTION_CYCLE;
         }
-        const struct block *b = first_block(m);
+        const enum move_kind kind = path_kind(m->path, m->path->first);
 
         m->current = m->path->first;
-        if (block_is_motion(b)) {
+        if (path_at(m->path, m->current)->motion) {
             *waits = false;
-            return is_handed_over(m, b) ? MOTION_HANDED_OVER : MOTION_CYCLE;
+            return is_handed_over(m, first_block(m)) ? MOTION_HANDED_OVER : MOTION_CYCLE;
         }
-        if (b->move.kind == MOVE_END) {
+        if (kind == MOVE_END) {
             return MOTION_DONE;
         }
-        if (!is_wait_over(m, b)) {
+        if (!is_wait_over(m, kind)) {
             m->waited++;
             m->rested++;
             return MOTION_CYCLE;
@@ -316,8 +340,8 @@ static bool is_held(const struct motion *m, const struct motion_operator *wanted
     }
     const unsigned overrides = here->ceiling->piece[here->piece].overrides;
 
-    return (wanted->hold && (overrides & OVERRIDE_HOLD) != 0) ||
-           (!(wanted->feed_ratio > 0.0) && (overrides & OVERRIDE_FEED) != 0) ||
+    return (wanted->hold && (overrides & CEILING_HOLD) != 0) ||
+           (!(wanted->feed_ratio > 0.0) && (overrides & CEILING_FEED) != 0) ||
            (!(wanted->rapid_ratio > 0.0) && (overrides & CEILING_RAPID) != 0) ||
            (wanted->measures && !(wanted->spindle_rev_s > 0.0) &&
             (overrides & CEILING_SPINDLE) != 0);
@@ -329,29 +353,29 @@ static bool ends_at_rest(const struct motion *m)
     return ceiling_stops(&m->used, m->path, m->path->first);
 }
 
-/* The setpoint's distance from the start of its block, path units, after passing the blocks it has left. */
+/*
+ * The setpoint's distance from the start of its block, path units, after passing the blocks it has left: those are not
+ * read.
+ */
 static double find_block(struct motion *m)
 {
-    const struct block *b = first_block(m);
-    double local = (double)(int64_t)(m->lead.at - b->start) - m->lag;
+    uint64_t start = path_at(m->path, m->path->first)->start;
+    double local = (double)(int64_t)(m->lead.at - start) - m->lag;
 
     for (unsigned passed = 0; passed < PASS_MAX && !ends_at_rest(m); passed++) {
-        if (local <= (double)b->length + LANDED_UNITS) {
+        const uint64_t end = path_end(m->path, m->path->first);
+        const double length = (double)(end - start);
+
+        if (local <= length + LANDED_UNITS) {
             break;
         }
         path_pass(m->path);
-        local -= (double)b->length;
-        b = first_block(m);
+        local -= length;
+        start = end;
     }
     m->current = m->path->first;
-    m->setpoint = b->start + (uint64_t)maths_max(0.0, local);
+    m->setpoint = start + (uint64_t)maths_max(0.0, local);
     return local;
-}
-
-static bool is_landing(const struct motion *m, const struct block *b)
-{
-    return b->end == JOINT_REDUCED ||
-           (b->end == JOINT_PASSED && m->path->limits.landing == LANDING_BLOCK);
 }
 
 static void place(struct motion *m, double local, struct cycle_record *record)
@@ -364,7 +388,7 @@ static void place(struct motion *m, double local, struct cycle_record *record)
     if (maths_abs(local - (double)b->length) <= LANDED_UNITS) {
         m->done = ends_at_rest(m) && m->lead.standing && m->lag == 0.0;
         m->rested = 0;
-        record->landed = (m->done || is_landing(m, b)) && !b->continues;
+        record->landed = (m->done || span_lands(m->path, m->current)) && !b->continues;
         m->at = b->curve.end;
         return;
     }
@@ -380,6 +404,7 @@ static void move_lead(struct motion *m, bool hold)
     if (lead_step(&m->lead, m->setpoint, hold, &start)) {
         average_start(&m->average, m->path->limits.law, m->lead.cycles, start.at, start.step);
         lag = average_lag(&m->average);
+        m->busy = true;
     }
     average_push(&m->average, m->lead.at);
     m->lag = average_lag(&m->average);
@@ -461,6 +486,16 @@ static void fill_record(struct motion *m, const struct block *b, struct cycle_re
     m->cycles++;
 }
 
+/* A part of the block behind, in a cycle that has little else to do: the one that comes to it need not read it. */
+static void read_ahead(struct motion *m)
+{
+    const uint32_t next = m->path->first + 1;
+
+    if (!m->busy && m->passed_first == m->path->first && (int32_t)(m->path->closed - next) > 0) {
+        path_prepare(m->path, next);
+    }
+}
+
 enum motion_result motion_cycle(struct motion *m, const struct motion_operator *wanted,
                                 struct cycle_record *record)
 {
@@ -470,6 +505,7 @@ enum motion_result motion_cycle(struct motion *m, const struct motion_operator *
     if (!m->has_ceiling && !m->built) {
         return MOTION_NOT_YET;
     }
+    m->busy = !ring_is_read(&m->path->ring, m->path->first);
     exchange(m, wanted);
     const enum motion_result result = serve(m, &waits);
 
@@ -484,6 +520,7 @@ enum motion_result motion_cycle(struct motion *m, const struct motion_operator *
     if (m->ending) {
         end_path(m);
     }
+    read_ahead(m);
     fill_record(m, motion_block(m), record);
     return MOTION_CYCLE;
 }

@@ -49,7 +49,9 @@ struct motion {
     double feed;       /* mm/cycle, of the setpoint */
     double lag;        /* of the setpoint behind the lead point, path units */
     bool proportional;
-    bool done;        /* the oldest block: the next cycle passes it */
+    bool done; /* the oldest block: the next cycle passes it */
+    bool
+        busy; /* this cycle does what few do: a block read, a span begun, a place in a ceiling looked for */
     uint32_t current; /* the block of the last cycle */
     uint32_t ahead;   /* the block of the lead point, when a ceiling was asked for */
     uint64_t rested;  /* cycles at rest since the last stop was landed on */
@@ -59,8 +61,7 @@ struct motion {
     uint64_t late; /* exchanges for which no ceiling was ready */
     struct lead lead;
     struct average average;
-    struct ceiling ceiling[2];
-    unsigned active;  /* the one in use */
+    unsigned active;  /* the ceiling in use, of the path's two */
     bool has_ceiling; /* there has been one */
     bool asks;        /* the background is to be asked for one as soon as there is room */
     uint32_t asked;   /* times it has been asked */
@@ -88,8 +89,8 @@ void motion_init(struct motion *m, struct path *path, const struct point *start,
 /* Before the first ceiling: as if single_block had been set all along. */
 void motion_stop_each(struct motion *m);
 
-/* Background: what a ceiling is asked for; NULL: none is. */
-const struct ceiling_request *motion_wanted(const struct motion *m);
+/* Background: what a ceiling is asked for; NULL: none is. Until it has been made the path may smooth motions. */
+const struct ceiling_request *motion_wanted(struct motion *m);
 /* Background: makes it, from all blocks pushed so far. Needs motion_wanted. */
 void motion_build(struct motion *m);
 /* Background: blocks that the path has beyond the lead point's, as that was when a ceiling was asked for. */

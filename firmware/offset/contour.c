@@ -38,6 +38,34 @@ struct offset_item *contour_item(struct offset *o, unsigned place)
     return &o->item[(o->first + place) % OFFSET_ITEMS_MAX];
 }
 
+void contour_in_plane(enum plane plane, const struct point *p, double result[2])
+{
+    enum axis first;
+    enum axis second;
+
+    plane_axes(plane, &first, &second);
+    result[0] = p->at[first];
+    result[1] = p->at[second];
+}
+
+bool contour_wanted(const struct offset_item *i, struct planar *wanted)
+{
+    const struct move *m = &i->move;
+    double to[2];
+
+    contour_in_plane(m->plane, &m->end, to);
+    if (i->wanted == MOVE_INVOLUTE_CW || i->wanted == MOVE_INVOLUTE_CCW) {
+        return planar_set_involute(wanted, i->wanted_from, to, m->centre_mm, m->base_radius_mm,
+                                   i->wanted == MOVE_INVOLUTE_CW);
+    }
+    if (i->wanted == MOVE_ARC_CW || i->wanted == MOVE_ARC_CCW) {
+        planar_set_arc(wanted, i->wanted_from, to, m->centre_mm,
+                       i->wanted == MOVE_ARC_CCW ? 1.0 : -1.0, m->turns);
+        return true;
+    }
+    return planar_set_line(wanted, i->wanted_from, to);
+}
+
 static bool is_way(const struct offset_item *i)
 {
     return i->kind >= OFFSET_CORNER && !i->left_out;
@@ -174,11 +202,14 @@ static unsigned find_crossings(const struct planar *k, const struct planar *e, b
     return count;
 }
 
-/* How far the tool would cut into a programmed way when it follows both. */
-static double gouge_of(const struct planar *wanted, const struct planar *k, const struct planar *e,
-                       double radius_mm)
+/* How far the tool would cut into an item's programmed way when it follows both. */
+static double gouge_of(const struct offset_item *item, const struct planar *k,
+                       const struct planar *e, double radius_mm)
 {
-    return radius_mm - maths_min(planar_distance(k, wanted), planar_distance(e, wanted));
+    struct planar wanted;
+
+    (void)contour_wanted(item, &wanted);
+    return radius_mm - maths_min(planar_distance(k, &wanted), planar_distance(e, &wanted));
 }
 
 /* The way that is really gone: the first of a contour comes from where the tool is. */
@@ -188,7 +219,7 @@ static struct planar real_way(const struct offset_item *i)
     double from[2];
 
     if (i->entry && !way.arc) {
-        nose_centre(&i->move, i->wanted.from, from);
+        nose_centre(&i->move, i->wanted_from, from);
         (void)planar_set_line(&way, from, i->way.to);
     }
     return way;
@@ -249,6 +280,8 @@ static double gouge_behind(struct offset *o, unsigned place, const struct offset
                            const struct trial *t)
 {
     const struct planar k = real_way(&t->k);
+    struct planar before;
+    struct planar behind;
     const double radius_mm = piece->move.cutter_radius_mm;
     bool between = false;
     double gouge_mm = 0.0;
@@ -258,14 +291,16 @@ static double gouge_behind(struct offset *o, unsigned place, const struct offset
 
         between = between || item->kind >= OFFSET_CORNER;
         if (item->kind == OFFSET_WAY) {
-            gouge_mm = maths_max(gouge_mm, gouge_of(&item->wanted, &k, &t->e, radius_mm));
+            gouge_mm = maths_max(gouge_mm, gouge_of(item, &k, &t->e, radius_mm));
             gouge_mm = item->across ? radius_mm : gouge_mm;
         }
     }
     if (between) {
-        gouge_mm = maths_max(gouge_mm, radius_mm - planar_distance(&t->e, &t->k.wanted));
-        gouge_mm = maths_max(gouge_mm, radius_mm - planar_distance(&k, &piece->wanted));
-        gouge_mm = maths_max(gouge_mm, gouge_before(o, place, &piece->wanted, radius_mm));
+        (void)contour_wanted(&t->k, &before);
+        (void)contour_wanted(piece, &behind);
+        gouge_mm = maths_max(gouge_mm, radius_mm - planar_distance(&t->e, &before));
+        gouge_mm = maths_max(gouge_mm, radius_mm - planar_distance(&k, &behind));
+        gouge_mm = maths_max(gouge_mm, gouge_before(o, place, &behind, radius_mm));
     }
     return gouge_mm;
 }
@@ -275,16 +310,18 @@ static void leave_out(struct offset *o, const struct offset_item *piece)
 {
     struct offset_item left = *piece;
     struct offset_item *newest = contour_newest(o);
+    struct planar wanted;
 
     if (piece->kind != OFFSET_WAY) {
         return;
     }
     if (!o->gap) {
+        (void)contour_wanted(piece, &wanted);
         o->gap = true;
         o->gouge_line = piece->move.line;
         o->gouge_mm = newest == NULL ? 0.0
                                      : piece->move.cutter_radius_mm -
-                                           planar_distance_point(&piece->wanted, newest->way.to);
+                                           planar_distance_point(&wanted, newest->way.to);
     }
     left.left_out = true;
     append(o, &left);

@@ -12,6 +12,12 @@ struct offset_item *contour_item(struct offset *o, unsigned place);
 /* A new item at the end, of this move, all else 0. Needs room. */
 struct offset_item *contour_add(struct offset *o, enum offset_kind kind, const struct move *m);
 
+/* The programmed way of an item; of a corner, the one before it. False: there is none. */
+bool contour_wanted(const struct offset_item *i, struct planar *wanted);
+
+/* A point in a plane. */
+void contour_in_plane(enum plane plane, const struct point *p, double result[2]);
+
 /* Drops the oldest item. */
 void contour_drop_first(struct offset *o);
 

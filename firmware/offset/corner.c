@@ -42,10 +42,10 @@ static bool cusp_is_inner(double bend, double left_mm, double angle_rad)
     return bend * left_mm < 0.0 || (off_rad > OFFSET_CUSP_SURE_RAD && is_inner(angle_rad, left_mm));
 }
 
-static double cusp_angle(const struct offset *o, const struct offset_item *next, double left_mm,
+static double cusp_angle(const struct offset *o, const struct planar *next, double left_mm,
                          double angle_rad)
 {
-    const double bend = planar_bend_to(&o->last) + planar_bend_from(&next->wanted);
+    const double bend = planar_bend_to(&o->last) + planar_bend_from(next);
     const bool inner = cusp_is_inner(bend, left_mm, angle_rad);
 
     if (inner == is_inner(angle_rad, left_mm)) {
@@ -58,14 +58,16 @@ static struct corner corner_between(const struct offset *o, const struct offset_
                                     double left_mm)
 {
     struct corner c = {.left_mm = left_mm};
+    struct planar wanted;
     double behind[2];
 
-    memcpy(c.vertex, next->wanted.from, sizeof(c.vertex));
+    (void)contour_wanted(next, &wanted);
+    memcpy(c.vertex, wanted.from, sizeof(c.vertex));
     planar_tangent_to(&o->last, c.before);
-    planar_tangent_from(&next->wanted, behind);
+    planar_tangent_from(&wanted, behind);
     c.angle_rad = maths_atan2(planar_turn(c.before, behind), planar_dot(c.before, behind));
     if (maths_abs(c.angle_rad) > MATHS_PI - OFFSET_CUSP_RAD) {
-        c.angle_rad = cusp_angle(o, next, left_mm, c.angle_rad);
+        c.angle_rad = cusp_angle(o, &wanted, left_mm, c.angle_rad);
     }
     return c;
 }
@@ -154,10 +156,26 @@ static bool turn_blunt(struct offset *o, const struct offset_item *next, const s
     return true;
 }
 
+/* What contour_wanted needs of the way before a corner stands where giving out the corner puts its own. */
+static void keep_last(const struct offset *o, struct offset_item *corner)
+{
+    enum axis first;
+    enum axis second;
+
+    plane_axes(corner->move.plane, &first, &second);
+    corner->wanted = o->last_move.kind;
+    memcpy(corner->wanted_from, o->last.from, sizeof(corner->wanted_from));
+    corner->move.end.at[first] = o->last.to[0];
+    corner->move.end.at[second] = o->last.to[1];
+    memcpy(corner->move.centre_mm, o->last_move.centre_mm, sizeof(corner->move.centre_mm));
+    corner->move.base_radius_mm = o->last_move.base_radius_mm;
+    corner->move.turns = o->last_move.turns;
+}
+
 /* A corner is part of the way behind it, but the axis across the plane stays. */
 static struct offset_item corner_piece(const struct offset *o, const struct offset_item *next)
 {
-    struct offset_item piece = {.kind = OFFSET_CORNER, .move = next->move, .wanted = o->last};
+    struct offset_item piece = {.kind = OFFSET_CORNER, .move = next->move};
 
     for (enum axis i = AXIS_X; i < AXIS_LINEAR_COUNT; i++) {
         piece.move.end.at[i] = o->wanted_at.at[i];
@@ -165,6 +183,7 @@ static struct offset_item corner_piece(const struct offset *o, const struct offs
     if (move_is_arc(&piece.move) || move_is_involute(&piece.move)) {
         piece.move.kind = MOVE_FEED;
     }
+    keep_last(o, &piece);
     return piece;
 }
 

@@ -62,35 +62,6 @@ static bool fail(struct diagnostic *d, enum takt_error code, uint32_t line, doub
     return false;
 }
 
-static void in_plane(enum plane plane, const struct point *p, double result[2])
-{
-    enum axis first;
-    enum axis second;
-
-    plane_axes(plane, &first, &second);
-    result[0] = p->at[first];
-    result[1] = p->at[second];
-}
-
-/* The programmed way in the plane. False: there is none. */
-static bool set_wanted(const struct offset *o, const struct move *m, struct planar *wanted)
-{
-    double from[2];
-    double to[2];
-
-    in_plane(m->plane, &o->wanted_at, from);
-    in_plane(m->plane, &m->end, to);
-    if (move_is_involute(m)) {
-        return planar_set_involute(wanted, from, to, m->centre_mm, m->base_radius_mm,
-                                   m->kind == MOVE_INVOLUTE_CW);
-    }
-    if (!move_is_arc(m)) {
-        return planar_set_line(wanted, from, to);
-    }
-    planar_set_arc(wanted, from, to, m->centre_mm, m->kind == MOVE_ARC_CCW ? 1.0 : -1.0, m->turns);
-    return true;
-}
-
 static bool moves_across(const struct offset *o, const struct move *m)
 {
     enum axis first;
@@ -116,7 +87,7 @@ static bool bend_entry(struct offset_item *entry)
     struct planar *way = &entry->way;
     double c[2];
 
-    nose_centre(&entry->move, entry->wanted.from, c);
+    nose_centre(&entry->move, entry->wanted_from, c);
     const double to_tool[2] = {c[0] - way->to[0], c[1] - way->to[1]};
     const double radius = planar_between(way->centre, way->to);
     const double u[2] = {(way->centre[0] - way->to[0]) / radius,
@@ -135,18 +106,19 @@ static bool bend_entry(struct offset_item *entry)
     return true;
 }
 
-static bool enter(struct offset *o, struct offset_item *entry, struct diagnostic *d)
+static bool enter(struct offset *o, struct offset_item *entry, const struct planar *wanted,
+                  struct diagnostic *d)
 {
-    const double distance = planar_between(entry->wanted.from, entry->wanted.to);
+    const double distance = planar_between(wanted->from, wanted->to);
     const double lack_mm = entry->move.cutter_radius_mm - distance;
 
     if (lack_mm >= 0.0) {
         return fail(d, TAKT_ERROR_OFFSET_ENTRY_SHORT, entry->move.line, lack_mm);
     }
-    if (entry->wanted.involute) {
+    if (wanted->involute) {
         return fail(d, TAKT_ERROR_OFFSET_ENTRY_INVOLUTE, entry->move.line, 0.0);
     }
-    if (entry->wanted.arc && !bend_entry(entry)) {
+    if (wanted->arc && !bend_entry(entry)) {
         return fail(d, TAKT_ERROR_OFFSET_ENTRY_ARC, entry->move.line, 0.0);
     }
     entry->entry = true;
@@ -162,19 +134,20 @@ static bool turns_too_often(const struct planar *involute)
            OFFSET_TURNS_MAX * MATHS_TWO_PI;
 }
 
-static bool take_way(struct offset *o, struct offset_item *way, struct diagnostic *d)
+static bool take_way(struct offset *o, struct offset_item *way, const struct planar *wanted,
+                     struct diagnostic *d)
 {
     const double left_mm = left_of(&way->move);
     double lack_mm;
 
-    if (way->wanted.involute && turns_too_often(&way->wanted)) {
+    if (wanted->involute && turns_too_often(wanted)) {
         return fail(d, TAKT_ERROR_OFFSET_TURNS, way->move.line, OFFSET_TURNS_MAX);
     }
-    if (!planar_offset(&way->wanted, left_mm, &way->way, &lack_mm)) {
+    if (!planar_offset(wanted, left_mm, &way->way, &lack_mm)) {
         return fail(d, TAKT_ERROR_OFFSET_ARC_SMALL, way->move.line, lack_mm);
     }
     if (!o->started) {
-        return enter(o, way, d);
+        return enter(o, way, wanted, d);
     }
     corner_turn(o, way, left_mm);
     return true;
@@ -183,16 +156,19 @@ static bool take_way(struct offset *o, struct offset_item *way, struct diagnosti
 /* A compensated motion. */
 static bool take_motion(struct offset *o, const struct move *m, struct diagnostic *d)
 {
-    struct offset_item item = {.kind = OFFSET_WAY, .move = *m};
+    struct offset_item item = {.kind = OFFSET_WAY, .move = *m, .wanted = m->kind};
+    struct planar wanted;
 
-    if (!set_wanted(o, m, &item.wanted)) {
+    contour_in_plane(m->plane, &o->wanted_at, item.wanted_from);
+    if (!contour_wanted(&item, &wanted)) {
         contour_add(o, o->started ? OFFSET_STANDING : OFFSET_COMMAND, m);
     } else {
         item.across = moves_across(o, m);
-        if (!take_way(o, &item, d)) {
+        if (!take_way(o, &item, &wanted, d)) {
             return false;
         }
-        o->last = item.wanted;
+        o->last = wanted;
+        o->last_move = *m;
     }
     o->wanted_at = m->end;
     return true;

@@ -1,5 +1,5 @@
 /*
- * Every fixed size of the compensation. struct offset takes about OFFSET_ITEMS_MAX * 700 bytes.
+ * Every fixed size of the compensation. struct offset takes about OFFSET_ITEMS_MAX * 360 bytes.
  */
 #ifndef TAKT_OFFSET_LIMITS_H
 #define TAKT_OFFSET_LIMITS_H

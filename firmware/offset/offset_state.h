@@ -17,13 +17,15 @@ enum offset_kind {
 };
 
 struct offset_item {
-    struct move move; /* as programmed; of a corner, of the move behind it */
+    /* As programmed. Of a corner, of the move behind it, but for what contour_wanted needs of the one before */
+    struct move move;
+    double wanted_from[2]; /* where the programmed way begins, of which move has the rest */
+    struct planar way;     /* of the tool's centre in the plane */
     enum offset_kind kind;
-    bool left_out;        /* swallowed by an inner corner; kept until its end is known */
-    bool entry;           /* comes from outside the contour: starts where the tool is */
-    bool across;          /* moves other axes too */
-    struct planar way;    /* of the tool's centre in the plane */
-    struct planar wanted; /* as programmed; of a corner, the way before it */
+    enum move_kind wanted; /* the kind of the programmed way */
+    bool left_out;         /* swallowed by an inner corner; kept until its end is known */
+    bool entry;            /* comes from outside the contour: starts where the tool is */
+    bool across;           /* moves other axes too */
 };
 
 struct offset {
@@ -43,7 +45,8 @@ struct offset {
     struct diagnostic held;
     struct point wanted_at; /* programmed end of the last motion */
     struct point at;        /* end of the last motion given out */
-    struct planar last;     /* the contour's last way as programmed */
+    struct planar last;     /* the contour's last way as programmed, */
+    struct move last_move;  /* and its move */
     struct diagnostic warning[OFFSET_WARNINGS_MAX];
     unsigned warnings;
 };

@@ -45,7 +45,7 @@ void planar_set_arc(struct planar *c, const double from[2], const double to[2],
     (void)planar_set_line(c, from, to);
     c->arc = true;
     memcpy(c->centre, centre, sizeof(c->centre));
-    c->sense = sense;
+    c->sense = sense > 0.0 ? 1 : -1;
     c->radius_from = planar_between(from, centre);
     c->radius_to = planar_between(to, centre);
     c->sweep_rad = angle_between(centre, from, to, sense);
@@ -72,7 +72,7 @@ bool planar_set_involute(struct planar *c, const double from[2], const double to
     c->involute = true;
     memcpy(c->centre, curve.involute.centre_mm, sizeof(c->centre));
     c->base_mm = curve.involute.radius_mm;
-    c->hand = curve.involute.hand;
+    c->hand = curve.involute.hand > 0.0 ? 1 : -1;
     c->heading_rad = curve.involute.heading_rad;
     c->unrolled_from = involute_unrolled(&curve, 0.0);
     c->unrolled_to = involute_unrolled(&curve, curve.length_mm);

@@ -6,22 +6,27 @@
 #define TAKT_OFFSET_PLANAR_H
 
 #include <stdbool.h>
+#include <stdint.h>
 
 struct planar {
-    bool arc;
-    bool involute;
     double from[2], to[2];
     double centre[2]; /* of an arc, or of an involute's base circle */
-    /* arcs: */
-    double sense;                  /* 1 counter-clockwise, -1 clockwise */
-    double radius_from, radius_to; /* differ when an end is not exactly on the circle */
-    double sweep_rad;              /* > 0, also more than a turn */
-    /* involutes, as in struct curve_involute: */
-    double base_mm;
-    double hand;
-    double heading_rad;
-    double unrolled_from,
-        unrolled_to; /* at the ends; the way goes outward when the second is larger */
+    union {
+        struct {
+            double radius_from,
+                radius_to;    /* arcs: differ when an end is not exactly on the circle */
+            double sweep_rad; /* arcs: > 0, also more than a turn */
+        };
+        struct { /* involutes, as in struct curve_involute */
+            double base_mm;
+            double heading_rad;
+            double unrolled_from,
+                unrolled_to; /* at the ends; the way goes outward when the second is larger */
+        };
+    };
+    bool arc, involute;
+    int8_t sense; /* arcs: 1 counter-clockwise, -1 clockwise */
+    int8_t hand;  /* involutes, as in struct curve_involute */
 };
 
 /* A line; false when it has no length. */

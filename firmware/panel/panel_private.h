@@ -31,7 +31,8 @@ void panel_look(struct panel *panel, struct panel_snapshot *snapshot);
 /* One write request on its way: everything is found out before anything is done. */
 struct panel_request {
     struct panel_client *client;
-    struct panel_snapshot snapshot;
+    enum panel_state state;
+    bool has_owner;               /* the watchdog watches a panel */
     struct panel_mailbox mailbox; /* as it will be */
     struct panel_order order;     /* to the controller */
     enum panel_upload_command command;

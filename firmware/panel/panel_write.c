@@ -150,7 +150,7 @@ static enum panel_refusal check_rights(const struct panel_request *r)
 
     if (is_for_everybody(r))
         return PANEL_REFUSAL_NONE;
-    if (r->snapshot.value[REGISTER_WATCHDOG] != 0 && panel->owner != r->client && !r->has_password)
+    if (r->has_owner && panel->owner != r->client && !r->has_password)
         return PANEL_REFUSAL_CONTROL;
     return check_password(r);
 }
@@ -164,13 +164,11 @@ static bool is_switch(enum panel_id id)
 /* To clear a coil that starts something is allowed in every state: nothing starts. */
 static enum panel_refusal check_states(const struct panel_request *r)
 {
-    const enum panel_state state = (enum panel_state)r->snapshot.value[REGISTER_STATE];
-
     for (unsigned i = 0; i < r->order.count; i++) {
         const struct panel_order_item *item = &r->order.item[i];
 
-        if (!panel_may_write(item->id, state) && (panel_registers[item->id].form != PANEL_BIT ||
-                                                  item->value != 0 || is_switch(item->id)))
+        if (!panel_may_write(item->id, r->state) && (panel_registers[item->id].form != PANEL_BIT ||
+                                                     item->value != 0 || is_switch(item->id)))
             return PANEL_REFUSAL_STATE;
     }
     return PANEL_REFUSAL_NONE;
@@ -356,11 +354,21 @@ static enum panel_refusal refusal_of_rows(enum modbus_exception exception)
     return exception == MODBUS_ADDRESS ? PANEL_REFUSAL_ADDRESS : PANEL_REFUSAL_VALUE;
 }
 
+/* Apart, so that the snapshot is gone from the stack before anything is done. */
+static __attribute__((noinline)) void look_at_state(struct panel_request *r)
+{
+    struct panel_snapshot snapshot;
+
+    panel_look(r->client->panel, &snapshot);
+    r->state = (enum panel_state)snapshot.value[REGISTER_STATE];
+    r->has_owner = snapshot.value[REGISTER_WATCHDOG] != 0;
+}
+
 static enum panel_refusal serve(struct panel_request *r, const struct written *w)
 {
     enum panel_refusal refusal;
 
-    panel_look(r->client->panel, &r->snapshot);
+    look_at_state(r);
     r->mailbox = r->client->panel->mailbox;
     refusal = refusal_of_rows(take_rows(r, w));
     if (refusal == PANEL_REFUSAL_NONE)

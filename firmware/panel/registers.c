@@ -2,10 +2,13 @@
 
 /* clang-format off */
 #define PANEL_ROW(id, table, address, form, words, unit, decimals, least, most, states, meaning) \
-    [REGISTER_##id] = {#id, table, address, form, words, unit, decimals, least, most, states, meaning},
+    [REGISTER_##id] = {least, most, address, words, states, table, form, decimals},
+#define PANEL_TEXTS(id, table, address, form, words, unit, decimals, least, most, states, meaning) \
+    [REGISTER_##id] = {#id, unit, meaning},
 /* clang-format on */
 
 const struct panel_register panel_registers[REGISTER_COUNT] = {PANEL_REGISTERS(PANEL_ROW)};
+const struct panel_text panel_texts[REGISTER_COUNT] = {PANEL_REGISTERS(PANEL_TEXTS)};
 
 /* Table and address as one rising number. */
 static uint32_t place_of(enum modbus_table table, uint16_t address)
@@ -58,7 +61,7 @@ enum panel_id panel_find_name(const char *name)
 {
     unsigned id = 0;
 
-    while (id < REGISTER_COUNT && !same_name(panel_registers[id].name, name))
+    while (id < REGISTER_COUNT && !same_name(panel_texts[id].name, name))
         id++;
     return (enum panel_id)id;
 }

@@ -304,19 +304,30 @@ enum panel_id { PANEL_REGISTERS(PANEL_ID) REGISTER_COUNT };
 #undef PANEL_ID
 
 struct panel_register {
-    const char *name;
-    enum modbus_table table;
+    int32_t least;
+    uint32_t most;
     uint16_t address; /* on the wire, from 0 */
+    uint16_t words;   /* how many registers it takes */
+    uint16_t states;
+    enum modbus_table table;
     enum panel_form form;
-    uint16_t words; /* how many registers it takes */
+    uint8_t decimals;
+};
+
+/* What only those ask who show the table: an image that does not is without it. */
+struct panel_text {
+    const char *name;
     const char *unit;
-    unsigned decimals;
-    int64_t least, most;
-    unsigned states;
     const char *meaning;
 };
 
 extern const struct panel_register panel_registers[REGISTER_COUNT];
+extern const struct panel_text panel_texts[REGISTER_COUNT];
+
+static inline const struct panel_text *panel_text(const struct panel_register *row)
+{
+    return &panel_texts[row - panel_registers];
+}
 
 /* The row that has this register among its own; REGISTER_COUNT: none. */
 enum panel_id panel_find(enum modbus_table table, uint16_t address);

@@ -9,8 +9,18 @@
 #include "plan/ceiling.h"
 
 #include "base/maths.h"
+#include "plan/path.h"
 #include "plan/path_unit.h"
+#include "plan/rest.h"
 #include "plan/span.h"
+#include "smooth/single.h"
+
+#include <assert.h>
+
+static_assert(CEILING_PIECES_MAX < CEILING_NONE, "pieces fit into ceiling_piece.landing");
+static_assert(PATH_BLOCKS_MAX < 1 << 9, "blocks fit into ceiling_piece.start");
+static_assert(LAW_CYCLES_MAX < 1 << 9, "windows fit into ceiling_piece.cycles");
+static_assert(sizeof(struct ceiling_piece) == 28, "no padding");
 
 /*
  * Between being asked for and being taken a ceiling grows so many cycles old at most (MOTION_EXCHANGE_CYCLES and the
@@ -37,11 +47,12 @@ struct builder {
     uint32_t cycles; /* of the first box, in the span being laid */
     double behind;   /* cycles that the setpoint follows behind the lead point, with the margin */
     double begin_mm; /* where the newest ceiling begins */
-    unsigned overrides; /* of the block being laid, */
-    double feed_max;    /* and its highest feed whatever they are, mm/cycle */
-    double fastest;     /* the highest of those laid so far */
-    double gentlest;    /* and the lowest acceleration */
-    int64_t start;      /* path units from the origin: of what is being laid */
+    unsigned overrides;  /* of the block being laid, */
+    float feed_max_mm_s; /* and its highest feed whatever they are */
+    double fastest;      /* the highest of those laid so far */
+    double gentlest;     /* and the lowest acceleration */
+    uint32_t start;      /* block that begins what is being laid */
+    struct rest_span rest;
     unsigned heads;
     struct head head[HEADS_MAX]; /* both rising */
 };
@@ -69,6 +80,16 @@ double ceiling_block_feed(const struct path *path, uint32_t index,
         return ratio * maths_min(program, top);
     }
     return maths_min(ratio * program, top);
+}
+
+double ceiling_block_acceleration(const struct path *path, uint32_t index, uint32_t cycles)
+{
+    const struct path_block *b = path_at(path, index);
+    const double t = path->limits.cycle_s;
+    const double a =
+        maths_min((double)b->a_mm_s2 * (t * t), (double)b->j_mm_s3 * (t * t * t * (double)cycles));
+
+    return (double)maths_float_below(a);
 }
 
 bool ceiling_stops(const struct ceiling_request *request, const struct path *path, uint32_t index)
@@ -127,24 +148,32 @@ static void begin_span(struct builder *s, uint32_t index)
                 CEILING_MARGIN_CYCLES;
     s->begin_mm = path_mm(s->c->origin, start);
     s->heads = 0;
+    rest_begin(&s->rest, s->path, s->request, index, s->cycles);
 }
 
-static struct ceiling_piece *append(struct builder *s, double end_mm, double feed, double a,
-                                    int64_t leave)
+/* Blocks from the first on, as pieces count them. */
+static unsigned since(const struct builder *s, uint32_t index)
 {
-    struct ceiling_piece *p = &s->c->piece[s->c->count++];
+    return index - s->c->first;
+}
+
+/* leave: the block behind. */
+static struct ceiling_piece *append(struct builder *s, double end_mm, float feed_mm_s, double a,
+                                    uint32_t leave)
+{
+    struct ceiling_piece *p = &s->c->piece[s->c->count];
 
     *p = (struct ceiling_piece){
-        .end_mm = end_mm,
-        .feed = feed,
-        .feed_max = maths_max(feed, s->feed_max),
-        .acceleration = a,
-        .start = s->start,
-        .leave = leave,
-        .cycles = (uint16_t)s->cycles,
+        .feed_mm_s = feed_mm_s,
+        .feed_max_mm_s = feed_mm_s > s->feed_max_mm_s ? feed_mm_s : s->feed_max_mm_s,
+        .acceleration = (float)a,
+        .start = since(s, s->start) & 0x1ffU,
+        .leave = since(s, leave) & 0x1ffU,
+        .cycles = s->cycles & 0x1ffU,
         .landing = CEILING_NONE,
-        .overrides = (uint16_t)s->overrides,
+        .overrides = s->overrides & 0xfU,
     };
+    s->c->end_mm[s->c->count++] = end_mm;
     return p;
 }
 
@@ -157,9 +186,10 @@ static void drop_empty(struct ceiling *c, uint32_t k)
     uint32_t kept = k;
 
     for (; k < c->count; k++) {
-        const double begin_mm = kept > 0 ? c->piece[kept - 1].end_mm : 0.0;
+        const double begin_mm = kept > 0 ? c->end_mm[kept - 1] : 0.0;
 
-        if (c->piece[k].opens || c->piece[k].end_mm > begin_mm) {
+        if (c->piece[k].opens || c->end_mm[k] > begin_mm) {
+            c->end_mm[kept] = c->end_mm[k];
             c->piece[kept++] = c->piece[k];
         }
     }
@@ -176,19 +206,10 @@ static void begin_ceiling(struct builder *s, double at_mm, double lead_mm)
     s->begin_mm = maths_max(s->begin_mm, at_mm - lead_mm);
     uint32_t k = s->c->count;
 
-    for (; k > 0 && s->c->piece[k - 1].end_mm > s->begin_mm; k--) {
-        s->c->piece[k - 1].end_mm = s->begin_mm;
+    for (; k > 0 && s->c->end_mm[k - 1] > s->begin_mm; k--) {
+        s->c->end_mm[k - 1] = s->begin_mm;
     }
     drop_empty(s->c, k);
-}
-
-/* mm/cycle2: A tau^2, and the jerk J over the first box: J tau^3 N. */
-static double block_acceleration(const struct builder *s, const struct path_block *b)
-{
-    const double t = s->cycle_s;
-
-    return maths_min((double)b->a_mm_s2 * t * t,
-                     (double)b->j_mm_s3 * t * t * t * (double)s->cycles);
 }
 
 /*
@@ -217,7 +238,8 @@ static void add_head(struct builder *s, double a, double end_mm)
 }
 
 /* The pieces of one ceiling up to end_mm: first those where a block left behind asks for less acceleration. */
-static void append_pieces(struct builder *s, double end_mm, double feed, double a, int64_t leave)
+static void append_pieces(struct builder *s, double end_mm, float feed_mm_s, double a,
+                          uint32_t leave)
 {
     const uint32_t first = s->c->count;
     double at_mm = s->begin_mm;
@@ -225,11 +247,11 @@ static void append_pieces(struct builder *s, double end_mm, double feed, double 
     for (unsigned i = 0; i < s->heads; i++) {
         if (s->head[i].a < a && s->head[i].end_mm > at_mm && at_mm < end_mm) {
             at_mm = maths_min(s->head[i].end_mm, end_mm);
-            append(s, at_mm, feed, s->head[i].a, leave);
+            append(s, at_mm, feed_mm_s, s->head[i].a, leave);
         }
     }
     if (at_mm < end_mm) {
-        append(s, end_mm, feed, a, leave);
+        append(s, end_mm, feed_mm_s, a, leave);
     }
     if (first < s->c->count) {
         s->c->piece[first].opens = true;
@@ -237,48 +259,49 @@ static void append_pieces(struct builder *s, double end_mm, double feed, double 
 }
 
 /* May the block be joined to the newest piece: the same ceiling, and nothing between? */
-static bool continues(const struct builder *s, double feed, double a)
+static bool continues(const struct builder *s, float feed_mm_s, double a)
 {
     if (s->c->count == 0 || s->heads != 1 || s->head[0].a != a) {
         return false;
     }
     const struct ceiling_piece *last = &s->c->piece[s->c->count - 1];
 
-    return !last->stop && !last->landed && last->feed == feed && last->feed_max == s->feed_max &&
-           last->acceleration == a && last->overrides == s->overrides;
+    return !last->stop && !last->landed && last->feed_mm_s == feed_mm_s &&
+           last->feed_max_mm_s == s->feed_max_mm_s && (double)last->acceleration == a &&
+           last->overrides == s->overrides;
 }
 
 static unsigned block_overrides(const struct path_block *b)
 {
     const unsigned follows = b->per_revolution ? CEILING_SPINDLE : 0U;
-    const unsigned hold = (b->may_hold ? OVERRIDE_HOLD : 0U) | follows;
+    const unsigned hold = (b->may_hold ? CEILING_HOLD : 0U) | follows;
 
-    return b->rapid ? hold | CEILING_RAPID : hold | (b->may_feed ? OVERRIDE_FEED : 0U);
+    return b->rapid ? hold | CEILING_RAPID : hold | (b->may_feed ? CEILING_FEED : 0U);
 }
 
 static void lay_block(struct builder *s, uint32_t index)
 {
     const struct path_block *b = path_at(s->path, index);
-    const double feed = ceiling_block_feed(s->path, index, s->request) * s->cycle_s;
-    const double a = block_acceleration(s, b);
+    const struct rest_feeds feeds = rest_block_feeds(&s->rest, index);
+    const float feed_mm_s = maths_float_below(feeds.now);
+    const double a = ceiling_block_acceleration(s->path, index, s->cycles);
     const double start_mm = path_mm(s->c->origin, b->start);
-    const uint64_t end = path_end(s->path, index);
-    const int64_t leave = (int64_t)(end - s->c->origin);
-    const double end_mm = path_mm(s->c->origin, end);
+    const double end_mm = path_mm(s->c->origin, path_end(s->path, index));
 
     s->overrides = block_overrides(b);
-    s->feed_max = path_block_top(b) * s->cycle_s;
-    const double reach_mm = end_mm + s->feed_max * s->behind;
+    s->feed_max_mm_s = maths_float_below(feeds.highest);
+    const double feed_max = ceiling_feed(s->c, s->feed_max_mm_s);
+    const double reach_mm = end_mm + feed_max * s->behind;
 
-    s->fastest = maths_max(s->fastest, s->feed_max);
+    s->fastest = maths_max(s->fastest, feed_max);
     s->gentlest = maths_min(s->gentlest, a);
-    s->start = (int64_t)(b->start - s->c->origin);
-    if (continues(s, feed, a)) {
-        s->c->piece[s->c->count - 1].end_mm = end_mm;
-        s->c->piece[s->c->count - 1].leave = leave;
+    s->start = index;
+    if (continues(s, feed_mm_s, a)) {
+        s->c->end_mm[s->c->count - 1] = end_mm;
+        s->c->piece[s->c->count - 1].leave = since(s, index + 1) & 0x1ffU;
     } else {
-        begin_ceiling(s, start_mm, feed * s->behind);
-        append_pieces(s, end_mm, feed, a, leave);
+        begin_ceiling(s, start_mm, ceiling_feed(s->c, feed_mm_s) * s->behind);
+        append_pieces(s, end_mm, feed_mm_s, a, index + 1);
     }
     add_head(s, a, reach_mm);
 }
@@ -302,23 +325,22 @@ static double landing_ramp(double feed, double a, double window)
 static void lay_landed_joint(struct builder *s, uint32_t index)
 {
     const struct path_block *b = path_at(s->path, index);
-    const struct path_block *next = path_at(s->path, index + 1);
-    const double a = maths_min(block_acceleration(s, b), block_acceleration(s, next));
+    const double a = maths_min(ceiling_block_acceleration(s->path, index, s->cycles),
+                               ceiling_block_acceleration(s->path, index + 1, s->cycles));
     const double window = 2.0 * (s->behind - CEILING_MARGIN_CYCLES) + 1.0;
     const double wider =
         maths_max(window, law_window_cycles(s->path->limits.law, promise_window(s, index + 1)));
     const double shorter_mm =
         maths_min(path_length(s->path, index), path_length(s->path, index + 1));
-    const uint64_t end = path_end(s->path, index);
-    const double end_mm = path_mm(s->c->origin, end);
+    const double end_mm = path_mm(s->c->origin, path_end(s->path, index));
     double feed = (double)b->feed_joint_mm_s * s->cycle_s;
 
     feed = maths_min(feed, shorter_mm / (wider + 4.0 + landing_ramp(feed, a, wider)));
     feed = feed < PASS_WORTH * a ? 0.0 : feed;
     begin_ceiling(s, end_mm, feed * (0.5 * (window + 1.0) + landing_ramp(feed, a, window) + 1.0));
-    s->feed_max = 0.0;
-    s->start = (int64_t)(end - s->c->origin);
-    struct ceiling_piece *p = append(s, end_mm, feed, a, s->start);
+    s->feed_max_mm_s = 0.0F;
+    s->start = index + 1;
+    struct ceiling_piece *p = append(s, end_mm, maths_float_below(feed / s->cycle_s), a, index + 1);
 
     p->opens = true;
     p->landed = true;
@@ -351,24 +373,53 @@ static void lay_blocks(struct builder *s)
     s->c->complete = i == s->path->closed;
 }
 
-/* Feed^2 at the beginning of a piece from which its end can be met at this energy: u = min(c^2, u_end + 2 a L). */
-static double begin_energy(const struct ceiling *c, uint32_t k, double feed, double end_energy)
+static double square(double x)
+{
+    return x * x;
+}
+
+/* Below this a square is 0, mm2/cycle2: what is above has all digits in single precision. */
+#define ENERGY_MIN 1e-30
+
+/* The feed of single precision whose square is not above a square, mm2/cycle2: three steps below the highest at most. */
+static float feed_below(const struct ceiling *c, double energy)
+{
+    float feed_mm_s = single_sqrt((float)energy) / (float)c->cycle_s;
+
+    if (energy < ENERGY_MIN) {
+        return 0.0F;
+    }
+    while (square(ceiling_feed(c, feed_mm_s)) > energy) {
+        feed_mm_s = maths_float_below((double)feed_mm_s * (1.0 - 0x1p-25));
+    }
+    return feed_mm_s;
+}
+
+/* Ceiling of a piece, and feed at its end: as the overrides are, or at their highest. */
+static float feed_of(const struct ceiling_piece *p, bool highest)
+{
+    return highest ? p->feed_max_mm_s : p->feed_mm_s;
+}
+
+static float end_feed_of(const struct ceiling_piece *p, bool highest)
+{
+    return highest ? p->end_feed_max_mm_s : p->end_feed_mm_s;
+}
+
+static double end_energy(const struct ceiling *c, uint32_t k, bool highest)
+{
+    return square(ceiling_feed(c, end_feed_of(&c->piece[k], highest)));
+}
+
+/* Feed at the beginning of a piece from which its end can be met: u = min(c^2, u_end + 2 a L). */
+static float begin_feed(const struct ceiling *c, uint32_t k, bool highest)
 {
     const struct ceiling_piece *p = &c->piece[k];
-    const double begin_mm = k == 0 ? 0.0 : c->piece[k - 1].end_mm;
+    const double length_mm = c->end_mm[k] - (k == 0 ? 0.0 : c->end_mm[k - 1]);
+    const double energy = end_energy(c, k, highest) + 2.0 * (double)p->acceleration * length_mm;
+    const float feed_mm_s = feed_of(p, highest);
 
-    return maths_min(feed * feed, end_energy + 2.0 * p->acceleration * (p->end_mm - begin_mm));
-}
-
-/* Ceiling of a piece, and feed squared at its end: as the overrides are, or at their highest. */
-static double feed_of(const struct ceiling_piece *p, bool highest)
-{
-    return highest ? p->feed_max : p->feed;
-}
-
-static double energy_of(const struct ceiling_piece *p, bool highest)
-{
-    return highest ? p->end_energy_max : p->end_energy;
+    return energy < square(ceiling_feed(c, feed_mm_s)) ? feed_below(c, energy) : feed_mm_s;
 }
 
 /*
@@ -376,108 +427,128 @@ static double energy_of(const struct ceiling_piece *p, bool highest)
  * what follows: it is then half the next span's window ahead, at x; by the pieces up to there w is no more than their
  * ceilings, and w^2 <= u + 2 a (x_end - x).
  */
-static double landed_feed(const struct ceiling *c, uint32_t k, enum law law, double feed,
-                          bool highest)
+static float landed_feed(const struct ceiling *c, uint32_t k, enum law law, float feed_mm_s,
+                         bool highest)
 {
-    const double start_mm = c->piece[k].end_mm;
+    const double start_mm = c->end_mm[k];
+    double feed = ceiling_feed(c, feed_mm_s);
     uint32_t i = k + 1;
 
     if (i == c->count) {
-        return feed;
+        return feed_mm_s;
     }
     const double cycles = 0.5 * (double)law_window_cycles(law, c->piece[i].cycles) + 1.0;
     const double hold_mm = start_mm + feed * cycles;
 
-    while (i < c->count && c->piece[i].end_mm < hold_mm) {
-        feed = maths_min(feed, feed_of(&c->piece[i], highest));
-        feed = maths_min(feed, maths_sqrt(energy_of(&c->piece[i], highest)));
+    while (i < c->count && c->end_mm[i] < hold_mm) {
+        feed = maths_min(feed, ceiling_feed(c, feed_of(&c->piece[i], highest)));
+        feed = maths_min(feed, ceiling_feed(c, end_feed_of(&c->piece[i], highest)));
         i++;
     }
     if (i < c->count) {
         const struct ceiling_piece *p = &c->piece[i];
-        const double m = p->acceleration * cycles;
-        const double energy =
-            energy_of(p, highest) + 2.0 * p->acceleration * (p->end_mm - start_mm);
+        const double a = (double)p->acceleration;
+        const double m = a * cycles;
+        const double energy = end_energy(c, i, highest) + 2.0 * a * (c->end_mm[i] - start_mm);
 
-        feed = maths_min(feed, feed_of(p, highest));
+        feed = maths_min(feed, ceiling_feed(c, feed_of(p, highest)));
         feed = maths_min(feed, maths_sqrt(m * m + maths_max(0.0, energy)) - m);
     }
-    return feed;
+    return maths_float_below(feed / c->cycle_s);
 }
 
 /*
- * Feed squared at the end of piece k from which what is behind it can be met at the highest overrides: at worst by coming
- * to rest where the setpoint comes to it. A ceiling that begins earlier because it is higher asks for no more than that.
+ * Feed at the end of piece k from which what is behind it can be met at the highest overrides: at worst by coming to rest
+ * where the setpoint comes to it. A ceiling that begins earlier because it is higher asks for no more than that.
  */
-static double highest_energy(const struct ceiling *c, uint32_t k, double energy)
+static float highest_feed(const struct ceiling *c, uint32_t k, float feed_mm_s)
 {
-    const struct ceiling_piece *p = &c->piece[k];
-
     if (k + 1 == c->count || !c->piece[k + 1].opens) {
-        return energy;
+        return feed_mm_s;
     }
-    const double start_mm = (double)c->piece[k + 1].start / PATH_UNITS_PER_MM;
+    const uint64_t start = path_start(c->path, c->first + c->piece[k + 1].start);
+    const double rest =
+        2.0 * (double)c->piece[k].acceleration * (path_mm(c->origin, start) - c->end_mm[k]);
 
-    return maths_max(energy, 2.0 * p->acceleration * (start_mm - p->end_mm));
+    return rest > square(ceiling_feed(c, feed_mm_s)) ? feed_below(c, rest) : feed_mm_s;
+}
+
+/* Of two pieces the one that can be met at the lower feed; of those there are. */
+static unsigned lower(const struct ceiling *c, uint32_t k, unsigned way, bool highest)
+{
+    return way != CEILING_NONE &&
+                   end_feed_of(&c->piece[way], highest) < end_feed_of(&c->piece[k], highest)
+               ? way
+               : k;
 }
 
 /* What lies between a piece and the joint that the span ends with. */
 static void note_way(struct ceiling *c, uint32_t k)
 {
     struct ceiling_piece *p = &c->piece[k];
+    const bool none = p->landing == CEILING_NONE || k + 1U >= p->landing;
 
-    if (p->landing == CEILING_NONE || k + 1U >= p->landing) {
-        p->way_energy = (float)MATHS_INFINITY;
-        p->way_energy_max = (float)MATHS_INFINITY;
-        return;
-    }
-    p->way_energy = (float)maths_min(p->end_energy, (double)p[1].way_energy);
-    p->way_energy_max = (float)maths_min(p->end_energy_max, (double)p[1].way_energy_max);
+    p->way = none ? CEILING_NONE : lower(c, k, p[1].way, false) & CEILING_NONE;
+    p->way_max = none ? CEILING_NONE : lower(c, k, p[1].way_max, true) & CEILING_NONE;
 }
 
 static void plan_backward(struct ceiling *c, enum law law)
 {
-    double energy = 0.0;
-    double energy_max = 0.0;
-    uint16_t landing = CEILING_NONE;
+    float feed_mm_s = 0.0F;
+    float feed_max_mm_s = 0.0F;
+    unsigned landing = CEILING_NONE;
     bool open = true;
 
     c->open_from = c->count;
     for (uint32_t k = c->count; k-- > 0;) {
         struct ceiling_piece *p = &c->piece[k];
 
-        if (p->stop) {
-            energy = 0.0;
-            energy_max = 0.0;
-            landing = CEILING_NONE;
-        }
+        landing = p->stop ? CEILING_NONE : p->landed ? k : landing;
         open = open && !p->stop && (!p->landed || k + 1 == c->count);
         c->open_from = open ? k : c->open_from;
-        p->end_energy = energy;
-        p->end_energy_max = p->stop ? 0.0 : highest_energy(c, k, energy_max);
+        p->end_feed_mm_s = p->stop ? 0.0F : feed_mm_s;
+        p->end_feed_max_mm_s = p->stop ? 0.0F : highest_feed(c, k, feed_max_mm_s);
         if (p->landed) {
-            p->feed_max = landed_feed(c, k, law, p->feed, true);
-            p->feed = landed_feed(c, k, law, p->feed, false);
-            landing = (uint16_t)k;
+            p->feed_max_mm_s = landed_feed(c, k, law, p->feed_mm_s, true);
+            p->feed_mm_s = landed_feed(c, k, law, p->feed_mm_s, false);
         }
-        p->landing = landing;
+        p->landing = landing & CEILING_NONE;
         note_way(c, k);
-        energy = begin_energy(c, k, p->feed, p->end_energy);
-        energy_max = begin_energy(c, k, p->feed_max, p->end_energy_max);
+        feed_mm_s = begin_feed(c, k, false);
+        feed_max_mm_s = begin_feed(c, k, true);
     }
 }
 
 void ceiling_build(struct ceiling *c, struct path *path, const struct ceiling_request *request)
 {
-    struct builder s = {.c = c,
-                        .path = path,
-                        .request = request,
-                        .cycle_s = path->limits.cycle_s,
-                        .gentlest = MATHS_INFINITY};
+    const double t = path->limits.cycle_s;
+    struct builder s = {
+        .c = c, .path = path, .request = request, .cycle_s = t, .gentlest = MATHS_INFINITY};
 
+    c->path = path;
+    c->cycle_s = t;
+    c->first = request->first;
+    c->origin = path_start(path, request->first);
     c->count = 0;
-    c->origin =
-        request->first == path->pushed ? path->position : path_at(path, request->first)->start;
     lay_blocks(&s);
     plan_backward(c, path->limits.law);
+}
+
+/* Those before the oldest that is kept may have been overwritten. */
+static uint64_t start_of(const struct ceiling *c, unsigned block)
+{
+    const uint32_t kept = c->path->kept;
+    const uint32_t index = c->first + block;
+
+    return path_start(c->path, (int32_t)(index - kept) < 0 ? kept : index);
+}
+
+uint64_t ceiling_start(const struct ceiling *c, uint32_t k)
+{
+    return start_of(c, c->piece[k].start);
+}
+
+uint64_t ceiling_leave(const struct ceiling *c, uint32_t k)
+{
+    return start_of(c, c->piece[k].leave);
 }

@@ -12,66 +12,80 @@
 #ifndef TAKT_PLAN_CEILING_H
 #define TAKT_PLAN_CEILING_H
 
-#include "plan/path.h"
-
 #include <stdbool.h>
 #include <stdint.h>
 
 /*
  * Pieces of one ceiling at most. A block has one or two, and neighbours of the same limits share one. Where this is not
- * enough the ceiling is not complete: it ends at rest before the last blocks. With 256 some programs take 0.2 % longer,
- * with 384 none that was tried.
+ * enough the ceiling is not complete: it ends at rest before the last blocks. With 256 some smoothed programs take 2 %
+ * longer, with 288 0.03 %, with 320 none that was tried.
  */
-#define CEILING_PIECES_MAX 384
+#define CEILING_PIECES_MAX 320
 
-#define CEILING_NONE UINT16_MAX
+/* No piece. */
+#define CEILING_NONE 511U
 
 /* Cycles beside half a window by which a ceiling begins earlier: differences of setpoints reach over three cycles. */
 #define CEILING_MARGIN_CYCLES 2.0
 
-/* Bit beside OVERRIDE_...: the rapid override counts here. */
-#define CEILING_RAPID 256U
-/* Likewise: the feed is per revolution of the spindle. */
-#define CEILING_SPINDLE 512U
+/* What the operator may do in a piece: hold, override the feed or the rapids; and its feed follows the spindle. */
+#define CEILING_HOLD    1U
+#define CEILING_FEED    2U
+#define CEILING_RAPID   4U
+#define CEILING_SPINDLE 8U
 
+/*
+ * Small, since two ceilings of all pieces are kept: limits are of single precision, not above the exact ones, and what can
+ * be met is kept as a feed, not as its square. Feeds are mm/s here, so that one that is programmed is exact; ceiling_feed()
+ * makes them mm/cycle.
+ */
 struct ceiling_piece {
-    double end_mm; /* from the origin */
-    double
-        feed; /* mm/cycle: not above this in the piece, nor until the setpoint has passed leave */
-    double acceleration; /* mm/cycle2, also of braking */
-    double
-        end_energy; /* mm2/cycle2: feed squared at the end from which all that follows can be met */
-    /* the same two at the highest override, or coming to rest before what follows: a promise, see spans.md */
-    double feed_max;
-    double end_energy_max;
-    /* the lowest end_energy, and end_energy_max, from this piece to the last but one before the joint of landing */
-    float way_energy, way_energy_max;
-    int64_t start; /* path units from the origin: where the setpoint comes to what it is made of */
-    int64_t leave; /* and leaves it */
-    uint16_t cycles; /* of the first averaging box, in this span */
-    uint16_t
-        landing; /* the first landed joint in or after this piece, CEILING_NONE: a stop comes first */
-    uint16_t overrides; /* what the operator may do here: OVERRIDE_..., or CEILING_RAPID */
-    bool opens : 1;  /* what was not there before begins: a block, or the way to a landed joint */
-    bool stop : 1;   /* the span ends with this piece, at leave */
-    bool landed : 1; /* the span ends with this piece, at leave, where a setpoint falls in motion */
+    float feed_mm_s;     /* not above this in the piece, nor until the setpoint has left it */
+    float acceleration;  /* mm/cycle2, also of braking */
+    float end_feed_mm_s; /* at the end, from which all that follows can be met */
+    /* the first and the last at the highest override, or coming to rest before what follows: a promise, see spans.md */
+    float feed_max_mm_s;
+    float end_feed_max_mm_s;
+    unsigned start : 9;   /* block that it begins with, from the ceiling's first on */
+    unsigned leave : 9;   /* and the one behind it, at whose start the setpoint leaves it */
+    unsigned landing : 9; /* first landed joint in or after it; CEILING_NONE: a stop comes first */
+    unsigned opens : 1;   /* what was not there before begins: a block, or the way to the joint */
+    unsigned stop : 1;    /* the span ends with this piece, where it is left */
+    unsigned landed : 1;  /* likewise, and a setpoint falls there in motion */
+    /* the pieces of the lowest end_feed, and end_feed_max, from here to the last but one before landing */
+    unsigned way : 9, way_max : 9;
+    unsigned cycles : 9;    /* of the first averaging box, in this span */
+    unsigned overrides : 4; /* CEILING_... */
 };
 
+struct path;
+
 struct ceiling {
-    uint64_t origin; /* path position */
+    const struct path *path;
+    double cycle_s;
+    uint32_t first;  /* block of the path */
+    uint64_t origin; /* path position: its start */
     bool complete;   /* reaches to the end of all blocks that were known */
     uint32_t count;
     uint32_t
         open_from; /* from this piece on the span goes on beyond what is known; count: none does */
+    double end_mm[CEILING_PIECES_MAX]; /* where pieces end, from the origin */
     struct ceiling_piece piece[CEILING_PIECES_MAX];
 };
 
+/* A feed of its pieces, mm/cycle. */
+static inline double ceiling_feed(const struct ceiling *c, float feed_mm_s)
+{
+    return (double)feed_mm_s * c->cycle_s;
+}
+
 /* What a ceiling is made for. */
 struct ceiling_request {
-    uint32_t first;       /* block to begin with */
-    uint64_t lead;        /* where the lead point is */
-    uint64_t span;        /* where the span starts that it has begun last */
-    uint32_t cycles;      /* of the first averaging box in that span */
+    uint32_t first;  /* block to begin with */
+    uint64_t lead;   /* where the lead point is */
+    uint64_t span;   /* where the span starts that it has begun last */
+    uint32_t cycles; /* of the first averaging box in that span */
+    double rest_a;   /* mm/cycle2: highest in it so far if it began at rest; infinite: it did not */
     double feed_ratio;    /* override of programmed feeds, 0 < ratio <= BLOCK_OVERRIDE_MAX */
     double rapid_ratio;   /* likewise of rapids, <= 1 */
     double spindle_rev_s; /* > 0: as measured, for feeds per revolution; 0: as commanded */
@@ -86,11 +100,21 @@ struct ceiling_request {
  */
 void ceiling_build(struct ceiling *c, struct path *path, const struct ceiling_request *request);
 
+/*
+ * Control cycle: where on the path the setpoint comes to what a piece is made of, and where it leaves it. Of what it had
+ * left when a ceiling was asked for last: where the block started that it was in.
+ */
+uint64_t ceiling_start(const struct ceiling *c, uint32_t k);
+uint64_t ceiling_leave(const struct ceiling *c, uint32_t k);
+
 /* Does a block of the path end at rest? */
 bool ceiling_stops(const struct ceiling_request *request, const struct path *path, uint32_t index);
 
 /* Feed ceiling of one block under a request, mm/s. */
 double ceiling_block_feed(const struct path *path, uint32_t index,
                           const struct ceiling_request *request);
+
+/* Acceleration of the lead point in it, by the first averaging box: A tau^2, or J tau^3 N; mm/cycle2, single precision. */
+double ceiling_block_acceleration(const struct path *path, uint32_t index, uint32_t cycles);
 
 #endif

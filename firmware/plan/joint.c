@@ -34,10 +34,13 @@
 #define JOINT_CYCLES_APART (2.0 * JOINT_CYCLES_NEAR)
 
 /*
- * A joint feed below so many times jerk x cycle^2, the jerk that the largest share leaves, is not worth landing at: the
+ * A joint feed below so many times jerk x cycle^2, the jerk that the largest share leaves, is too slow to be landed at: the
  * axes stop.
  */
-#define JOINT_STOP_CYCLES 4.0
+#define LEAST_CYCLES 4.0
+
+/* To be passed a joint must take less than this part of the time of a stop: landing on it takes some as well. */
+#define WORTH 0.75
 
 struct joint_steps {
     double p_s_mm;   /* P, s/mm */
@@ -133,6 +136,42 @@ static double short_ceiling(const struct block *b, double v, double shorter_mm, 
     return maths_max(v * b->length_mm / shorter_mm, b->length_mm / apart_s);
 }
 
+/* -- to pass a joint, or to stop -- */
+
+/* Time of a ramp from one feed to another: F/A + A/J, or 2 sqrt(F/J) where full acceleration is not reached. */
+static double ramp_s(double change_mm_s, double a, double j)
+{
+    return change_mm_s * j >= a * a ? change_mm_s / a + a / j : 2.0 * maths_sqrt(change_mm_s / j);
+}
+
+/* The feed that a ramp from rest over a length reaches, by full acceleration or by full jerk: V T(V) / 2 = L. */
+static double feed_over(double length_mm, double a, double j)
+{
+    return maths_min(maths_sqrt(2.0 * length_mm * a), maths_cbrt(length_mm * length_mm * j));
+}
+
+/*
+ * The blocks beside a joint, as if they had the lower limits of both: jerk J and acceleration A for ramps if the axes stop
+ * there, J (1 - S) if they pass at v < V, V the feed that they reach. Each way a ramp from V down to v loses
+ * T (V - v) / 2V of the time at V.
+ */
+static bool is_worth_passing(const struct block *before, const struct block *after, double v,
+                             double share, double cycle_s)
+{
+    if (v < LEAST_CYCLES * before->j_mm_s3 * cycle_s * cycle_s) {
+        return false;
+    }
+    const double a = maths_min(before->a_mm_s2, after->a_mm_s2);
+    const double j =
+        maths_min(before->j_mm_s3 / (1.0 - before->share), after->j_mm_s3 / (1.0 - after->share));
+    const double length_mm = maths_min(before->length_mm, after->length_mm);
+    const double top = maths_min(maths_min(block_top_feed(before), block_top_feed(after)),
+                                 feed_over(length_mm, a, j));
+    const double fall = maths_max(0.0, top - v);
+
+    return ramp_s(fall, a, j * (1.0 - share)) * fall <= WORTH * ramp_s(top, a, j) * top;
+}
+
 void joint_stop(struct block *b)
 {
     b->end = JOINT_STOP;
@@ -167,15 +206,14 @@ void joint_form(struct block *before, struct block *after, const struct plan_lim
     if (maths_min(v, top) > reach_mm_s) {
         v = crowded_feed(&steps, reach_mm_s);
     }
-    const double worth_mm_s =
-        JOINT_STOP_CYCLES * before->j_mm_s3 * limits->cycle_s * limits->cycle_s;
+    const double share =
+        joint_share(&steps, maths_min(v, top), joint_crowding(before, after, apart_s));
 
-    if (v < maths_min(worth_mm_s, top)) {
+    if (v < top && !is_worth_passing(before, after, v, share, limits->cycle_s)) {
         joint_stop(before);
         return;
     }
     block_cap_feed(before, short_ceiling(before, v, shorter_mm, apart_s), GOVERNOR_SHORT);
     block_cap_feed(after, short_ceiling(after, v, shorter_mm, apart_s), GOVERNOR_SHORT);
-    joint_pass(before, after, v,
-               joint_share(&steps, maths_min(v, top), joint_crowding(before, after, apart_s)));
+    joint_pass(before, after, v, share);
 }

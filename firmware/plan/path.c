@@ -7,8 +7,10 @@
 #include "plan/share.h"
 
 #include <assert.h>
+#include <stddef.h>
 #include <string.h>
 
+static_assert(sizeof(struct relax_beside) <= sizeof(struct ceiling), "smoothing costs no memory");
 static_assert(SHARE_BLOCKS_MAX <= PATH_MODES_MAX,
               "blocks that are not closed leave room for more, without which they never are");
 
@@ -32,6 +34,16 @@ void path_init(struct path *p, const struct plan_limits *limits, const struct po
     p->limits = *limits;
     p->end = *start;
     init_smooth(p);
+}
+
+/* What smoothing computes with. */
+void *path_lend(struct path *p, size_t size)
+{
+    static_assert(offsetof(struct path, smooth.work) % sizeof(uint64_t) == 0, "at a multiple of 8");
+    (void)size;
+    assert(size <= sizeof(p->smooth.work) && !p->smooth.open);
+    p->lent = true;
+    return &p->smooth.work;
 }
 
 /* Has the motion pushed last more pieces than found room? */
@@ -188,7 +200,10 @@ static void push_smooth_pieces(struct path *p)
 {
     struct smooth_piece piece;
 
-    while (has_slot(p) && smooth_take(&p->smooth, &piece)) {
+    if (p->spare == PATH_NO_SPARE) {
+        return;
+    }
+    while (has_slot(p) && smooth_take(&p->smooth, &p->turn[p->spare].beside, &piece)) {
         push_smooth_piece(p, &piece);
     }
 }
@@ -232,6 +247,7 @@ static void push_move(struct path *p, const struct move *move)
     if (move_curve(move, &p->end, &curve)) {
         p->newest_turns = turns_rotary(p, move);
         if (smooth_takes(move, &curve)) {
+            assert(!p->lent);
             p->end = move->end;
             smooth_push(&p->smooth, move, p->motions, &curve);
             push_smooth_pieces(p);

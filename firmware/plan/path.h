@@ -10,12 +10,22 @@
 #define TAKT_PLAN_PATH_H
 
 #include "plan/block.h"
+#include "plan/ceiling.h"
 #include "plan/limits.h"
 #include "plan/ring.h"
 #include "plan/share.h"
 
 #include <stdbool.h>
+#include <stddef.h>
 #include <stdint.h>
+
+/* A ceiling; or, where none is, a part of what smoothing computes with. */
+union path_turn {
+    struct ceiling ceiling;
+    struct relax_beside beside;
+};
+
+#define PATH_NO_SPARE 2U
 
 struct path {
     struct plan_limits limits;
@@ -30,6 +40,7 @@ struct path {
     bool newest_turns;        /* the newest motion moves rotary axes */
     struct point end;         /* where everything pushed ends */
     struct smooth smooth;     /* motions that are not in the ring yet: a chain being smoothed */
+    bool lent;     /* what it computes with belongs to somebody else: nothing is smoothed */
     bool has_next; /* a move that is not part of that chain waits until it has been taken */
     struct move next;
     bool smoothing;     /* the newest block is a piece of a chain that goes on */
@@ -42,10 +53,18 @@ struct path {
         edge[2]; /* the newest block, whose end may still change, and the one before or behind it */
     struct share_block open[SHARE_BLOCKS_MAX]; /* those that are not closed */
     struct path_ring ring;
+    union path_turn turn[2]; /* of the ceiling in use and the next one */
+    unsigned
+        spare; /* the one of them that is no ceiling: motions are smoothed as long as there is one; PATH_NO_SPARE */
 };
 
 /* start: where the machine stands. */
 void path_init(struct path *p, const struct plan_limits *limits, const struct point *start);
+/*
+ * Memory for something else, at a multiple of 8, in a path that smooths nothing from here on: no move of PATH_BLEND comes
+ * before it is initialised again. size: of that, not more than smoothing takes.
+ */
+void *path_lend(struct path *p, size_t size);
 /* Room for one more move? */
 bool path_has_room(const struct path *p);
 /* Appends the next move; a motion without length is counted and dropped. Needs room. */
@@ -61,10 +80,14 @@ static inline const struct path_block *path_at(const struct path *p, uint32_t in
 {
     return ring_at(&p->ring, index);
 }
-/* Path position of its end, and its length, mm. */
+/* Path position of its start, index == pushed: where the next one will start; of its end; and its length, mm. */
+static inline uint64_t path_start(const struct path *p, uint32_t index)
+{
+    return index == p->pushed ? p->position : path_at(p, index)->start;
+}
 static inline uint64_t path_end(const struct path *p, uint32_t index)
 {
-    return index + 1 == p->pushed ? p->position : path_at(p, index + 1)->start;
+    return path_start(p, index + 1);
 }
 double path_length(const struct path *p, uint32_t index);
 /* Of its move: what it is, and its feed per revolution, 0: none. */
@@ -80,6 +103,15 @@ static inline const struct block *path_read(struct path *p, uint32_t index)
 {
     return ring_is_read(&p->ring, index) ? &p->ring.view[index % 2].block
                                          : ring_read(&p->ring, index, path_end(p, index));
+}
+/* Control cycle: a step towards that, of a block that is closed; two make it ready. */
+static inline void path_prepare(struct path *p, uint32_t index)
+{
+    if (ring_is_begun(&p->ring, index)) {
+        (void)ring_read(&p->ring, index, path_end(p, index));
+    } else if (!ring_is_read(&p->ring, index)) {
+        ring_begin(&p->ring, index);
+    }
 }
 /* Control cycle: likewise the oldest one. */
 static inline const struct block *path_first(struct path *p)

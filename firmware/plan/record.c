@@ -542,6 +542,7 @@ static void read_motion(const uint8_t *record, const uint8_t *const before[RECOR
     }
     take_shape(&from, &b->move);
     if (move_is_involute(&b->move)) {
+        memset(&b->curve, 0, sizeof(b->curve));
         take_involute(&from, b);
         b->curve.start = start;
         b->curve.end = end;
@@ -550,18 +551,22 @@ static void read_motion(const uint8_t *record, const uint8_t *const before[RECOR
     }
 }
 
-void record_read(const uint8_t *record, const uint8_t *const before[RECORD_BEFORE],
-                 const struct record_modes *modes, struct block *b)
+const uint8_t *record_begin(const uint8_t *record, const struct record_modes *modes,
+                            struct block *b)
 {
     const uint8_t *number = record + AT_NUMBER;
-    const uint8_t *from;
 
-    memset(b, 0, sizeof(*b));
     b->number = take_word(&number);
     b->cap = (enum governor)(record[AT_KIND] >> KIND_BITS);
-    from = read_head(record, modes, &b->move);
+    return read_head(record, modes, &b->move);
+}
+
+void record_finish(const uint8_t *record, const uint8_t *const before[RECORD_BEFORE],
+                   const uint8_t *from, struct block *b)
+{
     if (!move_is_motion(&b->move)) {
         memset(&b->move.end, 0, sizeof(b->move.end));
+        memset(&b->curve, 0, sizeof(b->curve));
         take_event(&from, &b->move);
     } else if ((record[AT_FLAGS] & FLAG_SPLINE) != 0) {
         read_spline(record, before, b);

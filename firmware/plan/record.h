@@ -72,10 +72,13 @@ void record_set_governor(uint8_t *record, enum governor governor);
 void record_read_move(const uint8_t *record, const struct record_modes *modes, struct move *move);
 
 /*
- * Number, move, curve, length, and what governs the feed of a block. before: the records of the RECORD_BEFORE blocks
- * before it, the nearest first; NULL where there is none.
+ * Number, move, curve, length, and what governs the feed of a block, in two parts, so that a control cycle need not do
+ * both: the first returns what the second goes on with. before: the records of the RECORD_BEFORE blocks before it, the
+ * nearest first; NULL where there is none. All else of the block stays as it was.
  */
-void record_read(const uint8_t *record, const uint8_t *const before[RECORD_BEFORE],
-                 const struct record_modes *modes, struct block *b);
+const uint8_t *record_begin(const uint8_t *record, const struct record_modes *modes,
+                            struct block *b);
+void record_finish(const uint8_t *record, const uint8_t *const before[RECORD_BEFORE],
+                   const uint8_t *from, struct block *b);
 
 #endif

@@ -116,6 +116,7 @@ void ring_push(struct path_ring *r, uint32_t kept, uint32_t pushed, const struct
         .may_feed = (may & OVERRIDE_FEED) != 0,
         .may_hold = (may & OVERRIDE_HOLD) != 0,
         .per_revolution = b->move.feed_rev_mm != 0.0,
+        .smooth = control != NULL,
     };
 }
 
@@ -174,17 +175,28 @@ static void read_limits(const struct path_block *from, uint64_t end, struct bloc
     b->continues = from->continues;
 }
 
+void ring_begin(struct path_ring *r, uint32_t index)
+{
+    struct path_view *view = &r->view[index % 2];
+
+    view->from = record_begin(ring_record(r, index), modes_of(r, index), &view->block);
+    view->state = VIEW_BEGUN;
+    view->index = index;
+}
+
 const struct block *ring_read(struct path_ring *r, uint32_t index, uint64_t end)
 {
     struct path_view *view = &r->view[index % 2];
     const uint8_t *before[RECORD_BEFORE] = {NULL};
 
+    if (!ring_is_begun(r, index)) {
+        ring_begin(r, index);
+    }
     for (uint32_t i = 0; i < RECORD_BEFORE && i < index; i++) {
         before[i] = ring_record(r, index - 1 - i);
     }
-    record_read(ring_record(r, index), before, modes_of(r, index), &view->block);
+    record_finish(ring_record(r, index), before, view->from, &view->block);
     read_limits(ring_at(r, index), end, &view->block);
-    view->valid = true;
-    view->index = index;
+    view->state = VIEW_READ;
     return &view->block;
 }

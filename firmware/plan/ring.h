@@ -51,12 +51,16 @@ struct path_block {
     unsigned may_feed : 1;       /* obeys the feed override */
     unsigned may_hold : 1;       /* and the operator's hold */
     unsigned per_revolution : 1; /* the feed follows the spindle */
+    unsigned smooth : 1;         /* a piece of a smoothed curve */
 };
+
+enum view_state { VIEW_EMPTY, VIEW_BEGUN, VIEW_READ };
 
 /* A block as it is executed. */
 struct path_view {
-    bool valid;
+    enum view_state state;
     uint32_t index;
+    const uint8_t *from; /* what of its record has not been read yet */
     struct block block;
 };
 
@@ -104,11 +108,21 @@ static inline bool ring_is_read(const struct path_ring *r, uint32_t index)
 {
     const struct path_view *view = &r->view[index % 2];
 
-    return view->valid && view->index == index;
+    return view->state == VIEW_READ && view->index == index;
+}
+
+/* Is the first part of that done? */
+static inline bool ring_is_begun(const struct path_ring *r, uint32_t index)
+{
+    const struct path_view *view = &r->view[index % 2];
+
+    return view->state == VIEW_BEGUN && view->index == index;
 }
 
 /* Makes it so: limits, move and curve. Control cycle alone. end: its end on the path, path units. */
 const struct block *ring_read(struct path_ring *r, uint32_t index, uint64_t end);
+/* The first part of that, for a cycle that has no time for all. */
+void ring_begin(struct path_ring *r, uint32_t index);
 
 /* The highest feed whatever the override, mm/s. */
 double path_block_top(const struct path_block *b);

@@ -77,7 +77,7 @@ bool span_lands(const struct path *path, uint32_t index)
     const struct path_block *b = path_at(path, index);
 
     return b->end == JOINT_REDUCED ||
-           (b->end == JOINT_PASSED && path->limits.landing == LANDING_BLOCK);
+           (b->end == JOINT_PASSED && path->limits.landing == LANDING_BLOCK && !b->smooth);
 }
 
 /* -- the parts of a span -- */

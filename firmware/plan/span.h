@@ -4,7 +4,7 @@
 #ifndef TAKT_PLAN_SPAN_H
 #define TAKT_PLAN_SPAN_H
 
-#include "plan/ceiling.h"
+#include "plan/path.h"
 
 #include <stdbool.h>
 #include <stdint.h>

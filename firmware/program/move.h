@@ -57,8 +57,16 @@ enum input_wait { INPUT_READ, INPUT_RISE, INPUT_FALL, INPUT_HIGH, INPUT_LOW };
 #define OVERRIDE_ADAPTIVE 4U /* M52 P1 */
 #define OVERRIDE_HOLD     8U /* M53 P1: the operator may hold the feed */
 
+/*
+ * What a move of one kind alone has lies in one place, in unions: numbers only, so that reading one that another kind has
+ * written is no more than a wrong number.
+ */
 struct move {
     enum move_kind kind;
+    enum move_path path;
+    enum plane plane; /* arcs, involutes and whatever is compensated */
+    /* Not CUTTER_OFF: end and centre are the programmed ones, the room offset moves them by the radius */
+    enum cutter_side cutter_side;
     uint32_t line;
     /* motion: MOVE_RAPID to MOVE_PROBE */
     struct point end;
@@ -66,47 +74,53 @@ struct move {
         feed_mm_s; /* along the path; 0 for a rapid: as fast as the axes allow. rad/s when only A B C move */
     double feed_rev_mm; /* not 0: the feed follows the spindle, so much (mm, or rad) per revolution;
                            feed_mm_s is what that comes to at the commanded speed */
-    unsigned overrides; /* OVERRIDE_... */
-    enum move_path path;
-    double tolerance_mm; /* PATH_BLEND: largest distance from the programmed path; 0: exact */
-    double merge_mm;     /* PATH_BLEND: within this, short moves may become one (G64 Q) */
-    enum plane plane;    /* arcs, involutes and whatever is compensated */
-    /* Not CUTTER_OFF: end and centre are the programmed ones, the room offset moves them by the radius */
-    enum cutter_side cutter_side;
+    double tolerance_mm;     /* PATH_BLEND: largest distance from the programmed path; 0: exact */
+    double merge_mm;         /* PATH_BLEND: within this, short moves may become one (G64 Q) */
     double cutter_radius_mm; /* > 0 */
-    uint8_t
-        cutter_orientation; /* 1 to 8: a lathe tool, led by a point beside its nose; in G18 alone */
-    bool cutter_entry;      /* nothing has moved in the plane yet since compensation is on */
+    union {
+        struct {
+            double centre_mm[2];   /* arcs, and the base circle of involutes: absolute, first and
+                                    second axis of the plane */
+            double base_radius_mm; /* involutes: of the base circle */
+        };
+        double speed_ratio; /* MOVE_TAP_OUT: speed of the spindle relative to the way in, >= 1 */
+        double dwell_s;     /* MOVE_DWELL */
+        struct {
+            double speed_rpm;    /* MOVE_SPINDLE; with surface_mm_s the highest, 0: any */
+            double surface_mm_s; /* MOVE_SPINDLE: not 0: constant surface speed (G96) */
+            double surface_x_mm; /* with surface_mm_s: machine X of the spindle's axis */
+        };
+        struct {
+            double orient_rad; /* MOVE_ORIENT */
+            double timeout_s;  /* MOVE_ORIENT, MOVE_INPUT: 0: none given */
+        };
+        double output; /* MOVE_OUTPUT: 0 or 1; any value of an analogue one */
+    };
+    union {
+        uint32_t turns;   /* arcs: 1 = less than or exactly one turn */
+        uint32_t channel; /* MOVE_OUTPUT, MOVE_INPUT: number of the output or input */
+    };
+    uint32_t tool;      /* MOVE_TOOL: number; motion: of the tool in the spindle */
+    unsigned overrides; /* motion: OVERRIDE_... */
     /* what position-error correction goes by */
-    uint8_t correction_off;               /* bit i set: the program has switched layer i off */
-    uint8_t contour_side;                 /* enum cutter_side the contour was programmed with */
     float work_mm[AXIS_LINEAR_COUNT];     /* zero of the part, machine coordinates */
     float overhang_mm[AXIS_LINEAR_COUNT]; /* tool offset */
-    bool probe_away;     /* MOVE_PROBE: ends when contact is lost (G38.4, G38.5), else made */
-    bool probe_optional; /* MOVE_PROBE: to reach the end is no error (G38.3, G38.5) */
-    uint32_t turns;      /* arcs: 1 = less than or exactly one turn */
-    double centre_mm[2]; /* arcs, and the base circle of involutes: absolute, first and second axis
-                            of the plane */
-    double base_radius_mm; /* involutes: of the base circle */
-    double speed_ratio;    /* MOVE_TAP_OUT: speed of the spindle relative to the way in, >= 1 */
+    uint8_t correction_off;               /* bit i set: the program has switched layer i off */
+    uint8_t contour_side;                 /* enum cutter_side the contour was programmed with */
+    uint8_t
+        cutter_orientation; /* 1 to 8: a lathe tool, led by a point beside its nose; in G18 alone */
+    bool cutter_entry : 1;  /* nothing has moved in the plane yet since compensation is on */
+    bool probe_away : 1;    /* MOVE_PROBE: ends when contact is lost (G38.4, G38.5), else made */
+    bool probe_optional : 1; /* MOVE_PROBE: to reach the end is no error (G38.3, G38.5) */
     /* in between */
-    double dwell_s;                   /* MOVE_DWELL */
+    bool mist : 1, flood : 1;         /* MOVE_COOLANT: state after it */
+    bool tool_change : 1;             /* MOVE_TOOL: M6, else T alone (prepare) */
+    bool tool_loaded : 1;             /* MOVE_TOOL: M61, it is in the spindle already */
+    bool analogue : 1;                /* MOVE_OUTPUT, MOVE_INPUT */
+    bool with_motion : 1;             /* MOVE_OUTPUT: M62, M63, M67 */
+    bool optional : 1;                /* MOVE_STOP: M1 */
     enum spindle_direction direction; /* MOVE_SPINDLE */
     enum orient_way orient_way;       /* MOVE_ORIENT */
-    double speed_rpm;                 /* MOVE_SPINDLE; with surface_mm_s the highest, 0: any */
-    double surface_mm_s;              /* MOVE_SPINDLE: not 0: constant surface speed (G96) */
-    double surface_x_mm;              /* with surface_mm_s: machine X of the spindle's axis */
-    double orient_rad;                /* MOVE_ORIENT */
-    double timeout_s;                 /* MOVE_ORIENT, MOVE_INPUT: 0: none given */
-    bool mist, flood;                 /* MOVE_COOLANT: state after it */
-    bool tool_change;                 /* MOVE_TOOL: M6, else T alone (prepare) */
-    bool tool_loaded;                 /* MOVE_TOOL: M61, it is in the spindle already */
-    uint32_t tool;                    /* MOVE_TOOL: number; motion: of the tool in the spindle */
-    bool analogue;                    /* MOVE_OUTPUT, MOVE_INPUT */
-    bool with_motion;                 /* MOVE_OUTPUT: M62, M63, M67 */
-    bool optional;                    /* MOVE_STOP: M1 */
-    uint32_t channel;                 /* MOVE_OUTPUT, MOVE_INPUT: number of the output or input */
-    double output;                    /* MOVE_OUTPUT: 0 or 1; any value of an analogue one */
     enum input_wait input_wait;       /* MOVE_INPUT */
 };
 

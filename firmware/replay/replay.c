@@ -14,10 +14,11 @@
 /* Blocks that one cycle passes at most. */
 #define PASS_MAX 64
 
-void replay_init(struct replay *r, const struct replay_source *source)
+void replay_init(struct replay *r, struct intake *intake, const struct replay_source *source)
 {
     memset(r, 0, sizeof(*r));
-    intake_open(&r->intake, source);
+    r->intake = intake;
+    intake_open(r->intake, source);
 }
 
 static void fail(struct replay *r, enum takt_error code)
@@ -30,7 +31,7 @@ static void fail(struct replay *r, enum takt_error code)
 /* What follows from the header. */
 static void begin_intake(struct replay *r, const struct plan_limits *limits)
 {
-    const struct replay_header *h = &r->intake.header;
+    const struct replay_header *h = &r->intake->header;
 
     r->quantum_mm = 1.0;
     for (uint32_t i = 0; i < h->quantum_bits; i++) {
@@ -38,7 +39,7 @@ static void begin_intake(struct replay *r, const struct plan_limits *limits)
     }
     r->step = 1.0 / (double)h->step_cycles;
     rate_init(&r->rate, limits, h->kept);
-    r->highest = r->intake.source.is_lost != NULL
+    r->highest = r->intake->source.is_lost != NULL
                      ? rate_highest(&r->rate, BRAKE_INTERVALS_MAX / r->step)
                      : 1.0;
     r->brake_intervals = (uint32_t)maths_min(maths_ceil(rate_brake_cycles(&r->rate) * r->step) + 2,
@@ -47,12 +48,12 @@ static void begin_intake(struct replay *r, const struct plan_limits *limits)
 
 void replay_read(struct replay *r, const struct plan_limits *limits)
 {
-    intake_read(&r->intake);
-    if (r->intake.has_header && r->step == 0.0) {
+    intake_read(r->intake);
+    if (r->intake->has_header && r->step == 0.0) {
         begin_intake(r, limits);
     }
-    if (r->intake.fault != REPLAY_GOOD ||
-        (r->intake.source.is_lost != NULL && r->intake.source.is_lost(r->intake.source.context))) {
+    if (r->intake->fault != REPLAY_GOOD || (r->intake->source.is_lost != NULL &&
+                                            r->intake->source.is_lost(r->intake->source.context))) {
         fail(r, TAKT_ERROR_PLAN_DAMAGED);
     }
 }
@@ -69,7 +70,7 @@ void replay_prepare(struct move *move)
 /* The next interval's last control point, by the third difference c3' - 3 c3 + 3 c2 - c1. */
 static void shift(struct replay *r)
 {
-    const int16_t *third = r->intake.third[r->intake.intervals_taken % INTAKE_INTERVALS_MAX];
+    const int16_t *third = r->intake->third[r->intake->intervals_taken % INTAKE_INTERVALS_MAX];
 
     for (int i = 0; i < AXIS_LINEAR_COUNT; i++) {
         const int64_t c1 = r->control[1][i];
@@ -81,7 +82,7 @@ static void shift(struct replay *r)
         r->control[2][i] = c3;
         r->control[3][i] = third[i] + 3 * (c3 - c2) + c1;
     }
-    r->intake.intervals_taken++;
+    r->intake->intervals_taken++;
     r->taken++;
 }
 
@@ -108,7 +109,7 @@ static void point_at(const struct replay *r, struct point *at)
 
 static void take_end(struct replay *r)
 {
-    struct intake *s = &r->intake;
+    struct intake *s = r->intake;
 
     r->has_end = r->blocks + 1 < r->section.blocks && s->ends_taken != s->ends_came;
     if (r->has_end) {
@@ -130,7 +131,7 @@ static bool starts_at(const struct replay *r, const struct point *at)
 /* The stream holds enough to begin with, or all there is of the section. */
 static bool has_begin(const struct replay *r)
 {
-    const struct intake *s = &r->intake;
+    const struct intake *s = r->intake;
     const uint32_t held = s->intervals_came - s->intervals_taken;
 
     return s->sections_came != s->sections_taken && held > 0 &&
@@ -142,7 +143,7 @@ static bool has_begin(const struct replay *r)
 /* The axes stand where the section begins: at whatever rate, for nothing moves yet. */
 static void begin_section(struct replay *r, const struct motion *m)
 {
-    struct intake *s = &r->intake;
+    struct intake *s = r->intake;
 
     r->section = s->section[s->sections_taken % INTAKE_SECTIONS_MAX];
     s->sections_taken++;
@@ -171,7 +172,7 @@ static void begin_section(struct replay *r, const struct motion *m)
 static double wanted_rate(const struct replay *r, const struct block *b,
                           const struct motion_operator *wanted)
 {
-    const double compiled = 0.01 * (double)r->intake.header.ceiling_percent;
+    const double compiled = 0.01 * (double)r->intake->header.ceiling_percent;
     const unsigned may = b->move.overrides;
     double ratio = 1.0;
 
@@ -189,7 +190,7 @@ static double wanted_rate(const struct replay *r, const struct block *b,
 /* Nothing must be driven that could not be come to rest on: the stream is late. */
 static bool is_starving(const struct replay *r)
 {
-    const struct intake *s = &r->intake;
+    const struct intake *s = r->intake;
     const uint32_t held = s->intervals_came - s->intervals_taken;
 
     return r->taken + held < r->section.intervals && held < r->brake_intervals &&
@@ -207,7 +208,7 @@ static double way_to(const struct replay *r, uint64_t end)
 /* The first end of a block, but the section's, that can be braked for: it is known if its intervals have come. */
 static void find_stop(struct replay *r)
 {
-    const struct intake *s = &r->intake;
+    const struct intake *s = r->intake;
     const double way = halt_way(&r->rate);
     const uint64_t from =
         (uint64_t)maths_ceil(((double)r->interval + r->part + way * r->step) * REPLAY_END_PARTS);
@@ -281,7 +282,7 @@ static bool advance(struct replay *r, double rate, bool single_block)
         if (r->interval == r->section.intervals) {
             return true;
         }
-        if (r->intake.intervals_taken == r->intake.intervals_came) {
+        if (r->intake->intervals_taken == r->intake->intervals_came) {
             r->interval--;
             r->part = 1.0;
             rate_set(&r->rate, 0.0);
@@ -380,7 +381,7 @@ static void drive(struct replay *r, struct motion *m, double rate, bool single_b
         point_at(r, &at);
     }
     handover_add_cycle(m, &at, distance(&before, &at) / m->cycle_s, ended, record);
-    record->override_percent = r->rate.now * (double)r->intake.header.ceiling_percent;
+    record->override_percent = r->rate.now * (double)r->intake->header.ceiling_percent;
     if (ended && r->alarm.code == TAKT_OK) {
         handover_end(m);
     }

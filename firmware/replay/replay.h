@@ -27,7 +27,7 @@ enum replay_stop {
 };
 
 struct replay {
-    struct intake intake;
+    struct intake *intake;
     struct rate rate;
     struct halt halt;
     enum replay_stop stop;
@@ -57,7 +57,8 @@ enum replay_result {
     REPLAY_FAILED /* the axes stand, and alarm says why: no cycle was made */
 };
 
-void replay_init(struct replay *r, const struct replay_source *source);
+/* intake: the caller's, for as long as it replays; no matter what is in it. */
+void replay_init(struct replay *r, struct intake *intake, const struct replay_source *source);
 
 /* Background: a move as it goes onto the path, of which the blocks alone are needed, not the feed or the rounding. */
 void replay_prepare(struct move *move);

@@ -29,7 +29,7 @@ static void begin_job(struct service *s, enum service_job job)
 /* Lines are one session: what one sets counts for those after it, until a program or a reset ends the session. */
 static void keep_modes(struct service *s)
 {
-    s->modes = *program_get_modes(&s->controller.program);
+    s->modes = *program_get_modes(&s->controller.reader->program);
     s->has_modes = true;
 }
 

@@ -18,6 +18,7 @@ struct controller_config service_controller_config(const struct service *s)
 {
     return (struct controller_config){
         .machine = &s->controller.machine,
+        .reader = s->config.reader,
         .can = s->config.can,
         .step = s->config.step,
         .tools = &s->tools,

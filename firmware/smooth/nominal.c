@@ -68,13 +68,16 @@ static float along_of(const struct curve_bounds *b, const struct route_slots *sl
     return ALONG * along;
 }
 
-void nominal_set(struct route_element *e, const struct curve *curve, const struct route *r)
+void nominal_set(struct route_element *e, const struct curve *curve, float per_mm,
+                 const struct route *r)
 {
     struct curve_bounds b;
 
     curve_bound(curve, &b);
-    e->feed_mm_s = single_min(e->programmed_mm_s, feed_of(&b, &r->slots));
-    e->along_mm_s2 = along_of(&b, &r->slots, e->feed_mm_s);
+    const float feed = single_min(e->programmed_mm_s, feed_of(&b, &r->slots));
+
+    e->feed_mm_s = per_mm * feed;
+    e->along_mm_s2 = per_mm * along_of(&b, &r->slots, feed);
 }
 
 /*

@@ -8,7 +8,8 @@
 #include "smooth/route.h"
 
 /* Feed and acceleration of one element by its programmed feed and its curvature. */
-void nominal_set(struct route_element *e, const struct curve *curve, const struct route *r);
+void nominal_set(struct route_element *e, const struct curve *curve, float per_mm,
+                 const struct route *r);
 /* The corner before the newest element, the corners that now have more behind them, and the energies of all. */
 void nominal_update(struct route *r);
 

@@ -195,12 +195,12 @@ static void set_foot(struct relax *x, const struct window *w, const struct route
     const double start = maths_max(from, route_element(r, foot.element)->start_mm);
     const double end = maths_min(to, route_end_of(r, foot.element));
 
-    x->low[i] = single_max((float)(start - foot.at_mm) * ahead->per_mm, -straight);
-    x->high[i] = single_min((float)(end - foot.at_mm) * ahead->per_mm, straight);
+    x->beside->low[i] = single_max((float)(start - foot.at_mm) * ahead->per_mm, -straight);
+    x->beside->high[i] = single_min((float)(end - foot.at_mm) * ahead->per_mm, straight);
     for (unsigned k = 0; k < r->slots.count; k++) {
         const unsigned row = k / SMOOTH_LANES * w->capacity + i;
 
-        x->foot[row][k % SMOOTH_LANES] =
+        x->beside->foot[row][k % SMOOTH_LANES] =
             spot.at[k] + single_round(foot.off[k] / w->weighted_unit_mm[k]);
         x->along[row][k % SMOOTH_LANES] = ahead->along[k];
     }
@@ -288,7 +288,7 @@ static void pull_to_route(const struct relax *x, const struct window *w, const s
         const unsigned l = k % SMOOTH_LANES;
 
         p[k] = w->origin[k] +
-               w->unit_mm[k] * ((double)x->foot[row][l] +
+               w->unit_mm[k] * ((double)x->beside->foot[row][l] +
                                 (double)(x->near[row][l] * x->scale.unit_per_near[g][l]));
     }
     window_reach(w, i, &from, &to);
@@ -309,7 +309,7 @@ static void measure_near(struct relax *x, const struct window *w, const struct r
 {
     const unsigned first = group * w->capacity;
     const lanes_int *restrict c = w->x + first;
-    const lanes_int *restrict foot = x->foot + first;
+    const lanes_int *restrict foot = x->beside->foot + first;
     lanes *restrict near = x->near + first;
     lanes *restrict step = x->step + first;
     const float over = pass->over;
@@ -341,7 +341,7 @@ static bool pull_to_line(const struct relax *x, const struct window *w, unsigned
     for (unsigned g = 0; g < groups; g++) {
         z[g] = x->near[g * w->capacity + i] - off[g] * less;
     }
-    return s - x->low[i] > distance && x->high[i] - s > distance;
+    return s - x->beside->low[i] > distance && x->beside->high[i] - s > distance;
 }
 
 /*
@@ -383,7 +383,7 @@ static void into_tube(struct relax *x, const struct window *w, const struct rout
         const float s = both[0] + both[2];
         const float square = both[1] + both[3];
 
-        if (!(s >= x->low[i] && s <= x->high[i] &&
+        if (!(s >= x->beside->low[i] && s <= x->beside->high[i] &&
               square - s * s <= (1.0f - BENT) * (1.0f - BENT))) {
             pull(x, w, r, pass, tolerance_mm, i, s);
         }
@@ -461,21 +461,22 @@ static void begin(struct relax *x, const struct window *w, const struct route *r
     memset(x->near, 0, sizeof x->near);
     memset(x->bend, 0, sizeof x->bend);
     memset(x->twist, 0, sizeof x->twist);
-    memset(x->foot, 0, sizeof x->foot);
+    memset(x->beside->foot, 0, sizeof x->beside->foot);
     memset(x->along, 0, sizeof x->along);
-    memset(x->band, 0, sizeof x->band);
+    memset(x->beside->band, 0, sizeof x->beside->band);
     for (unsigned i = 1; i + 2 < w->count; i++) {
         set_foot(x, w, r, i, tolerance_mm, &ahead);
     }
 }
 
-void relax_window(struct relax *x, struct window *w, const struct route *r, double tolerance_mm,
-                  unsigned iterations)
+void relax_window(struct relax *x, struct relax_beside *beside, struct window *w,
+                  const struct route *r, double tolerance_mm, unsigned iterations)
 {
     const float tolerance = (float)tolerance_mm;
     struct relax_pass pass = {.over = 1.0f, .calm = 1.0f, .weight = 1.0f};
 
     pass.corner_most = 1.0f - (float)r->limits.chord_mm / tolerance;
+    x->beside = beside;
     begin(x, w, r, tolerance);
     bands_build(x, w, r, pass.weight);
     project(x, w, r, tolerance, &pass);

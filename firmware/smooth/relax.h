@@ -40,21 +40,26 @@ struct relax_scale {
     lanes twist_most[SMOOTH_GROUPS_MAX];
 };
 
-/* Working memory; holds nothing between calls. */
+/* A part of the working memory that the caller may have elsewhere. */
+struct relax_beside {
+    relax_rows band[4];
+    lanes_int foot[SMOOTH_SAMPLES_MAX];                      /* beside each sample on the route */
+    float low[SMOOTH_SAMPLES_MAX], high[SMOOTH_SAMPLES_MAX]; /* as far as that is straight */
+};
+
+/* Working memory; like that it holds nothing between calls. */
 struct relax {
+    struct relax_beside *beside;
     struct relax_scale scale;
     relax_rows near;  /* the curve at the samples: in the tube */
     relax_rows bend;  /* second differences: in the box of acceleration */
     relax_rows twist; /* third differences: in the box of jerk */
     relax_rows step;
-    relax_rows band[4];
-    lanes_int foot[SMOOTH_SAMPLES_MAX];                      /* beside each sample on the route */
-    relax_rows along;                                        /* direction of the route there */
-    float low[SMOOTH_SAMPLES_MAX], high[SMOOTH_SAMPLES_MAX]; /* as far as it is straight */
+    relax_rows along; /* direction of the route at the feet */
     struct relax_corners corners;
 };
 
-void relax_window(struct relax *x, struct window *w, const struct route *r, double tolerance_mm,
-                  unsigned iterations);
+void relax_window(struct relax *x, struct relax_beside *beside, struct window *w,
+                  const struct route *r, double tolerance_mm, unsigned iterations);
 
 #endif

@@ -148,11 +148,25 @@ float route_programmed(const struct route *r, uint32_t index)
     return route_element(r, index)->programmed_mm_s;
 }
 
-static void keep_bent(struct route *r, const struct curve *curve)
+/* Weighted length for a mm of a curve, or a rad where only rotary axes move: that of the linear axes is 1. */
+static float weighted_length(const struct curve *curve)
+{
+    float square = curve->rotary ? 0.0f : 1.0f;
+
+    for (int i = AXIS_LINEAR_COUNT; i < AXIS_COUNT; i++) {
+        const float slope = (float)(smooth_weight(i) * curve->slope.at[i]);
+
+        square += slope * slope;
+    }
+    return single_sqrt(square);
+}
+
+static void keep_bent(struct route *r, const struct curve *curve, float per_mm)
 {
     struct route_bent *b = &r->bent[r->bent_count % SMOOTH_BENT_MAX];
 
     b->kind = curve->kind;
+    b->per_mm = per_mm;
     if (curve->kind == CURVE_ARC) {
         b->arc = curve->arc;
     } else {
@@ -166,13 +180,14 @@ void route_push(struct route *r, const struct move *move, uint32_t number,
 {
     struct route_element *e = &r->element[(r->count & (r->capacity - 1))];
     const double start_mm = route_end(r);
+    const float per_mm = weighted_length(curve);
 
     assert(route_has_room(r));
     gather(r, &curve->start, &r->start[(size_t)(r->count & (r->capacity - 1)) * r->slots.count]);
     gather(r, &curve->end, r->end);
     memset(e, 0, sizeof(*e));
     e->start_mm = start_mm;
-    r->end_mm = start_mm + curve->length_mm;
+    r->end_mm = start_mm + curve->length_mm * (double)per_mm;
     e->line = move->line;
     e->number = number;
     e->mode = find_mode(r, move);
@@ -180,10 +195,10 @@ void route_push(struct route *r, const struct move *move, uint32_t number,
     e->bent = curve->kind != CURVE_LINE;
     e->bent_number = (unsigned char)r->bent_count;
     if (e->bent) {
-        keep_bent(r, curve);
+        keep_bent(r, curve, per_mm);
     }
     e->programmed_mm_s = move->kind == MOVE_RAPID ? SINGLE_INFINITY : (float)move->feed_mm_s;
-    nominal_set(e, curve, r);
+    nominal_set(e, curve, per_mm, r);
     r->count++;
     nominal_update(r);
 }
@@ -215,6 +230,20 @@ uint32_t route_find(const struct route *r, double at_mm, uint32_t hint)
     return i;
 }
 
+/* Route for a mm of a bent element. */
+static float per_mm_of(const struct route *r, uint32_t index)
+{
+    return r->bent[route_element(r, index)->bent_number % SMOOTH_BENT_MAX].per_mm;
+}
+
+/* Its own length at a place on the route. */
+static double bent_place(const struct route *r, uint32_t index, const struct curve *c, double at_mm)
+{
+    const double s = (at_mm - route_element(r, index)->start_mm) / (double)per_mm_of(r, index);
+
+    return maths_clamp(s, 0.0, c->length_mm);
+}
+
 /* The curve of a bent element: outside its plane every axis goes in proportion to the length. */
 static void bent_curve(const struct route *r, uint32_t index, struct curve *c)
 {
@@ -223,7 +252,7 @@ static void bent_curve(const struct route *r, uint32_t index, struct curve *c)
 
     c->kind = b->kind;
     c->rotary = e->rotary;
-    c->length_mm = route_end_of(r, index) - e->start_mm;
+    c->length_mm = (route_end_of(r, index) - e->start_mm) / (double)b->per_mm;
     scatter(r, route_start(r, index), &c->start);
     scatter(r, end_point(r, index), &c->end);
     for (int axis = 0; axis < AXIS_COUNT; axis++) {
@@ -252,7 +281,7 @@ void route_point(const struct route *r, double at_mm, uint32_t *hint, double p[]
         struct point q;
 
         bent_curve(r, *hint, &c);
-        curve_point(&c, s, &q);
+        curve_point(&c, bent_place(r, *hint, &c, at_mm), &q);
         gather(r, &q, p);
         return;
     }
@@ -271,7 +300,7 @@ static void bent_direction(const struct route *r, uint32_t index, double at_mm, 
     struct point t;
 
     bent_curve(r, index, &c);
-    curve_tangent(&c, maths_clamp(at_mm - route_element(r, index)->start_mm, 0.0, c.length_mm), &t);
+    curve_tangent(&c, bent_place(r, index, &c, at_mm), &t);
     for (unsigned i = 0; i < r->slots.count; i++) {
         direction[i] = (float)t.at[r->slots.axis[i]];
     }
@@ -284,6 +313,7 @@ float route_direction(const struct route *r, uint32_t index, double at_mm, float
 
     if (route_element(r, index)->bent) {
         bent_direction(r, index, at_mm, direction);
+        length = per_mm_of(r, index);
     } else {
         const double *start = route_start(r, index);
         const double *end = end_point(r, index);
@@ -317,14 +347,13 @@ float route_straight(const struct route *r, uint32_t index, double at_mm, float 
         return SINGLE_INFINITY;
     }
     bent_curve(r, index, &c);
-    curve_curvature(&c, maths_clamp(at_mm - route_element(r, index)->start_mm, 0.0, c.length_mm),
-                    &k);
+    curve_curvature(&c, bent_place(r, index, &c, at_mm), &k);
     for (unsigned i = 0; i < r->slots.count; i++) {
         const float d = r->slots.weight[i] * (float)k.at[r->slots.axis[i]];
 
         square += d * d;
     }
-    return single_sqrt(2.0f * within_mm / single_sqrt(square));
+    return per_mm_of(r, index) * single_sqrt(2.0f * within_mm / single_sqrt(square));
 }
 
 void route_corner(const struct route *r, uint32_t index, float before[], float after[])
@@ -375,11 +404,14 @@ static void foot_on_line(const struct route *r, uint32_t index, const double x[]
 static void foot_on_bent(const struct route *r, uint32_t index, const double x[], double low,
                          double high, double s, struct route_foot *f)
 {
+    const double per_mm = (double)per_mm_of(r, index);
     struct curve c;
     struct point p;
 
     bent_curve(r, index, &c);
-    s = maths_clamp(s, low, high);
+    low /= per_mm;
+    high /= per_mm;
+    s = maths_clamp(s / per_mm, low, high);
     curve_point(&c, s, &p);
     for (unsigned k = 0; k < NEWTON_STEPS; k++) {
         struct point t;
@@ -400,7 +432,8 @@ static void foot_on_bent(const struct route *r, uint32_t index, const double x[]
     for (unsigned i = 0; i < r->slots.count; i++) {
         f->off[i] = r->slots.weight[i] * (float)(p.at[r->slots.axis[i]] - x[i]);
     }
-    f->at_mm = s < c.length_mm ? route_element(r, index)->start_mm + s : route_end_of(r, index);
+    f->at_mm =
+        s < c.length_mm ? route_element(r, index)->start_mm + s * per_mm : route_end_of(r, index);
 }
 
 /* The nearest point of one element between two places of the route, looked for from at_mm on. */

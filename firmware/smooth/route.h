@@ -3,8 +3,8 @@
  *
  *     push -> [ element | element | ... ] -> forget
  *
- * Places on it are told by the length from the chain's start, mm (rad where only rotary axes move). Points have a slot
- * for every axis the machine has, in the order of the axes; distances are weighted (limits.h).
+ * Places on it are told by the length from the chain's start, over all axes as distances are: a degree counts like a
+ * millimetre (limits.h). Points have a slot for every axis the machine has, in the order of the axes.
  */
 #ifndef TAKT_SMOOTH_ROUTE_H
 #define TAKT_SMOOTH_ROUTE_H
@@ -30,6 +30,7 @@ struct route_slots {
 /* What a curve has that a line between the same two points does not have; its slope is found from those. */
 struct route_bent {
     enum curve_kind kind;
+    float per_mm; /* length of the route for a mm of it: 1 without rotary axes */
     union {
         struct curve_arc arc;
         struct curve_involute involute;
@@ -49,7 +50,7 @@ struct route_element {
     float turn;            /* |change of direction| at its start */
     unsigned char mode;    /* index among the route's modes */
     bool bent;
-    bool rotary;               /* its length counts radians */
+    bool rotary;               /* only rotary axes move: its feed counts radians */
     unsigned char bent_number; /* bent elements before it, modulo 256 */
 };
 

@@ -91,7 +91,7 @@ static double interval_of(const struct smooth_limits *limits, double tolerance_m
 
     for (int i = 0; i < AXIS_COUNT; i++) {
         if ((limits->axes >> i & 1U) != 0) {
-            jerk = maths_max(jerk, limits->jerk_mm_s3[i]);
+            jerk = maths_max(jerk, smooth_weight(i) * limits->jerk_mm_s3[i]);
             ramp = maths_max(ramp, limits->acceleration_mm_s2[i] / limits->jerk_mm_s3[i]);
         }
     }
@@ -247,9 +247,10 @@ static bool fill(struct smooth *s)
     return true;
 }
 
-static void relax_and_locate(struct smooth *s, unsigned iterations)
+static void relax_and_locate(struct smooth *s, struct relax_beside *beside, unsigned iterations)
 {
-    relax_window(&s->work.relax, &s->window, &s->route, AIM * s->route.tolerance_mm, iterations);
+    relax_window(&s->work.relax, beside, &s->window, &s->route, AIM * s->route.tolerance_mm,
+                 iterations);
     window_locate(&s->window, &s->route);
 }
 
@@ -377,20 +378,27 @@ static void fall_back(struct smooth *s)
     }
 }
 
+/* How far the curve should go on in so many pieces: a tolerance, or at nominal feed, or to the end of what is known. */
+static double way_expected(const struct smooth *s, unsigned pieces)
+{
+    const struct window *w = &s->window;
+    const double feed_mm_s = (double)route_element(&s->route, w->element[s->ready])->feed_mm_s;
+    const double way_mm = maths_min(s->route.tolerance_mm, pieces * w->interval_s * feed_mm_s);
+
+    return maths_min(way_mm, route_end(&s->route) - s->mark_mm);
+}
+
 /*
  * Does the curve stand where it is? Slowed down again and again before a place that it cannot pass, it keeps every limit
  * and the tolerance there for ever.
  */
 static bool stands_still(struct smooth *s)
 {
-    const struct window *w = &s->window;
     const unsigned pieces = STALL_WINDOWS * kept_most(s);
-    const double at_mm = w->at_mm[s->ready];
-    const double feed_mm_s = (double)route_element(&s->route, w->element[s->ready])->feed_mm_s;
-    const double way_mm = maths_min(s->route.tolerance_mm, pieces * w->interval_s * feed_mm_s);
+    const double at_mm = s->window.at_mm[s->ready];
 
     s->idle += s->ready;
-    if (at_mm > s->mark_mm + STALL_PART * way_mm || w->at_end) {
+    if (at_mm > s->mark_mm + STALL_PART * way_expected(s, pieces)) {
         s->mark_mm = at_mm;
         s->idle = 0;
     }
@@ -401,23 +409,23 @@ static bool stands_still(struct smooth *s)
  * Where a piece leaves the tolerance, it is slowed down: the slower, the nearer the samples are to each other and the
  * curve to them. What comes well before it is kept, the rest is tried again with the next window.
  */
-static void smooth_window(struct smooth *s)
+static void smooth_window(struct smooth *s, struct relax_beside *beside)
 {
     const bool goes_on = s->head.proved > 0;
     const unsigned rounds = goes_on ? ROUNDS : ROUNDS_FIRST;
     unsigned good = 0;
 
     for (unsigned i = 0; i < rounds; i++) {
-        relax_and_locate(s, goes_on ? ITERATIONS_ROUND : ITERATIONS);
+        relax_and_locate(s, beside, goes_on ? ITERATIONS_ROUND : ITERATIONS);
         timing_again(&s->work.timing, &s->window, &s->route, &s->change);
         window_extend(&s->window, &s->route);
     }
-    relax_and_locate(s, ITERATIONS);
+    relax_and_locate(s, beside, ITERATIONS);
     good = judged(s);
     for (unsigned i = 0; i < ATTEMPTS && good < wanted(s); i++) {
         timing_slow(&s->work.timing, &s->window, &s->route, good);
         window_extend(&s->window, &s->route);
-        relax_and_locate(s, ITERATIONS);
+        relax_and_locate(s, beside, ITERATIONS);
         good = judged(s);
     }
     s->ends = s->finished && s->window.at_end;
@@ -525,18 +533,18 @@ static void drop_taken(struct smooth *s)
 }
 
 /* The window for the next pieces; false when more must be known first. */
-static bool next_window(struct smooth *s)
+static bool next_window(struct smooth *s, struct relax_beside *beside)
 {
     drop_taken(s);
     keep_head(s);
     if (!fill(s)) {
         return false;
     }
-    smooth_window(s);
+    smooth_window(s, beside);
     return true;
 }
 
-bool smooth_take(struct smooth *s, struct smooth_piece *piece)
+bool smooth_take(struct smooth *s, struct relax_beside *beside, struct smooth_piece *piece)
 {
     if (!s->open) {
         return false;
@@ -545,7 +553,7 @@ bool smooth_take(struct smooth *s, struct smooth_piece *piece)
         take_standing(s, piece);
         return true;
     }
-    if (s->taken == s->ready && !next_window(s)) {
+    if (s->taken == s->ready && !next_window(s, beside)) {
         return false;
     }
     set_piece(s, piece);

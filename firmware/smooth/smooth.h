@@ -94,8 +94,11 @@ void smooth_push(struct smooth *s, const struct move *move, uint32_t number,
                  const struct curve *curve);
 /* Nothing follows in this chain: it ends at rest. */
 void smooth_finish(struct smooth *s);
-/* The next piece. False: more motions, or the chain's end, must come first, or the chain has been taken to its end. */
-bool smooth_take(struct smooth *s, struct smooth_piece *piece);
+/*
+ * The next piece. False: more motions, or the chain's end, must come first, or the chain has been taken to its end. beside:
+ * no matter what is in it.
+ */
+bool smooth_take(struct smooth *s, struct relax_beside *beside, struct smooth_piece *piece);
 /* Forgets everything. */
 void smooth_reset(struct smooth *s);
 

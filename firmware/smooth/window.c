@@ -5,9 +5,13 @@
 #include <assert.h>
 #include <string.h>
 
-/* Part of the distance between the neighbours of a sample within which it may move along the route. */
-#define REACH        0.8
-#define REACH_MIN_MM 0.01
+/*
+ * Part of the distance between the neighbours of a sample within which it may move along the route; and at least this
+ * length, but not many tolerances, lest the curve go back so far along the route.
+ */
+#define REACH            0.8
+#define REACH_MIN_MM     0.01
+#define REACH_TOLERANCES 1.5
 
 /* A corner that turns by more than this must be passed by the curve before its samples are beyond it. */
 #define SHARP 0.2f
@@ -52,6 +56,7 @@ void window_init(struct window *w, const struct route *r, double interval_s)
     w->at_end = false;
     w->capacity = SMOOTH_SAMPLES_MAX / r->slots.groups;
     w->interval_s = interval_s;
+    w->reach_min_mm = maths_min(REACH_MIN_MM, REACH_TOLERANCES * r->tolerance_mm);
     memset(w->x, 0, sizeof w->x);
     memset(w->weighted_unit_mm, 0, sizeof w->weighted_unit_mm);
     for (unsigned i = 0; i < r->slots.count; i++) {
@@ -122,7 +127,7 @@ void window_start(struct window *w, const struct route *r)
 void window_rest(struct window *w, const struct route *r)
 {
     const double at = w->at_mm[1] + (w->at_mm[0] - 2.0 * w->at_mm[1] + w->at_mm[2]) / 6.0;
-    const uint32_t element = w->element[1];
+    const uint32_t element = route_find(r, at, w->element[1]);
     double p[3][AXIS_COUNT];
     static const struct window_spot nowhere;
 
@@ -240,7 +245,7 @@ double window_at(const struct window *w, unsigned i, const float weight[4])
 
 void window_reach(const struct window *w, unsigned i, double *from_mm, double *to_mm)
 {
-    const double reach = maths_max(REACH_MIN_MM, REACH * (w->at_mm[i + 1] - w->at_mm[i - 1]));
+    const double reach = maths_max(w->reach_min_mm, REACH * (w->at_mm[i + 1] - w->at_mm[i - 1]));
 
     *from_mm = w->at_mm[i] - reach;
     *to_mm = w->at_mm[i] + reach;
@@ -300,7 +305,7 @@ static void stop_at_corner(const struct window *w, const struct route *r, unsign
     }
 }
 
-/* Fixed samples have their place already; places never go back. */
+/* Fixed samples have their place already; places never go back, nor do elements at the joint of two. */
 void window_locate(struct window *w, const struct route *r)
 {
     static const float at_sample[4] = {1.0f / 6.0f, 4.0f / 6.0f, 1.0f / 6.0f, 0.0f};
@@ -320,7 +325,7 @@ void window_locate(struct window *w, const struct route *r)
         route_foot(r, p, maths_max(from, w->at_mm[i - 1]), maths_max(to, w->at_mm[i - 1]), &foot);
         stop_at_corner(w, r, i, &before, &here, &foot);
         w->at_mm[i] = foot.at_mm;
-        w->element[i] = foot.element;
+        w->element[i] = foot.element > w->element[i - 1] ? foot.element : w->element[i - 1];
         before = here;
     }
 }

@@ -16,7 +16,7 @@ static_assert(sizeof(double) == 8, "stored as IEEE-754");
 
 #define ROW(number, of_axis, type, offset, count, least, most, above, name)                        \
     {                                                                                              \
-        number, of_axis, type, offset, count, least, most, above, name                             \
+        least, most, name, number, offset, count, type, of_axis, above                             \
     }
 #define COUNT(number, field, least, most)                                                          \
     ROW(number, false, SETTINGS_U32, offsetof(struct machine, field), 1, least, most, false, #field)

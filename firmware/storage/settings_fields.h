@@ -11,14 +11,14 @@
 enum settings_type { SETTINGS_TEXT, SETTINGS_FLAG, SETTINGS_U8, SETTINGS_U32, SETTINGS_DOUBLE };
 
 struct settings_field {
-    uint16_t number;
-    bool of_axis; /* offset is in struct machine_axis, else in struct machine */
-    enum settings_type type;
-    size_t offset;
-    uint32_t count;     /* numbers; of a text: its bytes with the zero */
     double least, most; /* in the units of the struct */
-    bool above;         /* least itself is not allowed */
     const char *name;   /* as in a machine file */
+    uint16_t number;
+    uint16_t offset; /* in struct machine_axis with of_axis, else in struct machine */
+    uint16_t count;  /* numbers; of a text: its bytes with the zero */
+    enum settings_type type;
+    bool of_axis;
+    bool above; /* least itself is not allowed */
 };
 
 extern const struct settings_field settings_fields[];

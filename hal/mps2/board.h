@@ -15,7 +15,7 @@
 #define BOARD_CLOCK_HZ 25000000U
 
 #define BOARD_PRIORITY_UART  0x20U
-#define BOARD_PRIORITY_CYCLE 0x80U
+#define BOARD_PRIORITY_CYCLE CORTEX_PRIORITY_CYCLE
 
 /* Makes an interrupt pending. */
 static inline void board_raise(unsigned interrupt)

@@ -2,7 +2,8 @@
  * The image of a run on the desk: the firmware's controller, told every cycle by the desk what its inputs are and what
  * has come over the bus. It runs as fast as both sides go; time is counted in cycles. remote/remote.h has the messages.
  *
- * The words it is started with name four files: setup, program, and the two ends of the talk.
+ * The words it is started with name its files: setup, program, the two ends of the talk, and the program as planned ahead,
+ * if it is to be replayed.
  */
 #include "correction/table_store.h"
 #include "correction/tables.h"
@@ -25,6 +26,7 @@
 /* Of the whole image: one controller and what it stands on. */
 struct desk {
     int program, in, out;
+    int plan; /* -1: the controller plans */
     struct remote_setup setup;
     struct machine machine;
     struct parameters parameters;
@@ -35,6 +37,7 @@ struct desk {
     struct remote_outputs sent;
     uint32_t taken; /* frames of received that the controller has had */
     struct controller controller;
+    struct controller_reader reader;
     /* while tables are read */
     struct table stored;
     uint8_t bytes[REMOTE_TABLE_MAX];
@@ -91,6 +94,13 @@ static bool program_seek(void *context, uint64_t offset)
     return semihosting_seek(d->program, (uint32_t)offset);
 }
 
+static size_t plan_read(void *context, uint8_t *bytes, size_t size)
+{
+    const struct desk *d = context;
+
+    return semihosting_read(d->plan, bytes, size);
+}
+
 /* -- start -- */
 
 /* Takes the next word off a command line. NULL: there is none. */
@@ -130,6 +140,7 @@ static int open_files(struct desk *d)
     d->program = open_next(&line, SEMIHOSTING_READ);
     d->in = open_next(&line, SEMIHOSTING_READ);
     d->out = open_next(&line, SEMIHOSTING_WRITE);
+    d->plan = open_next(&line, SEMIHOSTING_READ);
     return d->program < 0 || d->in < 0 || d->out < 0 ? -1 : setup;
 }
 
@@ -185,13 +196,16 @@ static enum takt_error read_setup(struct desk *d, int file)
 
 static void open_controller(struct desk *d)
 {
+    const struct replay_source plan = {.context = d, .read = plan_read};
     const struct controller_config config = {
         .machine = &d->machine,
         .source = {.read = program_read, .seek = program_seek, .context = d},
         .can = {.send = bus_send, .receive = bus_receive, .context = d},
         .tools = &d->table,
+        .reader = &d->reader,
         .parameters = &d->parameters,
         .correction = &d->correction,
+        .compiled = d->plan >= 0 ? &plan : NULL,
         .exact_path = d->setup.exact_path != 0,
         .block_delete = d->setup.block_delete != 0,
         .from_line = d->setup.from_line,

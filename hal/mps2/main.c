@@ -38,6 +38,7 @@
 
 static struct board {
     struct embedded embedded;
+    struct embedded_core core;
     struct uart panel, bus, log;
     struct slcan_can can;
     struct machine machine;
@@ -47,18 +48,6 @@ static struct board {
 } board;
 
 /* -- what the image asks of the board -- */
-
-static void lock(void *context)
-{
-    (void)context;
-    cortex_mask_from(BOARD_PRIORITY_CYCLE);
-}
-
-static void unlock(void *context)
-{
-    (void)context;
-    cortex_mask_from(0);
-}
 
 /*
  * The SysTick counts down. A tick that falls between the readings makes them be taken again; one that waits, since what
@@ -176,11 +165,12 @@ static void open_embedded(void)
 {
     const struct embedded_config config = {
         .machine = &board.machine,
+        .core = &board.core,
         .can = slcan_can_get_port(&board.can),
         .tools = board.tools,
         .tools_count = TOOLS_MAX,
-        .port = {.lock = lock,
-                 .unlock = unlock,
+        .port = {.lock = cortex_lock,
+                 .unlock = cortex_unlock,
                  .now_us = now_us,
                  .now_ns = now_ns,
                  .reply = reply,

@@ -65,6 +65,22 @@ static inline void cortex_mask_from(uint32_t priority)
     __asm volatile("msr basepri, %0\n\tisb" ::"r"(priority) : "memory");
 }
 
+/* Of the control cycle, on every board: lines and the bus are more urgent. */
+#define CORTEX_PRIORITY_CYCLE 0x80U
+
+/* For struct embedded_port: what is more urgent than the control cycle goes on. */
+static inline void cortex_lock(void *context)
+{
+    (void)context;
+    cortex_mask_from(CORTEX_PRIORITY_CYCLE);
+}
+
+static inline void cortex_unlock(void *context)
+{
+    (void)context;
+    cortex_mask_from(0);
+}
+
 /* Sleeps until an interrupt, also one that came just before: masked, it wakes the core and is served after. */
 static inline void cortex_sleep(void)
 {

@@ -141,13 +141,14 @@ static void init_service(struct embedded *e)
         .can = config->can,
         .tools = config->tools,
         .tools_count = config->tools_count,
-        .parameters = &e->parameters,
+        .reader = &e->config.core->reader,
+        .parameters = &e->config.core->parameters,
         .correction = config->correction,
-        .programs = {text_queue_open, text_queue_adopt, &e->queue},
-        .plans = plan_queue_get_plans(&e->plan),
+        .programs = {text_queue_open, text_queue_adopt, &e->config.core->queue},
+        .plans = plan_queue_get_plans(&e->config.core->plan),
     };
 
-    parameters_clear(&e->parameters);
+    parameters_clear(&e->config.core->parameters);
     service_init(&e->service, &service);
 }
 
@@ -155,17 +156,17 @@ static void init_panel(struct embedded *e)
 {
     const struct panel_config panel = {
         .port = {.look = look, .order = order, .alive = hear, .context = e},
-        .store = text_queue_get_store(&e->queue),
+        .store = text_queue_get_store(&e->config.core->queue),
         .settings = e->config.settings,
-        .plans = plan_queue_get_store(&e->plan),
+        .plans = plan_queue_get_store(&e->config.core->plan),
         .password = e->config.password,
     };
     struct modbus_map map;
 
-    panel_init(&e->panel, &panel);
-    panel_client_enter(&e->client, &e->panel);
-    map = panel_client_map(&e->client);
-    modbus_rtu_init(&e->rtu, &map, e->config.unit, e->config.gap_us);
+    panel_init(&e->config.core->panel, &panel);
+    panel_client_enter(&e->config.core->client, &e->config.core->panel);
+    map = panel_client_map(&e->config.core->client);
+    modbus_rtu_init(&e->config.core->rtu, &map, e->config.unit, e->config.gap_us);
 }
 
 void embedded_init(struct embedded *e, const struct embedded_config *config)
@@ -174,8 +175,8 @@ void embedded_init(struct embedded *e, const struct embedded_config *config)
     e->config = *config;
     e->cycle_min_ns = UINT32_MAX;
     e->logged_state = PANEL_STATES;
-    text_queue_init(&e->queue);
-    plan_queue_init(&e->plan, &e->service);
+    text_queue_init(&e->config.core->queue);
+    plan_queue_init(&e->config.core->plan, &e->service);
     init_service(e);
     init_panel(e);
     e->config.port.log(e->config.port.context, config->name);
@@ -261,12 +262,12 @@ static void serve_line(struct embedded *e)
     while (!line_ring_is_empty(&e->received)) {
         const uint8_t byte = line_ring_take(&e->received, port->now_us(port->context), &came_us);
 
-        text_queue_use(&e->queue, e->service.job != SERVICE_NOTHING);
-        length = modbus_rtu_take(&e->rtu, byte, forward(e, came_us), reply);
+        text_queue_use(&e->config.core->queue, e->service.job != SERVICE_NOTHING);
+        length = modbus_rtu_take(&e->config.core->rtu, byte, forward(e, came_us), reply);
         if (length > 0)
             port->reply(port->context, reply, length);
     }
-    length = modbus_rtu_idle(&e->rtu, forward(e, port->now_us(port->context)), reply);
+    length = modbus_rtu_idle(&e->config.core->rtu, forward(e, port->now_us(port->context)), reply);
     if (length > 0)
         port->reply(port->context, reply, length);
 }

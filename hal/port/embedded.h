@@ -41,8 +41,23 @@ struct embedded_port {
     void *context; /* owned by whoever made the port */
 };
 
+/*
+ * What programs and their panel take. Only the processor touches it, so it may lie where nothing else reaches (startup.h).
+ * Private.
+ */
+struct embedded_core {
+    struct controller_reader reader;
+    struct parameters parameters;
+    struct text_queue queue;
+    struct plan_queue plan;
+    struct panel panel;
+    struct panel_client client;
+    struct modbus_rtu rtu;
+};
+
 struct embedded_config {
     const struct machine *machine; /* copied */
+    struct embedded_core *core;    /* its alone; must outlive it */
     struct can_port can;
     struct step_port step;
     struct tool *tools; /* tools_count of them, read and written; the caller's */
@@ -60,14 +75,8 @@ struct embedded_config {
 struct embedded {
     struct embedded_config config;
     struct service service;
-    struct parameters parameters;
-    struct panel panel;
-    struct panel_client client;
-    struct modbus_rtu rtu;
     struct line_ring received; /* on the panel's line */
     uint32_t line_us;          /* the latest time known of it */
-    struct text_queue queue;
-    struct plan_queue plan;
     bool refused;
     struct diagnostic refusal;
     volatile uint32_t cycles; /* begun since power-on */

@@ -17,8 +17,13 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-/* Bytes, a power of two: some 1.3 s of motion beside the 2 s that the replay itself holds. */
+/*
+ * Bytes, a power of two: some 1.3 s of motion beside the 2 s that the replay itself holds. A build may have others, for
+ * two chunks of the panel at least.
+ */
+#ifndef PLAN_QUEUE_MAX
 #define PLAN_QUEUE_MAX 4096
+#endif
 
 enum plan_queue_state {
     PLAN_QUEUE_NONE,    /* what still comes is dropped */

@@ -56,12 +56,13 @@ static bool prepare(void *context)
 {
     struct settings_upload *u = context;
     const uint8_t *bytes = store_look(u->store);
+    struct machine machine;
     char text[DIAGNOSTIC_TEXT_MAX];
     struct diagnostic wrong;
 
     if (bytes == NULL)
         return refuse(u, "the settings are not complete");
-    if (settings_read(bytes, u->store->coming, &u->machine, &u->tables, &wrong))
+    if (settings_read(bytes, u->store->coming, &machine, &u->tables, &wrong))
         return true;
     (void)diagnostic_text(&wrong, text);
     return refuse(u, text);

@@ -23,9 +23,7 @@ struct settings_upload_port {
 struct settings_upload {
     struct store *store;
     struct settings_upload_port port;
-    /* of what is being looked at */
-    struct machine machine;
-    struct correction_tables tables;
+    struct correction_tables tables; /* of what is being looked at */
     char text[DIAGNOSTIC_TEXT_MAX];
 };
 

@@ -11,6 +11,7 @@
 extern uint8_t image_stack_top[];
 extern uint8_t image_data_begin[], image_data_end[], image_data_values[];
 extern uint8_t image_bss_begin[], image_bss_end[];
+extern uint8_t image_core_begin[], image_core_end[];
 
 /* What a port does not replace. */
 #define WEAK __attribute__((weak))
@@ -79,6 +80,7 @@ void port_reset(void)
     port_begin();
     memcpy(image_data_begin, image_data_values, (size_t)(image_data_end - image_data_begin));
     memset(image_bss_begin, 0, (size_t)(image_bss_end - image_bss_begin));
+    memset(image_core_begin, 0, (size_t)(image_core_end - image_core_begin));
     (void)main();
     port_fault();
 }

@@ -17,6 +17,12 @@ typedef void (*startup_vector)(void);
 #define STARTUP_INTERRUPTS(name, count)                                                            \
     __attribute__((section(".vectors.interrupts"), used)) const startup_vector name[count]
 
+/*
+ * Of a variable without a first value: in the memory CORE of the port's linker script, which may be one that only the
+ * processor reaches: no direct memory access. It is zero at the start like all others.
+ */
+#define STARTUP_CORE_MEMORY __attribute__((section(".bss.core")))
+
 void port_reset(void);
 void port_nmi(void);
 void port_fault(void); /* hard fault, and those of memory, bus and usage */

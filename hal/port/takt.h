@@ -2,6 +2,7 @@
  * takt for whoever builds it into an image of their own: find_package(takt), link takt::port, include this.
  *
  *     static struct embedded embedded;
+ *     static struct embedded_core core;          the rest of its memory
  *
  *     embedded_init(&embedded, &config);         what the image has: machine, CAN, a serial line, time
  *     interrupt of the control cycle:            embedded_cycle(&embedded, &inputs, late);

@@ -18,7 +18,7 @@
 #include <assert.h>
 #include <stdint.h>
 
-#define REMOTE_MAGIC 0x314D5254U /* "TRM1" */
+#define REMOTE_MAGIC 0x324D5254U /* "TRM2" */
 
 /* In one cycle and direction: a boot sends one SDO a drive at a time, and drives answer in kind. */
 #define REMOTE_FRAMES_MAX 64

@@ -10,6 +10,7 @@
 #define GPIO_OSPEEDR 0x08U
 #define GPIO_PUPDR   0x0CU
 #define GPIO_IDR     0x10U
+#define GPIO_ODR     0x14U
 #define GPIO_BSRR    0x18U
 #define GPIO_AFR     0x20U
 
@@ -41,9 +42,9 @@ static void set_mode(struct gpio_pin pin, enum mode mode, enum pull pull)
     set_pair(pin, GPIO_MODER, mode);
 }
 
-uint32_t gpio_get_set_register(enum gpio_port port)
+uint32_t gpio_get_output_register(enum gpio_port port)
 {
-    return address_of(port, GPIO_BSRR);
+    return address_of(port, GPIO_ODR);
 }
 
 void gpio_set_output(struct gpio_pin pin)

@@ -14,8 +14,8 @@ struct gpio_pin {
     uint8_t number; /* 0 ... 15 */
 };
 
-/* Sets and clears pins of a port at once: bits 0 to 15 set, 16 to 31 clear. */
-uint32_t gpio_get_set_register(enum gpio_port port);
+/* The levels of all pins of a port that are outputs: 16 bits. */
+uint32_t gpio_get_output_register(enum gpio_port port);
 
 /* Pushes and pulls, starts low. */
 void gpio_set_output(struct gpio_pin pin);

@@ -35,6 +35,9 @@
 
 #define NS_PER_US 1000U
 
+/* Beside the core: nothing here is sent or received by direct memory access. */
+STARTUP_CORE_MEMORY static struct embedded_core board_core;
+
 static struct board {
     struct embedded embedded;
     struct clock clock;
@@ -45,7 +48,6 @@ static struct board {
     struct flash flash;
     struct store store;
     struct settings_upload upload;
-    struct machine machine;
     struct correction_tables tables;
     struct tool tools[TOOLS_MAX];
     struct findings found;
@@ -56,18 +58,6 @@ static struct board {
 } board;
 
 /* ---- what the image asks of the board ---- */
-
-static void lock(void *context)
-{
-    (void)context;
-    cortex_mask_from(BOARD_PRIORITY_CYCLE);
-}
-
-static void unlock(void *context)
-{
-    (void)context;
-    cortex_mask_from(0);
-}
 
 static uint32_t now_us(void *context)
 {
@@ -242,7 +232,7 @@ static void open_pins(void)
 }
 
 /* False: there are none that are right, and what is wrong is noted. */
-static bool read_settings(void)
+static bool read_settings(struct machine *machine)
 {
     struct diagnostic *wrong = &board.found.settings;
     const uint8_t *bytes;
@@ -252,42 +242,42 @@ static bool read_settings(void)
         diagnostic_set(wrong, TAKT_ERROR_SETTINGS_ABSENT, 0, 0, "", 0, 0);
         return false;
     }
-    return settings_read(bytes, size, &board.machine, &board.tables, wrong) &&
-           settings_check_share(&board.machine, &board.tables,
+    return settings_read(bytes, size, machine, &board.tables, wrong) &&
+           settings_check_share(machine, &board.tables,
                                 &board.embedded.service.controller.correction, wrong);
 }
 
 /* Without settings the controller shows itself as the built-in machine, and moves nothing. */
-static void open_settings(void)
+static void open_settings(struct machine *machine)
 {
     const struct flash_port flash =
         flash_get_port(&board.flash, (const uint8_t *)(uintptr_t)FLASH_SECTOR_ADDRESS);
 
     store_open(&board.store, &flash);
-    if (read_settings())
+    if (read_settings(machine))
         return;
-    machine_set_default(&board.machine);
+    machine_set_default(machine);
     memset(&board.tables, 0, sizeof board.tables);
 }
 
-static unsigned list_nodes(uint8_t nodes[AXIS_COUNT])
+static unsigned list_nodes(const struct machine *machine, uint8_t nodes[AXIS_COUNT])
 {
     unsigned count = 0;
 
     for (unsigned i = 0; i < AXIS_COUNT; i++) {
-        if (machine_axis_is_on_can(&board.machine.axis[i]))
-            nodes[count++] = board.machine.axis[i].drive_node;
+        if (machine_axis_is_on_can(&machine->axis[i]))
+            nodes[count++] = machine->axis[i].drive_node;
     }
     return count;
 }
 
-static void open_can(void)
+static void open_can(const struct machine *machine)
 {
     uint8_t nodes[AXIS_COUNT];
     const struct bxcan_config config = {.base = BXCAN_CAN1,
                                         .clock_hz = board.clock.bus1_hz,
-                                        .bitrate = board.machine.can_bitrate,
-                                        .nodes = list_nodes(nodes),
+                                        .bitrate = machine->can_bitrate,
+                                        .nodes = list_nodes(machine, nodes),
                                         .node = nodes};
 
     board.has_can = config.nodes > 0;
@@ -306,15 +296,15 @@ static void open_can(void)
     enable(BOARD_CAN_RECEIVED, BOARD_PRIORITY_CAN);
 }
 
-static void open_steps(void)
+static void open_steps(const struct machine *machine)
 {
     for (unsigned i = 0; i < AXIS_COUNT; i++) {
-        if (machine_axis_is_stepped(&board.machine.axis[i]))
+        if (machine_axis_is_stepped(&machine->axis[i]))
             board.found.needs_steps = true;
     }
     board.has_steps =
-        board.found.needs_steps && step_output_open(&board.steps, BOARD_STEP_PORT,
-                                                    board.clock.timer2_hz, board.machine.cycle_us);
+        board.found.needs_steps &&
+        step_output_open(&board.steps, BOARD_STEP_PORT, board.clock.timer2_hz, machine->cycle_us);
     board.found.has_steps = board.has_steps;
 }
 
@@ -325,18 +315,19 @@ static bool drives_are_off(void *context)
     return board.embedded.refused || service_get_state(&board.embedded.service) == PANEL_EMERGENCY;
 }
 
-static void open_embedded(void)
+static void open_embedded(const struct machine *machine)
 {
     const struct settings_upload_port settings = {.may_load = drives_are_off, .log = write_log};
     const struct embedded_config config = {
-        .machine = &board.machine,
+        .machine = machine,
+        .core = &board_core,
         .can = board.has_can ? bxcan_get_port(&board.can) : no_can_get_port(),
         .step = step_output_get_port(&board.steps),
         .tools = board.tools,
         .tools_count = TOOLS_MAX,
         .correction = &board.tables,
-        .port = {.lock = lock,
-                 .unlock = unlock,
+        .port = {.lock = cortex_lock,
+                 .unlock = cortex_unlock,
                  .now_us = now_us,
                  .now_ns = now_ns,
                  .reply = reply,
@@ -374,6 +365,8 @@ static uint32_t timer_hz(void)
 
 static void start(void)
 {
+    struct machine machine; /* the controller has a copy */
+
     look_back();
     clock_start(&board.clock, BOARD_CRYSTAL_HZ);
     timers_start_clock(timer_hz());
@@ -381,15 +374,15 @@ static void start(void)
     (void)image_is_sound(&board.found.image);
     open_pins();
     open_log();
-    open_settings();
-    open_can();
-    open_steps();
-    open_embedded();
+    open_settings(&machine);
+    open_can(&machine);
+    open_steps(&machine);
+    open_embedded(&machine);
     judge();
     open_panel();
     (void)watchdog_start(BOARD_WATCHDOG_MS);
     cortex_set_priority(BOARD_CYCLE, BOARD_PRIORITY_CYCLE);
-    timers_start_cycle(timer_hz(), board.machine.cycle_us);
+    timers_start_cycle(timer_hz(), machine.cycle_us);
     cortex_enable_interrupt(BOARD_CYCLE);
 }
 
@@ -404,9 +397,9 @@ static void follow_button(void)
 
     if (pressed == board.pressed || board.embedded.refused)
         return;
-    lock(NULL);
+    cortex_lock(NULL);
     (void)service_order(&board.embedded.service, &order);
-    unlock(NULL);
+    cortex_unlock(NULL);
     board.pressed = pressed;
 }
 

@@ -11,6 +11,7 @@
 #include "controller/controller.h"
 #include "port/cortex_m.h"
 #include "port/image.h"
+#include "port/startup.h"
 #include "stm32f405/board.h"
 #include "stm32f405/chip.h"
 #include "stm32f405/clock.h"
@@ -32,10 +33,14 @@ static const char program[] = "G21 G90 G61 F3000\n"
 
 #define LINE_MAX 80U
 
+STARTUP_CORE_MEMORY static struct beside {
+    struct controller_reader reader;
+    struct parameters parameters;
+} beside;
+
 static struct rehearsal {
     struct controller controller;
     struct machine machine;
-    struct parameters parameters;
     struct clock clock;
     struct usart log;
     struct source_text text;
@@ -137,13 +142,14 @@ static void open_controller(void)
         .machine = &rehearsal.machine,
         .can = no_can_get_port(),
         .step = {.pulse = count_pulse},
-        .parameters = &rehearsal.parameters,
+        .reader = &beside.reader,
+        .parameters = &beside.parameters,
     };
 
     machine_set_default(&rehearsal.machine);
     for (unsigned i = 0; i < AXIS_LINEAR_COUNT; i++)
         rehearsal.machine.axis[i].drive_type = MACHINE_DRIVE_STEP;
-    parameters_clear(&rehearsal.parameters);
+    parameters_clear(&beside.parameters);
     source_open_text(&config.source, &rehearsal.text, program, sizeof program - 1);
     controller_init(&rehearsal.controller, &config);
 }

@@ -35,7 +35,7 @@
 #define CR_TO_PORT     (1U << 6)
 #define CR_CIRCULAR    (1U << 8)
 #define CR_STEP_MEMORY (1U << 10)
-#define CR_32_BITS     (2U << 11 | 2U << 13)
+#define CR_16_BITS     (1U << 11 | 1U << 13)
 #define CR_URGENT      (3U << 16)
 #define CR_TWO_BUFFERS (1U << 18)
 #define CR_SECOND      (1U << 19) /* the second buffer is being sent */
@@ -64,10 +64,10 @@ static bool set_stream(const struct step_output *s, enum gpio_port port)
         return false;
     chip_write(LIFCR, LIFCR_STREAM_1);
     chip_write(STREAM_NDTR, s->slots.slots);
-    chip_write(STREAM_PAR, gpio_get_set_register(port));
-    chip_write(STREAM_M0AR, address_of(s->words[0]));
-    chip_write(STREAM_M1AR, address_of(s->words[1]));
-    chip_write(STREAM_CR, CR_TO_PORT | CR_CIRCULAR | CR_STEP_MEMORY | CR_32_BITS | CR_URGENT |
+    chip_write(STREAM_PAR, gpio_get_output_register(port));
+    chip_write(STREAM_M0AR, address_of(s->levels[0]));
+    chip_write(STREAM_M1AR, address_of(s->levels[1]));
+    chip_write(STREAM_CR, CR_TO_PORT | CR_CIRCULAR | CR_STEP_MEMORY | CR_16_BITS | CR_URGENT |
                               CR_TWO_BUFFERS | CR_CHANNEL_7);
     chip_change(STREAM_CR, 0, CR_ON);
     return true;
@@ -120,5 +120,5 @@ void step_output_end(struct step_output *s)
 {
     const bool second = (chip_read(STREAM_CR) & CR_SECOND) != 0;
 
-    step_slots_take(&s->slots, s->words[second ? 0 : 1]);
+    step_slots_take(&s->slots, s->levels[second ? 0 : 1]);
 }

@@ -1,6 +1,7 @@
 /*
- * Step and direction pins: the slots of a cycle (step_slots.h) go to the port's set register by direct memory access, one
- * at every tick of TIM8, while the next cycle's are being made. Pulses leave one cycle after they were queued.
+ * Step and direction pins: the slots of a cycle (step_slots.h) go to the port's output register by direct memory access,
+ * one at every tick of TIM8, while the next cycle's are being made. Pulses leave one cycle after they were queued. The
+ * port has no other outputs: its pins are written together.
  */
 #ifndef TAKT_STM32F405_STEP_OUTPUT_H
 #define TAKT_STM32F405_STEP_OUTPUT_H
@@ -11,7 +12,7 @@
 /* Private. */
 struct step_output {
     struct step_slots slots;
-    uint32_t words[2][STEP_SLOTS_MAX]; /* one is being sent: not in the core-coupled memory */
+    uint16_t levels[2][STEP_SLOTS_MAX]; /* one is being sent: not in the core-coupled memory */
     bool runs;
 };
 

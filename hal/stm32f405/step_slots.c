@@ -5,7 +5,7 @@
 #define NS_PER_US 1000U
 
 #define DIRECTION_PINS 8U
-#define CLEAR          16U
+#define STEPS_MASK     0xFFU
 
 bool step_slots_init(struct step_slots *s, uint32_t cycle_us)
 {
@@ -18,7 +18,7 @@ static void turn(struct step_slots *s, unsigned axis, bool backwards, unsigned s
 {
     const unsigned pin = DIRECTION_PINS + axis;
 
-    s->word[slot] |= 1U << (backwards ? pin : pin + CLEAR);
+    s->word[slot] |= (uint16_t)(1U << pin);
     s->direction = (uint8_t)((s->direction & ~(1U << axis)) | (unsigned)backwards << axis);
 }
 
@@ -30,8 +30,7 @@ static bool add_axis(struct step_slots *s, unsigned axis, bool backwards, unsign
         return false;
     if (backwards != ((s->direction & 1U << axis) != 0))
         turn(s, axis, backwards, slot - 1);
-    s->word[slot] |= 1U << axis;
-    s->word[slot + 1] |= 1U << (axis + CLEAR);
+    s->word[slot] |= (uint16_t)(1U << axis);
     s->free[axis] = (int32_t)slot + 2;
     return true;
 }
@@ -48,11 +47,17 @@ bool step_slots_add(struct step_slots *s, const struct step_pulse *pulse)
     return good;
 }
 
-void step_slots_take(struct step_slots *s, uint32_t *words)
+void step_slots_take(struct step_slots *s, uint16_t *levels)
 {
-    memcpy(words, s->word, s->slots * sizeof *words);
-    memmove(s->word, s->word + s->slots, STEP_SLOTS_OVERHANG * sizeof *words);
-    memset(s->word + STEP_SLOTS_OVERHANG, 0, STEP_SLOTS_MAX * sizeof *words);
+    unsigned level = s->level;
+
+    for (unsigned i = 0; i < s->slots; i++) {
+        level ^= s->word[i] & ~STEPS_MASK;
+        levels[i] = (uint16_t)(level | (s->word[i] & STEPS_MASK));
+    }
+    s->level = (uint16_t)level;
+    memmove(s->word, s->word + s->slots, STEP_SLOTS_OVERHANG * sizeof *s->word);
+    memset(s->word + STEP_SLOTS_OVERHANG, 0, STEP_SLOTS_MAX * sizeof *s->word);
     for (unsigned axis = 0; axis < AXIS_COUNT; axis++)
         s->free[axis] -= (int32_t)s->slots;
 }

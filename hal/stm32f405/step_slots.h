@@ -1,9 +1,9 @@
 /*
- * The pulses of step drives as words for the set register of a GPIO port, one every slot of 2.5 us, which direct memory
+ * The pulses of step drives as levels of the pins of a GPIO port, one word every slot of 2.5 us, which direct memory
  * access sends in time (step_output.c).
  *
- *     slot     k - 1          k            k + 1
- *     word     direction      step high    step low
+ *     slot       k - 1          k            k + 1
+ *     changes    direction      step high    step low
  *
  * A pulse goes into the first slot from its time on in which its axis is not still busy with the one before: that makes
  * at most 200,000 steps a second and a direction that stands 2.5 us before its step. What does not end in a cycle goes
@@ -20,9 +20,11 @@
 #define STEP_SLOTS_OVERHANG 4U /* words of a cycle that fall into the next */
 
 struct step_slots {
-    unsigned slots;                                      /* in a cycle */
-    uint32_t word[STEP_SLOTS_MAX + STEP_SLOTS_OVERHANG]; /* of the cycle to come */
-    uint8_t direction;                                   /* as the pins stand after it, by axis */
+    unsigned slots; /* in a cycle */
+    /* Of the cycle to come: step pins that are high, direction pins that change. */
+    uint16_t word[STEP_SLOTS_MAX + STEP_SLOTS_OVERHANG];
+    uint16_t level;           /* of the direction pins before it */
+    uint8_t direction;        /* as the pins stand after it, by axis */
     int32_t free[AXIS_COUNT]; /* the first slot in which an axis may step */
 };
 
@@ -32,7 +34,7 @@ bool step_slots_init(struct step_slots *s, uint32_t cycle_us);
 /* False: no room in this cycle. Pins 0 to 5 of the port step, 8 to 13 tell the direction, of X Y Z A B C. */
 bool step_slots_add(struct step_slots *s, const struct step_pulse *pulse);
 
-/* Copies the words of the cycle and begins the next one. */
-void step_slots_take(struct step_slots *s, uint32_t *words);
+/* Gives the levels of the cycle and begins the next one. All other pins of the port are low. */
+void step_slots_take(struct step_slots *s, uint16_t *levels);
 
 #endif

@@ -1,5 +1,4 @@
 #include "takt/command.h"
-#include "takt/planner.h"
 #include "takt/session.h"
 
 #include <stdio.h>
@@ -7,17 +6,11 @@
 /* Errors that are printed before the rest is given up: after so many the file is hardly a part program. */
 #define CHECK_ERRORS_MAX 100
 
-static enum command_status measure(const struct session *session,
-                                   const struct session_totals *found)
+static void print_found(const struct session *session, const struct session_totals *found)
 {
-    struct planner_totals totals;
-    enum command_status status = planner_measure(session, &totals);
-
-    if (status == STATUS_DONE && !session->options->quiet)
-        (void)printf("%s: no errors, %u warning%s; %u moves, %.3f mm\n", session->program.name,
-                     found->warnings, found->warnings == 1 ? "" : "s", (unsigned)totals.motions,
-                     totals.length_mm);
-    return status;
+    (void)printf("%s: no errors, %u warning%s; %u moves, %.3f mm\n", session->program.name,
+                 found->warnings, found->warnings == 1 ? "" : "s", (unsigned)found->curves,
+                 found->length_mm);
 }
 
 static enum command_status command_check_execute(const struct options *options)
@@ -33,8 +26,8 @@ static enum command_status command_check_execute(const struct options *options)
                           totals.errors == 1 ? "" : "s",
                           totals.errors == CHECK_ERRORS_MAX ? "; the rest was not read" : "");
     }
-    if (status == STATUS_DONE)
-        status = measure(&session, &totals);
+    if (status == STATUS_DONE && !options->quiet)
+        print_found(&session, &totals);
     session_close(&session);
     return status;
 }

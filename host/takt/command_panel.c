@@ -22,7 +22,8 @@ static enum command_status list(void)
     for (unsigned i = 0; i < REGISTER_COUNT; i++) {
         const struct panel_register *row = &panel_registers[i];
 
-        (void)printf("%-22s %-7s %s\n", row->name, row->unit, row->meaning);
+        (void)printf("%-22s %-7s %s\n", panel_text(row)->name, panel_text(row)->unit,
+                     panel_text(row)->meaning);
     }
     return STATUS_DONE;
 }
@@ -60,7 +61,8 @@ static bool show(struct panel_line *line, enum panel_id id)
 
     if (!panel_line_read(line, id, text))
         return false;
-    (void)printf("%s = %s%s%s\n", row->name, text, row->unit[0] != '\0' ? " " : "", row->unit);
+    (void)printf("%s = %s%s%s\n", panel_text(row)->name, text,
+                 panel_text(row)->unit[0] != '\0' ? " " : "", panel_text(row)->unit);
     return true;
 }
 
@@ -100,7 +102,7 @@ static bool show_line(struct panel_line *line, const enum panel_id *id, unsigned
 
         if (!panel_line_read(line, id[i], text))
             return false;
-        (void)printf("%s%s=%s", i > 0 ? "  " : "", panel_registers[id[i]].name, text);
+        (void)printf("%s%s=%s", i > 0 ? "  " : "", panel_texts[id[i]].name, text);
     }
     (void)putchar('\n');
     return fflush(stdout) == 0;
@@ -165,7 +167,7 @@ static enum command_status stream(struct panel_line *line, const struct options 
         message_command_error("stream: the file of a compiled program is expected");
         return STATUS_INPUT;
     }
-    return panel_upload_plan(line, options->operand[1], options->quiet);
+    return panel_upload_plan(line, options->operand[1], options->panel.starts, options->quiet);
 }
 
 static enum command_status on_line(enum command_status (*act)(struct panel_line *line,
@@ -219,6 +221,8 @@ static const struct option_row rows[] = {
      "of watch (default 0.5 s)"},
     {"count", OPTION_NUMBER, offsetof(struct options, panel.count), "N",
      "watch: so many lines (default: until Ctrl-C)"},
+    {"start", OPTION_FLAG, offsetof(struct options, panel.starts), NULL,
+     "stream: write CYCLE_START as soon as there is no more room, or all is there"},
     {"quiet", OPTION_FLAG, offsetof(struct options, quiet), NULL,
      "upload, stream: print errors alone"},
     OPTIONS_END,
@@ -230,20 +234,21 @@ const struct command command_panel = {
              "FILE|list|table FORM "
              "[options]",
     .summary = "read and write the panel of a running controller by name",
-    .help = "list names all registers, table markdown and table csv print their documentation. "
-            "Values are in the unit\n"
-            "of the register: write FEED_OVERRIDE 80 is 80 %.\n"
-            "\n"
-            "Examples:\n"
-            "  takt panel upload part.ngc && takt panel write CYCLE_START 1\n"
-            "  takt compile part.ngc -o part.plan && takt panel stream part.plan\n"
-            "      (brings it while it runs: CYCLE_START meanwhile, in another window)\n"
-            "  takt panel write EMERGENCY_STOP 1 && takt panel settings mill.settings\n"
-            "  takt panel watch STATE ACTIVE_LINE POSITION_X\n"
-            "  takt panel write FEED_HOLD 1\n"
-            "  takt panel write MODE 1 && takt panel write MDI_TEXT 'G0 X10' && takt panel write "
-            "MDI_START 1\n"
-            "  takt panel read STATE ALARM ALARM_TEXT --connect mill.local:1502\n",
+    .help =
+        "list names all registers, table markdown and table csv print their documentation. "
+        "Values are in the unit\n"
+        "of the register: write FEED_OVERRIDE 80 is 80 %.\n"
+        "\n"
+        "Examples:\n"
+        "  takt panel upload part.ngc && takt panel write CYCLE_START 1\n"
+        "  takt compile part.ngc -o part.plan && takt panel stream part.plan\n"
+        "      (brings it while it runs: CYCLE_START meanwhile, in another window; or --start)\n"
+        "  takt panel write EMERGENCY_STOP 1 && takt panel settings mill.settings\n"
+        "  takt panel watch STATE ACTIVE_LINE POSITION_X\n"
+        "  takt panel write FEED_HOLD 1\n"
+        "  takt panel write MODE 1 && takt panel write MDI_TEXT 'G0 X10' && takt panel write "
+        "MDI_START 1\n"
+        "  takt panel read STATE ALARM ALARM_TEXT --connect mill.local:1502\n",
     .options = rows,
     .operands_min = 1,
     .operands_max = OPTION_OPERAND_MAX,

@@ -33,6 +33,8 @@ struct plan_print {
     uint32_t shown;      /* number of the last motion written */
     bool open;           /* there is a row that may still grow */
     struct plan_row row; /* that one */
+    uint32_t moves;      /* of the program */
+    double length_mm;    /* of the curves written; motions of rotary axes alone do not count */
 };
 
 static const char *kind_name(enum move_kind kind)
@@ -220,6 +222,7 @@ static void print_row(struct plan_print *print)
         json_row(print, &print->row);
     print->any = true;
     print->open = false;
+    print->length_mm += print->row.rotary ? 0 : print->row.length;
     if (print->row.motion)
         print->shown = print->row.last;
 }
@@ -243,15 +246,14 @@ static void print_totals(const struct plan_print *print, const struct planner_to
     double time_s = (double)totals->cycles * print->cycle_s;
 
     if (print->table != NULL)
-        (void)fprintf(print->table, "%u moves, %.6f mm, %u stops, %.3f s\n",
-                      (unsigned)totals->motions, totals->length_mm, (unsigned)totals->stops,
-                      time_s);
+        (void)fprintf(print->table, "%u moves, %.6f mm, %u stops, %.3f s\n", (unsigned)print->moves,
+                      print->length_mm, (unsigned)totals->stops, time_s);
     if (print->json != NULL)
         (void)fprintf(print->json,
                       "\n  ],\n  \"totals\": {\"moves\": %u, \"length_mm\": %.17g, \"stops\": %u, "
                       "\"cycles\": %llu, "
                       "\"time_s\": %.17g}\n}\n",
-                      (unsigned)totals->motions, totals->length_mm, (unsigned)totals->stops,
+                      (unsigned)print->moves, print->length_mm, (unsigned)totals->stops,
                       (unsigned long long)totals->cycles, time_s);
 }
 
@@ -269,13 +271,15 @@ static void print_heads(const struct plan_print *print, const struct session *se
     cJSON_Delete(name);
 }
 
-static enum command_status plan_into(const struct session *session, struct output_file *json)
+static enum command_status plan_into(const struct session *session,
+                                     const struct session_totals *found, struct output_file *json)
 {
     bool to_stdout = json->stream == stdout;
     struct plan_print print = {
         .table = to_stdout || session->options->quiet ? NULL : stdout,
         .json = json->stream,
         .cycle_s = 1e-6 * (double)session->setup.machine.cycle_us,
+        .moves = found->curves,
     };
     struct planner_totals totals;
     enum command_status status;
@@ -303,7 +307,7 @@ static enum command_status command_plan_execute(const struct options *options)
     if (status == STATUS_DONE && options->json != NULL && !output_file_open(&json, options->json))
         status = STATUS_ENVIRONMENT;
     if (status == STATUS_DONE)
-        status = plan_into(&session, &json);
+        status = plan_into(&session, &totals, &json);
     output_file_discard(&json);
     session_close(&session);
     return status;

@@ -1,4 +1,3 @@
-#include "base/maths.h"
 #include "takt/command.h"
 #include "takt/compiled.h"
 #include "takt/compiled_judge.h"
@@ -23,12 +22,10 @@
 struct run {
     struct session session;
     struct session_totals totals;
-    struct session_reading reading; /* the judge's */
+    struct session_reading reading[2]; /* the judge's */
     struct judge judge;
     struct compiled compiled;
-    struct session_reading tube_reading; /* the tube judge's */
-    struct tube_judge tube;              /* of a compiled program */
-    uint32_t answers;                    /* of the run that the judge has been told */
+    uint32_t answers; /* of the run that the judge has been told */
     struct simulation *simulation;
     struct run_outputs outputs;
     struct progress progress;
@@ -38,11 +35,14 @@ struct run {
 
 static void prepare_judge(struct run *run)
 {
+    const struct machine *machine = &run->session.setup.machine;
     struct program_config config;
     struct source source;
 
-    session_begin_reading(&run->session, &run->reading, &config, &source);
-    judge_init(&run->judge, &run->session.setup.machine, &config, &source);
+    session_begin_reading(&run->session, &run->reading[0], &config, &source);
+    judge_init(&run->judge, machine, &config, &source);
+    session_begin_reading(&run->session, &run->reading[1], &config, &source);
+    judge_follow(&run->judge, machine, &config, &source, run->session.compiled != NULL);
 }
 
 static void set_until(struct run *run)
@@ -53,17 +53,6 @@ static void set_until(struct run *run)
     /* Half a cycle of room: 0.1 s are 100 cycles of 1 ms, whatever the division's last bit says. */
     run->until_cycles =
         run->session.options->until_s > 0 && cycles < 1e18 ? (uint64_t)(cycles + 0.5) : UINT64_MAX;
-}
-
-/* A compiled program rounds corners: the path is judged beside the judge. */
-static void prepare_tube(struct run *run)
-{
-    struct program_config config;
-    struct source source;
-
-    session_begin_reading(&run->session, &run->tube_reading, &config, &source);
-    tube_judge_init(&run->tube, &config, &source, 1 / run->session.setup.machine.resolution_per_mm);
-    run->judge.rounds = true;
 }
 
 /* At most one in a cycle. */
@@ -88,9 +77,7 @@ static bool run_cycle(struct run *run)
     record = simulation_get_record(run->simulation);
     block = controller_get_block(&run->simulation->controller);
     if (record != NULL && block != NULL) /* a target may differ, which is told */
-        judge_add(&run->judge, record, block);
-    if (record != NULL && run->judge.rounds)
-        good = tube_judge_add(&run->tube, &record->cmd) && good;
+        good = judge_add(&run->judge, record, block) && good;
     if (run->outputs.each_cycle) {
         uint64_t start_ns = stopwatch_now_ns();
 
@@ -150,14 +137,6 @@ static void report_fault(const struct run *run, const char *text)
         message_command_error("%s", text);
 }
 
-/* Corners that have not been come to are not judged. */
-static void finish_tube(struct run *run, bool completed)
-{
-    if (completed)
-        tube_judge_finish(&run->tube);
-    run->judge.figures.path_error_mm = maths_max(0, run->tube.figures.beyond_mm);
-}
-
 static enum command_status finish(struct run *run)
 {
     static struct summary summary;
@@ -172,8 +151,6 @@ static enum command_status finish(struct run *run)
     FILE *stream = run_outputs_use_stdout(&run->outputs) ? stderr : stdout;
 
     judge_finish(&run->judge, source.outcome == OUTCOME_COMPLETED);
-    if (run->judge.rounds)
-        finish_tube(run, source.outcome == OUTCOME_COMPLETED);
     summary_set(&summary, &source);
     run->session.parameters.values = run->simulation->parameters;
     if (source.outcome != OUTCOME_COMPLETED)
@@ -204,15 +181,15 @@ static enum command_status simulate(struct run *run)
     if (!run_outputs_open(&run->outputs, &run->session, run->simulation))
         return STATUS_ENVIRONMENT;
     prepare_judge(run);
-    if (run->session.compiled != NULL)
-        prepare_tube(run);
     set_until(run);
     progress_start(&run->progress, !run->session.options->quiet);
     if (run_loop(run))
         return finish(run);
     if (interrupt_asked())
         return STATUS_INTERRUPTED;
-    if (run->simulation->target.problem[0] != '\0')
+    if (run->judge.tube.path.failed)
+        message_command_error("out of memory");
+    else if (run->simulation->target.problem[0] != '\0')
         message_command_error("--target: %s", run->simulation->target.problem);
     else if (field_get_problem(&run->simulation->field) != NULL)
         message_command_error("%s", field_get_problem(&run->simulation->field));
@@ -228,13 +205,9 @@ static enum command_status plan(struct run *run, const char *how)
 
     if (how == NULL || strcmp(how, "board") == 0)
         return STATUS_DONE;
-    if (run->session.options->target != NULL) {
-        message_command_error("--target and --plan %s do not go together yet", how);
-        return STATUS_INPUT;
-    }
     status = compiled_open(&run->compiled, &run->session, &run->totals,
                            strcmp(how, "ahead") == 0 ? NULL : how);
-    run->session.compiled = &run->compiled.source;
+    run->session.compiled = &run->compiled;
     return status;
 }
 
@@ -262,7 +235,7 @@ static enum command_status execute(struct run *run, const struct options *option
         status = simulate(run);
     run_outputs_close(&run->outputs);
     simulation_close(run->simulation);
-    tube_judge_free(&run->tube);
+    judge_free(&run->judge);
     compiled_close(&run->compiled);
     session_close(&run->session);
     return status;
@@ -330,18 +303,20 @@ const struct command command_run = {
     .name = "run",
     .usage = "PROGRAM [options]",
     .summary = "run the firmware on a part program against the virtual machine",
-    .help = "PROGRAM and every FILE may be - for standard input and output. The whole program is "
-            "checked before\n"
-            "anything moves. Output files appear complete at the end, or not at all.\n"
-            "\n"
-            "Exit status: 0 every check held; 1 a check failed or a drive faulted; 2 the program, "
-            "a file or an\n"
-            "option is wrong; 3 a file cannot be written; 130 interrupted.\n"
-            "\n"
-            "Examples:\n"
-            "  takt run part.ngc --report part.html\n"
-            "  takt run part.ngc --machine mill3.ini --trace part.csv --json -\n"
-            "  takt run part.ngc --set axis.X.max_jerk_mm_s3=20000 --until 2.5\n",
+    .help =
+        "PROGRAM and every FILE may be - for standard input and output. The whole program is "
+        "checked before\n"
+        "anything moves. Output files appear complete at the end, or not at all.\n"
+        "\n"
+        "Exit status: 0 every check held; 1 a check failed or a drive faulted; 2 the program, "
+        "a file or an\n"
+        "option is wrong; 3 a file cannot be written; 130 interrupted.\n"
+        "\n"
+        "Examples:\n"
+        "  takt run part.ngc --report part.html\n"
+        "  takt run part.ngc --machine mill3.ini --trace part.csv --json -\n"
+        "  takt run part.ngc --plan part.plan          (of takt compile; with --target as well)\n"
+        "  takt run part.ngc --set axis.X.max_jerk_mm_s3=20000 --until 2.5\n",
     .options = rows,
     .operands_min = 1,
     .operands_max = 1,

@@ -70,7 +70,7 @@ static void begin(struct trial *t, FILE *stream)
     if (!t->on_board) {
         handover_allow(&t->motion);
         handover_allow_linear(&t->motion);
-        replay_init(&t->replay, &compiled);
+        replay_init(&t->replay, path_lend(&t->path, sizeof(struct intake)), &compiled);
     }
     t->look_ahead = t->session->setup.machine.look_ahead_blocks;
     for (int i = 0; i < AXIS_COUNT; i++)

@@ -30,16 +30,28 @@ void judge_init(struct judge *j, const struct machine *machine,
     }
 }
 
+void judge_follow(struct judge *j, const struct machine *machine,
+                  const struct program_config *program, const struct source *source, bool rounds)
+{
+    tube_judge_init(&j->tube, program, source, 1 / machine->resolution_per_mm);
+    j->tube.exact_elsewhere = !rounds;
+    j->rounds = rounds;
+}
+
+void judge_free(struct judge *j)
+{
+    tube_judge_free(&j->tube);
+}
+
 static void raise_to(double *largest, double value)
 {
     if (value > *largest)
         *largest = value;
 }
 
-/* One more motion of the judge's own reading. False: there is none. */
-static bool read_motion(struct judge *j)
+/* The next motion of the judge's own reading. False: there is none. */
+static bool next_motion(struct judge *j)
 {
-    struct judge_motion *motion = judge_motion_at(&j->motions, j->motions.read);
     struct move move = {0};
     struct diagnostic diagnostic;
     enum program_result result = PROGRAM_END;
@@ -52,40 +64,15 @@ static bool read_motion(struct judge *j)
     }
     if (result != PROGRAM_MOVE)
         return false;
-    *motion = (struct judge_motion){
-        .number = j->motions.read + 1, .move = move, .corner_mm = MATHS_INFINITY};
-    motion->has_length = move_curve(&move, &j->read_end, &motion->curve);
-    j->read_end = move.end;
-    j->motions.read++;
-    return true;
-}
-
-/* Takes the next motion. False: there is none. */
-static bool next_motion(struct judge *j)
-{
-    const struct judge_motion *motion = judge_motion_at(&j->motions, j->motions.current);
-    const struct move *move = &motion->move;
-
-    if (j->motions.current == j->motions.read && !read_motion(j))
-        return false;
-    j->motions.current++;
     j->block = (struct judge_block){
-        .number = motion->number,
-        .end = move->end,
-        .done = 1,
+        .number = ++j->read,
+        .end = move.end,
         .landed = true,
-        .probing = move->kind == MOVE_PROBE,
-        .turning_mm = move->kind == MOVE_TAP ? JUDGE_TURNING_REV * move->feed_rev_mm : 0};
-    j->block.has_length = motion->has_length;
-    j->block.curve = motion->curve;
+        .probing = move.kind == MOVE_PROBE,
+        .turning_mm = move.kind == MOVE_TAP ? TUBE_TURNING_REV * move.feed_rev_mm : 0};
+    j->block.has_length = move_curve(&move, &j->read_end, &j->block.curve);
+    j->read_end = move.end;
     return true;
-}
-
-static double length_of(const struct judge_block *block)
-{
-    return block->has_length && !curve_is_rotary(&block->curve)
-               ? block->done * block->curve.length_mm
-               : 0;
 }
 
 /* A block whose end no cycle has seen: its evaluated path must end where the program says. */
@@ -108,7 +95,6 @@ static void leave_block(struct judge *j)
 {
     const struct judge_block *block = &j->block;
 
-    j->figures.path_length_mm += length_of(block);
     if (block->landed || has_turned(j) || j->rounds)
         return;
     if (!block->ending && block->has_length)
@@ -121,10 +107,8 @@ static void leave_block(struct judge *j)
 /* A block in which no cycle ended. */
 static void pass_block(struct judge *j)
 {
-    if (!j->block.has_length)
-        return;
-    raise_to(&j->figures.landing_error_mm, missed_end(&j->block));
-    j->figures.path_length_mm += length_of(&j->block);
+    if (j->block.has_length)
+        raise_to(&j->figures.landing_error_mm, missed_end(&j->block));
 }
 
 /* What the executed path comes to at the end of its block. */
@@ -150,6 +134,7 @@ static void enter_block(struct judge *j, const struct cycle_record *record)
     leave_block(j);
     j->joint_near = j->block.landed ? 1 : JUDGE_JOINT_CYCLES;
     j->step_inside = j->block.landed;
+    j->strayed = record->block < j->block.number;
     while (j->block.number < record->block) {
         if (!next_motion(j)) {
             j->strayed = true;
@@ -220,31 +205,18 @@ static void judge_axes(struct judge *j, const struct cycle_record *record)
     }
 }
 
-/* A setpoint of a smoothed path: near the motion that it says it is on, and only a chain's last end is hit exactly. */
+/* A setpoint of a smoothed path, which the tube judges: only a chain's last end is hit exactly. */
 static void judge_smoothed(struct judge *j, const struct cycle_record *record,
                            const struct block *block)
 {
-    if (!j->smoothing)
-        judge_smooth_begin(&j->motions);
-    while (judge_motions_have_room(&j->motions) && read_motion(j))
-        continue;
-    judge_smooth_add(&j->motions, &j->figures.smoothing, &j->cmd, &record->cmd);
     if (record->landed && point_is_same(&block->curve.end, &block->move.end))
         raise_to(&j->figures.landing_error_mm, judge_distance(&record->cmd, &j->block.end));
     j->block.landed = true;
     j->block.fraction = 1;
     j->step_inside = false;
-    j->smoothing = true;
 }
 
-static void end_smoothing(struct judge *j)
-{
-    if (j->smoothing)
-        judge_smooth_end(&j->motions, &j->figures.smoothing);
-    j->smoothing = false;
-}
-
-void judge_add(struct judge *j, const struct cycle_record *record, const struct block *block)
+bool judge_add(struct judge *j, const struct cycle_record *record, const struct block *block)
 {
     const bool smoothed = block->curve.kind == CURVE_SPLINE && block_is_motion(block);
 
@@ -253,17 +225,16 @@ void judge_add(struct judge *j, const struct cycle_record *record, const struct 
     if (!smoothed && !j->block.ending && !block->continues && !j->block.landed)
         begin_ending(j, block);
     j->sent[j->figures.cycles % JUDGE_HISTORY] = record->set;
-    if (smoothed) {
+    if (smoothed)
         judge_smoothed(j, record, block);
-    } else {
-        end_smoothing(j);
+    else
         judge_path(j, record);
-    }
     judge_feed(j, record);
     judge_axes(j, record);
     raise_to(&j->figures.correction_mm, judge_distance(&record->cmd, &record->set));
     j->cmd = record->cmd;
     j->figures.cycles++;
+    return tube_judge_add(&j->tube, &record->cmd);
 }
 
 /* A probing move may end early: where the axes have come to rest. That this is on its way has been seen by judge_path. */
@@ -272,42 +243,46 @@ static void end_probing(struct judge *j, const struct point *rest_at)
     raise_to(&j->figures.landing_error_mm, judge_distance(&j->cmd, rest_at));
     j->block.end = *rest_at;
     j->read_end = *rest_at;
-    j->block.done = j->block.fraction;
     j->block.landed = true;
     j->block.probing = false;
 }
 
-/* Nothing of it is left to be counted. */
-static void close_block(struct judge_block *block)
-{
-    block->done = 0;
-    block->landed = true;
-}
-
 void judge_answer(struct judge *j, const struct program_answer *answer)
 {
+    tube_judge_answer(&j->tube, answer);
     if (j->strayed)
         return;
     if (j->block.probing && j->block.has_length)
         end_probing(j, &answer->rest_at);
     leave_block(j);
-    close_block(&j->block);
-    while (next_motion(j)) {
+    j->block.landed = true;
+    while (next_motion(j))
         pass_block(j);
-        close_block(&j->block);
-    }
     offset_answer(&j->offset, &j->program, answer);
+}
+
+/* What the tube has found. Corners that have not been come to are not judged. */
+static void take_tube(struct judge *j, bool completed)
+{
+    const struct tube_figures *tube = &j->tube.figures;
+
+    if (completed)
+        tube_judge_finish(&j->tube);
+    j->figures.path_length_mm = tube->path_length_mm;
+    raise_to(&j->figures.path_error_mm, tube->beyond_mm);
+    if (j->rounds)
+        return;
+    j->figures.smoothed_path_part = tube->path_part;
+    j->figures.smoothed_corner_part = tube->corner_part;
 }
 
 void judge_finish(struct judge *j, bool completed)
 {
-    end_smoothing(j);
     if (completed) {
         j->block.passed = false; /* nothing follows that it could be passed into */
         leave_block(j);
-    } else {
-        j->figures.path_length_mm += j->block.fraction * length_of(&j->block);
     }
+    take_tube(j, completed);
 }
 
 int judge_get_missing(const struct judge *j)

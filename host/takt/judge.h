@@ -2,12 +2,14 @@
  * The judge of a run: looks at every setpoint that was sent and says whether the machine's limits and the program's
  * path were kept.
  *
- * It knows nothing of the planner's reasoning. It reads the part program a second time, in step with the run, and
- * compares setpoints with the curves it finds there; velocity, acceleration and jerk it takes by differences:
+ * It knows nothing of the planner's reasoning. It reads the part program again, in step with the run, and compares
+ * setpoints with the curves it finds there: motions in exact path by the numbers of the cycles, which must be right then;
+ * motions within a tolerance, and the length of the path, by a place of its own (tube_judge.h). Velocity, acceleration and
+ * jerk it takes by differences:
  *
  *     v_k = (x_k - x_{k-1}) / tau     a_k = (v_k - v_{k-1}) / tau     j_k = (a_k - a_{k-1}) / tau
  *
- * Before the first cycle every axis stands still. Memory does not grow with the run. In lengths over several axes a
+ * Before the first cycle every axis stands still. In lengths over several axes a
  * radian of a rotary axis counts as a millimetre.
  */
 #ifndef TAKT_HOST_JUDGE_H
@@ -19,7 +21,7 @@
 #include "offset/offset.h"
 #include "plan/block.h"
 #include "program/program.h"
-#include "takt/judge_smooth.h"
+#include "takt/tube_judge.h"
 
 #include <stdbool.h>
 #include <stdint.h>
@@ -31,9 +33,6 @@
 
 #define JUDGE_LANDING_MAX_MM 1e-9
 #define JUDGE_PATH_MAX_MM    1e-6 /* beside the chord error */
-
-/* A tap turns back so much of a revolution above the bottom of its hole at most. */
-#define JUDGE_TURNING_REV 0.1
 
 /* What the judge found. For a rotary axis read rad for mm. */
 struct judge_figures {
@@ -48,7 +47,8 @@ struct judge_figures {
     double chord_error_mm;
     double landing_error_mm;
     double joint_feed_step_mm_s;
-    struct judge_smoothing smoothing;
+    double smoothed_path_part; /* of motions within a tolerance: as a part of it */
+    double smoothed_corner_part;
     double correction_mm; /* largest distance between setpoint before and after correction */
     uint64_t digest;
 };
@@ -60,7 +60,6 @@ struct judge_block {
     struct curve curve; /* when it has length */
     struct point end;
     double fraction; /* of the block, where the last setpoint was */
-    double done;     /* share of it that is executed: 1, but of a probing move that ended early */
     bool probing;    /* it may end early: judge_answer */
     double
         turning_mm; /* into a hole the axes turn round with the spindle, so far above its end at most; 0: no hole */
@@ -81,12 +80,13 @@ struct judge_axis {
 struct judge {
     struct program program; /* the judge's own reading */
     struct offset offset;
-    bool rounds;  /* the path is rounded, and judged elsewhere (tube_judge.h) */
-    bool strayed; /* the run executes motions the program does not have */
+    struct tube_judge tube; /* with another one */
+    bool rounds;            /* exact motions too are judged by the tube alone */
+    bool
+        strayed; /* the run executes motions that the program does not have, or not one after the other */
     bool program_ended;
-    struct judge_motions motions;
-    struct point read_end; /* where the last motion that has been read ends */
-    bool smoothing;        /* the last setpoint was one of a smoothed path */
+    uint32_t read;         /* motions */
+    struct point read_end; /* where the last one ends */
     struct judge_block block;
     double rate_hz; /* 1 / cycle time */
     unsigned axes;
@@ -106,9 +106,13 @@ struct judge {
  */
 void judge_init(struct judge *j, const struct machine *machine,
                 const struct program_config *program, const struct source *source);
+/* Behind it: the same once more for another reading. rounds: exact motions too may be rounded, as the machine may round. */
+void judge_follow(struct judge *j, const struct machine *machine,
+                  const struct program_config *program, const struct source *source, bool rounds);
+void judge_free(struct judge *j);
 
-/* The next cycle. segment: what it executed. */
-void judge_add(struct judge *j, const struct cycle_record *record, const struct block *block);
+/* The next cycle, and the block that it executed. False: out of memory. */
+bool judge_add(struct judge *j, const struct cycle_record *record, const struct block *block);
 
 /*
  * What the program of the run has been told (G38, M66), before the first cycle behind that. Everything read until then

@@ -40,6 +40,7 @@ struct option_panel {
     double count;        /* of `takt panel watch`; 0: without end */
     double timeout_s;
     double password;
+    bool starts; /* of `takt panel stream` */
 };
 
 /* Of `takt cycle-frequency`: numbers as given, NULL: not. */

@@ -5,6 +5,7 @@
 #include "takt/message.h"
 
 #include <errno.h>
+#include <fcntl.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
@@ -78,16 +79,47 @@ static bool output_file_close(struct output_file *file)
     return good;
 }
 
+/* A name may reach the disk before what it names: then a power cut leaves an empty file under it. */
+static bool output_file_keep(const struct output_file *file)
+{
+    return file->aside[0] == '\0' ||
+           (fflush(file->stream) == 0 && fsync(fileno(file->stream)) == 0);
+}
+
 bool output_file_finish(struct output_file *file)
 {
-    return output_file_close(file) || output_file_fail(file, "cannot be written");
+    return (output_file_keep(file) && output_file_close(file)) ||
+           output_file_fail(file, "cannot be written");
+}
+
+/* The new name, too. Where folders cannot be kept so, a power cut may leave the old file: that is whole as well. */
+static void keep_folder(const char *path)
+{
+    char folder[OUTPUT_PATH_MAX];
+    char *name;
+    int descriptor;
+
+    (void)snprintf(folder, sizeof folder, "%s", path);
+    name = strrchr(folder, '/');
+    if (name == NULL)
+        (void)snprintf(folder, sizeof folder, ".");
+    else
+        name[name == folder ? 1 : 0] = '\0';
+    descriptor = open(folder, O_RDONLY);
+    if (descriptor < 0)
+        return;
+    (void)fsync(descriptor);
+    (void)close(descriptor);
 }
 
 bool output_file_place(struct output_file *file)
 {
-    if (file->aside[0] != '\0' && rename(file->aside, file->path) != 0)
+    if (file->aside[0] == '\0')
+        return true;
+    if (rename(file->aside, file->path) != 0)
         return output_file_fail(file, "cannot be put in place");
     file->aside[0] = '\0';
+    keep_folder(file->path);
     return true;
 }
 

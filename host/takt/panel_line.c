@@ -127,10 +127,10 @@ void panel_line_report(struct panel_line *line, enum panel_id id, const char *wh
     const int exception = client_get_exception(&line->client);
 
     if (exception == 0)
-        message_command_error("%s: it cannot be %s: %s", panel_registers[id].name, what,
+        message_command_error("%s: it cannot be %s: %s", panel_texts[id].name, what,
                               client_get_problem(&line->client));
     else
-        message_command_error("%s: exception %02d%s", panel_registers[id].name, exception,
+        message_command_error("%s: exception %02d%s", panel_texts[id].name, exception,
                               refusal_text(line));
 }
 
@@ -210,7 +210,7 @@ static enum command_status write_text(struct panel_line *line, enum panel_id id,
     const size_t length = strlen(text);
 
     if (length > (size_t)2 * row->words) {
-        message_command_error("%s: the text is longer than %d characters", row->name,
+        message_command_error("%s: the text is longer than %d characters", panel_text(row)->name,
                               2 * row->words);
         return STATUS_INPUT;
     }
@@ -230,7 +230,7 @@ enum command_status panel_line_write(struct panel_line *line, enum panel_id id, 
     double value;
 
     if (row->states == PANEL_NEVER || row->form == PANEL_BYTES) {
-        message_command_error("%s cannot be written", row->name);
+        message_command_error("%s cannot be written", panel_text(row)->name);
         return STATUS_INPUT;
     }
     if (row->form == PANEL_TEXT)
@@ -238,9 +238,10 @@ enum command_status panel_line_write(struct panel_line *line, enum panel_id id, 
     value = strtod(text, &end) * counts_per_unit;
     if (end == text || *end != '\0' || !(value >= (double)row->least - 0.5) ||
         !(value <= (double)row->most + 0.5)) {
-        message_command_error("%s %s: a number from %.*f to %.*f is expected", row->name, text,
-                              (int)row->decimals, (double)row->least / counts_per_unit,
-                              (int)row->decimals, (double)row->most / counts_per_unit);
+        message_command_error("%s %s: a number from %.*f to %.*f is expected",
+                              panel_text(row)->name, text, (int)row->decimals,
+                              (double)row->least / counts_per_unit, (int)row->decimals,
+                              (double)row->most / counts_per_unit);
         return STATUS_INPUT;
     }
     return panel_line_set(line, id, (int64_t)maths_round(value)) ? STATUS_DONE : STATUS_INPUT;
@@ -254,7 +255,7 @@ enum panel_id panel_line_find(const char *name)
     if (id != REGISTER_COUNT)
         return id;
     for (unsigned i = 0; i < REGISTER_COUNT; i++)
-        names[i] = panel_registers[i].name;
+        names[i] = panel_texts[i].name;
     message_command_error("there is no register '%s'%s", name,
                           message_did_you_mean("", suggest_word(name, names, REGISTER_COUNT)));
     return REGISTER_COUNT;

@@ -66,14 +66,14 @@ static void write_markdown_row(FILE *stream, const struct panel_register *row)
 {
     (void)fputs("| ", stream);
     write_address(stream, row);
-    (void)fprintf(stream, " | %s | %s | ", row->name, form_names[row->form]);
+    (void)fprintf(stream, " | %s | %s | ", panel_text(row)->name, form_names[row->form]);
     if (row->decimals > 0)
         (void)fprintf(stream, "%.*f ", (int)row->decimals, in_units(row, 1));
-    (void)fprintf(stream, "%s | ", row->unit);
+    (void)fprintf(stream, "%s | ", panel_text(row)->unit);
     write_range(stream, row);
     (void)fputs(" | ", stream);
     write_states(stream, row->states, ", ");
-    (void)fprintf(stream, " | %s |\n", row->meaning);
+    (void)fprintf(stream, " | %s |\n", panel_text(row)->meaning);
 }
 
 static void write_markdown_table(FILE *stream, enum modbus_table table, const char *title)
@@ -121,13 +121,14 @@ static void write_quoted(FILE *stream, const char *text)
 
 static void write_csv_row(FILE *stream, const struct panel_register *row)
 {
-    (void)fprintf(stream, "%s,%u,%u,%s,%s,%s,%.*g,%" PRId64 ",%" PRId64 ",",
-                  table_names[row->table], (unsigned)row->address, (unsigned)row->words, row->name,
-                  row->form == PANEL_S32 ? "32 bits signed" : form_names[row->form], row->unit, 6,
-                  in_units(row, 1), row->least, row->most);
+    (void)fprintf(
+        stream, "%s,%u,%u,%s,%s,%s,%.*g,%" PRId64 ",%" PRId64 ",", table_names[row->table],
+        (unsigned)row->address, (unsigned)row->words, panel_text(row)->name,
+        row->form == PANEL_S32 ? "32 bits signed" : form_names[row->form], panel_text(row)->unit, 6,
+        in_units(row, 1), (int64_t)row->least, (int64_t)row->most);
     write_states(stream, row->states, ";");
     (void)fputc(',', stream);
-    write_quoted(stream, row->meaning);
+    write_quoted(stream, panel_text(row)->meaning);
     (void)fputc('\n', stream);
 }
 

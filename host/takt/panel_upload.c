@@ -92,8 +92,17 @@ enum command_status panel_upload_file(struct panel_line *line, const char *path,
     return status;
 }
 
-/* Waits until there is room for the next chunk. */
-static enum command_status wait_for_room(struct panel_line *line, size_t left)
+/* Once. */
+static bool start(struct panel_line *line, bool *starts)
+{
+    const bool due = *starts;
+
+    *starts = false;
+    return !due || panel_line_set(line, REGISTER_CYCLE_START, 1);
+}
+
+/* Waits until there is room for the next chunk; of a program that nobody has started there never would be. */
+static enum command_status wait_for_room(struct panel_line *line, size_t left, bool *starts)
 {
     const int64_t wanted = (int64_t)(left < PANEL_CHUNK_MAX ? left : PANEL_CHUNK_MAX);
     const struct timespec pause = {.tv_nsec = ROOM_WAIT_NS};
@@ -102,6 +111,8 @@ static enum command_status wait_for_room(struct panel_line *line, size_t left)
     while (panel_line_get(line, REGISTER_UPLOAD_ROOM, &room)) {
         if (room >= wanted)
             return STATUS_DONE;
+        if (!start(line, starts))
+            return STATUS_INPUT;
         if (interrupt_asked())
             return STATUS_INTERRUPTED;
         (void)nanosleep(&pause, NULL);
@@ -109,15 +120,17 @@ static enum command_status wait_for_room(struct panel_line *line, size_t left)
     return STATUS_ENVIRONMENT;
 }
 
-static enum command_status stream(struct panel_line *line, const struct text *text)
+static enum command_status stream(struct panel_line *line, const struct text *text, bool starts)
 {
     enum command_status status = STATUS_DONE;
 
     for (size_t at = 0; at < text->length && status == STATUS_DONE; at += PANEL_CHUNK_MAX) {
-        status = wait_for_room(line, text->length - at);
+        status = wait_for_room(line, text->length - at, &starts);
         if (status == STATUS_DONE && !send_chunk(line, text, (uint32_t)at))
             status = STATUS_INPUT;
     }
+    if (status == STATUS_DONE && !start(line, &starts))
+        status = STATUS_INPUT;
     return status;
 }
 
@@ -150,7 +163,8 @@ enum command_status panel_upload_settings(struct panel_line *line, const char *p
     return status;
 }
 
-enum command_status panel_upload_plan(struct panel_line *line, const char *path, bool quiet)
+enum command_status panel_upload_plan(struct panel_line *line, const char *path, bool starts,
+                                      bool quiet)
 {
     struct text text;
     enum command_status status = STATUS_INPUT;
@@ -160,7 +174,7 @@ enum command_status panel_upload_plan(struct panel_line *line, const char *path,
     if (text.length < REPLAY_HEADER_BYTES || text.length > PANEL_PROGRAM_BYTES_MAX)
         message_error(path, 0, 0, "this is no compiled program; takt compile writes them");
     else if (begin(line, &text, PANEL_UPLOAD_PLAN, PANEL_UPLOAD_STREAM))
-        status = stream(line, &text);
+        status = stream(line, &text, starts);
     if (status == STATUS_INPUT)
         report_reason(line);
     if (status == STATUS_DONE && !quiet)

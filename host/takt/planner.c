@@ -78,18 +78,6 @@ static void fill_path(struct planner *p)
     motion_build(&p->motion);
 }
 
-static void count_block(struct planner_totals *totals, const struct path *path, uint32_t index)
-{
-    const struct path_block *block = path_at(path, index);
-
-    if (!block->motion)
-        return;
-    totals->motions += block->continues ? 0 : 1;
-    totals->stops += block->end == JOINT_STOP ? 1 : 0;
-    if (!block->rotary)
-        totals->length_mm += path_length(path, index);
-}
-
 /* A block that never reaches its ceiling is governed by its ramps. */
 static enum governor governor_of(const struct path *path, uint32_t index,
                                  const struct planned_block *planned)
@@ -160,7 +148,8 @@ static void walk(struct planner *p,
     while ((result == MOTION_CYCLE || result == MOTION_NOT_YET) && !interrupt_asked()) {
         result = step(p, &record);
         for (uint32_t i = p->motion.passed_first; i != p->path.first; i++) {
-            count_block(totals, &p->path, i);
+            totals->stops +=
+                path_at(&p->path, i)->motion && path_at(&p->path, i)->end == JOINT_STOP;
             leave(p, i, record.feed_mm_s, take, context);
         }
         p->planned.feed_cruise_mm_s = maths_max(p->planned.feed_cruise_mm_s, record.feed_mm_s);
@@ -168,20 +157,6 @@ static void walk(struct planner *p,
     if (result == MOTION_DONE) /* the end of the program itself is never passed */
         leave(p, p->motion.current, 0, take, context);
     totals->cycles = p->motion.cycles;
-}
-
-static void measure_path(struct planner *p, struct planner_totals *totals)
-{
-    struct path *path = &p->path;
-
-    do {
-        path_go_on(path);
-        while (!p->ended && path_has_room(path))
-            read_move(p);
-        for (; path->first != path->closed; path_pass(path))
-            count_block(totals, path, path->first);
-        path->kept = path->first;
-    } while ((!p->ended || path->first != path->pushed) && !interrupt_asked());
 }
 
 /* NULL, after a message: out of memory. The caller frees it. */
@@ -212,15 +187,5 @@ enum command_status planner_walk(const struct session *s,
     if (p == NULL)
         return STATUS_ENVIRONMENT;
     walk(p, take, context, totals);
-    return end_planner(p);
-}
-
-enum command_status planner_measure(const struct session *s, struct planner_totals *totals)
-{
-    struct planner *p = begin_planner(s, totals);
-
-    if (p == NULL)
-        return STATUS_ENVIRONMENT;
-    measure_path(p, totals);
     return end_planner(p);
 }

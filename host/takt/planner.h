@@ -22,10 +22,8 @@ struct planned_block {
 };
 
 struct planner_totals {
-    uint32_t motions; /* that have a length */
-    uint32_t stops;   /* their ends at rest */
+    uint32_t stops; /* ends of motions at rest */
     uint64_t cycles;
-    double length_mm; /* of motions of X Y Z */
 };
 
 /* Plans the whole program and calls take for every block, in order. STATUS_DONE, STATUS_ENVIRONMENT after a message,
@@ -33,8 +31,5 @@ struct planner_totals {
 enum command_status planner_walk(const struct session *s,
                                  void (*take)(void *context, const struct planned_block *planned),
                                  void *context, struct planner_totals *totals);
-
-/* Puts the whole program on the path and moves nothing: totals without cycles. Status as of planner_walk. */
-enum command_status planner_measure(const struct session *s, struct planner_totals *totals);
 
 #endif

@@ -56,6 +56,7 @@ static void open_service(struct serving *s)
         .step = field_get_step_port(&s->field),
         .tools = s->session.tools.tools,
         .tools_count = s->session.tools.table.count,
+        .reader = &s->reader,
         .parameters = &s->session.parameters.values,
         .correction = s->session.correction,
         .programs = {program_store_read, program_store_adopt, &s->store},

@@ -31,6 +31,7 @@ struct serving {
     struct serving_options options;
     struct field field;
     struct service service;
+    struct controller_reader reader; /* of the service */
     struct serving_spindle spindle;
     struct inputs inputs; /* of the next cycle */
     struct program_store store;

@@ -92,8 +92,11 @@ static void count_move(struct session_totals *totals, const struct move *move, s
     if (!move_is_motion(move))
         return;
     totals->motions++;
-    if (move_curve(move, at, &curve))
+    if (move_curve(move, at, &curve)) {
         totals->last = totals->motions;
+        totals->curves++;
+        totals->length_mm += curve_is_rotary(&curve) ? 0 : curve.length_mm;
+    }
     *at = move->end;
 }
 

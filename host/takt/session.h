@@ -19,6 +19,8 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+struct compiled;
+
 struct session {
     const struct options *options;
     struct machine_setup setup;
@@ -28,7 +30,7 @@ struct session {
     struct parameter_file parameters;
     bool runs; /* set it when the program is run: a check then ends at the first G38 or M66 */
     struct correction_tables *correction; /* NULL: none */
-    const struct replay_source *compiled; /* the program, planned ahead; NULL: planned as it runs */
+    const struct compiled *compiled;      /* the program, planned ahead; NULL: planned as it runs */
 };
 
 /* Reads everything the options name; the first operand is the program. STATUS_DONE, or STATUS_INPUT after messages;
@@ -54,6 +56,8 @@ struct session_totals {
     uint32_t moves;   /* of all kinds */
     uint32_t motions; /* that move axes */
     uint32_t last;    /* number of the last motion that has a length; 0: none */
+    uint32_t curves;  /* motions that have a length */
+    double length_mm; /* of them; motions of rotary axes alone do not count */
     unsigned errors;
     unsigned warnings;
     bool is_open; /* only up to the first G38 or M66: what follows depends on what becomes of it */

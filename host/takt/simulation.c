@@ -1,5 +1,6 @@
 #include "takt/simulation.h"
 
+#include "takt/compiled.h"
 #include "takt/cutting_feed.h"
 #include "takt/inject_file.h"
 #include "takt/message.h"
@@ -22,7 +23,8 @@ static void start_controller(struct simulation *s, const struct session *session
         .step = field_get_step_port(&s->field),
         .tools = &session->tools.table,
         .correction = session->correction,
-        .compiled = session->compiled,
+        .compiled = session->compiled != NULL ? &session->compiled->source : NULL,
+        .reader = &s->reader,
         .parameters = &s->parameters,
         .exact_path = session->options->exact_path,
         .block_delete = session->options->block_delete,

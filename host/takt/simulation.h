@@ -25,8 +25,9 @@ struct simulation {
     struct field field; /* bus and drives */
     bool has_begun;     /* the program has had its first cycle */
     struct controller controller;
-    struct inject script;         /* of faults */
-    struct parameters parameters; /* what the program sets */
+    struct controller_reader reader; /* of the controller */
+    struct inject script;            /* of faults */
+    struct parameters parameters;    /* what the program sets */
     struct program_text_reader text;
     struct virtual_probe probe;
     struct override_file feed_override, rapid_override;

@@ -79,10 +79,9 @@ static void check_path(struct summary *summary)
               JUDGE_LANDING_MAX_MM);
     add_check(summary, "path", AXIS_COUNT, "mm", figures->path_error_mm,
               JUDGE_PATH_MAX_MM + figures->chord_error_mm);
-    if (figures->smoothing.path_part > 0) {
-        add_check(summary, "smoothed_path", AXIS_COUNT, "of P", figures->smoothing.path_part, 1);
-        add_check(summary, "smoothed_corner", AXIS_COUNT, "of P", figures->smoothing.corner_part,
-                  1);
+    if (figures->smoothed_path_part > 0) {
+        add_check(summary, "smoothed_path", AXIS_COUNT, "of P", figures->smoothed_path_part, 1);
+        add_check(summary, "smoothed_corner", AXIS_COUNT, "of P", figures->smoothed_corner_part, 1);
     }
     add_check(summary, "chord", AXIS_COUNT, "mm", figures->chord_error_mm,
               1.0 / summary->machine->resolution_per_mm + SUMMARY_CHORD_ROOM_MM);

@@ -1,6 +1,7 @@
 #include "takt/target_setup.h"
 
 #include "correction/table_store.h"
+#include "takt/compiled.h"
 #include "takt/correction_file.h"
 #include "takt/message.h"
 
@@ -79,6 +80,7 @@ enum command_status target_setup_open(struct target *target, const struct sessio
         .machine = &session->setup.machine,
         .tools = &session->tools.table,
         .parameters = &session->parameters.values,
+        .plan = session->compiled != NULL ? session->compiled->stream : NULL,
         .table = tables,
         .exact_path = session->options->exact_path,
         .block_delete = session->options->block_delete,

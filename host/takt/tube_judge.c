@@ -3,247 +3,390 @@
 #include "base/maths.h"
 #include "takt/judge_curve.h"
 
-#include <stdlib.h>
 #include <string.h>
 
-/* How far ahead on the path the nearest place is looked for: so many steps, and so many tolerances. */
+/*
+ * A setpoint may be at places so many tolerances away: where motions of few tolerances turn back, a curve that is within
+ * one of all of them and of their corners may pass one corner a little before the one that comes first.
+ */
+#define WITHIN_TOLERANCES 3
+
+/* How far ahead of what has been left the path is looked for: so many steps, and so many tolerances. */
 #define REACH_STEPS      4
 #define REACH_TOLERANCES 20
 
 /* Steps to the nearest place of a bent curve. */
 #define REFINE_STEPS 5
 
+/* In the present step, this piece is not come to from the one before. */
+#define NOT_ENTERED (-1.0)
+
+/* Where a setpoint is beside a piece. */
+struct beside {
+    double part;        /* of the piece, 0 ... 1 */
+    double distance_mm; /* from there */
+    double first;       /* the first part of it that is within reach; > 1: none */
+    double last;
+};
+
+/* The nearest of the places that a setpoint may be at. */
+struct nearest {
+    size_t piece;
+    double part;         /* of the piece */
+    double distance_mm;  /* from the piece, not from a curve that it is cut of */
+    double of_tolerance; /* the same, as a part of the tolerance */
+};
+
+/* From the setpoint before to this one. */
+struct stride {
+    struct tube_segment segment;
+    struct point to;
+};
+
 void tube_judge_init(struct tube_judge *t, const struct program_config *program,
                      const struct source *source, double exact_mm)
 {
     memset(t, 0, sizeof *t);
-    program_open(&t->program, program, source);
-    offset_open(&t->offset, program);
-    t->exact_mm = exact_mm;
-    t->end = program->start;
+    tube_path_init(&t->path, program, source, exact_mm);
+    t->active = 1;
     t->last = program->start;
-    t->figures.beyond_mm = -MATHS_INFINITY;
 }
 
 void tube_judge_free(struct tube_judge *t)
 {
-    free(t->element);
-    t->element = NULL;
+    tube_path_free(&t->path);
 }
 
-static struct tube_element *element(const struct tube_judge *t, size_t k)
+static void raise_to(double *largest, double value)
 {
-    return &t->element[(t->first + k) % t->capacity];
+    if (value > *largest)
+        *largest = value;
 }
 
-static double end_of(const struct tube_element *e)
+/*
+ * The place f >= from of a segment nearest to p, and all places within w of p:
+ *
+ *     |p - start - f way| <= w      <=>     |f - g| <= sqrt((w^2 - d^2) / way^2)
+ *
+ * with g the foot of the perpendicular from p on the line, d its length.
+ */
+static struct beside look_beside(const struct tube_segment *s, double from, const struct point *p,
+                                 double within_mm)
 {
-    return e->start_mm + e->curve.length_mm;
-}
+    struct beside b = {.part = from, .first = 2};
+    double along = 0, square = 0, foot = 0, half;
 
-static bool grow(struct tube_judge *t)
-{
-    const size_t capacity = t->capacity != 0 ? 2 * t->capacity : 64;
-    struct tube_element *grown = calloc(capacity, sizeof *grown);
-
-    if (grown == NULL)
-        return false;
-    for (size_t k = 0; k < t->count; k++)
-        grown[k] = *element(t, k);
-    free(t->element);
-    t->element = grown;
-    t->first = 0;
-    t->capacity = capacity;
-    return true;
-}
-
-static bool push(struct tube_judge *t, const struct move *move)
-{
-    const bool rounded = move->path == PATH_BLEND && move->tolerance_mm > 0;
-    struct tube_element e = {.start_mm = t->length_mm, .line = move->line};
-    const struct point start = t->end;
-
-    t->end = move->end;
-    if (!move_curve(move, &start, &e.curve))
-        return true;
-    e.tolerance_mm = rounded ? maths_max(move->tolerance_mm, t->exact_mm) : t->exact_mm;
-    e.corner_mm = MATHS_INFINITY;
-    if (t->count == t->capacity && !grow(t))
-        return false;
-    t->length_mm += e.curve.length_mm;
-    t->count++;
-    *element(t, t->count - 1) = e;
-    return true;
-}
-
-static bool read_move(struct tube_judge *t)
-{
-    struct move move;
-    struct diagnostic error;
-
-    if (offset_next(&t->offset, &t->program, &move, &error) != PROGRAM_MOVE) {
-        t->program_ended = true;
-        return true;
+    for (int i = 0; i < AXIS_COUNT; i++)
+        along += (p->at[i] - s->start.at[i]) * s->way.at[i];
+    if (s->square_mm2 > 0) {
+        foot = along / s->square_mm2;
+        b.part = maths_clamp(foot, from, 1);
     }
-    return !move_is_motion(&move) || push(t, &move);
+    for (int i = 0; i < AXIS_COUNT; i++) {
+        const double off = p->at[i] - s->start.at[i] - b.part * s->way.at[i];
+
+        square += off * off;
+    }
+    b.distance_mm = maths_sqrt(square);
+    if (b.distance_mm > within_mm)
+        return b;
+    b.first = from;
+    b.last = 1;
+    if (s->square_mm2 > 0) {
+        half = (within_mm * within_mm - square) / s->square_mm2 + (b.part - foot) * (b.part - foot);
+        half = maths_sqrt(maths_max(half, 0));
+        b.first = maths_clamp(foot - half, from, b.part);
+        b.last = maths_clamp(foot + half, b.part, 1);
+    }
+    return b;
 }
 
-static void beyond(struct tube_judge *t, double distance_mm, double tolerance_mm, uint32_t line)
+static double within_of(const struct tube_piece *piece)
 {
-    if (distance_mm - tolerance_mm <= t->figures.beyond_mm)
+    return WITHIN_TOLERANCES * piece->motion.tolerance_mm + piece->motion.cut_mm;
+}
+
+static struct point end_of(const struct tube_segment *s)
+{
+    struct point end;
+
+    for (int i = 0; i < AXIS_COUNT; i++)
+        end.at[i] = s->start.at[i] + s->way.at[i];
+    return end;
+}
+
+/* How near a step must come to the end of a piece: from an exact motion it may go straight into the next. */
+static double within_end(const struct tube_piece *piece, const struct stride *step)
+{
+    const double within_mm = maths_max(within_of(piece), piece->motion.turning_mm);
+
+    return piece->motion.rounded ? within_mm : maths_max(within_mm, step->segment.length_mm / 2);
+}
+
+/* Goes past the end of a piece, from this part of the step on. Returns the first part at which it can, or NOT_ENTERED. */
+static double pass_end(struct tube_piece *piece, const struct stride *step, double from)
+{
+    const struct point end = end_of(&piece->segment);
+    const struct beside b = look_beside(&step->segment, 0, &end, within_end(piece, step));
+
+    piece->corner_mm = maths_min(piece->corner_mm, b.distance_mm);
+    return b.first <= 1 && b.last >= from ? maths_max(b.first, from) : NOT_ENTERED;
+}
+
+/*
+ * A piece come to in this step (from the part entered on), or before. Returns the same of the next piece. Far from the end
+ * of a piece, where most setpoints are, only their own distance from it is noted.
+ */
+static double follow_piece(struct tube_judge *t, size_t k, const struct stride *step,
+                           double entered, struct nearest *n)
+{
+    struct tube_piece *piece = tube_path_at(&t->path, k);
+    const double from = entered >= 0 ? 0 : piece->from;
+    const struct beside b = look_beside(&piece->segment, from, &step->to, within_of(piece));
+    const double of_tolerance = b.distance_mm / piece->motion.tolerance_mm;
+    const double ahead_mm = (1 - b.part) * piece->segment.length_mm;
+    double leaves = NOT_ENTERED;
+
+    if (ahead_mm <= within_end(piece, step) + step->segment.length_mm)
+        leaves = pass_end(piece, step, piece->reached ? 0 : entered);
+    else
+        piece->corner_mm = maths_min(
+            piece->corner_mm, maths_sqrt(ahead_mm * ahead_mm + b.distance_mm * b.distance_mm));
+    piece->reached = b.first <= 1;
+    piece->from = piece->reached ? b.first : from;
+    if (of_tolerance < n->of_tolerance)
+        *n = (struct nearest){
+            .piece = k, .part = b.part, .distance_mm = b.distance_mm, .of_tolerance = of_tolerance};
+    return leaves;
+}
+
+static bool has_piece(struct tube_judge *t, size_t k)
+{
+    return k < t->path.count || tube_path_extend(&t->path);
+}
+
+/* All places that the setpoint may be at now. False: there is none; *n is then the nearest of those that were left. */
+static bool follow(struct tube_judge *t, const struct stride *step, struct nearest *n)
+{
+    double entered = NOT_ENTERED;
+    size_t active = 0;
+
+    for (size_t k = 0; (k < t->active || entered >= 0) && has_piece(t, k); k++) {
+        if (entered < 0 && !tube_path_at(&t->path, k)->reached)
+            continue;
+        entered = follow_piece(t, k, step, entered, n);
+        if (tube_path_at(&t->path, k)->reached)
+            active = k + 1;
+    }
+    t->active = active;
+    return active > 0;
+}
+
+/* The path has been left: it goes on at the nearest place within reach. */
+static void find_again(struct tube_judge *t, const struct stride *step)
+{
+    const double tolerance_mm = tube_path_at(&t->path, 0)->motion.tolerance_mm;
+    const double reach_mm = REACH_STEPS * step->segment.length_mm + REACH_TOLERANCES * tolerance_mm;
+    double ahead_mm = 0, least_mm = MATHS_INFINITY, part = 0;
+    struct tube_piece *found;
+
+    for (size_t k = 0; ahead_mm <= reach_mm && has_piece(t, k); k++) {
+        const struct tube_piece *piece = tube_path_at(&t->path, k);
+        const struct beside b = look_beside(&piece->segment, piece->from, &step->to, 0);
+
+        ahead_mm += (1 - piece->from) * piece->length_mm;
+        if (b.distance_mm < least_mm) {
+            least_mm = b.distance_mm;
+            part = b.part;
+            t->active = k + 1;
+        }
+    }
+    for (size_t k = 0; k < t->active; k++)
+        (void)pass_end(tube_path_at(&t->path, k), step, 0);
+    found = tube_path_at(&t->path, t->active - 1);
+    found->reached = true;
+    found->from = part;
+}
+
+/* Steps along the tangent, as if the curve were straight: to where the setpoint lies across it. */
+static double curve_distance(const struct tube_piece *piece, double part, const struct point *p)
+{
+    const struct curve *c = &piece->motion.curve;
+    double s_mm = piece->from_mm + part * piece->length_mm;
+    double fraction = s_mm / c->length_mm;
+    double least = judge_curve_distance(c, p, &fraction);
+
+    for (int k = 0; k < REFINE_STEPS; k++) {
+        struct point on, tangent;
+        double along = 0, square = 0;
+
+        curve_point(c, s_mm, &on);
+        least = maths_min(least, judge_distance(&on, p));
+        curve_tangent(c, s_mm, &tangent);
+        for (int i = 0; i < AXIS_COUNT; i++) {
+            along += (p->at[i] - on.at[i]) * tangent.at[i];
+            square += tangent.at[i] * tangent.at[i];
+        }
+        s_mm = maths_clamp(s_mm + along / square, 0, c->length_mm);
+    }
+    return least;
+}
+
+static double distance_from(const struct tube_piece *piece, const struct point *p)
+{
+    const struct beside b = look_beside(&piece->segment, piece->from, p, 0);
+
+    return piece->motion.cut_mm > 0 ? curve_distance(piece, b.part, p) : b.distance_mm;
+}
+
+/* What the path may be left by in all: no less than an exact motion. */
+static double allowed_mm(const struct tube_judge *t, const struct tube_piece *piece)
+{
+    return maths_max(piece->motion.tolerance_mm, t->path.exact_mm);
+}
+
+static void note_beyond(struct tube_judge *t, double beyond_mm, uint32_t line)
+{
+    if (beyond_mm <= t->figures.beyond_mm)
         return;
-    t->figures.beyond_mm = distance_mm - tolerance_mm;
+    t->figures.beyond_mm = beyond_mm;
     t->figures.beyond_line = line;
 }
 
-/* Every corner has the tolerance of the wider of the two motions it joins. */
-static void drop_first(struct tube_judge *t)
+/* Could a setpoint so far from the piece raise any figure? A curve is looked at closely only then. */
+static bool is_news(const struct tube_judge *t, const struct tube_piece *piece, double distance_mm)
 {
-    const struct tube_element *e = element(t, 0);
-    double tolerance_mm = e->tolerance_mm;
+    const double most_mm = distance_mm + piece->motion.cut_mm;
 
-    if (t->count > 1)
-        tolerance_mm = maths_max(tolerance_mm, element(t, 1)->tolerance_mm);
-    t->figures.corner_mm = maths_max(t->figures.corner_mm, e->corner_mm);
-    beyond(t, e->corner_mm, tolerance_mm, e->line);
-    t->first = (t->first + 1) % t->capacity;
-    t->count--;
+    return most_mm - allowed_mm(t, piece) > t->figures.beyond_mm ||
+           (piece->motion.rounded && (most_mm > t->figures.deviation_mm ||
+                                      most_mm > t->figures.path_part * piece->motion.tolerance_mm));
 }
 
-static double segment_distance(const struct point *a, const struct point *b, const struct point *p)
+/* The nearest of the places at which the setpoint may be; after it has left the path the nearest one left. */
+static void measure(struct tube_judge *t, const struct point *p, struct nearest *n, bool left)
 {
-    struct point nearest = *a;
-    double way = 0;
-    double square = 0;
+    const struct tube_piece *piece = tube_path_at(&t->path, n->piece);
+
+    if (!is_news(t, piece, n->distance_mm))
+        return;
+    n->distance_mm = distance_from(piece, p);
+    n->of_tolerance = n->distance_mm / piece->motion.tolerance_mm;
+    for (size_t k = 0; k < t->active && !left; k++) {
+        const struct tube_piece *other = tube_path_at(&t->path, k);
+        const double distance_mm = other->reached ? distance_from(other, p) : MATHS_INFINITY;
+
+        if (distance_mm < n->of_tolerance * other->motion.tolerance_mm) {
+            n->distance_mm = distance_mm;
+            n->of_tolerance = distance_mm / other->motion.tolerance_mm;
+            piece = other;
+        }
+    }
+    note_beyond(t, n->distance_mm - allowed_mm(t, piece), piece->motion.line);
+    if (piece->motion.rounded) {
+        raise_to(&t->figures.path_part, n->of_tolerance);
+        raise_to(&t->figures.deviation_mm, n->distance_mm);
+    }
+}
+
+/* The corner at the end of the first piece, if it is one. A tap turns before it, which is judged elsewhere. */
+static void settle_corner(struct tube_judge *t)
+{
+    const struct tube_piece *piece = tube_path_at(&t->path, 0);
+    const struct point end = end_of(&piece->segment);
+    const double corner_mm =
+        maths_min(piece->corner_mm, judge_distance(&t->last, &end)); /* if nothing came to it */
+    double tolerance_mm = allowed_mm(t, piece);
+
+    if (!piece->ends || piece->motion.turning_mm > 0)
+        return;
+    if (t->path.count > 1)
+        tolerance_mm = maths_min(tolerance_mm, allowed_mm(t, tube_path_at(&t->path, 1)));
+    if (piece->motion.rounded) {
+        raise_to(&t->figures.corner_part, corner_mm / piece->motion.tolerance_mm);
+        raise_to(&t->figures.corner_mm, corner_mm);
+    }
+    if (piece->motion.rounded || !t->exact_elsewhere)
+        note_beyond(t, corner_mm - tolerance_mm, piece->motion.line);
+}
+
+/* Pieces that have been left for good. */
+static void drop_left(struct tube_judge *t)
+{
+    while (!tube_path_at(&t->path, 0)->reached) {
+        settle_corner(t);
+        tube_path_drop(&t->path);
+        t->active--;
+    }
+}
+
+static double length_before(const struct tube_piece *piece, double part)
+{
+    const struct tube_motion *m = &piece->motion;
+
+    return curve_is_rotary(&m->curve) ? m->travel_mm
+                                      : m->travel_mm + piece->from_mm + part * piece->length_mm;
+}
+
+static struct stride step_to(const struct tube_judge *t, const struct point *setpoint)
+{
+    struct stride step = {.segment = {.start = t->last}, .to = *setpoint};
 
     for (int i = 0; i < AXIS_COUNT; i++) {
-        way += (p->at[i] - a->at[i]) * (b->at[i] - a->at[i]);
-        square += (b->at[i] - a->at[i]) * (b->at[i] - a->at[i]);
+        const double way = setpoint->at[i] - t->last.at[i];
+
+        step.segment.way.at[i] = way;
+        step.segment.square_mm2 += way * way;
     }
-    for (int i = 0; i < AXIS_COUNT && square > 0; i++)
-        nearest.at[i] += maths_clamp(way / square, 0, 1) * (b->at[i] - a->at[i]);
-    return judge_distance(&nearest, p);
-}
-
-/* Ends of motions near the place: how near does this step come to them? */
-static void judge_corners(struct tube_judge *t, const struct point *setpoint, double reach_mm)
-{
-    for (size_t k = 0; k < t->count && end_of(element(t, k)) <= t->place_mm + reach_mm; k++) {
-        struct tube_element *e = element(t, k);
-
-        e->corner_mm = maths_min(e->corner_mm, segment_distance(&t->last, setpoint, &e->curve.end));
-    }
-}
-
-/*
- * Of a helix judge_curve_distance compares the point at the same angle, which is not the nearest one: from there steps
- * along the tangent, as if the curve were straight.
- */
-static double refine(const struct tube_element *e, const struct point *setpoint, double distance,
-                     double *part)
-{
-    double s_mm = *part * e->curve.length_mm;
-
-    for (int k = 0; k < REFINE_STEPS && e->curve.kind != CURVE_LINE; k++) {
-        struct point on;
-        struct point along;
-        double way = 0;
-
-        curve_point(&e->curve, s_mm, &on);
-        curve_tangent(&e->curve, s_mm, &along);
-        for (int i = 0; i < AXIS_LINEAR_COUNT; i++)
-            way += (setpoint->at[i] - on.at[i]) * along.at[i];
-        s_mm = maths_clamp(s_mm + way, 0, e->curve.length_mm);
-        curve_point(&e->curve, s_mm, &on);
-        if (judge_distance(&on, setpoint) < distance) {
-            distance = judge_distance(&on, setpoint);
-            *part = s_mm / e->curve.length_mm;
-        }
-    }
-    return distance;
-}
-
-/* The distance from a motion, of which what is behind the last place does not count; *place: of the nearest point. */
-static double distance_ahead(const struct tube_judge *t, const struct tube_element *e,
-                             const struct point *setpoint, double *place)
-{
-    const double from_mm = maths_clamp(t->place_mm - e->start_mm, 0, e->curve.length_mm);
-    double part = from_mm / e->curve.length_mm;
-    double distance = judge_curve_distance(&e->curve, setpoint, &part);
-    struct point from;
-
-    distance = refine(e, setpoint, distance, &part);
-    *place = e->start_mm + part * e->curve.length_mm;
-    if (*place >= t->place_mm)
-        return distance;
-    *place = e->start_mm + from_mm;
-    curve_point(&e->curve, from_mm, &from);
-    return judge_distance(&from, setpoint);
-}
-
-/*
- * The place goes on to the first motion within its tolerance, not to the nearest: of a path that turns back on itself both
- * legs are near. What counts as the deviation is the nearest place from there on, within reach.
- */
-static void judge_place(struct tube_judge *t, const struct point *setpoint, double reach_mm)
-{
-    const struct tube_element *nearest = NULL;
-    double best = MATHS_INFINITY;
-    double place = t->place_mm;
-    bool kept = false;
-
-    for (size_t k = 0; k < t->count && element(t, k)->start_mm <= t->place_mm + reach_mm; k++) {
-        const struct tube_element *e = element(t, k);
-        double here;
-        double distance;
-
-        if (end_of(e) < t->place_mm)
-            continue;
-        distance = distance_ahead(t, e, setpoint, &here);
-        if (!kept && (distance <= e->tolerance_mm || distance < best))
-            place = here;
-        kept = kept || distance <= e->tolerance_mm;
-        if (distance < best) {
-            best = distance;
-            nearest = e;
-        }
-    }
-    if (nearest == NULL)
-        return;
-    t->place_mm = maths_max(t->place_mm, place);
-    t->figures.deviation_mm = maths_max(t->figures.deviation_mm, best);
-    beyond(t, best, nearest->tolerance_mm, nearest->line);
-}
-
-/* Of the motions near by: the place may lag behind the setpoint by it. */
-static double widest_tolerance(const struct tube_judge *t)
-{
-    double widest = t->exact_mm;
-
-    for (size_t k = 0; k < t->count; k++)
-        widest = maths_max(widest, element(t, k)->tolerance_mm);
-    return widest;
+    step.segment.length_mm = maths_sqrt(step.segment.square_mm2);
+    return step;
 }
 
 bool tube_judge_add(struct tube_judge *t, const struct point *setpoint)
 {
-    const double reach_mm =
-        REACH_STEPS * judge_distance(&t->last, setpoint) + REACH_TOLERANCES * widest_tolerance(t);
+    const struct stride step = step_to(t, setpoint);
+    struct nearest n = {.of_tolerance = MATHS_INFINITY};
+    bool left;
 
-    while (!t->program_ended && t->length_mm <= t->place_mm + reach_mm) {
-        if (!read_move(t))
-            return false;
-    }
-    judge_place(t, setpoint, reach_mm);
-    judge_corners(t, setpoint, reach_mm);
+    if (t->path.failed)
+        return false;
+    left = !follow(t, &step, &n);
+    measure(t, setpoint, &n, left);
+    if (left)
+        find_again(t, &step);
+    t->figures.path_length_mm = length_before(tube_path_at(&t->path, n.piece), n.part);
+    drop_left(t);
     t->last = *setpoint;
-    while (t->count > 1 && end_of(element(t, 0)) < t->place_mm - reach_mm)
-        drop_first(t);
-    return true;
+    return !t->path.failed;
+}
+
+/* All that can be read but its last piece has been left by now. */
+static void leave_all(struct tube_judge *t)
+{
+    while (has_piece(t, 1)) {
+        settle_corner(t);
+        tube_path_drop(&t->path);
+    }
+}
+
+void tube_judge_answer(struct tube_judge *t, const struct program_answer *answer)
+{
+    if (t->path.failed)
+        return;
+    leave_all(t);
+    if (!t->path.motion.probing)
+        settle_corner(t);
+    tube_path_answer(&t->path, answer);
+    t->active = 1;
+    t->figures.path_length_mm = t->path.travel_mm;
 }
 
 void tube_judge_finish(struct tube_judge *t)
 {
-    while (t->count > 0)
-        drop_first(t);
+    if (t->path.failed)
+        return;
+    leave_all(t);
+    settle_corner(t);
+    if (tube_path_at(&t->path, 0)->reached)
+        t->figures.path_length_mm = t->path.travel_mm;
 }

@@ -1,48 +1,36 @@
 /*
- * The judge of a rounded path (G64): how far setpoints are from the programmed path, and how far the path's corners are
- * from the line through the setpoints.
+ * The judge of a path within a tolerance (G64 P): how far setpoints are from the programmed path, and how far the path's
+ * corners are from the line through the setpoints.
  *
  * It knows nothing of the planner's reasoning: it reads the part program itself and follows the setpoints along it, never
- * backwards. Of the path only what is near the setpoint is in memory. X, Y and Z alone.
+ * backwards and leaving nothing out. What it remembers are the places of the path at which the last setpoint may be:
+ * those within some tolerances of it that can be come to from such places of the setpoint before, past every corner and
+ * bend in between (Alt and Godau's way to decide on a Frechet distance). The nearest of them counts. Where there is no
+ * such place left the path has been left: that is how far off the setpoint is, and the path is looked for near by, ahead.
+ * Memory is what lies within reach.
  */
 #ifndef TAKT_HOST_TUBE_JUDGE_H
 #define TAKT_HOST_TUBE_JUDGE_H
 
-#include "geometry/curve.h"
-#include "offset/offset.h"
-#include "program/program.h"
-
-#include <stdbool.h>
-#include <stddef.h>
-#include <stdint.h>
+#include "takt/tube_path.h"
 
 struct tube_figures {
-    double deviation_mm;  /* largest distance of a setpoint from the path */
-    double corner_mm;     /* largest distance of a corner of the path from the setpoints' line */
-    double beyond_mm;     /* most that one of them is beyond its tolerance; <= 0: none */
-    uint32_t beyond_line; /* of the motion where that is */
-};
-
-/* A motion near the setpoint. */
-struct tube_element {
-    struct curve curve;
-    double start_mm; /* along the path */
-    double tolerance_mm;
-    double corner_mm; /* nearest that the setpoints' line has come to its end */
-    uint32_t line;
+    /* of motions within a tolerance P */
+    double path_part;    /* largest distance of a setpoint from the path, as a part of P */
+    double corner_part;  /* of a corner of the path from the setpoints' line, likewise */
+    double deviation_mm; /* the same as lengths */
+    double corner_mm;
+    /* of all motions */
+    double beyond_mm;      /* most that a setpoint is beyond the tolerance; 0: none */
+    uint32_t beyond_line;  /* of the motion where that is */
+    double path_length_mm; /* gone so far; motions of rotary axes alone do not count */
 };
 
 struct tube_judge {
-    struct program program;
-    struct offset offset;
-    bool program_ended;
-    double exact_mm;              /* tolerance where the program rounds nothing */
-    struct point end;             /* of what has been read */
-    double length_mm;             /* of what has been read */
-    struct tube_element *element; /* a queue, owned */
-    size_t first, count, capacity;
-    double place_mm; /* of the last setpoint */
-    struct point last;
+    struct tube_path path;
+    bool exact_elsewhere; /* the ends of exact motions are judged by others */
+    size_t active;        /* pieces before this one may be where the setpoint is */
+    struct point last;    /* setpoint */
     struct tube_figures figures;
 };
 
@@ -52,7 +40,9 @@ void tube_judge_init(struct tube_judge *t, const struct program_config *program,
 void tube_judge_free(struct tube_judge *t);
 /* The next setpoint. False: out of memory. */
 bool tube_judge_add(struct tube_judge *t, const struct point *setpoint);
-/* After the last one. */
+/* What the program has been told (G38, M66): everything before it has been executed, but for the rest of a probing move. */
+void tube_judge_answer(struct tube_judge *t, const struct program_answer *answer);
+/* After the last setpoint of a program that has been executed to its end. */
 void tube_judge_finish(struct tube_judge *t);
 
 #endif

@@ -7,8 +7,8 @@
 #include <stdbool.h>
 #include <sys/types.h>
 
-/* What the image opens, in this order: setup, program, and the pipes it reads and writes. */
-#define PROCESS_FILES 4
+/* What the image opens, in this order: setup, program, the pipes it reads and writes, and a plan or -1. */
+#define PROCESS_FILES 5
 
 /* The board that a target's name stands for; NULL: none. */
 const char *process_board(const char *name);

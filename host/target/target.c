@@ -46,7 +46,9 @@ static bool write_setup(FILE *file, const struct target_config *config)
     (void)fwrite(&setup, sizeof setup, 1, file);
     (void)fwrite(config->machine, sizeof *config->machine, 1, file);
     (void)fwrite(config->parameters, sizeof *config->parameters, 1, file);
-    (void)fwrite(config->tools->tools, sizeof *config->tools->tools, config->tools->count, file);
+    if (config->tools->count > 0) /* else there may be no array at all */
+        (void)fwrite(config->tools->tools, sizeof *config->tools->tools, config->tools->count,
+                     file);
     for (unsigned i = 0; i < config->tables; i++) {
         const struct remote_table head = {config->table[i].is_volume,
                                           (uint32_t)config->table[i].size};
@@ -92,7 +94,8 @@ static bool start_qemu(struct target *t, const struct target_config *config, FIL
     t->from = from[0];
     t->process =
         process_start(process_board(config->name), config->image,
-                      (int[PROCESS_FILES]){fileno(setup), fileno(program), to[0], from[1]});
+                      (int[PROCESS_FILES]){fileno(setup), fileno(program), to[0], from[1],
+                                           config->plan != NULL ? fileno(config->plan) : -1});
     if (t->process == 0)
         (void)fail(t, "qemu-system-arm cannot be started: %s (Debian: qemu-system-arm)",
                    strerror(errno));

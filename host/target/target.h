@@ -17,6 +17,7 @@
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
+#include <stdio.h>
 #include <sys/types.h>
 
 #define TARGET_PROBLEM_MAX 255
@@ -38,6 +39,7 @@ struct target_config {
     const struct tool_table *tools;
     const struct parameters *parameters;
     struct source program; /* read once, from its beginning, by target_open */
+    FILE *plan;            /* the program planned ahead, a regular file; NULL: none */
     unsigned tables;
     const struct target_table *table;
     bool exact_path, block_delete;

@@ -1,4 +1,4 @@
-/* Step pulses as words for the pins. */
+/* Step pulses as levels of the pins. */
 #include "stm32f405/step_slots.h"
 #include "unity.h"
 
@@ -41,11 +41,11 @@ static void rise(unsigned axis)
     driver.rose[axis] = driver.slot;
 }
 
-static void drive(uint32_t word)
+static void drive(uint16_t level)
 {
     const uint32_t before = driver.pins;
 
-    driver.pins = (driver.pins & ~(word >> 16)) | (word & 0xFFFFU);
+    driver.pins = level;
     for (unsigned axis = 0; axis < AXIS_COUNT; axis++) {
         if (((before ^ driver.pins) >> (axis + 8) & 1U) != 0)
             driver.turned[axis] = driver.slot;
@@ -57,11 +57,11 @@ static void drive(uint32_t word)
 
 static void end_cycle(void)
 {
-    static uint32_t words[STEP_SLOTS_MAX];
+    static uint16_t levels[STEP_SLOTS_MAX];
 
-    step_slots_take(&slots, words);
+    step_slots_take(&slots, levels);
     for (unsigned i = 0; i < slots.slots; i++)
-        drive(words[i]);
+        drive(levels[i]);
 }
 
 static bool step(uint32_t time_ns, unsigned axes, unsigned direction)

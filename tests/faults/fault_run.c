@@ -37,6 +37,7 @@ struct world {
     struct bus bus;
     struct virtual_drives drives;
     struct controller controller;
+    struct controller_reader reader;
     struct parameters parameters;
     struct source_text text;
     struct inject script;
@@ -114,8 +115,10 @@ static void open_world(struct world *w, const struct fault_case *fault)
 {
     struct virtual_drives_config virtual;
     struct machine machine;
-    struct controller_config config = {
-        .machine = &machine, .parameters = &w->parameters, .exact_path = true};
+    struct controller_config config = {.machine = &machine,
+                                       .reader = &w->reader,
+                                       .parameters = &w->parameters,
+                                       .exact_path = true};
     virtual_drives_set_default(&virtual, DRIVES);
     machine_set_default(&machine);
     for (unsigned i = 0; i < DRIVES; i++)

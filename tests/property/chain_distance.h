@@ -1,5 +1,6 @@
 /*
- * How far setpoints are from curves, and corners from the setpoints' line: X, Y and Z.
+ * How far setpoints are from curves, and corners from the setpoints' line: over all axes, where a degree counts like a
+ * millimetre.
  */
 #ifndef TAKT_TESTS_CHAIN_DISTANCE_H
 #define TAKT_TESTS_CHAIN_DISTANCE_H
@@ -7,12 +8,19 @@
 #include "base/maths.h"
 #include "geometry/curve.h"
 
+static inline double chain_weight(int axis)
+{
+    return axis < AXIS_LINEAR_COUNT ? 1.0 : 180.0 / MATHS_PI;
+}
+
 static inline double chain_distance(const struct point *a, const struct point *b)
 {
     double square = 0.0;
 
-    for (int i = 0; i < AXIS_LINEAR_COUNT; i++) {
-        square += (a->at[i] - b->at[i]) * (a->at[i] - b->at[i]);
+    for (int i = 0; i < AXIS_COUNT; i++) {
+        const double off = chain_weight(i) * (a->at[i] - b->at[i]);
+
+        square += off * off;
     }
     return maths_sqrt(square);
 }
@@ -29,9 +37,11 @@ static inline double chain_distance_across(const struct curve *c, const struct p
 
         curve_point(c, s, &on);
         curve_tangent(c, s, &t);
-        for (int axis = 0; axis < AXIS_LINEAR_COUNT; axis++) {
-            along += (p->at[axis] - on.at[axis]) * t.at[axis];
-            square += t.at[axis] * t.at[axis];
+        for (int axis = 0; axis < AXIS_COUNT; axis++) {
+            const double weight = chain_weight(axis) * chain_weight(axis);
+
+            along += weight * (p->at[axis] - on.at[axis]) * t.at[axis];
+            square += weight * t.at[axis] * t.at[axis];
         }
         s = maths_clamp(s + along / square, 0.0, c->length_mm);
     }

@@ -127,7 +127,7 @@ static inline struct move chain_next(struct chain *c, enum chain_family family, 
 
 /* The largest ratios to the limits so far, of setpoints handed over one by one. */
 struct chain_judge {
-    double history[CHAIN_AXES][4]; /* newest first */
+    double history[AXIS_COUNT][4]; /* newest first */
     double velocity, acceleration, jerk;
 };
 
@@ -151,8 +151,10 @@ static inline void chain_judge_axis(struct chain_judge *seen, const struct plan_
 static inline void chain_judge_setpoint(struct chain_judge *seen, const struct plan_limits *limits,
                                         const struct point *cmd)
 {
-    for (int axis = 0; axis < CHAIN_AXES; axis++) {
-        chain_judge_axis(seen, limits, axis, cmd->at[axis]);
+    for (int axis = 0; axis < AXIS_COUNT; axis++) {
+        if (axis < CHAIN_AXES || (limits->axes & 1U << axis) != 0) {
+            chain_judge_axis(seen, limits, axis, cmd->at[axis]);
+        }
     }
 }
 

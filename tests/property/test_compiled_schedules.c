@@ -262,7 +262,7 @@ static void begin_replay(struct run *r, bool is_stream)
     motion_init(&motion, &path, &start, false);
     handover_allow(&motion);
     handover_allow_linear(&motion);
-    replay_init(&replay, &source);
+    replay_init(&replay, path_lend(&path, sizeof(struct intake)), &source);
     memset(&r->schedule, 0, sizeof(r->schedule));
     r->schedule.now = (struct motion_operator){.feed_ratio = 1.0, .rapid_ratio = 1.0};
     r->schedule.target = 1.0;

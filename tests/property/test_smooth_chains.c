@@ -1,7 +1,8 @@
 /*
  * Smoothed paths (G64 P), whatever the operator does: random programs on random machines under random schedules of
  * overrides and holds. The setpoints keep every axis's limits by differences, are within the tolerance of the programmed
- * path, pass every programmed corner within it, and end in the programmed end.
+ * path, pass every programmed corner within it, and end in the programmed end. So they do with rotary axes, up to six in
+ * all, and beside motions on the exact path whose every end is landed on.
  *
  * test_smooth_chains NUMBER runs so many programs instead of PROGRAMS, test_smooth_chains NUMBER FIRST from that seed on.
  */
@@ -34,6 +35,8 @@ static unsigned first_seed = 1;
 struct programmed {
     struct curve curve;
     bool has_length;
+    bool exact;       /* not smoothed */
+    bool landed;      /* a setpoint has fallen on its end */
     double corner_mm; /* least distance of its end from the setpoints' line */
 };
 
@@ -48,6 +51,8 @@ struct run {
     struct point end;
     struct programmed move[MOVES_MAX];
     struct schedule schedule;
+    bool exact;             /* the newest move is not smoothed */
+    unsigned rotary;        /* bit i set: axis i turns */
     uint64_t single_cycles; /* single block is switched every so many; 0: never */
     bool rests;
     unsigned singles; /* times the axes have come to rest under single block alone */
@@ -77,13 +82,50 @@ static void random_machine(struct run *r)
     schedule_random_axes(&r->chain, l);
 }
 
+/* One to three rotary axes beside the linear ones: rad. */
+static void random_rotary(struct run *r)
+{
+    struct plan_limits *l = &r->limits;
+
+    r->rotary = (unsigned)chain_between(&r->chain, 1, 8) << AXIS_LINEAR_COUNT;
+    l->axes |= r->rotary;
+    for (int i = AXIS_LINEAR_COUNT; i < AXIS_COUNT; i++) {
+        l->velocity_mm_s[i] = chain_decades(&r->chain, -0.3, 1.0);
+        l->acceleration_mm_s2[i] = chain_decades(&r->chain, 0.5, 2.2);
+        l->jerk_mm_s3[i] = chain_decades(&r->chain, 2.0, 4.0);
+    }
+}
+
+/* The rotary axes turn on the way, from nothing to a third of a turn; or, on some lines, alone. */
+static void turn(struct run *r, const struct point *from, struct move *m)
+{
+    const bool is_line = m->kind == MOVE_RAPID || m->kind == MOVE_FEED;
+
+    if (is_line && chain_between(&r->chain, 0, 1) < 0.1) {
+        m->end = *from;
+    }
+    for (int i = AXIS_LINEAR_COUNT; i < AXIS_COUNT; i++) {
+        if ((r->rotary & 1U << i) != 0 && chain_between(&r->chain, 0, 1) < 0.7) {
+            m->end.at[i] += chain_between(&r->chain, -1, 1) * chain_decades(&r->chain, -5, 0.3);
+        }
+    }
+    r->chain.at = m->end;
+}
+
 /* The next move, kept to judge by. */
 static struct move next_move(struct run *r)
 {
     struct programmed *kept = &r->move[r->pushed];
     struct move m = chain_next(&r->chain, r->family, r->pushed);
 
-    m.path = PATH_BLEND;
+    if (r->rotary != 0) {
+        turn(r, &r->end, &m);
+    }
+    if (r->limits.landing == LANDING_BLOCK && chain_between(&r->chain, 0, 1) < 0.15) {
+        r->exact = !r->exact;
+    }
+    kept->exact = r->exact;
+    m.path = r->exact ? PATH_EXACT : PATH_BLEND;
     m.tolerance_mm = r->tolerance_mm;
     m.merge_mm = r->merge_mm;
     kept->has_length = move_curve(&m, &r->end, &kept->curve);
@@ -120,10 +162,21 @@ static void plan(struct run *r)
     motion_build(&motion);
 }
 
-/* Lowers *least to the distance of p from the curve, which is never farther from its start than its length. */
+/* No place on a curve is farther from its start: its length, and what the rotary axes turn by. */
+static double reach_of(const struct curve *c)
+{
+    double reach = c->rotary ? 0.0 : c->length_mm;
+
+    for (int i = AXIS_LINEAR_COUNT; i < AXIS_COUNT; i++) {
+        reach += chain_weight(i) * maths_abs(c->end.at[i] - c->start.at[i]);
+    }
+    return reach;
+}
+
+/* Lowers *least to the distance of p from the curve. */
 static void judge_curve(const struct curve *c, const struct point *p, double *least)
 {
-    if (chain_distance(p, &c->start) - c->length_mm < *least) {
+    if (chain_distance(p, &c->start) - reach_of(c) < *least) {
         *least = maths_min(*least, chain_distance_from(c, p));
     }
 }
@@ -161,6 +214,15 @@ static void judge_place(struct run *r, const struct cycle_record *record)
         r->path_cycle = record->cycle;
     }
     r->last = record->cmd;
+}
+
+static void judge_landing(struct run *r, const struct cycle_record *record)
+{
+    if (record->landed && record->block > 0) {
+        struct programmed *m = &r->move[record->block - 1];
+
+        m->landed = m->landed || chain_distance(&record->cmd, &m->curve.end) == 0.0;
+    }
 }
 
 static void count_rests(struct run *r)
@@ -202,6 +264,7 @@ static enum motion_result run_program(struct run *r)
         if (result == MOTION_CYCLE) {
             chain_judge_setpoint(&r->judge, &r->limits, &record.cmd);
             judge_place(r, &record);
+            judge_landing(r, &record);
             count_rests(r);
         }
     } while ((result == MOTION_CYCLE || result == MOTION_NOT_YET) && motion.cycles < CYCLES_MAX);
@@ -255,6 +318,35 @@ static void test_single_block_switched_inside_chains_keeps_all_of_it(void)
     TEST_ASSERT_TRUE(singles >= programs / 20);
 }
 
+static void test_rotary_axes_in_chains_keep_all_of_it(void)
+{
+    for (unsigned seed = first_seed; seed < first_seed + programs / 2; seed++) {
+        set_up_run(&run, seed);
+        random_rotary(&run);
+        check_run(&run, run_program(&run), seed);
+    }
+}
+
+static void test_exact_motions_between_chains_are_landed_on_block_by_block(void)
+{
+    unsigned landings = 0;
+
+    for (unsigned seed = first_seed; seed < first_seed + programs / 2; seed++) {
+        set_up_run(&run, seed);
+        run.limits.landing = LANDING_BLOCK;
+        check_run(&run, run_program(&run), seed);
+        for (unsigned i = 0; i < run.pushed; i++) {
+            const struct programmed *m = &run.move[i];
+
+            if (m->exact && m->has_length) {
+                TEST_ASSERT_TRUE(m->landed);
+                landings++;
+            }
+        }
+    }
+    TEST_ASSERT_TRUE(landings >= programs / 2);
+}
+
 static void test_chains_that_once_stood_for_ever_come_to_their_end(void)
 {
     static const unsigned seeds[] = {
@@ -279,6 +371,8 @@ int main(int argc, char **argv)
     UNITY_BEGIN();
     RUN_TEST(test_smoothed_setpoints_keep_limits_and_tolerance_under_any_override);
     RUN_TEST(test_single_block_switched_inside_chains_keeps_all_of_it);
+    RUN_TEST(test_rotary_axes_in_chains_keep_all_of_it);
+    RUN_TEST(test_exact_motions_between_chains_are_landed_on_block_by_block);
     RUN_TEST(test_chains_that_once_stood_for_ever_come_to_their_end);
     return UNITY_END();
 }

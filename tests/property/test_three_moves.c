@@ -125,7 +125,7 @@ static void random_line(struct chain *c, const struct plan_limits *l, const doub
     move->feed_mm_s = chain_between(c, 5, 100);
     move->overrides = OVERRIDE_FEED | OVERRIDE_HOLD;
     move->turns = 1;
-    *along = (struct optimum_move){length_mm, move->feed_mm_s, HUGE_VAL, HUGE_VAL, HUGE_VAL};
+    *along = (struct optimum_move){length_mm, move->feed_mm_s, HUGE_VAL, HUGE_VAL, HUGE_VAL, 0.0};
     for (int i = 0; i < CHAIN_AXES; i++) {
         const double part = maths_abs(direction[i]);
 
@@ -251,7 +251,7 @@ static void test_the_search_finds_what_is_known(void)
     const double lengths[] = {0.05, 1.0, 30.0};
 
     for (int i = 0; i < 3; i++) {
-        struct optimum_move whole = {lengths[i], 80.0, 1000.0, 50000.0, HUGE_VAL};
+        struct optimum_move whole = {lengths[i], 80.0, 1000.0, 50000.0, HUGE_VAL, 0.0};
         struct optimum_move part = whole;
 
         part.length = whole.length / 3.0;

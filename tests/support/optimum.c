@@ -33,19 +33,31 @@ double optimum_single(const struct optimum_move *m)
     return 2.0 * ramp_time(m, low);
 }
 
-/* On the way: where it is, and after how long. */
+/* On the way: where it is, after how long, and the highest feed so far. */
 struct at {
-    double time, way, feed, acceleration;
+    double time, way, feed, acceleration, peak;
 };
+
+/* Of feeds: rounding. */
+#define ROUNDING 1e-9
+
+double optimum_level(const struct optimum_move *m)
+{
+    return m->level_feed > m->feed ? m->level_feed : m->feed;
+}
 
 static void go_on(struct at *p, double time, double jerk)
 {
     const double a = p->acceleration;
 
+    if (a > 0.0 && a + time * jerk < 0.0) {
+        p->peak = fmax(p->peak, p->feed - 0.5 * a * a / jerk);
+    }
     p->way += time * (p->feed + time * (a / 2.0 + time * jerk / 6.0));
     p->feed += time * (a + time * jerk / 2.0);
     p->acceleration = a + time * jerk;
     p->time += time;
+    p->peak = fmax(p->peak, p->feed);
 }
 
 /* Jerk of one sign until acceleration is at its limit, and that kept, for a time in all. */
@@ -87,13 +99,13 @@ static bool is_too_far(const struct optimum_move *m, const struct at *p, double 
     if (sign * p->acceleration <= 0.0) {
         return false;
     }
-    return sign > 0.0 ? levelled > m->feed : levelled < 0.0;
+    return sign > 0.0 ? levelled > optimum_level(m) : levelled < 0.0;
 }
 
 static struct at pushed(const struct optimum_move *m, const struct optimum_state *from, double sign,
                         double time)
 {
-    struct at p = {0.0, 0.0, from->feed, from->acceleration};
+    struct at p = {0.0, 0.0, from->feed, from->acceleration, 0.0};
 
     push(&p, m, sign, time);
     return p;
@@ -103,7 +115,7 @@ static struct at pushed(const struct optimum_move *m, const struct optimum_state
 static double push_max(const struct optimum_move *m, const struct optimum_state *from, double sign)
 {
     double low = 0.0;
-    double high = 2.0 * m->acceleration / m->jerk + 2.0 * m->feed / m->acceleration;
+    double high = 2.0 * m->acceleration / m->jerk + 2.0 * optimum_level(m) / m->acceleration;
 
     for (int i = 0; i < HALVINGS; i++) {
         const double time = 0.5 * (low + high);
@@ -128,8 +140,8 @@ static struct at pushed_and_changed(const struct optimum_move *m, const struct o
  * -, +, - where it is shorter. The longer the first phase, the longer (shorter) the way. What is left of it at the
  * longest one is gone at the highest feed.
  */
-double optimum_between(const struct optimum_move *m, const struct optimum_state *from,
-                       const struct optimum_state *to)
+static double between(const struct optimum_move *m, const struct optimum_state *from,
+                      const struct optimum_state *to)
 {
     const double sign = pushed_and_changed(m, from, to, 1.0, 0.0).way < m->length ? 1.0 : -1.0;
     double low = 0.0;
@@ -138,7 +150,7 @@ double optimum_between(const struct optimum_move *m, const struct optimum_state 
     const double rest = sign * (m->length - most.way);
 
     if (rest > 0.0) {
-        return sign > 0.0 ? most.time + rest / m->feed : HUGE_VAL;
+        return sign > 0.0 && m->level_feed == 0.0 ? most.time + rest / m->feed : HUGE_VAL;
     }
     for (int i = 0; i < HALVINGS; i++) {
         const double time = 0.5 * (low + high);
@@ -146,7 +158,22 @@ double optimum_between(const struct optimum_move *m, const struct optimum_state 
 
         *(sign * (m->length - p.way) > 0.0 ? &low : &high) = time;
     }
-    return pushed_and_changed(m, from, to, sign, high).time;
+    const struct at end = pushed_and_changed(m, from, to, sign, high);
+
+    return end.peak <= m->feed * (1.0 + ROUNDING) ? end.time : HUGE_VAL;
+}
+
+double optimum_between(const struct optimum_move *m, const struct optimum_state *from,
+                       const struct optimum_state *to)
+{
+    struct optimum_move alone = *m;
+
+    alone.level_feed = 0.0;
+    const double within = optimum_may_be(&alone, from) && optimum_may_be(&alone, to)
+                              ? between(&alone, from, to)
+                              : HUGE_VAL;
+
+    return m->level_feed > 0.0 ? fmin(within, between(m, from, to)) : within;
 }
 
 /* -- the end of a move by its phases -- */
@@ -195,7 +222,7 @@ static void go_phase(struct at *p, const struct optimum_move *m, double sign, do
 bool optimum_pass(const struct optimum_move *m, const struct optimum_phases *phases,
                   struct optimum_state *state, double *time)
 {
-    struct at p = {0.0, 0.0, state->feed, state->acceleration};
+    struct at p = {0.0, 0.0, state->feed, state->acceleration, 0.0};
     double sign = phases->first_sign;
 
     for (int i = 0; i < 3 && p.way < m->length * (1.0 - 1e-12); i++) {
@@ -204,13 +231,13 @@ bool optimum_pass(const struct optimum_move *m, const struct optimum_phases *pha
     }
     *state = (struct optimum_state){p.feed, p.acceleration};
     *time = p.time;
-    return p.way > m->length * (1.0 - 1e-9);
+    return p.way > m->length * (1.0 - 1e-9) && p.peak <= m->feed * (1.0 + ROUNDING);
 }
 
 bool optimum_may_be(const struct optimum_move *m, const struct optimum_state *state)
 {
-    const struct at p = {0.0, 0.0, state->feed, state->acceleration};
-    const struct at before = {0.0, 0.0, state->feed, -state->acceleration};
+    const struct at p = {0.0, 0.0, state->feed, state->acceleration, 0.0};
+    const struct at before = {0.0, 0.0, state->feed, -state->acceleration, 0.0};
 
     return state->feed <= m->feed && !is_too_far(m, &p, 1.0) && !is_too_far(m, &before, 1.0) &&
            !is_too_far(m, &p, -1.0) && !is_too_far(m, &before, -1.0);

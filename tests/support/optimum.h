@@ -21,6 +21,8 @@ struct optimum_move {
     double acceleration; /* highest, either way */
     double jerk;
     double joint_feed; /* highest at its end; 0: a stop */
+    double
+        level_feed; /* at which it may level off beyond its ends, where moves are faster; 0: feed */
 };
 
 #define OPTIMUM_MOVES 3
@@ -36,6 +38,9 @@ struct optimum_state {
     double feed;
     double acceleration;
 };
+
+/* The feed at which it may level off. */
+double optimum_level(const struct optimum_move *m);
 
 /* The least time of a move from one state to another; HUGE_VAL if there is no way. */
 double optimum_between(const struct optimum_move *m, const struct optimum_state *from,

@@ -55,8 +55,8 @@ static struct optimum_state state_given(const struct optimum_move *before, doubl
     const double jerk = fmin(before->jerk, after->jerk);
     const double a = fmin(fmin(before->acceleration, after->acceleration), sqrt(2.0 * jerk * feed));
 
-    return (struct optimum_state){feed,
-                                  part * fmin(a, sqrt(2.0 * beyond->jerk * (beyond->feed - feed)))};
+    return (struct optimum_state){
+        feed, part * fmin(a, sqrt(2.0 * beyond->jerk * (optimum_level(beyond) - feed)))};
 }
 
 /* A time in which the move can be passed, and not much longer than it takes. */
@@ -203,15 +203,27 @@ static double search(const struct family *f)
     return best_of(&s)->time;
 }
 
+/* A short move may be left while speed changes: it never gets where it would level off. v + a^2/2j is the most. */
+static void level_beyond(struct optimum_move chain[OPTIMUM_MOVES])
+{
+    for (int i = 0; i < OPTIMUM_MOVES; i++) {
+        struct optimum_move *const m = &chain[i];
+
+        m->level_feed = m->feed + 0.5 * m->acceleration * m->acceleration / m->jerk;
+    }
+}
+
 static double search_all(const struct optimum_move chain[OPTIMUM_MOVES])
 {
     double least = HUGE_VAL;
 
     for (int first = 0; first < FIRST_WAYS; first++) {
         for (int second = 0; second < SECOND_WAYS; second++) {
-            const struct family f = {
+            struct family f = {
                 {chain[0], chain[1], chain[2]}, (enum first_joint)first, (enum second_joint)second};
 
+            least = fmin(least, search(&f));
+            level_beyond(f.chain);
             least = fmin(least, search(&f));
         }
     }

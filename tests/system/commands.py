@@ -63,6 +63,8 @@ t.check([(b.get("block_first"), b["block"]) for b in blocks[:2]] == [(1, 2), (3,
 t.check(abs(sum(b["length_mm"] for b in blocks[:2]) - 30) < 0.02, "the curve's length", blocks)
 t.check(abs(blocks[0]["feed_cruise_mm_min"] - 3000) < 5, "the curve's feed", blocks)
 t.check(blocks[0]["end"] == "passed" and blocks[1]["end"] == "stop", "how they end", blocks)
+t.check(plan["totals"]["moves"] == 3 and abs(plan["totals"]["length_mm"] - 30) < 0.02, "the totals of a smoothed plan", plan["totals"])
+t.check("; 3 moves, 30.000 mm" in t.run("check", "smooth.ngc")[1], "check measures the programmed path", t.run("check", "smooth.ngc")[1])
 
 status, out, _ = t.run("check", PROGRAM)
 t.check(status == 0 and out.endswith(": no errors, 0 warnings; 3 moves, 30.708 mm\n"), "check", out)

@@ -19,7 +19,7 @@ def squares(count):
     return "G21 G90 G17 G64 P0.01 F3000\n" + "".join(f"G1 X{a} Y{-a}\nG1 X{a} Y{a}\nG1 X{-a} Y{a}\nG1 X{-a} Y{-a - 1}\n" for a in range(1, count + 1)) + "M2\n"
 
 
-TEXT, SHORT = squares(13), squares(2)
+TEXT, SHORT = squares(9), squares(2)
 
 
 def compiled(text, *options):
@@ -97,6 +97,17 @@ def check_command(plan):
     service.stop()
 
 
+def check_start(plan):
+    """By the command itself, as on a line that has one client."""
+    service, client = ready()
+    runs = client.counts("RUNS")
+    status, out, err = t.run("panel", "stream", "part.plan", "--start", "--connect", f"127.0.0.1:{service.port}")
+    t.check(status == 0 and f"{len(plan)} bytes" in out, "--start brings and starts it", status, out, err)
+    client.wait_while("RUNS", runs)
+    t.check(client.counts("OUTCOME") == p.COMPLETED, "it runs to its end", client.text("ALARM_TEXT"))
+    service.stop()
+
+
 def check_late(plan):
     service, client = ready()
     t.check(begin(client, plan) == (0, 0), "a plan is announced")
@@ -160,6 +171,7 @@ def check_refused(plan):
 check_setpoints()
 the_plan = compiled(TEXT)
 check_command(the_plan)
+check_start(the_plan)
 check_late(the_plan)
 check_single_block(the_plan)
 check_refused(the_plan)

@@ -9,9 +9,9 @@ import takt_test as t
 
 PERCENT = 50
 
-# Where one landed joint follows the other: the feed falls to each of them and ends up to a cycle's deceleration lower
-# than it might, which a slower approach does not need.
-KNOWN_SLOWER = {"tangent_lines_smooth.ngc": 0.001}
+# A block with less acceleration than the one before it binds as much earlier as its ceiling is higher, though that is not
+# reached here.
+KNOWN_SLOWER = {"tangent_lines_smooth.ngc": 0.0003}
 
 
 def circles():

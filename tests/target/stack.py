@@ -5,17 +5,18 @@ the larger counts. Calls through pointers are those of the table below: who call
 call that is in no row, and a recursion without a stated bound, are errors.
 """
 
+import collections
 import re
 import subprocess
 
 # Processor state that an interrupt saves: 26 words with the floating-point unit, and a word to align.
 EXCEPTION_BYTES = 27 * 4
 
-# Values inside values of a part program: PROGRAM_NESTING_MAX, and one more for the outermost.
+# Values inside values of a part program: PROGRAM_NESTING_MAX, and one more for the outermost. One function counts them.
 NESTING = 17
-NESTED = re.compile(r"^(expression_|read_|calculation_|parameters?_|words?_|names_|predefined_|take_operand|value_|reference_).*|^(apply|operate)")
+NESTED = "expression_read"
 
-PORT = r"lock|unlock|now_us|now_ns|reply|write_log"
+PORT = r"(cortex_)?(un)?lock|now_us|now_ns|reply|write_log"
 LAYER = r"(axes|matrix|setup|volume|thermal|wear)_(add|begin|follow|need)"
 CODES = (r"(events|modes|coordinates|cutter|cycles|straight|circular|involute|probe|saved_modes|setting|threading|spline)_.*"
          r"|calls_run_code")
@@ -29,22 +30,27 @@ CALLS = (
     (r"embedded_.*|hear|order|log_.*|serve_line|refuse|forward|lock|unlock", PORT),
     (r"expression_.*|read_.*", OPERATORS),
     (r"fill.*|has", r"read_bytes|text_read"),
+    (r"findings_next", r"find_.*"),
     (r"lexer_.*", r"seek|text_seek|read_bytes|text_read"),
     (r"flow_.*", r"take_(do|else|elseif|endif|endrepeat|endwhile|if|repeat|while)|calls_.*|leave_round"),
-    (r"give_order|panel_.*", STORE),
+    (r"give_order|panel_(?!look).*", STORE),
+    (r"panel_look", r"look|hear"),
     (r"predefined_.*", r"get_.*"),
     (r"replay_read|intake_.*", r"take|is_lost"),
     (r"run_line|run_step.*", CODES),
     (r"send_.*", r"send"),
+    (r"begin|take", r"drives_are_off|write_log"),
+    (r"store_.*", r"erase|program"),
+    (r"usart_interrupt", r"take_(panel|log)_byte"),
     (r"drives_.*", r"receive|send|sdo_.*"),
     (r"receive", r"slcan_can_take|take_panel_byte"),
     (r"service_.*", r"text_queue_.*|open|announce|forget"),
     (r"steps_.*|read_encoders", r"step_.*"),
 )
 
-FUNCTION = re.compile(r"^[0-9a-f]+ <(.+)>:$")
+FUNCTION = re.compile(r"^([0-9a-f]+) <(.+)>:$")
 INSTRUCTION = re.compile(r"^\s+[0-9a-f]+:\s+(\S+)\s*(.*)$")
-TARGET = re.compile(r"<([^+>]+)>")
+TARGET = re.compile(r"\b([0-9a-f]+) <([^+>]+)>")
 INDIRECT = re.compile(r"^(r\d+|ip|sl|fp|r9)\b")
 
 
@@ -74,24 +80,35 @@ def frame_bytes(operation, text):
     return int((pushed or stored).group(1)) if pushed or stored else 0
 
 
+def name_functions(lines):
+    """Names by address: of several of one name each has its address behind a point."""
+    begun = [match.groups() for match in map(FUNCTION.match, lines) if match]
+    count = collections.Counter(name for _, name in begun)
+    return {int(at, 16): name if count[name] == 1 else f"{name}.{int(at, 16):x}" for at, name in begun}
+
+
 def read_functions(elf):
-    functions, name = {}, None
     out = subprocess.run(["arm-none-eabi-objdump", "-d", "--no-show-raw-insn", elf], capture_output=True, text=True, check=True).stdout
-    for line in out.splitlines():
+    lines = out.splitlines()
+    names = name_functions(lines)
+    functions, name = {}, None
+    for line in lines:
         begun, done = FUNCTION.match(line), INSTRUCTION.match(line)
         if begun:
-            name = begun.group(1)
-            functions.setdefault(name, Function())
+            name = names[int(begun.group(1), 16)]
+            functions[name] = Function()
         elif done and name:
-            read_instruction(functions[name], name, *done.groups())
+            read_instruction(functions[name], name, names, *done.groups())
     return functions
 
 
-def read_instruction(function, name, operation, text):
+def read_instruction(function, name, names, operation, text):
     function.frame += frame_bytes(operation, text)
     target = TARGET.search(text)
-    if operation in ("bl", "blx", "b", "b.w", "b.n") and target and target.group(1) != name:
-        function.calls.add(target.group(1))
+    if operation in ("bl", "blx", "b", "b.w", "b.n") and target:
+        callee = names.get(int(target.group(1), 16), target.group(2))
+        if callee != name:
+            function.calls.add(callee)
     if operation in ("blx", "bx") and INDIRECT.match(text):
         function.indirect = True
 
@@ -113,7 +130,7 @@ def add_pointers(functions):
     for name, function in functions.items():
         if not function.indirect:
             continue
-        rows = [behind for caller, behind in CALLS if re.fullmatch(caller, name)]
+        rows = [behind for caller, behind in CALLS if re.fullmatch(caller, re.sub(r"\..*", "", name))]
         if not rows:
             unknown.append(name)
         for behind in rows:
@@ -157,15 +174,34 @@ def circles(functions):
     return found
 
 
+def once_around(functions, circle):
+    """The most stack of one turn of a circle whose turns a function counts; None: there is another circle in it."""
+    most, open_ones = {}, set()
+
+    def visit(name):
+        if name in most:
+            return most[name]
+        if name in open_ones:
+            return None
+        open_ones.add(name)
+        below = [visit(callee) for callee in functions[name].calls & circle if callee != NESTED]
+        open_ones.discard(name)
+        most[name] = None if None in below else functions[name].frame + max(below, default=0)
+        return most[name]
+
+    return visit(NESTED) if NESTED in circle else None
+
+
 def deepest(functions):
     """The most stack below and with each function, the way there, and circles without a bound."""
     depth, way, unbounded = {}, {}, []
     for circle in circles(functions):
         own = sum(functions[name].frame for name in circle)
         if len(circle) > 1 or any(name in functions[name].calls for name in circle):
-            if not any(NESTED.match(name) for name in circle):
+            turn = once_around(functions, circle)
+            if turn is None:
                 unbounded.append(sorted(circle))
-            own *= NESTING
+            own = NESTING * (turn or own)
         below = {callee for name in circle for callee in functions[name].calls if callee in depth and callee not in circle}
         most = max(below, key=depth.get, default=None)
         for name in circle:

@@ -1,6 +1,7 @@
 """The STM32F405's images in QEMU's netduinoplus2, with what that models: USARTs and timers; everything else reads 0."""
 
 import os
+import re
 import struct
 import subprocess
 import zlib
@@ -11,6 +12,13 @@ import takt_test as t
 
 MACHINE = "netduinoplus2"
 SETTINGS_ADDRESS = 0x08040000
+
+
+def for_qemu(name):
+    """The image for this QEMU: before version 8 it has the memory beside the core elsewhere."""
+    target.need_qemu()
+    said = subprocess.run([target.QEMU, "--version"], capture_output=True, text=True, check=True).stdout
+    return image(name if int(re.search(r"version (\d+)", said)[1]) >= 8 else name + "-qemu-7")
 
 
 def image(name):

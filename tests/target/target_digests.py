@@ -2,6 +2,7 @@
 """The same setpoints, bit for bit, on the host and on a Cortex-M4 and M7 in QEMU: every cycle of every program.
 
 takt run --target compares each control cycle of the image with the host's: state, frames on the bus, the whole record.
+Programs are planned on board, and some once more ahead (--plan): then the image replays the compiled file.
 With --long, real programs from their first cycle to the last; else their beginning.
 """
 
@@ -33,6 +34,20 @@ def override():
     return (t.EXAMPLES + "/engraving.ngc", "--override", "override.txt", "--rapid-override", "rapid.txt")
 
 
+def stops():
+    """Lines, an arc and a helix as one curve, and what interrupts it: a dwell, a spindle, an exact stop."""
+    t.write("stops.ngc", "G21 G90 G17 G64 P0.01 F3000\nS1000 M3\nG1 X5 Y3\nG2 X9 Y7 I0 J4\nG3 X9 Y7 Z-1 I-2 J0\nG4 P0.1\nG61.1 G1 X4 Y9\n"
+            "G64 P0.02 X2 Y5\nX0 Y0\nM5\nG0 Z2\nM2\n")
+    return ("stops.ngc",)
+
+
+def compiled(arguments):
+    program, *options = arguments
+    status, _, err = t.run("compile", program, "-o", "ahead.plan", "--quiet")
+    t.check(status == 0, f"{program} is compiled", err)
+    return (program, *options, "--plan", "ahead.plan")
+
+
 def check(name, arguments, *options):
     status, out, err = t.run("run", *arguments, *options, "--json", "-", "--quiet")
     if not t.check(status == 0, f"{name} runs on the host", err):
@@ -60,6 +75,9 @@ def main():
     check("correction", correction(), *until)
     check("override", override(), *until)
     check("involute hole", (t.EXAMPLES + "/involute_hole.ngc",), *until)
+    check("stops, ahead", compiled(stops()), *until)
+    check("engraving, ahead", compiled(override()), *until)
+    check("involutes, ahead", (t.EXAMPLES + "/involute_hole.ngc", "--plan", "ahead"), *until)
     for name in REAL if until == () else ():
         check(name, (t.real_programs(name)[0],))
     t.finish()

@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
 """The whole image in QEMU, live: three virtual drives on CAN, the panel over Modbus RTU by libmodbus, the log.
 
-It homes, takes a program through the mailbox, runs it while positions are read, and gives the setpoints of takt run.
+It homes, takes a program through the mailbox, runs it while positions are read, and gives the setpoints of takt run; then
+two programs planned ahead come as streams: a short one gives the setpoints of takt run --plan, a long one ends.
 With --kernel: the CAN bus is an interface of the kernel (or of user-mode Linux), which slcand makes of the serial line.
 """
 
@@ -16,9 +17,14 @@ import serial_pair
 import takt_test as t
 
 PROGRAM = "G21 G90 G61 F3000\nG1 X6 Y4\nG2 X10 Y0 I0 J-4\nG1 X0 Z-1\nG0 Z1\nM2\n"
+SMOOTH = "G21 G90 G64 P0.01 F3000\nG1 X6 Y4 Z0\nG2 X10 Y0 I0 J-4\nG1 X0 Z-1\nG0 Z0\nM2\n"
+LONG = "G21 G90 G64 P0.01 F3000\n" + "".join(f"G1 X{x} Y{x % 2}\n" for x in range(1, 36)) + "G1 Z2\nM2\n"
 IDLE, HOMING = "1", "5"
 KERNEL = "--kernel" in sys.argv
 INTERFACE = "slcan0"
+
+# The controller keeps so many bytes of a plan that is not running yet.
+KEPT_BYTES = 4096
 
 
 def start_drives(bus):
@@ -81,6 +87,31 @@ def run_program(panel):
     return seen
 
 
+def digest_of(program, *options):
+    return t.json.loads(t.run("run", program, "--json", "-", "--quiet", *options)[1])["setpoint_digest"]
+
+
+def stream(panel, name, text):
+    """A compiled program, started by who brings it, where it was compiled to begin: at the origin. Its file's size."""
+    t.write(name + ".ngc", text)
+    t.check(t.run("compile", name + ".ngc", "-o", name + ".plan", "--quiet")[0] == 0, f"{name} is compiled")
+    runs = panel.number("RUNS")
+    panel.upload(name + ".ngc")
+    status, _, err = t.run("panel", "stream", name + ".plan", "--start", "--quiet", *panel.options)
+    if t.check(status == 0, f"{name} is streamed", err):
+        target.wait_for(lambda: panel.number("RUNS") != runs, f"the end of {name}")
+    t.check(panel.number("OUTCOME") == 1, f"{name} is completed", panel.read("ALARM_TEXT"))
+    return os.path.getsize(name + ".plan")
+
+
+def check_streams(panel):
+    home(panel)
+    t.check(stream(panel, "smooth", SMOOTH) <= KEPT_BYTES, "all of the short one is there before it starts")
+    t.check(panel.digest() == digest_of("smooth.ngc", "--plan", "smooth.plan"), "its setpoints are those of takt run --plan")
+    t.check(stream(panel, "long", LONG) > 2 * KEPT_BYTES, "the long one is more than is kept")
+    t.check(abs(panel.number("ACTUAL_Z") - 2) < 0.01, "the drive stands where it ends")
+
+
 def check_run(board, panel, digest):
     target.wait_for(lambda: any("state: idle" in line for line in board.log()), "the drives are enabled")
     home(panel)
@@ -103,12 +134,15 @@ def main():
         done = subprocess.run([with_can, sys.executable, *sys.argv], env=dict(os.environ, TAKT_WITH_CAN="yes"), check=False)
         sys.exit(done.returncode)
     t.write("part.ngc", PROGRAM)
-    digest = t.json.loads(t.run("run", "part.ngc", "--json", "-", "--quiet")[1])["setpoint_digest"]
+    digest = digest_of("part.ngc")
     line = serial_pair.Pair()
     bus = Kernel() if KERNEL else Adapter()
     board = target.Board("m4f", image, line.paths[0], bus.path, "log.txt")
     try:
-        check_run(board, target.Panel(line.paths[1]), digest)
+        panel = target.Panel(line.paths[1])
+        check_run(board, panel, digest)
+        if not KERNEL:  # what carries the frames is nothing to a stream
+            check_streams(panel)
     finally:
         board.stop()
         line.close()

@@ -1,7 +1,9 @@
 #!/usr/bin/env python3
-"""The image: flash, memory and stack within their budgets, and nothing in it that has no place in a control cycle.
+"""The images: flash, memory and stack within their budgets, and nothing in them that has no place in a control cycle.
 
-The budget of all of its memory is what it takes now; with --memory it is that of an STM32F405, which is not reached.
+That of QEMU's board has a budget of all of its memory: what it takes now, beside a stack of more than it needs. That of the
+STM32F405 has 128 KiB and 64 KiB beside the core, of which direct memory access reaches the first alone; with --memory the
+budget of both together is 128 KiB, which is not reached.
 """
 
 import glob
@@ -11,17 +13,25 @@ import subprocess
 import sys
 
 import stack
+import stm32
 import target
 import takt_test as t
 
 FLASH_MAX = 256 * 1024
 MEMORY_MAX = 128 * 1024
-MEMORY_NOW = 304 * 1024
+MEMORY_NOW = 228 * 1024
+CHIP_MEMORY_MAX = 192 * 1024
 
 FORBIDDEN = re.compile(
     r"^_?(malloc|calloc|realloc|free|_?sbrk|v?f?s?n?printf|puts|putchar|fopen|fwrite|fread|scanf|getc|exit|atexit"
     r"|sin|cos|tan|asin|acos|atan2?|exp|log|log10|pow|fmod|cbrt|hypot|floor|ceil|round|fma)f?l?(_r)?$")
-INTERRUPTS = ("uart_0_receive", "uart_0_send", "uart_1_receive", "uart_1_send", "uart_2_receive", "uart_2_send")
+
+# Who interrupts whom, the most urgent last: of those of one row at most one at a time.
+DESK_INTERRUPTS = (
+    ("port_systick",),
+    ("uart_0_receive", "uart_0_send", "uart_1_receive", "uart_1_send", "uart_2_receive", "uart_2_send"))
+CHIP_INTERRUPTS = (
+    ("on_cycle",), ("on_log",), ("on_panel",), ("on_can_sent", "on_can_received"), ("port_nmi", "port_fault"))
 
 
 def symbols(elf):
@@ -35,13 +45,13 @@ def sections(elf):
     return {row[0]: int(row[1]) for row in rows if len(row) == 3 and row[0].startswith(".")}
 
 
-def check_sizes(elf):
+def check_sizes(elf, memory_max):
     part = sections(elf)
     flash = sum(part.get(name, 0) for name in (".text", ".ARM.exidx", ".data", ".seal"))
-    memory = sum(part.get(name, 0) for name in (".stack", ".data", ".bss", ".noinit"))
-    print(f"{os.path.basename(elf)}: flash {flash} of {FLASH_MAX}, memory {memory} of {MEMORY_MAX}")
+    memory = sum(part.get(name, 0) for name in (".stack", ".core", ".data", ".bss", ".noinit"))
+    print(f"{os.path.basename(elf)}: flash {flash} of {FLASH_MAX}, memory {memory} of {memory_max}")
     t.check(flash <= FLASH_MAX, "the flash memory is enough", flash)
-    t.check(memory <= (MEMORY_MAX if "--memory" in sys.argv else MEMORY_NOW), "the memory is enough", memory)
+    t.check(memory <= memory_max, "the memory is enough", memory)
 
 
 def check_names(names):
@@ -50,28 +60,34 @@ def check_names(names):
     t.check("__assert_func" in names, "assertions are there: a broken one stops the image")
 
 
-def check_stack(elf, names, folder):
+def check_stack(elf, names, folder, interrupts):
     functions = stack.read_functions(elf)
     stack.add_usage(functions, glob.glob(os.path.join(folder, "**", "*.su"), recursive=True))
     unknown = stack.add_pointers(functions)
     t.check(unknown == [], "every call through a pointer is known", unknown)
     depth, way, unbounded = stack.deepest(functions)
     t.check(unbounded == [], "recursion has a bound", unbounded)
-    cycle, line = depth["port_systick"], max(depth[name] for name in INTERRUPTS)
-    whole = depth["main"] + cycle + line + 2 * stack.EXCEPTION_BYTES
+    deepest = [max(row, key=depth.get) for row in interrupts]
+    whole = depth["main"] + sum(depth[name] + stack.EXCEPTION_BYTES for name in deepest)
     given = names["image_stack_top"] - names["image_stack_low"]
-    print(f"stack: background {depth['main']}, cycle {cycle}, line {line}, all together {whole} of {given}")
-    for root in ("main", "port_systick"):
+    print(f"stack: main {depth['main']}, " + ", ".join(f"{name} {depth[name]}" for name in deepest)
+          + f", all together {whole} of {given}")
+    for root in ("main", deepest[0]):
         print("  " + " > ".join(f"{name} {functions[name].frame}" for name in stack.path(way, root)))
     t.check(whole <= given, "the stack is enough", whole, given)
 
 
-def main():
-    elf = target.image("m4f", "takt-mps2")
+def check_image(elf, folder, memory_max, interrupts):
     names = symbols(elf)
-    check_sizes(elf)
+    check_sizes(elf, memory_max)
     check_names(names)
-    check_stack(elf, names, target.folder("m4f"))
+    check_stack(elf, names, folder, interrupts)
+
+
+def main():
+    check_image(target.image("m4f", "takt-mps2"), target.folder("m4f"), MEMORY_NOW, DESK_INTERRUPTS)
+    check_image(stm32.image("takt-stm32f405"), target.folder("stm32f405"),
+                MEMORY_MAX if "--memory" in sys.argv else CHIP_MEMORY_MAX, CHIP_INTERRUPTS)
     t.finish()
 
 

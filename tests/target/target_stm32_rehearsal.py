@@ -6,7 +6,7 @@ import re
 import stm32
 import takt_test as t
 
-board = stm32.Board(stm32.image("takt-stm32f405-rehearsal"))
+board = stm32.Board(stm32.for_qemu("takt-stm32f405-rehearsal"))
 try:
     board.wait_for("steps X")
     log = board.log()

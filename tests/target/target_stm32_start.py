@@ -13,7 +13,7 @@ INTERNAL = "6"
 
 def start(claim, flash, reason, path=None):
     """Starts the image; the reason stands on its log and panel, and no order gets through."""
-    board = stm32.Board(path or stm32.image("takt-stm32f405-emulated"), flash, panel=True)
+    board = stm32.Board(path or stm32.for_qemu("takt-stm32f405-emulated"), flash, panel=True)
     try:
         board.wait_for("alarm: ")
         log = board.log()
@@ -63,7 +63,11 @@ wrong = bytearray(settings)
 wrong[200] ^= 1
 start("a wrong checksum", stm32.sector(bytes(wrong)), "the settings are damaged: their checksum is wrong")
 start("other bytes", stm32.sector(b"[machine]\ncycle_us = 1000\n"), "these are no settings of this version")
+t.write("rotate.ini", "[machine]\nname = a form for comparison\ninterpolator = rotate\n")
+t.check(t.run("machine", "rotate.ini", "--pack", "-o", "rotate.settings")[0] == 0, "a machine with another interpolator is packed")
+with open("rotate.settings", "rb") as file:
+    start("a form for comparison", stm32.sector(file.read()), "'interpolator' of this machine is for comparison")
 torn = stm32.sector(settings)
 start("a torn head", torn[:8] + b"\xff\xff\xff\xff" + torn[12:], "no settings are stored")
-start("a damaged image", stm32.sector(settings), "the image in the flash memory is damaged", damaged(stm32.image("takt-stm32f405-emulated")))
+start("a damaged image", stm32.sector(settings), "the image in the flash memory is damaged", damaged(stm32.for_qemu("takt-stm32f405-emulated")))
 t.finish()

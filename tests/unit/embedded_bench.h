@@ -23,6 +23,7 @@
 #define LOOK_AHEAD   32
 
 static struct embedded embedded;
+static struct embedded_core embedded_core;
 static struct bus bus;
 static struct virtual_drives drives;
 static struct machine machine;
@@ -151,6 +152,7 @@ static inline void power_on(void)
 {
     const struct embedded_config config = {
         .machine = &machine,
+        .core = &embedded_core,
         .can = {.send = send, .receive = receive},
         .tools = tools,
         .tools_count = 1,

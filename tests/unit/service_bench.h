@@ -17,6 +17,7 @@
 #define BENCH_CYCLES_MAX 60000U
 
 static struct service service;
+static struct controller_reader service_reader;
 static struct bus bus;
 static struct virtual_drives drives;
 static struct parameters parameters;
@@ -66,6 +67,7 @@ static void bench_start(void)
         .can = bus_attach(&bus, NULL),
         .tools = tools,
         .tools_count = 1,
+        .reader = &service_reader,
         .parameters = &parameters,
         .correction = correction,
         .programs = {bench_open, bench_adopt, NULL},
@@ -110,7 +112,7 @@ static enum panel_verdict order(enum panel_id id, int64_t value)
 
 static void must(enum panel_id id, int64_t value)
 {
-    TEST_ASSERT_EQUAL_INT_MESSAGE(PANEL_DONE, order(id, value), panel_registers[id].name);
+    TEST_ASSERT_EQUAL_INT_MESSAGE(PANEL_DONE, order(id, value), panel_texts[id].name);
 }
 
 static int64_t shown(enum panel_id id)

@@ -17,6 +17,7 @@
 #define CYCLES_MAX 20000U
 
 static struct controller controller;
+static struct controller_reader reader;
 static struct bus bus;
 static struct virtual_drives drives;
 static struct parameters parameters;
@@ -27,7 +28,8 @@ static void start(const char *program)
 {
     struct virtual_drives_config virtual;
     struct machine machine;
-    struct controller_config config = {.machine = &machine, .parameters = &parameters};
+    struct controller_config config = {
+        .machine = &machine, .reader = &reader, .parameters = &parameters};
 
     virtual_drives_set_default(&virtual, DRIVES);
     machine_set_default(&machine);

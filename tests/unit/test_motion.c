@@ -235,6 +235,31 @@ static void test_no_cycle_is_made_before_anything_is_planned(void)
     TEST_ASSERT_EQUAL(MOTION_NOT_YET, motion_cycle(&motion, &asked, &record));
 }
 
+/*
+ * Over blocks so short that the lead point's place in a new ceiling takes more than a cycle to find, both are in use until
+ * then, and nobody may make another one.
+ */
+static void test_no_ceiling_is_made_while_both_are_in_use(void)
+{
+    unsigned taking = 0;
+
+    for (unsigned i = 1; path_has_room(&path); i++) {
+        struct move m = {.kind = MOVE_FEED, .feed_mm_s = 100.0, .turns = 1};
+
+        m.end.at[AXIS_X] = 0.02 * i;
+        m.overrides = i % 2 == 0 ? OVERRIDE_HOLD : OVERRIDE_FEED | OVERRIDE_HOLD;
+        path_push(&path, &m);
+    }
+    path_finish(&path);
+    do {
+        if (motion.lead.coming.ceiling != NULL) {
+            TEST_ASSERT_NULL(motion_wanted(&motion));
+            taking++;
+        }
+    } while (cycle() == MOTION_CYCLE);
+    TEST_ASSERT_GREATER_THAN_UINT(0, taking);
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -248,5 +273,6 @@ int main(void)
     RUN_TEST(test_an_early_end_drops_the_rest_of_the_path);
     RUN_TEST(test_a_starved_cycle_rests_and_goes_on);
     RUN_TEST(test_no_cycle_is_made_before_anything_is_planned);
+    RUN_TEST(test_no_ceiling_is_made_while_both_are_in_use);
     return UNITY_END();
 }

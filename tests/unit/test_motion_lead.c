@@ -9,6 +9,7 @@
 
 #include "base/maths.h"
 #include "motion/average.h"
+#include "plan/path.h"
 #include "plan/path_unit.h"
 
 #include <stdio.h>
@@ -18,9 +19,10 @@
 #define WINDOW 20
 #define BEHIND (0.5 * (WINDOW - 1.0) + CEILING_MARGIN_CYCLES)
 
-/* mm/cycle, mm/cycle2: 100 mm/s and 1 m/s2 at a cycle of 1 ms. */
-#define FEED 0.1
-#define A    1e-3
+/* s, mm/cycle, mm/cycle2: 100 mm/s and 1 m/s2 as ceilings keep it: of single precision, and not above. */
+#define CYCLE_S 1e-3
+#define FEED    0.1
+#define A       0x1.0624dcp-10
 
 /* The last change of feed to rest may be more than a by this part; positions are rounded to units. */
 #define CHANGE_PART 3e-4
@@ -34,6 +36,7 @@ struct stretch {
 static struct lead lead;
 static struct average average;
 static struct ceiling ceilings[2];
+static struct path paths[2]; /* each ceiling's: a block for each stretch */
 static unsigned active;
 static uint64_t setpoint;
 static uint64_t cycles;
@@ -53,49 +56,82 @@ void tearDown(void)
 
 /* -- ceilings -- */
 
+static double square(double x)
+{
+    return x * x;
+}
+
+static float single_feed(double feed)
+{
+    return maths_float_below(feed / CYCLE_S);
+}
+
+/* The block of a stretch, at the end of the ceiling's path. */
+static void push_block(const struct ceiling *c, double from_mm, double end_mm)
+{
+    struct path *path = &paths[c - ceilings];
+
+    path->ring.block[path->pushed].start = path_units(from_mm);
+    path->pushed++;
+    path->position = path_units(end_mm);
+}
+
 static void append(struct ceiling *c, const struct stretch *s, double ratio, double from_mm)
 {
     const double feed = ratio * s->feed;
     const double end_mm = from_mm + s->length_mm;
-    const double before_mm = c->count > 1 ? c->piece[c->count - 2].end_mm : 0.0;
+    const double before_mm = c->count > 1 ? c->end_mm[c->count - 2] : 0.0;
     const double begin_mm = maths_max(before_mm, from_mm - feed * BEHIND);
+    const unsigned block = c->path->pushed;
 
-    for (uint32_t k = c->count; k-- > 0 && c->piece[k].end_mm > begin_mm;) {
-        c->piece[k].end_mm = begin_mm;
+    for (uint32_t k = c->count; k-- > 0 && c->end_mm[k] > begin_mm;) {
+        c->end_mm[k] = begin_mm;
     }
+    c->end_mm[c->count] = end_mm;
     c->piece[c->count++] = (struct ceiling_piece){
-        .end_mm = end_mm,
-        .feed = feed,
-        .acceleration = s->a,
-        .feed_max = s->feed,
-        .start = (int64_t)path_units(from_mm),
-        .leave = (int64_t)path_units(end_mm),
+        .feed_mm_s = single_feed(feed),
+        .acceleration = maths_float_below(s->a),
+        .feed_max_mm_s = single_feed(s->feed),
+        .start = block & 0x1ffU,
+        .leave = (block + 1) & 0x1ffU,
         .cycles = WINDOW,
         .landing = CEILING_NONE,
-        .overrides = OVERRIDE_FEED | OVERRIDE_HOLD,
+        .overrides = CEILING_FEED | CEILING_HOLD,
         .opens = true,
     };
+    push_block(c, from_mm, end_mm);
 }
 
-/* u = min(c^2, u_next + 2 a L) backwards; at the highest overrides at worst to rest where the next stretch starts. */
+/* sqrt(min(c^2, u + 2 a L)) */
+static float feed_before(const struct ceiling_piece *p, float feed_mm_s, float end_mm_s,
+                         double length_mm)
+{
+    const double u = square((double)end_mm_s * CYCLE_S) + 2.0 * (double)p->acceleration * length_mm;
+
+    return u < square((double)feed_mm_s * CYCLE_S) ? single_feed(maths_sqrt(u)) : feed_mm_s;
+}
+
+/* Backwards from rest; at the highest overrides at worst to rest where the next stretch starts. */
 static void plan(struct ceiling *c)
 {
-    double u = 0.0;
-    double u_max = 0.0;
+    float feed_mm_s = 0.0F;
+    float max_mm_s = 0.0F;
 
     for (uint32_t k = c->count; k-- > 0;) {
         struct ceiling_piece *p = &c->piece[k];
-        const double length = p->end_mm - (k > 0 ? c->piece[k - 1].end_mm : 0.0);
+        const double length_mm = c->end_mm[k] - (k > 0 ? c->end_mm[k - 1] : 0.0);
 
         if (k + 1 < c->count && !p->landed) {
-            const double start_mm = (double)p[1].start / PATH_UNITS_PER_MM;
+            const double rest_mm = path_mm(0, ceiling_start(c, k + 1)) - c->end_mm[k];
+            const float rest_mm_s =
+                single_feed(maths_sqrt(2.0 * (double)p->acceleration * rest_mm));
 
-            u_max = maths_max(u_max, 2.0 * p->acceleration * (start_mm - p->end_mm));
+            max_mm_s = rest_mm_s > max_mm_s ? rest_mm_s : max_mm_s;
         }
-        p->end_energy = u;
-        p->end_energy_max = u_max;
-        u = maths_min(p->feed * p->feed, u + 2.0 * p->acceleration * length);
-        u_max = maths_min(p->feed_max * p->feed_max, u_max + 2.0 * p->acceleration * length);
+        p->end_feed_mm_s = feed_mm_s;
+        p->end_feed_max_mm_s = max_mm_s;
+        feed_mm_s = feed_before(p, p->feed_mm_s, feed_mm_s, length_mm);
+        max_mm_s = feed_before(p, p->feed_max_mm_s, max_mm_s, length_mm);
     }
 }
 
@@ -106,6 +142,9 @@ static void lay(struct ceiling *c, const struct stretch *s, unsigned count, doub
     double at_mm = 0.0;
 
     memset(c, 0, sizeof(*c));
+    c->path = &paths[c - ceilings];
+    paths[c - ceilings].pushed = 0;
+    c->cycle_s = CYCLE_S;
     for (unsigned i = 0; i < count; i++) {
         append(c, &s[i], ratio, at_mm);
         at_mm += s[i].length_mm;
@@ -168,7 +207,8 @@ static void step(bool hold, double a_max)
 static double ceiling_here(void)
 {
     return lead.here.piece < lead.here.ceiling->count
-               ? lead.here.ceiling->piece[lead.here.piece].feed
+               ? ceiling_feed(lead.here.ceiling,
+                              lead.here.ceiling->piece[lead.here.piece].feed_mm_s)
                : 0.0;
 }
 
@@ -323,9 +363,11 @@ static void test_it_speeds_up_for_a_higher_override(void)
         step(false, A);
     }
     take(&way, 1, 1.0, true);
-    for (unsigned i = 0; i < 75; i++) {
+    for (unsigned i = 1; i <= 75; i++) {
         step(false, A);
+        TEST_ASSERT_DOUBLE_WITHIN(1e-9, 0.25 * FEED + i * A, lead.feed);
     }
+    step(false, A);
     TEST_ASSERT_DOUBLE_WITHIN(1e-9, FEED, lead.feed);
 }
 
@@ -345,7 +387,7 @@ static void run_with_change(const struct stretch *way, double ratio, unsigned ch
     } while (cycles < change && !lead.standing);
     take(way, 2, 1.0, true);
     while (!lead.standing) {
-        step(false, lead.here.ceiling->piece[lead.here.piece].acceleration);
+        step(false, (double)lead.here.ceiling->piece[lead.here.piece].acceleration);
         TEST_ASSERT_TRUE(lead.at <= path_units(9.0));
     }
     TEST_ASSERT_EQUAL_UINT64(path_units(9.0), lead.at);
@@ -417,21 +459,21 @@ static void lay_joint(struct ceiling *c, double feed)
 
     lay(c, &after, 1, 1.0, false);
     c->piece[1] = c->piece[0];
-    c->piece[0].end_mm = 10.0 - room_mm;
-    c->piece[1].feed = feed;
-    c->piece[1].feed_max = feed;
+    c->end_mm[0] = 10.0 - room_mm;
+    c->piece[1].feed_mm_s = single_feed(feed);
+    c->piece[1].feed_max_mm_s = single_feed(feed);
     c->piece[1].start = c->piece[0].leave;
     c->piece[1].landed = true;
     c->count = 2;
     append(c, &after, 1.0, 10.0);
-    c->piece[1].end_mm = 10.0;
+    c->end_mm[1] = 10.0;
     c->piece[2].stop = true;
     c->open_from = c->count;
     plan(c);
     for (unsigned k = 0; k < 2; k++) {
         c->piece[k].landing = 1;
-        c->piece[k].way_energy = (float)(k == 0 ? MATHS_INFINITY : c->piece[k].end_energy);
-        c->piece[k].way_energy_max = (float)MATHS_INFINITY;
+        c->piece[k].way = CEILING_NONE;
+        c->piece[k].way_max = CEILING_NONE;
     }
 }
 
@@ -510,7 +552,7 @@ static void run_random(uint64_t seed)
         take(way, STRETCHES, ratio, true);
         TEST_ASSERT_TRUE_MESSAGE(cycles < 400000, "does not come to the stop");
     } while (!lead.standing);
-    TEST_ASSERT_EQUAL_UINT64((uint64_t)ceilings[active].piece[STRETCHES - 1].leave, lead.at);
+    TEST_ASSERT_EQUAL_UINT64(ceiling_leave(&ceilings[active], STRETCHES - 1), lead.at);
     TEST_ASSERT_DOUBLE_WITHIN(1e-9, end_mm, at_mm());
 }
 

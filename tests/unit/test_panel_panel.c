@@ -156,7 +156,7 @@ static void test_rows_stand_in_order_and_do_not_overlap(void)
         TEST_ASSERT_TRUE_MESSAGE(
             row->table > before->table ||
                 (row->table == before->table && row->address >= before->address + before->words),
-            row->name);
+            panel_text(row)->name);
     }
 }
 
@@ -167,7 +167,7 @@ static void test_every_row_is_found_by_each_address_and_by_its_name(void)
 
         for (unsigned k = 0; k < row->words; k++)
             TEST_ASSERT_EQUAL_UINT(i, panel_find(row->table, (uint16_t)(row->address + k)));
-        TEST_ASSERT_EQUAL_UINT(i, panel_find_name(row->name));
+        TEST_ASSERT_EQUAL_UINT(i, panel_find_name(panel_text(row)->name));
     }
     TEST_ASSERT_EQUAL_UINT(REGISTER_FEED_OVERRIDE, panel_find_name("feed_override"));
     TEST_ASSERT_EQUAL_UINT(REGISTER_COUNT, panel_find_name("FEED"
@@ -220,7 +220,7 @@ static void test_every_value_of_the_snapshot_is_read_back(void)
         const int64_t value = is_number(row) ? value_of(&one, id) : shown.value[i];
 
         if (!is_own(id))
-            TEST_ASSERT_EQUAL_INT64_MESSAGE(shown.value[i], value, row->name);
+            TEST_ASSERT_EQUAL_INT64_MESSAGE(shown.value[i], value, panel_text(row)->name);
     }
 }
 
@@ -260,19 +260,21 @@ static void test_every_number_is_ordered_within_its_range_and_refused_outside(vo
         shown.value[REGISTER_STATE] = PANEL_IDLE;
         if (!panel_may_write(id, PANEL_IDLE))
             shown.value[REGISTER_STATE] = PANEL_HELD;
-        TEST_ASSERT_EQUAL_INT_MESSAGE(MODBUS_GOOD, write_row(&one, id, row->most), row->name);
-        TEST_ASSERT_EQUAL_INT_MESSAGE(MODBUS_GOOD, write_row(&one, id, row->least), row->name);
+        TEST_ASSERT_EQUAL_INT_MESSAGE(MODBUS_GOOD, write_row(&one, id, row->most),
+                                      panel_text(row)->name);
+        TEST_ASSERT_EQUAL_INT_MESSAGE(MODBUS_GOOD, write_row(&one, id, row->least),
+                                      panel_text(row)->name);
         TEST_ASSERT_EQUAL_UINT(1, ordered.count);
         TEST_ASSERT_EQUAL_INT(id, ordered.item[0].id);
-        TEST_ASSERT_EQUAL_INT64_MESSAGE(row->least, ordered.item[0].value, row->name);
+        TEST_ASSERT_EQUAL_INT64_MESSAGE(row->least, ordered.item[0].value, panel_text(row)->name);
         orders = 0;
         if (row->form == PANEL_U16 && row->most < PANEL_U16_MOST)
             TEST_ASSERT_EQUAL_INT_MESSAGE(MODBUS_VALUE, write_row(&one, id, row->most + 1),
-                                          row->name);
+                                          panel_text(row)->name);
         if (row->form != PANEL_BIT && row->least > 0)
             TEST_ASSERT_EQUAL_INT_MESSAGE(MODBUS_VALUE, write_row(&one, id, row->least - 1),
-                                          row->name);
-        TEST_ASSERT_EQUAL_UINT_MESSAGE(0, orders, row->name);
+                                          panel_text(row)->name);
+        TEST_ASSERT_EQUAL_UINT_MESSAGE(0, orders, panel_text(row)->name);
     }
 }
 
@@ -290,7 +292,7 @@ static void test_the_table_says_in_which_states_a_register_is_written(void)
             shown.value[REGISTER_STATE] = state;
             shown.value[REGISTER_WATCHDOG] = 0;
             TEST_ASSERT_EQUAL_INT_MESSAGE(allowed ? MODBUS_GOOD : MODBUS_STATE,
-                                          write_row(&one, id, row->most), row->name);
+                                          write_row(&one, id, row->most), panel_text(row)->name);
         }
     }
 }

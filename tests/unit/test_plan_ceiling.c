@@ -55,8 +55,9 @@ static void test_blocks_of_one_feed_make_one_piece(void)
     build();
     TEST_ASSERT_EQUAL(1, ceiling.count);
     TEST_ASSERT_TRUE(ceiling.piece[0].stop);
-    TEST_ASSERT_DOUBLE_WITHIN(1e-9, 10.0, ceiling.piece[0].end_mm);
-    TEST_ASSERT_DOUBLE_WITHIN(1e-15, 0.05, ceiling.piece[0].feed);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-9, 10.0, ceiling.end_mm[0]);
+    TEST_ASSERT_TRUE(ceiling.piece[0].feed_mm_s == 50.0F);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-15, 0.05, ceiling_feed(&ceiling, ceiling.piece[0].feed_mm_s));
 }
 
 /* N = A/J = 20 cycles: the setpoint is (20 - 1)/2 cycles behind, and two of margin. */
@@ -67,8 +68,8 @@ static void test_a_slower_block_begins_earlier_by_half_the_window(void)
     build();
     TEST_ASSERT_EQUAL(2, ceiling.count);
     TEST_ASSERT_EQUAL(20, ceiling.piece[0].cycles);
-    TEST_ASSERT_DOUBLE_WITHIN(1e-9, 50.0 - 0.04 * 11.5, ceiling.piece[0].end_mm);
-    TEST_ASSERT_EQUAL_INT64((int64_t)path_units(50.0), ceiling.piece[0].leave);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-9, 50.0 - 0.04 * 11.5, ceiling.end_mm[0]);
+    TEST_ASSERT_EQUAL_UINT64(path_units(50.0), ceiling_leave(&ceiling, 0));
 }
 
 /* u = min(c^2, u_next + 2 a L), from rest at the end backwards. */
@@ -77,12 +78,17 @@ static void test_feed_squared_falls_linearly_towards_a_stop(void)
     push(MOVE_FEED, 50.0, 100.0);
     push(MOVE_FEED, 50.5, 99.0);
     build();
+    path.ring.block[1].a_mm_s2 = 900.0F; /* so that it is a piece for itself (rest.h) */
+    ceiling_build(&ceiling, &path, &request);
     TEST_ASSERT_EQUAL(2, ceiling.count);
-    TEST_ASSERT_TRUE(ceiling.piece[1].end_energy == 0.0);
-    const double length = ceiling.piece[1].end_mm - ceiling.piece[0].end_mm;
-    const double energy = maths_min(0.099 * 0.099, 2.0 * ceiling.piece[1].acceleration * length);
+    TEST_ASSERT_TRUE(ceiling.piece[1].end_feed_mm_s == 0.0F);
+    const double length = ceiling.end_mm[1] - ceiling.end_mm[0];
+    const double a = (double)ceiling.piece[1].acceleration;
+    const double energy = maths_min(0.099 * 0.099, 2.0 * a * length);
+    const double feed = ceiling_feed(&ceiling, ceiling.piece[0].end_feed_mm_s);
 
-    TEST_ASSERT_DOUBLE_WITHIN(1e-15, energy, ceiling.piece[0].end_energy);
+    TEST_ASSERT_TRUE(feed * feed <= energy);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-6 * energy, energy, feed * feed);
 }
 
 static void test_the_override_scales_the_programmed_feed_alone(void)
@@ -114,8 +120,8 @@ static void test_a_rapid_obeys_the_rapid_override(void)
     request.feed_ratio = 0.5;
     build();
     TEST_ASSERT_DOUBLE_WITHIN(1e-12, 25.0, ceiling_block_feed(&path, 0, &request));
-    TEST_ASSERT_EQUAL(CEILING_RAPID | OVERRIDE_HOLD, ceiling.piece[0].overrides);
-    TEST_ASSERT_DOUBLE_WITHIN(1e-12, 0.1, ceiling.piece[0].feed_max);
+    TEST_ASSERT_EQUAL(CEILING_RAPID | CEILING_HOLD, ceiling.piece[0].overrides);
+    TEST_ASSERT_TRUE(ceiling.piece[0].feed_max_mm_s == 100.0F);
 }
 
 /* A short span needs no longer window than cbrt(L / 2J) = cbrt(0.001 mm / 100,000 mm/s3) = 2.15 ms. */
@@ -129,6 +135,37 @@ static void test_a_short_span_has_a_short_window(void)
     TEST_ASSERT_EQUAL(20, ceiling.piece[1].cycles);
 }
 
+/* However it is rounded, or the lead point would brake where nothing asks for it. */
+static void test_a_piece_of_constant_feed_ends_with_exactly_that_feed(void)
+{
+    push(MOVE_FEED, 20.0, 100.0 / 3.0);
+    push(MOVE_FEED, 40.0, 100.0 / 3.0);
+    push(MOVE_FEED, 60.0, 100.0 / 3.0);
+    build();
+    path.ring.block[1].may_hold = 0; /* so that it is a piece for itself */
+    ceiling_build(&ceiling, &path, &request);
+    TEST_ASSERT_EQUAL(3, ceiling.count);
+    for (uint32_t k = 0; k < 2; k++) {
+        TEST_ASSERT_TRUE(ceiling.piece[k].feed_mm_s == maths_float_below(100.0 / 3.0));
+        TEST_ASSERT_TRUE(ceiling.piece[k].end_feed_mm_s == ceiling.piece[k].feed_mm_s);
+    }
+}
+
+/* Its blocks may have been overwritten: it has been left at the start of the oldest one that is kept at the latest. */
+static void test_what_has_been_left_long_ago_was_left_where_the_oldest_block_starts(void)
+{
+    push(MOVE_FEED, 20.0, 50.0);
+    push(MOVE_FEED, 40.0, 60.0);
+    push(MOVE_FEED, 60.0, 70.0);
+    build();
+    TEST_ASSERT_EQUAL_UINT64(path_units(20.0), ceiling_leave(&ceiling, 0));
+    TEST_ASSERT_EQUAL_UINT64(path_units(20.0), ceiling_start(&ceiling, 1));
+    path.kept = 2;
+    TEST_ASSERT_EQUAL_UINT64(path_units(40.0), ceiling_leave(&ceiling, 0));
+    TEST_ASSERT_EQUAL_UINT64(path_units(40.0), ceiling_start(&ceiling, 1));
+    TEST_ASSERT_EQUAL_UINT64(path_units(60.0), ceiling_leave(&ceiling, 2));
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -139,5 +176,7 @@ int main(void)
     RUN_TEST(test_a_move_without_override_keeps_its_feed);
     RUN_TEST(test_a_rapid_obeys_the_rapid_override);
     RUN_TEST(test_a_short_span_has_a_short_window);
+    RUN_TEST(test_a_piece_of_constant_feed_ends_with_exactly_that_feed);
+    RUN_TEST(test_what_has_been_left_long_ago_was_left_where_the_oldest_block_starts);
     return UNITY_END();
 }

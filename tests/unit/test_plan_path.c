@@ -117,6 +117,27 @@ static void test_a_restart_forgets_all_blocks(void)
     TEST_ASSERT_EQUAL_UINT64(path_units(3.0), path_at(&path, path.first)->start);
 }
 
+/* Both ceilings are in use: what smoothing would compute in is one of them. */
+static void test_motions_are_smoothed_as_soon_as_there_is_a_place_for_it(void)
+{
+    const struct move line = {.kind = MOVE_FEED,
+                              .path = PATH_BLEND,
+                              .tolerance_mm = 0.01,
+                              .feed_mm_s = 50.0,
+                              .turns = 1,
+                              .end = {{10.0}}};
+
+    path.spare = PATH_NO_SPARE;
+    path_push(&path, &line);
+    path_finish(&path);
+    path_go_on(&path);
+    TEST_ASSERT_EQUAL(0, path.pushed);
+    path.spare = 1;
+    path_go_on(&path);
+    TEST_ASSERT_GREATER_THAN(1, path.pushed);
+    TEST_ASSERT_EQUAL(path.pushed, path.closed);
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -127,5 +148,6 @@ int main(void)
     RUN_TEST(test_a_motion_without_length_is_counted_and_dropped);
     RUN_TEST(test_room_is_bounded_by_what_must_be_kept);
     RUN_TEST(test_a_restart_forgets_all_blocks);
+    RUN_TEST(test_motions_are_smoothed_as_soon_as_there_is_a_place_for_it);
     return UNITY_END();
 }

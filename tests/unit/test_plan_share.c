@@ -131,6 +131,23 @@ static void test_a_stop_closes_what_is_before_it(void)
     TEST_ASSERT_TRUE(share_of(1) < NOTHING);
 }
 
+/* To slow down to a tenth of the feed and leave half of the jerk costs more than to stop with all of it. */
+static void test_a_turn_that_costs_more_than_a_stop_is_stopped_at(void)
+{
+    const double half_rad =
+        0.5 * 50000.0 * 1e-6; /* of a turn that takes half of the jerk at 1 mm/s */
+
+    push(10.0, 0.0, 100.0);
+    push(10.0, half_rad / 10.0, 100.0);
+    push(10.0, half_rad / 10.0 + half_rad / 50.0, 100.0);
+    push(10.0, half_rad / 10.0 + half_rad / 50.0, 100.0);
+    path_finish(&path);
+    TEST_ASSERT_EQUAL(JOINT_STOP, path_at(&path, 0)->end);
+    TEST_ASSERT_EQUAL(JOINT_REDUCED, path_at(&path, 1)->end);
+    TEST_ASSERT_EQUAL(JOINT_PASSED, path_at(&path, 2)->end);
+    TEST_ASSERT_DOUBLE_WITHIN(0.1, 50.0, (double)path_at(&path, 1)->feed_joint_mm_s);
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -140,5 +157,6 @@ int main(void)
     RUN_TEST(test_a_block_is_closed_when_three_cycles_are_known_behind_it);
     RUN_TEST(test_a_block_counts_as_leaving_the_largest_share_until_it_is_closed);
     RUN_TEST(test_a_stop_closes_what_is_before_it);
+    RUN_TEST(test_a_turn_that_costs_more_than_a_stop_is_stopped_at);
     return UNITY_END();
 }

@@ -48,7 +48,7 @@ static uint64_t digest_of_whole(size_t size)
     struct controller_config config = {
         .machine = &machine,
         .can = {.send = send, .receive = receive},
-        .parameters = &embedded.parameters,
+        .parameters = &embedded_core.parameters,
     };
     const struct point start = {{0}};
 
@@ -156,7 +156,7 @@ static void test_a_stream_that_is_given_up_or_wrong_ends_the_program_in_an_error
         for (unsigned i = 0; i < 20; i++)
             (void)bring(program, size);
         if (wrong != 0)
-            embedded.panel.upload.crc++;
+            embedded_core.panel.upload.crc++;
         else
             TEST_ASSERT_EQUAL_UINT(0, set(REGISTER_UPLOAD_COMMAND, PANEL_UPLOAD_ABANDON));
         for (unsigned i = 0; i < CYCLES_MAX && embedded.service.alarm == PANEL_ALARM_NONE; i++) {

@@ -150,7 +150,7 @@ static uint64_t digest_of_whole(void)
     const struct controller_config config = {
         .machine = &machine,
         .can = {.send = send, .receive = receive},
-        .parameters = &embedded.parameters,
+        .parameters = &embedded_core.parameters,
         .compiled = &compiled,
     };
     struct controller_config with_text = config;
@@ -168,7 +168,7 @@ static uint64_t digest_of_whole(void)
 
 static void refusal_text(char *into)
 {
-    memcpy(into, embedded.panel.upload_text, strlen(embedded.panel.upload_text) + 1);
+    memcpy(into, embedded_core.panel.upload_text, strlen(embedded_core.panel.upload_text) + 1);
 }
 
 /* ---- claims ---- */
@@ -284,7 +284,7 @@ static void test_a_plan_that_is_given_up_or_wrong_ends_the_program_in_an_error(v
         compile_text();
         begin_plan();
         if (wrong != 0)
-            embedded.panel.upload.crc++;
+            embedded_core.panel.upload.crc++;
         TEST_ASSERT_EQUAL_UINT(0, set(REGISTER_CYCLE_START, 1));
         run_plan(wrong != 0 ? plan_size : plan_size / 2);
         if (wrong == 0)

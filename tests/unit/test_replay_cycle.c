@@ -96,7 +96,7 @@ static double run_until_it_fails(void)
     struct cycle_record record;
     double farthest = 0;
 
-    replay_init(&replay, &source);
+    replay_init(&replay, path_lend(&path, sizeof(struct intake)), &source);
     for (int i = 0; i < 100; i++) {
         replay_read(&replay, &limits);
         if (motion_cycle(&motion, &as_programmed, &record) != MOTION_HANDED_OVER) {

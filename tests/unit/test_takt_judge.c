@@ -12,8 +12,8 @@
 #define PI    3.14159265358979323846
 
 static struct machine machine;
-static struct parameters parameters;
-static struct source_text text;
+static struct parameters parameters[2];
+static struct source_text text[2];
 static struct judge judge;
 static struct cycle_record record;
 static struct block executed;
@@ -21,7 +21,9 @@ static struct block executed;
 void setUp(void)
 {
     machine_set_default(&machine);
-    parameters_clear(&parameters);
+    parameters_clear(&parameters[0]);
+    parameters_clear(&parameters[1]);
+    memset(&judge, 0, sizeof judge);
     memset(&record, 0, sizeof record);
     memset(&executed, 0, sizeof executed);
     executed.end = JOINT_STOP;
@@ -29,13 +31,14 @@ void setUp(void)
 
 void tearDown(void)
 {
+    judge_free(&judge);
 }
 
 /* A judge of this program, before its first cycle. */
 static void begin_as(const char *program, bool waits)
 {
     struct program_config config = {.axes = machine_axes(&machine),
-                                    .parameters = &parameters,
+                                    .parameters = &parameters[0],
                                     .waits = waits,
                                     .spindle_encoder = true};
     struct source source;
@@ -44,8 +47,12 @@ static void begin_as(const char *program, bool waits)
         config.travel_min[i] = -500;
         config.travel_max[i] = 500;
     }
-    source_open_text(&source, &text, program, strlen(program));
+    judge_free(&judge);
+    source_open_text(&source, &text[0], program, strlen(program));
     judge_init(&judge, &machine, &config, &source);
+    config.parameters = &parameters[1];
+    source_open_text(&source, &text[1], program, strlen(program));
+    judge_follow(&judge, &machine, &config, &source, false);
 }
 
 static void begin(const char *program)
@@ -218,6 +225,46 @@ static void test_a_run_of_more_blocks_than_the_program_has_is_seen(void)
     TEST_ASSERT_TRUE(judge.strayed);
 }
 
+/* Cycles of a smoothed path say that they execute a spline. */
+static void begin_smoothed(const char *program)
+{
+    begin(program);
+    executed.curve.kind = CURVE_SPLINE;
+    executed.move.kind = MOVE_FEED;
+}
+
+static void test_numbers_that_go_back_are_seen_and_change_nothing_of_the_path(void)
+{
+    begin_smoothed("G64 P0.1\nF100\nG1 X1\nG1 X2\nG1 X3\n");
+    cycle(1, 0.5, 0.05);
+    cycle(3, 1.5, 0.05);
+    TEST_ASSERT_FALSE(judge.strayed);
+    cycle(2, 2.5, 0.05);
+    cycle(3, 3, 0);
+    judge_finish(&judge, true);
+    TEST_ASSERT_TRUE(judge.strayed);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-12, 3, judge.figures.path_length_mm);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-9, 0.5, judge.figures.smoothed_path_part);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-9, 0.5, judge.figures.smoothed_corner_part);
+}
+
+static void test_wrong_numbers_do_not_hide_a_setpoint_beside_a_smoothed_path(void)
+{
+    begin_smoothed("G64 P0.1\nF100\nG1 X1\nG1 X2\nG1 X2 Y1\nG1 X0\n");
+    cycle(1, 0.5, 0);
+    cycle(4, 1, 1); /* on the last motion, but far from the second */
+    judge_finish(&judge, false);
+    TEST_ASSERT_TRUE(judge.figures.smoothed_path_part > 9);
+}
+
+static void test_an_exact_motion_is_judged_as_such_whatever_the_cycle_says_it_executes(void)
+{
+    begin_smoothed("F100\nG1 X10\n");
+    cycle(1, 5, 0.05);
+    judge_finish(&judge, false);
+    TEST_ASSERT_TRUE(judge.figures.path_error_mm > 0.04);
+}
+
 static void test_a_feed_step_at_a_joint_is_seen_and_one_inside_a_block_is_none(void)
 {
     begin("G0 X10\nG0 X20\n");
@@ -368,6 +415,9 @@ int main(void)
     RUN_TEST(test_a_passed_end_is_where_the_executed_path_leads);
     RUN_TEST(test_blocks_in_which_no_cycle_ends_are_followed);
     RUN_TEST(test_a_run_of_more_blocks_than_the_program_has_is_seen);
+    RUN_TEST(test_numbers_that_go_back_are_seen_and_change_nothing_of_the_path);
+    RUN_TEST(test_wrong_numbers_do_not_hide_a_setpoint_beside_a_smoothed_path);
+    RUN_TEST(test_an_exact_motion_is_judged_as_such_whatever_the_cycle_says_it_executes);
     RUN_TEST(test_a_feed_step_at_a_joint_is_seen_and_one_inside_a_block_is_none);
     RUN_TEST(test_the_following_error_compares_a_report_with_its_own_setpoint);
     RUN_TEST(test_the_digest_depends_on_every_bit_of_every_setpoint);

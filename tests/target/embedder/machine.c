@@ -9,6 +9,7 @@
 #define CYCLES_MAX 10000
 
 static struct embedded embedded;
+static struct embedded_core core;
 static struct machine machine;
 static struct tool tools[10];
 static uint32_t now_us_count;
@@ -57,6 +58,7 @@ int main(void)
 {
     const struct embedded_config config = {
         .machine = &machine,
+        .core = &core,
         .can = {.send = bus_send, .receive = bus_receive},
         .tools = tools,
         .tools_count = sizeof tools / sizeof tools[0],
