@@ -29,7 +29,7 @@
 /* A corner is passed so many pieces from where its place is, at most. */
 #define CORNER_PIECES 3
 
-/* Corners that turn less are within the tube anyway. */
+/* Corners of lines that turn less are within the tube anyway. */
 #define CORNER_MIN 0.005f
 
 static float larger(float a, float b)
@@ -186,23 +186,42 @@ static bool piece_passes_corner(const struct window *w, const struct route *r, u
     return false;
 }
 
-/* The piece beside the corner mostly does; else one of its neighbours may. */
+/* The piece beside the corner mostly does; else one of its neighbours may, of the first count. */
 static bool passes_corner(const struct window *w, const struct route *r, unsigned piece,
-                          uint32_t element)
+                          uint32_t element, unsigned count)
 {
     const unsigned first = piece > CORNER_PIECES ? piece - CORNER_PIECES : 0;
-    const unsigned last =
-        piece + CORNER_PIECES + 4 < w->count ? piece + CORNER_PIECES : w->count - 4;
+    const unsigned end = piece + CORNER_PIECES < count ? piece + CORNER_PIECES + 1 : count;
 
     if (piece_passes_corner(w, r, piece, element)) {
         return true;
     }
-    for (unsigned i = first; i <= last; i++) {
+    for (unsigned i = first; i < end; i++) {
         if (i != piece && piece_passes_corner(w, r, i, element)) {
             return true;
         }
     }
     return false;
+}
+
+/* Can the curve leave the element's start aside? A bend of a few tolerances it can cut short within the tube. */
+static bool is_corner(const struct route *r, uint32_t element)
+{
+    const struct route_element *e = route_element(r, element);
+
+    return e->turn > CORNER_MIN || e->bent || route_element(r, element - 1)->bent;
+}
+
+/* Do the first count pieces pass the corners beside one of them? */
+static bool passes_corners(const struct window *w, const struct route *r, unsigned piece,
+                           unsigned count)
+{
+    for (uint32_t e = w->element[piece + 1] + 1; e <= w->element[piece + 2]; e++) {
+        if (is_corner(r, e) && !passes_corner(w, r, piece, e, count)) {
+            return false;
+        }
+    }
+    return true;
 }
 
 static bool piece_is_good(const struct window *w, const struct route *r, unsigned piece)
@@ -217,12 +236,7 @@ static bool piece_is_good(const struct window *w, const struct route *r, unsigne
             return false;
         }
     }
-    for (uint32_t e = w->element[piece + 1] + 1; e <= w->element[piece + 2]; e++) {
-        if (route_element(r, e)->turn > CORNER_MIN && !passes_corner(w, r, piece, e)) {
-            return false;
-        }
-    }
-    return true;
+    return passes_corners(w, r, piece, w->count - 3);
 }
 
 unsigned judge_pieces(const struct window *w, const struct route *r, unsigned count)
@@ -233,4 +247,23 @@ unsigned judge_pieces(const struct window *w, const struct route *r, unsigned co
         good++;
     }
     return good;
+}
+
+/* Only the last of them can have left a corner to what follows. */
+static bool leaves_corner(const struct window *w, const struct route *r, unsigned count)
+{
+    for (unsigned i = 1; i <= CORNER_PIECES && i <= count; i++) {
+        if (!passes_corners(w, r, count - i, count)) {
+            return true;
+        }
+    }
+    return false;
+}
+
+unsigned judge_whole(const struct window *w, const struct route *r, unsigned count)
+{
+    while (count > 0 && leaves_corner(w, r, count)) {
+        count--;
+    }
+    return count;
 }

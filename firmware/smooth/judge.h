@@ -35,5 +35,7 @@ void judge_rate(const struct judge_need *need, const struct route *r, uint32_t e
                 const struct judge_change *change, struct judge_rate *rate);
 /* Pieces from the first one on, count at most, that keep the tolerance and pass their corners within it. */
 unsigned judge_pieces(const struct window *w, const struct route *r, unsigned count);
+/* Of the first count of these, those that pass every corner beside them without the pieces behind, which may change. */
+unsigned judge_whole(const struct window *w, const struct route *r, unsigned count);
 
 #endif

@@ -2,6 +2,7 @@
 
 #include "base/maths.h"
 #include "smooth/single.h"
+#include "smooth/straight.h"
 
 #include <assert.h>
 #include <string.h>
@@ -37,9 +38,6 @@
 /* A curve goes on by this part of the tolerance, or of the way at nominal feed, in so many windows, or it never will. */
 #define STALL_PART    0.1
 #define STALL_WINDOWS 2
-
-/* A bent element counts as straight where it leaves its tangent by no more than this part of the tolerance. */
-#define STRAIGHT_PART 0.02f
 
 /* Nominal time between samples, as a part of the time in which the jerk crosses the tolerance, cbrt(P/J). */
 #define INTERVAL_PART 0.7
@@ -313,44 +311,6 @@ static void keep_head(struct smooth *s)
     }
 }
 
-/* The end of the element, or as far as it is straight, or as an interval at its feed goes. */
-static double next_rest(const struct smooth *s, uint32_t element)
-{
-    const struct window *w = &s->window;
-    const double at = w->at_mm[SMOOTH_FIXED - 1];
-    const float straight =
-        route_straight(&s->route, element, at, STRAIGHT_PART * (float)s->route.tolerance_mm);
-    const float once = route_element(&s->route, element)->feed_mm_s * (float)w->interval_s;
-
-    return maths_min(route_end_of(&s->route, element), at + (double)single_min(straight, once));
-}
-
-/* From rest straight on, and to rest again; in motion to rest right here. */
-static void go_straight(struct smooth *s)
-{
-    struct window *w = &s->window;
-    const unsigned last = SMOOTH_FIXED - 1;
-    uint32_t element = route_find(&s->route, w->at_mm[last], w->element[last]);
-    double at = w->at_mm[last];
-    double p[AXIS_COUNT];
-    struct window_spot spot;
-
-    window_sample(w, &s->route, last, p);
-    if (w->at_mm[0] == at) {
-        at = next_rest(s, element);
-        route_point(&s->route, at, &element, p);
-    }
-    window_nearest(w, &s->route, p, &spot);
-    w->count = 2 * SMOOTH_FIXED;
-    w->at_end = false;
-    for (unsigned i = SMOOTH_FIXED; i < w->count; i++) {
-        w->at_mm[i] = at;
-        w->element[i] = element;
-        window_set(w, &s->route, i, &spot);
-    }
-    s->ready = SMOOTH_FIXED;
-}
-
 /*
  * No way on has been found in motion: what was proved the last time is gone to its end, and come to rest there. From rest,
  * inside the tolerance, every way is open again; and where there seems to be none, straight on is one.
@@ -365,7 +325,7 @@ static void fall_back(struct smooth *s)
     s->stops = true;
     s->idle = 0;
     if (s->ready == 0) {
-        go_straight(s);
+        s->ready = straight_on(w, &s->route);
         return;
     }
     memcpy(w->origin, h->origin, sizeof h->origin);
@@ -429,7 +389,8 @@ static void smooth_window(struct smooth *s, struct relax_beside *beside)
         good = judged(s);
     }
     s->ends = s->finished && s->window.at_end;
-    s->ready = kept(s, good);
+    good = judge_whole(&s->window, &s->route, good);
+    s->ready = judge_whole(&s->window, &s->route, kept(s, good));
     s->proved = good - s->ready;
     if (s->ready == 0 || stands_still(s)) {
         fall_back(s);

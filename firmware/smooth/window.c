@@ -92,6 +92,19 @@ void window_set(struct window *w, const struct route *r, unsigned i, const struc
     }
 }
 
+bool window_is_at(const struct window *w, const struct route *r, unsigned i,
+                  const struct window_spot *s)
+{
+    for (unsigned k = 0; k < r->slots.count; k++) {
+        const int32_t off = s->at[k] - window_x(w, k, i);
+
+        if (off < -1 || off > 1) {
+            return false;
+        }
+    }
+    return true;
+}
+
 void window_sample(const struct window *w, const struct route *r, unsigned i, double p[])
 {
     for (unsigned k = 0; k < r->slots.count; k++) {
@@ -123,11 +136,16 @@ void window_start(struct window *w, const struct route *r)
     }
 }
 
-/* The spline at sample 1 is x[1] + (x[0] - 2 x[1] + x[2])/6, exactly x[1] where it rests already: the new origin. */
+/*
+ * The spline at sample 1 is x[1] + (x[0] - 2 x[1] + x[2])/6, exactly x[1] where it rests already: the new origin. Its place
+ * is on the element of sample 1 at most: nobody has looked whether the corner behind that has been passed.
+ */
 void window_rest(struct window *w, const struct route *r)
 {
-    const double at = w->at_mm[1] + (w->at_mm[0] - 2.0 * w->at_mm[1] + w->at_mm[2]) / 6.0;
-    const uint32_t element = route_find(r, at, w->element[1]);
+    const double on = w->at_mm[1] + (w->at_mm[0] - 2.0 * w->at_mm[1] + w->at_mm[2]) / 6.0;
+    const double at = maths_min(on, route_end_of(r, w->element[1]));
+    const uint32_t found = route_find(r, at, w->element[1]);
+    const uint32_t element = found < w->element[1] ? found : w->element[1];
     double p[3][AXIS_COUNT];
     static const struct window_spot nowhere;
 

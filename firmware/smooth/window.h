@@ -61,6 +61,9 @@ static inline int32_t window_x(const struct window *w, unsigned slot, unsigned i
 }
 
 void window_set(struct window *w, const struct route *r, unsigned i, const struct window_spot *s);
+/* Is a sample there, but for the rounding of coordinates? */
+bool window_is_at(const struct window *w, const struct route *r, unsigned i,
+                  const struct window_spot *s);
 /* A sample in mm. */
 void window_sample(const struct window *w, const struct route *r, unsigned i, double p[]);
 /* The curve at a piece's fraction that has these weights, and where that is on the route. */

@@ -4,7 +4,6 @@
 #ifndef TAKT_STM32F405_BOARD_H
 #define TAKT_STM32F405_BOARD_H
 
-#include "port/cortex_m.h"
 #include "stm32f405/gpio.h"
 
 #include <stdint.h>
@@ -64,7 +63,7 @@ enum board_interrupt {
 #define BOARD_PRIORITY_CAN   0x20U
 #define BOARD_PRIORITY_PANEL 0x40U
 #define BOARD_PRIORITY_LOG   0x60U
-#define BOARD_PRIORITY_CYCLE CORTEX_PRIORITY_CYCLE
+#define BOARD_PRIORITY_CYCLE 0x80U
 
 /* The control cycle must be heard of within this time. */
 #define BOARD_WATCHDOG_MS 250U

@@ -29,7 +29,10 @@
 #include "storage/settings.h"
 #include "storage/store.h"
 
+#include <assert.h>
 #include <string.h>
+
+static_assert(BOARD_PRIORITY_CYCLE == CORTEX_PRIORITY_CYCLE, "lock() holds the cycle back");
 
 #define TOOLS_MAX 32U
 

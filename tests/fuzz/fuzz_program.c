@@ -79,8 +79,9 @@ static void check_move(const struct move *move)
 {
     CHECK(move->line > 0 || move->kind == MOVE_END);
     if (!move_is_motion(move)) {
-        CHECK(move->dwell_s >= 0.0 && maths_is_finite(move->dwell_s));
-        CHECK(move->speed_rpm >= 0.0 && maths_is_finite(move->speed_rpm));
+        CHECK(move->kind != MOVE_DWELL || (move->dwell_s >= 0.0 && maths_is_finite(move->dwell_s)));
+        CHECK(move->kind != MOVE_SPINDLE ||
+              (move->speed_rpm >= 0.0 && maths_is_finite(move->speed_rpm)));
         return;
     }
     check_point(&move->end, TRAVEL_SLACK);
