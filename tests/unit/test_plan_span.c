@@ -1,45 +1,23 @@
 /* The averaging window of a span. */
 #include "plan/span.h"
 
+#include "plan_along_x.h"
+
 #include <string.h>
 #include <unity.h>
 
-/* A/J is 20 cycles. */
-static const struct plan_limits limits = {
-    7,    {100, 100, 100}, {1000, 1000, 1000}, {50000, 50000, 50000}, 1e-3,
-    1e-3, LAW_JERK,        LANDING_SPAN};
-
-static struct path path;
 static struct ceiling ceiling;
 static struct ceiling_request request;
-static double x_mm;
 
 void setUp(void)
 {
-    const struct point start = {{0}};
-
-    path_init(&path, &limits, &start);
-    x_mm = 0.0;
+    begin_path();
     request = (struct ceiling_request){
         .lead = path.position, .span = path.position - 1, .feed_ratio = 1.0, .rapid_ratio = 1.0};
 }
 
 void tearDown(void)
 {
-}
-
-static void push(double length_mm, double feed_mm_s)
-{
-    struct move m;
-
-    memset(&m, 0, sizeof(m));
-    m.kind = MOVE_FEED;
-    m.feed_mm_s = feed_mm_s;
-    m.overrides = OVERRIDE_FEED | OVERRIDE_HOLD;
-    m.turns = 1;
-    x_mm += length_mm;
-    m.end.at[AXIS_X] = x_mm;
-    path_push(&path, &m);
 }
 
 static void push_dwell(void)
