@@ -200,15 +200,12 @@ static unsigned event_bits(const struct move *m)
            (m->optional ? EVENT_OPTIONAL : 0U);
 }
 
+/* The numbers of every kind lie where those of a spindle do (program/move.h), which has the most of them. */
 static void put_event(uint8_t **to, const struct move *m)
 {
-    put_double(to, m->dwell_s);
     put_double(to, m->speed_rpm);
     put_double(to, m->surface_mm_s);
     put_double(to, m->surface_x_mm);
-    put_double(to, m->orient_rad);
-    put_double(to, m->timeout_s);
-    put_double(to, m->output);
     put_word(to, m->channel);
     put_byte(to, (unsigned)m->direction);
     put_byte(to, (unsigned)m->orient_way);
@@ -218,13 +215,9 @@ static void put_event(uint8_t **to, const struct move *m)
 
 static void take_event(const uint8_t **from, struct move *m)
 {
-    m->dwell_s = take_double(from);
     m->speed_rpm = take_double(from);
     m->surface_mm_s = take_double(from);
     m->surface_x_mm = take_double(from);
-    m->orient_rad = take_double(from);
-    m->timeout_s = take_double(from);
-    m->output = take_double(from);
     m->channel = take_word(from);
     m->direction = (enum spindle_direction)take_byte(from);
     m->orient_way = (enum orient_way)take_byte(from);

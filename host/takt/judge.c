@@ -270,8 +270,6 @@ static void take_tube(struct judge *j, bool completed)
         tube_judge_finish(&j->tube);
     j->figures.path_length_mm = tube->path_length_mm;
     raise_to(&j->figures.path_error_mm, tube->beyond_mm);
-    if (j->rounds)
-        return;
     j->figures.smoothed_path_part = tube->path_part;
     j->figures.smoothed_corner_part = tube->corner_part;
 }

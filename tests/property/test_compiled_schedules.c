@@ -9,11 +9,11 @@
 #include "ahead/compile.h"
 #include "chain_distance.h"
 #include "motion/handover.h"
+#include "property_arguments.h"
 #include "random_schedule.h"
 #include "replay/replay.h"
 
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 #include <unity.h>
 
@@ -425,12 +425,7 @@ static void test_single_block_stops_at_the_end_of_every_block(void)
 
 int main(int argc, char **argv)
 {
-    if (argc > 1) {
-        programs = (unsigned)strtoul(argv[1], NULL, 10);
-    }
-    if (argc > 2) {
-        first_seed = (unsigned)strtoul(argv[2], NULL, 10);
-    }
+    read_number_and_first(argc, argv, &programs, &first_seed);
     UNITY_BEGIN();
     RUN_TEST(test_limits_and_path_are_kept_under_any_schedule);
     RUN_TEST(test_single_block_stops_at_the_end_of_every_block);

@@ -7,10 +7,10 @@
  */
 #include "motion/motion.h"
 #include "plan/path.h"
+#include "property_arguments.h"
 #include "random_chain.h"
 
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 #include <unity.h>
 
@@ -228,12 +228,7 @@ static void test_no_chain_of_short_blocks_exceeds_the_limits(void)
 
 int main(int argc, char **argv)
 {
-    if (argc > 1) {
-        searches = (unsigned)strtoul(argv[1], NULL, 10);
-    }
-    if (argc > 2) {
-        first_seed = (unsigned)strtoul(argv[2], NULL, 10);
-    }
+    read_number_and_first(argc, argv, &searches, &first_seed);
     UNITY_BEGIN();
     RUN_TEST(test_no_chain_of_short_blocks_exceeds_the_limits);
     return UNITY_END();

@@ -5,6 +5,7 @@
 #define _POSIX_C_SOURCE 200809L
 
 #include "base/maths.h"
+#include "property_arguments.h"
 #include "takt/offline.h"
 #include "unity.h"
 
@@ -547,10 +548,7 @@ static void test_what_is_written_follows_the_corrected_path(void)
 
 int main(int argc, char **argv)
 {
-    if (argc > 1)
-        programs = (unsigned)strtoul(argv[1], NULL, 10);
-    if (argc > 2)
-        first_seed = (unsigned)strtoul(argv[2], NULL, 10);
+    read_number_and_first(argc, argv, &programs, &first_seed);
     UNITY_BEGIN();
     RUN_TEST(test_what_is_written_follows_the_corrected_path);
     return UNITY_END();

@@ -8,6 +8,7 @@
  */
 #include "motion/motion.h"
 #include "plan/path.h"
+#include "property_arguments.h"
 #include "random_schedule.h"
 
 #include <stdio.h>
@@ -233,12 +234,7 @@ static void test_rare_programs_keep_the_limits(void)
 
 int main(int argc, char **argv)
 {
-    if (argc > 1) {
-        programs = (unsigned)strtoul(argv[1], NULL, 10);
-    }
-    if (argc > 2) {
-        first_seed = (unsigned)strtoul(argv[2], NULL, 10);
-    }
+    read_number_and_first(argc, argv, &programs, &first_seed);
     if (argc > 3) {
         forced_look_ahead = (uint32_t)strtoul(argv[3], NULL, 10);
     }

@@ -9,10 +9,10 @@
 #include "chain_distance.h"
 #include "motion/motion.h"
 #include "plan/path.h"
+#include "property_arguments.h"
 #include "random_schedule.h"
 
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 #include <unity.h>
 
@@ -362,12 +362,7 @@ static void test_chains_that_once_stood_for_ever_come_to_their_end(void)
 
 int main(int argc, char **argv)
 {
-    if (argc > 1) {
-        programs = (unsigned)strtoul(argv[1], NULL, 10);
-    }
-    if (argc > 2) {
-        first_seed = (unsigned)strtoul(argv[2], NULL, 10);
-    }
+    read_number_and_first(argc, argv, &programs, &first_seed);
     UNITY_BEGIN();
     RUN_TEST(test_smoothed_setpoints_keep_limits_and_tolerance_under_any_override);
     RUN_TEST(test_single_block_switched_inside_chains_keeps_all_of_it);

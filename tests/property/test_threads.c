@@ -9,10 +9,10 @@
  *
  * test_threads NUMBER runs so many machines, test_threads NUMBER FIRST from that seed on.
  */
+#include "property_arguments.h"
 #include "thread_bench.h"
 
 #include <stdio.h>
-#include <stdlib.h>
 #include <unity.h>
 
 #define MACHINES   300
@@ -206,12 +206,7 @@ static void test_threads_and_taps_keep_limits_and_phase_on_any_machine(void)
 
 int main(int argc, char **argv)
 {
-    if (argc > 1) {
-        machines = (unsigned)strtoul(argv[1], NULL, 10);
-    }
-    if (argc > 2) {
-        first_seed = (unsigned)strtoul(argv[2], NULL, 10);
-    }
+    read_number_and_first(argc, argv, &machines, &first_seed);
     UNITY_BEGIN();
     RUN_TEST(test_threads_and_taps_keep_limits_and_phase_on_any_machine);
     return UNITY_END();

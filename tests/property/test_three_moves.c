@@ -8,6 +8,7 @@
  */
 #include "motion/motion.h"
 #include "plan/path.h"
+#include "property_arguments.h"
 #include "random_chain.h"
 #include "support/optimum.h"
 
@@ -264,12 +265,7 @@ static void test_the_search_finds_what_is_known(void)
 
 int main(int argc, char **argv)
 {
-    if (argc > 1) {
-        chains = (unsigned)strtoul(argv[1], NULL, 10);
-    }
-    if (argc > 2) {
-        first_seed = (unsigned)strtoul(argv[2], NULL, 10);
-    }
+    read_number_and_first(argc, argv, &chains, &first_seed);
     if (argc > 3) {
         shortest_mm = strtod(argv[3], NULL);
     }
