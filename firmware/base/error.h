@@ -69,6 +69,7 @@
     X(JUMP_BACK, "'%w' has to go back in the text, which a stream cannot")                         \
     X(CIRCLE, "the program runs in a circle: %v lines without a move")                             \
     X(MODES_NOT_SAVED, "'%w' finds no saved modes: no M70 or M73 in this call")                    \
+    X(PROGRAM_FULL, "no room for '%w' beside the names, calls and saved modes there are")          \
     X(FROM_LINE_MISSED, "the program never comes to line %v")                                      \
     X(FROM_LINE_PROBE, "what this probing move finds is not known to a start at line %v")          \
     X(FROM_LINE_CUTTER, "line %v is inside a compensated contour: start before its G41 or G42")    \

@@ -190,7 +190,7 @@ static void interpolate(struct interpolator *i, bool landed, struct point *cmd)
 void interpolator_cycle(struct interpolator *i, const struct curve *curve, uint32_t block,
                         bool landed, struct point *cmd)
 {
-    if (i->config.kind == INTERPOLATOR_EXACT) {
+    if (interpolator_is_exact(i)) {
         return;
     }
     if (block != i->block) {

@@ -40,6 +40,8 @@ struct interpolator_errors {
 
 struct interpolator {
     struct interpolator_config config;
+    struct interpolator_errors errors;
+#ifndef CLASSIC_IS_ABSENT
     bool active; /* this block is not left exact */
     uint32_t block;
     struct curve curve;
@@ -50,10 +52,16 @@ struct interpolator {
     double growth;
     struct integrate integrate;
     struct rotate rotate;
-    struct interpolator_errors errors;
+#endif
 };
 
 void interpolator_init(struct interpolator *i, const struct interpolator_config *config);
+
+/* Does it leave all setpoints as they are? */
+static inline bool interpolator_is_exact(const struct interpolator *i)
+{
+    return i->config.kind == INTERPOLATOR_EXACT;
+}
 
 /*
  * One cycle of a motion. cmd: in the exact setpoint, on the curve; out what this interpolator makes of it. block tells one

@@ -32,6 +32,7 @@ struct product_override {
 
 struct product {
     struct product_config config;
+#ifndef CLASSIC_IS_ABSENT
     bool moves;  /* a diagram is being executed */
     bool landed; /* and the last cycle has ended its block */
     struct diagram diagram;
@@ -39,6 +40,7 @@ struct product {
     double way_mm; /* in the block */
     struct product_override override;
     double limiter; /* K of this cycle */
+#endif
 };
 
 void product_init(struct product *p, const struct product_config *config);

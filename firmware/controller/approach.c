@@ -57,10 +57,10 @@ static unsigned next_order(const struct approach *approach, const struct machine
     unsigned next = NOT_HOMED + 1;
 
     for (unsigned i = 0; i < AXIS_COUNT; i++) {
-        const unsigned order = order_of(&machine->axis[i]);
+        if (is_away(approach, machine, i)) {
+            const unsigned order = order_of(&machine->axis[i]);
 
-        if (is_away(approach, machine, i) && order < next) {
-            next = order;
+            next = order < next ? order : next;
         }
     }
     return next;

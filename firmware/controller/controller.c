@@ -231,8 +231,8 @@ static void come_to_start(struct controller *c)
     struct point actual;
 
     controller_get_actual(c, &actual);
-    if (approach_cycle(&c->approach, &c->machine, &actual, &c->setpoint)) {
-        c->rest = c->setpoint;
+    if (approach_cycle(&c->approach, &c->machine, &actual, &c->record.set)) {
+        c->record.cmd = c->record.set;
         c->state = CONTROLLER_RUNNING;
     }
 }
@@ -249,6 +249,7 @@ static void follow_drives(struct controller *c)
 {
     switch (drives_get_state(&c->drives)) {
     case DRIVES_STARTING:
+        motion_prepare(&c->motion);
         break;
     case DRIVES_ENABLED:
         if (c->state == CONTROLLER_STARTING) {
@@ -270,20 +271,16 @@ static void follow_drives(struct controller *c)
 }
 
 /* The spindle's angle, speed and load. */
-static void follow_spindle(struct controller *c)
+static void follow_spindle(struct controller *c, const struct spindle_feedback *spindle)
 {
-    const struct diagnostic slow = {.code = TAKT_ERROR_SPINDLE_SLOW};
-
-    lock_measure(&c->lock, &c->inputs.spindle);
-    if (c->state == CONTROLLER_RUNNING && !spindle_watch_cycle(&c->spindle, &c->inputs.spindle)) {
-        controller_fail(c, &slow);
+    lock_measure(&c->lock, spindle);
+    if (c->state == CONTROLLER_RUNNING && !spindle_watch_cycle(&c->spindle, spindle)) {
+        controller_fail(c, &(const struct diagnostic){.code = TAKT_ERROR_SPINDLE_SLOW});
     }
 }
 
-static struct motion_operator operator_of(const struct controller *c)
+static struct motion_operator operator_of(const struct controller *c, const struct inputs *in)
 {
-    const struct inputs *in = &c->inputs;
-
     return (struct motion_operator){
         .feed_ratio = c->spindle.ratio *
                       maths_clamp(0.01 * in->feed_override_percent, 0.0, BLOCK_OVERRIDE_MAX),
@@ -358,9 +355,9 @@ static void follow_handed_over(struct controller *c, const struct motion_operato
     c->has_record = true;
 }
 
-static void follow_path(struct controller *c)
+static void follow_path(struct controller *c, const struct inputs *in)
 {
-    const struct motion_operator asked = operator_of(c);
+    const struct motion_operator asked = operator_of(c, in);
 
     switch (motion_cycle(&c->motion, &asked, &c->record)) {
     case MOTION_CYCLE:
@@ -393,41 +390,35 @@ static struct point uncorrected_actual(const struct controller *c)
 }
 
 /* What the program has asked of probe and inputs. */
-static void follow_probe(struct controller *c)
+static void follow_probe(struct controller *c, const struct inputs *in)
 {
-    if (!controller_probe_is_asked(&c->probe)) {
-        return;
-    }
     const struct point actual = uncorrected_actual(c);
 
-    if (controller_probe_watch(&c->probe, &motion_block(&c->motion)->move, &c->inputs, &actual)) {
+    if (controller_probe_watch(&c->probe, &motion_block(&c->motion)->move, in, &actual)) {
         motion_end_here(&c->motion);
     }
     if (c->program_waits && motion_is_idle(&c->motion)) {
-        (void)controller_probe_rest(&c->probe, &c->inputs, &c->record.cmd, &actual);
+        (void)controller_probe_rest(&c->probe, in, &c->record.cmd, &actual);
     }
 }
 
 /* What the machine's interpolator makes of the exact setpoint. */
-static void interpolate(struct controller *c)
+static void interpolate(struct controller *c, const struct block *block)
 {
-    const struct block *block = motion_block(&c->motion);
-
-    if (block_is_motion(block)) {
+    if (!interpolator_is_exact(&c->interpolator) && block_is_motion(block)) {
         interpolator_cycle(&c->interpolator, &block->curve, c->record.block, c->record.landed,
                            &c->record.cmd);
     }
 }
 
-static void complete_record(struct controller *c)
+static void complete_record(struct controller *c, const struct inputs *in)
 {
-    interpolate(c);
-    correction_cycle(&c->correction, &c->record.cmd, &motion_block(&c->motion)->move,
-                     &c->record.set);
+    const struct block *block = motion_block(&c->motion);
+
+    interpolate(c, block);
+    correction_cycle(&c->correction, &c->record.cmd, &block->move, &c->record.set);
     controller_get_actual(c, &c->record.act);
-    c->record.spindle_rev = c->inputs.spindle.angle_rev;
-    c->setpoint = c->record.set;
-    c->rest = c->record.cmd;
+    c->record.spindle_rev = in->spindle.angle_rev;
 }
 
 /* Between programs correction fades in; whatever has begun to fade goes on until it is done. */
@@ -442,9 +433,7 @@ static bool stands_corrected(const struct controller *c)
 static void stand(struct controller *c)
 {
     if (stands_corrected(c)) {
-        correction_stand(&c->correction, &c->rest, &c->setpoint);
-        c->record.set = c->setpoint;
-        c->record.cmd = c->rest;
+        correction_stand(&c->correction, &c->record.cmd, &c->record.set);
     }
 }
 
@@ -456,25 +445,28 @@ static bool rests_after_fault(const struct controller *c)
 
 void controller_cycle(struct controller *c, const struct inputs *inputs)
 {
-    c->inputs = *inputs;
     c->has_record = false;
     drives_receive(&c->drives, &c->can);
     drives_sync(&c->drives, &c->can);
     follow_drives(c);
-    follow_spindle(c);
+    follow_spindle(c, &inputs->spindle);
     if (c->state == CONTROLLER_RUNNING && !rests_after_fault(c)) {
-        follow_path(c);
+        follow_path(c, inputs);
     }
     if (c->has_record) {
         follow_events(c);
-        complete_record(c);
-        follow_probe(c);
+        complete_record(c, inputs);
+        if (controller_probe_is_asked(&c->probe)) {
+            follow_probe(c, inputs);
+        }
     } else {
         stand(c);
     }
     controller_lock_command(c);
-    drives_send(&c->drives, &c->can, &c->setpoint);
-    controller_steps_cycle(c);
+    drives_send(&c->drives, &c->can, &c->record.set);
+    if (steps_are_there(&c->steps)) {
+        controller_steps_cycle(c);
+    }
 }
 
 enum controller_state controller_get_state(const struct controller *c)
@@ -510,7 +502,9 @@ struct correction *controller_get_correction(struct controller *c)
 void controller_get_actual(const struct controller *c, struct point *actual)
 {
     drives_get_actual(&c->drives, actual);
-    steps_get_actual(&c->steps, actual);
+    if (steps_are_there(&c->steps)) {
+        steps_get_actual(&c->steps, actual);
+    }
 }
 
 uint32_t controller_get_answers(const struct controller *c, struct program_answer *last)

@@ -25,12 +25,3 @@ void controller_lock_init(struct controller *c)
 
     lock_init(&c->lock, &config);
 }
-
-void controller_lock_command(struct controller *c)
-{
-    double rpm;
-
-    if (lock_get_command(&c->lock, &rpm)) {
-        c->outputs.spindle_speed_rpm = rpm;
-    }
-}

@@ -10,6 +10,9 @@
 void controller_lock_init(struct controller *c);
 
 /* Every cycle, after the program's events: what a thread asks of the spindle goes before. */
-void controller_lock_command(struct controller *c);
+static inline void controller_lock_command(struct controller *c)
+{
+    (void)lock_get_command(&c->lock, &c->outputs.spindle_speed_rpm);
+}
 
 #endif

@@ -34,11 +34,6 @@ static void find(struct controller_probe *q, const struct point *actual)
     q->answer.contact_at = *actual;
 }
 
-bool controller_probe_is_asked(const struct controller_probe *q)
-{
-    return q->state == PROBE_ASKED;
-}
-
 /* As in LinuxCNC, a move that must find what it looks for may not begin where it is found already. */
 bool controller_probe_watch(struct controller_probe *q, const struct move *executed,
                             const struct inputs *inputs, const struct point *actual)

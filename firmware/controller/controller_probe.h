@@ -44,7 +44,10 @@ struct controller_probe {
 void controller_probe_ask(struct controller_probe *q, const struct move *move, double cycle_s);
 
 /* Is there something to watch, and to answer? */
-bool controller_probe_is_asked(const struct controller_probe *q);
+static inline bool controller_probe_is_asked(const struct controller_probe *q)
+{
+    return q->state == PROBE_ASKED;
+}
 
 /*
  * In each cycle that executes a motion. actual: where the axes are, by their drives. True, once: the motion is to brake

@@ -33,14 +33,12 @@ struct controller {
     bool program_ended;        /* nothing more comes from the program: its end or an error in it */
     bool has_record;
     struct diagnostic
-        program_error;    /* TAKT_OK: none. Reported when everything before it has been done */
-    struct inputs inputs; /* of this cycle */
+        program_error; /* TAKT_OK: none. Reported when everything before it has been done */
     struct outputs outputs;
     struct spindle_watch spindle;
     struct lock lock;               /* threads */
     struct outputs_surface surface; /* G96 */
-    struct point setpoint;
-    struct point rest; /* where the axes stand by the program, while nothing of it moves them */
+    /* cmd and set also without a program cycle: where the axes stand by the program, and what is sent to the drives */
     struct cycle_record record;
     struct controller_reader *reader;
     struct path path;

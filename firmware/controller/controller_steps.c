@@ -47,11 +47,8 @@ void controller_steps_cycle(struct controller *c)
 {
     const bool stops = c->state == CONTROLLER_STOPPING || c->state == CONTROLLER_FAULTED;
 
-    if (c->steps.config.axes == 0U) {
-        return;
-    }
     if (!stops &&
-        steps_cycle(&c->steps, &c->step_port, &c->setpoint, curve_of(c), c->record.block)) {
+        steps_cycle(&c->steps, &c->step_port, &c->record.set, curve_of(c), c->record.block)) {
         return;
     }
     if (steps_get_fault(&c->steps)->code != TAKT_OK) {

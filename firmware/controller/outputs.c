@@ -135,15 +135,13 @@ void outputs_apply(struct outputs *o, struct outputs_surface *surface, const str
  *
  *     speed = v / (2 pi |x|),   not above its maximum
  */
-void outputs_follow(struct outputs *o, const struct outputs_surface *surface,
-                    const struct point *setpoint)
+void outputs_keep_surface(struct outputs *o, const struct outputs_surface *surface,
+                          const struct point *setpoint)
 {
     const double turn_mm = MATHS_TWO_PI * maths_abs(setpoint->at[AXIS_X] - surface->axis_x_mm);
     const double highest = surface->highest_rpm > 0.0 ? surface->highest_rpm : RPM_MAX;
     const double mm_min = surface->mm_s * SECONDS_PER_MINUTE;
 
-    if (surface->mm_s > 0.0) {
-        o->spindle_speed_rpm =
-            surface->sense * (mm_min < highest * turn_mm ? mm_min / turn_mm : highest);
-    }
+    o->spindle_speed_rpm =
+        surface->sense * (mm_min < highest * turn_mm ? mm_min / turn_mm : highest);
 }

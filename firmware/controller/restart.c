@@ -30,7 +30,7 @@ void controller_start_program(struct controller *c, const struct controller_conf
     c->program_ended = false;
     c->program_error.code = TAKT_OK;
     c->has_record = false;
-    c->rest = *start;
+    c->record.cmd = *start;
     c->state = CONTROLLER_RUNNING;
 }
 
@@ -80,8 +80,8 @@ void controller_recover(struct controller *c, const struct controller_config *co
     drives.homed = !home && drives_are_homed(&c->drives);
     drives_init(&c->drives, &drives);
     controller_steps_restart(c);
-    correction_restart(&c->correction, &c->setpoint);
-    controller_start_program(c, config, &c->setpoint);
+    correction_restart(&c->correction, &c->record.set);
+    controller_start_program(c, config, &c->record.set);
     c->state = CONTROLLER_STARTING;
 }
 
@@ -89,9 +89,9 @@ void controller_follow_drives(struct controller *c, struct point *at)
 {
     controller_get_actual(c, at);
     if (drives_get_state(&c->drives) == DRIVES_STARTING) {
-        c->setpoint = *at;
+        c->record.set = *at;
         approach_init(&c->approach, at);
     } else {
-        *at = c->setpoint;
+        *at = c->record.set;
     }
 }

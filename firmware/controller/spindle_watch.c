@@ -17,6 +17,7 @@ void spindle_watch_init(struct spindle_watch *w, double cycle_s, double load_lim
                                 .smoothing = cycle_s / (SPINDLE_SMOOTH_S + cycle_s),
                                 .load_limit_percent = load_limit_percent,
                                 .at_speed_s = at_speed_s,
+                                .rests = !(load_limit_percent > 0.0),
                                 .ratio = 1.0};
 }
 
@@ -25,6 +26,7 @@ void spindle_watch_pass(struct spindle_watch *w, const struct move *event)
     if (event->kind == MOVE_SPINDLE) {
         w->waits = w->at_speed_s > 0.0 && event->direction != SPINDLE_OFF;
         w->waited = 0;
+        w->rests = false;
     }
 }
 
@@ -52,13 +54,16 @@ static void follow_speed(struct spindle_watch *w, double speed_rpm)
     }
 }
 
-bool spindle_watch_cycle(struct spindle_watch *w, const struct spindle_feedback *spindle)
+bool spindle_watch_look(struct spindle_watch *w, const struct spindle_feedback *spindle)
 {
-    if (w->ratio < 1.0 || w->load_limit_percent > 0.0) {
+    const bool loads = w->ratio < 1.0 || w->load_limit_percent > 0.0;
+
+    if (loads) {
         w->ratio = maths_clamp(w->ratio + ratio_rate(w, spindle->load_percent) * w->cycle_s,
                                SPINDLE_RATIO_MIN, 1.0);
     }
     follow_speed(w, spindle->speed_rpm);
+    w->rests = !loads && !w->waits && w->smooth_rev_s == 0.0;
     if (!w->waits) {
         return true;
     }

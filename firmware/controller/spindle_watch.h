@@ -31,6 +31,7 @@ struct spindle_watch {
     double load_limit_percent; /* 0: the load changes nothing */
     double at_speed_s;         /* longest wait for a commanded speed; 0: none is made */
     double ratio;              /* of the feed, SPINDLE_RATIO_MIN ... 1 */
+    bool rests;                /* a spindle that stands changes nothing here */
     bool waits;                /* for the speed commanded last */
     uint64_t waited;           /* cycles */
     double smooth_rev_s;       /* measured speed, >= 0 */
@@ -44,6 +45,11 @@ void spindle_watch_init(struct spindle_watch *w, double cycle_s, double load_lim
 void spindle_watch_pass(struct spindle_watch *w, const struct move *event);
 
 /* Every control cycle. False: the speed has not been reached in time. */
-bool spindle_watch_cycle(struct spindle_watch *w, const struct spindle_feedback *spindle);
+bool spindle_watch_look(struct spindle_watch *w, const struct spindle_feedback *spindle);
+static inline bool spindle_watch_cycle(struct spindle_watch *w,
+                                       const struct spindle_feedback *spindle)
+{
+    return (w->rests && spindle->speed_rpm == 0.0) || spindle_watch_look(w, spindle);
+}
 
 #endif

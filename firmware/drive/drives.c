@@ -20,9 +20,14 @@ static void init_axis(struct drives *d, unsigned index)
     target_pdo_set(&target, d->node, d->count, index);
     axis->target_cob_id = target.cob_id;
     axis->target_offset = (uint8_t)pdo_offset(&target.mapping, CIA402_TARGET_POSITION);
+    axis->reported = d->cycle - 1;
+    axis->beaten = d->cycle - 1;
     axis->mode = CIA402_MODE_CYCLIC_SYNC_POSITION;
     axis->reset_pending = true;
     d->axis_of_node[d->node[index]] = (uint8_t)index;
+    axis->target_last = true;
+    if (index > 0)
+        d->axis[index - 1].target_last = d->axis[index - 1].target_cob_id != target.cob_id;
 }
 
 static void take_times(struct drives *d, const struct drives_config *config)
@@ -30,6 +35,8 @@ static void take_times(struct drives *d, const struct drives_config *config)
     d->cycle_us = config->cycle_us;
     d->heartbeat_ms = config->heartbeat_ms;
     d->heartbeat_cycles = (uint32_t)config->heartbeat_ms * 1000 / config->cycle_us;
+    d->heartless_most_cycles =
+        d->heartbeat_cycles > 0 ? d->heartbeat_cycles * DRIVES_HEARTBEATS_LOST : UINT32_MAX;
     d->start_timeout_cycles = config->start_timeout_cycles;
     d->answer_timeout_cycles = config->answer_timeout_cycles;
     d->sdo_timeout_cycles = config->sdo_timeout_cycles;
@@ -59,6 +66,8 @@ void drives_init(struct drives *d, const struct drives_config *config)
         assert(config->axis[i].node >= NODE_MIN && config->axis[i].node <= NODE_MAX);
         d->axis[i].config = config->axis[i];
         d->node[i] = config->axis[i].node;
+        if (d->axis[i].config.following_error_max_mm <= 0)
+            d->axis[i].config.following_error_max_mm = MATHS_INFINITY; /* not watched */
     }
     for (unsigned i = 0; i < d->count; i++)
         init_axis(d, i);
@@ -176,21 +185,9 @@ double drives_cycles_ms(const struct drives *d, uint32_t cycles)
     return 1e-3 * (double)d->cycle_us * cycles;
 }
 
-enum drives_state drives_get_state(const struct drives *d)
-{
-    return d->state;
-}
-
 bool drives_are_homed(const struct drives *d)
 {
     return d->homed;
-}
-
-void drives_get_actual(const struct drives *d, struct point *actual)
-{
-    memset(actual, 0, sizeof *actual);
-    for (unsigned i = 0; i < d->count; i++)
-        actual->at[d->axis[i].config.axis] = d->axis[i].actual_mm;
 }
 
 const struct diagnostic *drives_get_fault(const struct drives *d)

@@ -95,9 +95,15 @@ void drives_sync(struct drives *d, const struct can_port *port);
  */
 void drives_send(struct drives *d, const struct can_port *port, const struct point *setpoint);
 
-enum drives_state drives_get_state(const struct drives *d);
+static inline enum drives_state drives_get_state(const struct drives *d)
+{
+    return d->state;
+}
 /* Last reported actual position of every axis, mm or rad; 0 for axes without a drive. */
-void drives_get_actual(const struct drives *d, struct point *actual);
+static inline void drives_get_actual(const struct drives *d, struct point *actual)
+{
+    *actual = d->actual;
+}
 /* All axes that are to be homed have been: what the next configuration may say. */
 bool drives_are_homed(const struct drives *d);
 

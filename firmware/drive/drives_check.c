@@ -28,13 +28,12 @@ static void raise_state(struct drives *d, unsigned index)
 
 static inline bool is_silent(const struct drives *d, const struct drives_axis *axis)
 {
-    return axis->silent_cycles > d->answer_timeout_cycles;
+    return drives_silent_cycles(d, axis) > d->answer_timeout_cycles;
 }
 
 static inline bool has_lost_heart(const struct drives *d, const struct drives_axis *axis)
 {
-    return d->heartbeat_cycles > 0 &&
-           axis->heartbeat_cycles > d->heartbeat_cycles * DRIVES_HEARTBEATS_LOST;
+    return drives_heartless_cycles(d, axis) > d->heartless_most_cycles;
 }
 
 static void raise_link(struct drives *d, unsigned index)
@@ -43,11 +42,11 @@ static void raise_link(struct drives *d, unsigned index)
     if (!cia402_is_enabled(axis->statusword))
         raise_state(d, index);
     else if (is_silent(d, axis))
-        drives_raise(d, index, TAKT_ERROR_DRIVE_SILENT, drives_cycles_ms(d, axis->silent_cycles),
-                     NULL);
+        drives_raise(d, index, TAKT_ERROR_DRIVE_SILENT,
+                     drives_cycles_ms(d, drives_silent_cycles(d, axis)), NULL);
     else
         drives_raise(d, index, TAKT_ERROR_DRIVE_HEARTBEAT,
-                     drives_cycles_ms(d, axis->heartbeat_cycles), NULL);
+                     drives_cycles_ms(d, drives_heartless_cycles(d, axis)), NULL);
 }
 
 static inline bool check_links(struct drives *d, unsigned index)
@@ -82,12 +81,9 @@ static double allowed_lag_mm(const struct drives *d, const struct drives_axis *a
  * lag = setpoint of DRIVES_LATENCY_CYCLES ago - actual position. Without a report this cycle the
  * two do not belong together.
  */
-static void check_following(struct drives *d, unsigned index)
+static inline void check_following(struct drives *d, unsigned index, double set_mm)
 {
     struct drives_axis *axis = &d->axis[index];
-    if (axis->config.following_error_max_mm <= 0 || axis->silent_cycles != 0)
-        return;
-    double set_mm = axis->sent_mm[(d->cycle - DRIVES_LATENCY_CYCLES) & (DRIVES_HISTORY - 1)];
     double lag_mm = maths_abs(set_mm - axis->actual_mm);
     if (lag_mm > allowed_lag_mm(d, axis))
         drives_raise(d, index, TAKT_ERROR_DRIVE_FOLLOWING, drives_axis_shown(axis, lag_mm), NULL);
@@ -95,24 +91,42 @@ static void check_following(struct drives *d, unsigned index)
         axis->lag_mm = lag_mm;
 }
 
-void drives_check_operation(struct drives *d)
+/*
+ * In operation: how many drives from the first one on do what they should, which is what nearly every cycle finds of all of
+ * them.
+ */
+static unsigned count_well(struct drives *d, const double *set_mm)
 {
-    for (unsigned i = 0; i < d->count; i++)
-        if (check_links(d, i))
-            check_following(d, i);
+    const uint32_t cycle = d->cycle, most = d->heartless_most_cycles;
+    unsigned i = 0;
+    for (; i < d->count; i++) {
+        struct drives_axis *axis = &d->axis[i];
+        double lag_mm = maths_abs(set_mm[i] - axis->actual_mm);
+        if (!cia402_is_enabled(axis->statusword) || axis->reported != cycle ||
+            cycle - axis->beaten > most || lag_mm > axis->config.following_error_max_mm)
+            break;
+        axis->lag_mm = lag_mm;
+    }
+    return i;
 }
 
-static bool setpoint_moves(const struct drives *d, const struct drives_axis *axis)
+void drives_check_operation(struct drives *d)
 {
-    double now_mm = axis->sent_mm[d->cycle & (DRIVES_HISTORY - 1)];
-    double before_mm = axis->sent_mm[(d->cycle - 1) & (DRIVES_HISTORY - 1)];
-    return maths_abs(now_mm - before_mm) > 0;
+    const double *set_mm = drives_sent(d, DRIVES_LATENCY_CYCLES);
+    for (unsigned i = d->state == DRIVES_ENABLED ? count_well(d, set_mm) : 0; i < d->count; i++)
+        if (check_links(d, i) && drives_silent_cycles(d, &d->axis[i]) == 0)
+            check_following(d, i, set_mm[i]);
+}
+
+static bool setpoint_moves(const struct drives *d, unsigned index)
+{
+    return maths_abs(drives_sent(d, 0)[index] - drives_sent(d, 1)[index]) > 0;
 }
 
 /* With an emergency as the fault, a statusword that does not come soon would have told of it. */
-static bool is_lost(const struct drives_axis *axis)
+static bool is_lost(const struct drives *d, const struct drives_axis *axis)
 {
-    return axis->lost || axis->silent_cycles > DRIVES_LATENCY_CYCLES;
+    return axis->lost || drives_silent_cycles(d, axis) > DRIVES_LATENCY_CYCLES;
 }
 
 /*
@@ -124,9 +138,9 @@ void drives_watch_stop(struct drives *d)
     bool at_rest = true;
     bool leaves_path = false;
     for (unsigned i = 0; i < d->count; i++) {
-        bool moves = setpoint_moves(d, &d->axis[i]);
+        bool moves = setpoint_moves(d, i);
         at_rest = at_rest && !moves;
-        leaves_path = leaves_path || (moves && is_lost(&d->axis[i]));
+        leaves_path = leaves_path || (moves && is_lost(d, &d->axis[i]));
     }
     d->rest_cycles = at_rest ? d->rest_cycles + 1 : 0;
     if (leaves_path || d->rest_cycles >= DRIVES_LATENCY_CYCLES ||
@@ -152,10 +166,10 @@ static bool is_switched_off(const struct drives_axis *axis)
 }
 
 /* A drive that has never been started has never had torque. */
-static bool rests(struct drives_axis *axis)
+static bool rests(const struct drives *d, struct drives_axis *axis)
 {
     double moved_inc = maths_abs((double)axis->actual_inc - axis->braking_inc);
-    bool still = axis->silent_cycles == 0 && is_switched_off(axis) &&
+    bool still = drives_silent_cycles(d, axis) == 0 && is_switched_off(axis) &&
                  moved_inc <= maths_max(REST_MM * axis->config.increments_per_mm, 1);
     axis->braking_inc = axis->actual_inc;
     axis->rest_cycles = still ? axis->rest_cycles + 1 : 0;
@@ -166,7 +180,7 @@ void drives_watch_brakes(struct drives *d)
 {
     bool all = true;
     for (unsigned i = 0; i < d->count; i++)
-        all = rests(&d->axis[i]) && all;
+        all = rests(d, &d->axis[i]) && all;
     if (all || d->stop_cycles++ >= d->brake_timeout_cycles)
         d->state = DRIVES_FAULTED;
 }

@@ -67,7 +67,7 @@ static void begin_homing(struct drives *d)
     d->state = DRIVES_ENABLED;
     for (unsigned i = 0; i < d->count; i++)
         for (unsigned k = 0; k < DRIVES_HISTORY; k++)
-            d->axis[i].sent_mm[k] = d->axis[i].actual_mm;
+            d->sent_mm[k][i] = d->axis[i].actual_mm;
 }
 
 static void check_links(struct drives *d)

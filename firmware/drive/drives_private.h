@@ -41,6 +41,23 @@ double drives_axis_shown(const struct drives_axis *axis, double value_mm);
 bool drives_axis_is_enabled(const struct drives_axis *axis);
 double drives_cycles_ms(const struct drives *d, uint32_t cycles);
 
+/* Setpoints of all drives, of so many cycles ago: mm or rad. */
+static inline const double *drives_sent(const struct drives *d, unsigned ago)
+{
+    return d->sent_mm[(d->cycle - ago) & (DRIVES_HISTORY - 1)];
+}
+
+/* Cycles since the last TPDO1, 0: one came in this cycle; and since the last heartbeat. */
+static inline uint32_t drives_silent_cycles(const struct drives *d, const struct drives_axis *axis)
+{
+    return d->cycle - axis->reported;
+}
+static inline uint32_t drives_heartless_cycles(const struct drives *d,
+                                               const struct drives_axis *axis)
+{
+    return d->cycle - axis->beaten;
+}
+
 /* A cycle of DRIVES_STARTING after its frames have been received. */
 void drives_start(struct drives *d);
 /* A drive has booted while the drives are being started. */

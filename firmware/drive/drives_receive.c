@@ -8,15 +8,17 @@
 /* Frames taken in one cycle at most, so that a babbling bus cannot hold the control cycle. */
 #define FRAMES_PER_CYCLE_MAX 256
 
-static void take_status(struct drives_axis *axis, const struct can_frame *frame)
+static void take_status(struct drives *d, unsigned index, const struct can_frame *frame)
 {
+    struct drives_axis *axis = &d->axis[index];
     if (frame->length < DRIVES_STATUS_LENGTH || !axis->started)
         return;
     axis->statusword = little_endian_read16(frame->data);
     axis->actual_inc = (int32_t)little_endian_read32(frame->data + 2);
     axis->actual_mm = axis->actual_inc / axis->config.increments_per_mm;
     axis->heard = true;
-    axis->silent_cycles = 0;
+    axis->reported = d->cycle;
+    d->actual.at[axis->config.axis] = axis->actual_mm;
 }
 
 /* "All errors are gone" may come in the same cycle as the error, which counts nevertheless. */
@@ -50,7 +52,7 @@ static void take_heartbeat(struct drives *d, unsigned index, const struct can_fr
     enum nmt_state state;
     if (!nmt_read_heartbeat(frame, &node, &state))
         return;
-    axis->heartbeat_cycles = 0;
+    axis->beaten = d->cycle;
     if (state == NMT_BOOTED && d->state == DRIVES_STARTING)
         drives_start_again(d, index);
     else if (state == NMT_BOOTED)
@@ -59,15 +61,10 @@ static void take_heartbeat(struct drives *d, unsigned index, const struct can_fr
         drives_raise(d, index, TAKT_ERROR_DRIVE_NMT, state, nmt_text(state));
 }
 
-static void take_frame(struct drives *d, const struct can_frame *frame)
+/* Whatever does not come in every cycle. */
+static void take_seldom(struct drives *d, unsigned index, const struct can_frame *frame)
 {
-    unsigned index = d->axis_of_node[node_id(frame->id)];
-    if (index == AXIS_COUNT)
-        return;
     switch (node_function(frame->id)) {
-    case PDO_TPDO1_FUNCTION:
-        take_status(&d->axis[index], frame);
-        break;
     case PDO_TPDO2_FUNCTION:
         take_error_code(d, index, frame);
         break;
@@ -85,6 +82,17 @@ static void take_frame(struct drives *d, const struct can_frame *frame)
     }
 }
 
+static void take_frame(struct drives *d, const struct can_frame *frame)
+{
+    unsigned index = d->axis_of_node[node_id(frame->id)];
+    if (index == AXIS_COUNT)
+        return;
+    if (node_function(frame->id) == PDO_TPDO1_FUNCTION)
+        take_status(d, index, frame);
+    else
+        take_seldom(d, index, frame);
+}
+
 static void take_frames(struct drives *d, const struct can_port *port)
 {
     struct can_frame frame;
@@ -94,10 +102,6 @@ static void take_frames(struct drives *d, const struct can_port *port)
 
 void drives_receive(struct drives *d, const struct can_port *port)
 {
-    for (unsigned i = 0; i < d->count; i++) {
-        d->axis[i].silent_cycles++;
-        d->axis[i].heartbeat_cycles++;
-    }
     take_frames(d, port);
     switch (d->state) {
     case DRIVES_STARTING:

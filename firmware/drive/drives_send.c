@@ -66,7 +66,7 @@ static void send_targets(struct drives *d, const struct can_port *port)
     for (unsigned i = 0; i < d->count; i++) {
         const struct drives_axis *axis = &d->axis[i];
         little_endian_write32(frame.data + axis->target_offset, (uint32_t)axis->target_inc);
-        if (i + 1 < d->count && d->axis[i + 1].target_cob_id == axis->target_cob_id)
+        if (!axis->target_last)
             continue;
         frame.id = axis->target_cob_id;
         frame.length = (uint8_t)(axis->target_offset + 4);
@@ -113,8 +113,8 @@ static void send_start(struct drives *d, const struct can_port *port)
         return;
     axis->started = send_nmt(port, NMT_START, axis->config.node);
     axis->heard = false;
-    axis->silent_cycles = 0;
-    axis->heartbeat_cycles = 0;
+    axis->reported = d->cycle;
+    axis->beaten = d->cycle;
 }
 
 /*
@@ -167,7 +167,7 @@ static int32_t nearest(double x)
 }
 
 /* increments = round(setpoint increments_per_mm). NaN fails the comparison. */
-static void set_target(struct drives *d, unsigned index, double set_mm)
+static inline void set_target(struct drives *d, unsigned index, double set_mm)
 {
     struct drives_axis *axis = &d->axis[index];
     const double increments = set_mm * axis->config.increments_per_mm;
@@ -175,14 +175,16 @@ static void set_target(struct drives *d, unsigned index, double set_mm)
         axis->target_inc = nearest(increments);
     else
         drives_raise(d, index, TAKT_ERROR_DRIVE_RANGE, drives_axis_shown(axis, set_mm), NULL);
-    axis->sent_mm[d->cycle & (DRIVES_HISTORY - 1)] = set_mm;
 }
 
 static void send_operation(struct drives *d, const struct can_port *port,
                            const struct point *setpoint)
 {
-    for (unsigned i = 0; i < d->count; i++)
-        set_target(d, i, setpoint->at[d->axis[i].config.axis]);
+    double *sent_mm = d->sent_mm[d->cycle & (DRIVES_HISTORY - 1)];
+    for (unsigned i = 0; i < d->count; i++) {
+        sent_mm[i] = setpoint->at[d->axis[i].config.axis];
+        set_target(d, i, sent_mm[i]);
+    }
     if (d->state == DRIVES_STOPPING)
         drives_watch_stop(d);
     if (d->state == DRIVES_ENABLED || d->state == DRIVES_STOPPING)
@@ -198,7 +200,8 @@ static void send_quick_stop(struct drives *d, const struct can_port *port)
     for (unsigned i = 0; i < d->count; i++) {
         struct drives_axis *axis = &d->axis[i];
         bool is_told = axis->controlword == CIA402_QUICK_STOP_NOW;
-        if (!is_told || (i == turn && (drives_axis_is_enabled(axis) || axis->silent_cycles > 1)))
+        if (!is_told ||
+            (i == turn && (drives_axis_is_enabled(axis) || drives_silent_cycles(d, axis) > 1)))
             send_controlword(axis, port, CIA402_QUICK_STOP_NOW);
     }
 }

@@ -147,8 +147,8 @@ static void raise_not_enabled(struct drives *d, unsigned index)
     const struct drives_axis *axis = &d->axis[index];
     enum cia402_state state = cia402_state(axis->statusword);
     if (!axis->heard)
-        drives_raise(d, index, TAKT_ERROR_DRIVE_SILENT, drives_cycles_ms(d, axis->silent_cycles),
-                     NULL);
+        drives_raise(d, index, TAKT_ERROR_DRIVE_SILENT,
+                     drives_cycles_ms(d, drives_silent_cycles(d, axis)), NULL);
     else if (state == CIA402_FAULT)
         drives_raise_reported(d, index, axis->emcy_code);
     else

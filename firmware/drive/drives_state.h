@@ -27,13 +27,14 @@ struct drives_axis {
     struct drives_config_axis config;
     uint16_t target_cob_id; /* of the RPDO2 that carries the target */
     uint8_t target_offset;  /* byte of the target in that frame */
+    bool target_last;       /* the frame is complete with it */
 
     bool reset_pending;
-    bool booted;               /* its boot-up message has come */
-    bool started;              /* NMT start has been sent */
-    bool heard;                /* a TPDO1 has come since it was started */
-    uint32_t silent_cycles;    /* since the last TPDO1; 0: one came this cycle */
-    uint32_t heartbeat_cycles; /* since the last heartbeat */
+    bool booted;       /* its boot-up message has come */
+    bool started;      /* NMT start has been sent */
+    bool heard;        /* a TPDO1 has come since it was started */
+    uint32_t reported; /* cycle of the last TPDO1 */
+    uint32_t beaten;   /* and of the last heartbeat */
     uint16_t statusword;
     int32_t actual_inc;
     double actual_mm;   /* the same */
@@ -49,7 +50,6 @@ struct drives_axis {
     bool homing_seen;    /* the statusword has shown that homing is under way */
     int32_t braking_inc; /* where it was when its rest was looked at last */
     uint32_t rest_cycles;
-    double sent_mm[DRIVES_HISTORY]; /* setpoint of cycle k at [k % DRIVES_HISTORY] */
 };
 
 struct drives {
@@ -58,14 +58,17 @@ struct drives {
     uint32_t cycle_us;
     uint8_t controller_node;
     uint16_t heartbeat_ms;
-    uint32_t heartbeat_cycles; /* period */
+    uint32_t heartbeat_cycles;      /* period */
+    uint32_t heartless_most_cycles; /* without one from a drive */
     uint32_t start_timeout_cycles;
     uint32_t answer_timeout_cycles;
     uint32_t sdo_timeout_cycles;
     uint32_t stop_timeout_cycles;
     uint32_t brake_timeout_cycles;
     struct drives_axis axis[AXIS_COUNT];
-    uint8_t axis_of_node[NODE_MAX + 1]; /* index into axis; AXIS_COUNT: not ours */
+    struct point actual; /* the actual_mm of all axes; 0 for axes without a drive */
+    double sent_mm[DRIVES_HISTORY][AXIS_COUNT]; /* setpoints of cycle k at [k % DRIVES_HISTORY] */
+    uint8_t axis_of_node[NODE_MAX + 1];         /* index into axis; AXIS_COUNT: not ours */
 
     enum drives_state state;
     uint32_t cycle;       /* counts drives_send; wraps */

@@ -123,20 +123,29 @@ static void set_slope(struct curve *c)
     }
 }
 
-bool curve_set_arc(struct curve *c, const struct point *start, const struct point *end,
-                   enum plane plane, const double centre_mm[2], bool clockwise, unsigned turns)
+/* From the centre to a point, in the plane. */
+struct spoke {
+    double x, y;
+};
+
+static struct spoke spoke_to(const struct curve *c, const struct point *p)
+{
+    return (struct spoke){p->at[c->arc.first] - c->arc.centre_mm[0],
+                          p->at[c->arc.second] - c->arc.centre_mm[1]};
+}
+
+static double spoke_length(struct spoke s)
+{
+    return maths_sqrt(s.x * s.x + s.y * s.y);
+}
+
+void curve_begin_arc(struct curve *c, const struct point *start, const struct point *end,
+                     enum plane plane, const double centre_mm[2])
 {
     enum axis first;
     enum axis second;
 
     plane_axes(plane, &first, &second);
-    const double x0 = start->at[first] - centre_mm[0];
-    const double y0 = start->at[second] - centre_mm[1];
-    const double x1 = end->at[first] - centre_mm[0];
-    const double y1 = end->at[second] - centre_mm[1];
-    const bool closed = maths_abs(x1 - x0) <= ARC_CLOSED_MM && maths_abs(y1 - y0) <= ARC_CLOSED_MM;
-    const double radius_end = maths_sqrt(x1 * x1 + y1 * y1);
-
     memset(c, 0, sizeof(*c));
     c->kind = CURVE_ARC;
     c->start = *start;
@@ -145,17 +154,36 @@ bool curve_set_arc(struct curve *c, const struct point *start, const struct poin
     c->arc.second = (unsigned char)second;
     c->arc.centre_mm[0] = centre_mm[0];
     c->arc.centre_mm[1] = centre_mm[1];
-    c->arc.radius_start_mm = maths_sqrt(x0 * x0 + y0 * y0);
+    const struct spoke from = spoke_to(c, start);
+
+    c->arc.radius_start_mm = spoke_length(from);
+    c->arc.angle_start_rad = maths_atan2(from.y, from.x);
+}
+
+bool curve_end_arc(struct curve *c, bool clockwise, unsigned turns)
+{
+    const struct spoke from = spoke_to(c, &c->start);
+    const struct spoke to = spoke_to(c, &c->end);
+    const bool closed =
+        maths_abs(to.x - from.x) <= ARC_CLOSED_MM && maths_abs(to.y - from.y) <= ARC_CLOSED_MM;
+    const double radius_end = spoke_length(to);
+
     c->arc.radius_change_mm = radius_end - c->arc.radius_start_mm;
-    c->arc.angle_start_rad = maths_atan2(y0, x0);
     c->arc.sweep_rad =
-        arc_sweep(c->arc.angle_start_rad, maths_atan2(y1, x1), clockwise, closed, turns);
+        arc_sweep(c->arc.angle_start_rad, maths_atan2(to.y, to.x), clockwise, closed, turns);
     if (c->arc.radius_start_mm == 0.0 || radius_end == 0.0) {
         return false;
     }
     set_length(c);
     set_slope(c);
     return c->length_mm >= CURVE_LENGTH_MIN_MM;
+}
+
+bool curve_set_arc(struct curve *c, const struct point *start, const struct point *end,
+                   enum plane plane, const double centre_mm[2], bool clockwise, unsigned turns)
+{
+    curve_begin_arc(c, start, end, plane, centre_mm);
+    return curve_end_arc(c, clockwise, turns);
 }
 
 static bool is_bent(const struct curve *c)

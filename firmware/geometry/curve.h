@@ -106,6 +106,10 @@ bool curve_set_line(struct curve *c, const struct point *start, const struct poi
  */
 bool curve_set_arc(struct curve *c, const struct point *start, const struct point *end,
                    enum plane plane, const double centre_mm[2], bool clockwise, unsigned turns);
+/* The same in two halves, for a control cycle that has no time for both. */
+void curve_begin_arc(struct curve *c, const struct point *start, const struct point *end,
+                     enum plane plane, const double centre_mm[2]);
+bool curve_end_arc(struct curve *c, bool clockwise, unsigned turns);
 
 /*
  * Involute of a circle from start to end, turning clockwise or not; every other axis moves in proportion to the length.

@@ -1,57 +1,56 @@
 #include "motion/average.h"
 
-/* The sum over n inputs at, at - step, ... is n at - step n (n - 1) / 2, and moves by n step a cycle. */
+/*
+ * The sum over n inputs at, at - step, ... is n at - step n (n - 1) / 2, and moves by n step a cycle. The inputs are not
+ * written, which would take as long as the window is: until a box has had n new ones it counts the old ones up by step.
+ */
 void average_start(struct average *a, enum law law, uint32_t cycles, uint64_t at, uint64_t step)
 {
     uint32_t first = 0;
 
-    a->law = law;
+    a->boxes = law_boxes(law);
     a->at = at;
-    a->product = 1.0;
-    for (unsigned b = 0; b < law_boxes(law); b++) {
+    a->scale = 1;
+    for (unsigned b = 0; b < a->boxes; b++) {
         struct average_box *box = &a->box[b];
         const uint64_t n = law_box_cycles(b, cycles);
 
-        box->cycles = (uint32_t)n;
-        box->first = first;
-        box->next = 0;
-        uint64_t input = at;
-
-        for (uint32_t i = first + box->cycles; i-- > first;) {
-            a->input[i] = input;
-            input -= step;
-        }
-        first += box->cycles;
+        box->first = box->next = first;
+        first += (uint32_t)n;
+        box->end = first;
+        box->old = (uint32_t)n;
+        box->oldest = at - (n - 1) * step;
+        box->step = step;
         box->sum = n * at - n * (n - 1) / 2 * step;
         at = box->sum;
         step *= n;
-        a->product *= (double)n;
+        a->scale *= n;
     }
+    a->product = (double)a->scale;
+}
+
+static inline uint64_t take_oldest(struct average_box *box, const uint64_t *place)
+{
+    const uint64_t oldest = box->oldest;
+
+    if (box->old == 0) {
+        return *place;
+    }
+    box->old--;
+    box->oldest += box->step;
+    return oldest;
 }
 
 void average_push(struct average *a, uint64_t at)
 {
     a->at = at;
-    for (unsigned b = 0; b < law_boxes(a->law); b++) {
+    for (unsigned b = 0; b < a->boxes; b++) {
         struct average_box *box = &a->box[b];
+        uint64_t *place = &a->input[box->next];
 
-        uint64_t *oldest = &a->input[box->first + box->next];
-
-        box->sum += at - *oldest;
-        *oldest = at;
-        box->next = box->next + 1 == box->cycles ? 0 : box->next + 1;
+        box->sum += at - take_oldest(box, place);
+        *place = at;
+        box->next = box->next + 1 == box->end ? box->first : box->next + 1;
         at = box->sum;
     }
-}
-
-/* The last sum is product times the average, modulo 2^64; product times the newest input minus it is small. */
-double average_lag(const struct average *a)
-{
-    const struct average_box *last = &a->box[law_boxes(a->law) - 1];
-    uint64_t scaled = a->at;
-
-    for (unsigned b = 0; b < law_boxes(a->law); b++) {
-        scaled *= a->box[b].cycles;
-    }
-    return (double)(int64_t)(scaled - last->sum) / a->product;
 }

@@ -13,16 +13,19 @@
 #define AVERAGE_INPUTS_MAX (LAW_CYCLES_MAX + LAW_CYCLES_MAX / 2)
 
 struct average_box {
-    uint32_t cycles;
-    uint64_t sum;   /* of the last cycles inputs */
-    uint32_t first; /* of the places of those inputs */
-    uint32_t next;  /* of these places: the oldest input, that of the next one */
+    uint64_t sum;        /* of the inputs that the box reaches over */
+    uint32_t first, end; /* their places */
+    uint32_t next;       /* of these places: the oldest input, that of the next one */
+    uint32_t old;        /* so many of them are older than the start: not in their places */
+    uint64_t oldest;     /* of those, the oldest, and from each to the next */
+    uint64_t step;
 };
 
 struct average {
-    enum law law;
+    unsigned boxes;
     uint64_t at;    /* newest input */
-    double product; /* of the boxes' cycles */
+    uint64_t scale; /* product of the boxes' cycles */
+    double product; /* likewise */
     struct average_box box[LAW_BOXES_MAX];
     uint64_t input[AVERAGE_INPUTS_MAX]; /* of all boxes, one after the other */
 };
@@ -37,6 +40,10 @@ void average_start(struct average *a, enum law law, uint32_t cycles, uint64_t at
 void average_push(struct average *a, uint64_t at);
 
 /* How far the average follows behind the newest input: path units, >= 0. 0 at rest. */
-double average_lag(const struct average *a);
+static inline double average_lag(const struct average *a)
+{
+    /* the last sum is product times the average, modulo 2^64; product times the newest input minus it is small */
+    return (double)(int64_t)(a->at * a->scale - a->box[a->boxes - 1].sum) / a->product;
+}
 
 #endif

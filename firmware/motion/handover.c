@@ -1,7 +1,5 @@
 #include "motion/handover.h"
 
-#include <string.h>
-
 void handover_allow(struct motion *m)
 {
     m->hands_over = true;
@@ -29,7 +27,6 @@ void handover_add_cycle(struct motion *m, const struct point *at, double feed_mm
     m->current = m->path->first;
     m->at = *at;
     m->feed = feed_mm_s * m->cycle_s;
-    memset(record, 0, sizeof(*record));
     record->cycle = m->cycles;
     record->block = b->number;
     record->line = b->move.line;

@@ -104,8 +104,9 @@ static void slow_down(struct lead *l, const struct lead_brake *b)
 static void run_on(struct lead *l, uint64_t setpoint, bool hold)
 {
     const double low = lead_low_feed(l, setpoint);
-    struct lead_brake b = lead_brake_ahead(l);
+    struct lead_brake b;
 
+    lead_brake_ahead(l, &b);
     l->rest_a = maths_max(l->rest_a, (double)lead_piece(l, l->here.piece)->acceleration);
 
     if (hold) {
@@ -121,7 +122,7 @@ static void run_on(struct lead *l, uint64_t setpoint, bool hold)
     if (b.rest || stops || b.feed < l->feed - LEAD_CHANGE_MIN * b.a) {
         slow_down(l, &b);
     } else {
-        go(l, hold || l->here.late ? l->feed : lead_speed_up(l, low));
+        go(l, hold || l->here.late ? l->feed : lead_speed_up(l, b.at_mm, low));
     }
 }
 
@@ -141,11 +142,13 @@ static void enter_span(struct lead *l, uint32_t k, uint64_t from, struct lead_st
     start->step = path_units(l->feed);
     l->standing = false;
     l->span = from;
-    l->cycles = lead_piece(l, k)->cycles;
-    l->window = (double)law_window_cycles(l->law, l->cycles);
+    l->cycles = ceiling_cycles(l->here.ceiling, k);
+    const uint32_t window = law_window_cycles(l->law, l->cycles);
+
+    l->window = (double)window;
     l->rest_a = l->feed > 0.0 ? MATHS_INFINITY : 0.0;
     l->before = from;
-    l->at = from + start->step * (law_window_cycles(l->law, l->cycles) - 1) / 2;
+    l->at = from + start->step * (window - 1) / 2;
     l->feed = (double)start->step / PATH_UNITS_PER_MM;
     l->since_plus = LONG_AGO;
     l->since_minus = LONG_AGO;

@@ -15,6 +15,7 @@
 #include "plan/law.h"
 
 #include <stdbool.h>
+#include <stddef.h>
 #include <stdint.h>
 
 /* Ceilings that bind until the setpoint has left what they are made of: at most so many are told apart. */
@@ -23,9 +24,10 @@
 /* Pieces that the lead point comes to, or that are looked at, in one cycle at most. */
 #define LEAD_PIECES_MAX 32
 
+/* By their pieces: whose feed it is, and which of them the setpoint must have left. */
 struct lead_low {
-    double feed;
-    uint64_t leave; /* path position */
+    uint16_t feed;
+    uint16_t leave;
 };
 
 /* Where the lead point is in a ceiling. */
@@ -37,6 +39,8 @@ struct lead_place {
     /* from the setpoint's piece to the lead point's, feeds rising: the first is the lowest */
     uint32_t low_first, low_count;
     struct lead_low low[LEAD_LOW_MAX];
+    double low_feed;    /* of the first */
+    uint64_t low_leave; /* path position */
 };
 
 struct lead {
@@ -71,7 +75,11 @@ void lead_init(struct lead *l, enum law law, uint64_t at);
 void lead_set_ceiling(struct lead *l, const struct ceiling *ceiling);
 
 /* Goes on taking it, once a cycle. True: it is not taken yet. */
-bool lead_take(struct lead *l);
+bool lead_find_place(struct lead *l);
+static inline bool lead_take(struct lead *l)
+{
+    return l->coming.ceiling != NULL && lead_find_place(l);
+}
 
 /* At rest, at a stop further on: what lay before it has been done by others. */
 void lead_stand(struct lead *l, uint64_t at);

@@ -58,6 +58,12 @@ static double feed_to_meet(const struct place *p, double w)
     return p->gap_mm < 0.5 * (w + v) || v < 0.0 ? p->feed : v;
 }
 
+/* So far away, (w + a)^2 <= 2 a gap, that feed_to_meet is above w and nothing has to be done for it in this cycle. */
+static bool is_far(const struct place *p, double w)
+{
+    return lead_square(w + p->a) * (1.0 + LEAD_ENERGY_SLACK) <= 2.0 * p->a * p->gap_mm;
+}
+
 /*
  * Brakes for it. True: it is to be come to rest at in this cycle, a little early perhaps, so that no feed is left that is
  * lost in the rounding of positions.
@@ -102,9 +108,13 @@ static uint64_t rest_position(const struct lead *l, uint32_t k)
 static void brake_for_piece(const struct lead *l, uint32_t k, double gap_mm, struct lead_brake *b)
 {
     const struct ceiling_piece *p = lead_piece(l, k);
-    const struct place place = {
-        .gap_mm = gap_mm, .a = (double)p->acceleration, .feed = end_feed(l, p)};
+    struct place place = {.gap_mm = gap_mm, .a = (double)p->acceleration};
 
+    if (is_far(&place, l->feed)) {
+        b->a = maths_max(b->a, place.a);
+        return;
+    }
+    place.feed = end_feed(l, p);
     if (brake_for(l, &place, b)) {
         rest_at(l, rest_position(l, k), b);
     }
@@ -152,33 +162,34 @@ static double feed_to_wait(const struct lead *l, double top)
     return gap_mm > 0.0 ? maths_min(top, maths_sqrt(m * m + 2.0 * a * gap_mm) - m) : 0.0;
 }
 
-struct lead_brake lead_brake_ahead(const struct lead *l)
+void lead_brake_ahead(const struct lead *l, struct lead_brake *b)
 {
+    const struct ceiling_piece *here = lead_piece(l, l->here.piece);
     const double s = path_mm(l->here.ceiling->origin, l->at);
-    struct lead_brake b = {
-        .feed = maths_min(l->feed, lead_feed(l, lead_piece(l, l->here.piece)->feed_mm_s)),
-        .a = (double)lead_piece(l, l->here.piece)->acceleration};
 
+    b->at_mm = s;
+    b->feed = maths_min(l->feed, lead_feed(l, here->feed_mm_s));
+    b->a = (double)here->acceleration;
+    b->rest = false;
     if (l->here.late) {
-        brake_late(l, &b);
+        brake_late(l, b);
     }
-    for (uint32_t k = l->here.piece; !b.rest; k++) {
+    for (uint32_t k = l->here.piece; !b->rest; k++) {
         const struct ceiling_piece *p = lead_piece(l, k);
         const double gap_mm = lead_end_mm(l, k) - s;
 
         if (!l->here.late || p->stop) {
-            brake_for_piece(l, k, gap_mm, &b);
+            brake_for_piece(l, k, gap_mm, b);
         }
         if (lead_is_last_of_span(p) || gap_mm >= l->feed || k + 1 == l->here.ceiling->count ||
             k == l->here.piece + LEAD_PIECES_MAX) {
             break;
         }
     }
-    if (!b.rest && is_open(l)) {
-        b.feed = maths_min(b.feed, feed_to_wait(l, l->feed));
+    if (!b->rest && is_open(l)) {
+        b->feed = maths_min(b->feed, feed_to_wait(l, l->feed));
     }
-    b.a = maths_min(b.a, l->here.early_a);
-    return b;
+    b->a = maths_min(b->a, l->here.early_a);
 }
 
 /* -- landing -- */
@@ -278,13 +289,14 @@ static double landing_reach(const struct lead *l)
 static bool is_way_free(const struct lead *l, bool highest)
 {
     const struct ceiling_piece *p = lead_piece(l, l->here.piece);
-    const uint32_t k = highest ? p->way_max : p->way;
 
-    if (k == CEILING_NONE) {
+    if (l->here.piece + 1 >= p->landing) {
         return true;
     }
-    const struct ceiling_piece *lowest = lead_piece(l, k);
-    const double feed = lead_feed(l, highest ? lowest->end_feed_max_mm_s : lowest->end_feed_mm_s);
+    while (!(highest ? p->lowest_max : p->lowest)) {
+        p++;
+    }
+    const double feed = lead_feed(l, highest ? p->end_feed_max_mm_s : p->end_feed_mm_s);
 
     return lead_square(feed) >= lead_square(l->feed) * (1.0 - LEAD_ENERGY_SLACK);
 }
@@ -337,9 +349,9 @@ static bool must_stop(const struct lead *l)
  * Begins to land when it could not be done any more a cycle later, and no ceiling lies between. Where it cannot be done
  * at all, or a hold can still be obeyed before the joint, the joint becomes a stop.
  */
-void lead_approach_landing(struct lead *l, bool hold, struct lead_brake *b)
+void lead_consider_landing(struct lead *l, bool hold, struct lead_brake *b)
 {
-    if (!has_landing(l) || l->since_plus < l->window) {
+    if (!has_landing(l)) {
         return;
     }
     const double gap_mm = landing_gap(l);
@@ -372,9 +384,8 @@ static double feed_in_piece(const struct lead *l, const struct ceiling_piece *p,
  * The highest feed up to top that can be kept for a window with everything met that is ahead then. Going on from piece
  * to piece: at its end the feed for x = end is allowed, or the answer lies in it.
  */
-static double feed_to_keep(const struct lead *l, double top, double low)
+static double feed_to_keep(const struct lead *l, double s, double top, double low)
 {
-    const double s = path_mm(l->here.ceiling->origin, l->at);
     const double way = l->window + 0.5;
 
     for (uint32_t k = l->here.piece; k < l->here.ceiling->count; k++) {
@@ -394,7 +405,7 @@ static double feed_to_keep(const struct lead *l, double top, double low)
     return 0.0;
 }
 
-double lead_speed_up(const struct lead *l, double low)
+double lead_speed_up(const struct lead *l, double at_mm, double low)
 {
     const double a = (double)lead_piece(l, l->here.piece)->acceleration;
 
@@ -402,7 +413,7 @@ double lead_speed_up(const struct lead *l, double low)
         return l->feed;
     }
     const double top = is_open(l) ? feed_to_wait(l, l->feed + a) : l->feed + a;
-    const double v = feed_to_keep(l, top, low);
+    const double v = feed_to_keep(l, at_mm, top, low);
 
     return v > l->feed + LEAD_CHANGE_MIN * a ? maths_max(l->feed, feed_to_land(l, v)) : l->feed;
 }

@@ -28,32 +28,48 @@ static struct lead_low *low_at(struct lead_place *p, uint32_t i)
     return &p->low[(p->low_first + i) % LEAD_LOW_MAX];
 }
 
+static float low_feed_mm_s(struct lead_place *p, uint32_t i)
+{
+    return p->ceiling->piece[low_at(p, i)->feed].feed_mm_s;
+}
+
+static void find_lowest(struct lead_place *p)
+{
+    p->low_feed = ceiling_feed(p->ceiling, low_feed_mm_s(p, 0));
+    p->low_leave = ceiling_leave(p->ceiling, low_at(p, 0)->leave);
+}
+
 /* Where there is no room for one more the last two become one: the lower feed until the later place. */
 static void low_push(struct lead_place *p, uint32_t k)
 {
-    const double feed = ceiling_feed(p->ceiling, p->ceiling->piece[k].feed_mm_s);
-    const uint64_t leave = ceiling_leave(p->ceiling, k);
+    const float feed_mm_s = p->ceiling->piece[k].feed_mm_s;
 
-    while (p->low_count > 0 && low_at(p, p->low_count - 1)->feed >= feed) {
+    while (p->low_count > 0 && low_feed_mm_s(p, p->low_count - 1) >= feed_mm_s) {
         p->low_count--;
     }
     if (p->low_count == LEAD_LOW_MAX) {
-        low_at(p, p->low_count - 1)->leave = leave;
+        low_at(p, p->low_count - 1)->leave = (uint16_t)k;
         return;
     }
-    *low_at(p, p->low_count) = (struct lead_low){feed, leave};
+    *low_at(p, p->low_count) = (struct lead_low){(uint16_t)k, (uint16_t)k};
     p->low_count++;
+    if (p->low_count == 1) {
+        find_lowest(p);
+    }
 }
 
 double lead_low_feed(struct lead *l, uint64_t setpoint)
 {
     struct lead_place *p = &l->here;
 
-    while (p->low_count > 0 && lead_is_beyond(setpoint, low_at(p, 0)->leave)) {
+    while (p->low_count > 0 && lead_is_beyond(setpoint, p->low_leave)) {
         p->low_first = (p->low_first + 1) % LEAD_LOW_MAX;
         p->low_count--;
+        if (p->low_count > 0) {
+            find_lowest(p);
+        }
     }
-    return p->low_count > 0 ? low_at(p, 0)->feed : 0.0;
+    return p->low_count > 0 ? p->low_feed : 0.0;
 }
 
 /* -- from piece to piece -- */
@@ -236,7 +252,7 @@ static void note_entry(struct lead *l)
 void lead_follow_pieces(struct lead *l)
 {
     l->here.late = false;
-    if (lead_has_piece(l) && l->here.piece > 0 &&
+    if (l->here.early_a != MATHS_INFINITY && lead_has_piece(l) && l->here.piece > 0 &&
         has_passed(l, l->here.ceiling, l->here.piece - 1)) {
         l->here.early_a = MATHS_INFINITY;
     }
@@ -292,13 +308,30 @@ static bool search(struct lead *l)
     return go_on(l, p);
 }
 
-bool lead_take(struct lead *l)
+/* From now on the lead point is in the ceiling that came. Of the list what is used. */
+static void take_place(struct lead *l)
+{
+    struct lead_place *from = &l->coming;
+    struct lead_place *to = &l->here;
+
+    to->ceiling = from->ceiling;
+    to->piece = from->piece;
+    to->late = from->late;
+    to->early_a = from->early_a;
+    to->low_first = 0;
+    to->low_count = from->low_count;
+    for (uint32_t i = 0; i < from->low_count; i++) {
+        to->low[i] = *low_at(from, i);
+    }
+    to->low_feed = from->low_feed;
+    to->low_leave = from->low_leave;
+    from->ceiling = NULL;
+}
+
+bool lead_find_place(struct lead *l)
 {
     unsigned looked = 0;
 
-    if (l->coming.ceiling == NULL) {
-        return false;
-    }
     l->coming.late = false;
     while (looked < LEAD_PIECES_MAX && search(l)) {
         looked++;
@@ -306,8 +339,7 @@ bool lead_take(struct lead *l)
     if (looked == LEAD_PIECES_MAX) {
         return true;
     }
-    l->here = l->coming;
-    l->coming.ceiling = NULL;
+    take_place(l);
     note_entry(l);
     return false;
 }

@@ -18,6 +18,7 @@
 
 /* What braking is for: a feed, how hard it may be reached, and if it is 0, where to come to rest in this cycle. */
 struct lead_brake {
+    double at_mm; /* the lead point, from the ceiling's origin */
     double feed;
     double a;
     bool rest;
@@ -95,10 +96,16 @@ void lead_enter_piece(struct lead *l, uint32_t k);
 double lead_low_feed(struct lead *l, uint64_t setpoint);
 
 /* lead_feed.c: what is ahead within a cycle: the lowest feed that any piece's end asks for. */
-struct lead_brake lead_brake_ahead(const struct lead *l);
+void lead_brake_ahead(const struct lead *l, struct lead_brake *b);
 /* lead_feed.c: begins to land (run.active) when it is time to, or makes the joint a stop where it cannot be done. */
-void lead_approach_landing(struct lead *l, bool hold, struct lead_brake *b);
+void lead_consider_landing(struct lead *l, bool hold, struct lead_brake *b);
+static inline void lead_approach_landing(struct lead *l, bool hold, struct lead_brake *b)
+{
+    if (lead_landing(l) != CEILING_NONE && l->since_plus >= l->window) {
+        lead_consider_landing(l, hold, b);
+    }
+}
 /* lead_feed.c: the feed to speed up to in this cycle under the ceiling low; the present one: it may not. */
-double lead_speed_up(const struct lead *l, double low);
+double lead_speed_up(const struct lead *l, double at_mm, double low);
 
 #endif

@@ -47,18 +47,13 @@ static const struct block *first_block(const struct motion *m)
     return path_first(m->path);
 }
 
-const struct block *motion_block(const struct motion *m)
-{
-    return path_read(m->path, m->current);
-}
-
 /* -- background -- */
 
 /* One of the path's two ceilings: the cycle is in one, and may be going over to the other. */
 static struct ceiling *ceiling_of(const struct motion *m, unsigned which)
 {
     assert(which != m->path->spare);
-    return &m->path->turn[which].ceiling;
+    return path_ceiling(m->path, which);
 }
 
 const struct ceiling_request *motion_wanted(struct motion *m)
@@ -185,6 +180,14 @@ static void offer_ceiling(struct motion *m)
     handoff_set_flag(&m->built, false);
 }
 
+void motion_prepare(struct motion *m)
+{
+    if (!m->has_ceiling && m->built) {
+        offer_ceiling(m);
+    }
+    (void)lead_take(&m->lead);
+}
+
 /* Where the ceiling ends that the lead point is under. */
 static uint64_t piece_leave(const struct motion *m)
 {
@@ -233,7 +236,7 @@ static void ask(struct motion *m, const struct motion_operator *wanted)
         }
     }
     m->request.stops = wanted->single_block;
-    m->room = braking_room(m);
+    m->room = wanted->single_block ? braking_room(m) : 0;
     m->asked_leave = leave;
     m->asked_restarts = m->restarts;
     m->request.first = m->path->first;
@@ -290,12 +293,12 @@ static bool is_handed_over(const struct motion *m, const struct block *b)
 }
 
 /*
- * Goes through what happens at rest; of that only dwells are read. MOTION_CYCLE: the axes move on, or wait when *waits is
- * set.
+ * Goes through what happens at rest; of that only dwells are read. MOTION_CYCLE: the axes move on in a block; NULL: they
+ * wait.
  */
-static enum motion_result serve(struct motion *m, bool *waits)
+static enum motion_result serve(struct motion *m, const struct block **block)
 {
-    *waits = true;
+    *block = NULL;
     for (unsigned passed = 0; passed < PASS_MAX; passed++) {
         if (m->done) {
             path_pass(m->path);
@@ -304,13 +307,14 @@ static enum motion_result serve(struct motion *m, bool *waits)
         if (m->path->first == m->path->closed) {
             return m->path->finished ? MOTION_EMPTY : MOTION_CYCLE;
         }
-        const enum move_kind kind = path_kind(m->path, m->path->first);
-
         m->current = m->path->first;
         if (path_at(m->path, m->current)->motion) {
-            *waits = false;
-            return is_handed_over(m, first_block(m)) ? MOTION_HANDED_OVER : MOTION_CYCLE;
+            m->busy = m->busy || !ring_is_read(&m->path->ring, m->current);
+            *block = first_block(m);
+            return is_handed_over(m, *block) ? MOTION_HANDED_OVER : MOTION_CYCLE;
         }
+        const enum move_kind kind = path_kind(m->path, m->current);
+
         if (kind == MOVE_END) {
             return MOTION_DONE;
         }
@@ -331,20 +335,22 @@ static enum motion_result serve(struct motion *m, bool *waits)
 static bool is_held(const struct motion *m, const struct motion_operator *wanted)
 {
     const struct lead_place *here = &m->lead.here;
+    const bool stands =
+        m->path->has_revolution_feed && wanted->measures && !(wanted->spindle_rev_s > 0.0);
+    const unsigned holds =
+        (wanted->hold ? CEILING_HOLD : 0U) | (wanted->feed_ratio > 0.0 ? 0U : CEILING_FEED) |
+        (wanted->rapid_ratio > 0.0 ? 0U : CEILING_RAPID) | (stands ? CEILING_SPINDLE : 0U);
 
     if (m->ending || wanted->stop) {
         return true;
     }
+    if (holds == 0) {
+        return false;
+    }
     if (here->ceiling == NULL || here->piece >= here->ceiling->count) {
         return wanted->hold;
     }
-    const unsigned overrides = here->ceiling->piece[here->piece].overrides;
-
-    return (wanted->hold && (overrides & CEILING_HOLD) != 0) ||
-           (!(wanted->feed_ratio > 0.0) && (overrides & CEILING_FEED) != 0) ||
-           (!(wanted->rapid_ratio > 0.0) && (overrides & CEILING_RAPID) != 0) ||
-           (wanted->measures && !(wanted->spindle_rev_s > 0.0) &&
-            (overrides & CEILING_SPINDLE) != 0);
+    return (ceiling_overrides(here->ceiling, here->piece) & holds) != 0;
 }
 
 /* Is the end of the oldest block a stop? */
@@ -354,38 +360,38 @@ static bool ends_at_rest(const struct motion *m)
 }
 
 /*
- * The setpoint's distance from the start of its block, path units, after passing the blocks it has left: those are not
- * read.
+ * The setpoint's distance from the start of its block and that one's length, path units, after passing the blocks that it
+ * has left from b on: those are not read.
  */
-static double find_block(struct motion *m)
+static double find_block(struct motion *m, const struct block *b, double *length)
 {
-    uint64_t start = path_at(m->path, m->path->first)->start;
+    uint64_t start = b->start;
+    uint64_t end = start + b->length;
     double local = (double)(int64_t)(m->lead.at - start) - m->lag;
 
-    for (unsigned passed = 0; passed < PASS_MAX && !ends_at_rest(m); passed++) {
-        const uint64_t end = path_end(m->path, m->path->first);
-        const double length = (double)(end - start);
-
-        if (local <= length + LANDED_UNITS) {
+    *length = (double)b->length;
+    for (unsigned passed = 0; local > *length + LANDED_UNITS; passed++) {
+        if (passed == PASS_MAX || ends_at_rest(m)) {
             break;
         }
         path_pass(m->path);
-        local -= length;
+        local -= *length;
         start = end;
+        end = path_end(m->path, m->path->first);
+        *length = (double)(end - start);
     }
     m->current = m->path->first;
     m->setpoint = start + (uint64_t)maths_max(0.0, local);
     return local;
 }
 
-static void place(struct motion *m, double local, struct cycle_record *record)
+static void place(struct motion *m, const struct block *b, double local, double length,
+                  struct cycle_record *record)
 {
-    const struct block *b = first_block(m);
-
     if (local == 0.0) {
         return;
     }
-    if (maths_abs(local - (double)b->length) <= LANDED_UNITS) {
+    if (maths_abs(local - length) <= LANDED_UNITS) {
         m->done = ends_at_rest(m) && m->lead.standing && m->lag == 0.0;
         m->rested = 0;
         record->landed = (m->done || span_lands(m->path, m->current)) && !b->continues;
@@ -421,16 +427,25 @@ static bool may_leave(const struct motion *m, const struct motion_operator *want
            m->passed_first == m->path->first && !wanted->wait;
 }
 
-/* The lead point, its average, the path there. */
-static void move_on(struct motion *m, const struct motion_operator *wanted,
-                    struct cycle_record *record)
+/* The lead point, its average, the path there, from block b on. Returns the block it leads to. */
+static const struct block *move_on(struct motion *m, const struct motion_operator *wanted,
+                                   const struct block *b, struct cycle_record *record)
 {
+    double length;
+
     if (may_leave(m, wanted)) {
         lead_release(&m->lead);
     }
     m->rested++;
     move_lead(m, is_held(m, wanted));
-    place(m, find_block(m), record);
+
+    const double local = find_block(m, b, &length);
+
+    if (m->current != m->passed_first) {
+        b = first_block(m);
+    }
+    place(m, b, local, length, record);
+    return b;
 }
 
 /* The axis velocity limiter: what an override above 100 % is cut down to. */
@@ -499,28 +514,26 @@ static void read_ahead(struct motion *m)
 enum motion_result motion_cycle(struct motion *m, const struct motion_operator *wanted,
                                 struct cycle_record *record)
 {
-    bool waits;
+    const struct block *b;
 
     m->passed_first = m->path->first;
     if (!m->has_ceiling && !m->built) {
         return MOTION_NOT_YET;
     }
-    m->busy = !ring_is_read(&m->path->ring, m->path->first);
+    m->busy = false;
     exchange(m, wanted);
-    const enum motion_result result = serve(m, &waits);
+    const enum motion_result result = serve(m, &b);
 
     if (result != MOTION_CYCLE) {
         return result;
     }
-    memset(record, 0, sizeof(*record));
+    record->landed = false;
     m->feed = 0.0;
-    if (!waits) {
-        move_on(m, wanted, record);
-    }
+    b = b != NULL ? move_on(m, wanted, b, record) : motion_block(m);
     if (m->ending) {
         end_path(m);
     }
     read_ahead(m);
-    fill_record(m, motion_block(m), record);
+    fill_record(m, b, record);
     return MOTION_CYCLE;
 }

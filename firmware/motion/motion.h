@@ -70,7 +70,7 @@ struct motion {
     struct ceiling_request request;
     uint64_t asked_leave;        /* of the piece the lead point was in then */
     struct ceiling_request used; /* what the ceiling in use was made for */
-    uint64_t room;               /* beyond the lead point it may be too late to stop, path units */
+    uint64_t room; /* beyond the lead point it may be too late for stops, path units */
     struct ceiling_request made; /* what the last ceiling was made for, and of how many blocks */
     uint32_t made_closed;
     bool made_holds;   /* and it is the one in use */
@@ -96,7 +96,10 @@ void motion_build(struct motion *m);
 /* Background: blocks that the path has beyond the lead point's, as that was when a ceiling was asked for. */
 uint32_t motion_ahead(struct motion *m);
 
-/* One control cycle. Fills everything of the record but set and act. */
+/* In a control cycle before the first of them: takes the first ceiling, if it is there, so that the first need not. */
+void motion_prepare(struct motion *m);
+
+/* One control cycle. Fills everything of the record but set, act and spindle_rev. */
 enum motion_result motion_cycle(struct motion *m, const struct motion_operator *wanted,
                                 struct cycle_record *record);
 
@@ -113,6 +116,9 @@ bool motion_rests(const struct motion *m);
 bool motion_is_idle(const struct motion *m);
 
 /* The block the last cycle executed. Valid until the next cycle. */
-const struct block *motion_block(const struct motion *m);
+static inline const struct block *motion_block(const struct motion *m)
+{
+    return path_read(m->path, m->current);
+}
 
 #endif

@@ -38,32 +38,46 @@ struct offset_item *contour_item(struct offset *o, unsigned place)
     return &o->item[(o->first + place) % OFFSET_ITEMS_MAX];
 }
 
-void contour_in_plane(enum plane plane, const struct point *p, double result[2])
+struct offset_live *contour_live(struct offset *o, const struct offset_item *item)
 {
-    enum axis first;
-    enum axis second;
+    return &o->live[item->live];
+}
 
-    plane_axes(plane, &first, &second);
-    result[0] = p->at[first];
-    result[1] = p->at[second];
+/* Of each plane: its axes, and those across. */
+static const uint8_t axes_turned[][AXIS_COUNT] = {
+    [PLANE_XY] = {AXIS_X, AXIS_Y, AXIS_Z, AXIS_A, AXIS_B, AXIS_C},
+    [PLANE_ZX] = {AXIS_Z, AXIS_X, AXIS_Y, AXIS_A, AXIS_B, AXIS_C},
+    [PLANE_YZ] = {AXIS_Y, AXIS_Z, AXIS_X, AXIS_A, AXIS_B, AXIS_C},
+};
+
+void contour_turned(enum plane plane, const struct point *p, double turned[AXIS_COUNT])
+{
+    for (unsigned i = 0; i < AXIS_COUNT; i++) {
+        turned[i] = p->at[axes_turned[plane][i]];
+    }
+}
+
+void contour_point(enum plane plane, const double turned[AXIS_COUNT], struct point *p)
+{
+    for (unsigned i = 0; i < AXIS_COUNT; i++) {
+        p->at[axes_turned[plane][i]] = turned[i];
+    }
 }
 
 bool contour_wanted(const struct offset_item *i, struct planar *wanted)
 {
-    const struct move *m = &i->move;
-    double to[2];
+    const struct offset_wanted *w = &i->wanted;
 
-    contour_in_plane(m->plane, &m->end, to);
-    if (i->wanted == MOVE_INVOLUTE_CW || i->wanted == MOVE_INVOLUTE_CCW) {
-        return planar_set_involute(wanted, i->wanted_from, to, m->centre_mm, m->base_radius_mm,
-                                   i->wanted == MOVE_INVOLUTE_CW);
+    if (i->programmed == MOVE_INVOLUTE_CW || i->programmed == MOVE_INVOLUTE_CCW) {
+        return planar_set_involute(wanted, w->from, w->to, w->centre, w->base_mm,
+                                   i->programmed == MOVE_INVOLUTE_CW);
     }
-    if (i->wanted == MOVE_ARC_CW || i->wanted == MOVE_ARC_CCW) {
-        planar_set_arc(wanted, i->wanted_from, to, m->centre_mm,
-                       i->wanted == MOVE_ARC_CCW ? 1.0 : -1.0, m->turns);
+    if (i->programmed == MOVE_ARC_CW || i->programmed == MOVE_ARC_CCW) {
+        planar_set_arc(wanted, w->from, w->to, w->centre,
+                       i->programmed == MOVE_ARC_CCW ? 1.0 : -1.0, i->turns);
         return true;
     }
-    return planar_set_line(wanted, i->wanted_from, to);
+    return planar_set_line(wanted, w->from, w->to);
 }
 
 static bool is_way(const struct offset_item *i)
@@ -71,43 +85,41 @@ static bool is_way(const struct offset_item *i)
     return i->kind >= OFFSET_CORNER && !i->left_out;
 }
 
-struct offset_item *contour_add(struct offset *o, enum offset_kind kind, const struct move *m)
+void contour_add(struct offset *o, const struct offset_item *item)
 {
     assert(o->count < OFFSET_ITEMS_MAX);
-    struct offset_item *i = contour_item(o, o->count++);
-
-    *i = (struct offset_item){.kind = kind, .move = *m};
-    return i;
+    *contour_item(o, o->count++) = *item;
 }
 
-static void append(struct offset *o, const struct offset_item *piece)
+static void append(struct offset *o, struct offset_piece *piece)
 {
-    *contour_add(o, piece->kind, &piece->move) = *piece;
-    o->ways += is_way(piece) ? 1 : 0;
+    if (is_way(&piece->item)) {
+        assert(o->ways < OFFSET_WAYS_MAX);
+        piece->item.live = (uint8_t)((o->live_first + o->ways++) % OFFSET_WAYS_MAX);
+        o->live[piece->item.live] = piece->live;
+    }
+    contour_add(o, &piece->item);
 }
 
 void contour_drop_first(struct offset *o)
 {
-    o->ways -= is_way(contour_item(o, 0)) ? 1 : 0;
+    if (is_way(contour_item(o, 0))) {
+        o->live_first = (o->live_first + 1) % OFFSET_WAYS_MAX;
+        o->ways--;
+    }
     o->first = (o->first + 1) % OFFSET_ITEMS_MAX;
     o->count--;
 }
 
-struct offset_item *contour_newest(struct offset *o)
+struct offset_live *contour_newest(struct offset *o)
 {
-    for (unsigned i = o->count; i > 0; i--) {
-        if (is_way(contour_item(o, i - 1))) {
-            return contour_item(o, i - 1);
-        }
-    }
-    return NULL;
+    return o->ways > 0 ? &o->live[(o->live_first + o->ways - 1) % OFFSET_WAYS_MAX] : NULL;
 }
 
 static void warn(struct offset *o, const struct offset_item *i)
 {
     if (o->warnings < OFFSET_WARNINGS_MAX) {
-        diagnostic_set(&o->warning[o->warnings++], TAKT_ERROR_OFFSET_LEFT_OUT, i->move.line, 0, "",
-                       0, i->move.cutter_radius_mm);
+        o->warning[o->warnings++] = (struct offset_left_out){i->line, o->pattern.cutter_radius_mm};
     }
 }
 
@@ -212,46 +224,36 @@ static double gouge_of(const struct offset_item *item, const struct planar *k,
     return radius_mm - maths_min(planar_distance(k, &wanted), planar_distance(e, &wanted));
 }
 
-/* The way that is really gone: the first of a contour comes from where the tool is. */
-static struct planar real_way(const struct offset_item *i)
+/* The way that is really gone of an item's: the first of a contour comes from where the tool is. */
+static struct planar real_way(const struct offset *o, const struct offset_item *i,
+                              const struct planar *way)
 {
-    struct planar way = i->way;
+    struct planar real = *way;
     double from[2];
 
-    if (i->entry && !way.arc) {
-        nose_centre(&i->move, i->wanted_from, from);
-        (void)planar_set_line(&way, from, i->way.to);
+    if (i->entry && !way->arc) {
+        nose_centre(&o->pattern, i->wanted.from, from);
+        (void)planar_set_line(&real, from, way->to);
     }
-    return way;
+    return real;
 }
 
-/* Both pieces as they are when they meet at a crossing. */
+/* Both ways as they are when they meet at a crossing. */
 struct trial {
-    struct offset_item k;
-    struct planar e;
+    struct planar k, e;
 };
 
-static struct trial try_crossing(struct offset *o, unsigned place, const struct offset_item *piece,
-                                 const struct crossing *c)
-{
-    struct trial t = {.k = *contour_item(o, place), .e = piece->way};
-
-    planar_end_at(&t.k.way, c->end_mm, c->point);
-    planar_begin_at(&t.e, c->begin_mm, c->point);
-    return t;
-}
-
 /* The tool's path turns to the tool's side in an inner corner; another crossing leads into the contour. */
-static bool turns_inside(const struct trial *t, const struct move *m)
+static bool turns_inside(const struct offset *o, const struct trial *t)
 {
     double before[2];
     double behind[2];
 
-    planar_tangent_to(&t->k.way, before);
+    planar_tangent_to(&t->k, before);
     planar_tangent_from(&t->e, behind);
     const double turn = planar_turn(before, behind);
 
-    return (m->cutter_side == CUTTER_LEFT ? turn : -turn) >= -TURN_SLACK;
+    return (o->pattern.cutter_side == CUTTER_LEFT ? turn : -turn) >= -TURN_SLACK;
 }
 
 /* How far the tool cuts into a programmed way on the corner before a place, and on the way before that. */
@@ -264,7 +266,7 @@ static double gouge_before(struct offset *o, unsigned place, const struct planar
         const struct offset_item *item = contour_item(o, i - 1);
 
         if (item->kind >= OFFSET_CORNER) {
-            const struct planar way = real_way(item);
+            const struct planar way = real_way(o, item, &contour_live(o, item)->way);
 
             gouge_mm = maths_max(gouge_mm, radius_mm - planar_distance(&way, wanted));
         }
@@ -279,10 +281,11 @@ static double gouge_before(struct offset *o, unsigned place, const struct planar
 static double gouge_behind(struct offset *o, unsigned place, const struct offset_item *piece,
                            const struct trial *t)
 {
-    const struct planar k = real_way(&t->k);
+    const struct offset_item *at = contour_item(o, place);
+    const struct planar k = real_way(o, at, &t->k);
     struct planar before;
     struct planar behind;
-    const double radius_mm = piece->move.cutter_radius_mm;
+    const double radius_mm = o->pattern.cutter_radius_mm;
     bool between = false;
     double gouge_mm = 0.0;
 
@@ -296,7 +299,7 @@ static double gouge_behind(struct offset *o, unsigned place, const struct offset
         }
     }
     if (between) {
-        (void)contour_wanted(&t->k, &before);
+        (void)contour_wanted(at, &before);
         (void)contour_wanted(piece, &behind);
         gouge_mm = maths_max(gouge_mm, radius_mm - planar_distance(&t->e, &before));
         gouge_mm = maths_max(gouge_mm, radius_mm - planar_distance(&k, &behind));
@@ -306,44 +309,56 @@ static double gouge_behind(struct offset *o, unsigned place, const struct offset
 }
 
 /* Begins or goes on with a gap. The first way in it tells how far the tool is in the way. */
-static void leave_out(struct offset *o, const struct offset_item *piece)
+static void leave_out(struct offset *o, struct offset_piece *piece)
 {
-    struct offset_item left = *piece;
-    struct offset_item *newest = contour_newest(o);
+    const struct offset_live *newest = contour_newest(o);
     struct planar wanted;
 
-    if (piece->kind != OFFSET_WAY) {
+    if (piece->item.kind != OFFSET_WAY) {
         return;
     }
     if (!o->gap) {
-        (void)contour_wanted(piece, &wanted);
+        (void)contour_wanted(&piece->item, &wanted);
         o->gap = true;
-        o->gouge_line = piece->move.line;
+        o->gouge_line = piece->item.line;
         o->gouge_mm = newest == NULL ? 0.0
-                                     : piece->move.cutter_radius_mm -
+                                     : o->pattern.cutter_radius_mm -
                                            planar_distance_point(&wanted, newest->way.to);
     }
-    left.left_out = true;
-    append(o, &left);
+    piece->item.left_out = true;
+    append(o, piece);
 }
 
-static bool join_at(struct offset *o, unsigned place, const struct offset_item *piece,
-                    bool neighbours)
+/* Both ways end and begin at the crossing, if that is one that counts. */
+static bool meet_at(struct offset *o, unsigned place, struct offset_piece *piece,
+                    const struct crossing *c)
 {
-    struct offset_item *k = contour_item(o, place);
-    struct offset_item joined = *piece;
+    struct planar *k = &contour_live(o, contour_item(o, place))->way;
+    struct trial t = {*k, piece->live.way};
+
+    planar_end_at(&t.k, c->end_mm, c->point);
+    planar_begin_at(&t.e, c->begin_mm, c->point);
+    if (!turns_inside(o, &t) || gouge_behind(o, place, &piece->item, &t) > OFFSET_GOUGE_MM) {
+        return false;
+    }
+    *k = t.k;
+    piece->live.way = t.e;
+    return true;
+}
+
+static bool join_at(struct offset *o, unsigned place, struct offset_piece *piece, bool neighbours)
+{
+    const struct offset_item *k = contour_item(o, place);
     struct crossing found[2];
-    const unsigned count = is_way(k) ? find_crossings(&k->way, &piece->way, neighbours, found) : 0;
+    unsigned count = 0;
 
+    if (is_way(k)) {
+        count = find_crossings(&contour_live(o, k)->way, &piece->live.way, neighbours, found);
+    }
     for (unsigned i = 0; i < count; i++) {
-        const struct trial t = try_crossing(o, place, piece, &found[i]);
-
-        if (turns_inside(&t, &piece->move) &&
-            gouge_behind(o, place, piece, &t) <= OFFSET_GOUGE_MM) {
-            k->way = t.k.way;
-            joined.way = t.e;
+        if (meet_at(o, place, piece, &found[i])) {
             remove_behind(o, place);
-            append(o, &joined);
+            append(o, piece);
             o->gap = false;
             return true;
         }
@@ -352,19 +367,21 @@ static bool join_at(struct offset *o, unsigned place, const struct offset_item *
 }
 
 /* at_corner: the piece begins where the contour's last one ends, in an inner corner. */
-static void join(struct offset *o, const struct offset_item *piece, bool at_corner)
+static void join(struct offset *o, struct offset_piece *piece, bool at_corner)
 {
-    const struct offset_item *newest = o->gap ? NULL : contour_newest(o);
+    const struct offset_live *newest = at_corner && !o->gap ? contour_newest(o) : NULL;
 
     for (unsigned i = o->count; i > 0; i--) {
-        if (join_at(o, i - 1, piece, at_corner && contour_item(o, i - 1) == newest)) {
+        const struct offset_item *k = contour_item(o, i - 1);
+
+        if (join_at(o, i - 1, piece, is_way(k) && contour_live(o, k) == newest)) {
             return;
         }
     }
     leave_out(o, piece);
 }
 
-void contour_continue(struct offset *o, const struct offset_item *piece)
+void contour_continue(struct offset *o, struct offset_piece *piece)
 {
     if (o->gap) {
         join(o, piece, false);
@@ -373,7 +390,7 @@ void contour_continue(struct offset *o, const struct offset_item *piece)
     }
 }
 
-void contour_continue_inside(struct offset *o, const struct offset_item *piece)
+void contour_continue_inside(struct offset *o, struct offset_piece *piece)
 {
     join(o, piece, true);
 }

@@ -9,28 +9,32 @@
 /* The item at a place, 0 the oldest. */
 struct offset_item *contour_item(struct offset *o, unsigned place);
 
-/* A new item at the end, of this move, all else 0. Needs room. */
-struct offset_item *contour_add(struct offset *o, enum offset_kind kind, const struct move *m);
+/* The rest of a corner, or of a way that is not left out. */
+struct offset_live *contour_live(struct offset *o, const struct offset_item *item);
+
+/* A new item at the end that is no piece of way. Needs room. */
+void contour_add(struct offset *o, const struct offset_item *item);
 
 /* The programmed way of an item; of a corner, the one before it. False: there is none. */
 bool contour_wanted(const struct offset_item *i, struct planar *wanted);
 
-/* A point in a plane. */
-void contour_in_plane(enum plane plane, const struct point *p, double result[2]);
+/* A point's coordinates in a plane, then those across it, the linear axis first; and back. */
+void contour_turned(enum plane plane, const struct point *p, double turned[AXIS_COUNT]);
+void contour_point(enum plane plane, const double turned[AXIS_COUNT], struct point *p);
 
 /* Drops the oldest item. */
 void contour_drop_first(struct offset *o);
 
 /* The newest piece of way that is not left out; NULL: none. */
-struct offset_item *contour_newest(struct offset *o);
+struct offset_live *contour_newest(struct offset *o);
 
 /*
- * Adds a piece that goes on where the newest ends, or, after an inner corner, where it crosses one of the contour. A
- * way that crosses none is swallowed, a corner then forgotten.
+ * Adds a piece that goes on where the newest ends, or, after an inner corner, where it crosses one of the contour; it then
+ * begins there. A way that crosses none is swallowed, a corner then forgotten.
  */
-void contour_continue(struct offset *o, const struct offset_item *piece);
+void contour_continue(struct offset *o, struct offset_piece *piece);
 
 /* The same for a way behind an inner corner at the start of the programmed way. */
-void contour_continue_inside(struct offset *o, const struct offset_item *piece);
+void contour_continue_inside(struct offset *o, struct offset_piece *piece);
 
 #endif

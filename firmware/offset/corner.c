@@ -133,74 +133,62 @@ static bool is_near_vertex(const struct corner *c, const double point[2])
  * A corner so blunt that one point serves both ways. False when there is not enough of one of them, or when the point
  * is too far out, as it can be beside a small circle.
  */
-static bool turn_blunt(struct offset *o, const struct offset_item *next, const struct corner *c)
+static bool turn_blunt(struct offset *o, struct offset_piece *next, const struct corner *c)
 {
-    struct offset_item *k = contour_newest(o);
-    struct offset_item joined = *next;
+    struct offset_live *k = contour_newest(o);
+    struct planar *way = &next->live.way;
     double point[2];
 
     if (o->gap || k == NULL) {
         return false;
     }
     point_beside(c, 0.5 * c->angle_rad, c->left_mm, point);
-    cross_beside(&k->way, &next->way, c, point);
+    cross_beside(&k->way, way, c, point);
     const double end_mm = planar_place_near_to(&k->way, point);
-    const double begin_mm = planar_place_near_from(&next->way, point);
+    const double begin_mm = planar_place_near_from(way, point);
 
-    if (end_mm <= 0.0 || begin_mm >= planar_length(&next->way) || !is_near_vertex(c, point)) {
+    if (end_mm <= 0.0 || begin_mm >= planar_length(way) || !is_near_vertex(c, point)) {
         return false;
     }
     planar_end_at(&k->way, end_mm, point);
-    planar_begin_at(&joined.way, begin_mm, point);
-    contour_continue(o, &joined);
+    planar_begin_at(way, begin_mm, point);
+    contour_continue(o, next);
     return true;
 }
 
-/* What contour_wanted needs of the way before a corner stands where giving out the corner puts its own. */
-static void keep_last(const struct offset *o, struct offset_item *corner)
+/* A corner is part of the move behind it, but the axis across the plane stays, and the programmed way is the one before. */
+static struct offset_piece corner_piece(const struct offset *o, const struct offset_piece *next)
 {
-    enum axis first;
-    enum axis second;
+    struct offset_piece piece = {.item = next->item, .live.motion = next->live.motion};
+    double turned[AXIS_COUNT];
 
-    plane_axes(corner->move.plane, &first, &second);
-    corner->wanted = o->last_move.kind;
-    memcpy(corner->wanted_from, o->last.from, sizeof(corner->wanted_from));
-    corner->move.end.at[first] = o->last.to[0];
-    corner->move.end.at[second] = o->last.to[1];
-    memcpy(corner->move.centre_mm, o->last_move.centre_mm, sizeof(corner->move.centre_mm));
-    corner->move.base_radius_mm = o->last_move.base_radius_mm;
-    corner->move.turns = o->last_move.turns;
-}
-
-/* A corner is part of the way behind it, but the axis across the plane stays. */
-static struct offset_item corner_piece(const struct offset *o, const struct offset_item *next)
-{
-    struct offset_item piece = {.kind = OFFSET_CORNER, .move = next->move};
-
-    for (enum axis i = AXIS_X; i < AXIS_LINEAR_COUNT; i++) {
-        piece.move.end.at[i] = o->wanted_at.at[i];
+    contour_turned(o->pattern.plane, &o->wanted_at, turned);
+    piece.live.motion.across[0] = turned[2];
+    piece.item.kind = OFFSET_CORNER;
+    if (piece.item.move != MOVE_RAPID) {
+        piece.item.move = MOVE_FEED;
     }
-    if (move_is_arc(&piece.move) || move_is_involute(&piece.move)) {
-        piece.move.kind = MOVE_FEED;
-    }
-    keep_last(o, &piece);
+    piece.item.across = false;
+    piece.item.programmed = o->last_way.programmed;
+    piece.item.turns = o->last_way.turns;
+    piece.item.wanted = o->last_way.wanted;
     return piece;
 }
 
-static void turn_round(struct offset *o, struct offset_item *piece, const struct corner *c)
+static void turn_round(struct offset *o, struct offset_piece *piece, const struct corner *c)
 {
     double from[2];
     double to[2];
 
     point_beside(c, 0.0, c->left_mm, from);
     point_beside(c, c->angle_rad, c->left_mm, to);
-    planar_set_arc(&piece->way, from, to, c->vertex, c->angle_rad > 0.0 ? 1.0 : -1.0, 1);
-    piece->way.sweep_rad = maths_abs(c->angle_rad);
-    piece->move.kind = c->angle_rad > 0.0 ? MOVE_ARC_CCW : MOVE_ARC_CW;
+    planar_set_arc(&piece->live.way, from, to, c->vertex, c->angle_rad > 0.0 ? 1.0 : -1.0, 1);
+    piece->live.way.sweep_rad = maths_abs(c->angle_rad);
+    piece->item.move = c->angle_rad > 0.0 ? MOVE_ARC_CCW : MOVE_ARC_CW;
     contour_continue(o, piece);
 }
 
-static void turn_sharp(struct offset *o, struct offset_item *piece, const struct corner *c)
+static void turn_sharp(struct offset *o, struct offset_piece *piece, const struct corner *c)
 {
     const unsigned tips = maths_abs(c->angle_rad) > MATHS_HALF_PI * (1.0 + 1e-9) ? TIPS_MAX : 1;
     const double half_rad = 0.5 * c->angle_rad / tips;
@@ -215,7 +203,7 @@ static void turn_sharp(struct offset *o, struct offset_item *piece, const struct
         } else {
             point_beside(c, c->angle_rad, c->left_mm, to);
         }
-        if (planar_set_line(&piece->way, from, to)) {
+        if (planar_set_line(&piece->live.way, from, to)) {
             contour_continue(o, piece);
         }
         memcpy(from, to, sizeof(from));
@@ -226,10 +214,10 @@ static void turn_sharp(struct offset *o, struct offset_item *piece, const struct
  * A rapid has no feed for an arc and nothing to cut: it goes around corners in lines. Behind a gap tips are not tried:
  * one may stand out of what is swallowed while the circle does not.
  */
-static void turn_outside(struct offset *o, const struct offset_item *next, const struct corner *c)
+static void turn_outside(struct offset *o, const struct offset_piece *next, const struct corner *c)
 {
-    struct offset_item piece = corner_piece(o, next);
-    const bool rapid = piece.move.kind == MOVE_RAPID;
+    struct offset_piece piece = corner_piece(o, next);
+    const bool rapid = piece.item.move == MOVE_RAPID;
 
     if (!o->gap && (o->sharp_corners || rapid)) {
         turn_sharp(o, &piece, c);
@@ -238,9 +226,9 @@ static void turn_outside(struct offset *o, const struct offset_item *next, const
     }
 }
 
-void corner_turn(struct offset *o, const struct offset_item *next, double left_mm)
+void corner_turn(struct offset *o, struct offset_piece *next, double left_mm)
 {
-    const struct corner c = corner_between(o, next, left_mm);
+    const struct corner c = corner_between(o, &next->item, left_mm);
 
     if (is_blunt(&c) && turn_blunt(o, next, &c)) {
         return;

@@ -28,7 +28,8 @@ bool offset_warning(struct offset *o, struct diagnostic *diagnostic)
     if (o->warnings == 0) {
         return false;
     }
-    *diagnostic = o->warning[0];
+    diagnostic_set(diagnostic, TAKT_ERROR_OFFSET_LEFT_OUT, o->warning[0].line, 0, "", 0,
+                   o->warning[0].radius_mm);
     o->warnings--;
     for (unsigned i = 0; i < o->warnings; i++) {
         o->warning[i] = o->warning[i + 1];
@@ -62,32 +63,18 @@ static bool fail(struct diagnostic *d, enum takt_error code, uint32_t line, doub
     return false;
 }
 
-static bool moves_across(const struct offset *o, const struct move *m)
-{
-    enum axis first;
-    enum axis second;
-
-    plane_axes(m->plane, &first, &second);
-    for (enum axis i = AXIS_X; i < AXIS_COUNT; i++) {
-        if (i != first && i != second && m->end.at[i] != o->wanted_at.at[i]) {
-            return true;
-        }
-    }
-    return false;
-}
-
 /*
  * An entry arc starts at the tool, C, and ends at A beside the programmed end, in its direction: its centre is on the
  * line from A towards the programmed centre, u, and as far from C as from A.
  *
  *     |A B| = |C - A|^2 / (2 (C - A) . u)
  */
-static bool bend_entry(struct offset_item *entry)
+static bool bend_entry(const struct offset *o, struct offset_piece *entry)
 {
-    struct planar *way = &entry->way;
+    struct planar *way = &entry->live.way;
     double c[2];
 
-    nose_centre(&entry->move, entry->wanted_from, c);
+    nose_centre(&o->pattern, entry->item.wanted.from, c);
     const double to_tool[2] = {c[0] - way->to[0], c[1] - way->to[1]};
     const double radius = planar_between(way->centre, way->to);
     const double u[2] = {(way->centre[0] - way->to[0]) / radius,
@@ -106,22 +93,22 @@ static bool bend_entry(struct offset_item *entry)
     return true;
 }
 
-static bool enter(struct offset *o, struct offset_item *entry, const struct planar *wanted,
+static bool enter(struct offset *o, struct offset_piece *entry, const struct planar *wanted,
                   struct diagnostic *d)
 {
     const double distance = planar_between(wanted->from, wanted->to);
-    const double lack_mm = entry->move.cutter_radius_mm - distance;
+    const double lack_mm = o->pattern.cutter_radius_mm - distance;
 
     if (lack_mm >= 0.0) {
-        return fail(d, TAKT_ERROR_OFFSET_ENTRY_SHORT, entry->move.line, lack_mm);
+        return fail(d, TAKT_ERROR_OFFSET_ENTRY_SHORT, entry->item.line, lack_mm);
     }
     if (wanted->involute) {
-        return fail(d, TAKT_ERROR_OFFSET_ENTRY_INVOLUTE, entry->move.line, 0.0);
+        return fail(d, TAKT_ERROR_OFFSET_ENTRY_INVOLUTE, entry->item.line, 0.0);
     }
-    if (wanted->arc && !bend_entry(entry)) {
-        return fail(d, TAKT_ERROR_OFFSET_ENTRY_ARC, entry->move.line, 0.0);
+    if (wanted->arc && !bend_entry(o, entry)) {
+        return fail(d, TAKT_ERROR_OFFSET_ENTRY_ARC, entry->item.line, 0.0);
     }
-    entry->entry = true;
+    entry->item.entry = true;
     o->started = true;
     o->broken = false;
     contour_continue(o, entry);
@@ -134,17 +121,17 @@ static bool turns_too_often(const struct planar *involute)
            OFFSET_TURNS_MAX * MATHS_TWO_PI;
 }
 
-static bool take_way(struct offset *o, struct offset_item *way, const struct planar *wanted,
+static bool take_way(struct offset *o, struct offset_piece *way, const struct planar *wanted,
                      struct diagnostic *d)
 {
-    const double left_mm = left_of(&way->move);
+    const double left_mm = left_of(&o->pattern);
     double lack_mm;
 
     if (wanted->involute && turns_too_often(wanted)) {
-        return fail(d, TAKT_ERROR_OFFSET_TURNS, way->move.line, OFFSET_TURNS_MAX);
+        return fail(d, TAKT_ERROR_OFFSET_TURNS, way->item.line, OFFSET_TURNS_MAX);
     }
-    if (!planar_offset(wanted, left_mm, &way->way, &lack_mm)) {
-        return fail(d, TAKT_ERROR_OFFSET_ARC_SMALL, way->move.line, lack_mm);
+    if (!planar_offset(wanted, left_mm, &way->live.way, &lack_mm)) {
+        return fail(d, TAKT_ERROR_OFFSET_ARC_SMALL, way->item.line, lack_mm);
     }
     if (!o->started) {
         return enter(o, way, wanted, d);
@@ -153,22 +140,75 @@ static bool take_way(struct offset *o, struct offset_item *way, const struct pla
     return true;
 }
 
-/* A compensated motion. */
-static bool take_motion(struct offset *o, const struct move *m, struct diagnostic *d)
+/* A compensated motion as a way, but for the way of the tool's centre. */
+static struct offset_piece piece_of(const struct offset *o, struct move *m)
 {
-    struct offset_item item = {.kind = OFFSET_WAY, .move = *m, .wanted = m->kind};
+    struct offset_piece piece = {
+        .item = {.line = m->line,
+                 .turns = m->turns,
+                 .kind = OFFSET_WAY,
+                 .move = (uint8_t)m->kind,
+                 .programmed = (uint8_t)m->kind,
+                 .path = (uint8_t)m->path,
+                 .overrides = (uint8_t)m->overrides,
+                 .correction_off = m->correction_off,
+                 .cutter_entry = m->cutter_entry,
+                 .wanted = {.centre = {m->centre_mm[0], m->centre_mm[1]},
+                            .base_mm = m->base_radius_mm}},
+    };
+    double from[AXIS_COUNT];
+    double to[AXIS_COUNT];
+
+    contour_turned(m->plane, &o->wanted_at, from);
+    contour_turned(m->plane, &m->end, to);
+    memcpy(piece.live.motion.pace, move_pace(m), MOVE_PACE_BYTES);
+    memcpy(piece.item.wanted.from, from, sizeof(piece.item.wanted.from));
+    memcpy(piece.item.wanted.to, to, sizeof(piece.item.wanted.to));
+    for (unsigned i = 0; i < OFFSET_ACROSS; i++) {
+        piece.live.motion.across[i] = to[i + 2];
+        piece.item.across |= from[i + 2] != to[i + 2];
+    }
+    return piece;
+}
+
+/* A move that is no motion, or the contour's pattern. */
+static void add_other(struct offset *o, enum offset_kind kind, struct move *m)
+{
+    struct offset_item item = {.line = m->line, .kind = (uint8_t)kind, .move = (uint8_t)m->kind};
+
+    memcpy(item.event, move_event(m), sizeof(item.event));
+    contour_add(o, &item);
+}
+
+/* A compensated motion that is no way. */
+static void take_standing(struct offset *o, struct move *m, struct offset_piece *piece)
+{
+    if (!o->started) {
+        add_other(o, OFFSET_PASSING, m);
+        return;
+    }
+    piece->item.kind = OFFSET_STANDING;
+    piece->item.motion = piece->live.motion;
+    contour_add(o, &piece->item);
+}
+
+/* A compensated motion. */
+static bool take_motion(struct offset *o, struct move *m, struct diagnostic *d)
+{
+    struct offset_piece piece = piece_of(o, m);
     struct planar wanted;
 
-    contour_in_plane(m->plane, &o->wanted_at, item.wanted_from);
-    if (!contour_wanted(&item, &wanted)) {
-        contour_add(o, o->started ? OFFSET_STANDING : OFFSET_COMMAND, m);
+    if (!o->started) {
+        o->pattern = *m;
+    }
+    if (!contour_wanted(&piece.item, &wanted)) {
+        take_standing(o, m, &piece);
     } else {
-        item.across = moves_across(o, m);
-        if (!take_way(o, &item, &wanted, d)) {
+        if (!take_way(o, &piece, &wanted, d)) {
             return false;
         }
         o->last = wanted;
-        o->last_move = *m;
+        o->last_way = piece.item;
     }
     o->wanted_at = m->end;
     return true;
@@ -200,7 +240,7 @@ static bool ends_contour(const struct offset *o, const struct move *m)
     return o->started && (leaves || m->kind == MOVE_END);
 }
 
-static bool take(struct offset *o, const struct move *m, struct diagnostic *d)
+static bool take(struct offset *o, struct move *m, struct diagnostic *d)
 {
     if (is_dropped(o, m)) {
         return true;
@@ -213,9 +253,12 @@ static bool take(struct offset *o, const struct move *m, struct diagnostic *d)
     if (is_compensated(m)) {
         return take_motion(o, m, d);
     }
-    contour_add(o, OFFSET_COMMAND, m);
     if (move_is_motion(m)) {
+        o->pattern = *m;
         o->wanted_at = m->end;
+        add_other(o, OFFSET_PASSING, m);
+    } else {
+        add_other(o, OFFSET_COMMAND, m);
     }
     return true;
 }
@@ -274,26 +317,53 @@ static void set_involute(struct move *m, const struct planar *way, const double 
     m->base_radius_mm = way->base_mm;
 }
 
-/* An item as a move of the tool's centre, or of the point that a lathe tool is led by. */
-static void finish_move(const struct offset *o, const struct offset_item *i, struct move *m)
+/* The motion of a contour's item, the tool's centre, or the point that a lathe tool is led by, going its way. */
+static void finish_motion(struct offset *o, const struct offset_item *i, struct move *m)
 {
-    enum axis first;
-    enum axis second;
+    const struct offset_live *live = contour_live(o, i);
+    const bool stands = i->kind == OFFSET_STANDING;
+    const struct offset_motion *motion = stands ? &i->motion : &live->motion;
     double lead_mm[2];
+    double end[AXIS_COUNT];
 
-    *m = i->move;
-    m->cutter_side = CUTTER_OFF;
+    m->kind = (enum move_kind)i->move;
+    m->path = (enum move_path)i->path;
+    m->line = i->line;
+    memcpy(move_pace(m), motion->pace, MOVE_PACE_BYTES);
+    m->overrides = i->overrides;
+    m->correction_off = i->correction_off;
+    m->cutter_entry = i->cutter_entry;
+    nose_lead(m, lead_mm);
+    contour_turned(m->plane, &o->at, end);
+    if (!stands) {
+        end[0] = live->way.to[0] + lead_mm[0];
+        end[1] = live->way.to[1] + lead_mm[1];
+    }
+    memcpy(&end[2], motion->across, sizeof(motion->across));
+    contour_point(m->plane, end, &m->end);
+    if (stands) {
+        m->kind = move_is_involute(m) ? MOVE_FEED : m->kind;
+    } else if (move_is_arc(m)) {
+        set_arc(m, &live->way, lead_mm);
+    } else if (move_is_involute(m)) {
+        set_involute(m, &live->way, lead_mm);
+    }
+}
+
+/* An item as a move. */
+static void finish_move(struct offset *o, const struct offset_item *i, struct move *m)
+{
     if (i->kind == OFFSET_COMMAND) {
+        memset(m, 0, sizeof(*m));
+        m->kind = (enum move_kind)i->move;
+        m->line = i->line;
+        memcpy(move_event(m), i->event, sizeof(i->event));
         return;
     }
-    nose_lead(m, lead_mm);
-    plane_axes(m->plane, &first, &second);
-    m->end.at[first] = i->kind == OFFSET_STANDING ? o->at.at[first] : i->way.to[0] + lead_mm[0];
-    m->end.at[second] = i->kind == OFFSET_STANDING ? o->at.at[second] : i->way.to[1] + lead_mm[1];
-    if (move_is_arc(m)) {
-        set_arc(m, &i->way, lead_mm);
-    } else if (move_is_involute(m)) {
-        set_involute(m, &i->way, lead_mm);
+    *m = o->pattern;
+    m->cutter_side = CUTTER_OFF;
+    if (i->kind != OFFSET_PASSING) {
+        finish_motion(o, i, m);
     }
 }
 
@@ -313,8 +383,9 @@ static bool check_travel(const struct offset *o, const struct program *p, const 
 static bool give_out(struct offset *o, const struct program *p, struct move *move,
                      struct diagnostic *d)
 {
-    struct offset_item *i = contour_item(o, 0);
-    const bool checked = i->kind != OFFSET_COMMAND || is_compensated(&i->move);
+    const struct offset_item *i = contour_item(o, 0);
+    const bool checked =
+        i->kind > OFFSET_PASSING || (i->kind == OFFSET_PASSING && is_compensated(&o->pattern));
 
     finish_move(o, i, move);
     contour_drop_first(o);
@@ -365,7 +436,7 @@ static bool has_room(const struct offset *o, struct diagnostic *d)
     if (o->gap) {
         return fail(d, TAKT_ERROR_OFFSET_GOUGE, o->gouge_line, o->gouge_mm);
     }
-    return fail(d, TAKT_ERROR_OFFSET_CROWDED, o->item[o->first].move.line,
+    return fail(d, TAKT_ERROR_OFFSET_CROWDED, o->item[o->first].line,
                 OFFSET_ITEMS_MAX - OFFSET_LOOK_AHEAD - OFFSET_ITEMS_ADDED);
 }
 

@@ -1,5 +1,6 @@
 /*
- * Every fixed size of the compensation. struct offset takes about OFFSET_ITEMS_MAX * 360 bytes.
+ * Every fixed size of the compensation, the same in all builds: what a contour comes to depends on them. struct offset takes
+ * about OFFSET_ITEMS_MAX * 80 + OFFSET_WAYS_MAX * 152 bytes.
  */
 #ifndef TAKT_OFFSET_LIMITS_H
 #define TAKT_OFFSET_LIMITS_H
@@ -10,6 +11,8 @@
 #define OFFSET_ITEMS_MAX 48
 /* What one move can add: an outer corner of three lines, and its way. */
 #define OFFSET_ITEMS_ADDED 4
+/* Pieces of way that are not swallowed: no more is read when there are more than the look-ahead. */
+#define OFFSET_WAYS_MAX (OFFSET_LOOK_AHEAD + OFFSET_ITEMS_ADDED)
 /* Warnings kept until they are fetched. */
 #define OFFSET_WARNINGS_MAX 4
 

@@ -9,30 +9,80 @@
 #include "offset/planar.h"
 #include "program/move.h"
 
+#include <stdint.h>
+
 enum offset_kind {
     OFFSET_COMMAND,  /* no motion */
+    OFFSET_PASSING,  /* a motion outside of any contour; it is alone, and struct offset, pattern */
     OFFSET_STANDING, /* motion of other axes than the plane's */
     OFFSET_CORNER,   /* way around an outer corner */
     OFFSET_WAY       /* a programmed move */
 };
 
+/* The axes that are not the plane's. */
+#define OFFSET_ACROSS (AXIS_COUNT - 2)
+
+/* A way as programmed, in its plane; kind and turns are beside it. */
+struct offset_wanted {
+    double from[2], to[2];
+    double centre[2]; /* arcs, involutes */
+    double base_mm;   /* involutes */
+};
+
+/* What a motion has of its own, beside its way. All else its contour has in common. */
+struct offset_motion {
+    double across
+        [OFFSET_ACROSS]; /* ends of the axes that are not the plane's; the first is a linear one */
+    unsigned char pace[MOVE_PACE_BYTES];
+};
+
+/* A move, in as few bytes as there is no other way to have them back. */
 struct offset_item {
-    /* As programmed. Of a corner, of the move behind it, but for what contour_wanted needs of the one before */
-    struct move move;
-    double wanted_from[2]; /* where the programmed way begins, of which move has the rest */
-    struct planar way;     /* of the tool's centre in the plane */
-    enum offset_kind kind;
-    enum move_kind wanted; /* the kind of the programmed way */
-    bool left_out;         /* swallowed by an inner corner; kept until its end is known */
-    bool entry;            /* comes from outside the contour: starts where the tool is */
-    bool across;           /* moves other axes too */
+    uint32_t line;
+    uint32_t turns; /* of the programmed way */
+    uint8_t kind;   /* enum offset_kind */
+    uint8_t move; /* enum move_kind it is given out as; a way or a corner may still become a line */
+    uint8_t programmed; /* enum move_kind of the programmed way */
+    uint8_t path;       /* enum move_path */
+    uint8_t overrides;  /* of struct move, as the next */
+    uint8_t correction_off;
+    uint8_t live; /* corners and ways that are not left out: where in struct offset the rest is */
+    bool cutter_entry : 1; /* of struct move */
+    bool left_out : 1;     /* swallowed by an inner corner; kept until its end is known */
+    bool entry : 1;        /* comes from outside the contour: starts where the tool is */
+    bool across : 1;       /* moves other axes too */
+    union {
+        struct offset_wanted wanted;           /* of a way; of a corner, of the way before it */
+        struct offset_motion motion;           /* OFFSET_STANDING */
+        unsigned char event[MOVE_EVENT_BYTES]; /* OFFSET_COMMAND: of its move */
+    };
+};
+
+/* The rest of what is still on the contour. */
+struct offset_live {
+    struct planar way; /* of the tool's centre in the plane */
+    struct offset_motion motion;
+};
+
+/* One that is being made. */
+struct offset_piece {
+    struct offset_item item;
+    struct offset_live live;
+};
+
+/* A way that has been left out, for a warning. */
+struct offset_left_out {
+    uint32_t line;
+    double radius_mm;
 };
 
 struct offset {
     bool sharp_corners;
     struct offset_item item[OFFSET_ITEMS_MAX]; /* ring */
     unsigned first, count;
-    unsigned ways;       /* of kind corner or way, not left out */
+    struct offset_live
+        live[OFFSET_WAYS_MAX]; /* ring: of corners and ways that are not left out, in their order */
+    unsigned live_first, ways;
     bool started;        /* a contour is being followed */
     bool gap;            /* an inner corner has begun and its end is not known */
     double gouge_mm;     /* gap: what the tool would cut away */
@@ -43,11 +93,12 @@ struct offset {
     struct move waiting;
     bool is_held; /* closed: an error of the program comes after the contour */
     struct diagnostic held;
-    struct point wanted_at; /* programmed end of the last motion */
-    struct point at;        /* end of the last motion given out */
-    struct planar last;     /* the contour's last way as programmed, */
-    struct move last_move;  /* and its move */
-    struct diagnostic warning[OFFSET_WARNINGS_MAX];
+    struct point wanted_at;      /* programmed end of the last motion */
+    struct point at;             /* end of the last motion given out */
+    struct move pattern;         /* the contour's first motion: what they all have in common */
+    struct planar last;          /* the contour's last way as programmed, */
+    struct offset_item last_way; /* and its item */
+    struct offset_left_out warning[OFFSET_WARNINGS_MAX];
     unsigned warnings;
 };
 

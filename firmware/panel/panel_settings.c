@@ -13,14 +13,10 @@ void panel_turn_upload(struct panel *panel, enum panel_upload_kind kind)
 enum panel_refusal panel_tell_why(struct panel *panel, enum panel_refusal refusal)
 {
     const struct panel_store *store = panel_get_store(panel);
-    const char *why = store->why != NULL ? store->why(store->context) : "";
-    size_t length = 0;
 
     memset(panel->upload_text, 0, sizeof panel->upload_text);
-    while (why[length] != '\0' && length + 1 < sizeof panel->upload_text) {
-        panel->upload_text[length] = why[length];
-        length++;
-    }
+    if (store->why != NULL)
+        store->why(store->context, panel->upload_text);
     return refusal;
 }
 

@@ -22,8 +22,9 @@ struct panel_store {
      * more will come. NULL, both: this store does not do that. */
     bool (*begin_stream)(void *context, uint32_t size);
     void (*end_stream)(void *context, bool right);
-    /* Why begin, prepare or place has said false last: a text that stays until the next of them. NULL: there is none. */
-    const char *(*why)(void *context);
+    /* Why begin, write, prepare or place has said false last, into text[PANEL_ALARM_TEXT_MAX]: it ends with a zero, empty: it
+     * has not. NULL: this store does not know. */
+    void (*why)(void *context, char *text);
     /* Bytes that write takes now. NULL: any. Less than a chunk is no fault: what runs makes room. */
     uint32_t (*room)(void *context);
     void *context; /* owned by whoever made the store */

@@ -52,23 +52,23 @@ struct block_shape {
 struct block {
     struct move move; /* the canonical move it came from */
     uint32_t number;  /* of the motion, from 1; a wait has the number of the motion before it */
-    uint64_t start;   /* path position, path units (path_unit.h) */
-    uint64_t length;  /* path units; 0: a wait, the axes stand */
+    bool continues;   /* another piece of the same move follows */
+    bool rotary;      /* the path is counted in rad: no linear axis moves */
+    enum joint_kind end;
+    enum governor cap; /* of feed_cap_mm_s */
+    uint64_t start;    /* path position, path units (path_unit.h) */
+    uint64_t length;   /* path units; 0: a wait, the axes stand */
     struct curve curve;
-    bool continues; /* another piece of the same move follows */
     double length_mm;
-    bool rotary; /* the path is counted in rad: no linear axis moves */
     struct block_shape shape;
 
     double feed_program_mm_s; /* as programmed; infinite for a rapid */
     double feed_cap_mm_s;     /* axis velocities, chord error, joints */
-    enum governor cap;
     double
         feed_max_mm_s; /* feed_cap with curvature and share: never exceeded, whatever the override */
     double a_mm_s2;    /* along the path, what curvature and share leave at that feed */
     double j_mm_s3;
 
-    enum joint_kind end;
     double
         share_joint; /* part of the jerk limit that blocks near the joint at the end must leave */
     double share;    /* part left to joints: BLOCK_SHARE_MAX until the block is closed */

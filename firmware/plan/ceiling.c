@@ -19,8 +19,7 @@
 
 static_assert(CEILING_PIECES_MAX < CEILING_NONE, "pieces fit into ceiling_piece.landing");
 static_assert(PATH_BLOCKS_MAX < 1 << 9, "blocks fit into ceiling_piece.start");
-static_assert(LAW_CYCLES_MAX < 1 << 9, "windows fit into ceiling_piece.cycles");
-static_assert(sizeof(struct ceiling_piece) == 28, "no padding");
+static_assert(sizeof(struct ceiling_piece) == 24, "no padding");
 
 /*
  * Between being asked for and being taken a ceiling grows so many cycles old at most (MOTION_EXCHANGE_CYCLES and the
@@ -47,8 +46,7 @@ struct builder {
     uint32_t cycles; /* of the first box, in the span being laid */
     double behind;   /* cycles that the setpoint follows behind the lead point, with the margin */
     double begin_mm; /* where the newest ceiling begins */
-    unsigned overrides;  /* of the block being laid, */
-    float feed_max_mm_s; /* and its highest feed whatever they are */
+    float feed_max_mm_s; /* of the block being laid, whatever the overrides are */
     double fastest;      /* the highest of those laid so far */
     double gentlest;     /* and the lowest acceleration */
     uint32_t start;      /* block that begins what is being laid */
@@ -169,9 +167,7 @@ static struct ceiling_piece *append(struct builder *s, double end_mm, float feed
         .acceleration = (float)a,
         .start = since(s, s->start) & 0x1ffU,
         .leave = since(s, leave) & 0x1ffU,
-        .cycles = s->cycles & 0x1ffU,
         .landing = CEILING_NONE,
-        .overrides = s->overrides & 0xfU,
     };
     s->c->end_mm[s->c->count++] = end_mm;
     return p;
@@ -258,8 +254,17 @@ static void append_pieces(struct builder *s, double end_mm, float feed_mm_s, dou
     }
 }
 
+static unsigned block_overrides(const struct path_block *b)
+{
+    const unsigned follows = b->per_revolution ? CEILING_SPINDLE : 0U;
+    const unsigned hold = (b->may_hold ? CEILING_HOLD : 0U) | follows;
+
+    return b->rapid ? hold | CEILING_RAPID : hold | (b->may_feed ? CEILING_FEED : 0U);
+}
+
 /* May the block be joined to the newest piece: the same ceiling, and nothing between? */
-static bool continues(const struct builder *s, float feed_mm_s, double a)
+static bool continues(const struct builder *s, const struct path_block *b, float feed_mm_s,
+                      double a)
 {
     if (s->c->count == 0 || s->heads != 1 || s->head[0].a != a) {
         return false;
@@ -268,15 +273,7 @@ static bool continues(const struct builder *s, float feed_mm_s, double a)
 
     return !last->stop && !last->landed && last->feed_mm_s == feed_mm_s &&
            last->feed_max_mm_s == s->feed_max_mm_s && (double)last->acceleration == a &&
-           last->overrides == s->overrides;
-}
-
-static unsigned block_overrides(const struct path_block *b)
-{
-    const unsigned follows = b->per_revolution ? CEILING_SPINDLE : 0U;
-    const unsigned hold = (b->may_hold ? CEILING_HOLD : 0U) | follows;
-
-    return b->rapid ? hold | CEILING_RAPID : hold | (b->may_feed ? CEILING_FEED : 0U);
+           ceiling_overrides(s->c, s->c->count - 1) == block_overrides(b);
 }
 
 static void lay_block(struct builder *s, uint32_t index)
@@ -288,7 +285,6 @@ static void lay_block(struct builder *s, uint32_t index)
     const double start_mm = path_mm(s->c->origin, b->start);
     const double end_mm = path_mm(s->c->origin, path_end(s->path, index));
 
-    s->overrides = block_overrides(b);
     s->feed_max_mm_s = maths_float_below(feeds.highest);
     const double feed_max = ceiling_feed(s->c, s->feed_max_mm_s);
     const double reach_mm = end_mm + feed_max * s->behind;
@@ -296,7 +292,7 @@ static void lay_block(struct builder *s, uint32_t index)
     s->fastest = maths_max(s->fastest, feed_max);
     s->gentlest = maths_min(s->gentlest, a);
     s->start = index;
-    if (continues(s, feed_mm_s, a)) {
+    if (continues(s, b, feed_mm_s, a)) {
         s->c->end_mm[s->c->count - 1] = end_mm;
         s->c->piece[s->c->count - 1].leave = since(s, index + 1) & 0x1ffU;
     } else {
@@ -346,14 +342,19 @@ static void lay_landed_joint(struct builder *s, uint32_t index)
     p->landed = true;
 }
 
-/* Lays the blocks from the ring into pieces. Room for the pieces of one block more is kept. */
+/* For one block more: a piece for each head and one without, and a landed joint. */
+static bool has_room(const struct builder *s)
+{
+    return s->c->count + s->heads + 2U <= CEILING_PIECES_MAX;
+}
+
+/* Lays the blocks from the ring into pieces. */
 static void lay_blocks(struct builder *s)
 {
-    const uint32_t room = CEILING_PIECES_MAX - HEADS_MAX - 2;
     bool fresh = true;
     uint32_t i = s->request->first;
 
-    for (; i != s->path->closed && s->c->count < room; i++) {
+    for (; i != s->path->closed && has_room(s); i++) {
         if (!path_at(s->path, i)->motion) {
             continue;
         }
@@ -437,7 +438,7 @@ static float landed_feed(const struct ceiling *c, uint32_t k, enum law law, floa
     if (i == c->count) {
         return feed_mm_s;
     }
-    const double cycles = 0.5 * (double)law_window_cycles(law, c->piece[i].cycles) + 1.0;
+    const double cycles = 0.5 * (double)law_window_cycles(law, ceiling_cycles(c, i)) + 1.0;
     const double hold_mm = start_mm + feed * cycles;
 
     while (i < c->count && c->end_mm[i] < hold_mm) {
@@ -473,29 +474,29 @@ static float highest_feed(const struct ceiling *c, uint32_t k, float feed_mm_s)
     return rest > square(ceiling_feed(c, feed_mm_s)) ? feed_below(c, rest) : feed_mm_s;
 }
 
-/* Of two pieces the one that can be met at the lower feed; of those there are. */
-static unsigned lower(const struct ceiling *c, uint32_t k, unsigned way, bool highest)
-{
-    return way != CEILING_NONE &&
-                   end_feed_of(&c->piece[way], highest) < end_feed_of(&c->piece[k], highest)
-               ? way
-               : k;
-}
-
-/* What lies between a piece and the joint that the span ends with. */
-static void note_way(struct ceiling *c, uint32_t k)
+/* Between a piece and the joint that the span ends with: the pieces that ask for no more than any behind them. */
+static void note_lowest(struct ceiling *c, uint32_t k, float *low_mm_s, float *low_max_mm_s)
 {
     struct ceiling_piece *p = &c->piece[k];
     const bool none = p->landing == CEILING_NONE || k + 1U >= p->landing;
 
-    p->way = none ? CEILING_NONE : lower(c, k, p[1].way, false) & CEILING_NONE;
-    p->way_max = none ? CEILING_NONE : lower(c, k, p[1].way_max, true) & CEILING_NONE;
+    if (none) {
+        *low_mm_s = (float)MATHS_INFINITY;
+        *low_max_mm_s = (float)MATHS_INFINITY;
+        return;
+    }
+    p->lowest = p->end_feed_mm_s <= *low_mm_s;
+    p->lowest_max = p->end_feed_max_mm_s <= *low_max_mm_s;
+    *low_mm_s = p->lowest ? p->end_feed_mm_s : *low_mm_s;
+    *low_max_mm_s = p->lowest_max ? p->end_feed_max_mm_s : *low_max_mm_s;
 }
 
 static void plan_backward(struct ceiling *c, enum law law)
 {
     float feed_mm_s = 0.0F;
     float feed_max_mm_s = 0.0F;
+    float low_mm_s = 0.0F;
+    float low_max_mm_s = 0.0F;
     unsigned landing = CEILING_NONE;
     bool open = true;
 
@@ -513,7 +514,7 @@ static void plan_backward(struct ceiling *c, enum law law)
             p->feed_mm_s = landed_feed(c, k, law, p->feed_mm_s, false);
         }
         p->landing = landing & CEILING_NONE;
-        note_way(c, k);
+        note_lowest(c, k, &low_mm_s, &low_max_mm_s);
         feed_mm_s = begin_feed(c, k, false);
         feed_max_mm_s = begin_feed(c, k, true);
     }
@@ -535,20 +536,30 @@ void ceiling_build(struct ceiling *c, struct path *path, const struct ceiling_re
 }
 
 /* Those before the oldest that is kept may have been overwritten. */
-static uint64_t start_of(const struct ceiling *c, unsigned block)
+static uint32_t kept_block(const struct ceiling *c, unsigned block)
 {
     const uint32_t kept = c->path->kept;
     const uint32_t index = c->first + block;
 
-    return path_start(c->path, (int32_t)(index - kept) < 0 ? kept : index);
+    return (int32_t)(index - kept) < 0 ? kept : index;
 }
 
 uint64_t ceiling_start(const struct ceiling *c, uint32_t k)
 {
-    return start_of(c, c->piece[k].start);
+    return path_start(c->path, kept_block(c, c->piece[k].start));
 }
 
 uint64_t ceiling_leave(const struct ceiling *c, uint32_t k)
 {
-    return start_of(c, c->piece[k].leave);
+    return path_start(c->path, kept_block(c, c->piece[k].leave));
+}
+
+unsigned ceiling_overrides(const struct ceiling *c, uint32_t k)
+{
+    return block_overrides(path_at(c->path, kept_block(c, c->piece[k].leave - 1U)));
+}
+
+uint32_t ceiling_cycles(const struct ceiling *c, uint32_t k)
+{
+    return path_at(c->path, kept_block(c, c->piece[k].start))->cycles;
 }

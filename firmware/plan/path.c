@@ -10,7 +10,6 @@
 #include <stddef.h>
 #include <string.h>
 
-static_assert(sizeof(struct relax_beside) <= sizeof(struct ceiling), "smoothing costs no memory");
 static_assert(SHARE_BLOCKS_MAX <= PATH_MODES_MAX,
               "blocks that are not closed leave room for more, without which they never are");
 
@@ -36,30 +35,33 @@ void path_init(struct path *p, const struct plan_limits *limits, const struct po
     init_smooth(p);
 }
 
-/* What smoothing computes with. */
+/* Where smoothing keeps its chain. */
 void *path_lend(struct path *p, size_t size)
 {
-    static_assert(offsetof(struct path, smooth.work) % sizeof(uint64_t) == 0, "at a multiple of 8");
+    static_assert(offsetof(struct path, smooth.route) % sizeof(uint64_t) == 0,
+                  "at a multiple of 8");
     (void)size;
-    assert(size <= sizeof(p->smooth.work) && !p->smooth.open);
+    assert(size <= PATH_LENT_MAX && !p->smooth.open);
     p->lent = true;
-    return &p->smooth.work;
+    return (unsigned char *)&p->smooth + offsetof(struct smooth, route);
 }
 
 /* Has the motion pushed last more pieces than found room? */
 static bool is_splitting(const struct path *p)
 {
-    return p->split_mm < p->whole.length_mm;
+    return p->split_mm < p->length_mm;
 }
 
-static bool has_slot(const struct path *p)
+/* For a block whose record has size bytes at most. */
+static bool has_slot(const struct path *p, uint32_t size)
 {
-    return ring_has_room(&p->ring, handoff_get_count(&p->kept), p->pushed);
+    return ring_has_room(&p->ring, handoff_get_count(&p->kept), p->pushed, size);
 }
 
 bool path_has_room(const struct path *p)
 {
-    return has_slot(p) && !is_splitting(p) && !p->has_next && smooth_has_room(&p->smooth);
+    return has_slot(p, RECORD_SHORT_MAX) && !is_splitting(p) && !p->has_next &&
+           smooth_has_room(&p->smooth);
 }
 
 /* The newest block, or the one that becomes it. */
@@ -133,7 +135,7 @@ static void push_piece(struct path *p, const struct curve *curve, double to_mm)
     block_set_motion(b, &p->split, curve, &p->limits);
     b->number = p->motions;
     b->start = p->position;
-    b->continues = to_mm < p->whole.length_mm;
+    b->continues = to_mm < p->length_mm;
     if (p->closed < p->pushed) {
         joint_form(edge(p, p->pushed - 1), b, &p->limits);
         share_note(p, p->pushed - 1, edge(p, p->pushed - 1));
@@ -145,14 +147,16 @@ static void push_piece(struct path *p, const struct curve *curve, double to_mm)
     p->split_mm = to_mm;
 }
 
-/* At a cusp the axes stand. */
-static void push_pieces(struct path *p)
+/* Of the whole curve. At a cusp the axes stand. */
+static void push_pieces(struct path *p, const struct curve *whole)
 {
-    while (is_splitting(p) && has_slot(p)) {
-        const double to_mm = curve_piece_end(&p->whole, p->split_mm);
+    const uint32_t size = whole->kind == CURVE_INVOLUTE ? RECORD_MAX : RECORD_SHORT_MAX;
+
+    while (is_splitting(p) && has_slot(p, size)) {
+        const double to_mm = curve_piece_end(whole, p->split_mm);
         struct curve piece;
 
-        curve_cut(&p->whole, p->split_mm, to_mm, &piece);
+        curve_cut(whole, p->split_mm, to_mm, &piece);
         if (curve_starts_at_cusp(&piece)) {
             close_newest(p);
         }
@@ -166,10 +170,20 @@ static void push_pieces(struct path *p)
 static void push_motion(struct path *p, const struct move *move, const struct curve *curve)
 {
     p->split = *move;
-    p->whole = *curve;
+    p->from = p->end;
+    p->length_mm = curve->length_mm;
     p->split_mm = 0.0;
     p->end = move->end;
-    push_pieces(p);
+    push_pieces(p, curve);
+}
+
+static void go_on_splitting(struct path *p)
+{
+    struct curve whole;
+
+    if (is_splitting(p) && move_curve(&p->split, &p->from, &whole)) {
+        push_pieces(p, &whole);
+    }
 }
 
 /* The next piece of the smoothed chain. Nothing joins its first and its last one. */
@@ -203,7 +217,9 @@ static void push_smooth_pieces(struct path *p)
     if (p->spare == PATH_NO_SPARE) {
         return;
     }
-    while (has_slot(p) && smooth_take(&p->smooth, &p->turn[p->spare].beside, &piece)) {
+    union path_spare *spare = p->spare == 0 ? &p->area.high.spare : &p->area.low.spare;
+
+    while (has_slot(p, RECORD_MAX) && smooth_take(&p->smooth, &spare->scratch, &piece)) {
         push_smooth_piece(p, &piece);
     }
 }
@@ -267,11 +283,11 @@ static bool is_all_in_ring(const struct path *p)
 
 void path_go_on(struct path *p)
 {
-    push_pieces(p);
+    go_on_splitting(p);
     push_smooth_pieces(p);
-    if (p->has_next && !p->smooth.open && has_slot(p)) {
+    if (p->has_next && !p->smooth.open && has_slot(p, RECORD_SHORT_MAX)) {
         p->has_next = false;
-        push_move(p, &p->next);
+        push_move(p, &p->split);
     }
     if (p->finished && is_all_in_ring(p)) {
         close_newest(p);
@@ -285,7 +301,7 @@ void path_restart(struct path *p, const struct point *at, uint64_t position)
     p->closed = p->pushed;
     p->end = *at;
     p->position = position;
-    p->split_mm = p->whole.length_mm;
+    p->split_mm = p->length_mm;
     p->has_next = false;
     p->smoothing = false;
     smooth_reset(&p->smooth);
@@ -315,7 +331,7 @@ void path_push(struct path *p, const struct move *move)
     }
     smooth_finish(&p->smooth);
     p->has_next = true;
-    p->next = *move;
+    p->split = *move;
     path_go_on(p);
 }
 

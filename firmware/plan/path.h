@@ -19,10 +19,28 @@
 #include <stddef.h>
 #include <stdint.h>
 
-/* A ceiling; or, where none is, a part of what smoothing computes with. */
-union path_turn {
+/* What smoothing computes with, where the one ceiling is not; as long as that. */
+union path_spare {
+    union smooth_scratch scratch;
     struct ceiling ceiling;
-    struct relax_beside beside;
+};
+
+/*
+ * Two ceilings at the ends of one area. All that the one in use leaves is free while there is no other, and more than a
+ * ceiling where smoothing needs it:
+ *
+ *     | ceiling 0 |         spare         |
+ *     |         spare         | ceiling 1 |
+ */
+union path_area {
+    struct {
+        struct ceiling ceiling;
+        union path_spare spare;
+    } low;
+    struct {
+        union path_spare spare;
+        struct ceiling ceiling;
+    } high;
 };
 
 #define PATH_NO_SPARE 2U
@@ -40,20 +58,20 @@ struct path {
     bool newest_turns;        /* the newest motion moves rotary axes */
     struct point end;         /* where everything pushed ends */
     struct smooth smooth;     /* motions that are not in the ring yet: a chain being smoothed */
-    bool lent;     /* what it computes with belongs to somebody else: nothing is smoothed */
-    bool has_next; /* a move that is not part of that chain waits until it has been taken */
-    struct move next;
-    bool smoothing;     /* the newest block is a piece of a chain that goes on */
-    double unit_mm;     /* path for a second of nominal time of a smoothed curve */
-    struct move split;  /* a motion of several pieces that have not all found room yet */
-    struct curve whole; /* its curve */
-    double split_mm;    /* how much of it is in the ring; the length of whole: all */
-    uint64_t position;  /* likewise, on the path */
+    bool lent;      /* what it computes with belongs to somebody else: nothing is smoothed */
+    bool has_next;  /* a move that is not part of that chain waits until it has been taken: split */
+    bool smoothing; /* the newest block is a piece of a chain that goes on */
+    double unit_mm; /* path for a second of nominal time of a smoothed curve */
+    struct move split; /* a motion of several pieces that have not all found room yet, */
+    struct point from; /* where it starts, */
+    double length_mm;  /* its length */
+    double split_mm;   /* and how much of that is in the ring */
+    uint64_t position; /* likewise, on the path */
     struct block
         edge[2]; /* the newest block, whose end may still change, and the one before or behind it */
     struct share_block open[SHARE_BLOCKS_MAX]; /* those that are not closed */
     struct path_ring ring;
-    union path_turn turn[2]; /* of the ceiling in use and the next one */
+    union path_area area; /* of the ceiling in use and the next one */
     unsigned
         spare; /* the one of them that is no ceiling: motions are smoothed as long as there is one; PATH_NO_SPARE */
 };
@@ -62,8 +80,9 @@ struct path {
 void path_init(struct path *p, const struct plan_limits *limits, const struct point *start);
 /*
  * Memory for something else, at a multiple of 8, in a path that smooths nothing from here on: no move of PATH_BLEND comes
- * before it is initialised again. size: of that, not more than smoothing takes.
+ * before it is initialised again. size: of that, PATH_LENT_MAX at most.
  */
+#define PATH_LENT_MAX (offsetof(struct smooth, change) - offsetof(struct smooth, route))
 void *path_lend(struct path *p, size_t size);
 /* Room for one more move? */
 bool path_has_room(const struct path *p);
@@ -90,6 +109,11 @@ static inline uint64_t path_end(const struct path *p, uint32_t index)
     return path_start(p, index + 1);
 }
 double path_length(const struct path *p, uint32_t index);
+/* Ceiling 0 or 1. */
+static inline struct ceiling *path_ceiling(struct path *p, unsigned which)
+{
+    return which == 0 ? &p->area.low.ceiling : &p->area.high.ceiling;
+}
 /* Of its move: what it is, and its feed per revolution, 0: none. */
 enum move_kind path_kind(const struct path *p, uint32_t index);
 double path_feed_rev(const struct path *p, uint32_t index);
@@ -104,13 +128,11 @@ static inline const struct block *path_read(struct path *p, uint32_t index)
     return ring_is_read(&p->ring, index) ? &p->ring.view[index % 2].block
                                          : ring_read(&p->ring, index, path_end(p, index));
 }
-/* Control cycle: a step towards that, of a block that is closed; two make it ready. */
+/* Control cycle: a step towards that, of a block that is closed; four make it ready. */
 static inline void path_prepare(struct path *p, uint32_t index)
 {
-    if (ring_is_begun(&p->ring, index)) {
-        (void)ring_read(&p->ring, index, path_end(p, index));
-    } else if (!ring_is_read(&p->ring, index)) {
-        ring_begin(&p->ring, index);
+    if (!ring_is_read(&p->ring, index)) {
+        ring_prepare(&p->ring, index, path_end(p, index));
     }
 }
 /* Control cycle: likewise the oldest one. */

@@ -1,18 +1,19 @@
 #include "plan/record.h"
 
 #include "base/maths.h"
+#include "plan/bytes.h"
 
 #include <assert.h>
 #include <string.h>
 
 /* Where the parts of the head are. */
-#define AT_LINE   0
-#define AT_NUMBER 4
-#define AT_KIND   8 /* and the governor above it */
-#define AT_FLAGS  9
-#define AT_MODES  10
-#define AT_END    11 /* which coordinates of the end there are */
-#define HEAD_SIZE 12
+#define AT_LINE   0 /* the lower half of it */
+#define AT_NUMBER 2 /* likewise */
+#define AT_KIND   4 /* and the governor above it */
+#define AT_FLAGS  5
+#define AT_MODES  6
+#define AT_END    7 /* which coordinates of the end there are; else of the control point */
+#define HEAD_SIZE 8
 
 #define KIND_BITS 5U
 #define KIND_MASK 0x1fU
@@ -24,6 +25,7 @@
 #define FLAG_SPLINE         0x10U /* a piece of a smoothed curve */
 #define FLAG_CHAINED        0x20U /* the last control point alone */
 #define FLAG_MOVE_END       0x40U /* of a piece: it ends where the move does */
+#define FLAG_TURNS          0x80U /* the turns of an arc follow: they are not 1 */
 
 #define CURVE_OUTWARD    1U
 #define CURVE_CUSP_START 2U
@@ -39,58 +41,10 @@
 #define EVENT_WITH_MOTION 0x20U
 #define EVENT_OPTIONAL    0x40U
 
-static_assert(sizeof(struct record_modes) == 64, "no padding that could differ");
+static_assert(sizeof(struct record_modes) == 48, "no padding that could differ");
 static_assert(MOVE_END <= KIND_MASK && GOVERNOR_RAMP < 8, "both fit into a byte");
 
 /* -- numbers -- */
-
-static void put(uint8_t **to, const void *value, size_t size)
-{
-    memcpy(*to, value, size);
-    *to += size;
-}
-
-static void take(const uint8_t **from, void *value, size_t size)
-{
-    memcpy(value, *from, size);
-    *from += size;
-}
-
-static void put_double(uint8_t **to, double value)
-{
-    put(to, &value, sizeof(value));
-}
-
-static double take_double(const uint8_t **from)
-{
-    double value;
-
-    take(from, &value, sizeof(value));
-    return value;
-}
-
-static void put_word(uint8_t **to, uint32_t value)
-{
-    put(to, &value, sizeof(value));
-}
-
-static uint32_t take_word(const uint8_t **from)
-{
-    uint32_t value;
-
-    take(from, &value, sizeof(value));
-    return value;
-}
-
-static void put_byte(uint8_t **to, unsigned value)
-{
-    *(*to)++ = (uint8_t)value;
-}
-
-static unsigned take_byte(const uint8_t **from)
-{
-    return *(*from)++;
-}
 
 bool record_is_same(const void *a, const void *b, size_t size)
 {
@@ -123,7 +77,7 @@ static unsigned put_coordinates(uint8_t **to, const struct point *p)
     for (unsigned i = 0; i < AXIS_COUNT; i++) {
         if (!is_same_number(p->at[i], 0.0)) {
             axes |= 1U << i;
-            put_double(to, p->at[i]);
+            bytes_put_double(to, p->at[i]);
         }
     }
     return axes;
@@ -132,7 +86,7 @@ static unsigned put_coordinates(uint8_t **to, const struct point *p)
 static void take_coordinates(const uint8_t **from, unsigned axes, struct point *p)
 {
     for (unsigned i = 0; i < AXIS_COUNT; i++) {
-        p->at[i] = (axes >> i & 1U) != 0 ? take_double(from) : 0.0;
+        p->at[i] = (axes >> i & 1U) != 0 ? bytes_take_double(from) : 0.0;
     }
 }
 
@@ -145,26 +99,25 @@ static void put_point(uint8_t **to, const struct point *p)
 
 static void take_point(const uint8_t **from, struct point *p)
 {
-    const unsigned axes = take_byte(from);
+    const unsigned axes = bytes_take_byte(from);
 
     take_coordinates(from, axes, p);
 }
 
 /* -- modes -- */
 
-void record_modes_of(const struct move *move, struct record_modes *modes)
+void record_modes_of(const struct block *b, bool smooth, struct record_modes *modes)
 {
+    const struct move *move = &b->move;
+
     *modes = (struct record_modes){
-        .tolerance_mm = move->tolerance_mm,
-        .merge_mm = move->merge_mm,
-        .cutter_radius_mm = move->cutter_radius_mm,
+        .piece_mm = smooth ? b->curve.length_mm : 0.0,
         .tool = move->tool,
+        .line_high = (uint16_t)(move->line >> 16),
+        .number_high = (uint16_t)(b->number >> 16),
         .overrides = (uint8_t)move->overrides,
         .path = (uint8_t)move->path,
         .plane = (uint8_t)move->plane,
-        .cutter_side = (uint8_t)move->cutter_side,
-        .cutter_orientation = move->cutter_orientation,
-        .cutter_entry = move->cutter_entry,
         .correction_off = move->correction_off,
         .contour_side = move->contour_side,
     };
@@ -174,16 +127,10 @@ void record_modes_of(const struct move *move, struct record_modes *modes)
 
 static void take_modes(const struct record_modes *modes, struct move *move)
 {
-    move->tolerance_mm = modes->tolerance_mm;
-    move->merge_mm = modes->merge_mm;
-    move->cutter_radius_mm = modes->cutter_radius_mm;
     move->tool = modes->tool;
     move->overrides = modes->overrides;
     move->path = (enum move_path)modes->path;
     move->plane = (enum plane)modes->plane;
-    move->cutter_side = (enum cutter_side)modes->cutter_side;
-    move->cutter_orientation = modes->cutter_orientation;
-    move->cutter_entry = modes->cutter_entry != 0;
     move->correction_off = modes->correction_off;
     move->contour_side = modes->contour_side;
     memcpy(move->work_mm, modes->work_mm, sizeof(modes->work_mm));
@@ -203,26 +150,26 @@ static unsigned event_bits(const struct move *m)
 /* The numbers of every kind lie where those of a spindle do (program/move.h), which has the most of them. */
 static void put_event(uint8_t **to, const struct move *m)
 {
-    put_double(to, m->speed_rpm);
-    put_double(to, m->surface_mm_s);
-    put_double(to, m->surface_x_mm);
-    put_word(to, m->channel);
-    put_byte(to, (unsigned)m->direction);
-    put_byte(to, (unsigned)m->orient_way);
-    put_byte(to, (unsigned)m->input_wait);
-    put_byte(to, event_bits(m));
+    bytes_put_double(to, m->speed_rpm);
+    bytes_put_double(to, m->surface_mm_s);
+    bytes_put_double(to, m->surface_x_mm);
+    bytes_put_word(to, m->channel);
+    bytes_put_byte(to, (unsigned)m->direction);
+    bytes_put_byte(to, (unsigned)m->orient_way);
+    bytes_put_byte(to, (unsigned)m->input_wait);
+    bytes_put_byte(to, event_bits(m));
 }
 
 static void take_event(const uint8_t **from, struct move *m)
 {
-    m->speed_rpm = take_double(from);
-    m->surface_mm_s = take_double(from);
-    m->surface_x_mm = take_double(from);
-    m->channel = take_word(from);
-    m->direction = (enum spindle_direction)take_byte(from);
-    m->orient_way = (enum orient_way)take_byte(from);
-    m->input_wait = (enum input_wait)take_byte(from);
-    const unsigned bits = take_byte(from);
+    m->speed_rpm = bytes_take_double(from);
+    m->surface_mm_s = bytes_take_double(from);
+    m->surface_x_mm = bytes_take_double(from);
+    m->channel = bytes_take_word(from);
+    m->direction = (enum spindle_direction)bytes_take_byte(from);
+    m->orient_way = (enum orient_way)bytes_take_byte(from);
+    m->input_wait = (enum input_wait)bytes_take_byte(from);
+    const unsigned bits = bytes_take_byte(from);
 
     m->mist = (bits & EVENT_MIST) != 0;
     m->flood = (bits & EVENT_FLOOD) != 0;
@@ -235,33 +182,40 @@ static void take_event(const uint8_t **from, struct move *m)
 
 /* -- what kinds of motion have beside their ends -- */
 
+static bool is_bent(const struct move *m)
+{
+    return move_is_arc(m) || move_is_involute(m);
+}
+
 static void put_shape(uint8_t **to, const struct move *m)
 {
-    if (move_is_arc(m) || move_is_involute(m)) {
-        put_double(to, m->centre_mm[0]);
-        put_double(to, m->centre_mm[1]);
-        put_word(to, m->turns);
+    if (is_bent(m)) {
+        bytes_put_double(to, m->centre_mm[0]);
+        bytes_put_double(to, m->centre_mm[1]);
+        if (m->turns != 1) {
+            bytes_put_word(to, m->turns);
+        }
     }
     if (move_is_involute(m)) {
-        put_double(to, m->base_radius_mm);
+        bytes_put_double(to, m->base_radius_mm);
     }
     if (m->kind == MOVE_TAP_OUT) {
-        put_double(to, m->speed_ratio);
+        bytes_put_double(to, m->speed_ratio);
     }
 }
 
-static void take_shape(const uint8_t **from, struct move *m)
+static void take_shape(const uint8_t **from, unsigned flags, struct move *m)
 {
-    if (move_is_arc(m) || move_is_involute(m)) {
-        m->centre_mm[0] = take_double(from);
-        m->centre_mm[1] = take_double(from);
-        m->turns = take_word(from);
+    if (is_bent(m)) {
+        m->centre_mm[0] = bytes_take_double(from);
+        m->centre_mm[1] = bytes_take_double(from);
+        m->turns = (flags & FLAG_TURNS) != 0 ? bytes_take_word(from) : 1;
     }
     if (move_is_involute(m)) {
-        m->base_radius_mm = take_double(from);
+        m->base_radius_mm = bytes_take_double(from);
     }
     if (m->kind == MOVE_TAP_OUT) {
-        m->speed_ratio = take_double(from);
+        m->speed_ratio = bytes_take_double(from);
     }
 }
 
@@ -275,18 +229,18 @@ static void put_involute(uint8_t **to, const struct block *b)
 
     put_point(to, &b->move.end);
     put_point(to, &b->curve.slope);
-    put_double(to, b->curve.length_mm);
-    put_byte(to, bits);
-    put_byte(to, v->first);
-    put_byte(to, v->second);
-    put_double(to, v->centre_mm[0]);
-    put_double(to, v->centre_mm[1]);
-    put_double(to, v->radius_mm);
-    put_double(to, v->hand);
-    put_double(to, v->heading_rad);
-    put_double(to, v->square_start_rad2);
-    put_double(to, v->square_rate_rad2_mm);
-    put_double(to, v->plane_ratio);
+    bytes_put_double(to, b->curve.length_mm);
+    bytes_put_byte(to, bits);
+    bytes_put_byte(to, v->first);
+    bytes_put_byte(to, v->second);
+    bytes_put_double(to, v->centre_mm[0]);
+    bytes_put_double(to, v->centre_mm[1]);
+    bytes_put_double(to, v->radius_mm);
+    bytes_put_double(to, v->hand);
+    bytes_put_double(to, v->heading_rad);
+    bytes_put_double(to, v->square_start_rad2);
+    bytes_put_double(to, v->square_rate_rad2_mm);
+    bytes_put_double(to, v->plane_ratio);
 }
 
 static void take_involute(const uint8_t **from, struct block *b)
@@ -296,23 +250,23 @@ static void take_involute(const uint8_t **from, struct block *b)
     take_point(from, &b->move.end);
     take_point(from, &b->curve.slope);
     b->curve.kind = CURVE_INVOLUTE;
-    b->curve.length_mm = take_double(from);
-    const unsigned bits = take_byte(from);
+    b->curve.length_mm = bytes_take_double(from);
+    const unsigned bits = bytes_take_byte(from);
 
     b->curve.rotary = (bits & CURVE_ROTARY) != 0;
     v->outward = (bits & CURVE_OUTWARD) != 0;
     v->cusp_start = (bits & CURVE_CUSP_START) != 0;
     v->cusp_end = (bits & CURVE_CUSP_END) != 0;
-    v->first = (unsigned char)take_byte(from);
-    v->second = (unsigned char)take_byte(from);
-    v->centre_mm[0] = take_double(from);
-    v->centre_mm[1] = take_double(from);
-    v->radius_mm = take_double(from);
-    v->hand = take_double(from);
-    v->heading_rad = take_double(from);
-    v->square_start_rad2 = take_double(from);
-    v->square_rate_rad2_mm = take_double(from);
-    v->plane_ratio = take_double(from);
+    v->first = (unsigned char)bytes_take_byte(from);
+    v->second = (unsigned char)bytes_take_byte(from);
+    v->centre_mm[0] = bytes_take_double(from);
+    v->centre_mm[1] = bytes_take_double(from);
+    v->radius_mm = bytes_take_double(from);
+    v->hand = bytes_take_double(from);
+    v->heading_rad = bytes_take_double(from);
+    v->square_start_rad2 = bytes_take_double(from);
+    v->square_rate_rad2_mm = bytes_take_double(from);
+    v->plane_ratio = bytes_take_double(from);
 }
 
 /* -- writing -- */
@@ -324,23 +278,30 @@ static unsigned flags_of(const struct block *b, bool spline, const struct record
                            !(chain->has_end && is_same_point(&b->curve.start, &chain->end));
 
     return (has_start ? FLAG_START : 0U) | (m->feed_rev_mm != 0.0 ? FLAG_REVOLUTION : 0U) |
+           (is_bent(m) && m->turns != 1 ? FLAG_TURNS : 0U) |
            (m->probe_away ? FLAG_PROBE_AWAY : 0U) | (m->probe_optional ? FLAG_PROBE_OPTIONAL : 0U) |
            (spline ? FLAG_SPLINE : 0U);
 }
 
-/* Of a piece of a smoothed curve: its control points, and its length last. */
-static unsigned put_spline(uint8_t **to, const struct block *b, const struct point control[4],
-                           struct record_chain *chain)
+/*
+ * Of a piece of a smoothed curve: its control points. Which coordinates of a last one alone there are is said in place of
+ * those of an end, unless there is one.
+ */
+static unsigned put_spline(uint8_t *bytes, uint8_t **to, const struct point control[4],
+                           struct record_chain *chain, bool has_end)
 {
     const bool chained =
         chain->has_control && record_is_same(chain->control, control, sizeof(chain->control));
 
-    for (unsigned i = chained ? 3 : 0; i < 4; i++) {
-        put_point(to, &control[i]);
+    if (chained && !has_end) {
+        bytes[AT_END] = (uint8_t)put_coordinates(to, &control[3]);
+    } else {
+        for (unsigned i = chained ? 3 : 0; i < 4; i++) {
+            put_point(to, &control[i]);
+        }
     }
-    put_double(to, b->curve.length_mm);
     memcpy(chain->control, &control[1], sizeof(chain->control));
-    return chained ? FLAG_CHAINED : 0U;
+    return (chained ? FLAG_CHAINED : 0U) | (has_end ? FLAG_MOVE_END : 0U);
 }
 
 static void put_motion(uint8_t **to, const struct block *b, unsigned flags)
@@ -377,12 +338,12 @@ uint32_t record_write(uint8_t bytes[RECORD_MAX], const struct block *b,
     struct point end;
     const bool has_end = end_of(b, spline, chain, &end);
 
-    put_word(&to, b->move.line);
-    put_word(&to, b->number);
+    bytes_put_half(&to, b->move.line);
+    bytes_put_half(&to, b->number);
     to = bytes + HEAD_SIZE;
     bytes[AT_END] = has_end ? (uint8_t)put_coordinates(&to, &end) : 0;
     if ((flags & FLAG_REVOLUTION) != 0) {
-        put_double(&to, b->move.feed_rev_mm);
+        bytes_put_double(&to, b->move.feed_rev_mm);
     }
     if (block_is_motion(b)) {
         put_motion(&to, b, flags);
@@ -390,7 +351,7 @@ uint32_t record_write(uint8_t bytes[RECORD_MAX], const struct block *b,
         put_event(&to, &b->move);
     }
     if (spline) {
-        flags |= put_spline(&to, b, control, chain) | (has_end ? FLAG_MOVE_END : 0U);
+        flags |= put_spline(bytes, &to, control, chain, has_end);
     }
     bytes[AT_KIND] = (uint8_t)b->move.kind;
     bytes[AT_FLAGS] = (uint8_t)flags;
@@ -418,21 +379,41 @@ void record_set_governor(uint8_t *record, enum governor governor)
     record[AT_KIND] = (uint8_t)((record[AT_KIND] & KIND_MASK) | (unsigned)governor << KIND_BITS);
 }
 
-/* Where the block ends; returns what follows. */
-static const uint8_t *read_end(const uint8_t *record, struct point *end)
+/* Has it a last control point alone, and no end? */
+static bool has_control_alone(const uint8_t *record)
+{
+    return (record[AT_FLAGS] & (FLAG_CHAINED | FLAG_MOVE_END)) == FLAG_CHAINED;
+}
+
+/* Which coordinates of its end a record has. */
+static unsigned end_axes(const uint8_t *record)
+{
+    return has_control_alone(record) ? 0 : record[AT_END];
+}
+
+static void read_end(const uint8_t *record, struct point *end)
 {
     const uint8_t *from = record + HEAD_SIZE;
 
-    take_coordinates(&from, record[AT_END], end);
+    take_coordinates(&from, end_axes(record), end);
+}
+
+/* What follows the end. */
+static const uint8_t *behind_end(const uint8_t *record)
+{
+    const uint8_t *from = record + HEAD_SIZE;
+
+    for (unsigned axes = end_axes(record); axes != 0; axes &= axes - 1) {
+        from += sizeof(double);
+    }
     return from;
 }
 
 double record_feed_rev(const uint8_t *record)
 {
-    struct point end;
-    const uint8_t *from = read_end(record, &end);
+    const uint8_t *from = behind_end(record);
 
-    return (record[AT_FLAGS] & FLAG_REVOLUTION) != 0 ? take_double(&from) : 0.0;
+    return (record[AT_FLAGS] & FLAG_REVOLUTION) != 0 ? bytes_take_double(&from) : 0.0;
 }
 
 /* The head; returns what follows the feed per revolution. */
@@ -445,12 +426,13 @@ static const uint8_t *read_head(const uint8_t *record, const struct record_modes
     memset(move, 0, sizeof(*move));
     take_modes(modes, move);
     move->kind = record_kind(record);
-    move->line = take_word(&from);
+    move->line = (uint32_t)modes->line_high << 16 | bytes_take_half(&from);
     move->probe_away = (flags & FLAG_PROBE_AWAY) != 0;
     move->probe_optional = (flags & FLAG_PROBE_OPTIONAL) != 0;
-    from = read_end(record, &move->end);
+    read_end(record, &move->end);
+    from = behind_end(record);
     if ((flags & FLAG_REVOLUTION) != 0) {
-        move->feed_rev_mm = take_double(&from);
+        move->feed_rev_mm = bytes_take_double(&from);
     }
     return from;
 }
@@ -473,48 +455,40 @@ void record_read_move(const uint8_t *record, const struct record_modes *modes, s
     }
 }
 
-/* The control points that a record of a piece has: the last one, or all four. Returns what follows. */
-static const uint8_t *read_control(const uint8_t *record, struct point control[4])
+/*
+ * Of so many control points the last ones, as a record of a piece has them: one, or up to four. Returns how many are still
+ * missing before those.
+ */
+static unsigned read_control(const uint8_t *record, struct point control[], unsigned count)
 {
     const unsigned flags = record[AT_FLAGS];
-    struct point end;
-    const uint8_t *from = read_end(record, &end);
+    const bool chained = (flags & FLAG_CHAINED) != 0;
+    const uint8_t *from = behind_end(record);
 
     if ((flags & FLAG_REVOLUTION) != 0) {
-        (void)take_double(&from);
+        (void)bytes_take_double(&from);
     }
-    for (unsigned i = (flags & FLAG_CHAINED) != 0 ? 3 : 0; i < 4; i++) {
-        take_point(&from, &control[i]);
+    if (has_control_alone(record)) {
+        take_coordinates(&from, record[AT_END], &control[count - 1]);
+        return count - 1;
     }
-    return from;
+    for (unsigned i = chained ? 3 : 0; i < 4; i++) {
+        take_point(&from, &control[i + count > 4 ? i + count - 4 : 0]);
+    }
+    return chained ? count - 1 : 0;
 }
 
-/* The others from the records before, back to one that has all. */
-static void gather_control(const uint8_t *record, const uint8_t *const before[RECORD_BEFORE],
-                           struct point control[4])
-{
-    unsigned missing = (record[AT_FLAGS] & FLAG_CHAINED) != 0 ? 3 : 0;
-
-    for (unsigned i = 0; missing > 0 && before[i] != NULL; i++) {
-        struct point its[4];
-
-        (void)read_control(before[i], its);
-        const bool has_all = (before[i][AT_FLAGS] & FLAG_CHAINED) == 0;
-
-        for (unsigned k = 4; missing > 0 && k-- > (has_all ? 0U : 3U);) {
-            control[--missing] = its[k];
-        }
-    }
-}
-
+/* What it has not itself is found in the records before, back to one that has all. */
 static void read_spline(const uint8_t *record, const uint8_t *const before[RECORD_BEFORE],
                         struct block *b)
 {
     struct point control[4];
-    const uint8_t *from = read_control(record, control);
+    unsigned missing = read_control(record, control, 4);
 
-    gather_control(record, before, control);
-    curve_set_spline(&b->curve, control, take_double(&from));
+    for (unsigned i = 0; missing > 0 && before[i] != NULL; i++) {
+        missing = read_control(before[i], control, missing);
+    }
+    curve_set_spline(&b->curve, control, b->length_mm);
     if ((record[AT_FLAGS] & FLAG_MOVE_END) != 0) {
         b->curve.end = b->move.end;
     } else {
@@ -531,17 +505,15 @@ static void read_motion(const uint8_t *record, const uint8_t *const before[RECOR
     if ((record[AT_FLAGS] & FLAG_START) != 0) {
         take_point(&from, &start);
     } else if (before[0] != NULL) {
-        (void)read_end(before[0], &start);
+        read_end(before[0], &start);
     }
-    take_shape(&from, &b->move);
+    take_shape(&from, record[AT_FLAGS], &b->move);
     if (move_is_involute(&b->move)) {
         memset(&b->curve, 0, sizeof(b->curve));
         take_involute(&from, b);
-        b->curve.start = start;
         b->curve.end = end;
-    } else {
-        (void)move_curve(&b->move, &start, &b->curve);
     }
+    b->curve.start = start;
 }
 
 const uint8_t *record_begin(const uint8_t *record, const struct record_modes *modes,
@@ -549,13 +521,14 @@ const uint8_t *record_begin(const uint8_t *record, const struct record_modes *mo
 {
     const uint8_t *number = record + AT_NUMBER;
 
-    b->number = take_word(&number);
+    b->number = (uint32_t)modes->number_high << 16 | bytes_take_half(&number);
+    b->length_mm = modes->piece_mm;
     b->cap = (enum governor)(record[AT_KIND] >> KIND_BITS);
     return read_head(record, modes, &b->move);
 }
 
-void record_finish(const uint8_t *record, const uint8_t *const before[RECORD_BEFORE],
-                   const uint8_t *from, struct block *b)
+void record_take(const uint8_t *record, const uint8_t *const before[RECORD_BEFORE],
+                 const uint8_t *from, struct block *b)
 {
     if (!move_is_motion(&b->move)) {
         memset(&b->move.end, 0, sizeof(b->move.end));
@@ -565,6 +538,35 @@ void record_finish(const uint8_t *record, const uint8_t *const before[RECORD_BEF
         read_spline(record, before, b);
     } else {
         read_motion(record, before, from, b);
+    }
+}
+
+static bool is_arc(const uint8_t *record, const struct block *b)
+{
+    return (record[AT_FLAGS] & FLAG_SPLINE) == 0 && move_is_arc(&b->move);
+}
+
+bool record_begin_curve(const uint8_t *record, struct block *b)
+{
+    const struct point start = b->curve.start;
+    const bool arc = is_arc(record, b);
+
+    if (arc) {
+        curve_begin_arc(&b->curve, &start, &b->move.end, b->move.plane, b->move.centre_mm);
+    }
+    return arc;
+}
+
+/* Motions of a spline's and involutes' shape have their curves already. */
+void record_finish(const uint8_t *record, struct block *b)
+{
+    const struct point start = b->curve.start;
+
+    if (is_arc(record, b)) {
+        (void)curve_end_arc(&b->curve, b->move.kind == MOVE_ARC_CW, b->move.turns);
+    } else if (move_is_motion(&b->move) && (record[AT_FLAGS] & FLAG_SPLINE) == 0 &&
+               !move_is_involute(&b->move)) {
+        (void)move_curve(&b->move, &start, &b->curve);
     }
     b->length_mm = b->curve.length_mm;
     b->rotary = curve_is_rotary(&b->curve);

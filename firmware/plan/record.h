@@ -5,7 +5,8 @@
  *
  * A point takes 8 bytes for each coordinate that is not 0. What can be found again to the last bit is left out: a line
  * and an arc are made of their move anew, and a piece of a smoothed curve shares three of its four control points with
- * the piece before. Records have the same size in every build: when a ring of them is full decides how far is planned.
+ * the piece before. What has been planned with and is of no use to who executes a move, such as its tolerance, is not kept:
+ * it is read back as 0. Records have the same size in every build: when a ring of them is full decides how far is planned.
  */
 #ifndef TAKT_PLAN_RECORD_H
 #define TAKT_PLAN_RECORD_H
@@ -16,35 +17,36 @@
 #include <stddef.h>
 #include <stdint.h>
 
-/* Bytes of a record at most: an involute of six axes with start, end and a feed per revolution takes 318. */
+/* Bytes of a record at most: an involute of six axes with start, end and a feed per revolution takes 314. */
 #define RECORD_MAX 320
+
+/* Of what is neither a piece of an involute nor of a smoothed curve: an arc of six axes with start, end and turns takes 133. */
+#define RECORD_SHORT_MAX 136
 
 /* Control points that a piece shares with those before it: so many records back must be kept. */
 #define RECORD_BEFORE 3
 
-/* What many moves in a row have in common. No padding: compared as bytes. */
+/* What many blocks in a row have in common. No padding: compared as bytes. */
 struct record_modes {
-    double tolerance_mm;
-    double merge_mm;
-    double cutter_radius_mm;
+    double piece_mm; /* length of a piece of a smoothed curve; 0: no such piece */
     float work_mm[AXIS_LINEAR_COUNT];
     float overhang_mm[AXIS_LINEAR_COUNT];
     uint32_t tool;
+    uint16_t line_high; /* the upper halves of line and number: records have the lower ones */
+    uint16_t number_high;
     uint8_t overrides;
     uint8_t path;
     uint8_t plane;
-    uint8_t cutter_side;
-    uint8_t cutter_orientation;
-    uint8_t cutter_entry;
     uint8_t correction_off;
     uint8_t contour_side;
-    uint32_t none;
+    uint8_t none[3];
 };
 
 /* The same bits? What is remade from a record is to be what it was, 0 and -0 too. Of what has no padding. */
 bool record_is_same(const void *a, const void *b, size_t size);
 
-void record_modes_of(const struct move *move, struct record_modes *modes);
+/* Of a block; smooth: a piece of a smoothed curve. */
+void record_modes_of(const struct block *b, bool smooth, struct record_modes *modes);
 
 /* What the record before leaves for the next one. */
 struct record_chain {
@@ -55,8 +57,8 @@ struct record_chain {
 };
 
 /*
- * Writes the record of a block; control: of a piece of a smoothed curve, else NULL. modes: by which number those of its
- * move are kept. Returns the bytes it takes, <= RECORD_MAX, and tells what it leaves for the next one.
+ * Writes the record of a block; control: of a piece of a smoothed curve, else NULL. modes: by which number its
+ * modes are kept. Returns the bytes it takes, <= RECORD_MAX, and tells what it leaves for the next one.
  */
 uint32_t record_write(uint8_t bytes[RECORD_MAX], const struct block *b,
                       const struct point control[4], unsigned modes, struct record_chain *chain);
@@ -68,17 +70,20 @@ unsigned record_modes_number(const uint8_t *record);
 double record_feed_rev(const uint8_t *record);
 void record_set_governor(uint8_t *record, enum governor governor);
 
-/* The move, but for its feed: that is 0. */
+/* The move, but for its feed and what only planning needs: that is 0. */
 void record_read_move(const uint8_t *record, const struct record_modes *modes, struct move *move);
 
 /*
- * Number, move, curve, length, and what governs the feed of a block, in two parts, so that a control cycle need not do
- * both: the first returns what the second goes on with. before: the records of the RECORD_BEFORE blocks before it, the
- * nearest first; NULL where there is none. All else of the block stays as it was.
+ * Number, move, curve, length, and what governs the feed of a block, in four parts, so that a control cycle need not do
+ * all: the first returns what the second goes on with; the third tells whether it had anything to do. before: the records
+ * of the RECORD_BEFORE blocks before it, the nearest first; NULL where there is none. All else of the block stays as it
+ * was.
  */
 const uint8_t *record_begin(const uint8_t *record, const struct record_modes *modes,
                             struct block *b);
-void record_finish(const uint8_t *record, const uint8_t *const before[RECORD_BEFORE],
-                   const uint8_t *from, struct block *b);
+void record_take(const uint8_t *record, const uint8_t *const before[RECORD_BEFORE],
+                 const uint8_t *from, struct block *b);
+bool record_begin_curve(const uint8_t *record, struct block *b);
+void record_finish(const uint8_t *record, struct block *b);
 
 #endif

@@ -46,15 +46,15 @@ static unsigned free_modes(const struct path_ring *r, uint32_t kept)
     return k;
 }
 
-bool ring_has_room(const struct path_ring *r, uint32_t kept, uint32_t pushed)
+bool ring_has_room(const struct path_ring *r, uint32_t kept, uint32_t pushed, uint32_t size)
 {
     const uint32_t oldest = oldest_record(kept);
     const uint32_t tail =
         oldest == pushed ? PATH_BYTES_MAX : ring_at(r, oldest)->record * PATH_BYTES_STEP;
     uint32_t place;
 
-    return pushed - kept < PATH_BLOCKS_MAX - RECORD_BEFORE &&
-           find_place(r, tail, RECORD_MAX, &place) && free_modes(r, kept) < PATH_MODES_MAX;
+    return pushed - kept < PATH_BLOCKS_MAX - RECORD_BEFORE && find_place(r, tail, size, &place) &&
+           free_modes(r, kept) < PATH_MODES_MAX;
 }
 
 /* -- writing -- */
@@ -76,11 +76,11 @@ static unsigned find_modes(struct path_ring *r, uint32_t kept, const struct reco
 }
 
 static unsigned push_modes(struct path_ring *r, uint32_t kept, uint32_t pushed,
-                           const struct move *move)
+                           const struct block *b, bool smooth)
 {
     struct record_modes modes;
 
-    record_modes_of(move, &modes);
+    record_modes_of(b, smooth, &modes);
     r->modes_newest = find_modes(r, kept, &modes);
     r->modes_used[r->modes_newest] = pushed + 1;
     return r->modes_newest;
@@ -101,8 +101,8 @@ static uint32_t push_record(struct path_ring *r, const struct block *b,
 void ring_push(struct path_ring *r, uint32_t kept, uint32_t pushed, const struct block *b,
                const struct point control[4])
 {
-    assert(ring_has_room(r, kept, pushed));
-    const unsigned modes = push_modes(r, kept, pushed, &b->move);
+    assert(ring_has_room(r, kept, pushed, RECORD_SHORT_MAX));
+    const unsigned modes = push_modes(r, kept, pushed, b, control != NULL);
     const uint32_t place = push_record(r, b, control, modes);
     const unsigned may = b->move.overrides;
 
@@ -175,28 +175,55 @@ static void read_limits(const struct path_block *from, uint64_t end, struct bloc
     b->continues = from->continues;
 }
 
-void ring_begin(struct path_ring *r, uint32_t index)
+static void take(struct path_ring *r, uint32_t index, struct path_view *view)
+{
+    const uint8_t *before[RECORD_BEFORE] = {NULL};
+
+    for (uint32_t i = 0; i < RECORD_BEFORE && i < index; i++) {
+        before[i] = ring_record(r, index - 1 - i);
+    }
+    record_take(ring_record(r, index), before, view->from, &view->block);
+}
+
+static enum view_state finish(const struct path_ring *r, uint32_t index, uint64_t end,
+                              struct path_view *view)
+{
+    record_finish(ring_record(r, index), &view->block);
+    read_limits(ring_at(r, index), end, &view->block);
+    return VIEW_READ;
+}
+
+void ring_prepare(struct path_ring *r, uint32_t index, uint64_t end)
 {
     struct path_view *view = &r->view[index % 2];
+    const uint8_t *record = ring_record(r, index);
 
-    view->from = record_begin(ring_record(r, index), modes_of(r, index), &view->block);
-    view->state = VIEW_BEGUN;
-    view->index = index;
+    switch (view->index == index ? view->state : VIEW_EMPTY) {
+    case VIEW_EMPTY:
+        view->from = record_begin(record, modes_of(r, index), &view->block);
+        view->state = VIEW_BEGUN;
+        view->index = index;
+        break;
+    case VIEW_BEGUN:
+        take(r, index, view);
+        view->state = VIEW_TAKEN;
+        break;
+    case VIEW_TAKEN:
+        view->state =
+            record_begin_curve(record, &view->block) ? VIEW_CURVED : finish(r, index, end, view);
+        break;
+    case VIEW_CURVED:
+        view->state = finish(r, index, end, view);
+        break;
+    case VIEW_READ:
+        break;
+    }
 }
 
 const struct block *ring_read(struct path_ring *r, uint32_t index, uint64_t end)
 {
-    struct path_view *view = &r->view[index % 2];
-    const uint8_t *before[RECORD_BEFORE] = {NULL};
-
-    if (!ring_is_begun(r, index)) {
-        ring_begin(r, index);
+    while (!ring_is_read(r, index)) {
+        ring_prepare(r, index, end);
     }
-    for (uint32_t i = 0; i < RECORD_BEFORE && i < index; i++) {
-        before[i] = ring_record(r, index - 1 - i);
-    }
-    record_finish(ring_record(r, index), before, view->from, &view->block);
-    read_limits(ring_at(r, index), end, &view->block);
-    view->state = VIEW_READ;
-    return &view->block;
+    return &r->view[index % 2].block;
 }

@@ -19,14 +19,14 @@
  */
 #define PATH_BLOCKS_MAX 320
 
-/* Bytes of all records: 36 of a line of three axes, 56 of an arc, 48 of a piece of a smoothed curve. */
-#define PATH_BYTES_MAX 14336
+/* Bytes of all records: 32 of a line of three axes or a piece of a smoothed curve, 48 of an arc. */
+#define PATH_BYTES_MAX 11264
 
 /* Records begin at multiples of this. */
 #define PATH_BYTES_STEP 4
 
 /* So many different modes may be in the ring at the same time: one for each block that is not closed, at least (path.h). */
-#define PATH_MODES_MAX 32
+#define PATH_MODES_MAX 28
 
 /*
  * Limits of a block, of single precision and never above the exact ones. All of them are the background's: the cycle reads
@@ -54,7 +54,8 @@ struct path_block {
     unsigned smooth : 1;         /* a piece of a smoothed curve */
 };
 
-enum view_state { VIEW_EMPTY, VIEW_BEGUN, VIEW_READ };
+/* How much of a block has been read: nothing, its head, all numbers, half of an arc's curve, all. */
+enum view_state { VIEW_EMPTY, VIEW_BEGUN, VIEW_TAKEN, VIEW_CURVED, VIEW_READ };
 
 /* A block as it is executed. */
 struct path_view {
@@ -76,8 +77,8 @@ struct path_ring {
         view[2]; /* of blocks of even and of odd numbers: the oldest and the one behind it */
 };
 
-/* Room for one more block, whatever it is? Blocks kept <= index < pushed are kept. */
-bool ring_has_room(const struct path_ring *r, uint32_t kept, uint32_t pushed);
+/* Room for one more block, whose record has size bytes at most? Blocks kept <= index < pushed are kept. */
+bool ring_has_room(const struct path_ring *r, uint32_t kept, uint32_t pushed, uint32_t size);
 
 /* Writes block b, the one of number pushed. Needs room. control: of a piece of a smoothed curve, else NULL. */
 void ring_push(struct path_ring *r, uint32_t kept, uint32_t pushed, const struct block *b,
@@ -111,18 +112,10 @@ static inline bool ring_is_read(const struct path_ring *r, uint32_t index)
     return view->state == VIEW_READ && view->index == index;
 }
 
-/* Is the first part of that done? */
-static inline bool ring_is_begun(const struct path_ring *r, uint32_t index)
-{
-    const struct path_view *view = &r->view[index % 2];
-
-    return view->state == VIEW_BEGUN && view->index == index;
-}
-
 /* Makes it so: limits, move and curve. Control cycle alone. end: its end on the path, path units. */
 const struct block *ring_read(struct path_ring *r, uint32_t index, uint64_t end);
-/* The first part of that, for a cycle that has no time for all. */
-void ring_begin(struct path_ring *r, uint32_t index);
+/* The next part of that, for a cycle that has no time for all: four at most. */
+void ring_prepare(struct path_ring *r, uint32_t index, uint64_t end);
 
 /* The highest feed whatever the override, mm/s. */
 double path_block_top(const struct path_block *b);

@@ -10,7 +10,7 @@
  * Blocks that are not closed, at most: 3 cycles near a joint (joint.h), 8 blocks a cycle (block.c), and those at both
  * ends.
  */
-#define SHARE_BLOCKS_MAX 32
+#define SHARE_BLOCKS_MAX 28
 
 struct path;
 

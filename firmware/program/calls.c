@@ -67,11 +67,46 @@ bool calls_define(struct program *p, const struct oword *o)
 static bool restore_modes(struct program *p, const struct program_frame *frame,
                           const struct oword *o)
 {
-    if (!saved_modes_restore(p, &frame->saved)) {
+    if (!saved_modes_restore(p, frame)) {
         return oword_error(p, TAKT_ERROR_CUTTER_ON, o, 0.0);
     }
     return parameters_set(p->config.parameters, PARAMETER_SYSTEM, p->modes.system) ||
            oword_error(p, TAKT_ERROR_PARAMETERS_FULL, o, 0.0);
+}
+
+/* #1 ... that a caller has to find again: up to the last one with any bit set, since -0 is not 0 everywhere. */
+static unsigned count_locals(const double local[PARAMETERS_LOCAL])
+{
+    static const double none = 0.0;
+    unsigned count = PARAMETERS_LOCAL;
+
+    while (count > 0 && memcmp(&local[count - 1], &none, sizeof(none)) == 0) {
+        count--;
+    }
+    return count;
+}
+
+/* A numbered program shares them with its caller. False: there is no room. */
+static bool keep_locals(struct program *p, struct program_frame *frame, unsigned kept)
+{
+    const double *local = p->config.parameters->local;
+    const unsigned count = frame->numbered ? 0 : count_locals(local);
+
+    if (kept + count > PROGRAM_KEPT_MAX) {
+        return false;
+    }
+    memcpy(&p->flow.kept[kept], local, count * sizeof(local[0]));
+    frame->kept = (uint16_t)kept;
+    frame->locals = (uint8_t)count;
+    return true;
+}
+
+static void bring_back_locals(struct program *p, const struct program_frame *frame)
+{
+    double *local = p->config.parameters->local;
+
+    memset(local, 0, PARAMETERS_LOCAL * sizeof(local[0]));
+    memcpy(local, &p->flow.kept[frame->kept], frame->locals * sizeof(local[0]));
 }
 
 /* Back behind the call. */
@@ -80,7 +115,7 @@ static bool leave(struct program *p, const struct oword *o)
     struct program_frame *frame = current(p);
 
     if (!frame->numbered) {
-        memcpy(p->config.parameters->local, frame->local, sizeof(frame->local));
+        bring_back_locals(p, frame);
     }
     names_leave_call(&p->names);
     p->flow.blocks = frame->blocks;
@@ -141,18 +176,21 @@ static bool begin_call(struct program *p, const struct oword *o, uint32_t times)
     if (f->calls == PROGRAM_CALLS_MAX) {
         return oword_error(p, TAKT_ERROR_CALL_TOO_DEEP, o, PROGRAM_CALLS_MAX);
     }
-    struct program_frame *frame = &f->frame[++f->calls];
+    struct program_frame *frame = &f->frame[f->calls + 1];
 
+    frame->numbered = o->kind == OWORD_M98;
+    if (!keep_locals(p, frame, saved_modes_end(current(p)))) {
+        return oword_error(p, TAKT_ERROR_PROGRAM_FULL, o, 0.0);
+    }
+    f->calls++;
     frame->back = lexer_place(&p->lexer);
     frame->sub = PROGRAM_SUBS_MAX;
     frame->is_saved = false;
     frame->restores = false;
-    frame->numbered = o->kind == OWORD_M98;
     frame->blocks = f->blocks;
     frame->times = times;
     frame->line = o->line;
     frame->column = o->column;
-    memcpy(frame->local, p->config.parameters->local, sizeof(frame->local));
     names_enter_call(&p->names);
     return go_to_sub(p, o);
 }
@@ -282,7 +320,7 @@ bool calls_end_of_text(struct program *p)
 static void place_of_code(const struct program *p, const struct program_code *code, struct oword *o)
 {
     o->line = p->lexer.line;
-    o->column = p->lexer.column[p->words.code_span[code->step].begin];
+    o->column = lexer_column(&p->lexer, p->words.code_span[code->step].begin);
 }
 
 static bool call_program(struct program *p, const struct program_code *code)
@@ -299,7 +337,7 @@ static bool call_program(struct program *p, const struct program_code *code)
         (words_has(p, 'l') && !words_whole(p, 'l', 0.0, PROGRAM_LABEL_MAX, &times))) {
         return false;
     }
-    oword_label(&o.label, number);
+    o.label.id = number;
     return times == 0 || is_passed_over(p, &o) || begin_call(p, &o, times);
 }
 

@@ -14,6 +14,7 @@
 #include "base/maths.h"
 #include "program/coordinates.h"
 #include "program/emit.h"
+#include "program/lexer.h"
 #include "program/report.h"
 #include "program/words.h"
 
@@ -55,7 +56,7 @@ static bool missing(struct program *p, enum takt_error code, const char *letter)
 {
     const unsigned begin = p->words.code_span[STEP_MOTION].begin;
 
-    diagnostic_set(&p->error, code, p->lexer.line, p->lexer.column[begin], letter, 1, 0.0);
+    diagnostic_set(&p->error, code, p->lexer.line, lexer_column(&p->lexer, begin), letter, 1, 0.0);
     return false;
 }
 

@@ -41,68 +41,86 @@ static struct program_span span_from(const struct program *p, unsigned begin)
     return (struct program_span){(uint16_t)begin, p->lexer.at};
 }
 
-/* An operator whose right side has not been read yet. */
+/* Operators whose right sides have not been read yet; the last binds tightest. LEVEL_END never waits. */
 struct pending {
-    double left;
-    const struct operation_entry *operation;
-    struct program_span span;
+    unsigned count;
+    double left[LEVEL_COUNT - 1];
+    const struct operation_entry *operation[LEVEL_COUNT - 1];
+    uint16_t begin[LEVEL_COUNT - 1]; /* where its name does */
 };
 
-static bool apply_operator(struct program *p, const struct pending *pending, double *value)
+/* The last of them, whose right side is *value. */
+static bool apply_operator(struct program *p, struct pending *pending, double *value)
 {
-    const double right = *value;
-    const enum takt_error code = pending->operation->apply(pending->left, right, value);
+    const unsigned last = --pending->count;
+    const struct operation_entry *operation = pending->operation[last];
+    const struct program_span span = {pending->begin[last],
+                                      (uint16_t)(pending->begin[last] + operation->length)};
+    const double left = pending->left[last];
+    const enum takt_error code = operation->apply(left, *value, value);
 
     if (code != TAKT_OK) {
-        return report_error(p, code, pending->span, pending->left);
+        return report_error(p, code, span, left);
     }
     return maths_is_finite(*value) ||
-           report_error(p, TAKT_ERROR_CALCULATION_NOT_FINITE, pending->span, *value);
+           report_error(p, TAKT_ERROR_CALCULATION_NOT_FINITE, span, *value);
 }
 
-static bool read_operator(struct program *p, struct pending *next)
+/* NULL after an error. */
+static const struct operation_entry *read_operator(struct program *p)
 {
     struct program_lexer *l = &p->lexer;
-    const unsigned begin = l->at;
+    const struct operation_entry *next = operation_find(l->text + l->at);
 
-    next->operation = operation_find(l->text + begin);
-    if (next->operation == NULL) {
-        return missing_here(p, l->text[begin] == '\0' ? TAKT_ERROR_BRACKET_UNCLOSED
-                                                      : TAKT_ERROR_OPERATOR_EXPECTED);
+    if (next == NULL) {
+        (void)missing_here(p, l->text[l->at] == '\0' ? TAKT_ERROR_BRACKET_UNCLOSED
+                                                     : TAKT_ERROR_OPERATOR_EXPECTED);
+        return NULL;
     }
-    l->at = (uint16_t)(begin + next->operation->length);
-    next->span = span_from(p, begin);
-    return true;
+    l->at = (uint16_t)(l->at + next->length);
+    return next;
+}
+
+/* An operator that has just been read. */
+static void add_operator(const struct program *p, struct pending *pending,
+                         const struct operation_entry *next, double left)
+{
+    pending->left[pending->count] = left;
+    pending->operation[pending->count] = next;
+    pending->begin[pending->count] = (uint16_t)(p->lexer.at - next->length);
+    pending->count++;
 }
 
 /*
- * Operators wait in stack until one that binds no tighter follows. Levels rise from the bottom to the top, so
- * there are never more of them than levels.
+ * Operators wait until one that binds no tighter follows. Levels rise from the first to the last, so there are never more
+ * of them than levels.
  */
 static bool read_bracket(struct program *p, double *value)
 {
-    struct pending stack[LEVEL_COUNT];
-    struct pending next;
-    unsigned depth = 0;
+    struct pending pending;
+    const struct operation_entry *next;
 
+    pending.count = 0;
     if (!lexer_accept(&p->lexer, '[')) {
         return missing_here(p, TAKT_ERROR_BRACKET_EXPECTED);
     }
     for (;;) {
-        if (!expression_read(p, value) || !read_operator(p, &next)) {
+        if (!expression_read(p, value)) {
             return false;
         }
-        while (depth > 0 && stack[depth - 1].operation->level >= next.operation->level) {
-            depth--;
-            if (!apply_operator(p, &stack[depth], value)) {
+        next = read_operator(p);
+        if (next == NULL) {
+            return false;
+        }
+        while (pending.count > 0 && pending.operation[pending.count - 1]->level >= next->level) {
+            if (!apply_operator(p, &pending, value)) {
                 return false;
             }
         }
-        if (next.operation->level == LEVEL_END) {
+        if (next->level == LEVEL_END) {
             return true;
         }
-        next.left = *value;
-        stack[depth++] = next;
+        add_operator(p, &pending, next, *value);
     }
 }
 

@@ -78,7 +78,7 @@ static struct program_block *open_block(struct program *p, const struct oword *o
     struct program_block *b = &f->block[f->blocks++];
 
     *b = (struct program_block){.label = o->label,
-                                .again = lexer_place(&p->lexer),
+                                .again = lexer_place(&p->lexer).offset,
                                 .line = o->line,
                                 .column = o->column,
                                 .kind = (uint8_t)o->kind};
@@ -100,6 +100,14 @@ static struct program_block *block_of(struct program *p, const struct oword *o,
         return NULL;
     }
     return b;
+}
+
+/* To the next round; the line of WHILE is read again. */
+static bool jump_again(struct program *p, const struct program_block *b, const struct oword *o)
+{
+    const struct program_place again = {b->again, b->kind == OWORD_WHILE ? b->line - 1 : b->line};
+
+    return flow_jump(p, &again, o);
 }
 
 /* The value in brackets behind the keyword, and nothing else. */
@@ -185,7 +193,6 @@ static bool enter_loop(struct program *p, const struct oword *o, struct program_
 /* The end of DO. */
 static bool take_do_while(struct program *p, const struct oword *o, const struct program_block *b)
 {
-    const struct program_place again = b->again;
     const bool leaves = b->done;
     double value = 0.0;
 
@@ -202,7 +209,7 @@ static bool take_do_while(struct program *p, const struct oword *o, const struct
     if (!good || value == 0.0 || p->flow.failed) {
         return good;
     }
-    return flow_jump(p, &again, o);
+    return jump_again(p, b, o);
 }
 
 /* The beginning of WHILE, which is read again before each round. */
@@ -219,7 +226,7 @@ static bool take_while(struct program *p, const struct oword *o)
     if (b == NULL) {
         return false;
     }
-    b->again = lexer_this_line(&p->lexer);
+    b->again = lexer_this_line(&p->lexer).offset;
     if (!read_value(p, o, &value)) {
         (void)enter_loop(p, o, b, false, false);
         return false;
@@ -234,11 +241,10 @@ static bool take_endwhile(struct program *p, const struct oword *o)
     if (b == NULL) {
         return false;
     }
-    const struct program_place again = b->again;
     const bool leaves = b->done || p->flow.failed;
 
     close_block(p);
-    return oword_finish(p, o) && (leaves || flow_jump(p, &again, o));
+    return oword_finish(p, o) && (leaves || jump_again(p, b, o));
 }
 
 static bool take_do(struct program *p, const struct oword *o)
@@ -277,7 +283,7 @@ static bool take_endrepeat(struct program *p, const struct oword *o)
     }
     b->left--;
     p->flow.skip = SKIP_NOTHING;
-    return flow_jump(p, &b->again, o);
+    return jump_again(p, b, o);
 }
 
 /* BREAK and CONTINUE leave the blocks inside the loop and go to the loop's end. */
@@ -362,7 +368,8 @@ static bool pass_over(struct program *p)
     if (!oword_read(p, &o)) {
         return true;
     }
-    if ((o.kind == OWORD_SUB || o.kind == OWORD_PROGRAM) && !calls_note(p, &o)) {
+    if ((o.kind == OWORD_SUB || o.kind == OWORD_PROGRAM) &&
+        !(oword_keep(p, &o) && calls_note(p, &o))) {
         return false;
     }
     if (p->flow.skip == SKIP_TO_SUB || p->flow.skip == SKIP_TO_ENDSUB) {
@@ -378,7 +385,7 @@ bool flow_take(struct program *p)
     if (flow_is_skipping(p)) {
         return pass_over(p);
     }
-    return oword_read(p, &o) && actions[o.kind](p, &o);
+    return oword_read(p, &o) && oword_keep(p, &o) && actions[o.kind](p, &o);
 }
 
 bool flow_count_line(struct program *p)

@@ -81,7 +81,7 @@ static void append(struct program_lexer *l, char c, uint32_t column)
     if (c >= 'A' && c <= 'Z') {
         c = (char)(c - 'A' + 'a');
     }
-    l->column[l->length] = (uint16_t)column;
+    l->dropped[l->length] = (uint8_t)(column - l->length - 1U);
     l->text[l->length++] = c;
 }
 
@@ -132,7 +132,7 @@ static void close_line(struct program_lexer *l, struct scan *s, struct diagnosti
         fail(l, s, error, TAKT_ERROR_COMMENT_UNCLOSED, s->comment_column, '(');
     }
     l->text[l->length] = '\0';
-    l->column[l->length] = s->failed ? 0 : (uint16_t)(s->column + 1);
+    l->end_column = s->failed ? 0 : (uint16_t)(s->column + 1);
 }
 
 enum lexer_result lexer_next_line(struct program_lexer *l, struct diagnostic *error)
@@ -159,6 +159,11 @@ enum lexer_result lexer_next_line(struct program_lexer *l, struct diagnostic *er
     }
     close_line(l, &s, error);
     return s.failed ? LEXER_ERROR : LEXER_LINE;
+}
+
+uint16_t lexer_column(const struct program_lexer *l, unsigned at)
+{
+    return at < l->length ? (uint16_t)(at + l->dropped[at] + 1U) : l->end_column;
 }
 
 struct program_place lexer_place(const struct program_lexer *l)

@@ -19,6 +19,9 @@ bool lexer_can_go_on(struct program_lexer *l);
  */
 enum lexer_result lexer_next_line(struct program_lexer *l, struct diagnostic *error);
 
+/* The column, from 1, of a character of the current line or of its end. */
+uint16_t lexer_column(const struct program_lexer *l, unsigned at);
+
 /* Where the line after the current one begins. */
 struct program_place lexer_place(const struct program_lexer *l);
 

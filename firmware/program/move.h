@@ -9,6 +9,7 @@
 #include "geometry/curve.h"
 
 #include <stdbool.h>
+#include <stddef.h>
 #include <stdint.h>
 
 enum move_kind {
@@ -77,6 +78,10 @@ struct move {
     double tolerance_mm;     /* PATH_BLEND: largest distance from the programmed path; 0: exact */
     double merge_mm;         /* PATH_BLEND: within this, short moves may become one (G64 Q) */
     double cutter_radius_mm; /* > 0 */
+    /* what position-error correction goes by */
+    float work_mm[AXIS_LINEAR_COUNT];     /* zero of the part, machine coordinates */
+    float overhang_mm[AXIS_LINEAR_COUNT]; /* tool offset */
+    /* from here on, beside kind and line, is all that what happens in between has: MOVE_EVENT_BYTES */
     union {
         struct {
             double centre_mm[2];   /* arcs, and the base circle of involutes: absolute, first and
@@ -100,13 +105,10 @@ struct move {
         uint32_t turns;   /* arcs: 1 = less than or exactly one turn */
         uint32_t channel; /* MOVE_OUTPUT, MOVE_INPUT: number of the output or input */
     };
-    uint32_t tool;      /* MOVE_TOOL: number; motion: of the tool in the spindle */
-    unsigned overrides; /* motion: OVERRIDE_... */
-    /* what position-error correction goes by */
-    float work_mm[AXIS_LINEAR_COUNT];     /* zero of the part, machine coordinates */
-    float overhang_mm[AXIS_LINEAR_COUNT]; /* tool offset */
-    uint8_t correction_off;               /* bit i set: the program has switched layer i off */
-    uint8_t contour_side;                 /* enum cutter_side the contour was programmed with */
+    uint32_t tool;          /* MOVE_TOOL: number; motion: of the tool in the spindle */
+    unsigned overrides;     /* motion: OVERRIDE_... */
+    uint8_t correction_off; /* bit i set: the program has switched layer i off */
+    uint8_t contour_side;   /* enum cutter_side the contour was programmed with */
     uint8_t
         cutter_orientation; /* 1 to 8: a lathe tool, led by a point beside its nose; in G18 alone */
     bool cutter_entry : 1;  /* nothing has moved in the plane yet since compensation is on */
@@ -123,6 +125,22 @@ struct move {
     enum orient_way orient_way;       /* MOVE_ORIENT */
     enum input_wait input_wait;       /* MOVE_INPUT */
 };
+
+/* What a move that is no motion has beside its kind and line: the members from centre_mm on. */
+#define MOVE_EVENT_BYTES (sizeof(struct move) - offsetof(struct move, centre_mm))
+
+/* Its feed, and how exactly it is to be gone: the members from feed_mm_s to merge_mm. */
+#define MOVE_PACE_BYTES (offsetof(struct move, cutter_radius_mm) - offsetof(struct move, feed_mm_s))
+
+static inline void *move_pace(struct move *m)
+{
+    return (unsigned char *)m + offsetof(struct move, feed_mm_s);
+}
+
+static inline void *move_event(struct move *m)
+{
+    return (unsigned char *)m + offsetof(struct move, centre_mm);
+}
 
 static inline bool move_is_motion(const struct move *m)
 {

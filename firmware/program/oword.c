@@ -3,6 +3,7 @@
 #include "base/maths.h"
 #include "program/expression.h"
 #include "program/lexer.h"
+#include "program/names.h"
 #include "program/report.h"
 
 struct keyword {
@@ -48,30 +49,17 @@ bool oword_begins(struct program *p)
     return true;
 }
 
-void oword_label(struct program_label *label, uint32_t number)
+bool oword_keep(struct program *p, struct oword *o)
 {
-    char digits[10];
-    unsigned count = 0;
-    unsigned length = 0;
+    uint16_t place = (uint16_t)o->label.id;
 
-    do {
-        digits[count++] = (char)('0' + number % 10);
-        number /= 10;
-    } while (number > 0);
-    while (count > 0) {
-        label->text[length++] = digits[--count];
+    if (o->label.id < PROGRAM_LABEL_NAME) {
+        return true;
     }
-    label->text[length] = '\0';
-}
+    const bool kept = names_keep(p, &place);
 
-bool oword_same_label(const struct program_label *a, const struct program_label *b)
-{
-    unsigned i = 0;
-
-    while (a->text[i] == b->text[i] && a->text[i] != '\0') {
-        i++;
-    }
-    return a->text[i] == b->text[i];
+    o->label.id = PROGRAM_LABEL_NAME | place;
+    return kept || oword_error(p, TAKT_ERROR_PROGRAM_FULL, o, 0.0);
 }
 
 static bool wrong_label(struct program *p, unsigned begin)
@@ -81,17 +69,42 @@ static bool wrong_label(struct program *p, unsigned begin)
     return report_error(p, TAKT_ERROR_OWORD_LABEL, span, PROGRAM_NAME_MAX);
 }
 
+/* The number a name is, as it would be written: <100> is 100. PROGRAM_LABEL_NAME: it is none. */
+static uint32_t number_of(const char *name, unsigned length)
+{
+    uint32_t number = 0;
+
+    if (name[0] == '0' && length > 1) {
+        return PROGRAM_LABEL_NAME;
+    }
+    for (unsigned i = 0; i < length; i++) {
+        if (name[i] < '0' || name[i] > '9' || number > PROGRAM_LABEL_MAX / 10) {
+            return PROGRAM_LABEL_NAME;
+        }
+        number = number * 10 + (uint32_t)(name[i] - '0');
+    }
+    return number;
+}
+
 static bool read_name(struct program *p, struct program_label *label)
 {
     struct program_lexer *l = &p->lexer;
     const unsigned begin = l->at;
-    unsigned length = 0;
+    const char *name = &l->text[begin];
 
-    while (l->text[l->at] != '>' && l->text[l->at] != '\0' && length < PROGRAM_NAME_MAX) {
-        label->text[length++] = l->text[l->at++];
+    while (l->text[l->at] != '>' && l->text[l->at] != '\0' && l->at < begin + PROGRAM_NAME_MAX) {
+        l->at++;
     }
-    label->text[length] = '\0';
-    return (length > 0 && lexer_accept(l, '>')) || wrong_label(p, begin - 2);
+    const unsigned length = l->at - begin;
+
+    if (length == 0 || !lexer_accept(l, '>')) {
+        return wrong_label(p, begin - 2);
+    }
+    label->id = number_of(name, length);
+    if (label->id == PROGRAM_LABEL_NAME) {
+        label->id |= names_place(&p->names, name, length);
+    }
+    return true;
 }
 
 /* <name>, or a number, which may be worked out: O100, O#1, O[#1+1]. */
@@ -110,7 +123,7 @@ static bool read_label(struct program *p, struct program_label *label)
     if (!expression_whole(value, &number) || number < 0.0 || number > PROGRAM_LABEL_MAX) {
         return wrong_label(p, begin - 1);
     }
-    oword_label(label, (uint32_t)number);
+    label->id = (uint32_t)number;
     return true;
 }
 
@@ -153,7 +166,7 @@ static bool read_keyword(struct program *p, enum oword_kind *kind)
 bool oword_read(struct program *p, struct oword *o)
 {
     o->line = p->lexer.line;
-    o->column = p->lexer.column[p->lexer.at - 1];
+    o->column = lexer_column(&p->lexer, p->lexer.at - 1U);
     return read_label(p, &o->label) && read_keyword(p, &o->kind);
 }
 
@@ -186,10 +199,27 @@ static const char *keyword_text(enum oword_kind kind)
     return "";
 }
 
-/* "O100 IF", "O<NAME> CALL", "O100", "M98 P100", "M99" */
-static size_t describe(char *word, const struct oword *o)
+/* The digits of a number, at the end of a text. */
+static const char *number_text(char text[12], uint32_t number)
 {
-    const bool number = o->label.text[0] >= '0' && o->label.text[0] <= '9';
+    char *at = text + 11;
+
+    *at = '\0';
+    do {
+        *--at = (char)('0' + number % 10);
+        number /= 10;
+    } while (number > 0);
+    return at;
+}
+
+/* "O100 IF", "O<NAME> CALL", "O100", "M98 P100", "M99" */
+static size_t describe(const struct program *p, char *word, const struct oword *o)
+{
+    char digits[12];
+    const char *label = o->label.id < PROGRAM_LABEL_NAME
+                            ? number_text(digits, o->label.id)
+                            : &p->names.text[o->label.id - PROGRAM_LABEL_NAME];
+    const bool number = label[0] >= '0' && label[0] <= '9';
     const char *keyword = keyword_text(o->kind);
 
     if (o->kind == OWORD_M99) {
@@ -197,7 +227,7 @@ static size_t describe(char *word, const struct oword *o)
     }
     size_t length = add(word, 0, o->kind == OWORD_M98 ? "m98 p" : number ? "o" : "o<");
 
-    length = add(word, length, o->label.text);
+    length = add(word, length, label);
     length = add(word, length, number ? "" : ">");
     length = add(word, length, keyword[0] == '\0' ? "" : " ");
     return add(word, length, keyword);
@@ -207,6 +237,6 @@ bool oword_error(struct program *p, enum takt_error code, const struct oword *o,
 {
     char word[DIAGNOSTIC_WORD_MAX];
 
-    diagnostic_set(&p->error, code, o->line, o->column, word, describe(word, o), value);
+    diagnostic_set(&p->error, code, o->line, o->column, word, describe(p, word, o), value);
     return false;
 }

@@ -29,8 +29,8 @@ enum oword_kind {
 
 struct oword {
     enum oword_kind kind;
-    struct program_label label;
-    uint32_t line; /* where it stands */
+    struct program_label label; /* its name stays for the line; oword_keep */
+    uint32_t line;              /* where it stands */
     uint16_t column;
 };
 
@@ -43,9 +43,13 @@ bool oword_read(struct program *p, struct oword *o);
 /* Nothing but what has been read may stand on an O-word's line. */
 bool oword_finish(struct program *p, const struct oword *o);
 
-/* The label of a number: "100". */
-void oword_label(struct program_label *label, uint32_t number);
-bool oword_same_label(const struct program_label *a, const struct program_label *b);
+/* The label stays for as long as a block or a subroutine has it. False: no room, p->error is set. */
+bool oword_keep(struct program *p, struct oword *o);
+
+static inline bool oword_same_label(const struct program_label *a, const struct program_label *b)
+{
+    return a->id == b->id;
+}
 
 /* Sets p->error about an O-word, by label and keyword ("O100 ENDIF"). Returns false. */
 bool oword_error(struct program *p, enum takt_error code, const struct oword *o, double value);

@@ -24,6 +24,7 @@ void program_open(struct program *p, const struct program_config *config,
     p->config = *config;
     lexer_open(&p->lexer, source);
     p->names.count = 0;
+    p->names.text_length = 0;
     p->names.call = 0;
     p->queue_first = 0;
     p->queue_count = 0;
@@ -67,10 +68,6 @@ static bool run_line(struct program *p)
 {
     const struct program_modes before = p->modes;
 
-    tool_values_begin_line(p);
-    if (!words_read(p)) {
-        return false;
-    }
     if (words_assign(p) && run_steps(p, &before)) {
         return true;
     }
@@ -122,7 +119,11 @@ static bool take_line(struct program *p)
     if (oword_begins(p)) {
         return flow_take(p);
     }
-    return flow_is_skipping(p) || run_line(p);
+    if (flow_is_skipping(p)) {
+        return true;
+    }
+    tool_values_begin_line(p);
+    return words_read(p) && run_line(p);
 }
 
 /* The line to start at waits until the way to it has been fetched. */

@@ -1,5 +1,5 @@
 /*
- * Every fixed size of the interpreter. struct program and struct parameters together stay below
+ * Every fixed size of the interpreter; a build may have others of those that can be defined before. struct program and struct parameters together stay below
  * PROGRAM_MEMORY_MAX bytes (checked in program.c).
  */
 #ifndef TAKT_PROGRAM_LIMITS_H
@@ -10,11 +10,15 @@
 /* Characters of a line, comments included, its end not (LinuxCNC's limit). */
 #define PROGRAM_LINE_MAX 256
 /* Bytes asked from the source at once. */
+#ifndef PROGRAM_INPUT_MAX
 #define PROGRAM_INPUT_MAX 512
+#endif
 /* Moves one line can make: S T M6 (two) M3 M8 G4 G28 (two) M2 are ten. */
 #define PROGRAM_QUEUE_MAX 12
 /* Tools whose values a program can change by G10. */
+#ifndef PROGRAM_TOOL_CHANGES_MAX
 #define PROGRAM_TOOL_CHANGES_MAX 16
+#endif
 /* L of a cycle, pecks of a hole, passes of a thread: what goes beyond is a mistake. */
 #define PROGRAM_REPEATS_MAX 10000
 /* Highest number of a digital and of an analogue input or output. */
@@ -34,17 +38,36 @@
 /* #1 ... #30 always have a place. */
 #define PARAMETERS_LOCAL 30
 /* Others that can be set to something else than 0. */
+#ifndef PARAMETERS_MAX
 #define PARAMETERS_MAX 1000
+#endif
 /* Named parameters, and the characters of a name. */
+#ifndef PROGRAM_NAMES_MAX
 #define PROGRAM_NAMES_MAX 96
-#define PROGRAM_NAME_MAX  31
+#endif
+#define PROGRAM_NAME_MAX 31
 
 /* Open IF, WHILE, DO and REPEAT blocks, in all calls together. */
 #define PROGRAM_BLOCKS_MAX 24
 /* Calls inside calls. */
 #define PROGRAM_CALLS_MAX 10
 /* Subroutines and numbered programs of one text. */
+#ifndef PROGRAM_SUBS_MAX
 #define PROGRAM_SUBS_MAX 48
+#endif
+/* Characters of all names in use, of parameters and O-words, each with one more. Here: as many and long as they can be. */
+#ifndef PROGRAM_TEXT_MAX
+#define PROGRAM_TEXT_MAX                                                                           \
+    ((PROGRAM_NAMES_MAX + PROGRAM_SUBS_MAX + PROGRAM_BLOCKS_MAX + 1) * (PROGRAM_NAME_MAX + 1))
+#endif
+/*
+ * Numbers that calls keep for their ends: of #1 ... #30 those up to the last that is not 0, and what M70 and M73 save. Here: as
+ * many as they can be.
+ */
+#ifndef PROGRAM_KEPT_MAX
+#define PROGRAM_KEPT_MAX                                                                           \
+    (PROGRAM_CALLS_MAX * PARAMETERS_LOCAL + (PROGRAM_CALLS_MAX + 1) * PROGRAM_SAVED_NUMBERS)
+#endif
 /* Largest number of an O-word. */
 #define PROGRAM_LABEL_MAX 99999999
 /* Lines read again without a move in between, until the program is taken to run in a circle. Fuzzing has less time. */

@@ -19,14 +19,15 @@ struct program_lexer {
     struct source source;
     char input[PROGRAM_INPUT_MAX];
     size_t input_at, input_length;
-    uint64_t input_offset;                 /* of input in the text */
-    uint64_t line_offset;                  /* of the current line */
-    uint32_t line;                         /* number of the current line, from 1 */
-    uint16_t at;                           /* next character to read */
-    uint16_t length;                       /* of text */
-    char text[PROGRAM_LINE_MAX + 1];       /* ends in zero */
-    uint16_t column[PROGRAM_LINE_MAX + 1]; /* of every character and of the end, from 1 */
-    uint8_t nesting;                       /* values being read now */
+    uint64_t input_offset;             /* of input in the text */
+    uint64_t line_offset;              /* of the current line */
+    uint32_t line;                     /* number of the current line, from 1 */
+    uint16_t at;                       /* next character to read */
+    uint16_t length;                   /* of text */
+    uint16_t end_column;               /* of its end, from 1; 0: not known */
+    char text[PROGRAM_LINE_MAX + 1];   /* ends in zero */
+    uint8_t dropped[PROGRAM_LINE_MAX]; /* characters before each of it that are not in text */
+    uint8_t nesting;                   /* values being read now */
 };
 
 /* What an assignment or an expression names after '#'. */
@@ -55,13 +56,19 @@ struct program_words {
     struct program_assignment assignment[PROGRAM_ASSIGNMENTS_MAX + PROGRAM_STORES_MAX];
 };
 
-/* Named parameters. Those that begin with '_' are global, others belong to the call they were set in. */
+/*
+ * Named parameters, and the texts of all names, those of O-words too. Parameters that begin with '_' are global, others
+ * belong to the call they were set in.
+ */
 struct program_names {
     uint16_t count;
-    uint8_t call; /* the current one: 0 outside subroutines */
+    uint16_t text_length; /* of the texts that are kept */
+    uint8_t call;         /* the current one: 0 outside subroutines */
     uint8_t of_call[PROGRAM_NAMES_MAX];
-    char text[PROGRAM_NAMES_MAX][PROGRAM_NAME_MAX + 1];
+    uint16_t place[PROGRAM_NAMES_MAX]; /* in text, of their names */
     double value[PROGRAM_NAMES_MAX];
+    /* Each once, with a zero at its end. Behind them there is room for one that is not kept. */
+    char text[PROGRAM_TEXT_MAX + PROGRAM_NAME_MAX + 1];
 };
 
 /* A rotation of X and Y. */
@@ -130,16 +137,17 @@ struct program_place {
     uint32_t line;
 };
 
-/* What names an O-word: a number's digits or a name without '<' and '>'. */
+/* What names an O-word: a number, or PROGRAM_LABEL_NAME and the place of a name in struct program_names. */
 struct program_label {
-    char text[PROGRAM_NAME_MAX + 1];
+    uint32_t id;
 };
+#define PROGRAM_LABEL_NAME UINT32_C(0x80000000)
 
 /* An IF, WHILE, DO or REPEAT that has been entered and not been left. */
 struct program_block {
+    uint64_t again; /* where the next round begins */
     struct program_label label;
-    struct program_place again; /* where the next round begins */
-    uint32_t left;              /* REPEAT: rounds to come */
+    uint32_t left; /* REPEAT: rounds to come */
     uint32_t line;
     uint16_t column;
     uint8_t kind; /* enum oword_kind */
@@ -148,8 +156,8 @@ struct program_block {
 
 /* A subroutine, or with M98 a numbered program. */
 struct program_sub {
-    struct program_label label;
     struct program_place body;
+    struct program_label label;
     bool numbered;
     bool visited; /* since the first error */
 };
@@ -167,20 +175,24 @@ struct program_saved {
     bool surface_speed, mist, flood;
     uint8_t system;
 };
+#define PROGRAM_SAVED_NUMBERS                                                                      \
+    ((unsigned)((sizeof(struct program_saved) + sizeof(double) - 1) / sizeof(double)))
 
 /* A call; the first is the main program. */
 struct program_frame {
     struct program_place back;
-    double local[PARAMETERS_LOCAL]; /* the caller's #1 ... #30 */
-    struct program_saved saved;
-    bool is_saved, restores; /* M70 or M73; M73 */
-    bool numbered;           /* M98 */
-    uint8_t sub;
-    uint8_t blocks; /* of its callers */
     uint32_t times; /* M98 L: runs to come */
     /* The call itself, for messages. */
     uint32_t line;
     uint16_t column;
+    uint16_t
+        kept; /* where the caller's #1 ... are kept, and behind them what M70 or M73 has saved */
+    uint8_t locals; /* so many; the caller's others are 0 */
+    uint8_t sub;
+    uint8_t blocks;    /* of its callers */
+    bool is_saved : 1; /* M70 or M73 */
+    bool restores : 1; /* M73 */
+    bool numbered : 1; /* M98 */
 };
 
 /* Lines are passed over up to ... */
@@ -206,6 +218,7 @@ struct program_flow {
     double value;
     struct program_place furthest; /* everything before it has been read */
     uint32_t lines_again;          /* lines read again since the last move */
+    double kept[PROGRAM_KEPT_MAX]; /* what calls keep: a stack */
     struct program_block block[PROGRAM_BLOCKS_MAX];
     struct program_sub sub[PROGRAM_SUBS_MAX];
     struct program_frame frame[PROGRAM_CALLS_MAX + 1];

@@ -1,5 +1,7 @@
 #include "program/report.h"
 
+#include "program/lexer.h"
+
 static char capital(char c)
 {
     if (c >= 'a' && c <= 'z') {
@@ -17,7 +19,8 @@ static void describe(const struct program *p, struct diagnostic *d, enum takt_er
     for (unsigned i = span.begin; i < span.end && length < sizeof(word); i++) {
         word[length++] = capital(p->lexer.text[i]);
     }
-    diagnostic_set(d, code, p->lexer.line, p->lexer.column[span.begin], word, length, value);
+    diagnostic_set(d, code, p->lexer.line, lexer_column(&p->lexer, span.begin), word, length,
+                   value);
 }
 
 bool report_error(struct program *p, enum takt_error code, struct program_span span, double value)
@@ -48,7 +51,7 @@ bool report_missing(struct program *p, enum step step, char letter)
     const char name = capital(letter);
 
     diagnostic_set(&p->error, TAKT_ERROR_WORD_MISSING, p->lexer.line,
-                   p->lexer.column[p->words.code_span[step].begin], &name, 1, 0.0);
+                   lexer_column(&p->lexer, p->words.code_span[step].begin), &name, 1, 0.0);
     return false;
 }
 

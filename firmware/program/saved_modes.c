@@ -5,6 +5,8 @@
 #include "program/report.h"
 #include "program/words.h"
 
+#include <string.h>
+
 /*
  * All that later words depend on, but not where the machine is, the work offsets themselves, and which motion
  * goes on without its code.
@@ -83,7 +85,7 @@ static void restore_spindle(struct program *p, const struct program_saved *s, bo
     }
 }
 
-bool saved_modes_restore(struct program *p, const struct program_saved *saved)
+static bool bring_back(struct program *p, const struct program_saved *saved)
 {
     struct program_modes *m = &p->modes;
     const bool speed_changes = m->speed_rpm != saved->speed_rpm ||
@@ -106,6 +108,25 @@ bool saved_modes_restore(struct program *p, const struct program_saved *saved)
     return true;
 }
 
+/* Behind the caller's parameters. */
+static unsigned place_of(const struct program_frame *frame)
+{
+    return (unsigned)frame->kept + frame->locals;
+}
+
+unsigned saved_modes_end(const struct program_frame *frame)
+{
+    return place_of(frame) + (frame->is_saved ? PROGRAM_SAVED_NUMBERS : 0);
+}
+
+bool saved_modes_restore(struct program *p, const struct program_frame *frame)
+{
+    struct program_saved saved;
+
+    memcpy(&saved, &p->flow.kept[place_of(frame)], sizeof(saved));
+    return bring_back(p, &saved);
+}
+
 static bool restore(struct program *p, const struct program_code *code)
 {
     const struct program_frame *frame = &p->flow.frame[p->flow.calls];
@@ -113,7 +134,7 @@ static bool restore(struct program *p, const struct program_code *code)
     if (!frame->is_saved) {
         return report_error_code(p, TAKT_ERROR_MODES_NOT_SAVED, code->step, 0.0);
     }
-    if (!saved_modes_restore(p, &frame->saved)) {
+    if (!saved_modes_restore(p, frame)) {
         return report_error_code(p, TAKT_ERROR_CUTTER_ON, code->step, 0.0);
     }
     return words_store(p, code->step, PARAMETER_SYSTEM, p->modes.system);
@@ -122,14 +143,21 @@ static bool restore(struct program *p, const struct program_code *code)
 bool saved_modes_run_code(struct program *p, const struct program_code *code)
 {
     struct program_frame *frame = &p->flow.frame[p->flow.calls];
+    struct program_saved saved;
 
     if (code->argument == 2) {
         return restore(p, code);
     }
     frame->is_saved = code->argument != 1;
     frame->restores = code->argument == 3 && p->flow.calls > 0;
+    if (saved_modes_end(frame) > PROGRAM_KEPT_MAX) {
+        frame->is_saved = false;
+        frame->restores = false;
+        return report_error_code(p, TAKT_ERROR_PROGRAM_FULL, code->step, 0.0);
+    }
     if (frame->is_saved) {
-        save(&p->modes, &frame->saved);
+        save(&p->modes, &saved);
+        memcpy(&p->flow.kept[place_of(frame)], &saved, sizeof(saved));
     }
     return true;
 }

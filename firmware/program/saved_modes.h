@@ -10,9 +10,12 @@
 bool saved_modes_run_code(struct program *p, const struct program_code *code);
 
 /*
- * Brings saved modes back, with a move for the spindle and one for the coolant if they change. False: nothing is
- * changed, because a compensated contour is under way that could not go on.
+ * Brings the modes that a call has saved back, with a move for the spindle and one for the coolant if they change. False:
+ * nothing is changed, because a compensated contour is under way that could not go on.
  */
-bool saved_modes_restore(struct program *p, const struct program_saved *saved);
+bool saved_modes_restore(struct program *p, const struct program_frame *frame);
+
+/* Where in struct program_flow, kept, everything of a call and its callers ends. */
+unsigned saved_modes_end(const struct program_frame *frame);
 
 #endif

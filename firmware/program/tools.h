@@ -10,11 +10,11 @@
 #include <stdint.h>
 
 struct tool {
-    uint32_t number;     /* T and H words name it; one of the table alone */
-    struct point offset; /* G43 adds it to the work offset: mm, rad. The length is its Z */
+    uint32_t number;      /* T and H words name it; one of the table alone */
+    uint32_t orientation; /* of a lathe tool: 0 to 9 */
+    struct point offset;  /* G43 adds it to the work offset: mm, rad. The length is its Z */
     double diameter_mm;
     double front_angle_deg, back_angle_deg; /* of a lathe tool */
-    unsigned orientation;                   /* of a lathe tool: 0 to 9 */
 };
 
 /* The caller owns the tools; any order. */

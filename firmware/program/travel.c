@@ -3,6 +3,7 @@
 #include "base/maths.h"
 #include "geometry/involute.h"
 #include "program/coordinates.h"
+#include "program/lexer.h"
 #include "program/report.h"
 #include "program/words.h"
 
@@ -131,7 +132,7 @@ bool travel_check(struct program *p, const struct move *m)
     if (m->cutter_side != CUTTER_OFF || travel_holds(&p->config, &p->modes.at, m, &excess)) {
         return true;
     }
-    travel_report(&p->error, p->lexer.line, p->lexer.column[span_of(p, excess.axis).begin],
+    travel_report(&p->error, p->lexer.line, lexer_column(&p->lexer, span_of(p, excess.axis).begin),
                   &excess);
     return false;
 }

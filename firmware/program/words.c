@@ -305,7 +305,7 @@ static bool swap_named(struct program *p, struct program_assignment *a)
     double *place = names_find(&p->names, name, length);
 
     if (place == NULL) {
-        place = names_add(&p->names, name, length);
+        place = names_add(p, name, length);
     }
     if (place == NULL) {
         return false;

@@ -63,7 +63,7 @@ static enum panel_override_reason override_reason(const struct service *s,
     if (block != NULL && move_is_motion(&block->move) &&
         (block->move.overrides & OVERRIDE_FEED) == 0)
         return PANEL_OVERRIDE_LOCKED;
-    return s->record.limiter < 1.0 ? PANEL_OVERRIDE_LIMITED : PANEL_OVERRIDE_FOLLOWS;
+    return s->limiter < 1.0 ? PANEL_OVERRIDE_LIMITED : PANEL_OVERRIDE_FOLLOWS;
 }
 
 /* What the program does now; between programs, nothing. */

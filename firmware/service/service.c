@@ -185,10 +185,10 @@ static void take_record(struct service *s)
         s->sent[i] = s->sent[i - 1];
     if (record != NULL) {
         add_to_digest(s, record);
-        s->record = *record;
+        s->limiter = record->limiter;
         s->at = record->cmd;
     }
-    s->sent[0] = s->controller.setpoint;
+    s->sent[0] = s->controller.record.set;
 }
 
 /* A fault of a drive stops everything; an error of the program only the program. */

@@ -53,7 +53,7 @@ struct service {
     struct point at;                          /* last setpoint, without correction */
     struct point sent[DRIVES_LATENCY_CYCLES]; /* setpoints of the last cycles, newest first */
     uint64_t digest;                          /* of the setpoints of this program */
-    struct cycle_record record;               /* of the last program cycle */
+    double limiter;                           /* of the last program cycle */
     struct inputs inputs;                     /* of the last cycle */
     struct service_health health;
 

@@ -14,15 +14,15 @@ static const float twist_products[4] = {20.0f, -15.0f, 6.0f, -1.0f};
 static void fill(struct relax *x, const struct window *w, unsigned group, float weight)
 {
     const unsigned first = group * w->capacity;
-    const lanes bend = x->scale.bend_per_near[group];
-    const lanes twist = x->scale.twist_per_near[group];
+    const float bend = x->scale.bend_per_near[group];
+    const float twist = x->scale.twist_per_near[group];
 
     for (unsigned k = 0; k < 4; k++) {
-        const lanes value = weight * near_products[k] + bend * bend * bend_products[k] +
+        const float value = weight * near_products[k] + bend * bend * bend_products[k] +
                             twist * twist * twist_products[k];
 
         for (unsigned i = 0; i < w->count; i++) {
-            x->beside->band[k][first + i] = value;
+            x->band[k][first + i] = value;
         }
     }
 }
@@ -35,7 +35,7 @@ static void add_corner(struct relax *x, const struct window *w, unsigned group, 
 
     for (unsigned i = 0; i < 4; i++) {
         for (unsigned k = i; k < 4; k++) {
-            x->beside->band[k - i][first + i] += weight * row[i] * row[k];
+            x->band[k - i][first + i] += weight * row[i] * row[k];
         }
     }
 }
@@ -47,16 +47,16 @@ static void add_corner(struct relax *x, const struct window *w, unsigned group, 
 static void factor(struct relax *x, const struct window *w, unsigned group)
 {
     const unsigned first = group * w->capacity;
-    lanes *restrict d0 = x->beside->band[0] + first;
-    lanes *restrict d1 = x->beside->band[1] + first;
-    lanes *restrict d2 = x->beside->band[2] + first;
-    lanes *restrict d3 = x->beside->band[3] + first;
+    float *restrict d0 = x->band[0] + first;
+    float *restrict d1 = x->band[1] + first;
+    float *restrict d2 = x->band[2] + first;
+    float *restrict d3 = x->band[3] + first;
 
     for (unsigned i = SMOOTH_FIXED; i + SMOOTH_FIXED < w->count; i++) {
-        const lanes per_d = 1.0f / d0[i];
-        const lanes l1 = d1[i] * per_d;
-        const lanes l2 = d2[i] * per_d;
-        const lanes l3 = d3[i] * per_d;
+        const float per_d = 1.0f / d0[i];
+        const float l1 = d1[i] * per_d;
+        const float l2 = d2[i] * per_d;
+        const float l3 = d3[i] * per_d;
 
         d0[i + 1] -= l1 * d1[i];
         d1[i + 1] -= l1 * d2[i];
@@ -87,10 +87,10 @@ static void solve_front(struct relax *x, const struct window *w, unsigned group)
 {
     const unsigned first = group * w->capacity;
     lanes *restrict v = x->step + first;
-    const lanes *restrict d0 = x->beside->band[0] + first;
-    const lanes *restrict d1 = x->beside->band[1] + first;
-    const lanes *restrict d2 = x->beside->band[2] + first;
-    const lanes *restrict d3 = x->beside->band[3] + first;
+    const float *restrict d0 = x->band[0] + first;
+    const float *restrict d1 = x->band[1] + first;
+    const float *restrict d2 = x->band[2] + first;
+    const float *restrict d3 = x->band[3] + first;
     lanes near = {0.0f};
     lanes far = near;
     lanes farthest = near;
@@ -109,9 +109,9 @@ void bands_step(struct relax *x, struct window *w, unsigned group)
 {
     const unsigned first = group * w->capacity;
     const lanes *restrict v = x->step + first;
-    const lanes *restrict d1 = x->beside->band[1] + first;
-    const lanes *restrict d2 = x->beside->band[2] + first;
-    const lanes *restrict d3 = x->beside->band[3] + first;
+    const float *restrict d1 = x->band[1] + first;
+    const float *restrict d2 = x->band[2] + first;
+    const float *restrict d3 = x->band[3] + first;
     const lanes per_near = x->scale.unit_per_near[group];
     const lanes most = {STEP_MAX, STEP_MAX, STEP_MAX, STEP_MAX};
     lanes_int *restrict c = w->x + first;

@@ -168,7 +168,7 @@ static bool place_is_near(const struct window *w, const struct route *r, unsigne
 static bool piece_passes_corner(const struct window *w, const struct route *r, unsigned piece,
                                 uint32_t element)
 {
-    const float within = JUDGED * (float)r->tolerance_mm - (float)r->limits.chord_mm;
+    const float within = JUDGED * (float)r->tolerance_mm - (float)r->chord_mm;
     struct window_spot a;
     struct window_spot b;
     float weight[4];
@@ -209,7 +209,7 @@ static bool is_corner(const struct route *r, uint32_t element)
 {
     const struct route_element *e = route_element(r, element);
 
-    return e->turn > CORNER_MIN || e->bent || route_element(r, element - 1)->bent;
+    return route_turn(r, element) > CORNER_MIN || e->bent || route_element(r, element - 1)->bent;
 }
 
 /* Do the first count pieces pass the corners beside one of them? */

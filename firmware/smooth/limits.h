@@ -7,8 +7,8 @@
 #include "smooth/lanes.h"
 
 /* Elements of the programmed path that are known at one time, and how many of them may be bent. */
-#define SMOOTH_ELEMENTS_MAX 128
-#define SMOOTH_BENT_MAX     64
+#define SMOOTH_ELEMENTS_MAX 96
+#define SMOOTH_BENT_MAX     32
 
 /* Coordinates of their starts: with more than three axes there are half as many elements. */
 #define SMOOTH_COORDINATES_MAX (3 * SMOOTH_ELEMENTS_MAX)
@@ -17,7 +17,7 @@
 #define SMOOTH_MODES_MAX 5
 
 /* Samples that are smoothed together; half as many where a machine has more axes than lanes. */
-#define SMOOTH_SAMPLES_MAX 128
+#define SMOOTH_SAMPLES_MAX 80
 
 /* Samples at each end of the window that stay where they are: a cubic piece has four. */
 #define SMOOTH_FIXED 3

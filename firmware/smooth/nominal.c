@@ -20,7 +20,7 @@
 
 static struct route_element *at(struct route *r, uint32_t index)
 {
-    return &r->element[index & (r->capacity - 1)];
+    return &r->element[route_slot(r, index)];
 }
 
 static float length_of(const struct route *r, uint32_t index)
@@ -158,7 +158,7 @@ static float corner_feed(struct route *r, uint32_t index)
     route_corner(r, index, s.before, s.after);
     s.left_mm = length_of(r, index - 1);
     s.right_mm = length_of(r, index);
-    at(r, index)->turn = turn_of(&s, r->slots.count, d);
+    at(r, index)->turn = (uint16_t)(turn_of(&s, r->slots.count, d) / ROUTE_TURN + 0.5f);
     for (unsigned i = 0; i < NEIGHBOURS && best < enough; i++) {
         const float turn = turn_of(&s, r->slots.count, d);
         const float allowed = 6.0f * SIDES * tolerance_mm / single_max(turn, TURN_MIN);

@@ -42,6 +42,12 @@
 /* Rows that count more than this, relative to the tolerance, would leave too few digits. */
 #define SCALE_MAX 300.0f
 
+/* Rows of second differences count so many times more than the others: along straights they alone find the ramps. */
+#define BEND_COUNTS 2.0f
+
+/* What the axis of the least acceleration needs counts for all, up to so many times what that of the most needs. */
+#define BEND_SPAN 4.0f
+
 /* What a bent route may leave its tangent by for that to stand for it, as a part of the tolerance. */
 #define BENT 0.05f
 
@@ -55,33 +61,56 @@ struct relax_pass {
     float corner_most; /* tolerance of corners, as a part of the tolerance */
 };
 
+/* Of the slots of a group, the least and the most that a row counts. */
+struct relax_span {
+    float least, most;
+};
+
+static void widen(struct relax_span *span, float per_near)
+{
+    span->least = single_min(span->least, per_near);
+    span->most = single_max(span->most, per_near);
+}
+
+/*
+ * What rows of second and third differences count is the same for all axes of a group, so that one matrix serves them all.
+ * Of machines that were tried, with axes up to ten times as quick as others, these came nearest to a matrix for each axis.
+ */
+static void set_rows(struct relax_scale *s, const struct route *r, unsigned group,
+                     float tolerance_mm, float d)
+{
+    struct relax_span bend = {SCALE_MAX, 0.0f};
+    struct relax_span twist = {SCALE_MAX, 0.0f};
+    const unsigned first = group * SMOOTH_LANES;
+
+    for (unsigned i = first; i < first + SMOOTH_LANES && i < r->slots.count; i++) {
+        const float per_near = tolerance_mm / r->slots.weight[i];
+
+        s->bend_most[group][i - first] =
+            BOX_BEND * r->slots.acceleration_mm_s2[i] * d * d / per_near;
+        s->twist_most[group][i - first] = BOX_TWIST * r->slots.jerk_mm_s3[i] * d * d * d / per_near;
+        widen(&bend, 1.0f / s->bend_most[group][i - first]);
+        widen(&twist, 1.0f / s->twist_most[group][i - first]);
+    }
+    s->bend_per_near[group] =
+        single_min(BEND_COUNTS * single_min(bend.most, BEND_SPAN * bend.least), SCALE_MAX);
+    s->twist_per_near[group] = single_min(single_sqrt(twist.most * twist.least), SCALE_MAX);
+    s->bend_most[group] *= s->bend_per_near[group];
+    s->twist_most[group] *= s->twist_per_near[group];
+}
+
 static void set_scale(struct relax_scale *s, const struct window *w, const struct route *r,
                       float tolerance_mm)
 {
-    const float d = (float)w->interval_s;
-
     memset(s, 0, sizeof(*s));
-    for (unsigned i = 0; i < SMOOTH_SLOTS_MAX; i++) {
-        s->bend_per_near[i / SMOOTH_LANES][i % SMOOTH_LANES] = 1.0f;
-        s->twist_per_near[i / SMOOTH_LANES][i % SMOOTH_LANES] = 1.0f;
-    }
     for (unsigned i = 0; i < r->slots.count; i++) {
-        const float per_near = tolerance_mm / r->slots.weight[i];
-        const float bend = BOX_BEND * r->slots.acceleration_mm_s2[i] * d * d;
-        const float twist = BOX_TWIST * r->slots.jerk_mm_s3[i] * d * d * d;
-
         s->near_per_unit[i / SMOOTH_LANES][i % SMOOTH_LANES] =
             w->weighted_unit_mm[i] / tolerance_mm;
         s->unit_per_near[i / SMOOTH_LANES][i % SMOOTH_LANES] =
             tolerance_mm / w->weighted_unit_mm[i];
-        s->bend_per_near[i / SMOOTH_LANES][i % SMOOTH_LANES] =
-            single_min(per_near / bend, SCALE_MAX);
-        s->twist_per_near[i / SMOOTH_LANES][i % SMOOTH_LANES] =
-            single_min(per_near / twist, SCALE_MAX);
-        s->bend_most[i / SMOOTH_LANES][i % SMOOTH_LANES] =
-            bend / per_near * s->bend_per_near[i / SMOOTH_LANES][i % SMOOTH_LANES];
-        s->twist_most[i / SMOOTH_LANES][i % SMOOTH_LANES] =
-            twist / per_near * s->twist_per_near[i / SMOOTH_LANES][i % SMOOTH_LANES];
+    }
+    for (unsigned g = 0; g < r->slots.groups; g++) {
+        set_rows(s, r, g, tolerance_mm, (float)w->interval_s);
     }
 }
 
@@ -132,7 +161,7 @@ static void add_corner(struct relax_corners *c, const struct window *w, const st
     }
     const float spacing = (float)(w->at_mm[i + 1] - w->at_mm[i]);
 
-    if (route_element(r, element)->turn * spacing < CORNER_LEAVES * (float)r->tolerance_mm) {
+    if (route_turn(r, element) * spacing < CORNER_LEAVES * (float)r->tolerance_mm) {
         return;
     }
     c->piece[c->count] = (unsigned char)(i - 1);
@@ -152,7 +181,7 @@ static void find_corners(struct relax_corners *c, const struct window *w, const 
         if (route_element(r, e)->start_mm > w->at_mm[w->count - 2]) {
             return;
         }
-        if (route_element(r, e)->turn > CORNER_MIN) {
+        if (route_turn(r, e) > CORNER_MIN) {
             add_corner(c, w, r, e, &sample);
         }
     }
@@ -195,12 +224,12 @@ static void set_foot(struct relax *x, const struct window *w, const struct route
     const double start = maths_max(from, route_element(r, foot.element)->start_mm);
     const double end = maths_min(to, route_end_of(r, foot.element));
 
-    x->beside->low[i] = single_max((float)(start - foot.at_mm) * ahead->per_mm, -straight);
-    x->beside->high[i] = single_min((float)(end - foot.at_mm) * ahead->per_mm, straight);
+    x->low[i] = single_max((float)(start - foot.at_mm) * ahead->per_mm, -straight);
+    x->high[i] = single_min((float)(end - foot.at_mm) * ahead->per_mm, straight);
     for (unsigned k = 0; k < r->slots.count; k++) {
         const unsigned row = k / SMOOTH_LANES * w->capacity + i;
 
-        x->beside->foot[row][k % SMOOTH_LANES] =
+        x->foot[row][k % SMOOTH_LANES] =
             spot.at[k] + single_round(foot.off[k] / w->weighted_unit_mm[k]);
         x->along[row][k % SMOOTH_LANES] = ahead->along[k];
     }
@@ -243,8 +272,8 @@ static void gather(struct relax *x, const struct window *w, const struct relax_p
     lanes *restrict near = x->near + first;
     lanes *restrict bend = x->bend + first;
     lanes *restrict twist = x->twist + first;
-    const lanes bend_per_near = x->scale.bend_per_near[group];
-    const lanes twist_per_near = x->scale.twist_per_near[group];
+    const float bend_per_near = x->scale.bend_per_near[group];
+    const float twist_per_near = x->scale.twist_per_near[group];
     const lanes bend_per_unit = bend_per_near * x->scale.near_per_unit[group];
     const lanes twist_per_unit = twist_per_near * x->scale.near_per_unit[group];
     const lanes bend_most = x->scale.bend_most[group];
@@ -288,7 +317,7 @@ static void pull_to_route(const struct relax *x, const struct window *w, const s
         const unsigned l = k % SMOOTH_LANES;
 
         p[k] = w->origin[k] +
-               w->unit_mm[k] * ((double)x->beside->foot[row][l] +
+               w->unit_mm[k] * ((double)x->foot[row][l] +
                                 (double)(x->near[row][l] * x->scale.unit_per_near[g][l]));
     }
     window_reach(w, i, &from, &to);
@@ -309,7 +338,7 @@ static void measure_near(struct relax *x, const struct window *w, const struct r
 {
     const unsigned first = group * w->capacity;
     const lanes_int *restrict c = w->x + first;
-    const lanes_int *restrict foot = x->beside->foot + first;
+    const lanes_int *restrict foot = x->foot + first;
     lanes *restrict near = x->near + first;
     lanes *restrict step = x->step + first;
     const float over = pass->over;
@@ -341,7 +370,7 @@ static bool pull_to_line(const struct relax *x, const struct window *w, unsigned
     for (unsigned g = 0; g < groups; g++) {
         z[g] = x->near[g * w->capacity + i] - off[g] * less;
     }
-    return s - x->beside->low[i] > distance && x->beside->high[i] - s > distance;
+    return s - x->low[i] > distance && x->high[i] - s > distance;
 }
 
 /*
@@ -383,7 +412,7 @@ static void into_tube(struct relax *x, const struct window *w, const struct rout
         const float s = both[0] + both[2];
         const float square = both[1] + both[3];
 
-        if (!(s >= x->beside->low[i] && s <= x->beside->high[i] &&
+        if (!(s >= x->low[i] && s <= x->high[i] &&
               square - s * s <= (1.0f - BENT) * (1.0f - BENT))) {
             pull(x, w, r, pass, tolerance_mm, i, s);
         }
@@ -461,22 +490,21 @@ static void begin(struct relax *x, const struct window *w, const struct route *r
     memset(x->near, 0, sizeof x->near);
     memset(x->bend, 0, sizeof x->bend);
     memset(x->twist, 0, sizeof x->twist);
-    memset(x->beside->foot, 0, sizeof x->beside->foot);
+    memset(x->foot, 0, sizeof x->foot);
     memset(x->along, 0, sizeof x->along);
-    memset(x->beside->band, 0, sizeof x->beside->band);
+    memset(x->band, 0, sizeof x->band);
     for (unsigned i = 1; i + 2 < w->count; i++) {
         set_foot(x, w, r, i, tolerance_mm, &ahead);
     }
 }
 
-void relax_window(struct relax *x, struct relax_beside *beside, struct window *w,
-                  const struct route *r, double tolerance_mm, unsigned iterations)
+void relax_window(struct relax *x, struct window *w, const struct route *r, double tolerance_mm,
+                  unsigned iterations)
 {
     const float tolerance = (float)tolerance_mm;
     struct relax_pass pass = {.over = 1.0f, .calm = 1.0f, .weight = 1.0f};
 
-    pass.corner_most = 1.0f - (float)r->limits.chord_mm / tolerance;
-    x->beside = beside;
+    pass.corner_most = 1.0f - (float)r->chord_mm / tolerance;
     begin(x, w, r, tolerance);
     bands_build(x, w, r, pass.weight);
     project(x, w, r, tolerance, &pass);

@@ -10,7 +10,7 @@
  * Corners of the route in a window that are looked at one by one, half as many where there are two groups of lanes; of
  * those behind them the judge alone knows.
  */
-#define RELAX_CORNERS_MAX 64
+#define RELAX_CORNERS_MAX 32
 
 /* Values of all lanes at every sample: one group of lanes after the other. */
 typedef lanes relax_rows[SMOOTH_SAMPLES_MAX];
@@ -34,32 +34,27 @@ struct relax_corners {
 struct relax_scale {
     lanes near_per_unit[SMOOTH_GROUPS_MAX];
     lanes unit_per_near[SMOOTH_GROUPS_MAX];
-    lanes bend_per_near[SMOOTH_GROUPS_MAX];
-    lanes twist_per_near[SMOOTH_GROUPS_MAX];
+    float bend_per_near[SMOOTH_GROUPS_MAX]; /* the same in all lanes, which so have one matrix */
+    float twist_per_near[SMOOTH_GROUPS_MAX];
     lanes bend_most[SMOOTH_GROUPS_MAX]; /* the boxes, in those */
     lanes twist_most[SMOOTH_GROUPS_MAX];
 };
 
-/* A part of the working memory that the caller may have elsewhere. */
-struct relax_beside {
-    relax_rows band[4];
-    lanes_int foot[SMOOTH_SAMPLES_MAX];                      /* beside each sample on the route */
-    float low[SMOOTH_SAMPLES_MAX], high[SMOOTH_SAMPLES_MAX]; /* as far as that is straight */
-};
-
-/* Working memory; like that it holds nothing between calls. */
+/* Working memory; holds nothing between calls. */
 struct relax {
-    struct relax_beside *beside;
     struct relax_scale scale;
-    relax_rows near;  /* the curve at the samples: in the tube */
-    relax_rows bend;  /* second differences: in the box of acceleration */
-    relax_rows twist; /* third differences: in the box of jerk */
+    float band[4][SMOOTH_SAMPLES_MAX]; /* the matrix, by groups */
+    relax_rows near;                   /* the curve at the samples: in the tube */
+    relax_rows bend;                   /* second differences: in the box of acceleration */
+    relax_rows twist;                  /* third differences: in the box of jerk */
     relax_rows step;
-    relax_rows along; /* direction of the route at the feet */
+    relax_rows along;                   /* direction of the route at the feet */
+    lanes_int foot[SMOOTH_SAMPLES_MAX]; /* beside each sample on the route */
+    float low[SMOOTH_SAMPLES_MAX], high[SMOOTH_SAMPLES_MAX]; /* as far as that is straight */
     struct relax_corners corners;
 };
 
-void relax_window(struct relax *x, struct relax_beside *beside, struct window *w,
-                  const struct route *r, double tolerance_mm, unsigned iterations);
+void relax_window(struct relax *x, struct window *w, const struct route *r, double tolerance_mm,
+                  unsigned iterations);
 
 #endif

@@ -35,7 +35,7 @@ static void set_slots(struct route_slots *s, const struct smooth_limits *limits)
 
 void route_init(struct route *r, const struct smooth_limits *limits, double tolerance_mm)
 {
-    r->limits = *limits;
+    r->chord_mm = limits->chord_mm;
     set_slots(&r->slots, limits);
     r->tolerance_mm = tolerance_mm;
     r->first = 0;
@@ -64,14 +64,9 @@ bool route_has_room(const struct route *r)
            has_free_mode(r);
 }
 
-const struct route_element *route_element(const struct route *r, uint32_t index)
-{
-    return &r->element[(index & (r->capacity - 1))];
-}
-
 const double *route_start(const struct route *r, uint32_t index)
 {
-    return &r->start[(size_t)(index & (r->capacity - 1)) * r->slots.count];
+    return &r->start[(size_t)route_slot(r, index) * r->slots.count];
 }
 
 static const double *end_point(const struct route *r, uint32_t index)
@@ -178,19 +173,19 @@ static void keep_bent(struct route *r, const struct curve *curve, float per_mm)
 void route_push(struct route *r, const struct move *move, uint32_t number,
                 const struct curve *curve)
 {
-    struct route_element *e = &r->element[(r->count & (r->capacity - 1))];
+    struct route_element *e = &r->element[route_slot(r, r->count)];
     const double start_mm = route_end(r);
     const float per_mm = weighted_length(curve);
 
     assert(route_has_room(r));
-    gather(r, &curve->start, &r->start[(size_t)(r->count & (r->capacity - 1)) * r->slots.count]);
+    gather(r, &curve->start, &r->start[(size_t)route_slot(r, r->count) * r->slots.count]);
     gather(r, &curve->end, r->end);
     memset(e, 0, sizeof(*e));
     e->start_mm = start_mm;
     r->end_mm = start_mm + curve->length_mm * (double)per_mm;
     e->line = move->line;
     e->number = number;
-    e->mode = find_mode(r, move);
+    e->mode = find_mode(r, move) & ROUTE_MODES;
     e->rotary = curve_is_rotary(curve);
     e->bent = curve->kind != CURVE_LINE;
     e->bent_number = (unsigned char)r->bent_count;
@@ -484,7 +479,7 @@ static void walk(const struct route *r, const double x[], double from_mm, double
                    : f->element == r->first || joint < from_mm) {
             return;
         }
-        if (!is_near_joint(r, next, joint, route_element(r, onward ? next : f->element)->turn, f)) {
+        if (!is_near_joint(r, next, joint, route_turn(r, onward ? next : f->element), f)) {
             return;
         }
         foot_on(r, next, x, from_mm, to_mm, joint, &other);

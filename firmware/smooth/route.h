@@ -39,20 +39,27 @@ struct route_bent {
 
 /* Its start stands in the route's coordinates, its end is the start of the next one. */
 struct route_element {
-    double start_mm;       /* on the route */
-    uint32_t line;         /* of the program */
-    uint32_t number;       /* of the motion */
-    float programmed_mm_s; /* feed; infinite for a rapid */
-    float feed_mm_s;       /* highest nominal feed: programmed, and what its curvature allows */
-    float along_mm_s2;     /* nominal acceleration along it */
-    float energy_cap;      /* highest feed squared at its start, for the corner there, mm2/s2 */
-    float energy;          /* from which everything known that follows can be met */
-    float turn;            /* |change of direction| at its start */
-    unsigned char mode;    /* index among the route's modes */
-    bool bent;
-    bool rotary;               /* only rotary axes move: its feed counts radians */
+    double start_mm;           /* on the route */
+    uint32_t line;             /* of the program */
+    uint32_t number;           /* of the motion */
+    float programmed_mm_s;     /* feed; infinite for a rapid */
+    float feed_mm_s;           /* highest nominal feed: programmed, and what its curvature allows */
+    float along_mm_s2;         /* nominal acceleration along it */
+    float energy_cap;          /* highest feed squared at its start, for the corner there, mm2/s2 */
+    float energy;              /* from which everything known that follows can be met */
+    uint16_t turn;             /* |change of direction| at its start, in ROUTE_TURN */
     unsigned char bent_number; /* bent elements before it, modulo 256 */
+    unsigned char mode : 3;    /* index among the route's modes */
+    unsigned char bent : 1;
+    unsigned char rotary : 1; /* only rotary axes move: its feed counts radians */
 };
+
+/* Bits of a mode's index. */
+#define ROUTE_MODES 7U
+_Static_assert(SMOOTH_MODES_MAX <= ROUTE_MODES + 1, "a mode's index has its bits");
+
+/* Turns are up to 2. */
+#define ROUTE_TURN (1.0f / 32767.0f)
 
 /* Motions that are alike but for where they go and how fast. */
 struct route_mode {
@@ -61,8 +68,8 @@ struct route_mode {
 };
 
 struct route {
-    struct smooth_limits limits;
     struct route_slots slots;
+    double chord_mm; /* how far the line through setpoints may leave the curve (limits.h) */
     double tolerance_mm;
     uint32_t first;                  /* elements forgotten so far */
     uint32_t count;                  /* elements pushed so far */
@@ -92,7 +99,20 @@ void route_push(struct route *r, const struct move *move, uint32_t number,
 /* Elements that end before at_mm are no longer asked for. */
 void route_forget(struct route *r, double at_mm);
 
-const struct route_element *route_element(const struct route *r, uint32_t index);
+/* Where the element is kept. */
+static inline uint32_t route_slot(const struct route *r, uint32_t index)
+{
+    return r->slots.count > 3 ? index % (SMOOTH_ELEMENTS_MAX / 2) : index % SMOOTH_ELEMENTS_MAX;
+}
+static inline const struct route_element *route_element(const struct route *r, uint32_t index)
+{
+    return &r->element[route_slot(r, index)];
+}
+/* |Change of direction| at its start. */
+static inline float route_turn(const struct route *r, uint32_t index)
+{
+    return (float)route_element(r, index)->turn * ROUTE_TURN;
+}
 /* Its start, by slot. */
 const double *route_start(const struct route *r, uint32_t index);
 double route_end_of(const struct route *r, uint32_t index);

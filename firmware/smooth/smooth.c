@@ -14,10 +14,10 @@
 #define ROUNDS           1
 #define ROUNDS_FIRST     4
 #define ITERATIONS       16
-#define ITERATIONS_ROUND 13
+#define ITERATIONS_ROUND 16
 
-/* One in so many of the window's pieces is kept each time. */
-#define KEPT_PART 2
+/* So many sixteenths of the window's pieces are kept each time. */
+#define KEPT_SIXTEENTHS 9U
 
 /* Lines are merged within this part of the tolerance at most. */
 #define MERGED 0.05
@@ -43,7 +43,8 @@
 #define INTERVAL_PART 0.7
 
 /* What a microcontroller is ready to give for smoothing. */
-_Static_assert(sizeof(struct smooth) <= 48UL * 1024UL, "too much memory");
+_Static_assert(sizeof(struct smooth) + sizeof(union smooth_scratch) <= 27UL * 1024UL,
+               "too much memory");
 
 void smooth_init(struct smooth *s, const struct smooth_limits *limits)
 {
@@ -146,7 +147,7 @@ static void begin(struct smooth *s, const struct move *move)
     s->tried = 0;
     s->mark_mm = 0.0;
     s->idle = 0;
-    judge_change(&s->route.limits, &s->change);
+    judge_change(&limits, &s->change);
     s->merge.open = false;
     window_init(&s->window, &s->route, interval_of(&limits, move->tolerance_mm));
 }
@@ -245,10 +246,9 @@ static bool fill(struct smooth *s)
     return true;
 }
 
-static void relax_and_locate(struct smooth *s, struct relax_beside *beside, unsigned iterations)
+static void relax_and_locate(struct smooth *s, union smooth_scratch *scratch, unsigned iterations)
 {
-    relax_window(&s->work.relax, beside, &s->window, &s->route, AIM * s->route.tolerance_mm,
-                 iterations);
+    relax_window(&scratch->relax, &s->window, &s->route, AIM * s->route.tolerance_mm, iterations);
     window_locate(&s->window, &s->route);
 }
 
@@ -260,7 +260,7 @@ static void relax_and_locate(struct smooth *s, struct relax_beside *beside, unsi
 
 static unsigned kept_most(const struct smooth *s)
 {
-    return s->window.capacity / KEPT_PART;
+    return s->window.capacity * KEPT_SIXTEENTHS / 16U;
 }
 
 /* Pieces that should keep the tolerance: more than are kept, so that the next ones can do it as well. */
@@ -299,14 +299,15 @@ static void keep_head(struct smooth *s)
     struct smooth_head *h = &s->head;
     const struct window *w = &s->window;
 
-    h->proved =
-        s->proved + SMOOTH_FIXED < SMOOTH_HEAD_MAX ? s->proved : SMOOTH_HEAD_MAX - SMOOTH_FIXED;
+    const unsigned most = SMOOTH_HEAD_MAX / s->route.slots.groups;
+
+    h->proved = s->proved + SMOOTH_FIXED < most ? s->proved : most - SMOOTH_FIXED;
     memcpy(h->origin, w->origin, sizeof h->origin);
-    for (unsigned i = 0; i < SMOOTH_HEAD_MAX && i < w->count; i++) {
+    for (unsigned i = 0; i < most && i < w->count; i++) {
         h->at_mm[i] = w->at_mm[i];
         h->element[i] = w->element[i];
         for (unsigned g = 0; g < s->route.slots.groups; g++) {
-            h->spot[i].group[g] = w->x[g * w->capacity + i];
+            h->x[g * most + i] = w->x[g * w->capacity + i];
         }
     }
 }
@@ -318,6 +319,7 @@ static void keep_head(struct smooth *s)
 static void fall_back(struct smooth *s)
 {
     const struct smooth_head *h = &s->head;
+    const unsigned most = SMOOTH_HEAD_MAX / s->route.slots.groups;
     struct window *w = &s->window;
 
     s->ready = h->proved;
@@ -334,7 +336,9 @@ static void fall_back(struct smooth *s)
     for (unsigned i = 0; i < w->count; i++) {
         w->at_mm[i] = h->at_mm[i];
         w->element[i] = h->element[i];
-        window_set(w, &s->route, i, &h->spot[i]);
+        for (unsigned g = 0; g < s->route.slots.groups; g++) {
+            w->x[g * w->capacity + i] = h->x[g * most + i];
+        }
     }
 }
 
@@ -369,23 +373,23 @@ static bool stands_still(struct smooth *s)
  * Where a piece leaves the tolerance, it is slowed down: the slower, the nearer the samples are to each other and the
  * curve to them. What comes well before it is kept, the rest is tried again with the next window.
  */
-static void smooth_window(struct smooth *s, struct relax_beside *beside)
+static void smooth_window(struct smooth *s, union smooth_scratch *scratch)
 {
     const bool goes_on = s->head.proved > 0;
     const unsigned rounds = goes_on ? ROUNDS : ROUNDS_FIRST;
     unsigned good = 0;
 
     for (unsigned i = 0; i < rounds; i++) {
-        relax_and_locate(s, beside, goes_on ? ITERATIONS_ROUND : ITERATIONS);
-        timing_again(&s->work.timing, &s->window, &s->route, &s->change);
+        relax_and_locate(s, scratch, goes_on ? ITERATIONS_ROUND : ITERATIONS);
+        timing_again(&scratch->timing, &s->window, &s->route, &s->change);
         window_extend(&s->window, &s->route);
     }
-    relax_and_locate(s, beside, ITERATIONS);
+    relax_and_locate(s, scratch, ITERATIONS);
     good = judged(s);
     for (unsigned i = 0; i < ATTEMPTS && good < wanted(s); i++) {
-        timing_slow(&s->work.timing, &s->window, &s->route, good);
+        timing_slow(&scratch->timing, &s->window, &s->route, good);
         window_extend(&s->window, &s->route);
-        relax_and_locate(s, beside, ITERATIONS);
+        relax_and_locate(s, scratch, ITERATIONS);
         good = judged(s);
     }
     s->ends = s->finished && s->window.at_end;
@@ -494,18 +498,18 @@ static void drop_taken(struct smooth *s)
 }
 
 /* The window for the next pieces; false when more must be known first. */
-static bool next_window(struct smooth *s, struct relax_beside *beside)
+static bool next_window(struct smooth *s, union smooth_scratch *scratch)
 {
     drop_taken(s);
     keep_head(s);
     if (!fill(s)) {
         return false;
     }
-    smooth_window(s, beside);
+    smooth_window(s, scratch);
     return true;
 }
 
-bool smooth_take(struct smooth *s, struct relax_beside *beside, struct smooth_piece *piece)
+bool smooth_take(struct smooth *s, union smooth_scratch *scratch, struct smooth_piece *piece)
 {
     if (!s->open) {
         return false;
@@ -514,7 +518,7 @@ bool smooth_take(struct smooth *s, struct relax_beside *beside, struct smooth_pi
         take_standing(s, piece);
         return true;
     }
-    if (s->taken == s->ready && !next_window(s, beside)) {
+    if (s->taken == s->ready && !next_window(s, scratch)) {
         return false;
     }
     set_piece(s, piece);

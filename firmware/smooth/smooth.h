@@ -41,7 +41,7 @@ struct smooth_piece {
     bool last; /* of the chain: ends at rest, in the end of the last motion */
 };
 
-/* Samples at the window's beginning as they were proved, to fall back on. */
+/* Samples at the window's beginning as they were proved, to fall back on; half as many where the window has half. */
 #define SMOOTH_HEAD_MAX 16
 
 struct smooth_head {
@@ -49,19 +49,22 @@ struct smooth_head {
     double origin[AXIS_COUNT];
     double at_mm[SMOOTH_HEAD_MAX];
     uint32_t element[SMOOTH_HEAD_MAX];
-    struct window_spot spot[SMOOTH_HEAD_MAX];
+    lanes_int x[SMOOTH_HEAD_MAX]; /* one group of lanes after the other */
+};
+
+/* What it computes with: holds nothing between calls. */
+union smooth_scratch {
+    struct relax relax;
+    struct timing timing;
 };
 
 struct smooth {
     struct smooth_limits limits;
-    struct merge merge; /* the newest line, not on the route yet */
+    /* from here to change nothing is kept while no chain is open */
     struct route route;
     struct window window;
     struct smooth_head head;
-    union {
-        struct relax relax;
-        struct timing timing;
-    } work;
+    struct merge merge; /* the newest line, not on the route yet */
     struct judge_change change;
     struct move move;  /* of the piece taken last */
     unsigned proved;   /* pieces at the window's beginning that keep the tolerance, as they were */
@@ -95,10 +98,10 @@ void smooth_push(struct smooth *s, const struct move *move, uint32_t number,
 /* Nothing follows in this chain: it ends at rest. */
 void smooth_finish(struct smooth *s);
 /*
- * The next piece. False: more motions, or the chain's end, must come first, or the chain has been taken to its end. beside:
+ * The next piece. False: more motions, or the chain's end, must come first, or the chain has been taken to its end. scratch:
  * no matter what is in it.
  */
-bool smooth_take(struct smooth *s, struct relax_beside *beside, struct smooth_piece *piece);
+bool smooth_take(struct smooth *s, union smooth_scratch *scratch, struct smooth_piece *piece);
 /* Forgets everything. */
 void smooth_reset(struct smooth *s);
 

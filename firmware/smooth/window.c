@@ -315,7 +315,7 @@ static void stop_at_corner(const struct window *w, const struct route *r, unsign
                            struct route_foot *foot)
 {
     for (uint32_t e = w->element[i - 1] + 1; e <= foot->element; e++) {
-        if (route_element(r, e)->turn > SHARP && !passes_near(w, r, e, before, here)) {
+        if (route_turn(r, e) > SHARP && !passes_near(w, r, e, before, here)) {
             foot->element = e - 1;
             foot->at_mm = route_element(r, e)->start_mm;
             return;

@@ -284,9 +284,6 @@ void steps_restart(struct steps *s)
 
 void steps_get_actual(const struct steps *s, struct point *actual)
 {
-    if (s->config.axes == 0U) {
-        return;
-    }
     for (unsigned i = 0; i < AXIS_COUNT; i++) {
         if (steps_has(s, i)) {
             actual->at[i] = s->read.at[i];

@@ -45,6 +45,12 @@ struct steps_config {
 
 #include "step/steps_state.h"
 
+/* Is any axis a step drive? Where none is, nothing below has anything to do. */
+static inline bool steps_are_there(const struct steps *s)
+{
+    return s->config.axes != 0U;
+}
+
 /* start: where the axes stand. */
 void steps_init(struct steps *s, const struct steps_config *config, const struct point *start);
 

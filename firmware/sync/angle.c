@@ -33,20 +33,19 @@ struct angle_ahead angle_look_ahead(const struct angle *a, double cycles)
     };
 }
 
-void angle_measure(struct angle *a, double measured_rev)
+void angle_follow(struct angle *a, double measured_rev)
 {
-    if (a->begun && measured_rev == a->rev && a->speed == 0.0 && a->acceleration == 0.0) {
-        return; /* it stands, as it did */
-    }
     const struct angle_ahead expected = angle_look_ahead(a, 1.0);
     const double off = measured_rev - expected.rev;
 
     if (!a->begun) {
         a->begun = true;
         a->rev = measured_rev;
+        a->stands = true;
         return;
     }
     a->rev = expected.rev + a->gain_angle * off;
     a->speed = expected.speed + a->gain_speed * off;
     a->acceleration = expected.acceleration + a->gain_acceleration * off;
+    a->stands = a->speed == 0.0 && a->acceleration == 0.0;
 }

@@ -16,6 +16,7 @@
 struct angle {
     double gain_angle, gain_speed, gain_acceleration;
     bool begun;
+    bool stands; /* speed and acceleration are 0 */
     double rev;
     double speed;        /* rev/cycle */
     double acceleration; /* rev/cycle2 */
@@ -35,7 +36,13 @@ void angle_init(struct angle *a);
 void angle_tune(struct angle *a, double bandwidth_rad_cycle);
 
 /* Every control cycle: what the encoder says at its start. */
-void angle_measure(struct angle *a, double measured_rev);
+void angle_follow(struct angle *a, double measured_rev);
+static inline void angle_measure(struct angle *a, double measured_rev)
+{
+    if (!a->stands || measured_rev != a->rev) {
+        angle_follow(a, measured_rev);
+    }
+}
 
 struct angle_ahead angle_look_ahead(const struct angle *a, double cycles);
 

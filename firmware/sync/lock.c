@@ -47,21 +47,6 @@ void lock_restart(struct lock *l)
     l->next_block = UINT32_MAX;
 }
 
-void lock_measure(struct lock *l, const struct spindle_feedback *spindle)
-{
-    l->spindle = *spindle;
-    l->commands = false;
-    angle_measure(&l->angle, spindle->angle_rev);
-}
-
-bool lock_get_command(const struct lock *l, double *rpm)
-{
-    if (l->commands) {
-        *rpm = l->command_rpm;
-    }
-    return l->commands;
-}
-
 const struct diagnostic *lock_get_alarm(const struct lock *l)
 {
     return &l->alarm;
@@ -150,7 +135,7 @@ static double out_ratio(const struct lock *l)
 
 static bool is_turning(const struct lock *l)
 {
-    return l->spindle.at_speed && !l->spindle.tripped && !l->spindle.silent &&
+    return l->spindle->at_speed && !l->spindle->tripped && !l->spindle->silent &&
            view(l, 0.0).speed * SECONDS_PER_MINUTE > LOCK_STANDS_RPM;
 }
 
@@ -280,7 +265,7 @@ static struct follower_target target_of(const struct lock *l)
 static double lag_of(const struct lock *l)
 {
     const double before = l->config.ahead_cycles - 1.0;
-    const double off = l->sense * (l->spindle.angle_rev - l->angle.rev);
+    const double off = l->sense * (l->spindle->angle_rev - l->angle.rev);
 
     return place_at(l, view(l, before).rev + off).x - l->follower.at.x_mm;
 }
@@ -311,9 +296,9 @@ static void watch(struct lock *l)
     const double lag_mm = maths_abs(lag_of(l));
     const double v = l->ahead.pitch_mm * maths_abs(now.speed);
 
-    if (l->spindle.tripped) {
+    if (l->spindle->tripped) {
         fail(l, TAKT_ERROR_SPINDLE_TRIPPED, 0.0, 0.0);
-    } else if (l->spindle.silent) {
+    } else if (l->spindle->silent) {
         fail(l, TAKT_ERROR_SPINDLE_SILENT, 0.0, 0.0);
     } else if (has_stopped(l, &now)) {
         fail(l, TAKT_ERROR_THREAD_STOPPED, 0.0, 0.0);

@@ -45,7 +45,7 @@ enum lock_phase {
 struct lock {
     struct lock_config config;
     struct angle angle;
-    struct spindle_feedback spindle; /* of this cycle */
+    const struct spindle_feedback *spindle; /* of this cycle */
     enum lock_phase phase;
     double sense;   /* 1: clockwise */
     uint32_t stood; /* cycles before the spindle was looked at */
@@ -76,15 +76,26 @@ void lock_init(struct lock *l, const struct lock_config *config);
 /* A new program: what was being executed is forgotten, the spindle goes on turning. */
 void lock_restart(struct lock *l);
 
-/* Every control cycle, whatever the axes do. */
-void lock_measure(struct lock *l, const struct spindle_feedback *spindle);
+/* Every control cycle, whatever the axes do. spindle: as long as lock_cycle is called in it. */
+static inline void lock_measure(struct lock *l, const struct spindle_feedback *spindle)
+{
+    l->spindle = spindle;
+    l->commands = false;
+    angle_measure(&l->angle, spindle->angle_rev);
+}
 
 /* Instead of motion_cycle when that says MOTION_HANDED_OVER. commanded_rpm: of the spindle, signed. */
 enum lock_result lock_cycle(struct lock *l, struct motion *m, const struct motion_operator *wanted,
                             double commanded_rpm, struct cycle_record *record);
 
 /* Does this cycle command the spindle? Then *rpm is the speed, signed. */
-bool lock_get_command(const struct lock *l, double *rpm);
+static inline bool lock_get_command(const struct lock *l, double *rpm)
+{
+    if (l->commands) {
+        *rpm = l->command_rpm;
+    }
+    return l->commands;
+}
 
 const struct diagnostic *lock_get_alarm(const struct lock *l);
 

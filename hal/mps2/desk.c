@@ -23,6 +23,13 @@
 #define CLOCK_HZ    25000000U
 #define NS_PER_TICK 40U
 
+/* The frames of a cycle: of those received, what the controller has not had; and room for those it sends. */
+struct bus {
+    const struct can_frame *received, *received_end;
+    struct can_frame *sent, *sent_end;
+    uint32_t refused;
+};
+
 /* Of the whole image: one controller and what it stands on. */
 struct desk {
     int program, in, out;
@@ -33,9 +40,9 @@ struct desk {
     struct tool tools[TOOLS_MAX];
     struct tool_table table;
     struct correction_tables correction;
+    struct bus bus;
     struct remote_inputs received;
     struct remote_outputs sent;
-    uint32_t taken; /* frames of received that the controller has had */
     struct controller controller;
     struct controller_reader reader;
     /* while tables are read */
@@ -59,23 +66,23 @@ _Noreturn void __assert_func(const char *file, int line, const char *function, c
 
 static bool bus_send(void *context, const struct can_frame *frame)
 {
-    struct desk *d = context;
+    struct bus *bus = context;
 
-    if (d->sent.frames == REMOTE_FRAMES_MAX) {
-        d->sent.refused++;
+    if (bus->sent == bus->sent_end) {
+        bus->refused++;
         return false;
     }
-    d->sent.frame[d->sent.frames++] = *frame;
+    *bus->sent++ = *frame;
     return true;
 }
 
 static bool bus_receive(void *context, struct can_frame *frame)
 {
-    struct desk *d = context;
+    struct bus *bus = context;
 
-    if (d->taken == d->received.frames)
+    if (bus->received == bus->received_end)
         return false;
-    *frame = d->received.frame[d->taken++];
+    *frame = *bus->received++;
     return true;
 }
 
@@ -179,15 +186,30 @@ static enum takt_error read_table(struct desk *d, int file)
     return axis_tables_add(&d->correction.axes, &d->stored, &wrong) ? TAKT_OK : wrong.code;
 }
 
+static enum takt_error read_parameters(struct desk *d, int file)
+{
+    struct remote_parameter parameter;
+
+    for (uint32_t i = 0; i < d->setup.parameters; i++) {
+        if (!read_all(file, &parameter, sizeof parameter))
+            return TAKT_ERROR_SOURCE_UNREADABLE;
+        if (!parameters_set(&d->parameters, parameter.number, parameter.value))
+            return TAKT_ERROR_PARAMETERS_FULL;
+    }
+    return TAKT_OK;
+}
+
 static enum takt_error read_setup(struct desk *d, int file)
 {
-    enum takt_error error = TAKT_OK;
+    enum takt_error error;
 
     if (!read_all(file, &d->setup, sizeof d->setup) || d->setup.magic != REMOTE_MAGIC ||
-        !read_all(file, &d->machine, sizeof d->machine) ||
-        !read_all(file, &d->parameters, sizeof d->parameters) || d->setup.tools > TOOLS_MAX ||
-        !read_all(file, d->tools, d->setup.tools * sizeof d->tools[0]))
+        !read_all(file, &d->machine, sizeof d->machine))
         return TAKT_ERROR_SOURCE_UNREADABLE;
+    error = read_parameters(d, file);
+    if (error == TAKT_OK && (d->setup.tools > TOOLS_MAX ||
+                             !read_all(file, d->tools, d->setup.tools * sizeof d->tools[0])))
+        error = TAKT_ERROR_SOURCE_UNREADABLE;
     d->table = (struct tool_table){d->tools, d->setup.tools};
     for (uint32_t i = 0; i < d->setup.tables && error == TAKT_OK; i++)
         error = read_table(d, file);
@@ -200,7 +222,7 @@ static void open_controller(struct desk *d)
     const struct controller_config config = {
         .machine = &d->machine,
         .source = {.read = program_read, .seek = program_seek, .context = d},
-        .can = {.send = bus_send, .receive = bus_receive, .context = d},
+        .can = {.send = bus_send, .receive = bus_receive, .context = &d->bus},
         .tools = &d->table,
         .reader = &d->reader,
         .parameters = &d->parameters,
@@ -217,8 +239,7 @@ static void open_controller(struct desk *d)
 /* Compares notes with the desk. False: the run ends here. */
 static bool begin(struct desk *d, int setup)
 {
-    const struct remote_hello hello = {REMOTE_MAGIC, sizeof d->machine, sizeof d->parameters,
-                                       sizeof d->tools[0]};
+    const struct remote_hello hello = {REMOTE_MAGIC, sizeof d->machine, sizeof d->tools[0]};
     struct remote_ready ready = {.clock_hz = CLOCK_HZ};
     struct diagnostic damage;
 
@@ -244,6 +265,14 @@ static void set_rise(struct desk *d)
                             d->received.rise_k[i]);
 }
 
+static void open_bus(struct desk *d)
+{
+    d->bus.received = d->received.frame;
+    d->bus.received_end = d->received.frame + d->received.frames;
+    d->bus.sent = d->sent.frame;
+    d->bus.sent_end = d->sent.frame + REMOTE_FRAMES_MAX;
+}
+
 static void run_cycle(struct desk *d)
 {
     uint32_t start = CORTEX_SYSTICK_VALUE;
@@ -259,6 +288,8 @@ static void fill_outputs(struct desk *d)
 {
     const struct cycle_record *record = controller_get_record(&d->controller);
 
+    d->sent.frames = (uint32_t)(d->bus.sent - d->sent.frame);
+    d->sent.refused = d->bus.refused;
     d->sent.state = controller_get_state(&d->controller);
     d->sent.fault = controller_get_fault(&d->controller)->code;
     d->sent.blocks = d->controller.path.pushed;
@@ -287,8 +318,7 @@ static bool ask(struct desk *d)
 static void run(struct desk *d)
 {
     while (ask(d) && d->received.go_on != 0) {
-        d->taken = 0;
-        d->sent.frames = 0;
+        open_bus(d);
         set_rise(d);
         run_cycle(d);
         fill_outputs(d);

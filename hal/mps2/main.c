@@ -18,7 +18,7 @@
 
 #include <string.h>
 
-#define TOOLS_MAX 100
+#define TOOLS_MAX 32
 
 #define PANEL_UNIT 1
 
@@ -41,7 +41,6 @@ static struct board {
     struct embedded_core core;
     struct uart panel, bus, log;
     struct slcan_can can;
-    struct machine machine;
     struct tool tools[TOOLS_MAX];
     volatile uint32_t ticks; /* since power-on */
     uint32_t waited;         /* ticks since the last cycle */
@@ -94,6 +93,11 @@ static void take_panel_byte(void *context, uint8_t byte)
     embedded_take_byte(&board.embedded, byte, now_us(context));
 }
 
+static const struct machine_axis *machine_axis_of(unsigned axis)
+{
+    return &board.embedded.service.controller.machine.axis[axis];
+}
+
 static bool is_drive(const struct machine_axis *axis)
 {
     return machine_axis_is_on_can(axis);
@@ -102,7 +106,7 @@ static bool is_drive(const struct machine_axis *axis)
 static void give_up_silent(void)
 {
     for (unsigned i = 0; i < AXIS_COUNT; i++) {
-        const struct machine_axis *axis = &board.machine.axis[i];
+        const struct machine_axis *axis = machine_axis_of(i);
 
         if (is_drive(axis) && !slcan_can_has_answered(&board.can, axis->drive_node))
             slcan_can_give_up(&board.can, axis->drive_node);
@@ -116,7 +120,7 @@ static bool have_answered(bool *all_in_step)
 
     *all_in_step = true;
     for (unsigned i = 0; i < AXIS_COUNT; i++) {
-        const struct machine_axis *axis = &board.machine.axis[i];
+        const struct machine_axis *axis = machine_axis_of(i);
 
         if (!is_drive(axis))
             continue;
@@ -163,8 +167,9 @@ STARTUP_INTERRUPTS(board_interrupts, 6) = {uart_0_receive, uart_0_send,    uart_
 
 static void open_embedded(void)
 {
+    struct machine machine; /* the controller has a copy */
     const struct embedded_config config = {
-        .machine = &board.machine,
+        .machine = &machine,
         .core = &board.core,
         .can = slcan_can_get_port(&board.can),
         .tools = board.tools,
@@ -181,7 +186,7 @@ static void open_embedded(void)
     };
     struct diagnostic damage;
 
-    machine_set_default(&board.machine);
+    machine_set_default(&machine);
     for (uint32_t i = 0; i < TOOLS_MAX; i++)
         board.tools[i].number = i + 1;
     embedded_init(&board.embedded, &config);

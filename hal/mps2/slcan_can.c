@@ -56,7 +56,7 @@ static bool send(void *context, const struct can_frame *frame)
     text[at++] = '\r';
     /* Counted first: the answer may come while the line is still being handed over. */
     if (frame->id == SYNC_ID)
-        can->cycle++;
+        can->cycle = (uint8_t)(can->cycle % UINT8_MAX + 1U);
     if ((frame->id & FUNCTION) == REQUEST_ID)
         can->asked[frame->id & NODE_MASK] = true;
     return uart_send(can->line, text, at);
@@ -155,7 +155,7 @@ bool slcan_can_is_in_step(const struct slcan_can *can, uint8_t node)
 
 bool slcan_can_has_answered(const struct slcan_can *can, uint8_t node)
 {
-    const uint32_t answered = can->answered[node & NODE_MASK];
+    const uint8_t answered = can->answered[node & NODE_MASK];
 
     return !can->asked[node & NODE_MASK] && (answered == 0 || answered == can->cycle);
 }

@@ -16,7 +16,7 @@
 #include <stdint.h>
 
 #define SLCAN_CAN_LINE_MAX   32
-#define SLCAN_CAN_FRAMES_MAX 128 /* received; a power of two */
+#define SLCAN_CAN_FRAMES_MAX 64 /* received; a power of two: ten of each of six drives */
 #define SLCAN_CAN_NODES      128
 
 struct slcan_can {
@@ -25,9 +25,9 @@ struct slcan_can {
     unsigned length;
     volatile uint32_t written, taken; /* frames received */
     struct can_frame frame[SLCAN_CAN_FRAMES_MAX];
-    volatile uint32_t cycle; /* number of the last SYNC */
+    volatile uint8_t cycle; /* number of the last SYNC, 1 ... 255 and on from 1; 0: none yet */
     /* of each node: the SYNC that it has answered last, 0: none; and whether an SDO waits for its answer */
-    volatile uint32_t answered[SLCAN_CAN_NODES];
+    volatile uint8_t answered[SLCAN_CAN_NODES];
     volatile bool asked[SLCAN_CAN_NODES];
     volatile bool lost; /* a frame found no room */
 };

@@ -11,8 +11,9 @@
 
 #define UART_COUNT 3
 
-/* Bytes that wait to be sent: a power of two, some cycles' frames. */
-#define UART_OUT_MAX 4096
+/* Bytes that wait to be sent: a power of two. A cycle's frames (six drives: 22 bytes each of a PDO and an SDO), a reply of
+ * Modbus (256), or the longest line of the log and some short ones; no cycle begins before the last one's frames have gone. */
+#define UART_OUT_MAX 512
 
 struct uart {
     unsigned number;                           /* 0 ... UART_COUNT - 1 */

@@ -1,5 +1,7 @@
 #include "port/embedded.h"
 
+#include "port/embedded_log.h"
+
 #include <string.h>
 
 #define NS_PER_US 1000
@@ -61,75 +63,6 @@ static void hear(void *context)
     unlock(e);
 }
 
-/* -- the log: what a reader wants to know who was not there -- */
-
-static const char *const state_names[PANEL_STATES] = {
-    "starting", "idle", "running",  "MDI",   "jogging",
-    "homing",   "held", "stopping", "alarm", "emergency stop",
-};
-
-static const char *const outcome_names[] = {"none", "completed", "aborted", "failed"};
-
-static void log_line(const struct embedded *e, const char *text)
-{
-    e->config.port.log(e->config.port.context, text);
-}
-
-static size_t append(char *line, size_t at, const char *text)
-{
-    while (*text != '\0' && at + 1 < EMBEDDED_LOG_MAX)
-        line[at++] = *text++;
-    line[at] = '\0';
-    return at;
-}
-
-static void log_pair(const struct embedded *e, const char *word, const char *text)
-{
-    char line[EMBEDDED_LOG_MAX];
-
-    (void)append(line, append(line, 0, word), text);
-    log_line(e, line);
-}
-
-static void log_alarm(const struct embedded *e, const struct diagnostic *alarm)
-{
-    char text[DIAGNOSTIC_TEXT_MAX];
-
-    (void)diagnostic_text(alarm, text);
-    log_pair(e, "alarm: ", text);
-}
-
-/* "completed, setpoints 0123456789abcdef" */
-static void log_outcome(const struct embedded *e)
-{
-    static const char digits[] = "0123456789abcdef";
-    char digest[17];
-    char line[EMBEDDED_LOG_MAX];
-    size_t at = append(line, 0, outcome_names[e->service.outcome]);
-
-    for (unsigned i = 0; i < 16; i++)
-        digest[i] = digits[e->service.digest >> (60 - 4 * i) & 15U];
-    digest[16] = '\0';
-    at = append(line, at, ", setpoints ");
-    (void)append(line, at, digest);
-    log_line(e, line);
-}
-
-static void log_changes(struct embedded *e)
-{
-    const enum panel_state state = service_get_state(&e->service);
-
-    if (e->service.runs != e->logged_runs)
-        log_outcome(e);
-    e->logged_runs = e->service.runs;
-    if (e->service.alarm != e->logged_alarm && e->service.alarm != PANEL_ALARM_NONE)
-        log_alarm(e, &e->service.alarm_text);
-    e->logged_alarm = e->service.alarm;
-    if (state != e->logged_state)
-        log_pair(e, "state: ", state_names[state]);
-    e->logged_state = state;
-}
-
 /* -- start -- */
 
 static void init_service(struct embedded *e)
@@ -175,11 +108,12 @@ void embedded_init(struct embedded *e, const struct embedded_config *config)
     e->config = *config;
     e->cycle_min_ns = UINT32_MAX;
     e->logged_state = PANEL_STATES;
+    line_ring_open(&e->received, config->gap_us);
     text_queue_init(&e->config.core->queue);
     plan_queue_init(&e->config.core->plan, &e->service);
     init_service(e);
     init_panel(e);
-    e->config.port.log(e->config.port.context, config->name);
+    embedded_log_line(e, config->name);
 }
 
 void embedded_refuse(struct embedded *e, const struct diagnostic *why)
@@ -188,7 +122,7 @@ void embedded_refuse(struct embedded *e, const struct diagnostic *why)
         return;
     e->refusal = *why;
     e->refused = true;
-    log_alarm(e, why);
+    embedded_log_alarm(e, why);
 }
 
 /* -- the control cycle -- */
@@ -243,33 +177,35 @@ static void update_health(struct embedded *e)
     service_set_health(&e->service, &health);
 }
 
-/* A clock of several interrupts may step back by a little; a line whose time did would be taken for long silent. */
-static uint32_t forward(struct embedded *e, uint32_t time_us)
+/* The line's own time: that of its silences. */
+static uint32_t pass_silence(struct embedded *e, bool is_one)
 {
-    if ((int32_t)(time_us - e->line_us) > 0)
-        e->line_us = time_us;
+    e->line_us += is_one ? e->config.gap_us : 0;
     return e->line_us;
+}
+
+static void send_reply(const struct embedded *e, const uint8_t *reply, size_t length)
+{
+    if (length > 0)
+        e->config.port.reply(e->config.port.context, reply, length);
 }
 
 /* What has come on the panel's line, and the silence after it. */
 static void serve_line(struct embedded *e)
 {
     const struct embedded_port *port = &e->config.port;
+    struct modbus_rtu *rtu = &e->config.core->rtu;
     uint8_t reply[MODBUS_RTU_MAX];
-    uint32_t came_us;
-    size_t length;
+    bool is_silent;
 
     while (!line_ring_is_empty(&e->received)) {
-        const uint8_t byte = line_ring_take(&e->received, port->now_us(port->context), &came_us);
+        const uint8_t byte = line_ring_take(&e->received, &is_silent);
 
         text_queue_use(&e->config.core->queue, e->service.job != SERVICE_NOTHING);
-        length = modbus_rtu_take(&e->config.core->rtu, byte, forward(e, came_us), reply);
-        if (length > 0)
-            port->reply(port->context, reply, length);
+        send_reply(e, reply, modbus_rtu_take(rtu, byte, pass_silence(e, is_silent), reply));
     }
-    length = modbus_rtu_idle(&e->config.core->rtu, forward(e, port->now_us(port->context)), reply);
-    if (length > 0)
-        port->reply(port->context, reply, length);
+    is_silent = line_ring_is_silent(&e->received, port->now_us(port->context));
+    send_reply(e, reply, modbus_rtu_idle(rtu, pass_silence(e, is_silent), reply));
 }
 
 void embedded_background(struct embedded *e)
@@ -279,5 +215,5 @@ void embedded_background(struct embedded *e)
     if (e->refused)
         return;
     service_background(&e->service);
-    log_changes(e);
+    embedded_log_changes(e);
 }

@@ -76,7 +76,7 @@ struct embedded {
     struct embedded_config config;
     struct service service;
     struct line_ring received; /* on the panel's line */
-    uint32_t line_us;          /* the latest time known of it */
+    uint32_t line_us;          /* of it: the sum of its silences */
     bool refused;
     struct diagnostic refusal;
     volatile uint32_t cycles; /* begun since power-on */

@@ -1,16 +1,45 @@
 #include "port/line_ring.h"
 
-/* An entry: 24 bits of time above 8 bits of data. */
-#define TIME_SHIFT 8
-#define TIME_MASK  0xFFFFFFU
+#include <string.h>
+
+#define BITS 8U /* of a byte of after_silence */
+
+void line_ring_open(struct line_ring *ring, uint32_t gap_us)
+{
+    memset(ring, 0, sizeof *ring);
+    ring->gap_us = gap_us;
+    ring->was_silent = true;
+}
+
+static void mark(volatile uint8_t *bits, unsigned bit, bool set)
+{
+    if (set)
+        *bits |= (uint8_t)(1U << bit);
+    else
+        *bits &= (uint8_t) ~(1U << bit);
+}
+
+/* A clock of several interrupts may step back by a little: no time has passed then. */
+static bool has_been_silent(const struct line_ring *ring, uint32_t now_us)
+{
+    const uint32_t quiet_us = now_us - ring->heard_us;
+
+    return quiet_us <= UINT32_MAX / 2U && quiet_us >= ring->gap_us;
+}
 
 bool line_ring_put(struct line_ring *ring, uint8_t byte, uint32_t now_us)
 {
     const uint32_t at = ring->written;
+    const uint32_t place = at % LINE_RING_MAX;
 
+    if (has_been_silent(ring, now_us))
+        ring->was_silent = true;
+    ring->heard_us = now_us;
     if (at - ring->taken == LINE_RING_MAX)
         return false;
-    ring->entry[at % LINE_RING_MAX] = now_us << TIME_SHIFT | byte;
+    ring->byte[place] = byte;
+    mark(&ring->after_silence[place / BITS], place % BITS, ring->was_silent);
+    ring->was_silent = false;
     ring->written = at + 1;
     return true;
 }
@@ -20,14 +49,19 @@ bool line_ring_is_empty(const struct line_ring *ring)
     return ring->taken == ring->written;
 }
 
-uint8_t line_ring_take(struct line_ring *ring, uint32_t now_us, uint32_t *came_us)
+uint8_t line_ring_take(struct line_ring *ring, bool *after_silence)
 {
     const uint32_t at = ring->taken;
-    const uint32_t entry = ring->entry[at % LINE_RING_MAX];
+    const uint32_t place = at % LINE_RING_MAX;
+    const uint8_t byte = ring->byte[place];
+    const unsigned bits = ring->after_silence[place / BITS];
 
-    const uint32_t age_us = (now_us - (entry >> TIME_SHIFT)) & TIME_MASK;
-
-    *came_us = age_us > TIME_MASK / 2U ? now_us : now_us - age_us;
+    *after_silence = (bits >> place % BITS & 1U) != 0;
     ring->taken = at + 1;
-    return (uint8_t)entry;
+    return byte;
+}
+
+bool line_ring_is_silent(const struct line_ring *ring, uint32_t now_us)
+{
+    return line_ring_is_empty(ring) && has_been_silent(ring, now_us);
 }

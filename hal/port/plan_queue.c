@@ -1,5 +1,6 @@
 #include "port/plan_queue.h"
 
+#include <assert.h>
 #include <string.h>
 
 void plan_queue_init(struct plan_queue *q, const struct service *service)
@@ -34,13 +35,10 @@ static uint32_t room(void *context)
 static bool check(struct plan_queue *q)
 {
     struct replay_header header;
-    struct diagnostic why;
-    const bool fits = replay_fit_read(&header, q->header, &why) &&
-                      replay_fit_machine(&header, &q->fit, &why) &&
-                      replay_fit_text(&header, &q->fit, &why);
+    const bool fits = replay_fit_read(&header, q->header, &q->why) &&
+                      replay_fit_machine(&header, &q->fit, &q->why) &&
+                      replay_fit_text(&header, &q->fit, &q->why);
 
-    if (!fits)
-        (void)diagnostic_text(&why, q->why);
     atomic_store(&q->state, fits ? PLAN_QUEUE_FITS : PLAN_QUEUE_REFUSED);
     return fits;
 }
@@ -84,11 +82,13 @@ static void end_stream(void *context, bool right)
         atomic_store(&q->state, PLAN_QUEUE_LOST);
 }
 
-static const char *why(void *context)
+static void why(void *context, char *text)
 {
     const struct plan_queue *q = context;
 
-    return q->why;
+    static_assert(DIAGNOSTIC_TEXT_MAX <= PANEL_ALARM_TEXT_MAX, "there is room for it");
+    if (q->why.code != TAKT_OK)
+        (void)diagnostic_text(&q->why, text);
 }
 
 struct panel_store plan_queue_get_store(struct plan_queue *q)
@@ -130,7 +130,7 @@ static void announce(void *context)
                                  .limits = s->controller.path.limits,
                                  .text_size = s->program_size,
                                  .text_crc = s->program_crc};
-    q->why[0] = '\0';
+    q->why.code = TAKT_OK;
     atomic_store(&q->read, 0);
     atomic_store(&q->written, 0);
     atomic_store(&q->state, PLAN_QUEUE_COMING);
@@ -163,4 +163,11 @@ struct service_plans plan_queue_get_plans(struct plan_queue *q)
 {
     return (struct service_plans){
         .announce = announce, .open = open, .forget = forget, .context = q};
+}
+
+void *plan_queue_lend(struct plan_queue *q)
+{
+    forget(q);
+    atomic_store(&q->read, atomic_load(&q->written));
+    return q->byte;
 }

@@ -13,6 +13,7 @@
 #include "replay/intake.h"
 #include "service/service.h"
 
+#include <stdalign.h>
 #include <stdatomic.h>
 #include <stdbool.h>
 #include <stdint.h>
@@ -40,14 +41,17 @@ struct plan_queue {
     atomic_uint written; /* bytes so far */
     atomic_uint read;
     uint8_t header[REPLAY_HEADER_BYTES];
-    uint8_t byte[PLAN_QUEUE_MAX];
-    char why[DIAGNOSTIC_TEXT_MAX]; /* it was refused */
+    alignas(8) uint8_t byte[PLAN_QUEUE_MAX];
+    struct diagnostic why; /* it was refused; TAKT_OK: it was not */
 };
 
 void plan_queue_init(struct plan_queue *q, const struct service *service);
 
 /* What the panel brings its bytes to. */
 struct panel_store plan_queue_get_store(struct plan_queue *q);
+
+/* Its PLAN_QUEUE_MAX bytes, at a multiple of 8, for something else while no program runs; a plan that waits is given up. */
+void *plan_queue_lend(struct plan_queue *q);
 
 /* What the service starts. */
 struct service_plans plan_queue_get_plans(struct plan_queue *q);

@@ -5,26 +5,29 @@
 #define REFUSED "settings refused: "
 #define STORED  "settings stored: they count from the next start on"
 
-/* Two texts that fit into a line together. */
-static void log_pair(const struct settings_upload *u, const char *first, const char *second)
+/* Why, in words. */
+static void tell(const struct settings_upload *u, char text[DIAGNOSTIC_TEXT_MAX])
 {
-    char line[sizeof REFUSED + DIAGNOSTIC_TEXT_MAX];
-    size_t at = 0;
+    if (u->why != NULL)
+        memcpy(text, u->why, strlen(u->why) + 1);
+    else
+        (void)diagnostic_text(&u->wrong, text);
+}
 
-    while (*first != '\0')
-        line[at++] = *first++;
-    while (*second != '\0')
-        line[at++] = *second++;
-    line[at] = '\0';
+static bool log_refusal(const struct settings_upload *u)
+{
+    char line[sizeof REFUSED + DIAGNOSTIC_TEXT_MAX] = REFUSED;
+
+    tell(u, line + sizeof REFUSED - 1);
     u->port.log(u->port.context, line);
+    return false;
 }
 
 /* why: shorter than DIAGNOSTIC_TEXT_MAX. */
 static bool refuse(struct settings_upload *u, const char *why)
 {
-    memmove(u->text, why, strlen(why) + 1);
-    log_pair(u, REFUSED, u->text);
-    return false;
+    u->why = why;
+    return log_refusal(u);
 }
 
 static bool may_load(const struct settings_upload *u)
@@ -57,15 +60,13 @@ static bool prepare(void *context)
     struct settings_upload *u = context;
     const uint8_t *bytes = store_look(u->store);
     struct machine machine;
-    char text[DIAGNOSTIC_TEXT_MAX];
-    struct diagnostic wrong;
 
     if (bytes == NULL)
         return refuse(u, "the settings are not complete");
-    if (settings_read(bytes, u->store->coming, &machine, &u->tables, &wrong))
-        return true;
-    (void)diagnostic_text(&wrong, text);
-    return refuse(u, text);
+    u->why = NULL;
+    return settings_read(bytes, u->store->coming, &machine, u->port.borrow(u->port.context),
+                         &u->wrong) ||
+           log_refusal(u);
 }
 
 static bool place(void *context)
@@ -74,21 +75,20 @@ static bool place(void *context)
 
     if (!store_commit(u->store))
         return refuse(u, "the memory for settings does not keep them");
-    log_pair(u, STORED, "");
+    u->port.log(u->port.context, STORED);
     return true;
 }
 
-static const char *why(void *context)
+static void why(void *context, char *text)
 {
-    const struct settings_upload *u = context;
-
-    return u->text;
+    tell(context, text);
 }
 
 struct panel_store settings_upload_open(struct settings_upload *upload, struct store *store,
                                         const struct settings_upload_port *port)
 {
     memset(upload, 0, sizeof *upload);
+    upload->why = "";
     upload->store = store;
     upload->port = *port;
     return (struct panel_store){.begin = begin,

@@ -14,6 +14,8 @@
 struct settings_upload_port {
     /* Are the drives off? Flash may keep the processor waiting. */
     bool (*may_load)(void *context);
+    /* Memory that tables are read into, to be looked at; it is needed no longer than that. */
+    struct correction_tables *(*borrow)(void *context);
     /* A line of the log. */
     void (*log)(void *context, const char *text);
     void *context; /* owned by whoever made the port */
@@ -23,8 +25,8 @@ struct settings_upload_port {
 struct settings_upload {
     struct store *store;
     struct settings_upload_port port;
-    struct correction_tables tables; /* of what is being looked at */
-    char text[DIAGNOSTIC_TEXT_MAX];
+    const char *why;         /* they were refused; NULL: as wrong says */
+    struct diagnostic wrong; /* with them */
 };
 
 /* For struct panel_config. store: opened; must outlive it. */

@@ -15,9 +15,9 @@
 #include <stddef.h>
 #include <stdint.h>
 
-/* Bytes; a power of two. A build may have others. */
+/* Bytes; a power of two. Longer programs are streamed. A build may have others. */
 #ifndef TEXT_QUEUE_MAX
-#define TEXT_QUEUE_MAX 8192
+#define TEXT_QUEUE_MAX 4096
 #endif
 
 struct text_queue {

@@ -18,7 +18,7 @@
 #include <assert.h>
 #include <stdint.h>
 
-#define REMOTE_MAGIC 0x324D5254U /* "TRM2" */
+#define REMOTE_MAGIC 0x334D5254U /* "TRM3" */
 
 /* In one cycle and direction: a boot sends one SDO a drive at a time, and drives answer in kind. */
 #define REMOTE_FRAMES_MAX 64
@@ -29,9 +29,8 @@
 /* Sent first by the image: what it was built with. */
 struct remote_hello {
     uint32_t magic;
-    uint32_t machine_size;    /* struct machine */
-    uint32_t parameters_size; /* struct parameters */
-    uint32_t tool_size;       /* struct tool */
+    uint32_t machine_size; /* struct machine */
+    uint32_t tool_size;    /* struct tool */
 };
 
 /*
@@ -40,12 +39,20 @@ struct remote_hello {
  */
 struct remote_setup {
     uint32_t magic;
-    uint32_t tools;     /* so many */
-    uint32_t tables;    /* so many stored tables follow */
-    uint32_t from_line; /* of struct controller_config, as the others */
+    uint32_t parameters; /* so many */
+    uint32_t tools;      /* so many */
+    uint32_t tables;     /* so many stored tables follow */
+    uint32_t from_line;  /* of struct controller_config, as the others */
     uint8_t exact_path;
     uint8_t block_delete;
     uint8_t unused[2];
+};
+
+/* Of those that are not 0. */
+struct remote_parameter {
+    uint32_t number;
+    uint32_t unused;
+    double value;
 };
 
 struct remote_table {

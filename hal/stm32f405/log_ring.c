@@ -5,7 +5,7 @@
 static void put_text(struct log_ring *ring, const char *text)
 {
     for (; *text != '\0'; text++)
-        ring->byte[ring->written++ % LOG_RING_MAX] = *text;
+        ring->byte[ring->written++ % LOG_RING_MAX] = (uint8_t)*text;
 }
 
 bool log_ring_put(struct log_ring *ring, const char *line)
@@ -24,11 +24,18 @@ bool log_ring_put(struct log_ring *ring, const char *line)
     return true;
 }
 
-size_t log_ring_take(struct log_ring *ring, uint8_t *bytes, size_t size)
+static size_t least(size_t a, size_t b)
 {
-    size_t count = 0;
+    return a < b ? a : b;
+}
 
-    while (count < size && ring->taken != ring->written)
-        bytes[count++] = (uint8_t)ring->byte[ring->taken++ % LOG_RING_MAX];
-    return count;
+size_t log_ring_take(struct log_ring *ring, const uint8_t **bytes, size_t most)
+{
+    size_t at;
+
+    ring->taken += ring->given;
+    at = ring->taken % LOG_RING_MAX;
+    ring->given = (uint32_t)least(least(ring->written - ring->taken, LOG_RING_MAX - at), most);
+    *bytes = ring->byte + at;
+    return ring->given;
 }

@@ -45,6 +45,7 @@ static struct board {
     struct embedded embedded;
     struct clock clock;
     struct usart panel, log;
+    uint8_t reply[MODBUS_RTU_MAX]; /* on its way to the panel */
     struct log_ring lines;
     struct bxcan can;
     struct step_output steps;
@@ -76,7 +77,9 @@ static uint32_t now_ns(void *context)
 static void reply(void *context, const uint8_t *bytes, size_t length)
 {
     (void)context;
-    (void)usart_send(&board.panel, bytes, length);
+    if (usart_is_idle(&board.panel))
+        memcpy(board.reply, bytes, length);
+    (void)usart_send(&board.panel, board.reply, length);
 }
 
 static void write_log(void *context, const char *text)
@@ -88,12 +91,12 @@ static void write_log(void *context, const char *text)
 /* What has been put into the ring, piece by piece. */
 static void send_log(void)
 {
-    uint8_t bytes[USART_SEND_MAX];
+    const uint8_t *bytes;
     size_t length;
 
-    if (board.log.sending || board.log.waiting)
+    if (!usart_is_idle(&board.log))
         return;
-    length = log_ring_take(&board.lines, bytes, sizeof bytes);
+    length = log_ring_take(&board.lines, &bytes, USART_SEND_MAX);
     if (length > 0)
         (void)usart_send(&board.log, bytes, length);
 }
@@ -318,9 +321,18 @@ static bool drives_are_off(void *context)
     return board.embedded.refused || service_get_state(&board.embedded.service) == PANEL_EMERGENCY;
 }
 
+/* Where a plan would wait for its start: new settings count from the next one on, and no plan lasts until then. */
+static struct correction_tables *borrow_tables(void *context)
+{
+    static_assert(sizeof(struct correction_tables) <= PLAN_QUEUE_MAX, "there is room for them");
+    (void)context;
+    return plan_queue_lend(&board_core.plan);
+}
+
 static void open_embedded(const struct machine *machine)
 {
-    const struct settings_upload_port settings = {.may_load = drives_are_off, .log = write_log};
+    const struct settings_upload_port settings = {
+        .may_load = drives_are_off, .borrow = borrow_tables, .log = write_log};
     const struct embedded_config config = {
         .machine = machine,
         .core = &board_core,

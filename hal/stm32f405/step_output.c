@@ -94,10 +94,20 @@ bool step_output_open(struct step_output *s, enum gpio_port port, uint32_t timer
     return set_stream(s, port);
 }
 
+/* In the buffer that is not being sent. They change at the start of a cycle; all of the controller's is behind that. */
+static void begin_slots(struct step_output *s)
+{
+    const bool second = (chip_read(STREAM_CR) & CR_SECOND) != 0;
+
+    step_slots_begin(&s->slots, s->levels[second ? 0 : 1]);
+}
+
 static bool pulse(void *context, const struct step_pulse *pulse)
 {
     struct step_output *s = context;
 
+    if (s->slots.word == NULL)
+        begin_slots(s);
     return step_slots_add(&s->slots, pulse);
 }
 
@@ -115,10 +125,9 @@ void step_output_begin(struct step_output *s)
     chip_write(CR1, CR1_ON);
 }
 
-/* The buffers change at the start of a cycle; this is well behind it. */
 void step_output_end(struct step_output *s)
 {
-    const bool second = (chip_read(STREAM_CR) & CR_SECOND) != 0;
-
-    step_slots_take(&s->slots, s->levels[second ? 0 : 1]);
+    if (s->slots.word == NULL)
+        begin_slots(s);
+    step_slots_take(&s->slots);
 }

@@ -12,7 +12,8 @@
 /* Private. */
 struct step_output {
     struct step_slots slots;
-    uint16_t levels[2][STEP_SLOTS_MAX]; /* one is being sent: not in the core-coupled memory */
+    /* One is being sent, the other one made: not in the core-coupled memory. */
+    uint16_t levels[2][STEP_SLOTS_MAX];
     bool runs;
 };
 

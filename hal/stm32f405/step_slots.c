@@ -11,14 +11,28 @@ bool step_slots_init(struct step_slots *s, uint32_t cycle_us)
 {
     memset(s, 0, sizeof *s);
     s->slots = cycle_us * NS_PER_US / STEP_SLOT_NS;
-    return s->slots > 0 && s->slots <= STEP_SLOTS_MAX && cycle_us * NS_PER_US % STEP_SLOT_NS == 0;
+    return s->slots >= STEP_SLOTS_OVERHANG && s->slots <= STEP_SLOTS_MAX &&
+           cycle_us * NS_PER_US % STEP_SLOT_NS == 0;
+}
+
+void step_slots_begin(struct step_slots *s, uint16_t *word)
+{
+    memset(word, 0, s->slots * sizeof *word);
+    memcpy(word, s->overhang, sizeof s->overhang);
+    memset(s->overhang, 0, sizeof s->overhang);
+    s->word = word;
+}
+
+static void set_pin(struct step_slots *s, unsigned slot, unsigned pin)
+{
+    uint16_t *word = slot < s->slots ? &s->word[slot] : &s->overhang[slot - s->slots];
+
+    *word |= (uint16_t)(1U << pin);
 }
 
 static void turn(struct step_slots *s, unsigned axis, bool backwards, unsigned slot)
 {
-    const unsigned pin = DIRECTION_PINS + axis;
-
-    s->word[slot] |= (uint16_t)(1U << pin);
+    set_pin(s, slot, DIRECTION_PINS + axis);
     s->direction = (uint8_t)((s->direction & ~(1U << axis)) | (unsigned)backwards << axis);
 }
 
@@ -30,7 +44,7 @@ static bool add_axis(struct step_slots *s, unsigned axis, bool backwards, unsign
         return false;
     if (backwards != ((s->direction & 1U << axis) != 0))
         turn(s, axis, backwards, slot - 1);
-    s->word[slot] |= (uint16_t)(1U << axis);
+    set_pin(s, slot, axis);
     s->free[axis] = (int32_t)slot + 2;
     return true;
 }
@@ -47,17 +61,16 @@ bool step_slots_add(struct step_slots *s, const struct step_pulse *pulse)
     return good;
 }
 
-void step_slots_take(struct step_slots *s, uint16_t *levels)
+void step_slots_take(struct step_slots *s)
 {
     unsigned level = s->level;
 
     for (unsigned i = 0; i < s->slots; i++) {
         level ^= s->word[i] & ~STEPS_MASK;
-        levels[i] = (uint16_t)(level | (s->word[i] & STEPS_MASK));
+        s->word[i] = (uint16_t)(level | (s->word[i] & STEPS_MASK));
     }
     s->level = (uint16_t)level;
-    memmove(s->word, s->word + s->slots, STEP_SLOTS_OVERHANG * sizeof *s->word);
-    memset(s->word + STEP_SLOTS_OVERHANG, 0, STEP_SLOTS_MAX * sizeof *s->word);
+    s->word = NULL;
     for (unsigned axis = 0; axis < AXIS_COUNT; axis++)
         s->free[axis] -= (int32_t)s->slots;
 }

@@ -21,20 +21,24 @@
 
 struct step_slots {
     unsigned slots; /* in a cycle */
-    /* Of the cycle to come: step pins that are high, direction pins that change. */
-    uint16_t word[STEP_SLOTS_MAX + STEP_SLOTS_OVERHANG];
+    /* Of the cycle to come: step pins that are high, direction pins that change. Made where its levels will be. */
+    uint16_t *word; /* NULL: not begun */
+    uint16_t overhang[STEP_SLOTS_OVERHANG];
     uint16_t level;           /* of the direction pins before it */
     uint8_t direction;        /* as the pins stand after it, by axis */
     int32_t free[AXIS_COUNT]; /* the first slot in which an axis may step */
 };
 
-/* False: such a cycle is not possible: at most 2 ms, whole slots. */
+/* False: such a cycle is not possible: at least 10 us, at most 2 ms, whole slots. */
 bool step_slots_init(struct step_slots *s, uint32_t cycle_us);
 
-/* False: no room in this cycle. Pins 0 to 5 of the port step, 8 to 13 tell the direction, of X Y Z A B C. */
+/* Begins the cycle to come, in memory for as many words as it has slots, which nobody else uses until it is taken. */
+void step_slots_begin(struct step_slots *s, uint16_t *word);
+
+/* Of a cycle that has begun. False: no room in it. Pins 0 to 5 of the port step, 8 to 13 tell the direction, of X Y Z A B C. */
 bool step_slots_add(struct step_slots *s, const struct step_pulse *pulse);
 
-/* Gives the levels of the cycle and begins the next one. All other pins of the port are low. */
-void step_slots_take(struct step_slots *s, uint16_t *levels);
+/* Makes the levels of the cycle, in its memory, and ends it. All other pins of the port are low. */
+void step_slots_take(struct step_slots *s);
 
 #endif

@@ -64,13 +64,18 @@ bool usart_open(struct usart *u, const struct usart_config *config)
     return true;
 }
 
+bool usart_is_idle(const struct usart *u)
+{
+    return !u->sending && !u->waiting;
+}
+
 bool usart_send(struct usart *u, const uint8_t *byte, size_t length)
 {
-    if (u->sending || u->waiting || length == 0 || length > USART_SEND_MAX) {
+    if (!usart_is_idle(u) || length == 0 || length > USART_SEND_MAX) {
         u->counts.lost++;
         return false;
     }
-    memcpy(u->byte, byte, length);
+    u->byte = byte;
     u->length = length;
     u->at = 0;
     u->waiting = true;

@@ -1,7 +1,7 @@
 /*
  * A serial line, with the driver of an RS-485 transceiver if it has one.
  *
- *     usart_send      copies a reply and notes when it came
+ *     usart_send      takes a reply that stays where it is until it has gone
  *     usart_poll      begins to send it once the line has been silent for the gap
  *     usart_interrupt byte by byte; after the last bit the transceiver listens again
  *
@@ -44,7 +44,7 @@ struct usart_counts {
 struct usart {
     struct usart_config config;
     volatile bool sending, waiting; /* waiting: for the gap, with something to send */
-    uint8_t byte[USART_SEND_MAX];
+    const uint8_t *byte;            /* the caller's */
     size_t length;
     volatile size_t at;
     volatile uint32_t heard_us; /* when the last byte came */
@@ -54,8 +54,13 @@ struct usart {
 /* Its pins have been set and its clock is on. False: the clock gives no such rate within 2 %. */
 bool usart_open(struct usart *u, const struct usart_config *config);
 
-/* False: something is being sent, or it is too long; nothing is sent of it. */
+/*
+ * byte: not touched until usart_is_idle. False: something is being sent, or it is too long; nothing is sent of it.
+ */
 bool usart_send(struct usart *u, const uint8_t *byte, size_t length);
+
+/* Nothing is being sent, or waits to be. */
+bool usart_is_idle(const struct usart *u);
 
 /* As often as there is time. */
 void usart_poll(struct usart *u, uint32_t now_us);

@@ -48,6 +48,14 @@ set(TAKT_FAST_SOURCES
   motion/average.c motion/lead.c motion/lead_feed.c motion/lead_place.c motion/motion.c
   correction/correction.c correction/fade.c
   drive/drives_check.c drive/drives_receive.c drive/drives_send.c controller/controller.c)
+set(TAKT_FAST_OPTION -O2)
+# On the faster processor, whose images have flash to spare, with more of it inlined, and what only cycles are in that do
+# more than others: 30 kB, and the worst cycle takes 200 instructions less, the mean one 90.
+if(TAKT_CPU STREQUAL cortex-m7)
+  set(TAKT_FAST_OPTION -O3)
+  list(APPEND TAKT_FAST_SOURCES canopen/sdo_client.c canopen/sync.c controller/approach.c controller/spindle_watch.c
+    drive/drives_home.c drive/drives_start.c plan/ceiling.c plan/law.c plan/record.c plan/ring.c program/move.c)
+endif()
 # With little flash memory, those of them for size as well that gain least: 2 kB, and a cycle takes 1 to 2 % longer.
 if(TAKT_SMALL)
   list(REMOVE_ITEM TAKT_FAST_SOURCES motion/lead_feed.c motion/lead_place.c

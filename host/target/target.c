@@ -32,10 +32,39 @@ bool target_is_known(const char *name)
 
 /* -- start -- */
 
+/* False when there are no more. */
+static bool next_parameter(const struct parameters *parameters, struct remote_parameter *next)
+{
+    unsigned number = next->number;
+    const bool found = parameters_next(parameters, &number, &next->value);
+
+    next->number = number;
+    return found;
+}
+
+static uint32_t count_parameters(const struct parameters *parameters)
+{
+    struct remote_parameter parameter = {0};
+    uint32_t count = 0;
+
+    while (next_parameter(parameters, &parameter))
+        count++;
+    return count;
+}
+
+static void write_parameters(FILE *file, const struct parameters *parameters)
+{
+    struct remote_parameter parameter = {0};
+
+    while (next_parameter(parameters, &parameter))
+        (void)fwrite(&parameter, sizeof parameter, 1, file);
+}
+
 static bool write_setup(FILE *file, const struct target_config *config)
 {
     const struct remote_setup setup = {
         .magic = REMOTE_MAGIC,
+        .parameters = count_parameters(config->parameters),
         .tools = (uint32_t)config->tools->count,
         .tables = config->tables,
         .from_line = config->from_line,
@@ -45,7 +74,7 @@ static bool write_setup(FILE *file, const struct target_config *config)
 
     (void)fwrite(&setup, sizeof setup, 1, file);
     (void)fwrite(config->machine, sizeof *config->machine, 1, file);
-    (void)fwrite(config->parameters, sizeof *config->parameters, 1, file);
+    write_parameters(file, config->parameters);
     if (config->tools->count > 0) /* else there may be no array at all */
         (void)fwrite(config->tools->tools, sizeof *config->tools->tools, config->tools->count,
                      file);
@@ -114,7 +143,6 @@ static bool shake_hands(struct target *t)
     if (!wire_read(t->from, &hello, sizeof hello))
         return fail(t, "QEMU has ended before the image said anything");
     if (hello.magic != REMOTE_MAGIC || hello.machine_size != sizeof(struct machine) ||
-        hello.parameters_size != sizeof(struct parameters) ||
         hello.tool_size != sizeof(struct tool))
         return fail(t, "the image is of another version: build it anew");
     if (!wire_read(t->from, &ready, sizeof ready))

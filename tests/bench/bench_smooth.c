@@ -37,7 +37,7 @@ static struct program program;
 static struct parameters parameters;
 static struct offset offset;
 static struct smooth smooth;
-static struct relax_beside beside;
+static union smooth_scratch scratch;
 
 static struct move *moves;
 static size_t move_count;
@@ -115,7 +115,7 @@ static void take_all(struct yield *yield)
 {
     struct smooth_piece piece;
 
-    while (smooth_take(&smooth, &beside, &piece)) {
+    while (smooth_take(&smooth, &scratch, &piece)) {
         yield->pieces++;
         yield->nominal_s += piece.interval_s / fmin(piece.rate.most, piece.rate.programmed);
     }

@@ -8,6 +8,7 @@
 #define CYCLE_NS 1000000U
 
 static struct step_slots slots;
+static uint16_t levels[STEP_SLOTS_MAX];
 
 /* What a driver at the pins sees. */
 struct driver {
@@ -24,6 +25,8 @@ void setUp(void)
     memset(&driver, 0, sizeof driver);
     TEST_ASSERT_TRUE(step_slots_init(&slots, CYCLE_NS / 1000U));
     TEST_ASSERT_EQUAL(400, slots.slots);
+    memset(levels, 0xFF, sizeof levels);
+    step_slots_begin(&slots, levels);
 }
 
 void tearDown(void)
@@ -57,11 +60,10 @@ static void drive(uint16_t level)
 
 static void end_cycle(void)
 {
-    static uint16_t levels[STEP_SLOTS_MAX];
-
-    step_slots_take(&slots, levels);
+    step_slots_take(&slots);
     for (unsigned i = 0; i < slots.slots; i++)
         drive(levels[i]);
+    step_slots_begin(&slots, levels);
 }
 
 static bool step(uint32_t time_ns, unsigned axes, unsigned direction)
@@ -143,6 +145,7 @@ static void test_cycles_that_are_too_long_or_no_whole_slots_are_refused(void)
     TEST_ASSERT_FALSE(step_slots_init(&slots, 2500));
     TEST_ASSERT_FALSE(step_slots_init(&slots, 101));
     TEST_ASSERT_FALSE(step_slots_init(&slots, 0));
+    TEST_ASSERT_FALSE(step_slots_init(&slots, 5));
 }
 
 int main(void)

@@ -231,20 +231,22 @@ static struct log_ring ring;
 
 static void test_lines_of_the_log_come_out_whole_and_in_order(void)
 {
-    char all[64] = "";
+    const uint8_t *bytes;
 
     memset(&ring, 0, sizeof ring);
     TEST_ASSERT_TRUE(log_ring_put(&ring, "one"));
     TEST_ASSERT_TRUE(log_ring_put(&ring, "two"));
-    TEST_ASSERT_EQUAL(7, log_ring_take(&ring, (uint8_t *)all, 7));
-    TEST_ASSERT_EQUAL(3, log_ring_take(&ring, (uint8_t *)all + 7, 50));
-    TEST_ASSERT_EQUAL_STRING("one\r\ntwo\r\n", all);
+    TEST_ASSERT_EQUAL(7, log_ring_take(&ring, &bytes, 7));
+    TEST_ASSERT_EQUAL_MEMORY("one\r\ntw", bytes, 7);
+    TEST_ASSERT_EQUAL(3, log_ring_take(&ring, &bytes, 50));
+    TEST_ASSERT_EQUAL_MEMORY("o\r\n", bytes, 3);
+    TEST_ASSERT_EQUAL(0, log_ring_take(&ring, &bytes, 50));
 }
 
 static void test_a_line_without_room_is_left_out_whole(void)
 {
     static char line[LOG_RING_MAX];
-    uint8_t byte;
+    const uint8_t *bytes;
 
     memset(&ring, 0, sizeof ring);
     memset(line, 'x', LOG_RING_MAX - 1);
@@ -253,9 +255,28 @@ static void test_a_line_without_room_is_left_out_whole(void)
     TEST_ASSERT_TRUE(log_ring_put(&ring, line));
     TEST_ASSERT_FALSE(log_ring_put(&ring, ""));
     TEST_ASSERT_EQUAL(2, ring.left_out);
-    TEST_ASSERT_EQUAL(1, log_ring_take(&ring, &byte, 1));
-    TEST_ASSERT_EQUAL(1, log_ring_take(&ring, &byte, 1));
+    TEST_ASSERT_EQUAL(1, log_ring_take(&ring, &bytes, 1));
+    TEST_ASSERT_EQUAL(1, log_ring_take(&ring, &bytes, 1));
+    TEST_ASSERT_FALSE_MESSAGE(log_ring_put(&ring, ""), "one byte may still be on its way");
+    TEST_ASSERT_EQUAL(1, log_ring_take(&ring, &bytes, 1));
     TEST_ASSERT_TRUE(log_ring_put(&ring, ""));
+}
+
+static void test_a_line_over_the_end_of_the_ring_comes_in_two_pieces(void)
+{
+    static char line[LOG_RING_MAX];
+    const uint8_t *bytes;
+
+    memset(&ring, 0, sizeof ring);
+    memset(line, 'x', LOG_RING_MAX - 4);
+    TEST_ASSERT_TRUE(log_ring_put(&ring, line));
+    TEST_ASSERT_EQUAL(LOG_RING_MAX - 2, log_ring_take(&ring, &bytes, LOG_RING_MAX));
+    TEST_ASSERT_EQUAL(0, log_ring_take(&ring, &bytes, LOG_RING_MAX));
+    TEST_ASSERT_TRUE(log_ring_put(&ring, "ab"));
+    TEST_ASSERT_EQUAL(2, log_ring_take(&ring, &bytes, 50));
+    TEST_ASSERT_EQUAL_MEMORY("ab", bytes, 2);
+    TEST_ASSERT_EQUAL(2, log_ring_take(&ring, &bytes, 50));
+    TEST_ASSERT_EQUAL_MEMORY("\r\n", bytes, 2);
 }
 
 int main(void)
@@ -274,5 +295,6 @@ int main(void)
     RUN_TEST(test_a_shout_ends_even_when_the_line_is_stuck);
     RUN_TEST(test_lines_of_the_log_come_out_whole_and_in_order);
     RUN_TEST(test_a_line_without_room_is_left_out_whole);
+    RUN_TEST(test_a_line_over_the_end_of_the_ring_comes_in_two_pieces);
     return UNITY_END();
 }

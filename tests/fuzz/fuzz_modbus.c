@@ -99,10 +99,10 @@ static void store_end(void *context, bool right)
     (void)right;
 }
 
-static const char *store_why(void *context)
+static void store_why(void *context, char *text)
 {
     (void)context;
-    return changes % 2 == 0 ? "there is no room" : NULL;
+    memset(text, changes % 2 == 0 ? 'x' : '\0', PANEL_ALARM_TEXT_MAX - 1);
 }
 
 /* An exception is a promise that nothing has changed. */

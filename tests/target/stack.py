@@ -25,7 +25,7 @@ OPERATORS = (r"function_.*|add|subtract|multiply|divide|modulo|power|equal|not_e
 STORE = r"begin|begin_stream|bring|prepare|place|room|end|look|order|hear|settings_.*|may_load"
 CALLS = (
     (r"answer_.*|modbus_answer", r"panel_read|panel_write"),
-    (r"begin_layer|correction_.*", LAYER),
+    (r"begin_layer|exchange_tables|correction_.*", LAYER),
     (r"decimal_read", r"wide_.*"),
     (r"embedded_.*|hear|order|log_.*|serve_line|refuse|forward|lock|unlock", PORT),
     (r"expression_.*|read_.*", OPERATORS),
@@ -39,7 +39,7 @@ CALLS = (
     (r"replay_read|intake_.*", r"take|is_lost"),
     (r"run_line|run_step.*", CODES),
     (r"send_.*", r"send"),
-    (r"begin|take", r"drives_are_off|write_log"),
+    (r"begin|take|prepare|place", r"drives_are_off|write_log|borrow_tables"),
     (r"store_.*", r"erase|program"),
     (r"usart_interrupt", r"take_(panel|log)_byte"),
     (r"drives_.*", r"receive|send|sdo_.*"),

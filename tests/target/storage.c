@@ -77,6 +77,12 @@ static bool may_load(void *context)
     return true;
 }
 
+static struct correction_tables *lend_tables(void *context)
+{
+    (void)context;
+    return &board.tables;
+}
+
 static void no_log(void *context, const char *text)
 {
     (void)context;
@@ -106,7 +112,8 @@ static void stop_after(uint32_t ticks)
 
 static bool store_new(const char *path, uint32_t ticks)
 {
-    static const struct settings_upload_port port = {.may_load = may_load, .log = no_log};
+    static const struct settings_upload_port port = {
+        .may_load = may_load, .borrow = lend_tables, .log = no_log};
     const int file = semihosting_open(path, SEMIHOSTING_READ);
     const struct panel_store to = settings_upload_open(&board.upload, &board.store, &port);
     const size_t size = file < 0 ? 0 : semihosting_read(file, board.coming, SETTINGS_MAX);

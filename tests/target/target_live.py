@@ -17,14 +17,14 @@ import serial_pair
 import takt_test as t
 
 PROGRAM = "G21 G90 G61 F3000\nG1 X6 Y4\nG2 X10 Y0 I0 J-4\nG1 X0 Z-1\nG0 Z1\nM2\n"
-SMOOTH = "G21 G90 G64 P0.01 F3000\nG1 X6 Y4 Z0\nG2 X10 Y0 I0 J-4\nG1 X0 Z-1\nG0 Z0\nM2\n"
+SMOOTH = "G21 G90 G64 P0.01 F3000\nG1 X3 Y2 Z0\nG2 X5 Y0 I0 J-2\nG1 X0 Z-1\nG0 Z0\nM2\n"
 LONG = "G21 G90 G64 P0.01 F3000\n" + "".join(f"G1 X{x} Y{x % 2}\n" for x in range(1, 36)) + "G1 Z2\nM2\n"
 IDLE, HOMING = "1", "5"
 KERNEL = "--kernel" in sys.argv
 INTERFACE = "slcan0"
 
 # The controller keeps so many bytes of a plan that is not running yet.
-KEPT_BYTES = 4096
+KEPT_BYTES = 2048
 
 
 def start_drives(bus):

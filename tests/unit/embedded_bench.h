@@ -96,7 +96,7 @@ static inline void note(double value, double *most)
 
 static inline void watch_axis(unsigned i)
 {
-    const double at = embedded.service.controller.setpoint.at[i];
+    const double at = embedded.service.controller.record.set.at[i];
     const double v = (at - last.at[i]) / TAU;
     const double a = (v - velocity.at[i]) / TAU;
 

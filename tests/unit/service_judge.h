@@ -20,7 +20,7 @@ static void judge_from_rest(void)
 {
     for (unsigned i = 0; i < JUDGED_AXES; i++)
         for (unsigned k = 0; k < 4; k++)
-            judged[i][k] = service.controller.setpoint.at[i];
+            judged[i][k] = service.controller.record.set.at[i];
 }
 
 static void begin_judging(void)
@@ -44,7 +44,7 @@ static void judged_cycle(void)
 {
     cycle();
     for (unsigned i = 0; i < JUDGED_AXES; i++)
-        judge_axis(judged[i], service.controller.setpoint.at[i]);
+        judge_axis(judged[i], service.controller.record.set.at[i]);
 }
 
 static void judged_cycles(unsigned count)

@@ -96,9 +96,9 @@ static void test_a_background_that_stops_is_waited_for_at_rest_and_counted(void)
     TEST_ASSERT_EQUAL_INT(CONTROLLER_RUNNING, run(false));
     TEST_ASSERT_TRUE(controller_get_late(&controller) > 0);
     TEST_ASSERT_EQUAL_DOUBLE(0.0, controller_get_record(&controller)->feed_mm_s);
-    TEST_ASSERT_TRUE(controller.setpoint.at[AXIS_X] < 55.0);
+    TEST_ASSERT_TRUE(controller.record.set.at[AXIS_X] < 55.0);
     TEST_ASSERT_EQUAL_INT(CONTROLLER_COMPLETED, run(true));
-    TEST_ASSERT_DOUBLE_WITHIN(1e-9, 55.0, controller.setpoint.at[AXIS_X]);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-9, 55.0, controller.record.set.at[AXIS_X]);
 }
 
 static void test_an_error_of_the_program_is_the_fault_when_its_moves_are_done(void)
@@ -120,8 +120,8 @@ static void expect_fault(const char *program, enum takt_error code, uint32_t lin
 static void test_probing_that_must_make_contact_fails_when_nothing_answers(void)
 {
     expect_fault("F600 G0 X1\nG38.2 Z-2\nG0 X5\n", TAKT_ERROR_PROBE_NO_CONTACT, 2);
-    TEST_ASSERT_DOUBLE_WITHIN(1e-9, -2.0, controller.setpoint.at[AXIS_Z]);
-    TEST_ASSERT_DOUBLE_WITHIN(1e-9, 1.0, controller.setpoint.at[AXIS_X]);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-9, -2.0, controller.record.set.at[AXIS_Z]);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-9, 1.0, controller.record.set.at[AXIS_X]);
     expect_fault("F600\nG38.4 Z-2\n", TAKT_ERROR_PROBE_CLEAR, 2);
 }
 
@@ -129,9 +129,9 @@ static void test_probing_that_may_fail_goes_on(void)
 {
     start("F600\nG38.3 Z-2\nG0 X#5070 Y3\nM2\n");
     TEST_ASSERT_EQUAL_INT(CONTROLLER_COMPLETED, run(true));
-    TEST_ASSERT_DOUBLE_WITHIN(1e-9, -2.0, controller.setpoint.at[AXIS_Z]);
-    TEST_ASSERT_DOUBLE_WITHIN(1e-9, 3.0, controller.setpoint.at[AXIS_Y]);
-    TEST_ASSERT_DOUBLE_WITHIN(1e-9, 0.0, controller.setpoint.at[AXIS_X]);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-9, -2.0, controller.record.set.at[AXIS_Z]);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-9, 3.0, controller.record.set.at[AXIS_Y]);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-9, 0.0, controller.record.set.at[AXIS_X]);
 }
 
 /* There is no contact to lose: G38.5 has found what it looks for in its first cycle, and brakes. */
@@ -139,17 +139,17 @@ static void test_probing_away_from_nothing_ends_where_it_begins(void)
 {
     start("F600\nG38.5 Z-2\nG0 X#5070\nM2\n");
     TEST_ASSERT_EQUAL_INT(CONTROLLER_COMPLETED, run(true));
-    TEST_ASSERT_DOUBLE_WITHIN(0.05, 0.0, controller.setpoint.at[AXIS_Z]);
-    TEST_ASSERT_DOUBLE_WITHIN(1e-9, 1.0, controller.setpoint.at[AXIS_X]);
+    TEST_ASSERT_DOUBLE_WITHIN(0.05, 0.0, controller.record.set.at[AXIS_Z]);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-9, 1.0, controller.record.set.at[AXIS_X]);
 }
 
 static void test_an_involute_is_run_to_its_end(void)
 {
     start("F600 G0 X4\nG3.2 X6.283185307 Y4 I-4 R4\nG2.2 X4 Y0 I-6.283185307 J-4 R4 Z1\nM2\n");
     TEST_ASSERT_EQUAL_INT(CONTROLLER_COMPLETED, run(true));
-    TEST_ASSERT_DOUBLE_WITHIN(1e-9, 4.0, controller.setpoint.at[AXIS_X]);
-    TEST_ASSERT_DOUBLE_WITHIN(1e-9, 0.0, controller.setpoint.at[AXIS_Y]);
-    TEST_ASSERT_DOUBLE_WITHIN(1e-9, 1.0, controller.setpoint.at[AXIS_Z]);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-9, 4.0, controller.record.set.at[AXIS_X]);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-9, 0.0, controller.record.set.at[AXIS_Y]);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-9, 1.0, controller.record.set.at[AXIS_Z]);
 }
 
 /* Without a spindle nothing ever answers. */
@@ -159,7 +159,7 @@ static void test_a_spindle_that_does_not_reach_its_speed_is_a_fault(void)
     controller.spindle.at_speed_s = 0.1;
     TEST_ASSERT_EQUAL_INT(CONTROLLER_FAULTED, run(true));
     TEST_ASSERT_EQUAL_INT(TAKT_ERROR_SPINDLE_SLOW, controller_get_fault(&controller)->code);
-    TEST_ASSERT_EQUAL_DOUBLE(0.0, controller.setpoint.at[AXIS_X]);
+    TEST_ASSERT_EQUAL_DOUBLE(0.0, controller.record.set.at[AXIS_X]);
 }
 
 int main(void)

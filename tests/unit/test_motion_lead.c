@@ -71,7 +71,8 @@ static void push_block(const struct ceiling *c, double from_mm, double end_mm)
 {
     struct path *path = &paths[c - ceilings];
 
-    path->ring.block[path->pushed].start = path_units(from_mm);
+    path->ring.block[path->pushed] =
+        (struct path_block){.start = path_units(from_mm), .cycles = WINDOW};
     path->pushed++;
     path->position = path_units(end_mm);
 }
@@ -94,9 +95,7 @@ static void append(struct ceiling *c, const struct stretch *s, double ratio, dou
         .feed_max_mm_s = single_feed(s->feed),
         .start = block & 0x1ffU,
         .leave = (block + 1) & 0x1ffU,
-        .cycles = WINDOW,
         .landing = CEILING_NONE,
-        .overrides = CEILING_FEED | CEILING_HOLD,
         .opens = true,
     };
     push_block(c, from_mm, end_mm);
@@ -472,8 +471,6 @@ static void lay_joint(struct ceiling *c, double feed)
     plan(c);
     for (unsigned k = 0; k < 2; k++) {
         c->piece[k].landing = 1;
-        c->piece[k].way = CEILING_NONE;
-        c->piece[k].way_max = CEILING_NONE;
     }
 }
 

@@ -168,6 +168,52 @@ static void test_commands_keep_their_place(void)
     expect_end();
 }
 
+static void expect_own(const struct move *m, double tolerance_mm, double merge_mm,
+                       unsigned overrides, unsigned correction_off)
+{
+    TEST_ASSERT_EQUAL_DOUBLE(tolerance_mm, m->tolerance_mm);
+    TEST_ASSERT_EQUAL_DOUBLE(merge_mm, m->merge_mm);
+    TEST_ASSERT_EQUAL_UINT(overrides, m->overrides);
+    TEST_ASSERT_EQUAL_UINT(correction_off, m->correction_off);
+    TEST_ASSERT_EQUAL_UINT(CUTTER_LEFT, m->contour_side);
+}
+
+/* M72 brings back what else no word may change inside of a contour. */
+static void test_moves_of_a_contour_keep_what_is_their_own(void)
+{
+    struct move m;
+
+    reader_prepare(&reader);
+    reader.config.correction_layers = 3;
+    reader_text(&reader, "G64 P0.05 M49\nM70\nG64 P0.1 Q0.02 M48\nG41.1 D2\nG1 X10 F600\nX20\n"
+                         "G4 P1.5\nT5\nM72\nG1 X30 F1200\nM121\nZ5 F60\nX40 F1200\nG40 X50\n");
+    offset_open(&offset, &reader.config);
+    for (unsigned x = 10; x <= 20; x += 10) {
+        m = expect(MOVE_FEED, x, 1.0, 0.0);
+        expect_own(&m, 0.1, 0.02, OVERRIDE_FEED | OVERRIDE_SPINDLE | OVERRIDE_HOLD, 0);
+        TEST_ASSERT_EQUAL_DOUBLE(10.0, m.feed_mm_s);
+        TEST_ASSERT_EQUAL_INT(x == 10, m.cutter_entry);
+    }
+    TEST_ASSERT_EQUAL_INT(PROGRAM_MOVE, next(&m));
+    TEST_ASSERT_EQUAL_INT(MOVE_DWELL, m.kind);
+    TEST_ASSERT_EQUAL_DOUBLE(1.5, m.dwell_s);
+    TEST_ASSERT_EQUAL_UINT32(7, m.line);
+    TEST_ASSERT_EQUAL_INT(PROGRAM_MOVE, next(&m));
+    TEST_ASSERT_EQUAL_INT(MOVE_TOOL, m.kind);
+    TEST_ASSERT_EQUAL_UINT32(5, m.tool);
+    TEST_ASSERT_EQUAL_UINT32(8, m.line);
+    m = expect(MOVE_FEED, 30.0, 1.0, 0.0);
+    expect_own(&m, 0.05, 0.05, OVERRIDE_HOLD, 0);
+    m = expect(MOVE_FEED, 30.0, 1.0, 5.0);
+    expect_own(&m, 0.05, 0.05, OVERRIDE_HOLD, 7);
+    TEST_ASSERT_EQUAL_DOUBLE(1.0, m.feed_mm_s);
+    TEST_ASSERT_EQUAL_UINT32(12, m.line);
+    m = expect(MOVE_FEED, 40.0, 1.0, 5.0);
+    expect_own(&m, 0.05, 0.05, OVERRIDE_HOLD, 7);
+    (void)expect(MOVE_FEED, 50.0, 0.0, 5.0);
+    expect_end();
+}
+
 /* A step of 1 under a tool of radius 5: the way at height 5 meets the circle about the step's edge at height 5. */
 static void test_a_step_lower_than_the_tool_is_passed_over_with_a_warning(void)
 {
@@ -405,6 +451,7 @@ int main(void)
     RUN_TEST(test_a_helix_keeps_its_turns_and_its_depth);
     RUN_TEST(test_moves_across_the_plane_happen_at_the_corner_of_the_tool);
     RUN_TEST(test_commands_keep_their_place);
+    RUN_TEST(test_moves_of_a_contour_keep_what_is_their_own);
     RUN_TEST(test_a_step_lower_than_the_tool_is_passed_over_with_a_warning);
     RUN_TEST(test_a_short_bottom_is_left_out);
     RUN_TEST(test_a_step_that_goes_deeper_is_refused);

@@ -67,7 +67,7 @@ static void test_a_slower_block_begins_earlier_by_half_the_window(void)
     push(MOVE_FEED, 100.0, 40.0);
     build();
     TEST_ASSERT_EQUAL(2, ceiling.count);
-    TEST_ASSERT_EQUAL(20, ceiling.piece[0].cycles);
+    TEST_ASSERT_EQUAL(20, ceiling_cycles(&ceiling, 0));
     TEST_ASSERT_DOUBLE_WITHIN(1e-9, 50.0 - 0.04 * 11.5, ceiling.end_mm[0]);
     TEST_ASSERT_EQUAL_UINT64(path_units(50.0), ceiling_leave(&ceiling, 0));
 }
@@ -120,7 +120,7 @@ static void test_a_rapid_obeys_the_rapid_override(void)
     request.feed_ratio = 0.5;
     build();
     TEST_ASSERT_DOUBLE_WITHIN(1e-12, 25.0, ceiling_block_feed(&path, 0, &request));
-    TEST_ASSERT_EQUAL(CEILING_RAPID | CEILING_HOLD, ceiling.piece[0].overrides);
+    TEST_ASSERT_EQUAL(CEILING_RAPID | CEILING_HOLD, ceiling_overrides(&ceiling, 0));
     TEST_ASSERT_TRUE(ceiling.piece[0].feed_max_mm_s == 100.0F);
 }
 
@@ -131,8 +131,8 @@ static void test_a_short_span_has_a_short_window(void)
     push(MOVE_DWELL, 0.0, 0.0);
     push(MOVE_FEED, 50.0, 80.0);
     build();
-    TEST_ASSERT_EQUAL(3, ceiling.piece[0].cycles);
-    TEST_ASSERT_EQUAL(20, ceiling.piece[1].cycles);
+    TEST_ASSERT_EQUAL(3, ceiling_cycles(&ceiling, 0));
+    TEST_ASSERT_EQUAL(20, ceiling_cycles(&ceiling, 1));
 }
 
 /* However it is rounded, or the lead point would brake where nothing asks for it. */

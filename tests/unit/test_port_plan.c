@@ -298,6 +298,23 @@ static void test_a_plan_that_is_given_up_or_wrong_ends_the_program_in_an_error(v
     }
 }
 
+static void test_a_plan_whose_memory_is_lent_is_given_up(void)
+{
+    write_text(2);
+    compile_text();
+    begin_plan();
+    TEST_ASSERT_EQUAL_UINT(0, (uintptr_t)plan_queue_lend(&embedded_core.plan) % 8);
+    memset(plan_queue_lend(&embedded_core.plan), 0xAA, PLAN_QUEUE_MAX);
+    TEST_ASSERT_EQUAL_UINT(0, set(REGISTER_CYCLE_START, 1));
+    wait_for(PANEL_IDLE);
+    TEST_ASSERT_EQUAL_UINT32(PANEL_OUTCOME_COMPLETED, get(REGISTER_OUTCOME));
+    const uint64_t planned_here = embedded.service.digest;
+
+    TEST_ASSERT_EQUAL_UINT(0, set(REGISTER_CYCLE_START, 1));
+    wait_for(PANEL_IDLE);
+    TEST_ASSERT_EQUAL_HEX64(planned_here, embedded.service.digest);
+}
+
 static void test_a_plan_needs_a_program_and_rest(void)
 {
     write_text(2);
@@ -322,6 +339,7 @@ int main(void)
     RUN_TEST(test_a_late_plan_brakes_within_limits_raises_an_alarm_and_goes_on);
     RUN_TEST(test_a_plan_for_something_else_is_refused_with_the_reason);
     RUN_TEST(test_a_plan_that_is_given_up_or_wrong_ends_the_program_in_an_error);
+    RUN_TEST(test_a_plan_whose_memory_is_lent_is_given_up);
     RUN_TEST(test_a_plan_needs_a_program_and_rest);
     return UNITY_END();
 }

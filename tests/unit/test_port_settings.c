@@ -46,6 +46,14 @@ static bool may_load(void *context)
     return drives_are_off;
 }
 
+static struct correction_tables *lend_tables(void *context)
+{
+    static struct correction_tables tables;
+
+    (void)context;
+    return &tables;
+}
+
 static void write_log(void *context, const char *text)
 {
     (void)context;
@@ -86,7 +94,8 @@ static void start(void)
         .sector = {(const uint8_t *)memory[0], (const uint8_t *)memory[1]},
         .erase = erase,
         .program = program_words};
-    const struct settings_upload_port port = {.may_load = may_load, .log = write_log};
+    const struct settings_upload_port port = {
+        .may_load = may_load, .borrow = lend_tables, .log = write_log};
     struct panel_config config = {.port = {look, order, alive, NULL}, .store = {.begin = no_room}};
 
     store_open(&store, &flash);

@@ -187,6 +187,10 @@ static void test_labels_can_be_worked_out_and_are_numbers_or_names(void)
     expect_x(1.0);
     expect_x(2.0);
     reader_expect_end(&reader);
+    reader_open(&reader, "o7 if [1]\no<007> if [1]\no<7> if [1]\n");
+    reader_expect_error(&reader, TAKT_ERROR_OWORD_LABEL_USED);
+    TEST_ASSERT_EQUAL_STRING("O7 IF", reader.diagnostic.word);
+    TEST_ASSERT_EQUAL_DOUBLE(1.0, reader.diagnostic.value);
 }
 
 static void test_m98_shares_the_callers_parameters_and_counts_its_runs(void)

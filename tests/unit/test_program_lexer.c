@@ -64,11 +64,11 @@ static void test_columns_are_those_of_the_text(void)
 {
     open_text("  G1 (comment) X2");
     expect_line(1, "g1x2");
-    TEST_ASSERT_EQUAL_UINT(3, lexer.column[0]);
-    TEST_ASSERT_EQUAL_UINT(4, lexer.column[1]);
-    TEST_ASSERT_EQUAL_UINT(16, lexer.column[2]);
-    TEST_ASSERT_EQUAL_UINT(17, lexer.column[3]);
-    TEST_ASSERT_EQUAL_UINT(18, lexer.column[4]);
+    TEST_ASSERT_EQUAL_UINT(3, lexer_column(&lexer, 0));
+    TEST_ASSERT_EQUAL_UINT(4, lexer_column(&lexer, 1));
+    TEST_ASSERT_EQUAL_UINT(16, lexer_column(&lexer, 2));
+    TEST_ASSERT_EQUAL_UINT(17, lexer_column(&lexer, 3));
+    TEST_ASSERT_EQUAL_UINT(18, lexer_column(&lexer, 4));
 }
 
 static void test_comments_are_left_out(void)

@@ -25,7 +25,7 @@ void tearDown(void)
 /* What is added to the commanded place. */
 static double correction_now(void)
 {
-    return service.controller.setpoint.at[AXIS_X] - service.at.at[AXIS_X];
+    return service.controller.record.set.at[AXIS_X] - service.at.at[AXIS_X];
 }
 
 static void run_line(const char *line)

@@ -20,7 +20,7 @@ static const struct smooth_limits mill = {
 };
 
 static struct smooth smooth;
-static struct relax_beside beside;
+static union smooth_scratch scratch;
 static uint32_t number; /* of the last piece */
 static unsigned backward;
 static double farthest_mm; /* the curve has come along the circle, */
@@ -67,7 +67,7 @@ static void take_all(void)
 {
     struct smooth_piece piece;
 
-    while (smooth_take(&smooth, &beside, &piece)) {
+    while (smooth_take(&smooth, &scratch, &piece)) {
         follow_circle(&piece);
         backward += piece.number < number ? 1 : 0;
         number = piece.number;
