@@ -445,12 +445,14 @@ static bool rests_after_fault(const struct controller *c)
 
 void controller_cycle(struct controller *c, const struct inputs *inputs)
 {
+    const bool starts = c->state == CONTROLLER_STARTING; /* that is enough for one cycle */
+
     c->has_record = false;
     drives_receive(&c->drives, &c->can);
     drives_sync(&c->drives, &c->can);
     follow_drives(c);
     follow_spindle(c, &inputs->spindle);
-    if (c->state == CONTROLLER_RUNNING && !rests_after_fault(c)) {
+    if (c->state == CONTROLLER_RUNNING && !starts && !rests_after_fault(c)) {
         follow_path(c, inputs);
     }
     if (c->has_record) {

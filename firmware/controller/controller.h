@@ -54,7 +54,7 @@ struct controller_config {
 
 enum controller_state {
     CONTROLLER_STARTING, /* drives are being enabled; no program cycle yet */
-    CONTROLLER_RUNNING,  /* a program cycle each call */
+    CONTROLLER_RUNNING,  /* a program cycle each call, from the next one on */
     CONTROLLER_STOPPING, /* after a fault of a drive: the drives brake; no program cycle any more */
     CONTROLLER_COMPLETED,
     CONTROLLER_FAULTED /* see controller_get_fault */

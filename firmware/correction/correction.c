@@ -103,20 +103,32 @@ static unsigned first_of(unsigned set)
     return (unsigned)__builtin_ctz(set);
 }
 
+static bool is_prepared(struct correction *c, unsigned i)
+{
+    return layers[i]->prepare == NULL || layers[i]->prepare(c);
+}
+
 static __attribute__((noinline)) void fade_layers(struct correction *c)
 {
     const unsigned on = wanted(c);
+    const unsigned before = c->running;
+    unsigned rest = (on ^ before) | c->fading;
 
-    unsigned rest = on | c->running | c->fading;
-
+    c->running &= ~rest;
     for (c->fading = 0; rest != 0; rest &= rest - 1U) {
         const unsigned i = first_of(rest);
         const unsigned bit = 1U << i;
+        const bool is_on = (on & bit) != 0 && ((before & bit) != 0 || is_prepared(c, i));
 
-        if (fade_cycle(&c->weight[i], (on & bit) != 0 ? 1.0 : 0.0, &c->layer_pace)) {
+        if (fade_cycle(&c->weight[i], is_on ? 1.0 : 0.0, &c->layer_pace)) {
             c->fading |= bit;
+            c->running |= bit;
+        } else {
+            c->running |= is_on ? bit : 0U;
         }
-        c->running = c->weight[i].value != 0.0 ? c->running | bit : c->running & ~bit;
+    }
+    if (((on | c->running) & 1U << CORRECTION_VOLUME) == 0) {
+        c->patches.is_known = c->patches.is_ready = false;
     }
 }
 
@@ -144,7 +156,7 @@ static void add_layers(struct correction *c, struct point *set)
     struct correction_sum sum;
 
     memset(sum.fine, 0, sizeof(sum.fine));
-    sum.is_coarse = false;
+    sum.coarse = set->at;
     sum.outside = 0;
     for (unsigned rest = c->running; rest != 0; rest &= rest - 1U) {
         const unsigned i = first_of(rest);
@@ -152,7 +164,7 @@ static void add_layers(struct correction *c, struct point *set)
         layers[i]->add(c, &c->notes[i], c->weight[i].value, &sum);
     }
     for (unsigned i = 0; i < c->axes_end; i++) {
-        set->at[i] += sum.is_coarse ? sum.coarse[i] + (double)sum.fine[i] : (double)sum.fine[i];
+        set->at[i] += (double)sum.fine[i];
     }
     c->outside |= sum.outside;
 }
@@ -212,6 +224,8 @@ void correction_evaluate(const struct correction *c, const struct point *at,
     struct correction_sum sum;
 
     memset(&sum, 0, sizeof(sum));
+    memset(k, 0, sizeof(*k));
+    sum.coarse = k->at;
     settled.at = at;
     settled.move = move;
     for (unsigned i = 0; i < CORRECTION_LAYERS_COUNT; i++) {
@@ -220,7 +234,7 @@ void correction_evaluate(const struct correction *c, const struct point *at,
         }
     }
     for (unsigned i = 0; i < AXIS_COUNT; i++) {
-        k->at[i] = sum.coarse[i] + (double)sum.fine[i];
+        k->at[i] += (double)sum.fine[i];
     }
 }
 

@@ -16,18 +16,6 @@
 #define EDGE_THIRD_MAX  36.0
 
 /* position in steps, of a table that goes from 0 to last. *outside is set when it is beyond an end. */
-static inline double edge_hold(double position, double last, unsigned *outside)
-{
-    if (position >= 0.0 && position <= last) {
-        return position;
-    }
-    const double end = position < 0.0 ? 0.0 : last;
-    const double s = position - end;
-    const double q = s < 0.0 ? -s : s;
-    const double left = 1.0 - q;
-
-    *outside = 1;
-    return q < 1.0 ? end + s * left * left * left * (1.0 + 3.0 * q) : end;
-}
+double edge_hold(double position, double last, unsigned *outside);
 
 #endif

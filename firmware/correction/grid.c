@@ -8,6 +8,42 @@ struct place {
     float weight[TABLE_INPUTS_MAX][STENCIL];
 };
 
+/* Beyond an end, or in the last cell: the same with all that holds there. */
+static __attribute__((noinline)) size_t find_edge_cell(const struct grid_input *input,
+                                                       double position, float *t, unsigned *outside)
+{
+    unsigned beyond = 0;
+    const double held = edge_hold(position, input->last, &beyond);
+    const uint32_t cell = held < 1.0 ? 0 : input->last_cell;
+
+    *t = (float)(held - (double)cell);
+    *outside |= beyond << input->axis;
+    return cell * input->stride;
+}
+
+size_t grid_find_cell(const struct grid_input *input, const struct point *at, float *t,
+                      unsigned *outside)
+{
+    const double position = (at->at[input->axis] - input->first_mm) * input->per_mm;
+
+    if (!(position >= 0.0 && position < input->last)) {
+        return find_edge_cell(input, position, t, outside);
+    }
+    const int32_t cell = (int32_t)position;
+
+    *t = (float)(position - (double)cell);
+    return (size_t)(uint32_t)cell * input->stride;
+}
+
+/* As c0 + t (c1 + t (c2 + t c3)). */
+void grid_set_weights(float t, float weight[STENCIL])
+{
+    weight[0] = 1.0F / 6.0F + t * (-0.5F + t * (0.5F - t * (1.0F / 6.0F)));
+    weight[1] = 4.0F / 6.0F + t * t * (-1.0F + t * 0.5F);
+    weight[2] = 1.0F / 6.0F + t * (0.5F + t * (0.5F - t * 0.5F));
+    weight[3] = t * t * t * (1.0F / 6.0F);
+}
+
 /* ---- the sum over the stencil: first over all inputs but the first, side by side along that one ---- */
 
 /* One column of a plane, over its rows. */
@@ -59,8 +95,8 @@ static unsigned add_three(const struct grid *grid, const struct point *at, float
 
     place.first = 0;
     for (unsigned i = 0; i < 3; i++) {
-        place.first += find_cell(&grid->input[i], at, &t, &outside);
-        set_weights(t, place.weight[i]);
+        place.first += grid_find_cell(&grid->input[i], at, &t, &outside);
+        grid_set_weights(t, place.weight[i]);
     }
     for (unsigned i = 0; i < AXIS_LINEAR_COUNT; i++) {
         k[i] += weight * add_planes(grid, grid->coefficient + place.first + i * grid->size, &place);
@@ -120,8 +156,8 @@ static unsigned add_any(const struct grid *grid, const struct point *at, float w
     float t;
 
     for (unsigned i = 0; i < grid->inputs; i++) {
-        place.first += find_cell(&grid->input[i], at, &t, &outside);
-        set_weights(t, place.weight[i]);
+        place.first += grid_find_cell(&grid->input[i], at, &t, &outside);
+        grid_set_weights(t, place.weight[i]);
     }
     sum_any(grid, &place, components, sum);
     for (unsigned i = 0; i < components; i++) {

@@ -12,34 +12,58 @@ struct grid_order {
 /* (-1)^(n-i) over i of n, of differences of up to third order. */
 static const float binomial[4][4] = {{1}, {-1, 1}, {1, -2, 1}, {-1, 3, -3, 1}};
 
-/* The difference along the first two inputs of the coefficients that begin at an offset. */
-static float difference_in_plane(const struct grid *grid, const struct grid_order *order,
-                                 size_t offset, unsigned component)
+/* What is summed along an input: so many coefficients, from one that stands a little before or at the place. */
+struct taps {
+    unsigned count;
+    unsigned before;
+    const float *weight;
+};
+
+/*
+ * At the ends of an input coefficients stand for places outside of the table, and are large where its values are noisy.
+ * There the spline lies between its value at the end and the next coefficients, and its first derivative likewise: the
+ * Bezier points of the last cell (C. de Boor, 1978, chapter IX).
+ */
+static const float at_end[2][3] = {{1.0F / 6.0F, 4.0F / 6.0F, 1.0F / 6.0F}, {-0.5F, 0.0F, 0.5F}};
+
+static struct taps taps_of(const struct grid *grid, const struct grid_order *order,
+                           const unsigned index[TABLE_INPUTS_MAX], unsigned i)
 {
+    const unsigned n = order->along[i];
+    const unsigned last = grid->input[i].points + 1U - n;
+
+    if (i >= grid->inputs || n > 1 || (index[i] != 0 && index[i] != last)) {
+        return (struct taps){n + 1U, 0, binomial[n]};
+    }
+    return (struct taps){3, index[i] == 0 ? 0 : 2U - n, at_end[n]};
+}
+
+/* Along the first two inputs, of the coefficients from a place on. */
+static float difference_in_plane(const struct grid *grid, const struct taps taps[], const float *at)
+{
+    const size_t row = grid->input[1].stride;
     float sum = 0.0F;
 
-    for (unsigned j = 0; j <= order->along[1]; j++) {
-        for (unsigned i = 0; i <= order->along[0]; i++) {
-            sum +=
-                binomial[order->along[1]][j] * binomial[order->along[0]][i] *
-                grid->coefficient[component * grid->size + offset + j * grid->input[1].stride + i];
+    at -= taps[1].before * row + taps[0].before;
+    for (unsigned j = 0; j < taps[1].count; j++, at += row) {
+        for (unsigned i = 0; i < taps[0].count; i++) {
+            sum += taps[1].weight[j] * taps[0].weight[i] * at[i];
         }
     }
     return sum;
 }
 
-/* Along all of them; inputs that are not there have order 0. */
-static float difference(const struct grid *grid, const struct grid_order *order, size_t offset,
-                        unsigned component)
+/* Along all of them; of inputs that are not there, one. */
+static float difference(const struct grid *grid, const struct taps taps[], const float *at)
 {
     float sum = 0.0F;
 
-    for (unsigned j = 0; j <= order->along[3]; j++) {
-        for (unsigned i = 0; i <= order->along[2]; i++) {
-            const size_t plane = offset + j * grid->input[3].stride + i * grid->input[2].stride;
-
-            sum += binomial[order->along[3]][j] * binomial[order->along[2]][i] *
-                   difference_in_plane(grid, order, plane, component);
+    at -= taps[3].before * grid->input[3].stride + taps[2].before * grid->input[2].stride;
+    for (unsigned j = 0; j < taps[3].count; j++) {
+        for (unsigned i = 0; i < taps[2].count; i++) {
+            sum += taps[3].weight[j] * taps[2].weight[i] *
+                   difference_in_plane(grid, taps,
+                                       at + j * grid->input[3].stride + i * grid->input[2].stride);
         }
     }
     return sum;
@@ -66,10 +90,16 @@ static float largest(const struct grid *grid, const struct grid_order *order, un
 {
     unsigned index[TABLE_INPUTS_MAX] = {0};
     size_t offset = 0;
+    const float *from = grid->coefficient + component * grid->size;
     float most = 0.0F;
 
     do {
-        const float size = __builtin_fabsf(difference(grid, order, offset, component));
+        struct taps taps[TABLE_INPUTS_MAX];
+
+        for (unsigned i = 0; i < TABLE_INPUTS_MAX; i++) {
+            taps[i] = taps_of(grid, order, index, i);
+        }
+        const float size = __builtin_fabsf(difference(grid, taps, from + offset));
 
         most = size > most ? size : most;
     } while (next_place(grid, order, index, &offset));

@@ -13,6 +13,7 @@
 struct sums {
     const struct grid *grid;
     const struct motion_bound *most;
+    double cycle_s;
     struct need *need;
     unsigned component;
 };
@@ -39,7 +40,8 @@ static void add_first(const struct sums *s, unsigned i)
 {
     const struct grid_input *input = &s->grid->input[i];
     const double v = s->most->velocity_mm_s[input->axis];
-    const double slope = largest(s, i, GRID_NO_INPUT, GRID_NO_INPUT);
+    const double slope = largest(s, i, GRID_NO_INPUT, GRID_NO_INPUT) +
+                         (double)(grid_patch_slope(s->grid) * input->steps_per_mm);
 
     need_add_slope(s->need, corrected(s), input->axis, slope, s->most);
     s->need->acceleration_mm_s2[corrected(s)] += slope * EDGE_SECOND_MAX * input->per_mm * v * v;
@@ -70,12 +72,42 @@ static void add_third(const struct sums *s, unsigned i, unsigned j, unsigned k)
                                          s->most->velocity_mm_s[s->grid->input[k].axis];
 }
 
+/* Steps of all inputs together. */
+static float speed_per_s(const struct sums *s)
+{
+    float sum = 0.0F;
+
+    for (unsigned i = 0; i < s->grid->inputs; i++) {
+        const struct grid_input *input = &s->grid->input[i];
+
+        sum += (float)s->most->velocity_mm_s[input->axis] * input->steps_per_mm;
+    }
+    return sum;
+}
+
+/* Grids over three axes are followed by patches. */
+static void add_patches(const struct sums *s)
+{
+    const double jerk_mm_s3 = (double)grid_patch_jerk(
+        s->grid, grid_bound_third(s->grid, s->component), speed_per_s(s), (float)s->cycle_s);
+    const double by_cycle = jerk_mm_s3 * s->cycle_s;
+
+    s->need->noise_mm[corrected(s)] += GRID_PATCH_NEAR_MM;
+    s->need->jerk_mm_s3[corrected(s)] += jerk_mm_s3;
+    s->need->acceleration_mm_s2[corrected(s)] += GRID_PATCH_ACCELERATION * by_cycle;
+    s->need->velocity_mm_s[corrected(s)] += GRID_PATCH_VELOCITY * by_cycle * s->cycle_s;
+}
+
 static void add_component(const struct sums *s)
 {
     const double size = largest(s, GRID_NO_INPUT, GRID_NO_INPUT, GRID_NO_INPUT);
 
+    if (s->grid->inputs == GRID_PATCH_INPUTS) {
+        add_patches(s);
+    }
+
     s->need->size_mm[corrected(s)] += size;
-    s->need->noise_mm[corrected(s)] += NEED_ROUNDING * size + GRID_PATCH_ERROR_MM;
+    s->need->noise_mm[corrected(s)] += NEED_ROUNDING * size;
     for (unsigned i = 0; i < s->grid->inputs; i++) {
         add_first(s, i);
         for (unsigned j = 0; j < s->grid->inputs; j++) {
@@ -87,9 +119,10 @@ static void add_component(const struct sums *s)
     }
 }
 
-void grid_need(const struct grid *grid, const struct motion_bound *most, struct need *need)
+void grid_need(const struct grid *grid, const struct motion_bound *most, double cycle_s,
+               struct need *need)
 {
-    struct sums s = {.grid = grid, .most = most, .need = need};
+    struct sums s = {.grid = grid, .most = most, .cycle_s = cycle_s, .need = need};
 
     for (s.component = 0; s.component < GRID_COMPONENTS; s.component++) {
         if ((grid->components & 1U << s.component) != 0) {

@@ -1,12 +1,13 @@
 /*
- * With r how far a patch is good (grid->reach) and w the way of a cycle, in steps, all inputs together:
+ * With M the cycles that making a patch takes, B those of going over to it, and w the way of a cycle in steps, all inputs
+ * together:
  *
- *     |<------- r ------->|<------- r ------->|           a patch, and its anchor
- *     . . . . . . . . . . A . . . . . . . . x . | . . .   at x, MAKING w before its end, the next one is begun
- *                                               |<-- 3/4 r -->B
+ *     make ---- M ----> go over - B -> use ---- M ----> go over - B ->
+ *                       |<------------ a patch holds ------------->|
+ *                                        A                              its anchor, (M / 2 + B) w from both ends
  *
- * Its anchor B lies ahead, so that it holds from when it is ready, and for nearly 2 r. A patch that would not last long
- * enough to make the next one is not made: then the spline itself is evaluated in every cycle.
+ * when the axes go so fast that the next patch is needed as soon as it can be made; slower ones use a patch for as long as
+ * it is good to GRID_PATCH_NEAR_MM. Axes too fast even for that, beyond GRID_PATCH_FAR, are corrected by the spline itself.
  */
 #include "correction/grid_patch.h"
 
@@ -14,36 +15,67 @@
 #include "correction/grid_bound.h"
 #include "correction/grid_stencil.h"
 
-/* Steps in which a component is made: half of its stencil, the other half, its terms. */
-enum { STEP_FIRST, STEP_SECOND, STEP_TERMS, STEPS };
+/*
+ * Stages of making a patch after its anchor: its cell, its weights, then of each component the four lines of its stencil
+ * and its terms.
+ */
+enum { STAGE_NONE, STAGE_CELL, STAGE_WEIGHTS, STAGE_LINES };
 
 /*
- * Cycles that making a patch takes: its anchor, its cell and weights, then a step in each, then whether it is near an end.
+ * Going over from one patch to the other in B = 8 cycles: what moves from 0 to 1 with the least third derivative,
+ *
+ *     w = 16/3 t^3 for t <= 1/4,  1/2 + 2 u - 16/3 u^3 with u = t - 1/2 up to 3/4,  the first part backwards to 1
+ *
+ * and of its derivatives by the cycle |w'| <= 2 / B, |w''| <= 8 / B^2, |w'''| <= 32 / B^3.
  */
-#define MAKING (3.0F + (float)(STEPS * GRID_COMPONENTS))
+#define GOING 8U
+static const float share[GOING] = {0.0F,          1.0F / 96.0F,  8.0F / 96.0F,  25.0F / 96.0F,
+                                   48.0F / 96.0F, 71.0F / 96.0F, 88.0F / 96.0F, 95.0F / 96.0F};
 
-/* The first of these stages is that with cell and weights, the second that with the first step. */
-#define FIRST_STEP 2U
+/* So many times as far as GRID_PATCH_FAR, axes do not come to by moving: their place has been set anew. */
+#define LOST_RATIO 2.0F
 
-/* A patch that would last fewer cycles than this is not worth making. */
-#define LASTING_MIN 8.0F
+#define W1 (2.0F / (float)GOING)
+#define W2 (8.0F / (float)(GOING * GOING))
+#define W3 (32.0F / (float)(GOING * GOING * GOING))
 
-/* The part of its reach at which a patch begins to hold when it is ready. */
+/* The part of its reach at which a patch begins to hold when it is ready, at slow speeds. */
 #define AHEAD_RATIO 0.75F
 
-/* What is left out at the distance r: |third derivative| r^3 / 6, all of them together. */
-float grid_patch_reach(const struct grid *grid)
+/* From the spline itself back to patches, the axes are slower than what patches can follow by this. */
+#define CALM_RATIO 0.75F
+
+/* Third derivatives, all of them together, of all components. */
+static double third_of(const struct grid *grid)
 {
     double third = 0.0;
 
     for (unsigned i = 0; i < GRID_COMPONENTS; i++) {
-        if ((grid->components & 1U << i) == 0) {
-            continue;
+        if ((grid->components & 1U << i) != 0) {
+            third = maths_max(third, (double)grid_bound_third(grid, i));
         }
-        third = maths_max(third, (double)grid_bound_third(grid, i));
     }
-    return third > 0.0 ? (float)maths_min(0.5, maths_cbrt(6.0 * GRID_PATCH_ERROR_MM / third))
-                       : 0.5F;
+    return third;
+}
+
+/* From the anchor to either end of where a patch holds, in cycles. */
+static inline float holding(const struct grid *grid)
+{
+    return 0.5F * (float)grid->ready + (float)GOING;
+}
+
+/* What is left out at the distance r: |third derivative| r^3 / 6. */
+void grid_patch_set_pace(struct grid *grid)
+{
+    const unsigned components = grid->turn_axis < AXIS_COUNT ? GRID_COMPONENTS : AXIS_LINEAR_COUNT;
+    const double third = third_of(grid);
+
+    grid->reach = 0.5F;
+    if (third > 0.0) {
+        grid->reach = (float)maths_min(0.5, maths_cbrt(6.0 * GRID_PATCH_NEAR_MM / third));
+    }
+    grid->ready = (uint8_t)(STAGE_LINES + (STENCIL + 1U) * components);
+    grid->fastest = (float)GRID_PATCH_FAR * grid->reach / holding(grid);
 }
 
 /* ---- making a patch ---- */
@@ -51,153 +83,51 @@ float grid_patch_reach(const struct grid *grid)
 /* Sums over the second and third input, for derivatives (second, third): (0 0) (1 0) (0 1) (2 0) (1 1) (0 2). */
 enum { SUM, SUM_Y, SUM_Z, SUM_YY, SUM_YZ, SUM_ZZ };
 
-/* Each term of a patch: a sum, the derivative by the first input, and the factor of Taylor's series. */
-static const struct {
-    uint8_t sum, x;
-    float factor;
-} terms[GRID_PATCH_TERMS] = {
-    {SUM, 0, 1.0F},    {SUM, 1, 1.0F},    {SUM_Y, 0, 1.0F}, {SUM_Z, 0, 1.0F}, {SUM, 2, 0.5F},
-    {SUM_YY, 0, 0.5F}, {SUM_ZZ, 0, 0.5F}, {SUM_Y, 1, 1.0F}, {SUM_Z, 1, 1.0F}, {SUM_YZ, 0, 1.0F},
-};
+#define SUMS GRID_PATCH_SUMS
 
-/* One column of a plane, weighted. */
-static GRID_INLINE lanes weigh(const lanes column[STENCIL], const float *weight)
+static GRID_INLINE float weigh(const float at[STENCIL], const float weight[STENCIL])
 {
-    lanes sum = weight[0] * column[0];
-
-    sum += weight[1] * column[1];
-    sum += weight[2] * column[2];
-    sum += weight[3] * column[3];
-    return sum;
+    return at[0] * weight[0] + at[1] * weight[1] + at[2] * weight[2] + at[3] * weight[3];
 }
 
-static GRID_INLINE void add_to(float *sum, lanes values)
-{
-    store(sum, load(sum) + values);
-}
-
-/* Adds a column with its weights for the orders 0, 1, 2 along the second input and the third to the sums at x. */
-static GRID_INLINE void add_column(const float *at, size_t row, const float *y, const float *z,
-                                   float sum[GRID_PATCH_SUMS][STENCIL], unsigned x)
-{
-    const lanes column[STENCIL] = {load(at), load(at + row), load(at + 2 * row),
-                                   load(at + 3 * row)};
-    const lanes value = weigh(column, y);
-    const lanes first = weigh(column, y + FIRST_ORDER);
-    const lanes second = weigh(column, y + SECOND_ORDER);
-
-    add_to(&sum[SUM][x], z[0] * value);
-    add_to(&sum[SUM_Y][x], z[0] * first);
-    add_to(&sum[SUM_Z][x], z[FIRST_ORDER] * value);
-    add_to(&sum[SUM_YY][x], z[0] * second);
-    add_to(&sum[SUM_YZ][x], z[FIRST_ORDER] * first);
-    add_to(&sum[SUM_ZZ][x], z[SECOND_ORDER] * value);
-}
-
-/* Adds half of the stencil of a component: two of its planes. */
-static void sum_half(const struct grid *grid, struct grid_patches *p, unsigned k, unsigned plane)
+/* The sums of the coefficients that stand at a place x along the first input, from a pointer on. */
+static void sum_line(const struct grid *grid, struct grid_patches *p, const float *at, unsigned x)
 {
     const size_t row = grid->input[1].stride;
-    const float *at = grid->coefficient + p->first + k * grid->size + plane * grid->input[2].stride;
+    const float *y = p->weight[1];
+    const float *z = p->weight[2];
+    float sum[SUMS] = {0.0F};
 
-    for (unsigned i = plane; i < plane + STENCIL / 2; i++) {
-        for (unsigned x = 0; x < STENCIL; x += GRID_LANES) {
-            add_column(at + x, row, p->weight[1], &p->weight[2][i], p->sum, x);
-        }
+    for (unsigned i = 0; i < STENCIL; i++) {
+        const float column[STENCIL] = {at[0], at[row], at[2 * row], at[3 * row]};
+        const float value = weigh(column, y);
+        const float first = weigh(column, y + FIRST_ORDER);
+
+        sum[SUM] += z[i] * value;
+        sum[SUM_Y] += z[i] * first;
+        sum[SUM_Z] += z[FIRST_ORDER + i] * value;
+        sum[SUM_YY] += z[i] * weigh(column, y + SECOND_ORDER);
+        sum[SUM_YZ] += z[FIRST_ORDER + i] * first;
+        sum[SUM_ZZ] += z[SECOND_ORDER + i] * value;
         at += grid->input[2].stride;
     }
+    p->sum[SUM][x] = sum[SUM];
+    p->sum[SUM_Y][x] = sum[SUM_Y];
+    p->sum[SUM_Z][x] = sum[SUM_Z];
+    p->sum[SUM_YY][x] = sum[SUM_YY];
+    p->sum[SUM_YZ][x] = sum[SUM_YZ];
+    p->sum[SUM_ZZ][x] = sum[SUM_ZZ];
 }
 
-/* From the sums of a component; the next one begins with none. */
-static void set_terms(struct grid_patches *p, unsigned k)
+/* A component's terms, from its sums at all places along the first input: of the orders 0, 1 and 2 by that. */
+static void set_terms(float sum[SUMS][STENCIL], const float *x, float *term)
 {
-    for (unsigned n = 0; n < GRID_PATCH_TERMS; n++) {
-        p->next.term[n][k] = terms[n].factor * finish(p->sum[terms[n].sum],
-                                                      p->weight[0] + (size_t)terms[n].x * STENCIL);
-    }
-    memset(p->sum, 0, sizeof(p->sum));
-}
+    for (unsigned sums = SUMS; sums != 0; sums /= 2U, x += STENCIL) {
+        const float weight[STENCIL] = {x[0], x[1], x[2], x[3]};
 
-static unsigned components_of(const struct grid *grid)
-{
-    return grid->turn_axis < AXIS_COUNT ? GRID_COMPONENTS : AXIS_LINEAR_COUNT;
-}
-
-/* Patches know nothing of what holds beyond the ends of the table. */
-static bool is_inside(const struct grid *grid, const double at_mm[GRID_PATCH_INPUTS], double margin)
-{
-    bool inside = true;
-
-    for (unsigned i = 0; i < GRID_PATCH_INPUTS; i++) {
-        const struct grid_input *input = &grid->input[i];
-        const double position = (at_mm[i] - input->first_mm) * input->per_mm;
-
-        inside = inside && position >= margin && position <= input->last - margin;
-    }
-    return inside;
-}
-
-/* Cell and weights at the anchor. */
-static void begin_patch(const struct grid *grid, struct grid_patches *p)
-{
-    struct point anchor;
-    unsigned outside = 0;
-
-    p->first = 0;
-    memset(p->sum, 0, sizeof(p->sum));
-    for (unsigned i = 0; i < GRID_PATCH_INPUTS; i++) {
-        float t;
-
-        anchor.at[grid->input[i].axis] = p->next.anchor_mm[i];
-        p->first += find_cell(&grid->input[i], &anchor, &t, &outside);
-        set_weights(t, p->weight[i]);
-        set_weights_first(t, &p->weight[i][FIRST_ORDER]);
-        set_weights_second(t, &p->weight[i][SECOND_ORDER]);
-    }
-    p->stage = outside == 0 ? FIRST_STEP : 0;
-}
-
-/* ---- using it ---- */
-
-static inline float length(const float way[GRID_PATCH_INPUTS])
-{
-    return __builtin_fabsf(way[0]) + __builtin_fabsf(way[1]) + __builtin_fabsf(way[2]);
-}
-
-/* From the anchor, in steps of each input. */
-static inline void way_from(const struct grid *grid, const struct grid_patch *patch,
-                            const struct point *at, float way[GRID_PATCH_INPUTS])
-{
-    for (unsigned i = 0; i < GRID_PATCH_INPUTS; i++) {
-        const struct grid_input *input = &grid->input[i];
-
-        way[i] = (float)(at->at[input->axis] - patch->anchor_mm[i]) * input->steps_per_mm;
-    }
-}
-
-/*
- * Taylor's series to the second order, in Horner's form. The value at the anchor comes last, so that what changes from
- * cycle to cycle is added up before it is rounded to the size of the whole.
- */
-static inline float value_of(const struct grid_patch *p, const float way[GRID_PATCH_INPUTS],
-                             unsigned k)
-{
-    const float of_x =
-        p->term[1][k] + way[0] * p->term[4][k] + way[1] * p->term[7][k] + way[2] * p->term[8][k];
-    const float of_y = p->term[2][k] + way[1] * p->term[5][k] + way[2] * p->term[9][k];
-    const float of_z = p->term[3][k] + way[2] * p->term[6][k];
-
-    return p->term[0][k] + (way[0] * of_x + (way[1] * of_y + way[2] * of_z));
-}
-
-static void add_value(const struct grid *grid, const struct grid_patches *p, float weight,
-                      float k[AXIS_COUNT])
-{
-    k[0] += weight * value_of(&p->used, p->way, 0);
-    k[1] += weight * value_of(&p->used, p->way, 1);
-    k[2] += weight * value_of(&p->used, p->way, 2);
-    if (grid->turn_axis < AXIS_COUNT) {
-        k[grid->turn_axis] += weight * value_of(&p->used, p->way, AXIS_LINEAR_COUNT);
+        for (unsigned i = 0; i < sums; i++) {
+            *term++ = weigh(sum[i], weight);
+        }
     }
 }
 
@@ -209,122 +139,290 @@ static void get_inputs(const struct grid *grid, const struct point *at,
     }
 }
 
-static bool holds(const struct grid *grid, const struct grid_patch *patch, float distance,
-                  const struct point *at)
+/* Its anchor: so many cycles ahead, but within the table. */
+static void begin_patch(const struct grid *grid, struct grid_patches *p, const struct point *at,
+                        const float step[GRID_PATCH_INPUTS], float cycles)
 {
-    double at_mm[GRID_PATCH_INPUTS];
+    const float margin = (float)GRID_PATCH_FAR * grid->reach;
+    struct grid_patch *next = &p->patch[1U - p->used];
 
-    if (!patch->valid || distance > grid->reach || !patch->near_end) {
-        return patch->valid && distance <= grid->reach;
-    }
-    get_inputs(grid, at, at_mm);
-    return is_inside(grid, at_mm, 0.0);
-}
-
-/* Where the axes will be when the next patch is ready, and most of its reach further on; or here, close to an end. */
-static void set_anchor(const struct grid *grid, struct grid_patches *p, const struct point *at,
-                       const float step[GRID_PATCH_INPUTS], float speed)
-{
-    const float cycles = speed > 0.0F ? MAKING + AHEAD_RATIO * grid->reach / speed : 0.0F;
-
-    get_inputs(grid, at, p->next.anchor_mm);
-    if (!(cycles < 1e6F)) {
-        return;
-    }
+    next->valid = true;
+    next->near_end = false;
     for (unsigned i = 0; i < GRID_PATCH_INPUTS; i++) {
-        p->next.anchor_mm[i] += (double)(cycles * step[i] * grid->input[i].mm_per_step);
+        const struct grid_input *input = &grid->input[i];
+        const double here_mm = at->at[input->axis];
+        const float here = (float)(here_mm - input->first_mm) * input->steps_per_mm;
+        const float last = (float)(input->last_cell + 1U);
+        float way = cycles * step[i];
+
+        if (here + way < margin || here + way > last - margin) {
+            way = here + way < 0.0F ? -here : here + way > last ? last - here : way;
+            next->near_end = true;
+        }
+        next->anchor_mm[i] = here_mm + (double)(way * input->mm_per_step);
     }
-    if (!is_inside(grid, p->next.anchor_mm, 0.0)) {
-        get_inputs(grid, at, p->next.anchor_mm);
+    p->stage = STAGE_CELL;
+}
+
+/* The cell its anchor is in, and where in it: that goes where the weights will be. */
+static void find_patch(const struct grid *grid, struct grid_patches *p)
+{
+    struct point anchor;
+    unsigned outside = 0;
+
+    p->first = 0;
+    p->line = p->component = 0;
+    for (unsigned i = 0; i < GRID_PATCH_INPUTS; i++) {
+        anchor.at[grid->input[i].axis] = p->patch[1U - p->used].anchor_mm[i];
+        p->first += grid_find_cell(&grid->input[i], &anchor, &p->weight[i][0], &outside);
     }
 }
 
-/* A step of a component. */
-static void make_step(const struct grid *grid, struct grid_patches *p, unsigned k, unsigned step)
+static void set_all_weights(struct grid_patches *p)
 {
-    switch (step) {
-    case STEP_FIRST:
-        sum_half(grid, p, k, 0);
-        break;
-    case STEP_SECOND:
-        sum_half(grid, p, k, STENCIL / 2);
-        break;
-    default:
-        set_terms(p, k);
-        break;
+    for (unsigned i = 0; i < GRID_PATCH_INPUTS; i++) {
+        const float t = p->weight[i][0];
+
+        grid_set_weights(t, p->weight[i]);
+        set_weights_first(t, &p->weight[i][FIRST_ORDER]);
+        set_weights_second(t, &p->weight[i][SECOND_ORDER]);
+    }
+}
+
+/* One cycle of making the next patch. */
+static void make(const struct grid *grid, struct grid_patches *p)
+{
+    if (p->stage == STAGE_CELL) {
+        find_patch(grid, p);
+    } else if (p->stage == STAGE_WEIGHTS) {
+        set_all_weights(p);
+    } else if (p->line < STENCIL) {
+        sum_line(grid, p, grid->coefficient + p->first + p->line, p->line);
+        p->line++;
+    } else {
+        set_terms(p->sum, p->weight[0], p->patch[1U - p->used].term[p->component]);
+        p->component++;
+        p->first += grid->size;
+        p->line = 0;
     }
     p->stage++;
 }
 
-/* One cycle of making the next patch. When it is ready it takes over. */
-static void make(const struct grid *grid, struct grid_patches *p, const struct point *at)
-{
-    if (p->stage < FIRST_STEP) {
-        begin_patch(grid, p);
-        return;
-    }
-    const unsigned k = (p->stage - FIRST_STEP) / STEPS;
+/* ---- where the axes are ---- */
 
-    if (k < components_of(grid)) {
-        make_step(grid, p, k, (p->stage - FIRST_STEP) % STEPS);
-        return;
-    }
-    p->next.near_end = !is_inside(grid, p->next.anchor_mm, (double)grid->reach);
-    p->next.valid = true;
-    p->used = p->next;
-    p->stage = 0;
-    way_from(grid, &p->used, at, p->way);
+static GRID_INLINE float length(const float way[GRID_PATCH_INPUTS])
+{
+    return __builtin_fabsf(way[0]) + __builtin_fabsf(way[1]) + __builtin_fabsf(way[2]);
 }
 
-/* Begins the next patch when this one will soon be left, and if that will last. before: the way a cycle ago. */
+/* Beyond an end of the table the way stops as positions do. */
+static __attribute__((noinline)) unsigned hold_way(const struct grid *grid,
+                                                   struct grid_patch *patch, const struct point *at,
+                                                   float step[GRID_PATCH_INPUTS])
+{
+    unsigned outside = 0;
+
+    for (unsigned i = 0; i < GRID_PATCH_INPUTS; i++) {
+        const struct grid_input *input = &grid->input[i];
+        const double position = (at->at[input->axis] - input->first_mm) * input->per_mm;
+        unsigned beyond = 0;
+        const float held = (float)(edge_hold(position, input->last, &beyond) - position);
+
+        patch->way[i] += held;
+        step[i] += held;
+        outside |= beyond << input->axis;
+    }
+    return outside;
+}
+
+/* step: by how much the way differs from that of the last cycle. Returns inputs that are outside. */
+static unsigned find_way(const struct grid *grid, struct grid_patch *patch, const struct point *at,
+                         float step[GRID_PATCH_INPUTS])
+{
+    for (unsigned i = 0; i < GRID_PATCH_INPUTS; i++) {
+        const struct grid_input *input = &grid->input[i];
+        const float way = (float)(at->at[input->axis] - patch->anchor_mm[i]) * input->steps_per_mm;
+
+        step[i] = way - patch->way[i];
+        patch->way[i] = way;
+    }
+    return patch->near_end ? hold_way(grid, patch, at, step) : 0U;
+}
+
+/* The anchor of the spline itself is where the axes are: the way from it is that of a cycle. */
+static void stand_for_spline(const struct grid *grid, struct grid_patch *patch,
+                             const struct point *at)
+{
+    patch->valid = patch->near_end = false;
+    get_inputs(grid, at, patch->anchor_mm);
+    memset(patch->way, 0, sizeof(patch->way));
+}
+
+/* Begins the next patch if the one in use will have got worse than it may at slow speeds when that can be ready. */
 static void look_ahead(const struct grid *grid, struct grid_patches *p, const struct point *at,
-                       const float before[GRID_PATCH_INPUTS], float distance)
+                       const float step[GRID_PATCH_INPUTS], float speed)
+{
+    const struct grid_patch *used = &p->patch[p->used];
+    const float making = (float)grid->ready;
+    float then[GRID_PATCH_INPUTS];
+
+    for (unsigned i = 0; i < GRID_PATCH_INPUTS; i++) {
+        then[i] = used->way[i] + (making + (float)GOING) * step[i];
+    }
+    const float calm = p->is_ready ? CALM_RATIO : 1.0F;
+
+    if (used->valid ? length(then) > grid->reach : speed <= calm * grid->fastest) {
+        const float ahead = AHEAD_RATIO * grid->reach;
+        const float half = holding(grid);
+
+        begin_patch(grid, p, at, step,
+                    making + (ahead > half * speed && speed > 0.0F ? ahead / speed : half));
+    }
+}
+
+/* The axes are too fast for patches: on to the spline itself. */
+static void give_up(const struct grid *grid, struct grid_patches *p, struct grid_patch *used,
+                    const struct point *at)
+{
+    p->is_ready = true;
+    if (length(used->way) > LOST_RATIO * (float)GRID_PATCH_FAR * grid->reach) {
+        used->valid = false;
+    }
+    if (!used->valid) {
+        p->stage = STAGE_NONE;
+    } else if (p->stage < grid->ready) {
+        stand_for_spline(grid, &p->patch[1U - p->used], at);
+        p->stage = grid->ready;
+    }
+}
+
+/* A cycle of going over to the next patch; the first one is taken at once. */
+static void go_over(const struct grid *grid, struct grid_patches *p, const struct point *at)
 {
     float step[GRID_PATCH_INPUTS];
 
-    for (unsigned i = 0; i < GRID_PATCH_INPUTS; i++) {
-        step[i] = p->way[i] - before[i];
-    }
-    const float speed = length(step);
-    const bool leaves = distance > length(before) && distance + MAKING * speed > grid->reach;
-
-    if ((leaves || !p->used.valid) && LASTING_MIN * speed <= grid->reach) {
-        set_anchor(grid, p, at, step, speed);
-        p->stage = 1;
+    p->outside |= find_way(grid, &p->patch[1U - p->used], at, step);
+    p->stage++;
+    if (!p->is_ready || p->stage == grid->ready + GOING) {
+        p->used = 1U - p->used;
+        p->stage = STAGE_NONE;
+        p->is_ready = true;
     }
 }
 
-/* Without a patch its anchor is where the axes are, so that the way from it is that of a cycle. */
-static unsigned add_spline(const struct grid *grid, struct grid_patches *p, const struct point *at,
-                           float weight, float k[AXIS_COUNT])
+static void follow(const struct grid *grid, struct grid_patches *p, const struct point *at)
 {
-    p->used.valid = false;
-    get_inputs(grid, at, p->used.anchor_mm);
-    return grid_add(grid, at, weight, k);
+    struct grid_patch *used = &p->patch[p->used];
+    float step[GRID_PATCH_INPUTS];
+
+    if (!p->is_known) {
+        stand_for_spline(grid, used, at);
+        p->stage = STAGE_NONE;
+        p->speed = grid->fastest;
+        p->is_known = true;
+        return;
+    }
+    p->outside = find_way(grid, used, at, step);
+    const float speed = length(step);
+
+    if (speed + (float)GOING * (speed - p->speed) > grid->fastest) {
+        give_up(grid, p, used, at);
+    }
+    p->speed = speed;
+    if (p->stage >= grid->ready) {
+        go_over(grid, p, at);
+    } else if (p->stage != STAGE_NONE) {
+        make(grid, p);
+    } else {
+        look_ahead(grid, p, at, step, speed);
+    }
+    used = &p->patch[p->used];
+    if (!used->valid) {
+        stand_for_spline(grid, used, at);
+    }
+}
+
+/* ---- evaluating ---- */
+
+/*
+ * Taylor's series to the second order, in Horner's form. The value at the anchor comes last, so that what changes from
+ * cycle to cycle is added up before it is rounded to the size of the whole.
+ */
+static GRID_INLINE float value_of(const float term[GRID_PATCH_TERMS], float x, float y, float z)
+{
+    const float of_x = term[6] + x * term[9] + y * term[7] + z * term[8];
+    const float of_y = term[1] + y * term[3] + z * term[4];
+    const float of_z = term[2] + z * term[5];
+
+    return term[0] + (x * of_x + (y * of_y + z * of_z));
+}
+
+static __attribute__((noinline)) void
+add_turn(const struct grid *grid, const struct grid_patch *patch, float weight, float k[AXIS_COUNT])
+{
+    const float *way = patch->way;
+
+    k[grid->turn_axis] += weight * value_of(patch->term[AXIS_LINEAR_COUNT], way[0], way[1], way[2]);
+}
+
+static GRID_INLINE void add_values(const struct grid *grid, const struct grid_patch *patch,
+                                   float weight, float k[AXIS_COUNT])
+{
+    const float x = patch->way[0];
+    const float y = patch->way[1];
+    const float z = patch->way[2];
+
+    for (unsigned i = 0; i < AXIS_LINEAR_COUNT; i++) {
+        k[i] += weight * value_of(patch->term[i], x, y, z);
+    }
+    if (grid->turn_axis < AXIS_COUNT) {
+        add_turn(grid, patch, weight, k);
+    }
 }
 
 unsigned grid_patch_add(const struct grid *grid, struct grid_patches *p, const struct point *at,
                         float weight, float k[AXIS_COUNT])
 {
-    float before[GRID_PATCH_INPUTS];
-    unsigned outside = 0;
+    follow(grid, p, at);
+    const struct grid_patch *patch = &p->patch[p->used];
+    const struct grid_patch *next = &p->patch[1U - p->used];
+    const unsigned going = p->stage > grid->ready ? p->stage - (unsigned)grid->ready : 0U;
+    unsigned outside = p->outside;
 
-    memcpy(before, p->way, sizeof(before));
-    way_from(grid, &p->used, at, p->way);
-    const float distance = length(p->way);
+    for (float part = weight * (1.0F - share[going]);; part = weight * share[going]) {
+        if (patch->valid) {
+            add_values(grid, patch, part, k);
+        } else {
+            outside |= grid_add(grid, at, part, k);
+        }
+        if (going == 0 || patch == next) {
+            return outside;
+        }
+        patch = next;
+    }
+}
 
-    if (holds(grid, &p->used, distance, at)) {
-        add_value(grid, p, weight, k);
-    } else {
-        outside = add_spline(grid, p, at, weight, k);
+bool grid_patch_prepare(const struct grid *grid, struct grid_patches *p, const struct point *at)
+{
+    if (!p->is_ready) {
+        follow(grid, p, at);
+        return false;
     }
-    if (p->stage != 0) {
-        make(grid, p, at);
-    } else if (outside == 0) {
-        look_ahead(grid, p, at, before, distance);
-    }
-    if (!p->used.valid) {
-        memset(p->way, 0, sizeof(p->way));
-    }
-    return outside;
+    return true;
+}
+
+/* ---- what it takes of the axes ---- */
+
+float grid_patch_jerk(const struct grid *grid, float third, float speed_per_s, float cycle_s)
+{
+    const float half = holding(grid);
+    const float back = half - (float)GOING;
+    const float fastest_per_s = grid->fastest / cycle_s;
+    const float speed = speed_per_s < fastest_per_s ? speed_per_s : fastest_per_s;
+    /* Of the difference of two patches, and of its derivatives by the cycle where w' and w'' are not small. */
+    const float size = (back * back * back + half * half * half) * (1.0F / 6.0F);
+    const float first = (back + half) * ((float)GOING / 4.0F);
+    const float second = back + half;
+
+    return (W3 * size + 3.0F * W2 * first + 3.0F * W1 * second) * third * speed * speed * speed;
 }

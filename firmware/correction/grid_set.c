@@ -187,6 +187,6 @@ bool grid_set(struct grid *grid, const struct table *table, struct diagnostic *w
         transform_along(grid, i);
     }
     grid_bound_all(grid);
-    grid->reach = grid_patch_reach(grid);
+    grid_patch_set_pace(grid);
     return true;
 }

@@ -56,23 +56,7 @@ static GRID_INLINE void store(float *to, lanes values)
 }
 #endif
 
-/*
- * The four B-splines that are not 0 in a cell, at t = 0 ... 1 in it, and their first and second derivatives by t
- * (C. de Boor, 1978, chapter IX):
- *
- *     w0 = (1 - t)^3 / 6   w1 = (4 - 6 t^2 + 3 t^3) / 6   w2 = (1 + 3 t + 3 t^2 - 3 t^3) / 6   w3 = t^3 / 6
- *
- * as c0 + t (c1 + t (c2 + t c3)).
- */
-static GRID_INLINE void set_weights(float t, float weight[STENCIL])
-{
-    weight[0] = 1.0F / 6.0F + t * (-0.5F + t * (0.5F - t * (1.0F / 6.0F)));
-    weight[1] = 4.0F / 6.0F + t * t * (-1.0F + t * 0.5F);
-    weight[2] = 1.0F / 6.0F + t * (0.5F + t * (0.5F - t * 0.5F));
-    weight[3] = t * t * t * (1.0F / 6.0F);
-}
-
-static inline void set_weights_first(float t, float weight[STENCIL])
+static GRID_INLINE void set_weights_first(float t, float weight[STENCIL])
 {
     weight[0] = -0.5F + t * (1.0F - t * 0.5F);
     weight[1] = t * (-2.0F + t * 1.5F);
@@ -80,41 +64,28 @@ static inline void set_weights_first(float t, float weight[STENCIL])
     weight[3] = t * t * 0.5F;
 }
 
-static inline void set_weights_second(float t, float weight[STENCIL])
+/* Half of it, as Taylor's series has it. */
+static GRID_INLINE void set_weights_second(float t, float weight[STENCIL])
 {
-    weight[0] = 1.0F - t;
-    weight[1] = -2.0F + t * 3.0F;
-    weight[2] = 1.0F - t * 3.0F;
-    weight[3] = t;
-}
-
-/* Beyond an end, or in the last cell: the same with all that holds there. */
-static __attribute__((noinline)) size_t find_edge_cell(const struct grid_input *input,
-                                                       double position, float *t, unsigned *outside)
-{
-    unsigned beyond = 0;
-    const double held = edge_hold(position, input->last, &beyond);
-    const uint32_t cell = held < 1.0 ? 0 : input->last_cell;
-
-    *t = (float)(held - (double)cell);
-    *outside |= beyond << input->axis;
-    return cell * input->stride;
+    weight[0] = 0.5F - t * 0.5F;
+    weight[1] = -1.0F + t * 1.5F;
+    weight[2] = 0.5F - t * 1.5F;
+    weight[3] = t * 0.5F;
 }
 
 /* The cell a point is in along one input: where it begins, and how far in it the point is, in steps. */
-static GRID_INLINE size_t find_cell(const struct grid_input *input, const struct point *at,
-                                    float *t, unsigned *outside)
-{
-    const double position = (at->at[input->axis] - input->first_mm) * input->per_mm;
+size_t grid_find_cell(const struct grid_input *input, const struct point *at, float *t,
+                      unsigned *outside);
 
-    if (!(position >= 0.0 && position < input->last)) {
-        return find_edge_cell(input, position, t, outside);
-    }
-    const int32_t cell = (int32_t)position;
-
-    *t = (float)(position - (double)cell);
-    return (size_t)(uint32_t)cell * input->stride;
-}
+/*
+ * The four B-splines that are not 0 in a cell, at t = 0 ... 1 in it, and their first and half their second derivatives by t
+ * (C. de Boor, 1978, chapter IX):
+ *
+ *     w0 = (1 - t)^3 / 6   w1 = (4 - 6 t^2 + 3 t^3) / 6   w2 = (1 + 3 t + 3 t^2 - 3 t^3) / 6   w3 = t^3 / 6
+ *
+ * as c0 + t (c1 + t (c2 + t c3)).
+ */
+void grid_set_weights(float t, float weight[STENCIL]);
 
 static GRID_INLINE float finish(const float sum[STENCIL], const float weight[STENCIL])
 {

@@ -9,19 +9,9 @@
 /* The sum of all layers. Single precision is enough for what is at most a millimetre; a displaced part is not. */
 struct correction_sum {
     float fine[AXIS_COUNT];
-    double coarse[AXIS_COUNT];
-    bool is_coarse;   /* coarse is in use: whoever is first sets it to 0 */
+    double *coarse;   /* by axis: begins with what is corrected, and fine comes on top */
     unsigned outside; /* bit i: axis i is beyond the end of a table */
 };
-
-/* Before anything is added to coarse. */
-static inline void sum_use_coarse(struct correction_sum *sum)
-{
-    for (unsigned i = 0; i < AXIS_COUNT && !sum->is_coarse; i++) {
-        sum->coarse[i] = 0.0;
-    }
-    sum->is_coarse = true;
-}
 
 struct correction_layer {
     const char *name; /* as machine files and panels say it */
@@ -29,6 +19,8 @@ struct correction_layer {
     bool (*begin)(const struct correction *c, struct layer_notes *notes);
     /* Once per cycle, before the sum, whether the layer is on or off. NULL: it follows nothing. */
     void (*follow)(struct correction *c, struct layer_notes *notes);
+    /* Once per cycle before it fades in, until it returns true. NULL: it is ready at once. */
+    bool (*prepare)(struct correction *c);
     /* Adds weight (0 ... 1) times its correction. */
     void (*add)(struct correction *c, struct layer_notes *notes, double weight,
                 struct correction_sum *sum);

@@ -50,7 +50,6 @@ static void setup_add(struct correction *c, struct layer_notes *notes, double we
 {
     const struct correction_settings *s = &c->settings;
 
-    sum_use_coarse(sum);
     for (unsigned i = 0; i < SIDE; i++) {
         double k = s->setup_offset_mm[i];
 

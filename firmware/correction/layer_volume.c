@@ -7,6 +7,13 @@ static bool volume_begin(const struct correction *c, struct layer_notes *notes)
     return c->tables != NULL && c->tables->volume.inputs > 0;
 }
 
+static bool volume_prepare(struct correction *c)
+{
+    const struct grid *grid = &c->tables->volume;
+
+    return grid->inputs != GRID_PATCH_INPUTS || grid_patch_prepare(grid, &c->patches, c->at);
+}
+
 static void volume_add(struct correction *c, struct layer_notes *notes, double weight,
                        struct correction_sum *sum)
 {
@@ -22,12 +29,13 @@ static void volume_need(const struct correction *c, const struct layer_notes *no
                         const struct motion_bound *most, struct need *need)
 {
     (void)notes;
-    grid_need(&c->tables->volume, most, need);
+    grid_need(&c->tables->volume, most, c->cycle_s, need);
 }
 
 const struct correction_layer layer_volume = {
     .name = "volume",
     .begin = volume_begin,
+    .prepare = volume_prepare,
     .add = volume_add,
     .need = volume_need,
 };

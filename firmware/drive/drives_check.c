@@ -31,11 +31,6 @@ static inline bool is_silent(const struct drives *d, const struct drives_axis *a
     return drives_silent_cycles(d, axis) > d->answer_timeout_cycles;
 }
 
-static inline bool has_lost_heart(const struct drives *d, const struct drives_axis *axis)
-{
-    return drives_heartless_cycles(d, axis) > d->heartless_most_cycles;
-}
-
 static void raise_link(struct drives *d, unsigned index)
 {
     const struct drives_axis *axis = &d->axis[index];
@@ -51,8 +46,7 @@ static void raise_link(struct drives *d, unsigned index)
 
 static inline bool check_links(struct drives *d, unsigned index)
 {
-    const struct drives_axis *axis = &d->axis[index];
-    if (cia402_is_enabled(axis->statusword) && !is_silent(d, axis) && !has_lost_heart(d, axis))
+    if (drives_is_linked(d, &d->axis[index]))
         return true;
     raise_link(d, index);
     return false;

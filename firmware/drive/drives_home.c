@@ -73,7 +73,8 @@ static void begin_homing(struct drives *d)
 static void check_links(struct drives *d)
 {
     for (unsigned i = 0; i < d->count; i++)
-        (void)drives_check_links(d, i);
+        if (!drives_is_linked(d, &d->axis[i]))
+            (void)drives_check_links(d, i);
 }
 
 /* Modes are not in the statusword: object 6061 is read, of one drive after the other, until it agrees. */

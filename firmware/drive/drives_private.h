@@ -4,6 +4,7 @@
 #ifndef TAKT_DRIVE_DRIVES_PRIVATE_H
 #define TAKT_DRIVE_DRIVES_PRIVATE_H
 
+#include "canopen/cia402.h"
 #include "drive/drives.h"
 
 /* TPDO1: statusword and actual position. TPDO2, error code and following error, is of the same length. */
@@ -85,6 +86,14 @@ void drives_select(struct drives *d);
 void drives_home(struct drives *d);
 /* The next order of axes that are homed; none: all drives are ready. */
 void drives_home_next(struct drives *d);
+
+/* Enabled, and neither reports nor heartbeats have ceased. */
+static inline bool drives_is_linked(const struct drives *d, const struct drives_axis *axis)
+{
+    return cia402_is_enabled(axis->statusword) &&
+           drives_silent_cycles(d, axis) <= d->answer_timeout_cycles &&
+           drives_heartless_cycles(d, axis) <= d->heartless_most_cycles;
+}
 
 /* Supervision, once a cycle. */
 void drives_check_operation(struct drives *d);

@@ -90,7 +90,7 @@ bool path_has_room(const struct path *p);
 void path_push(struct path *p, const struct move *move);
 /* Background: appends pieces of a long motion that had no room before. */
 void path_go_on(struct path *p);
-/* No more moves will come. */
+/* No more moves will come. Needs room: what waits to be joined to the next one is appended. */
 void path_finish(struct path *p);
 /* Forgets every block: the axes have come to rest at a point, and what comes next starts there. */
 void path_restart(struct path *p, const struct point *at, uint64_t position);

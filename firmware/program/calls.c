@@ -77,13 +77,14 @@ static bool restore_modes(struct program *p, const struct program_frame *frame,
 /* #1 ... that a caller has to find again: up to the last one with any bit set, since -0 is not 0 everywhere. */
 static unsigned count_locals(const double local[PARAMETERS_LOCAL])
 {
-    static const double none = 0.0;
     unsigned count = PARAMETERS_LOCAL;
+    uint64_t bits = 0;
 
-    while (count > 0 && memcmp(&local[count - 1], &none, sizeof(none)) == 0) {
+    while (count > 0 && bits == 0) {
         count--;
+        memcpy(&bits, &local[count], sizeof(bits));
     }
-    return count;
+    return bits == 0 ? 0 : count + 1;
 }
 
 /* A numbered program shares them with its caller. False: there is no room. */

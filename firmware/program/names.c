@@ -20,7 +20,12 @@ static bool is_text_at(const struct program_names *names, unsigned place, const 
 
 static unsigned size_at(const struct program_names *names, unsigned place)
 {
-    return (unsigned)strlen(&names->text[place]) + 1U;
+    unsigned end = place;
+
+    while (names->text[end] != '\0') {
+        end++;
+    }
+    return end + 1 - place;
 }
 
 uint16_t names_place(struct program_names *names, const char *text, size_t length)

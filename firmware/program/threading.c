@@ -141,16 +141,19 @@ static void place(const struct program *p, double away_mm, double z_mm, struct p
     work->at[AXIS_Z] = z_mm;
 }
 
-/* The corners of the current cut. */
+/* The corners of the current cut, and where its tapers end. */
 static bool check_cut(struct program *p)
 {
     const struct program_thread *t = &p->cycle.thread;
-    const double away_mm[2] = {t->depth_mm - t->last_mm, t->depth_mm};
-    const double z_mm[2] = {t->start_mm[AXIS_Z] - shift_mm(t), t->length_end_mm - shift_mm(t)};
+    const double begin_mm = t->start_mm[AXIS_Z] - shift_mm(t);
+    const double end_mm = t->length_end_mm - shift_mm(t);
+    const double away_mm[] = {t->depth_mm - t->last_mm, t->depth_mm};
+    const double z_mm[] = {begin_mm, end_mm, t->taper_in ? begin_mm - t->taper_mm : begin_mm,
+                           t->taper_out ? end_mm + t->taper_mm : end_mm};
     struct point work;
 
-    for (unsigned i = 0; i < 4; i++) {
-        place(p, away_mm[i / 2], z_mm[i % 2], &work);
+    for (unsigned i = 0; i < 8; i++) {
+        place(p, away_mm[i / 4], z_mm[i % 4], &work);
         if (!cycles_check_travel(p, &work)) {
             return false;
         }

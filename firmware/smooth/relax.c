@@ -16,6 +16,8 @@
 
 #include <string.h>
 
+#define ITERATIONS 16
+
 /* Over-relaxation. */
 #define OVER 1.6f
 
@@ -498,8 +500,7 @@ static void begin(struct relax *x, const struct window *w, const struct route *r
     }
 }
 
-void relax_window(struct relax *x, struct window *w, const struct route *r, double tolerance_mm,
-                  unsigned iterations)
+void relax_window(struct relax *x, struct window *w, const struct route *r, double tolerance_mm)
 {
     const float tolerance = (float)tolerance_mm;
     struct relax_pass pass = {.over = 1.0f, .calm = 1.0f, .weight = 1.0f};
@@ -511,7 +512,7 @@ void relax_window(struct relax *x, struct window *w, const struct route *r, doub
     pass.over = OVER;
     pass.calm = 1.0f / (1.0f + CALM);
     pass.keep_boxes = 1.0f;
-    for (unsigned i = iterations; i > 0; i--) {
+    for (unsigned i = ITERATIONS; i > 0; i--) {
         for (unsigned g = 0; g < r->slots.groups; g++) {
             bands_step(x, w, g);
         }

@@ -54,7 +54,6 @@ struct relax {
     struct relax_corners corners;
 };
 
-void relax_window(struct relax *x, struct window *w, const struct route *r, double tolerance_mm,
-                  unsigned iterations);
+void relax_window(struct relax *x, struct window *w, const struct route *r, double tolerance_mm);
 
 #endif

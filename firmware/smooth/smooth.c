@@ -7,14 +7,9 @@
 #include <assert.h>
 #include <string.h>
 
-/*
- * Rounds of smoothing and timing a window, and iterations of each. A chain's first window begins from nothing; for timing
- * one that goes on fewer are enough than for judging it.
- */
-#define ROUNDS           1
-#define ROUNDS_FIRST     4
-#define ITERATIONS       16
-#define ITERATIONS_ROUND 16
+/* Rounds of smoothing and timing a window. A chain's first one begins from nothing. */
+#define ROUNDS       1
+#define ROUNDS_FIRST 4
 
 /* So many sixteenths of the window's pieces are kept each time. */
 #define KEPT_SIXTEENTHS 9U
@@ -246,9 +241,9 @@ static bool fill(struct smooth *s)
     return true;
 }
 
-static void relax_and_locate(struct smooth *s, union smooth_scratch *scratch, unsigned iterations)
+static void relax_and_locate(struct smooth *s, union smooth_scratch *scratch)
 {
-    relax_window(&scratch->relax, &s->window, &s->route, AIM * s->route.tolerance_mm, iterations);
+    relax_window(&scratch->relax, &s->window, &s->route, AIM * s->route.tolerance_mm);
     window_locate(&s->window, &s->route);
 }
 
@@ -380,16 +375,16 @@ static void smooth_window(struct smooth *s, union smooth_scratch *scratch)
     unsigned good = 0;
 
     for (unsigned i = 0; i < rounds; i++) {
-        relax_and_locate(s, scratch, goes_on ? ITERATIONS_ROUND : ITERATIONS);
+        relax_and_locate(s, scratch);
         timing_again(&scratch->timing, &s->window, &s->route, &s->change);
         window_extend(&s->window, &s->route);
     }
-    relax_and_locate(s, scratch, ITERATIONS);
+    relax_and_locate(s, scratch);
     good = judged(s);
     for (unsigned i = 0; i < ATTEMPTS && good < wanted(s); i++) {
         timing_slow(&scratch->timing, &s->window, &s->route, good);
         window_extend(&s->window, &s->route);
-        relax_and_locate(s, scratch, ITERATIONS);
+        relax_and_locate(s, scratch);
         good = judged(s);
     }
     s->ends = s->finished && s->window.at_end;

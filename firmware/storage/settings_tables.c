@@ -245,7 +245,7 @@ const char *settings_volume_take(const uint8_t *bytes, uint32_t size,
         return wrong;
     }
     grid_bound_all(grid);
-    grid->reach = grid_patch_reach(grid);
+    grid_patch_set_pace(grid);
     return NULL;
 }
 

@@ -16,7 +16,7 @@
 #include <stdint.h>
 
 #define SLCAN_CAN_LINE_MAX   32
-#define SLCAN_CAN_FRAMES_MAX 64 /* received; a power of two: ten of each of six drives */
+#define SLCAN_CAN_FRAMES_MAX 128 /* received; a power of two */
 #define SLCAN_CAN_NODES      128
 
 struct slcan_can {

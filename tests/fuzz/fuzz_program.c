@@ -140,19 +140,26 @@ static void open_path(const struct program_config *config)
     motion_init(&motion, &path, &config->start, false);
 }
 
-static void plan_move(const struct move *move)
+static bool wait_for_room(void)
 {
     for (unsigned i = 0; i < ROOM_TRIES && !path_has_room(&path); i++) {
         run_cycles(CYCLES_A_TRY);
     }
-    if (path_has_room(&path)) {
+    return path_has_room(&path);
+}
+
+static void plan_move(const struct move *move)
+{
+    if (wait_for_room()) {
         path_push(&path, move);
     }
 }
 
 static void plan_rest(void)
 {
-    path_finish(&path);
+    if (wait_for_room()) {
+        path_finish(&path);
+    }
     run_cycles(CYCLES_AT_END);
 }
 

@@ -17,7 +17,7 @@ NESTING = 17
 NESTED = "expression_read"
 
 PORT = r"(cortex_)?(un)?lock|now_us|now_ns|reply|write_log"
-LAYER = r"(axes|matrix|setup|volume|thermal|wear)_(add|begin|follow|need)"
+LAYER = r"(axes|matrix|setup|volume|thermal|wear)_(add|begin|follow|need|prepare)"
 CODES = (r"(events|modes|coordinates|cutter|cycles|straight|circular|involute|probe|saved_modes|setting|threading|spline)_.*"
          r"|calls_run_code")
 OPERATORS = (r"function_.*|add|subtract|multiply|divide|modulo|power|equal|not_equal|greater|greater_or_equal|less"
@@ -25,7 +25,7 @@ OPERATORS = (r"function_.*|add|subtract|multiply|divide|modulo|power|equal|not_e
 STORE = r"begin|begin_stream|bring|prepare|place|room|end|look|order|hear|settings_.*|may_load"
 CALLS = (
     (r"answer_.*|modbus_answer", r"panel_read|panel_write"),
-    (r"begin_layer|exchange_tables|correction_.*", LAYER),
+    (r".*_layers?|exchange_tables|correction_.*", LAYER),
     (r"decimal_read", r"wide_.*"),
     (r"embedded_.*|hear|order|log_.*|serve_line|refuse|forward|lock|unlock", PORT),
     (r"expression_.*|read_.*", OPERATORS),

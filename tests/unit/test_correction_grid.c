@@ -205,6 +205,35 @@ static void test_a_way_through_cells_and_edges_has_no_jump_in_acceleration(void)
     TEST_ASSERT_TRUE(worst < 10);
 }
 
+/* With a noise that calibration leaves: 0.1 um. */
+static double noisy(unsigned output, const double *x)
+{
+    return wavy(output, x) + random_between(-1e-4, 1e-4);
+}
+
+static bool by_patch(const struct grid_patches *patches)
+{
+    return patches->patch[patches->used].valid;
+}
+
+/* What a cycle at a point adds by patches, compared with the grid itself: the largest difference. */
+static double patch_error(struct grid_patches *patches, const struct point *at)
+{
+    float direct[AXIS_COUNT] = {0}, near[AXIS_COUNT] = {0};
+    double worst = 0;
+
+    TEST_ASSERT_EQUAL_UINT(grid_add(&grid, at, 1.0F, direct),
+                           grid_patch_add(&grid, patches, at, 1.0F, near));
+    for (unsigned o = 0; o < 3; o++)
+        worst = fmax(worst, fabs((double)(near[o] - direct[o])));
+    return worst;
+}
+
+static struct point around(double s)
+{
+    return (struct point){{100 + 230 * sin(s), 90 + 190 * cos(1.3 * s), 60 + 150 * sin(2.1 * s)}};
+}
+
 static void test_patches_are_the_grid_to_a_few_nanometres(void)
 {
     struct grid_patches patches = {0};
@@ -213,19 +242,104 @@ static void test_patches_are_the_grid_to_a_few_nanometres(void)
 
     make_volume(wavy);
     for (int n = 0; n < 200000; n++) {
-        const double s = n * 1e-4; /* 0.03 mm a cycle, through the edges as well */
-        const struct point at = {
-            {100 + 230 * sin(s), 90 + 190 * cos(1.3 * s), 60 + 150 * sin(2.1 * s)}};
-        float direct[AXIS_COUNT] = {0}, near[AXIS_COUNT] = {0};
+        const struct point at = around(n * 1e-4); /* 0.03 mm a cycle, through the edges as well */
 
-        TEST_ASSERT_EQUAL_UINT(grid_add(&grid, &at, 1.0F, direct),
-                               grid_patch_add(&grid, &patches, &at, 1.0F, near));
-        valid += patches.used.valid ? 1 : 0;
-        for (unsigned o = 0; o < 3; o++)
-            worst = fmax(worst, fabs((double)(near[o] - direct[o])));
+        worst = fmax(worst, patch_error(&patches, &at));
+        valid += by_patch(&patches) ? 1 : 0;
     }
-    TEST_ASSERT_TRUE(worst < GRID_PATCH_ERROR_MM + 2e-8);
-    TEST_ASSERT_TRUE(valid > 100000);
+    TEST_ASSERT_TRUE(worst < 4e-6);
+    TEST_ASSERT_TRUE(valid > 199900);
+}
+
+static void test_patches_of_a_noisy_table_keep_to_their_error_at_any_speed(void)
+{
+    make_volume(noisy);
+    for (int i = 0; i < 17; i++) {
+        const double speed = 1e-5 * pow(1.5, i);
+        struct grid_patches patches = {0};
+        double worst = 0;
+
+        for (int n = 0; n < 20000; n++) {
+            const struct point at = around(n * speed);
+
+            worst = fmax(worst, patch_error(&patches, &at));
+        }
+        TEST_ASSERT_TRUE(worst < GRID_PATCH_ERROR_MM + 2e-8);
+    }
+}
+
+static void
+test_up_to_their_fastest_the_axes_are_followed_by_patches_alone_and_beyond_by_the_grid(void)
+{
+    make_volume(noisy);
+    for (int fast = 0; fast < 2; fast++) {
+        const double step_mm = (fast ? 1.2 : 0.9) * (double)grid.fastest / grid.input[0].per_mm;
+        struct grid_patches patches = {0};
+
+        for (int n = 0; n < 600; n++) {
+            const struct point at = {{-90 + step_mm * (n < 400 ? n * n / 800.0 : n - 200), 40, 70}};
+            const double error = patch_error(&patches, &at);
+
+            TEST_ASSERT_TRUE(n < 40 || n > 300 || by_patch(&patches));
+            TEST_ASSERT_TRUE(n <= 420 || by_patch(&patches) == (fast == 0));
+            TEST_ASSERT_TRUE(n <= 420 || fast == 0 || error == 0);
+        }
+    }
+}
+
+static void test_axes_that_have_come_to_rest_are_corrected_as_the_grid_says(void)
+{
+    struct grid_patches patches = {0};
+    struct point at = {{0}};
+
+    make_volume(noisy);
+    for (int n = 0; n < 2000; n++) {
+        at.at[AXIS_X] = 50 + 60 * sin(n < 1570 ? n * 1e-3 : 1.57);
+        at.at[AXIS_Z] = 20 + 90 * cos(n < 1570 ? n * 1e-3 : 1.57);
+        const double error = patch_error(&patches, &at);
+
+        TEST_ASSERT_TRUE(n <= 1700 || error < GRID_PATCH_NEAR_MM + 1e-8);
+    }
+}
+
+static void test_a_place_that_is_set_anew_is_corrected_by_the_grid_itself_at_once(void)
+{
+    struct grid_patches patches = {0};
+
+    make_volume(noisy);
+    for (int n = 0; n < 1000; n++) {
+        const struct point at = {{n < 500 ? 30 + 0.01 * n : 200 - 0.01 * n, 40, 70}};
+        const double error = patch_error(&patches, &at);
+
+        TEST_ASSERT_TRUE(n != 500 || error == 0);
+        TEST_ASSERT_TRUE(error < GRID_PATCH_ERROR_MM + 2e-8);
+    }
+    TEST_ASSERT_TRUE(by_patch(&patches));
+}
+
+/* The most that differences of K over cycles are, of the last four values. */
+struct differences {
+    double last[4], v, a, j;
+    int count;
+};
+
+static void take(struct differences *d, double k, double cycle_s)
+{
+    d->last[3] = d->last[2], d->last[2] = d->last[1], d->last[1] = d->last[0], d->last[0] = k;
+    if (++d->count < 4)
+        return;
+    d->v = fmax(d->v, fabs(d->last[0] - d->last[1]) / cycle_s);
+    d->a = fmax(d->a, fabs(d->last[0] - 2 * d->last[1] + d->last[2]) / pow(cycle_s, 2));
+    d->j = fmax(d->j,
+                fabs(d->last[0] - 3 * d->last[1] + 3 * d->last[2] - d->last[3]) / pow(cycle_s, 3));
+}
+
+static void check_need(const struct differences *d, const struct need *need, unsigned axis,
+                       double noise_mm, double cycle_s)
+{
+    TEST_ASSERT_TRUE(d->v > 0 && d->v <= need->velocity_mm_s[axis] + 2 * noise_mm / cycle_s);
+    TEST_ASSERT_TRUE(d->a <= need->acceleration_mm_s2[axis] + 4 * noise_mm / pow(cycle_s, 2));
+    TEST_ASSERT_TRUE(d->j <= need->jerk_mm_s3[axis] + 8 * noise_mm / pow(cycle_s, 3));
 }
 
 /* Motion of all three axes within most, on a table: what is added stays within the need. */
@@ -233,30 +347,55 @@ static void test_the_need_bounds_what_following_the_table_takes(void)
 {
     struct motion_bound most = {{100, 100, 100}, {1000, 1000, 1000}, {50000, 50000, 50000}, {0}};
     const double cycle_s = 0.01; /* coarse, so that rounding is small beside it */
-    double v = 0, a = 0, j = 0, k0[4] = {0};
+    struct differences d = {.count = 0};
     struct need need;
-    int n = 0;
 
     memset(&need, 0, sizeof need);
     make_volume(wavy);
-    grid_need(&grid, &most, &need);
-    for (; n < 20000; n++) {
+    grid_need(&grid, &most, cycle_s, &need);
+    for (int n = 0; n < 20000; n++) {
         const double t = n * cycle_s;
         const struct point at = {
             {100 + 150 * sin(0.66 * t), 100 + 110 * cos(0.9 * t), 90 + 80 * sin(1.2 * t)}};
         float k[AXIS_COUNT] = {0};
 
         (void)grid_add(&grid, &at, 1.0F, k);
-        k0[3] = k0[2], k0[2] = k0[1], k0[1] = k0[0], k0[0] = (double)k[0];
-        if (n < 4)
-            continue;
-        v = fmax(v, fabs(k0[0] - k0[1]) / cycle_s);
-        a = fmax(a, fabs(k0[0] - 2 * k0[1] + k0[2]) / pow(cycle_s, 2));
-        j = fmax(j, fabs(k0[0] - 3 * k0[1] + 3 * k0[2] - k0[3]) / pow(cycle_s, 3));
+        take(&d, (double)k[0], cycle_s);
     }
-    TEST_ASSERT_TRUE(v > 0 && v <= need.velocity_mm_s[0]);
-    TEST_ASSERT_TRUE(a <= need.acceleration_mm_s2[0]);
-    TEST_ASSERT_TRUE(j <= need.jerk_mm_s3[0]);
+    check_need(&d, &need, AXIS_X, 0, cycle_s);
+}
+
+/* The same by patches, of a noisy table, with the rounding that need counts: from slow motion to the fastest. */
+static void test_the_need_bounds_what_patches_take_while_one_goes_over_into_the_other(void)
+{
+    make_volume(noisy);
+    for (int slower = 0; slower < 13; slower++) {
+        const double size = 1.4 * pow(0.7, slower);
+        const double cycle_s = 0.001, w = (double)grid.fastest / 0.02 / cycle_s / 600 * size;
+        struct motion_bound most = {{200 * w, 190 * w, 170 * w}, {0}, {0}, {0}};
+        struct grid_patches patches = {0};
+        struct differences d[3] = {{.count = 0}};
+        struct need need;
+
+        memset(&need, 0, sizeof need);
+        for (unsigned i = 0; i < 3; i++) {
+            most.acceleration_mm_s2[i] = most.velocity_mm_s[i] * 2 * w;
+            most.jerk_mm_s3[i] = most.acceleration_mm_s2[i] * 2 * w;
+        }
+        grid_need(&grid, &most, cycle_s, &need);
+        for (int n = 0; n < 60000; n++) {
+            const double t = w * n * cycle_s;
+            const struct point at = {
+                {100 + 200 * sin(t), 100 + 190 * cos(0.9 * t), 90 + 100 * sin(1.7 * t)}};
+            float k[AXIS_COUNT] = {0};
+
+            (void)grid_patch_add(&grid, &patches, &at, 1.0F, k);
+            for (unsigned i = 0; i < 3 && n > 60; i++)
+                take(&d[i], (double)k[i], cycle_s);
+        }
+        for (unsigned i = 0; i < 3; i++)
+            check_need(&d[i], &need, i, need.noise_mm[i], cycle_s);
+    }
 }
 
 static void test_a_grid_that_finds_no_room_and_a_table_of_one_axis_are_refused(void)
@@ -283,7 +422,13 @@ int main(void)
     RUN_TEST(test_outside_the_edge_value_holds_from_one_step_on);
     RUN_TEST(test_a_way_through_cells_and_edges_has_no_jump_in_acceleration);
     RUN_TEST(test_patches_are_the_grid_to_a_few_nanometres);
+    RUN_TEST(test_patches_of_a_noisy_table_keep_to_their_error_at_any_speed);
+    RUN_TEST(
+        test_up_to_their_fastest_the_axes_are_followed_by_patches_alone_and_beyond_by_the_grid);
+    RUN_TEST(test_axes_that_have_come_to_rest_are_corrected_as_the_grid_says);
+    RUN_TEST(test_a_place_that_is_set_anew_is_corrected_by_the_grid_itself_at_once);
     RUN_TEST(test_the_need_bounds_what_following_the_table_takes);
+    RUN_TEST(test_the_need_bounds_what_patches_take_while_one_goes_over_into_the_other);
     RUN_TEST(test_a_grid_that_finds_no_room_and_a_table_of_one_axis_are_refused);
     return UNITY_END();
 }

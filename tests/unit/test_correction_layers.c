@@ -343,6 +343,25 @@ static void test_a_pair_of_axes_given_twice_and_too_many_points_are_refused(void
     TEST_ASSERT_EQUAL_INT(TAKT_ERROR_TABLE_PAIRS_MANY, wrong.code);
 }
 
+static void test_a_volume_fades_in_when_its_first_patch_is_there_at_rest_and_in_motion(void)
+{
+    unsigned faded = 0;
+
+    make_volume(&tables, 30);
+    begin(&tables);
+    for (int i = 0; i < 20000; i++) {
+        const double a = 1e-3 * i;
+        const struct point at = {{50 + 40 * sin(a), 50 + 40 * cos(a), 50 + 30 * sin(0.7 * a)}};
+        struct point set;
+
+        correction_switch(&c, CORRECTION_VOLUME, i < 5000 || i > 12000);
+        correction_cycle(&c, &at, &move, &set);
+        faded += correction_get_running(&c) == 0 ? 1 : 0;
+        TEST_ASSERT_TRUE(correction_get_running(&c) == 0 || c.patches.patch[c.patches.used].valid);
+    }
+    TEST_ASSERT_TRUE(faded > 20 && faded < 7000);
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -362,5 +381,6 @@ int main(void)
     RUN_TEST(test_leaving_a_table_is_told_once_until_it_is_asked);
     RUN_TEST(test_the_settled_correction_is_what_the_cycle_comes_to);
     RUN_TEST(test_a_pair_of_axes_given_twice_and_too_many_points_are_refused);
+    RUN_TEST(test_a_volume_fades_in_when_its_first_patch_is_there_at_rest_and_in_motion);
     return UNITY_END();
 }
