@@ -20,11 +20,20 @@ struct taps {
 };
 
 /*
- * At the ends of an input coefficients stand for places outside of the table, and are large where its values are noisy.
- * There the spline lies between its value at the end and the next coefficients, and its first derivative likewise: the
- * Bezier points of the last cell (C. de Boor, 1978, chapter IX).
+ * At the ends of an input the outer coefficient stands for a place outside of the table, and is large where values are noisy.
+ * The spline is read to t = -0.2 there and no further (edge.h), and all of it from there on lies between its value there,
+ *
+ *     0.288 c_0 + 0.62267 c_1 + 0.09067 c_2 - 0.00133 c_3     (1 - t)^3/6, (3 t^3 - 6 t^2 + 4)/6, ..., t^3/6
+ *
+ * and the next coefficients (de Boor's points of that piece are means of these with positive weights; C. de Boor, 1978,
+ * chapter IX). The first derivative has the factor u' beyond the end: together they are at most 1.02 of the derivative at the
+ * end, (c_2 - c_0)/2, and 0.18 of the differences behind it. So 1.25 of it, beside those, bounds both.
  */
-static const float at_end[2][3] = {{1.0F / 6.0F, 4.0F / 6.0F, 1.0F / 6.0F}, {-0.5F, 0.0F, 0.5F}};
+#define END_TAPS 4U
+static const float value_at_start[END_TAPS] = {0.288F, 0.622666667F, 0.0906666667F,
+                                               -0.00133333333F};
+static const float value_at_end[END_TAPS] = {-0.00133333333F, 0.0906666667F, 0.622666667F, 0.288F};
+static const float slope_at_end[] = {-0.625F, 0.0F, 0.625F};
 
 static struct taps taps_of(const struct grid *grid, const struct grid_order *order,
                            const unsigned index[TABLE_INPUTS_MAX], unsigned i)
@@ -35,7 +44,11 @@ static struct taps taps_of(const struct grid *grid, const struct grid_order *ord
     if (i >= grid->inputs || n > 1 || (index[i] != 0 && index[i] != last)) {
         return (struct taps){n + 1U, 0, binomial[n]};
     }
-    return (struct taps){3, index[i] == 0 ? 0 : 2U - n, at_end[n]};
+    if (n == 1) {
+        return (struct taps){3, index[i] == 0 ? 0 : 1, slope_at_end};
+    }
+    return index[i] == 0 ? (struct taps){END_TAPS, 0, value_at_start}
+                         : (struct taps){END_TAPS, END_TAPS - 1U, value_at_end};
 }
 
 /* Along the first two inputs, of the coefficients from a place on. */

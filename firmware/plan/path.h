@@ -58,7 +58,7 @@ struct path {
     bool newest_turns;        /* the newest motion moves rotary axes */
     struct point end;         /* where everything pushed ends */
     struct smooth smooth;     /* motions that are not in the ring yet: a chain being smoothed */
-    bool lent;      /* what it computes with belongs to somebody else: nothing is smoothed */
+    bool lent;      /* where the chain is kept belongs to somebody else: nothing is smoothed */
     bool has_next;  /* a move that is not part of that chain waits until it has been taken: split */
     bool smoothing; /* the newest block is a piece of a chain that goes on */
     double unit_mm; /* path for a second of nominal time of a smoothed curve */

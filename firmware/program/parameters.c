@@ -50,21 +50,44 @@ static void insert(struct parameters *p, unsigned position, unsigned number)
     p->count++;
 }
 
+/* Those that are 0 need no place. */
+static void drop_zeros(struct parameters *p)
+{
+    unsigned count = 0;
+
+    for (unsigned i = 0; i < p->count; i++) {
+        if (p->value[i] != 0.0) {
+            p->number[count] = p->number[i];
+            p->value[count++] = p->value[i];
+        }
+    }
+    p->count = (uint16_t)count;
+}
+
+static bool make_room(struct parameters *p)
+{
+    if (p->count == PARAMETERS_MAX) {
+        drop_zeros(p);
+    }
+    return p->count < PARAMETERS_MAX;
+}
+
 bool parameters_set(struct parameters *p, unsigned number, double value)
 {
     if (number <= PARAMETERS_LOCAL) {
         p->local[number - 1] = value;
         return true;
     }
-    const unsigned position = position_of(p, number);
+    unsigned position = position_of(p, number);
 
     if (!holds(p, position, number)) {
         if (value == 0.0) {
             return true;
         }
-        if (p->count == PARAMETERS_MAX) {
+        if (!make_room(p)) {
             return false;
         }
+        position = position_of(p, number);
         insert(p, position, number);
     }
     p->value[position] = value;

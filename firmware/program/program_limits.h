@@ -1,6 +1,6 @@
 /*
- * Every fixed size of the interpreter; a build may have others of those that can be defined before. struct program and struct parameters together stay below
- * PROGRAM_MEMORY_MAX bytes (checked in program.c).
+ * Every fixed size of the interpreter; a build may have others of those that can be defined before. struct program and
+ * struct parameters together stay below PROGRAM_MEMORY_MAX bytes (checked in program.c).
  */
 #ifndef TAKT_PROGRAM_LIMITS_H
 #define TAKT_PROGRAM_LIMITS_H
@@ -37,7 +37,7 @@
 #define PARAMETER_NUMBER_MAX 5601
 /* #1 ... #30 always have a place. */
 #define PARAMETERS_LOCAL 30
-/* Others that can be set to something else than 0. */
+/* Others that are not 0. */
 #ifndef PARAMETERS_MAX
 #define PARAMETERS_MAX 1000
 #endif

@@ -5,6 +5,8 @@
 #define REFUSED "settings refused: "
 #define STORED  "settings stored: they count from the next start on"
 
+#define DRIVES_ARE_ON "settings are taken while the drives are off: press emergency stop first"
+
 /* Why, in words. */
 static void tell(const struct settings_upload *u, char text[DIAGNOSTIC_TEXT_MAX])
 {
@@ -40,7 +42,7 @@ static bool begin(void *context, uint32_t size)
     struct settings_upload *u = context;
 
     if (!may_load(u))
-        return refuse(u, "settings are taken while the drives are off: press emergency stop first");
+        return refuse(u, DRIVES_ARE_ON);
     if (size > store_room(u->store))
         return refuse(u, "these settings are larger than the memory for them");
     return store_begin(u->store, size) || refuse(u, "the memory for settings cannot be erased");
@@ -61,6 +63,8 @@ static bool prepare(void *context)
     const uint8_t *bytes = store_look(u->store);
     struct machine machine;
 
+    if (!may_load(u))
+        return refuse(u, DRIVES_ARE_ON);
     if (bytes == NULL)
         return refuse(u, "the settings are not complete");
     u->why = NULL;

@@ -21,11 +21,12 @@
 
 struct step_slots {
     unsigned slots; /* in a cycle */
-    /* Of the cycle to come: step pins that are high, direction pins that change. Made where its levels will be. */
+    /* Levels in the cycle to come, right at any time: a cycle that is sent too early has steps too few, none the wrong way */
     uint16_t *word; /* NULL: not begun */
-    uint16_t overhang[STEP_SLOTS_OVERHANG];
-    uint16_t level;           /* of the direction pins before it */
-    uint8_t direction;        /* as the pins stand after it, by axis */
+    uint16_t overhang
+        [STEP_SLOTS_OVERHANG]; /* of the next one: step pins that are high, direction pins that change */
+    uint16_t level;            /* of the direction pins at its end */
+    uint8_t direction;         /* as the pins stand after it, by axis */
     int32_t free[AXIS_COUNT]; /* the first slot in which an axis may step */
 };
 
@@ -38,7 +39,7 @@ void step_slots_begin(struct step_slots *s, uint16_t *word);
 /* Of a cycle that has begun. False: no room in it. Pins 0 to 5 of the port step, 8 to 13 tell the direction, of X Y Z A B C. */
 bool step_slots_add(struct step_slots *s, const struct step_pulse *pulse);
 
-/* Makes the levels of the cycle, in its memory, and ends it. All other pins of the port are low. */
+/* Ends the cycle: its memory has the levels. All other pins of the port are low. */
 void step_slots_take(struct step_slots *s);
 
 #endif

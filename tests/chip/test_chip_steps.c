@@ -112,6 +112,18 @@ static void test_200000_steps_a_second_go_through_and_more_are_refused(void)
     TEST_FAIL_MESSAGE("250,000 steps a second are taken");
 }
 
+static void test_a_cycle_that_is_sent_before_it_is_made_steps_no_axis_the_wrong_way(void)
+{
+    TEST_ASSERT_TRUE(step(50000, 2, 2));
+    end_cycle();
+    TEST_ASSERT_TRUE(step(100000, 3, 3));
+    for (unsigned i = 0; i < slots.slots; i++) /* not taken */
+        drive(levels[i]);
+    TEST_ASSERT_EQUAL(-1, driver.position[0]);
+    TEST_ASSERT_EQUAL(-2, driver.position[1]);
+    TEST_ASSERT_EQUAL_HEX(0x300U, driver.pins);
+}
+
 static void test_random_steps_all_arrive_with_their_directions_in_time(void)
 {
     int32_t expected[AXIS_COUNT] = {0};
@@ -154,6 +166,7 @@ int main(void)
     RUN_TEST(test_a_step_comes_two_slots_after_its_time);
     RUN_TEST(test_the_last_step_of_a_cycle_is_whole_in_the_next);
     RUN_TEST(test_200000_steps_a_second_go_through_and_more_are_refused);
+    RUN_TEST(test_a_cycle_that_is_sent_before_it_is_made_steps_no_axis_the_wrong_way);
     RUN_TEST(test_random_steps_all_arrive_with_their_directions_in_time);
     RUN_TEST(test_cycles_that_are_too_long_or_no_whole_slots_are_refused);
     return UNITY_END();

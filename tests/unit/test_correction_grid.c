@@ -1,5 +1,6 @@
 /* Grids: the spline through a table's points, close to it by patches, and what following it takes. */
 #include "correction/grid.h"
+#include "correction/grid_bound.h"
 #include "correction/grid_patch.h"
 #include "unity.h"
 
@@ -317,6 +318,58 @@ static void test_a_place_that_is_set_anew_is_corrected_by_the_grid_itself_at_onc
     TEST_ASSERT_TRUE(by_patch(&patches));
 }
 
+static double noise(unsigned output, const double *x)
+{
+    (void)output;
+    (void)x;
+    return random_between(-1, 1) < 0 ? -1e-3 : 1e-3;
+}
+
+/* A place in or beside one of a volume's corners, where what stands outside of the table counts most. */
+static struct point near_a_corner(void)
+{
+    const double step_mm[3] = {400.0 / 8, 400.0 / 6, 400.0 / 5};
+    struct point at = {{0}};
+
+    for (unsigned i = 0; i < 3; i++) {
+        const double steps = random_between(-0.7, 0.7);
+
+        at.at[i] = random_between(-1, 1) < 0 ? -100 + steps * step_mm[i] : 300 + steps * step_mm[i];
+    }
+    return at;
+}
+
+/* Of K itself, and of its slope along an input: by the step of a table, over a thousandth of one. */
+static void test_the_bounds_of_value_and_slope_hold_beyond_the_ends_of_a_table_as_well(void)
+{
+    const double step_mm[3] = {400.0 / 8, 400.0 / 6, 400.0 / 5};
+    double most_value = 0, most_slope = 0;
+
+    for (int tables = 0; tables < 40; tables++) {
+        make_volume(noise);
+        for (int n = 0; n < 2000; n++) {
+            const struct point at = near_a_corner();
+            const unsigned i = (unsigned)n % 3;
+            struct point beside = at;
+            float k[AXIS_COUNT] = {0}, next[AXIS_COUNT] = {0};
+
+            beside.at[i] += 1e-2 * step_mm[i];
+            (void)grid_add(&grid, &at, 1.0F, k);
+            (void)grid_add(&grid, &beside, 1.0F, next);
+            for (unsigned o = 0; o < 3; o++) {
+                const double value =
+                    (double)grid_bound(&grid, o, GRID_NO_INPUT, GRID_NO_INPUT, GRID_NO_INPUT);
+                const double slope = (double)grid_bound(&grid, o, i, GRID_NO_INPUT, GRID_NO_INPUT);
+
+                most_value = fmax(most_value, fabs((double)k[o]) / value);
+                most_slope = fmax(most_slope, fabs((double)(next[o] - k[o])) / 1e-2 / slope);
+            }
+        }
+    }
+    TEST_ASSERT_TRUE(most_value > 0.3 && most_value <= 1.00001);
+    TEST_ASSERT_TRUE(most_slope > 0.3 && most_slope <= 1.001);
+}
+
 /* The most that differences of K over cycles are, of the last four values. */
 struct differences {
     double last[4], v, a, j;
@@ -428,6 +481,7 @@ int main(void)
     RUN_TEST(test_axes_that_have_come_to_rest_are_corrected_as_the_grid_says);
     RUN_TEST(test_a_place_that_is_set_anew_is_corrected_by_the_grid_itself_at_once);
     RUN_TEST(test_the_need_bounds_what_following_the_table_takes);
+    RUN_TEST(test_the_bounds_of_value_and_slope_hold_beyond_the_ends_of_a_table_as_well);
     RUN_TEST(test_the_need_bounds_what_patches_take_while_one_goes_over_into_the_other);
     RUN_TEST(test_a_grid_that_finds_no_room_and_a_table_of_one_axis_are_refused);
     return UNITY_END();

@@ -63,6 +63,44 @@ static void test_a_full_store_refuses_only_what_needs_room(void)
     TEST_ASSERT_EQUAL_DOUBLE(0.0, parameters_get(&p, 5000));
 }
 
+static void test_parameters_set_back_to_zero_make_room_for_others(void)
+{
+    struct parameters p;
+
+    parameters_clear(&p);
+    for (unsigned i = 0; i < PARAMETERS_MAX; i++) {
+        TEST_ASSERT_TRUE(parameters_set(&p, 100 + i, 100.0 + i));
+    }
+    TEST_ASSERT_TRUE(parameters_set(&p, 100, 0.0));
+    TEST_ASSERT_TRUE(parameters_set(&p, 777, 0.0));
+    TEST_ASSERT_TRUE(parameters_set(&p, 5000, 1.0));
+    TEST_ASSERT_TRUE(parameters_set(&p, 31, 2.0));
+    TEST_ASSERT_FALSE(parameters_set(&p, 777, 3.0));
+    TEST_ASSERT_EQUAL_DOUBLE(1.0, parameters_get(&p, 5000));
+    TEST_ASSERT_EQUAL_DOUBLE(2.0, parameters_get(&p, 31));
+    TEST_ASSERT_EQUAL_DOUBLE(0.0, parameters_get(&p, 100));
+    for (unsigned i = 1; i < PARAMETERS_MAX; i++) {
+        TEST_ASSERT_EQUAL_DOUBLE(i == 677 ? 0.0 : 100.0 + i, parameters_get(&p, 100 + i));
+    }
+}
+
+/* A line that fails gives back what it took: also where the place of a zero has been taken since. */
+static void test_a_faulty_line_in_a_full_store_assigns_nothing(void)
+{
+    const unsigned last = 98 + PARAMETERS_MAX;
+
+    reader_prepare(&reader);
+    for (unsigned number = 100; number <= last; number++) {
+        TEST_ASSERT_TRUE(parameters_set(&reader.parameters, number, 1.0));
+    }
+    reader_text(&reader, "#100=0 #5000=2 #5001=3\n"); /* #5220 has the last place */
+    reader_expect_error(&reader, TAKT_ERROR_PARAMETERS_FULL);
+    TEST_ASSERT_EQUAL_STRING("#5001", reader.diagnostic.word);
+    TEST_ASSERT_EQUAL_DOUBLE(1.0, parameter(100));
+    TEST_ASSERT_EQUAL_DOUBLE(0.0, parameter(5000));
+    TEST_ASSERT_EQUAL_DOUBLE(1.0, parameter(last));
+}
+
 static void test_listing_goes_by_number_and_leaves_zeros_out(void)
 {
     static const unsigned expected[] = {3, 30, 31, 5221};
@@ -220,6 +258,8 @@ int main(void)
     RUN_TEST(test_a_parameter_never_set_is_zero);
     RUN_TEST(test_many_parameters_keep_their_values_in_any_order);
     RUN_TEST(test_a_full_store_refuses_only_what_needs_room);
+    RUN_TEST(test_parameters_set_back_to_zero_make_room_for_others);
+    RUN_TEST(test_a_faulty_line_in_a_full_store_assigns_nothing);
     RUN_TEST(test_listing_goes_by_number_and_leaves_zeros_out);
     RUN_TEST(test_assignments_take_effect_after_their_line);
     RUN_TEST(test_the_last_assignment_of_a_line_wins);
