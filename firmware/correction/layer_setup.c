@@ -49,8 +49,9 @@ static void setup_add(struct correction *c, struct layer_notes *notes, double we
                       struct correction_sum *sum)
 {
     const struct correction_settings *s = &c->settings;
+    const unsigned end = c->axes_end < SIDE ? c->axes_end : SIDE;
 
-    for (unsigned i = 0; i < SIDE; i++) {
+    for (unsigned i = 0; i < end; i++) {
         double k = s->setup_offset_mm[i];
 
         for (unsigned j = 0; j < SIDE; j++) {

@@ -14,6 +14,12 @@ static inline void bytes_put(uint8_t **to, const void *value, size_t size)
     *to += size;
 }
 
+static inline void bytes_take(const uint8_t **from, void *value, size_t size)
+{
+    memcpy(value, *from, size);
+    *from += size;
+}
+
 static inline void bytes_put_double(uint8_t **to, double value)
 {
     bytes_put(to, &value, sizeof(value));
@@ -23,8 +29,7 @@ static inline double bytes_take_double(const uint8_t **from)
 {
     double value;
 
-    memcpy(&value, *from, sizeof(value));
-    *from += sizeof(value);
+    bytes_take(from, &value, sizeof(value));
     return value;
 }
 
@@ -37,8 +42,7 @@ static inline uint32_t bytes_take_word(const uint8_t **from)
 {
     uint32_t value;
 
-    memcpy(&value, *from, sizeof(value));
-    *from += sizeof(value);
+    bytes_take(from, &value, sizeof(value));
     return value;
 }
 
@@ -53,8 +57,7 @@ static inline uint16_t bytes_take_half(const uint8_t **from)
 {
     uint16_t half;
 
-    memcpy(&half, *from, sizeof(half));
-    *from += sizeof(half);
+    bytes_take(from, &half, sizeof(half));
     return half;
 }
 

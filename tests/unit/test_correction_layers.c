@@ -115,6 +115,20 @@ static void test_the_matrix_is_composed_of_machine_workpiece_and_overhang(void)
     TEST_ASSERT_DOUBLE_WITHIN(1e-11, 1e-5, k.at[AXIS_C]);
 }
 
+static void test_the_setup_layer_moves_no_axis_that_is_not_there(void)
+{
+    const struct point at = {{100, 50, 0}};
+    struct point set;
+
+    settings.setup_rotation_rad[AXIS_X] = 0.01;
+    settings.setup_offset_mm[AXIS_Z] = 0.2;
+    correction_init(&c, &settings, 0x3, CYCLE_S, NULL, &origin); /* X Y */
+    for (int i = 0; i < 6000; i++)
+        correction_cycle(&c, &at, &move, &set);
+    TEST_ASSERT_EQUAL_DOUBLE(0.0, set.at[AXIS_Z]);
+    TEST_ASSERT_TRUE(set.at[AXIS_Y] != at.at[AXIS_Y]);
+}
+
 static void test_the_setup_layer_takes_back_a_turned_and_displaced_pallet(void)
 {
     const double angle = 0.5 * MATHS_PI / 180, x = 220, y = 90;
@@ -368,6 +382,7 @@ int main(void)
     RUN_TEST(test_without_anything_to_correct_the_setpoint_is_the_command_to_the_last_bit);
     RUN_TEST(test_a_diagonal_matrix_takes_back_a_pitch_error);
     RUN_TEST(test_the_matrix_is_composed_of_machine_workpiece_and_overhang);
+    RUN_TEST(test_the_setup_layer_moves_no_axis_that_is_not_there);
     RUN_TEST(test_the_setup_layer_takes_back_a_turned_and_displaced_pallet);
     RUN_TEST(test_thermal_growth_of_fifteen_kelvin_is_taken_back);
     RUN_TEST(test_backlash_follows_the_direction_of_the_last_motion);
