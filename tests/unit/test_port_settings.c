@@ -162,11 +162,16 @@ static enum modbus_exception begin(void)
     return set(REGISTER_UPLOAD_COMMAND, PANEL_UPLOAD_BEGIN);
 }
 
-static enum modbus_exception bring(void)
+static void send_all(void)
 {
     TEST_ASSERT_EQUAL(MODBUS_GOOD, begin());
     for (uint32_t offset = 0; offset < size; offset += PANEL_CHUNK_MAX)
         TEST_ASSERT_EQUAL(MODBUS_GOOD, send_chunk(offset));
+}
+
+static enum modbus_exception bring(void)
+{
+    send_all();
     return set(REGISTER_UPLOAD_COMMAND, PANEL_UPLOAD_COMMIT);
 }
 
@@ -238,6 +243,17 @@ static void test_nothing_is_written_while_drives_are_on(void)
     TEST_ASSERT_EQUAL(MODBUS_VALUE, send_chunk(PANEL_CHUNK_MAX));
 }
 
+static void test_settings_that_have_come_do_not_count_while_drives_are_on(void)
+{
+    TEST_ASSERT_EQUAL(MODBUS_GOOD, bring());
+    pack(2000);
+    send_all();
+    drives_are_off = false;
+    TEST_ASSERT_EQUAL(MODBUS_VALUE, set(REGISTER_UPLOAD_COMMAND, PANEL_UPLOAD_COMMIT));
+    expect_reason("settings are taken while the drives are off: press emergency stop first");
+    expect_cycle(1000);
+}
+
 static void test_settings_that_do_not_fit_are_refused(void)
 {
     size = SECTOR_BYTES;
@@ -282,6 +298,7 @@ int main(void)
     RUN_TEST(test_damaged_settings_are_refused_with_the_reason_and_the_old_ones_stay);
     RUN_TEST(test_settings_out_of_range_are_refused_with_the_reason);
     RUN_TEST(test_nothing_is_written_while_drives_are_on);
+    RUN_TEST(test_settings_that_have_come_do_not_count_while_drives_are_on);
     RUN_TEST(test_settings_that_do_not_fit_are_refused);
     RUN_TEST(test_a_flash_that_refuses_is_told);
     RUN_TEST(test_an_upload_goes_on_after_its_client_was_lost_and_not_as_one_of_another_kind);
