@@ -8,11 +8,11 @@ import importlib.util
 import os
 import sys
 
-FOLDER = os.path.join(os.environ.get("TAKT_SOURCE", "."), "build", "peers")
+FOLDER = os.environ.get("TAKT_PEERS") or os.path.join(os.environ.get("TAKT_SOURCE", "."), "build", "peers")
 
 
 def require(*modules):
-    """Goes on if this Python has them; else runs the script again under the one that tests/run --peers has set up; else
+    """Goes on if this Python has them; else runs the script again under the one that tests/run --all has set up; else
     the test is skipped."""
     missing = [name for name in modules if importlib.util.find_spec(name) is None]
     if not missing:
@@ -20,5 +20,5 @@ def require(*modules):
     python = os.path.join(FOLDER, "bin", "python3")
     if os.path.exists(python) and not sys.executable.startswith(FOLDER):
         os.execv(python, [python, *sys.argv])
-    print(f"{', '.join(missing)}: not installed; tests/run --peers does it")
+    print(f"{', '.join(missing)}: not installed; tests/run --all does it")
     sys.exit(77)

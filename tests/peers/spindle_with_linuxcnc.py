@@ -126,7 +126,7 @@ def check_panel():
 
 for program in ("halcmd", "vfdb_vfd", "mb2hal"):
     if shutil.which(program) is None:
-        t.skip(f"{program} is not installed (Debian: linuxcnc-uspace); tests/run --peers does it")
+        t.skip(f"{program} is not installed (Debian: linuxcnc-uspace); tests/run --all does it")
 check_spindle()
 check_panel()
 t.finish()

@@ -18,7 +18,7 @@
 #include <unity.h>
 
 /* Programs in each run of all tests, and schedules of each. */
-#define PROGRAMS  6
+#define PROGRAMS  3
 #define SCHEDULES 6
 
 #define MOVES_MAX 60

@@ -2,9 +2,12 @@
  * Planner and motion on involutes: whatever the base circle, the ends and the feed, setpoints keep the axes' limits by
  * differences, through the start and the end on the base circle too; the end is hit; and wherever no limit binds, equal
  * cycles go equal lengths.
+ *
+ * test_involutes NUMBER runs so many seeds of each family and machine instead of SEEDS.
  */
 #include "motion/motion.h"
 #include "plan/path.h"
+#include "property_arguments.h"
 #include "random_chain.h"
 
 #include <stdio.h>
@@ -12,7 +15,7 @@
 #include <unity.h>
 
 #define CYCLE_S 1e-3
-#define SEEDS   150
+#define SEEDS   50
 
 static const struct plan_limits machines[] = {
     {7,
@@ -42,6 +45,7 @@ static const struct plan_limits machines[] = {
      LANDING_SPAN},
 };
 
+static unsigned seeds = SEEDS;
 static struct path path;
 static struct motion motion;
 static struct chain_judge seen;
@@ -199,7 +203,7 @@ static void check_limits(uint32_t look_ahead)
     double most = 0.0;
 
     for (unsigned m = 0; m < sizeof(machines) / sizeof(machines[0]); m++) {
-        for (unsigned s = 1; s <= SEEDS; s++) {
+        for (unsigned s = 1; s <= seeds; s++) {
             const struct task t = random_task(s);
             char where[160];
 
@@ -269,8 +273,9 @@ static void test_equal_cycles_go_equal_lengths_where_no_limit_binds(void)
     }
 }
 
-int main(void)
+int main(int argc, char **argv)
 {
+    read_number(argc, argv, &seeds);
     UNITY_BEGIN();
     RUN_TEST(test_random_involutes_keep_the_limits);
     RUN_TEST(test_small_windows_keep_the_limits);

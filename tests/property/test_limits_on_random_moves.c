@@ -5,9 +5,12 @@
  * Each chain is a fixed seed of a small generator; a failure names family, seed and cycle. The families are chosen for
  * what breaks planners: corners of any angle, nearly collinear blocks, blocks shorter than a cycle, zigzags, arcs into
  * arcs, helices, arcs whose two radii differ (random_chain.h).
+ *
+ * test_limits_on_random_moves NUMBER runs so many seeds of each family and machine instead of SEEDS.
  */
 #include "motion/motion.h"
 #include "plan/path.h"
+#include "property_arguments.h"
 #include "random_chain.h"
 
 #include <stdio.h>
@@ -15,7 +18,7 @@
 #include <unity.h>
 
 #define CYCLE_S 1e-3
-#define SEEDS   25
+#define SEEDS   8
 #define MOVES   300
 
 /* A chain that lasts longer stands still for ever. */
@@ -41,6 +44,7 @@ static const struct plan_limits machines[] = {
     {7, {500, 500, 500}, {200, 5000, 5000}, {1e6, 1e6, 1e5}, CYCLE_S, 1e-2, LAW_JERK, LANDING_SPAN},
 };
 
+static unsigned seeds = SEEDS;
 static struct path path;
 static struct motion motion;
 static struct chain chain;
@@ -133,7 +137,7 @@ static void check_chain(enum chain_family family, unsigned s, unsigned m, uint32
 static void check_family(enum chain_family family, uint32_t look_ahead)
 {
     for (unsigned m = 0; m < sizeof(machines) / sizeof(machines[0]); m++) {
-        for (unsigned s = 1; s <= SEEDS; s++) {
+        for (unsigned s = 1; s <= seeds; s++) {
             check_chain(family, s, m, look_ahead);
         }
     }
@@ -206,8 +210,9 @@ static void test_small_windows_keep_the_limits(void)
     }
 }
 
-int main(void)
+int main(int argc, char **argv)
 {
+    read_number(argc, argv, &seeds);
     UNITY_BEGIN();
     RUN_TEST(test_corners_keep_the_limits);
     RUN_TEST(test_nearly_collinear_blocks_keep_the_limits);

@@ -2,19 +2,23 @@
  * The interpolators of unit steps on random lines, arcs and helices: at every tick no axis is off by more than a step
  * (an arc not by more than a step radially), the end is exact, and the improved form takes no more ticks than the
  * leading axis has steps. Every shape is a fixed seed; a failure names it.
+ *
+ * test_step_forms NUMBER tries so many of each shape instead of SHAPES.
  */
 #include "base/maths.h"
+#include "property_arguments.h"
 #include "step/evaluate_helix.h"
 
 #include <stdio.h>
 #include <string.h>
 #include <unity.h>
 
-#define SHAPES 100000
+#define SHAPES 20000
 
 /* Rounding of the reference, in steps. */
 #define ROOM 1e-6
 
+static unsigned shapes = SHAPES;
 static uint64_t seed;
 static char shape[200]; /* printed when a claim fails */
 
@@ -125,7 +129,7 @@ static void run_line(enum evaluate_form form, const int64_t delta[AXIS_COUNT])
 
 static void test_no_axis_of_a_line_is_off_by_a_step_and_its_end_is_exact(void)
 {
-    for (unsigned n = 0; n < SHAPES; n++) {
+    for (unsigned n = 0; n < shapes; n++) {
         int64_t delta[AXIS_COUNT] = {0};
         unsigned axes = 1 + random_below(AXIS_COUNT);
 
@@ -250,7 +254,7 @@ static void run_arc(const struct arc_case *c)
 
 static void test_no_arc_leaves_its_circle_by_a_step_and_its_end_is_exact(void)
 {
-    for (unsigned n = 0; n < SHAPES; n++) {
+    for (unsigned n = 0; n < shapes; n++) {
         struct arc_case c = random_arc(n, n % 100 == 0 ? 4.0 : 2.2);
 
         set_end(&c);
@@ -350,7 +354,7 @@ static void run_helix(const struct arc_case *c, const unsigned plane[2],
 
 static void test_no_axis_of_a_helix_is_off_by_more_than_a_step_and_its_end_is_exact(void)
 {
-    for (unsigned n = 0; n < SHAPES; n++) {
+    for (unsigned n = 0; n < shapes; n++) {
         double decades = n % 1000 == 0 ? 4.0 : 1.8;
         struct arc_case c = random_arc(n, decades);
         int64_t delta[AXIS_COUNT] = {0};
@@ -372,8 +376,9 @@ static void test_no_axis_of_a_helix_is_off_by_more_than_a_step_and_its_end_is_ex
         worst.radial, worst.along);
 }
 
-int main(void)
+int main(int argc, char **argv)
 {
+    read_number(argc, argv, &shapes);
     UNITY_BEGIN();
     RUN_TEST(test_no_axis_of_a_line_is_off_by_a_step_and_its_end_is_exact);
     RUN_TEST(test_no_arc_leaves_its_circle_by_a_step_and_its_end_is_exact);

@@ -19,7 +19,7 @@
 #include <unity.h>
 
 /* Chains, and single moves, in each run of all tests. */
-#define CHAINS  12
+#define CHAINS  6
 #define SINGLES 2000
 
 /* Of the moves of chains in each run of all tests. */

@@ -14,7 +14,7 @@ endif()
 # Settings common to every test: status 77 is a skip, its reason the last line printed.
 function(takt_test_properties name label)
   set_tests_properties(${name} PROPERTIES
-    LABELS ${label}
+    LABELS "${label}"
     SKIP_RETURN_CODE 77
     TIMEOUT ${TAKT_TEST_TIMEOUT_S}
     ENVIRONMENT "${TAKT_TEST_ENVIRONMENT}")
@@ -46,6 +46,14 @@ function(takt_property_test name)
   takt_test_with_unity(${name} property ${ARGN})
 endfunction()
 
+# takt_long_test(NAME LABEL argument...): a test program with Unity once more, with these arguments: NAME_long. Tests with
+# the label `long` are those of `tests/run --all`.
+function(takt_long_test name label)
+  add_test(NAME ${name}_long COMMAND ${name} ${ARGN})
+  takt_test_properties(${name}_long "${label};long")
+  set_tests_properties(${name}_long PROPERTIES FAIL_REGULAR_EXPRESSION ":IGNORE;(^|\n)0 Tests ")
+endfunction()
+
 # takt_benchmark(NAME rooms...): NAME.c prints figures. Built with everything else, run by the target `bench`, not
 # by CTest: a figure is neither passed nor failed.
 function(takt_benchmark name)
@@ -66,9 +74,27 @@ function(takt_script_test name label)
   takt_test_properties(${test} ${label})
 endfunction()
 
+# takt_absent_test(NAME LABEL REASON): a test that this configuration cannot build. It is skipped, with its reason.
+function(takt_absent_test name label reason)
+  add_test(NAME ${name} COMMAND ${CMAKE_SOURCE_DIR}/tests/support/skip ${reason})
+  takt_test_properties(${name} ${label})
+endfunction()
+
 # takt_system_test(NAME): drives the built command from outside and reads what it wrote.
 function(takt_system_test name)
   takt_script_test(${name} system ${ARGN})
+endfunction()
+
+# takt_long_system_test(NAME [argument...]): the same, one of `tests/run --all`. With arguments it is the test NAME once
+# more: NAME_long.
+function(takt_long_system_test name)
+  cmake_path(GET name STEM test)
+  if(ARGN)
+    string(APPEND test _long)
+  endif()
+  add_test(NAME ${test} COMMAND ${CMAKE_SOURCE_DIR}/tests/support/run_script
+    ${CMAKE_CURRENT_BINARY_DIR}/${test} ${CMAKE_CURRENT_SOURCE_DIR}/${name} ${ARGN})
+  takt_test_properties(${test} "system;long")
 endfunction()
 
 # takt_peer_test(NAME): compares with a foreign program, which may be absent. Peers judge results, not memory

@@ -62,6 +62,7 @@ def run_to_end(client, plan, runs):
     while client.counts("RUNS") == runs:
         if client.counts("UPLOAD_RECEIVED") < len(plan):
             bring(client, plan, len(plan))
+        p.time.sleep(p.PAUSE_S)
 
 
 def check_setpoints():
@@ -87,8 +88,7 @@ def check_command(plan):
     runs = client.counts("RUNS")
     streaming = subprocess.Popen([t.TAKT, "panel", "stream", "part.plan", "--connect", f"127.0.0.1:{service.port}"], stdout=subprocess.PIPE, text=True)
     client.wait_for("UPLOAD_KIND", PLAN)
-    while client.counts("UPLOAD_RECEIVED") < 1000:
-        pass
+    client.wait_above("UPLOAD_RECEIVED", 1000)
     client.put("CYCLE_START", 1)
     client.wait_while("RUNS", runs)
     out, _ = streaming.communicate(timeout=p.PATIENCE_S)
@@ -116,6 +116,7 @@ def check_late(plan):
     client.put("CYCLE_START", 1)
     while client.counts("UPLOAD_RECEIVED") < 2 * len(plan) // 3:
         bring(client, plan, 2 * len(plan) // 3)
+        p.time.sleep(p.PAUSE_S)
     client.wait_for("ALARM", STARVED)
     t.check(client.counts("STATE") == p.RUNNING, "a late plan holds nothing")
     client.wait_for("FEED", 0)

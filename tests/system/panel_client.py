@@ -16,7 +16,18 @@ import takt_test as t
 # So long something that has to happen may take; no test waits that long unless it fails.
 PATIENCE_S = 60
 
+# Between two looks at a register; no result depends on it.
+PAUSE_S = 0.002
+
 FUNCTIONS = {"coil": 1, "input": 4, "holding": 3}
+
+
+def until(condition, told):
+    """Looks again and again until the condition is true; told() says what is seen instead."""
+    end = time.monotonic() + PATIENCE_S
+    while not condition():
+        assert time.monotonic() < end, told()
+        time.sleep(PAUSE_S)
 
 
 class Refused(Exception):
@@ -127,18 +138,18 @@ class Client:
         return 0, 0
 
     def wait_for(self, name, *values):
-        """Until a register has one of these values, in counts; returns it."""
-        until = time.monotonic() + PATIENCE_S
-        while True:
-            value = self.counts(name)
-            if value in values:
-                return value
-            assert time.monotonic() < until, f"{name} stays {value}, {values} expected, state {self.counts('STATE')}"
+        """Until a register has one of these values, in counts."""
+        until(
+            lambda: self.counts(name) in values,
+            lambda: f"{name} stays {self.counts(name)}, {values} expected, state {self.counts('STATE')}",
+        )
 
     def wait_while(self, name, value):
-        until = time.monotonic() + PATIENCE_S
-        while self.counts(name) == value:
-            assert time.monotonic() < until, f"{name} stays {value}"
+        until(lambda: self.counts(name) != value, lambda: f"{name} stays {value}")
+
+    def wait_above(self, name, least):
+        """Until a register's value, in its unit, is at least this."""
+        until(lambda: self.get(name) >= least, lambda: f"{name} stays {self.get(name)} below {least}")
 
     def send_chunk(self, offset, data):
         words = struct.pack(">IHH", offset, len(data), crc16(data)) + data.ljust(238, b"\0")

@@ -2,7 +2,6 @@
 are switched by panel, program and machine file."""
 
 import os
-import time
 
 import panel_client as p
 import takt_test as t
@@ -26,12 +25,10 @@ def correction(client):
 
 def wait_for_correction(client, wanted, claim):
     """Until it is there, to the resolution of the registers; drives rest within theirs."""
-    until = time.monotonic() + p.PATIENCE_S
-    while any(abs(a - b) > 0.0021 for a, b in zip(correction(client), wanted)):
-        if time.monotonic() > until:
-            t.check(False, claim, correction(client), wanted)
-            return
-    t.check(True, claim)
+    p.until(
+        lambda: all(abs(a - b) <= 0.0021 for a, b in zip(correction(client), wanted)),
+        lambda: f"{claim}: {correction(client)}, {wanted} expected",
+    )
 
 
 def go(client):

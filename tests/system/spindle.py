@@ -1,7 +1,5 @@
 """The virtual spindle behind its converter's registers, on TCP and on a serial line."""
 
-import time
-
 import panel_client as p
 import takt_test as t
 
@@ -16,10 +14,10 @@ def word(client, address):
 
 
 def wait_for(client, address, least, most):
-    until = time.monotonic() + p.PATIENCE_S
-    while not least <= (value := word(client, address)) <= most:
-        assert time.monotonic() < until, f"register {address:x} stays {value}"
-    return value
+    p.until(
+        lambda: least <= word(client, address) <= most,
+        lambda: f"register {address:x} stays {word(client, address)}",
+    )
 
 
 service = p.Service("--spindle", "127.0.0.1:0", *FAST, command="drives")
@@ -59,8 +57,7 @@ line = p.Line()
 service = p.Service("--spindle", line.path, *FAST, command="drives")
 t.check(line.path in service.ready, "it says where it is", service.ready)
 line.ask(b"\x10\x20\x00\x00\x02\x04\x00\x12\x27\x10", 5)
-while line.ask(b"\x03\x21\x0c\x00\x01", 4)[2:] < (5900).to_bytes(2, "big"):
-    pass
+p.until(lambda: line.ask(b"\x03\x21\x0c\x00\x01", 4)[2:] >= (5900).to_bytes(2, "big"), lambda: "it is too slow")
 t.check(True, "it is commanded on a serial line too")
 service.stop()
 line.close()

@@ -7,13 +7,15 @@ QEMU has neither crystal nor CAN controller there, and a flash that cannot be wr
 import stm32
 import takt_test as t
 
+IMAGE = stm32.for_qemu("takt-stm32f405-emulated")
+
 ALARM = "8"
 INTERNAL = "6"
 
 
-def start(claim, flash, reason, path=None):
+def start(claim, flash, reason, path=IMAGE):
     """Starts the image; the reason stands on its log and panel, and no order gets through."""
-    board = stm32.Board(path or stm32.for_qemu("takt-stm32f405-emulated"), flash, panel=True)
+    board = stm32.Board(path, flash, panel=True)
     try:
         board.wait_for("alarm: ")
         log = board.log()
@@ -69,5 +71,5 @@ with open("rotate.settings", "rb") as file:
     start("a form for comparison", stm32.sector(file.read()), "'interpolator' of this machine is for comparison")
 torn = stm32.sector(settings)
 start("a torn head", torn[:8] + b"\xff\xff\xff\xff" + torn[12:], "no settings are stored")
-start("a damaged image", stm32.sector(settings), "the image in the flash memory is damaged", damaged(stm32.for_qemu("takt-stm32f405-emulated")))
+start("a damaged image", stm32.sector(settings), "the image in the flash memory is damaged", damaged(IMAGE))
 t.finish()
