@@ -182,7 +182,7 @@ static void open_embedded(void)
                  .log = write_log},
         .unit = PANEL_UNIT,
         .gap_us = PANEL_GAP_US,
-        .name = "takt on MPS2",
+        .name = "takt " TAKT_VERSION " on MPS2",
     };
     struct diagnostic damage;
 

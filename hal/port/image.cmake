@@ -32,6 +32,7 @@ function(takt_image name)
   add_executable(${name} ${IMAGE_SOURCES} ${TAKT_IMAGE_FOLDER}/startup.c ${TAKT_IMAGE_FOLDER}/image.c)
   set_target_properties(${name} PROPERTIES SUFFIX .elf LINK_DEPENDS
     "${TAKT_IMAGE_FOLDER}/image.ld;${IMAGE_MEMORY}")
+  target_compile_definitions(${name} PRIVATE TAKT_VERSION="${PROJECT_VERSION}")
   target_link_libraries(${name} PRIVATE takt_under ${IMAGE_LIBRARIES} takt_flags)
   target_link_options(${name} PRIVATE -T${memory} -L${folder} -L${TAKT_IMAGE_FOLDER} -Wl,-Map=${CMAKE_CURRENT_BINARY_DIR}/${name}.map)
   add_custom_command(TARGET ${name} POST_BUILD

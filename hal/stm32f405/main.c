@@ -350,7 +350,7 @@ static void open_embedded(const struct machine *machine)
         .settings = settings_upload_open(&board.upload, &board.store, &settings),
         .unit = BOARD_PANEL_UNIT,
         .gap_us = BOARD_PANEL_GAP_US,
-        .name = "takt on STM32F405",
+        .name = "takt " TAKT_VERSION " on STM32F405",
     };
 
     for (uint32_t i = 0; i < TOOLS_MAX; i++)

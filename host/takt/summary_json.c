@@ -79,6 +79,7 @@ static void add_axis(cJSON *axes, const struct summary *summary, unsigned i)
 
 static void add_head(cJSON *root, const struct summary *summary)
 {
+    cJSON_AddStringToObject(root, "version", TAKT_VERSION);
     add_text(root, "program", summary->program);
     add_text(root, "machine", summary->machine->name);
     cJSON_AddStringToObject(root, "outcome", summary_outcome_name(summary->outcome));

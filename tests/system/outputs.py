@@ -69,6 +69,7 @@ t.check("completed" in out and "19 of 19 held" in out, "the summary says how it 
 summary = t.load_json("a.json")
 check_schema(summary)
 t.check(summary["program"] == PROGRAM and abs(summary["program_time_s"] - summary["cycles"] * summary["cycle_time_s"]) < 1e-9, "its figures agree")
+t.check(t.run("--version")[1] == f"takt {summary['version']}\n", "it says by which takt it was made", summary["version"])
 t.check(all(c["held"] == (c["value"] <= c["limit"]) for c in summary["checks"]), "held is value <= limit")
 
 suite = xml.parse("a.xml").getroot()

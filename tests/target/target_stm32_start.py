@@ -42,9 +42,9 @@ def damaged(path):
     """The image with one letter of a message wrong."""
     with open(path, "rb") as file:
         content = file.read()
-    at = content.index(b"takt on STM32F405")
+    at = content.index(b" on STM32F405")
     with open("damaged.elf", "wb") as file:
-        file.write(content[:at] + b"T" + content[at + 1:])
+        file.write(content[:at] + b"_" + content[at + 1:])
     return "damaged.elf"
 
 
