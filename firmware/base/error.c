@@ -95,7 +95,7 @@ void diagnostic_set_limit(struct diagnostic *d, double limit)
     d->limit = limit;
 }
 
-/* Of the axis the word begins with. */
+/* The unit of the axis with which the word begins. */
 static const char *unit_of(const char *word)
 {
     return word[0] >= 'A' && word[0] <= 'C' ? "degrees" : "mm";

@@ -56,7 +56,7 @@
     X(OWORD_LABEL_USED, "'%w' has the label of an open block, of line %v")                         \
     X(OWORD_UNCLOSED, "'%w' is not closed")                                                        \
     X(OWORD_TOO_DEEP, "'%w' is nested deeper than %v blocks")                                      \
-    X(SUB_UNKNOWN, "'%w' finds no such subroutine in this program")                                \
+    X(SUB_UNKNOWN, "'%w' calls a subroutine that this program does not have")                      \
     X(SUB_DEFINED_TWICE, "'%w' has been defined already, in line %v")                              \
     X(SUB_NESTED, "'%w' begins inside another subroutine")                                         \
     X(SUB_NOT_INSIDE, "'%w' is not inside its subroutine")                                         \
@@ -67,10 +67,10 @@
     X(CALL_ARGUMENTS, "'%w' has more than %v arguments")                                           \
     X(CALL_P_MISSING, "'%w' needs P, the number of the program to call")                           \
     X(JUMP_BACK, "'%w' has to go back in the text, which a stream cannot")                         \
-    X(CIRCLE, "the program runs in a circle: %v lines without a move")                             \
+    X(CIRCLE, "the program is in an endless loop: %v lines without a move")                        \
     X(MODES_NOT_SAVED, "'%w' finds no saved modes: no M70 or M73 in this call")                    \
     X(PROGRAM_FULL, "no room for '%w' beside the names, calls and saved modes there are")          \
-    X(FROM_LINE_MISSED, "the program never comes to line %v")                                      \
+    X(FROM_LINE_MISSED, "the program never reaches line %v")                                       \
     X(FROM_LINE_PROBE, "what this probing move finds is not known to a start at line %v")          \
     X(FROM_LINE_CUTTER, "line %v is inside a compensated contour: start before its G41 or G42")    \
     /* motion */                                                                                   \
@@ -122,7 +122,7 @@
       "the tool does not fit into the arc: its radius would have to be more than %v mm larger")    \
     X(OFFSET_TURNS, "an involute of more than %v turns cannot be compensated")                     \
     X(OFFSET_GOUGE, "the tool does not fit here: it would cut %v mm into the contour")             \
-    X(OFFSET_LEFT_OUT, "this move is left out: the tool, radius %v mm, does not get there")        \
+    X(OFFSET_LEFT_OUT, "this move is left out: the tool, radius %v mm, does not fit there")        \
     X(OFFSET_CROWDED, "more than %v commands between two moves of a compensated contour")          \
     X(DWELL_MISSING, "'%w' needs P, the seconds to wait")                                          \
     X(TOOL_MISSING, "'%w' needs a tool: no T has been given")                                      \
@@ -161,8 +161,8 @@
     X(SPINDLE_SLOW, "the spindle has not reached its speed in time")                               \
     X(DRIVE_FAULT, "the drive of axis %w reports %x: %m")                                          \
     X(DRIVE_STATE, "the drive of axis %w has left operation: its state is '%m'")                   \
-    X(DRIVE_NOT_ENABLED, "the drive of axis %w does not get enabled: it stays in '%m'")            \
-    X(DRIVE_REBOOTED, "the drive of axis %w has started anew")                                     \
+    X(DRIVE_NOT_ENABLED, "the drive of axis %w cannot be enabled: it stays in '%m'")               \
+    X(DRIVE_REBOOTED, "the drive of axis %w has restarted")                                        \
     X(DRIVE_ABSENT, "the drive of axis %w has not booted within %v s")                             \
     X(DRIVE_SILENT, "the drive of axis %w has sent no position for %v ms")                         \
     X(DRIVE_HEARTBEAT, "the drive of axis %w has sent no heartbeat for %v ms")                     \
@@ -177,7 +177,7 @@
     X(DRIVE_HOMING, "the drive of axis %w reports an error while homing: statusword %x")           \
     X(DRIVE_HOMING_SLOW, "homing of axis %w has not ended within %v s")                            \
     X(DRIVE_HOME_OFFSET,                                                                           \
-      "after homing axis %w is at %v %u: turn home_offset_is_position, its drive means the other") \
+      "after homing axis %w is at %v %u: change home_offset_is_position for this drive")           \
     X(DRIVE_RANGE, "%v %u is beyond the position range of the drive of axis %w")                   \
     X(DRIVE_UNREACHABLE, "the bus refused the setpoint of axis %w")                                \
     X(CYCLE_SLOW,                                                                                  \
@@ -187,7 +187,7 @@
     X(BUS_OVERLOAD, "the bus cannot carry a cycle: it takes %w at worst, %v percent")              \
     /* operator and spindle */                                                                     \
     X(EMERGENCY_STOP, "emergency stop")                                                            \
-    X(HOMING_STOPPED, "homing was stopped: the axes do not know where they are")                   \
+    X(HOMING_STOPPED, "homing was stopped: the positions of the axes are not known")               \
     X(PANEL_SILENT, "the panel in control has been silent for %v ms")                              \
     X(SPINDLE_SILENT, "the spindle drive does not answer")                                         \
     X(SPINDLE_TRIPPED, "the spindle drive has switched off")                                       \
@@ -196,14 +196,14 @@
     X(THREAD_FAST, "pitch times speed of the spindle is %v mm/s, and the axes can do %l mm/s")     \
     X(THREAD_LAG, "the thread is %v mm off the spindle's angle, more than the allowed %l mm")      \
     X(TAP_DEEP, "the spindle does not turn back in time: the tap would go %v mm below the bottom") \
-    X(THREAD_SHORT, "the thread is %v mm long; catching up and coming to rest take %l mm")         \
-    X(PROGRAM_STARVED, "the program did not come fast enough: the axes have waited for it")        \
+    X(THREAD_SHORT, "the thread is %v mm long; the lead-in and stopping take %l mm")               \
+    X(PROGRAM_STARVED, "the program did not arrive fast enough: the axes had to wait for it")      \
     X(PLAN_DAMAGED, "the compiled program is damaged")                                             \
-    X(PLAN_STRAYED, "the compiled program does not fit the part program here")                     \
+    X(PLAN_STRAYED, "the compiled program does not match the part program")                        \
     X(PLAN_FOREIGN, "this is no compiled program")                                                 \
     X(PLAN_VERSION, "the program was compiled by another version of takt")                         \
     X(PLAN_MACHINE, "it was compiled for another machine: %w is %v there and %l here")             \
-    X(PLAN_PROGRAM, "it was compiled from another program than the one that is here")              \
+    X(PLAN_PROGRAM, "it was compiled from another program than the one loaded")                    \
     /* machine as a whole, and how it is stored */                                                 \
     X(MACHINE_NO_AXIS, "the machine has no axis")                                                  \
     X(MACHINE_TRAVEL, "axis %w: its travel ends before it begins")                                 \
@@ -220,7 +220,7 @@
       "axis %w: its home_offset_mm does not fit a drive's 32 bits (home_offset_deg when rotary)")  \
     X(MACHINE_NODES, "axes %w have the same drive_node %v")                                        \
     X(MACHINE_CONTROLLER_NODE, "controller_node %v is the drive_node of axis %w")                  \
-    X(MACHINE_FORM, "'%w' of this machine is for comparison: this image has its default alone")    \
+    X(MACHINE_FORM, "'%w' of this machine is for comparison: this image has only its default")     \
     X(SETTINGS_ABSENT, "no settings are stored: make them with takt machine --pack and load them") \
     X(SETTINGS_KIND, "these are no settings of this version")                                      \
     X(SETTINGS_CHECKSUM, "the settings are damaged: their checksum is wrong")                      \

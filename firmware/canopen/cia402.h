@@ -42,7 +42,7 @@
 
 /* Option codes: brake with the quick stop's deceleration, then "switch on disabled" or "fault". */
 #define CIA402_OPTION_QUICK_STOP_RAMP 2
-/* Of the connection option: quick stop. */
+/* Value of the connection option: quick stop. */
 #define CIA402_CONNECTION_QUICK_STOP 3
 
 #define CIA402_MODE_NONE                  0

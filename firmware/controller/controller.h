@@ -81,7 +81,7 @@ void controller_get_actual(const struct controller *c, struct point *actual);
 uint32_t controller_get_answers(const struct controller *c, struct program_answer *last);
 /* The axes rest because the text of the program, which is still coming, has not come in time; they go on by themselves. */
 bool controller_is_starved(const struct controller *c);
-/* Exchanges with the background that it was too late for: the axes then come to rest where the path is known to. */
+/* Exchanges with the background that it was too late for: the axes then stop at the end of the known path. */
 uint64_t controller_get_late(const struct controller *c);
 /* The machine's outputs as the last cycle left them. Valid until the next cycle. */
 const struct outputs *controller_get_outputs(const struct controller *c);

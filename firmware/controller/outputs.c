@@ -8,7 +8,7 @@
 
 #define SECONDS_PER_MINUTE 60.0
 
-/* Of a surface speed whose maximum is not given: above any spindle's. */
+/* Maximum for a surface speed without one: above that of any spindle. */
 #define RPM_MAX 1e6
 
 static_assert(PROGRAM_DIGITAL_MAX + 1 == OUTPUTS_DIGITAL_MAX,

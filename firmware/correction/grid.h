@@ -44,7 +44,7 @@ struct grid {
         turn_axis; /* enum axis that component 3 corrects; AXIS_COUNT: none. The others are X, Y, Z */
     size_t size;   /* coefficients of one component */
     float bound[GRID_COMPONENTS][GRID_ORDERS]; /* of derivatives: grid_bound.h */
-    /* Of patches (grid_patch.h), which grid_patch_set_pace sets. */
+    /* For patches (grid_patch.h), which grid_patch_set_pace sets. */
     float reach;   /* steps from where one is made to where it is good, all inputs together */
     float fastest; /* steps a cycle that they can follow, likewise */
     uint8_t ready; /* the stage in which one is ready */

@@ -129,7 +129,7 @@ static void sort(unsigned *a, unsigned *b)
     *a = least;
 }
 
-/* Of a <= b <= c among the inputs and GRID_NO_INPUT: a + b (b + 1) / 2 + c (c + 1) (c + 2) / 6, each number once. */
+/* Index of a <= b <= c, inputs or GRID_NO_INPUT, each number once: a + b (b + 1) / 2 + c (c + 1) (c + 2) / 6. */
 static unsigned index_of(unsigned a, unsigned b, unsigned c)
 {
     sort(&a, &b);

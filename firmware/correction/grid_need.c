@@ -23,7 +23,7 @@ static unsigned corrected(const struct sums *s)
     return s->component < AXIS_LINEAR_COUNT ? s->component : s->grid->turn_axis;
 }
 
-/* Of the derivative by inputs i, j and k, per mm or rad instead of per step. */
+/* For the derivative by inputs i, j and k, per mm or rad instead of per step. */
 static double largest(const struct sums *s, unsigned i, unsigned j, unsigned k)
 {
     const unsigned by[] = {i, j, k};

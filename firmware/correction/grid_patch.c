@@ -419,7 +419,7 @@ float grid_patch_jerk(const struct grid *grid, float third, float speed_per_s, f
     const float back = half - (float)GOING;
     const float fastest_per_s = grid->fastest / cycle_s;
     const float speed = speed_per_s < fastest_per_s ? speed_per_s : fastest_per_s;
-    /* Of the difference of two patches, and of its derivatives by the cycle where w' and w'' are not small. */
+    /* For the difference of two patches, and of its derivatives by the cycle where w' and w'' are not small. */
     const float size = (back * back * back + half * half * half) * (1.0F / 6.0F);
     const float first = (back + half) * ((float)GOING / 4.0F);
     const float second = back + half;

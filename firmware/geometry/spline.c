@@ -33,7 +33,7 @@ static void set_axis(struct curve *c, int i, const struct point control[4], doub
 }
 
 /*
- * Of four control points of a uniform cubic B-spline, with d = length the way of s from one to the next:
+ * For four control points of a uniform cubic B-spline, with d = length the way of s from one to the next:
  *     start  = c1 + (c0 - 2 c1 + c2)/6            slope = (c2 - c0)/(2 d)
  *     square = (c0 - 2 c1 + c2)/(2 d^2)           cube  = (c3 - 3 c2 + 3 c1 - c0)/(6 d^3)
  */

@@ -43,7 +43,7 @@ struct offset_live *contour_live(struct offset *o, const struct offset_item *ite
     return &o->live[item->live];
 }
 
-/* Of each plane: its axes, and those across. */
+/* For each plane its axes, and those across. */
 static const uint8_t axes_turned[][AXIS_COUNT] = {
     [PLANE_XY] = {AXIS_X, AXIS_Y, AXIS_Z, AXIS_A, AXIS_B, AXIS_C},
     [PLANE_ZX] = {AXIS_Z, AXIS_X, AXIS_Y, AXIS_A, AXIS_B, AXIS_C},

@@ -6,7 +6,7 @@
 
 #include "panel/panel.h"
 
-/* Of struct modbus_map. */
+/* For struct modbus_map. */
 enum modbus_exception panel_read(void *context, enum modbus_table table, uint16_t address,
                                  uint16_t count, uint8_t *data);
 enum modbus_exception panel_write(void *context, enum modbus_table table, uint16_t address,

@@ -3,7 +3,7 @@
  * may be written. The server, its documentation (registers.md, registers.csv) and `takt panel` all read it.
  *
  * To add a register: a row in PANEL_REGISTERS, in the order of table and address; then `takt panel table` writes the
- * documentation anew.
+ * documentation again.
  */
 #ifndef TAKT_PANEL_REGISTERS_H
 #define TAKT_PANEL_REGISTERS_H
@@ -171,24 +171,24 @@ enum panel_form {
 
 #define PANEL_COILS(ROW) \
     PANEL_COIL(ROW, CYCLE_START, 0, PANEL_WHEN_MOTION, \
-        "1: starts the program (MODE 0), or goes on after a hold. Reads 1 while a program runs") \
+        "1: starts the program (MODE 0), or continues after a hold. Reads 1 while a program runs") \
     PANEL_COIL(ROW, FEED_HOLD, 1, PANEL_ANY, \
-        "1: comes to rest on the path and stays; anyone may. Reads 1 while held. 0: no effect") \
-    PANEL_COIL(ROW, RESUME, 2, PANEL_WHEN_HELD, "1: goes on after a hold. Reads 0") \
+        "1: stops on the path and holds; anyone may. Reads 1 while held. 0: no effect") \
+    PANEL_COIL(ROW, RESUME, 2, PANEL_WHEN_HELD, "1: continues after a hold. Reads 0") \
     PANEL_COIL(ROW, SINGLE_BLOCK, 3, PANEL_ANY, \
-               "1: each motion of a program or a line ends in a hold, the one under way too if there is room to brake") \
+               "1: each motion of a program or a line ends in a hold, the current one too if there is room to brake") \
     PANEL_COIL(ROW, OPTIONAL_STOP, 4, PANEL_ANY, "1: M1 stops as M0 does") \
     PANEL_COIL(ROW, BLOCK_DELETE, 5, PANEL_WHEN_IDLE, "1: lines that begin with / are skipped") \
     PANEL_COIL(ROW, RESET, 6, PANEL_ANY, \
         "1: gives up what runs, after coming to rest; acknowledges alarms; enables drives again. Reads 0") \
     PANEL_COIL(ROW, EMERGENCY_STOP, 7, PANEL_ANY, \
-        "1: quick stop of all drives, spindle off; anyone may. 0: releases it, RESET then leads on") \
+        "1: quick stop of all drives, spindle off; anyone may. 0: releases it, then RESET continues") \
     PANEL_COIL(ROW, ACKNOWLEDGE, 8, PANEL_ANY, \
         "1: the operator has seen the alarm; a held program may then be resumed. Reads 0") \
-    PANEL_COIL(ROW, MDI_START, 9, PANEL_WHEN_IDLE, "1: runs MDI_TEXT (MODE 1), with the modes the last line has left, but anew after a program or RESET. Reads 1 while it runs") \
+    PANEL_COIL(ROW, MDI_START, 9, PANEL_WHEN_IDLE, "1: runs MDI_TEXT (MODE 1), with the modes of the last line; after a program or RESET with the initial ones. Reads 1 while it runs") \
     PANEL_COIL(ROW, JOG_PLUS, 10, PANEL_WHEN_JOG, \
         "1: moves JOG_AXIS upwards (MODE 2), by JOG_DISTANCE or until 0 is written") \
-    PANEL_COIL(ROW, JOG_MINUS, 11, PANEL_WHEN_JOG, "1: likewise downwards") \
+    PANEL_COIL(ROW, JOG_MINUS, 11, PANEL_WHEN_JOG, "1: the same downwards") \
     PANEL_COIL(ROW, HOME, 12, PANEL_WHEN_IDLE, \
         "1: axes with a home_order find their homes again, then all move to machine zero, Z first (MODE 2)") \
     PANEL_COIL(ROW, CORRECTION_MATRIX, 16, PANEL_ANY, "1: this layer of the position correction is on") \
@@ -228,11 +228,11 @@ enum panel_form {
     PANEL_SHOW32(ROW, CYCLES, 32, "", 0, "control cycles since power-on; wraps") \
     PANEL_SHOW32(ROW, OVERRUNS, 34, "", 0, "cycles that began later than the next one was due") \
     PANEL_SHOW16(ROW, REFUSAL, 36, "", 0, \
-        "of this client's last refused write: 1 state, 2 locked, 3 another panel in control, 4 value, 5 address, 6 busy") \
+        "why this client's last write was refused: 1 state, 2 locked, 3 another panel in control, 4 value, 5 address, 6 busy") \
     PANEL_SHOW16(ROW, UPLOAD_STATE, 37, "", 0, "0 none, 1 open, 2 all bytes are there") \
-    PANEL_SHOW32(ROW, UPLOAD_RECEIVED, 38, "byte", 0, "so many are there: go on from here") \
-    PANEL_SHOW32(ROW, PROGRAM_SIZE, 40, "byte", 0, "of the program that CYCLE_START starts; 0: none") \
-    PANEL_SHOW32(ROW, PROGRAM_CRC, 42, "", 0, "CRC-32 of it") \
+    PANEL_SHOW32(ROW, UPLOAD_RECEIVED, 38, "byte", 0, "bytes received: continue from here") \
+    PANEL_SHOW32(ROW, PROGRAM_SIZE, 40, "byte", 0, "size of the program that CYCLE_START starts; 0: none") \
+    PANEL_SHOW32(ROW, PROGRAM_CRC, 42, "", 0, "CRC-32 of that program") \
     PANEL_SHOW32(ROW, PROGRAM_MAX, 44, "byte", 0, "largest program") \
     PANEL_SHOW16(ROW, OUTCOME, 46, "", 0, "of the last program or line: 0 none yet, 1 completed, 2 aborted, 3 failed") \
     PANEL_SHOW16(ROW, RUNS, 47, "", 0, "programs and lines ended so far; wraps") \
@@ -247,9 +247,9 @@ enum panel_form {
     PANEL_AXIS_ROWS(ROW, DRIVE_STATUS, MODBUS_INPUTS, 96, PANEL_U16, 1, "", 0, 0, PANEL_U16_MOST, PANEL_NEVER, \
         "statusword of its drive (CiA 402, 6041)") \
     ROW(ALARM_TEXT, MODBUS_INPUTS, 200, PANEL_TEXT, PANEL_ALARM_TEXT_MAX / 2, "", 0, 0, 0, PANEL_NEVER, \
-        "what is wrong, in words") \
+        "what is wrong, as text") \
     ROW(UPLOAD_TEXT, MODBUS_INPUTS, 300, PANEL_TEXT, PANEL_ALARM_TEXT_MAX / 2, "", 0, 0, 0, PANEL_NEVER, \
-        "why the last upload of settings or of a compiled program was refused, in words; empty: it was not")
+        "why the last upload of settings or of a compiled program was refused, as text; empty: it was not")
 
 #define PANEL_HOLDING_ROWS(ROW) \
     PANEL_SET16(ROW, FEED_OVERRIDE, 0, "%", 1, 0, 1200, PANEL_ANY, "%F") \
@@ -263,12 +263,12 @@ enum panel_form {
     PANEL_SET16(ROW, WORK_SYSTEM, 8, "", 0, 1, 9, PANEL_ANY, "whose WORK_OFFSET is shown: 1 G54 ... 9 G59.3") \
     PANEL_SET16(ROW, TOOL_SELECT, 9, "", 0, 0, PANEL_U16_MOST, PANEL_ANY, \
         "whose TOOL_OFFSET and TOOL_DIAMETER are shown") \
-    PANEL_SET_AXES(ROW, WORK_OFFSET, 10, "mm", "of the system selected by WORK_SYSTEM") \
-    PANEL_SET_AXES(ROW, TOOL_OFFSET, 22, "mm", "of the tool selected by TOOL_SELECT; its length is Z") \
+    PANEL_SET_AXES(ROW, WORK_OFFSET, 10, "mm", "offset of the system selected by WORK_SYSTEM") \
+    PANEL_SET_AXES(ROW, TOOL_OFFSET, 22, "mm", "offset of the tool selected by TOOL_SELECT; its length is Z") \
     ROW(TOOL_DIAMETER, MODBUS_HOLDINGS, 34, PANEL_S32, 2, "mm", 3, 0, PANEL_S32_MOST, PANEL_WHEN_IDLE, \
-        "of the tool selected by TOOL_SELECT") \
+        "diameter of the tool selected by TOOL_SELECT") \
     PANEL_SET16(ROW, WATCHDOG, 36, "ms", 0, 0, 60000, PANEL_ANY, \
-        "not 0: this client claims control and must send a request each so many ms, else the feed is held. 0: gives it up") \
+        "not 0: this client claims control and must send a request at least this often, else the feed is held. 0: gives it up") \
     ROW(PASSWORD, MODBUS_HOLDINGS, 37, PANEL_U32, 2, "", 0, 0, PANEL_U32_MOST, PANEL_ANY, \
         "the right one lets this client write. Reads 0") \
     ROW(UPLOAD_SIZE, MODBUS_HOLDINGS, 50, PANEL_U32, 2, "byte", 0, 1, PANEL_PROGRAM_BYTES_MAX, PANEL_ANY, \

@@ -6,7 +6,7 @@
 
 #include <string.h>
 
-/* Of a tool that is led by its centre, though it may be one for turning. */
+/* For a tool that is guided by its centre, even if it is a turning tool. */
 #define ORIENTATION_CENTRE 9
 
 static bool is_on(const struct program *p)
@@ -93,7 +93,7 @@ bool cutter_use_diameter(struct program *p, const struct program_code *code)
                    p->words.span[LETTER_INDEX('l')]);
 }
 
-/* Of the motions G0 to G3, G2.2 and G3.2 can be compensated; G80 moves nothing. */
+/* Among the motions G0 to G3, G2.2 and G3.2 can be compensated; G80 moves nothing. */
 static bool is_compensable(const struct program_code *code)
 {
     static const uint16_t numbers_x10[] = {0, 10, 20, 22, 30, 32, 800};

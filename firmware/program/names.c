@@ -2,7 +2,7 @@
 
 #include <string.h>
 
-/* Of globals. */
+/* Names of globals. */
 #define CALL_NONE UINT8_MAX
 
 static uint8_t call_of(const struct program_names *names, const char *name)

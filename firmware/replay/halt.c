@@ -162,7 +162,7 @@ static double hop_cycles(const struct rate *r, double to, double way)
     return n <= HOP_MAX ? maths_max(n, 1.0) : 0.0;
 }
 
-/* Of one that ends braking, where the way is M t^3 / 6 and the rate M t^2 / 2 of the time left. 0: not yet. */
+/* For one that ends braking, where the way is M t^3 / 6 and the rate M t^2 / 2 of the time left. 0: not yet. */
 static double brake_cycles(const struct rate *r, double way)
 {
     const double n =

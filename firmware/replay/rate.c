@@ -11,7 +11,7 @@
 /* Cycles that coming to rest takes beyond the way along its limit: to begin it and to end it. */
 #define BRAKE_MORE_CYCLES 400.0
 
-/* Of the search for the rate that can be braked from. */
+/* Steps of the search for the rate from which braking is possible. */
 #define HIGHEST_HALVINGS 20
 
 void rate_init(struct rate *r, const struct plan_limits *limits, double kept)
@@ -58,7 +58,7 @@ static double landing_change(double way, double change, double room)
     return left > 0.0 ? room * (maths_sqrt(0.25 + 2.0 * left / room) - 0.5) : 0.0;
 }
 
-/* Of the cycle that changes the rate towards to, by room at most and to a change of most. */
+/* The cycle that changes the rate towards to, by at most room and to a change of at most most. */
 static double bend_towards(const struct rate *r, double to, double room, double landing,
                            double most)
 {

@@ -224,7 +224,7 @@ static void follow_controller(struct service *s)
     }
 }
 
-/* Of a program or a line; after a hold the next block has to come first. */
+/* For a program or a line; after a hold the next block has to come first. */
 static void stop_after_block(struct service *s)
 {
     const struct cycle_record *record = controller_get_record(&s->controller);

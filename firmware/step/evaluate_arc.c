@@ -18,7 +18,7 @@
 
 #include <string.h>
 
-/* Of the coordinates a, b in each quadrant: which one grows, and the signs of their steps. */
+/* For the coordinates a, b in each quadrant: which one grows, and the signs of their steps. */
 struct quadrant {
     unsigned grows;
     int step[2];

@@ -11,14 +11,14 @@
 static_assert(sizeof(float) == 4 && sizeof(double) == 8, "stored as IEEE-754");
 static_assert(sizeof(struct axis_piece) == 8 * sizeof(float), "stored as eight numbers");
 
-/* Of a volume: where its parts begin. */
+/* Where the parts of a volume begin. */
 #define INPUTS       16U
 #define INPUT_BYTES  8U
 #define RANGES       (INPUTS + TABLE_INPUTS_MAX * INPUT_BYTES)
 #define RANGE_BYTES  16U
 #define COEFFICIENTS (RANGES + TABLE_INPUTS_MAX * RANGE_BYTES)
 
-/* Of axis tables. */
+/* The same for axis tables. */
 #define PAIRS      8U
 #define PAIR_BYTES 8U
 

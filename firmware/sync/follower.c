@@ -19,7 +19,7 @@
 
 #include <string.h>
 
-/* Of the bandwidth by which the target has been filtered. */
+/* Relative to the bandwidth by which the target has been filtered. */
 #define RATE_RATIO 2.0
 
 #define VELOCITY_PART 0.5

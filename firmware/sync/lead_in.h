@@ -33,7 +33,7 @@ struct lead_in_place {
 /* The way that a spindle of so many rev/s > 0 needs: the axes then keep their acceleration and jerk. */
 double lead_in_way(double pitch_mm, double speed_rev_s, const struct brake_limits *limits);
 
-/* Of an angle up to the end of the cam, and on the thread behind it. */
+/* For an angle up to the end of the cam, and on the thread behind it. */
 struct lead_in_place lead_in_at(const struct lead_in *l, double rev);
 
 /* Is the thread itself reached? */

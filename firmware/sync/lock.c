@@ -58,7 +58,7 @@ static void command(struct lock *l, double rpm)
     l->command_rpm = rpm;
 }
 
-/* Of the spindle, in the direction it was commanded: rev, rev/s. */
+/* For the spindle, in the direction it was commanded: rev, rev/s. */
 struct lock_view {
     double rev;
     double speed;

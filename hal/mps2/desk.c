@@ -30,7 +30,7 @@ struct bus {
     uint32_t refused;
 };
 
-/* Of the whole image: one controller and what it stands on. */
+/* For the whole image: one controller and what it stands on. */
 struct desk {
     int program, in, out;
     int plan; /* -1: the controller plans */

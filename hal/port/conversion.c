@@ -14,7 +14,7 @@
 #define BIAS          1023
 #define SIGN_BIT      0x8000000000000000ULL
 
-/* Of a number with 64 bits, those that a double has no room for, and half of the last it has. */
+/* Bits of a 64-bit number that do not fit into a double, and half of the last one that does. */
 #define ROUNDED_BITS 11
 #define ROUNDED_MASK 0x7FFU
 #define HALF         0x400U

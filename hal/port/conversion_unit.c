@@ -29,7 +29,7 @@ HELPER double __wrap___aeabi_ul2d(uint64_t value)
     return (double)(uint32_t)(value >> 32) * WORD + (double)(uint32_t)value;
 }
 
-/* Of 0 <= value < 2^64. What is left below the upper word is exact. */
+/* For 0 <= value < 2^64. What is left below the upper word is exact. */
 static uint64_t whole(double value)
 {
     const uint32_t high = (uint32_t)(value * (1.0 / WORD));

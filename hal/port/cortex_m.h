@@ -65,7 +65,7 @@ static inline void cortex_mask_from(uint32_t priority)
     __asm volatile("msr basepri, %0\n\tisb" ::"r"(priority) : "memory");
 }
 
-/* Of the control cycle, on every board: lines and the bus are more urgent. */
+/* For the control cycle, on every board: lines and the bus are more urgent. */
 #define CORTEX_PRIORITY_CYCLE 0x80U
 
 /* For struct embedded_port: what is more urgent than the control cycle goes on. */

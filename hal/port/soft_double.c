@@ -90,7 +90,7 @@ static double pack(uint64_t sign, uint32_t exponent, uint64_t fraction)
 #define ROUND_MASK 0x3FFU
 #define ROUND_HALF 0x200U
 
-/* Of a number that is not infinite: its fraction, with the hidden bit unless it is subnormal. */
+/* For a number that is not infinite: its fraction, with the hidden bit unless it is subnormal. */
 static uint64_t fraction_of(uint64_t bits)
 {
     const uint64_t fraction = bits & FRACTION_MASK;
@@ -263,7 +263,7 @@ static uint64_t root_second(uint32_t r, uint64_t rest)
     return root;
 }
 
-/* Of a common positive number: fraction 2^(exponent - BIAS - 52), its root is root(fraction) 2^half, the exponent even. */
+/* A common positive number is fraction 2^(exponent - BIAS - 52); root: root(fraction) 2^half, the exponent even. */
 static double common_root(uint64_t bits)
 {
     const uint32_t exponent = exponent_of(bits);

@@ -18,7 +18,7 @@ typedef void (*startup_vector)(void);
     __attribute__((section(".vectors.interrupts"), used)) const startup_vector name[count]
 
 /*
- * Of a variable without a first value: in the memory CORE of the port's linker script, which may be one that only the
+ * For a variable without a first value: in the memory CORE of the port's linker script, which may be one that only the
  * processor reaches: no direct memory access. It is zero at the start like all others.
  */
 #define STARTUP_CORE_MEMORY __attribute__((section(".bss.core")))

@@ -41,7 +41,7 @@ void text_queue_use(struct text_queue *q, bool in_use);
 /* What the panel brings its bytes to. */
 struct panel_store text_queue_get_store(struct text_queue *q);
 
-/* Of struct service_programs: a source at the beginning. False: none, or its beginning has been read and is gone. */
+/* For struct service_programs: a source at the beginning. False: none, or its beginning has been read and is gone. */
 bool text_queue_open(void *queue, struct source *source);
 void text_queue_adopt(void *queue);
 

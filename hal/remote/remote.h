@@ -48,7 +48,7 @@ struct remote_setup {
     uint8_t unused[2];
 };
 
-/* Of those that are not 0. */
+/* Only those that are not 0. */
 struct remote_parameter {
     uint32_t number;
     uint32_t unused;

@@ -22,7 +22,7 @@
 #define BXCAN_MSR_SLAK (1U << 1)
 #define BXCAN_MSR_ERRI (1U << 2)
 
-/* Of mailbox i = 0, 1, 2. */
+/* For mailbox i = 0, 1, 2. */
 #define BXCAN_TSR_RQCP(i)  (1U << (8U * (i)))
 #define BXCAN_TSR_TXOK(i)  (2U << (8U * (i)))
 #define BXCAN_TSR_ABRQ(i)  (0x80U << (8U * (i)))

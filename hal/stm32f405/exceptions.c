@@ -10,7 +10,7 @@ struct frame {
     uint32_t r0, r1, r2, r3, r12, lr, pc, xpsr;
 };
 
-/* Of the configurable fault status register. */
+/* For the configurable fault status register. */
 #define CFSR_MEMORY 0x000000FFU
 #define CFSR_BUS    0x0000FF00U
 #define CFSR_USAGE  0xFFFF0000U

@@ -36,7 +36,7 @@ bool step_slots_init(struct step_slots *s, uint32_t cycle_us);
 /* Begins the cycle to come, in memory for as many words as it has slots, which nobody else uses until it is taken. */
 void step_slots_begin(struct step_slots *s, uint16_t *word);
 
-/* Of a cycle that has begun. False: no room in it. Pins 0 to 5 of the port step, 8 to 13 tell the direction, of X Y Z A B C. */
+/* For a cycle that has begun. False: no room in it. Pins 0 to 5 are steps, 8 to 13 directions of X Y Z A B C. */
 bool step_slots_add(struct step_slots *s, const struct step_pulse *pulse);
 
 /* Ends the cycle: its memory has the levels. All other pins of the port are low. */

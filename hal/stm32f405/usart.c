@@ -5,7 +5,7 @@
 
 #include <string.h>
 
-/* Of a clock at 16 samples a bit. */
+/* Divider of a clock at 16 samples a bit. */
 #define DIVIDER_MIN 16U
 #define DIVIDER_MAX 0xFFFFU
 #define ERROR_MAX   50U /* one part of so many: 2 % */

@@ -9,7 +9,7 @@
 #define BESIDE_PART 0.05
 #define BESIDE_MM   1e-6
 
-/* Of the tolerance at least so much is used. */
+/* The least part of the tolerance that is used. */
 #define LEAST_PART 0.3
 
 /* Weights of four control points: derivatives at an interval's first knot, and at its middle. */

@@ -106,7 +106,7 @@ void compile_free(struct compile *c)
     ahead_path_free(&c->path);
 }
 
-/* Of all the work: sections done before by their blocks. */
+/* Progress of all the work: finished sections by their blocks. */
 static bool tell_progress(void *context, double part)
 {
     const struct compile *c = context;

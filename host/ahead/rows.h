@@ -6,7 +6,7 @@
 
 #include "ahead/problem.h"
 
-/* Of a cell: both sides of every axis's limits, the feed, the balls, and both bounds of e. */
+/* For a cell: both sides of every axis's limits, the feed, the balls, and both bounds of e. */
 #define ROWS_AXIS 0
 enum { ROWS_FEED = 3 * FORM_COUNT * 2 };
 #define ROWS_BALL (ROWS_FEED + 1)

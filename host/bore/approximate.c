@@ -94,7 +94,7 @@ static double distance(const double a[2], const double b[2])
     return maths_sqrt(dot(v, v));
 }
 
-/* Of a point beside the piece that begins at start: an arc counts as its circle, a line as without ends. */
+/* For a point beside the piece that begins at start: an arc counts as its circle, a line as without ends. */
 static double off_piece(const double start[2], const struct bore_piece *piece,
                         const double point[2])
 {

@@ -25,11 +25,11 @@ enum bus_fault_kind {
     BUS_FAULT_DUPLICATE,
     /* Its sender is late: it begins to compete for the bus delay_ns after it was given. */
     BUS_FAULT_DELAY,
-    /* Of ports, at from_ns: their transmit error counter reaches 128. */
+    /* For ports, at from_ns: their transmit error counter reaches 128. */
     BUS_FAULT_ERROR_PASSIVE,
-    /* Of ports, from from_ns until until_ns: controller off the bus; what waits is lost. */
+    /* For ports, from from_ns until until_ns: controller off the bus; what waits is lost. */
     BUS_FAULT_BUS_OFF,
-    /* Of ports, from from_ns until until_ns: cable cut there; what waits goes on waiting. */
+    /* For ports, from from_ns until until_ns: cable cut there; what waits goes on waiting. */
     BUS_FAULT_CUT
 };
 

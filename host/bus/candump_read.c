@@ -86,7 +86,7 @@ static const char *take_bytes(struct cursor *c, struct wire_frame *frame)
         c->at += 2;
     }
     if (frame->flags & WIRE_FD && wire_frame_fd_length(frame->length) != frame->length)
-        return "no CAN FD frame has so many bytes";
+        return "a CAN FD frame cannot have this number of bytes";
     return NULL;
 }
 

@@ -45,7 +45,7 @@ unsigned frame_bits_count(const struct frame_bits *tables, const struct can_fram
  */
 unsigned frame_bits_count_wire(const struct frame_bits *tables, const struct wire_frame *frame);
 
-/* Of a frame of 8 bytes with worst-case stuffing, without intermission. */
+/* For a frame of 8 bytes with worst-case stuffing, without intermission. */
 #define FRAME_BITS_MAX 132
 
 /*

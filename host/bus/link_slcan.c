@@ -276,8 +276,7 @@ static bool open_connection(struct link *link, const struct link_spec *spec,
     const char *problem = "";
     int fd = stream_connect(spec->host, spec->port, LINK_CONNECT_MS, &problem);
     if (fd < 0)
-        return link_refuse(error, "bus %s: nobody can be reached there: %s", link->address,
-                           problem);
+        return link_refuse(error, "bus %s: no connection: %s", link->address, problem);
     stream_init(&s->peer, fd);
     return greet_adapter(link, s, error);
 }

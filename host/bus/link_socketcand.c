@@ -143,8 +143,7 @@ bool link_open_socketcand(struct link *link, const struct link_spec *spec, struc
     fd = stream_connect(spec->host, spec->port, LINK_CONNECT_MS, &problem);
     if (fd < 0) {
         free(server);
-        return link_refuse(error, "bus %s: nobody can be reached there: %s", link->address,
-                           problem);
+        return link_refuse(error, "bus %s: no connection: %s", link->address, problem);
     }
     stream_init(server, fd);
     link->ops = &ops;

@@ -7,7 +7,7 @@
 
 #define US_PER_MS 1000
 
-/* Of libmodbus: an exception code is this plus its number. */
+/* An exception code of libmodbus is this plus its number. */
 #define EXCEPTION_BASE MODBUS_ENOBASE
 
 static void remember_problem(struct client *client)

@@ -17,7 +17,7 @@ enum {
     DEVIATION_CURVE_NUMBERS
 };
 
-/* Of an axis that goes from min to max; in mm or rad. */
+/* For an axis that goes from min to max; in mm or rad. */
 double deviation_curve(const double numbers[DEVIATION_CURVE_NUMBERS], double x_mm, double min_mm,
                        double max_mm);
 

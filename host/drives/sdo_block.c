@@ -18,7 +18,7 @@
 #define BLOCK_WITH_CRC   0x04
 #define BLOCK_SIZE_GIVEN 0x02
 
-/* Of a segment: the last; the other bits count segments from 1. */
+/* Flag of the last segment; the other bits count segments from 1. */
 #define BLOCK_LAST_SEGMENT 0x80
 
 /* Remainder of the polynomial x^16 + x^12 + x^5 + 1, from 0 (CiA 301, 7.2.4.3.16). */

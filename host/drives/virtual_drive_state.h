@@ -79,7 +79,7 @@ struct virtual_drive {
     uint64_t now_ns;      /* since it was switched on */
     uint64_t due_ns;      /* nothing of all that waits for a time happens before */
 
-    /* Of the position loop, from the objects. */
+    /* For the position loop, from the objects. */
     double increments_per_mm;
     double origin_mm;           /* what the encoder says at position 0 */
     double following_window_mm; /* 0: not watched */

@@ -27,7 +27,7 @@ const struct known_machine *known_machine_find(const char *name);
 
 bool known_machine_has_limits(const struct known_machine *machine);
 
-/* Of a machine that has some. */
+/* Only machines that have them. */
 struct cycle_limits known_machine_limits(const struct known_machine *machine);
 
 #endif

@@ -27,7 +27,7 @@
 #define INJECT_ALL        UINT32_MAX
 
 enum inject_kind {
-    /* Of the bus: what happens to frames that match id (and the sending node), or to a node. */
+    /* For the bus: what happens to frames that match id (and the sending node), or to a node. */
     INJECT_DROP,          /* nobody receives them */
     INJECT_CORRUPT,       /* destroyed on the wire: error frame, then the sender repeats */
     INJECT_DUPLICATE,     /* received twice */
@@ -35,7 +35,7 @@ enum inject_kind {
     INJECT_ERROR_PASSIVE, /* node: its error counters reach 128 */
     INJECT_BUS_OFF,       /* node: off the bus for for_ns, or for good */
     INJECT_CUT,           /* node: neither hears nor is heard */
-    /* Of a drive. */
+    /* For a drive. */
     INJECT_EMCY,         /* error code: emergency, fault reaction, fault */
     INJECT_WARN,         /* code: emergency only, the drive goes on */
     INJECT_MUTE,         /* what: these frames are not sent */

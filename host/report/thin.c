@@ -42,7 +42,7 @@ static void bucket_add(struct thin_extremes *e, unsigned series, uint32_t cycle,
     }
 }
 
-/* Of equal extremes the earlier stays. */
+/* Among equal extremes the earlier one is kept. */
 static struct thin_extremes extremes_merge(const struct thin_extremes *a,
                                            const struct thin_extremes *b)
 {

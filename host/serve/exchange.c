@@ -6,7 +6,7 @@
 #include <string.h>
 #include <time.h>
 
-/* Of the index between: set when the reader has not seen it. */
+/* Flag in the middle index: set when the reader has not seen it. */
 #define FRESH      4U
 #define INDEX_MASK 3U
 

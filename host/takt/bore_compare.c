@@ -114,7 +114,7 @@ static enum command_status run_rival(struct comparison *c, enum bore_rival rival
     return status;
 }
 
-/* Of the axes of the plane the smaller limits. */
+/* The smaller limits of the axes of the plane. */
 static struct bore_motion limits_of(const struct machine *machine)
 {
     const struct machine_axis *x = &machine->axis[AXIS_X];

@@ -56,7 +56,7 @@ void bus_plan_set(struct bus_plan *plan, const struct machine *machine)
     (void)bus_response_predict(plan->message, plan->count, plan->bitrate, plan->worst_ns);
 }
 
-/* Of TPDO2 and heartbeats, whichever node they are of. */
+/* For TPDO2 and heartbeats, whichever node they are of. */
 static uint32_t find_observed_ns(const struct bus_plan *plan, const struct bus *bus, unsigned i)
 {
     unsigned id = plan->message[i].id, nodes = 1;

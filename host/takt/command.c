@@ -62,7 +62,7 @@ static enum command_status help(int argc, char **argv)
 {
     const struct command *command;
 
-    if (argc < 3) {
+    if (argc < 3 || strcmp(argv[2], "help") == 0) {
         print_usage(stdout);
         return STATUS_DONE;
     }

@@ -195,30 +195,28 @@ const struct command command_bore = {
     .name = "bore",
     .usage = "--hole MM --cutter MM --step MM [options]",
     .summary = "make a program that mills a hole by involutes",
-    .help =
-        "The hole's centre is X 0 Y 0, the work's top Z 0. Roughing spirals from the centre to the "
-        "wall, less the\n"
-        "allowance, and round it once. Finishing comes to the wall on an involute, goes round it "
-        "and leaves it on the\n"
-        "mirror image; after --pass both nothing is left on the wall. The spiral meets the wall "
-        "with the same\n"
-        "direction and curvature, so it needs no stop there. --as arcs or lines is for controllers "
-        "without G3.2.\n"
-        "\n"
-        "--compare runs that roughing spiral, half circles about two poles, quarter circles about "
-        "four, and\n"
-        "Archimedes' spiral, each with the circle, on the same virtual machine, and prints time "
-        "and "
-        "peak acceleration\n"
-        "and jerk of the setpoints by differences. --machine and --set say which machine.\n"
-        "\n"
-        "Examples:\n"
-        "  takt bore --hole 200 --cutter 40 --step 4 --allowance 1 -o rough.ngc\n"
-        "  takt bore --pass both --hole 60 --cutter 12 --step 3 --allowance 0.3 --depth 20 "
-        "--depth-step 5 --feed 1200\n"
-        "  takt bore --pass finishing --hole 200 --cutter 40 --start=-40,40 --turns 2\n"
-        "  takt bore --hole 200 --cutter 40 --step 4 --allowance 1 --feed 6000 --compare -o "
-        "spirals.svg\n",
+    .help = "The hole's centre is X 0 Y 0, the work's top Z 0. Roughing spirals from the centre to "
+            "the wall, less the\n"
+            "allowance, and once around it. Finishing approaches the wall on an involute, goes "
+            "around it once and leaves\n"
+            "it on the mirror image; after --pass both nothing is left on the wall. The spiral "
+            "meets the wall with the\n"
+            "same direction and curvature, so it needs no stop there. --as arcs or lines is for "
+            "controllers without G3.2.\n"
+            "\n"
+            "--compare runs that roughing spiral, half circles about two poles, quarter circles "
+            "about four, and\n"
+            "Archimedes' spiral, each with the circle, on the same virtual machine. It prints "
+            "time, and peak acceleration\n"
+            "and jerk of the setpoints by differences. --machine and --set choose the machine.\n"
+            "\n"
+            "Examples:\n"
+            "  takt bore --hole 200 --cutter 40 --step 4 --allowance 1 -o rough.ngc\n"
+            "  takt bore --pass both --hole 60 --cutter 12 --step 3 --allowance 0.3 --depth 20 "
+            "--depth-step 5 --feed 1200\n"
+            "  takt bore --pass finishing --hole 200 --cutter 40 --start=-40,40 --turns 2\n"
+            "  takt bore --hole 200 --cutter 40 --step 4 --allowance 1 --feed 6000 --compare -o "
+            "spirals.svg\n",
     .options = rows,
     .operands_min = 0,
     .operands_max = 0,

@@ -363,20 +363,20 @@ const struct command command_calibrate = {
     .name = "calibrate",
     .usage = "--machine FILE --grid NxNxN [options]",
     .summary = "measure a correction table on the virtual machine",
-    .help =
-        "Sends the machine's drives to every point of a grid, from below and from above, waits "
-        "until they have settled, and\n"
-        "measures how far the tool's point is from where it was sent; the table holds what takes "
-        "that back. The machine's\n"
-        "errors stand in [geometry] of the machine file. Layers of [correction] stay on while "
-        "measuring, but for the one that\n"
-        "is measured, set-up and wear: so calibrate the volume first, name the table, then the "
-        "axes for backlash.\n"
-        "\n"
-        "Examples:\n"
-        "  takt calibrate --machine worn_mill.ini --grid 9x7x6 -o volume.csv\n"
-        "  takt calibrate --machine worn_mill.ini --axis X --grid 17 -o x.csv\n"
-        "  takt calibrate --comp x.comp --axis X -o x.csv\n",
+    .help = "Sends the machine's drives to every point of a grid, from below and from above, waits "
+            "until they have\n"
+            "settled, and measures the deviation of the tool point. The table contains the "
+            "correction. The errors of the\n"
+            "machine are in [geometry] of the machine file. Layers of [correction] stay on while "
+            "measuring, except the\n"
+            "one that is measured, set-up and wear. So calibrate the volume first, name its table "
+            "in the machine file,\n"
+            "then calibrate the axes for backlash.\n"
+            "\n"
+            "Examples:\n"
+            "  takt calibrate --machine worn_mill.ini --grid 9x7x6 -o volume.csv\n"
+            "  takt calibrate --machine worn_mill.ini --axis X --grid 17 -o x.csv\n"
+            "  takt calibrate --comp x.comp --axis X -o x.csv\n",
     .options = rows,
     .operands_min = 0,
     .operands_max = 0,

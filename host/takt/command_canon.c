@@ -53,9 +53,10 @@ const struct command command_canon = {
     .name = "canon",
     .usage = "PROGRAM [options]",
     .summary = "print the canonical moves of a part program as text",
-    .help = "One move a line: LINE KIND X... Y... Z... in machine coordinates, mm and degrees; of "
-            "arcs also the absolute\n"
-            "centre I... J... K..., the turns P... and the plane; then the feed F... in mm/min.\n"
+    .help = "One move per line: LINE KIND X... Y... Z... in machine coordinates, mm and degrees; "
+            "for arcs also the\n"
+            "absolute centre I... J... K..., the turns P... and the plane; then the feed F... in "
+            "mm/min.\n"
             "\n"
             "Examples:\n"
             "  takt canon part.ngc\n"

@@ -42,10 +42,11 @@ const struct command command_check = {
     .name = "check",
     .usage = "PROGRAM [options]",
     .summary = "find all errors of a part program without moving anything",
-    .help = "Reads the whole program and goes on after errors; a line with an error has no effect "
-            "on later ones.\n"
-            "Of a program without errors the path is measured; its time is shown by takt plan.\n"
-            "Exit status 2 when there is an error.\n"
+    .help = "Reads the whole program and continues after errors; a line with an error has no "
+            "effect on later lines. For a\n"
+            "program without errors the length of the path is printed; takt plan shows its time. "
+            "Exit status 2 when there\n"
+            "is an error.\n"
             "\n"
             "Examples:\n"
             "  takt check part.ngc\n"

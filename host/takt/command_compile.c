@@ -96,7 +96,7 @@ static const struct option_row rows[] = {
     {"output", OPTION_TEXT, offsetof(struct options, output), "FILE",
      "the compiled program (also -o)"},
     {"ceiling", OPTION_NUMBER, offsetof(struct options, ceiling), "PERCENT",
-     "highest feed override it can be run at, 100 (default) to 120"},
+     "highest feed override for its runs, 100 (default) to 120"},
     {"quiet", OPTION_FLAG, offsetof(struct options, quiet), NULL, "no figures, no progress bar"},
     OPTIONS_END,
 };
@@ -108,14 +108,14 @@ const struct command command_compile = {
     .help = "The whole program is optimised before anything moves: the path within the tolerance "
             "of G64 P, and the time\n"
             "it takes, under every axis's velocity, acceleration and jerk. The result is replayed "
-            "and judged, setpoint\n"
-            "by setpoint; what does not keep every limit and the tolerance is not written. The "
-            "file belongs to this\n"
-            "program on this machine, and takt run refuses it for any other.\n"
+            "and judged, setpoint by\n"
+            "setpoint. If it breaks a limit or the tolerance, it is not written. The file belongs "
+            "to this program on this\n"
+            "machine, and takt run refuses it for any other.\n"
             "\n"
             "With --ceiling 120 the feed override may go up to 120 %; at 100 % the program then "
-            "runs at 1/1.2 of what it\n"
-            "is compiled for.\n"
+            "runs at 1/1.2 of the\n"
+            "compiled speed.\n"
             "\n"
             "Examples:\n"
             "  takt compile part.ngc -o part.plan\n"

@@ -148,7 +148,7 @@ static enum command_status command_correct_execute(const struct options *options
 static const struct option_row rows[] = {
     OPTIONS_PROGRAM,
     {"table", OPTION_TEXT, offsetof(struct options, correction.table), "FILE",
-     "correction table, CSV; beside what the machine file says"},
+     "correction table, CSV; in addition to the machine file"},
     {"tolerance", OPTION_TEXT, offsetof(struct options, correction.tolerance), "MM",
      "distance of the written path from the corrected one (0.0005)"},
     {"filter", OPTION_FLAG, offsetof(struct options, correction.filter), NULL,
@@ -163,30 +163,31 @@ const struct command command_correct = {
     .name = "correct",
     .usage = "PROGRAM [--table FILE] [options]",
     .summary = "write a program with position errors corrected, for other controllers",
-    .help =
-        "The words of every motion are replaced by corrected ones. A long line in a curved field "
-        "of errors, an arc or an\n"
-        "involute becomes several. Comments, feeds, modes, line numbers and subroutines stay; a "
-        "line in a loop or a\n"
-        "subroutine gets a form for each time it runs. Rapids are corrected at their ends. Cycles "
-        "are written out as lines,\n"
-        "G76 as threads. Threads stay whole, with their pitch as much longer as they are. Of G28 "
-        "and G30 the point on the\n"
-        "way is corrected, the reference is the machine's own. G92 and G10 L20 set the offsets "
-        "they would set without\n"
-        "correction. Probing is refused: where it ends is not known. What is cut from where a "
-        "program has been led off the\n"
-        "corrected path, by G28 or by switching layers (M120, M121), leads back onto it by the "
-        "end of its first piece.\n"
-        "\n"
-        "Layers of [correction] that depend on position take part: matrix, set-up, axes (both "
-        "directions' mean), volume.\n"
-        "--filter reads and writes line by line; loops and calls are then errors, since a stream "
-        "cannot go back.\n"
-        "\n"
-        "Examples:\n"
-        "  takt correct part.ngc --machine mill.ini --table volume.csv -o part-corrected.ngc\n"
-        "  sender part.ngc | takt correct - --filter --table volume.csv | machine\n",
+    .help = "The words of every motion are replaced by corrected ones. A long line in a curved "
+            "field of errors, an arc or\n"
+            "an involute becomes several. Comments, feeds, modes, line numbers and subroutines "
+            "stay; a line in a loop or\n"
+            "a subroutine gets a form for each time it runs. Rapids are corrected at their ends. "
+            "Cycles are written out\n"
+            "as lines, G76 as threads. Threads are not divided; their pitch grows with their "
+            "length. In G28 and G30 the\n"
+            "intermediate point is corrected; the reference belongs to the machine. G92 and G10 "
+            "L20 set the same offsets\n"
+            "as without correction. Probing is refused, since its end is not known. Where a "
+            "program has left the\n"
+            "corrected path, by G28 or by switching layers (M120, M121), the first piece of the "
+            "next motion returns to\n"
+            "it.\n"
+            "\n"
+            "Layers of [correction] that depend on position take part: matrix, set-up, axes (both "
+            "directions' mean),\n"
+            "volume. --filter reads and writes line by line; loops and calls are then errors, "
+            "since a stream cannot go\n"
+            "back.\n"
+            "\n"
+            "Examples:\n"
+            "  takt correct part.ngc --machine mill.ini --table volume.csv -o part-corrected.ngc\n"
+            "  sender part.ngc | takt correct - --filter --table volume.csv | machine\n",
     .options = rows,
     .operands_min = 1,
     .operands_max = 1,

@@ -336,7 +336,7 @@ static const struct option_row rows[] = {
 const struct command command_cycle_frequency = {
     .name = "cycle-frequency",
     .usage = "[options]",
-    .summary = "the control frequency that a machine's limits and an accuracy need",
+    .summary = "control frequency needed for a machine's limits and an accuracy",
     .help = "A controller moves straight between the points of two cycles. This is the lowest "
             "frequency at which no circle\n"
             "that the machine can drive, as fast as feed, acceleration and jerk let it, is left by "

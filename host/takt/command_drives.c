@@ -346,27 +346,29 @@ const struct command command_drives = {
     .name = "drives",
     .usage = "--bus BUS|--spindle WHERE [options]",
     .summary = "virtual CiA 402 drives, for any CANopen master",
-    .help =
-        "Every drive is a CANopen node with the drive profile CiA 402 (profile position, homing,\n"
-        "interpolated position, cyclic synchronous position) and a motor that obeys mechanics, as\n"
-        "[drive N] of the machine file says. They run until Ctrl-C or SIGTERM, which is status 0.\n"
-        "\n"
-        "Drives keep the time of the wall clock, unless a controller tells all of them the period\n"
-        "of SYNC (object 1006), as takt does: then a SYNC is a period, however fast they come.\n"
-        "\n"
-        "--spindle adds a spindle behind the registers of a Delta VFD-B or MS300 converter, with "
-        "inertia, ramp,\n"
-        "torque limit and trips as [spindle] of the machine file says. Register 3000 (hex) takes "
-        "the torque of a cut,\n"
-        "0.1 % of the rated one; a number written to 3001 trips it.\n"
-        "\n"
-        "Examples:\n"
-        "  takt drives --bus socketcan:vcan0\n"
-        "  takt drives --spindle 127.0.0.1:1503\n"
-        "  takt drives --bus slcan:pty:can0.pty --machine mill3.ini --log drives.log\n"
-        "  takt drives --bus socketcan:vcan0 --quiet --bus-log bus.log\n"
-        "  takt drives --nodes 1-6 --eds data-sheets\n"
-        "  takt drives --bus socketcand:listen:29536 --inject faults.inject\n",
+    .help = "Every drive is a CANopen node with the drive profile CiA 402 (profile position, "
+            "homing, interpolated\n"
+            "position, cyclic synchronous position) and a simulated motor, described by [drive N] "
+            "of the machine file.\n"
+            "They run until Ctrl-C or SIGTERM, which is status 0.\n"
+            "\n"
+            "Drives run by the wall clock, unless a controller sets the SYNC period in all of them "
+            "(object 1006), as takt\n"
+            "does. Then each SYNC is one period, however fast they arrive.\n"
+            "\n"
+            "--spindle adds a spindle behind the registers of a Delta VFD-B or MS300 converter, "
+            "with inertia, ramp,\n"
+            "torque limit and trips as [spindle] of the machine file says. Register 3000 (hex) "
+            "takes the torque of a cut,\n"
+            "0.1 % of the rated one; a number written to 3001 trips it.\n"
+            "\n"
+            "Examples:\n"
+            "  takt drives --bus socketcan:vcan0\n"
+            "  takt drives --spindle 127.0.0.1:1503\n"
+            "  takt drives --bus slcan:pty:can0.pty --machine mill3.ini --log drives.log\n"
+            "  takt drives --bus socketcan:vcan0 --quiet --bus-log bus.log\n"
+            "  takt drives --nodes 1-6 --eds data-sheets\n"
+            "  takt drives --bus socketcand:listen:29536 --inject faults.inject\n",
     .options = rows,
     .operands_min = 0,
     .operands_max = 0,

@@ -46,7 +46,7 @@ static const struct option_row rows[] = {
     {"set", OPTION_LIST, offsetof(struct options, set), "KEY=VALUE",
      "override a key: axis.X.max_jerk_mm_s3=20000"},
     {"pack", OPTION_FLAG, offsetof(struct options, pack.pack), NULL,
-     "write it, with its correction tables, as the settings of a target"},
+     "write it, with its correction tables, as settings for a target"},
     {"output", OPTION_TEXT, offsetof(struct options, output), "FILE", "or -o FILE: of --pack"},
     {"sector", OPTION_FLAG, offsetof(struct options, pack.sector), NULL,
      "--pack: as a flash sector, to be flashed; without it: to be loaded over Modbus"},
@@ -59,15 +59,13 @@ const struct command command_machine = {
     .name = "machine",
     .usage = "[FILE] [options]",
     .summary = "check a machine file and print it with every key, or pack it for a target",
-    .help = "Without FILE: the built-in mill. What is printed is a machine file itself.\n"
+    .help = "Without FILE: the built-in mill. The output is a machine file.\n"
             "\n"
-            "A target keeps its machine in flash: --pack makes what is loaded there, by `takt "
-            "panel settings` or "
-            "by\n"
-            "flashing (hal/stm32f405/README.md). It holds limits, drives, bus and correction, with "
-            "all tables; what "
-            "is\n"
-            "said of virtual drives and of this computer stays behind.\n"
+            "A target keeps its machine in flash: --pack makes the settings for it, loaded by "
+            "`takt panel settings` or by\n"
+            "flashing (hal/stm32f405/README.md). They contain limits, drives, bus and correction, "
+            "with all tables, but no\n"
+            "keys of virtual drives and of this computer.\n"
             "\n"
             "Examples:\n"
             "  takt machine > my-mill.ini\n"

@@ -222,7 +222,7 @@ static const struct option_row rows[] = {
     {"count", OPTION_NUMBER, offsetof(struct options, panel.count), "N",
      "watch: so many lines (default: until Ctrl-C)"},
     {"start", OPTION_FLAG, offsetof(struct options, panel.starts), NULL,
-     "stream: write CYCLE_START as soon as there is no more room, or all is there"},
+     "stream: write CYCLE_START when the buffer is full or the file complete"},
     {"quiet", OPTION_FLAG, offsetof(struct options, quiet), NULL,
      "upload, stream: print errors alone"},
     OPTIONS_END,

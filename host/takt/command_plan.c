@@ -315,7 +315,7 @@ static enum command_status command_plan_execute(const struct options *options)
 
 static const struct option_row rows[] = {
     OPTIONS_PROGRAM,
-    {"json", OPTION_TEXT, offsetof(struct options, json), "FILE", "the same for programs"},
+    {"json", OPTION_TEXT, offsetof(struct options, json), "FILE", "the same as JSON"},
     {"quiet", OPTION_FLAG, offsetof(struct options, quiet), NULL, "no table"},
     OPTIONS_END,
 };
@@ -324,15 +324,15 @@ const struct command command_plan = {
     .name = "plan",
     .usage = "PROGRAM [options]",
     .summary = "show the planned blocks: lengths, feeds, what governs them, times",
-    .help = "One row a block: its length in mm (deg when only rotary axes move), the feed at its "
+    .help = "One row per block: its length in mm (deg when only rotary axes move); its feed at the "
             "start, its highest\n"
-            "feed and the feed at its end in mm/min, how it ends (passed at full feed, reduced for "
-            "the joint, stop),\n"
-            "the limit that governs its feed, and its time. An involute has a row for each piece "
-            "of it. What is smoothed\n"
-            "(G64 P) has the number of its pieces of curve, and the longest one's governor; blocks "
-            "that became one curve\n"
-            "show as FIRST-LAST.\n"
+            "feed and its feed at the end in mm/min; how it ends (passed at full feed, reduced for "
+            "the joint, stop); the\n"
+            "limit that governs its feed; and its time. An involute has a row for each of its "
+            "pieces. A smoothed path\n"
+            "(G64 P) shows the number of its pieces and the governing limit of the longest one. "
+            "Blocks that became one\n"
+            "curve are shown as FIRST-LAST.\n"
             "\n"
             "Examples:\n"
             "  takt plan part.ngc\n"

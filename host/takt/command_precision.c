@@ -105,9 +105,9 @@ static double longest_steps(const struct precision *p)
 }
 
 /*
- * Of where an axis is when its setpoint is due. Even steps are off by half a step. By evaluation functions a point is
- * within a step of a line, or radially of a circle, whose start and centre are rounded to steps: one more at most; and
- * along it up to two steps early or late, because ticks come evenly (firmware/step/README.md).
+ * The error is that of the position when its setpoint is due. Even steps are off by half a step. By evaluation functions
+ * a point is within a step of a line, or radially of a circle, whose start and centre are rounded to steps: one more at
+ * most; and along it up to two steps early or late, because ticks come evenly (firmware/step/README.md).
  */
 static void print_steps(const struct precision *p)
 {
@@ -293,16 +293,14 @@ static const struct option_row rows[] = {
 const struct command command_precision = {
     .name = "precision",
     .usage = "PROGRAM [options]",
-    .summary =
-        "what every interpolator errs by on a program, beside its bound, and the words it needs",
-    .help = "Runs the program exactly and gives every setpoint to the other ways of interpolation "
-            "as well: digital\n"
+    .summary = "errors of every interpolator on a program, with bounds and word lengths",
+    .help = "Runs the program exactly and computes every setpoint by the other forms of "
+            "interpolation as well: digital\n"
             "integration of lines, rotation of the radius vector on arcs, and the step forms, with "
-            "the steps_per_mm\n"
-            "of each axis. For each: the largest error that was measured, the bound that is to be "
-            "expected, and the bits\n"
-            "of the words it needs. README.md of firmware/classic and firmware/step say how they "
-            "work.\n"
+            "the steps_per_mm of\n"
+            "each axis. For each: the largest error measured, its bound, and the word length in "
+            "bits. See README.md of\n"
+            "firmware/classic and firmware/step.\n"
             "\n"
             "Examples:\n"
             "  takt precision part.ngc\n"

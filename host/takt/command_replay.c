@@ -239,7 +239,7 @@ static const struct option_row rows[] = {
     {"ids", OPTION_TEXT, offsetof(struct options, ids), "LIST",
      "only these identifiers: 80,181-183 (default: all)"},
     {"fast", OPTION_FLAG, offsetof(struct options, fast), NULL,
-     "as fast as the bus takes them, not at the times of the log"},
+     "as fast as the bus allows, not at the times of the log"},
     {"fd", OPTION_FLAG, offsetof(struct options, fd), NULL, "the bus is to carry CAN FD frames"},
     {"quiet", OPTION_FLAG, offsetof(struct options, quiet), NULL, "no count of frames"},
     OPTIONS_END,

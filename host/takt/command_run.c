@@ -267,32 +267,32 @@ static const struct option_row rows[] = {
     {"drives", OPTION_TEXT, offsetof(struct options, drives), "WHERE",
      "internal on the embedded bus, external on any other"},
     {"realtime", OPTION_FLAG, offsetof(struct options, realtime), NULL,
-     "one cycle each cycle time of the clock, not as fast as it goes"},
+     "paced by the clock instead of as fast as possible"},
     {"plan", OPTION_TEXT, offsetof(struct options, plan), "HOW",
-     "board (default): as it runs; ahead: compiled first; else FILE of takt compile"},
+     "board (default): while it runs; ahead: compiled first; or a FILE of takt compile"},
     {"target", OPTION_TEXT, offsetof(struct options, target), "NAME",
-     "the controller runs in QEMU, on a Cortex-M4 (m4f) or M7 (m7), compared bit for bit"},
+     "run the controller in QEMU, on a Cortex-M4 (m4f) or M7 (m7), compared bit for bit"},
     {"image", OPTION_TEXT, offsetof(struct options, image), "FILE",
-     "its image, takt-desk.elf; host/run --target builds and gives it"},
+     "its image, takt-desk.elf; host/run --target builds it"},
     {"trace", OPTION_TEXT, offsetof(struct options, trace), "FILE.csv",
      "one row per control cycle"},
     {"rests", OPTION_TEXT, offsetof(struct options, rests), "FILE.csv",
-     "where the tool's point was at every standstill of 50 ms, on a machine with errors"},
+     "tool point at every standstill of 50 ms and more, on a machine with errors"},
     {"inject", OPTION_TEXT, offsetof(struct options, inject), "FILE",
      "scripted faults of bus and drives; takt help inject explains them"},
     {"probe", OPTION_TEXT, offsetof(struct options, probe), "FILE",
      "what the probe touches, and inputs over time: box, ball, input; see host/probe"},
     {"override", OPTION_TEXT, offsetof(struct options, override), "FILE",
-     "feed override over time: lines of seconds and per cent, 0 ... 120"},
+     "feed override over time: lines of seconds and percent, 0 ... 120"},
     {"rapid-override", OPTION_TEXT, offsetof(struct options, rapid_override), "FILE",
-     "the same of rapids, 0 ... 100"},
+     "rapid override over time, 0 ... 100"},
     {"override-method", OPTION_TEXT, offsetof(struct options, override_method), "METHOD",
      "adaptive (default) or proportional: see firmware/motion"},
     {"bus-log", OPTION_TEXT, offsetof(struct options, bus_log), "FILE",
      "every CAN frame, as candump -L writes it"},
     {"report", OPTION_TEXT, offsetof(struct options, report), "FILE.html",
      "path, feed and limits as pictures"},
-    {"json", OPTION_TEXT, offsetof(struct options, json), "FILE", "the summary for programs"},
+    {"json", OPTION_TEXT, offsetof(struct options, json), "FILE", "the summary as JSON"},
     {"junit", OPTION_TEXT, offsetof(struct options, junit), "FILE",
      "the checks for CI servers, one case each"},
     {"quiet", OPTION_FLAG, offsetof(struct options, quiet), NULL, "no summary, no progress bar"},
@@ -303,20 +303,20 @@ const struct command command_run = {
     .name = "run",
     .usage = "PROGRAM [options]",
     .summary = "run the firmware on a part program against the virtual machine",
-    .help =
-        "PROGRAM and every FILE may be - for standard input and output. The whole program is "
-        "checked before\n"
-        "anything moves. Output files appear complete at the end, or not at all.\n"
-        "\n"
-        "Exit status: 0 every check held; 1 a check failed or a drive faulted; 2 the program, "
-        "a file or an\n"
-        "option is wrong; 3 a file cannot be written; 130 interrupted.\n"
-        "\n"
-        "Examples:\n"
-        "  takt run part.ngc --report part.html\n"
-        "  takt run part.ngc --machine mill3.ini --trace part.csv --json -\n"
-        "  takt run part.ngc --plan part.plan          (of takt compile; with --target as well)\n"
-        "  takt run part.ngc --set axis.X.max_jerk_mm_s3=20000 --until 2.5\n",
+    .help = "PROGRAM and every FILE may be - for standard input or output. The whole program is "
+            "checked before anything\n"
+            "moves. Output files appear at the end, complete, or not at all.\n"
+            "\n"
+            "Exit status: 0 every check held; 1 a check failed or a drive faulted; 2 error in the "
+            "program, a file or an\n"
+            "option; 3 a file cannot be written; 130 interrupted.\n"
+            "\n"
+            "Examples:\n"
+            "  takt run part.ngc --report part.html\n"
+            "  takt run part.ngc --machine mill3.ini --trace part.csv --json -\n"
+            "  takt run part.ngc --plan part.plan          (of takt compile; with --target as "
+            "well)\n"
+            "  takt run part.ngc --set axis.X.max_jerk_mm_s3=20000 --until 2.5\n",
     .options = rows,
     .operands_min = 1,
     .operands_max = 1,

@@ -86,7 +86,7 @@ static const struct option_row rows[] = {
     {"program", OPTION_TEXT, offsetof(struct options, panel.program), "FILE",
      "load this program; CYCLE_START starts it"},
     {"store", OPTION_TEXT, offsetof(struct options, panel.store), "FILE",
-     "keep uploaded programs there, and load what is there"},
+     "keep uploaded programs there, and load the last one at start"},
     {"spindle", OPTION_TEXT, offsetof(struct options, panel.spindle), "WHERE",
      "spindle drive on Modbus: HOST:PORT, or PATH[,BAUD[,PARITY]] (default: virtual, inside)"},
     {"bus", OPTION_TEXT, offsetof(struct options, bus), "BUS",
@@ -109,21 +109,20 @@ const struct command command_serve = {
     .name = "serve",
     .usage = "[options]",
     .summary = "the controller as a service, with the operator's panel on Modbus",
-    .help =
-        "Runs in real time until SIGTERM or Ctrl-C. Without options: the built-in machine with "
-        "virtual drives and\n"
-        "spindle, and the panel on 127.0.0.1:1502 for any number of clients. What can be read and "
-        "written there is\n"
-        "listed by `takt panel list`; who may connect and a password stand in the machine file, "
-        "section [panel].\n"
-        "\n"
-        "At its end it prints how late control cycles began.\n"
-        "\n"
-        "Examples:\n"
-        "  takt serve\n"
-        "  takt serve --program part.ngc --machine mill.ini\n"
-        "  takt serve --spindle 127.0.0.1:1503        (takt drives --spindle 127.0.0.1:1503)\n"
-        "  takt serve --listen 0.0.0.0:1502 --set panel.allow=192.168.1.0/24 --store program.ngc\n",
+    .help = "Runs in real time until SIGTERM or Ctrl-C. Without options: the built-in machine with "
+            "virtual drives and\n"
+            "spindle, and the panel on 127.0.0.1:1502 for any number of clients. `takt panel list` "
+            "lists its registers.\n"
+            "The section [panel] of the machine file says who may connect, and sets a password.\n"
+            "\n"
+            "At its end it prints how late control cycles began.\n"
+            "\n"
+            "Examples:\n"
+            "  takt serve\n"
+            "  takt serve --program part.ngc --machine mill.ini\n"
+            "  takt serve --spindle 127.0.0.1:1503        (takt drives --spindle 127.0.0.1:1503)\n"
+            "  takt serve --listen 0.0.0.0:1502 --set panel.allow=192.168.1.0/24 --store "
+            "program.ngc\n",
     .options = rows,
     .operands_min = 0,
     .operands_max = 0,

@@ -45,9 +45,9 @@ const struct command command_trace = {
     .summary = "check a trace against limits, or compare two",
     .help = "With A alone: peaks of velocity, acceleration and jerk of every axis by differences "
             "of its set column,\n"
-            "against the machine's limits, with the first place above them. The cycle time is the "
-            "trace's own.\n"
-            "With A and B: which columns differ, where first and how much.\n"
+            "compared with the machine's limits, and the first row above them. The cycle time is "
+            "that of the trace. With\n"
+            "A and B: the columns that differ, where first and by how much.\n"
             "\n"
             "Exit status: 1 when a limit is broken or the traces differ.\n"
             "\n"

@@ -63,7 +63,7 @@ static bool find_drive(const struct machine_setup *setup, const char *instance, 
     return false;
 }
 
-/* Of an axis that is there: naming it here does not bring it into being. */
+/* For an axis that is there: naming it here does not bring it into being. */
 static bool find_stepper(const struct machine_setup *setup, const char *instance, unsigned *index,
                          struct machine_problem *wrong)
 {

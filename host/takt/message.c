@@ -3,7 +3,7 @@
 #include <stdarg.h>
 #include <stdio.h>
 
-/* Of a line shown below a message: more would not fit on a screen. */
+/* Length of a line shown below a message: more would not fit on a screen. */
 #define MESSAGE_SHOWN_MAX    100
 #define MESSAGE_SHOWN_BEFORE 60
 

@@ -9,7 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Of a thread's pitch: a thousand turns add up to what a coordinate is rounded by. */
+/* Rounding of a thread's pitch: a thousand turns add up to the rounding of a coordinate. */
 #define PITCH_PLACES 9
 
 void offline_text_add(struct offline_text *t, const char *bytes, size_t length)

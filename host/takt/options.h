@@ -16,7 +16,7 @@ struct option_list {
     const char *item[OPTION_LIST_MAX];
 };
 
-/* Of `takt bore`: mm, mm/min, rpm; 0: not given. */
+/* For `takt bore`: mm, mm/min, rpm; 0: not given. */
 struct option_bore {
     const char *pass;
     const char *as;
@@ -28,7 +28,7 @@ struct option_bore {
     bool compare;
 };
 
-/* Of `takt serve` and `takt panel`. */
+/* For `takt serve` and `takt panel`. */
 struct option_panel {
     const char *listen, *connect; /* HOST:PORT */
     const char *serial;           /* PATH, or PATH,BAUD,PARITY */
@@ -43,19 +43,19 @@ struct option_panel {
     bool starts; /* of `takt panel stream` */
 };
 
-/* Of `takt cycle-frequency`: numbers as given, NULL: not. */
+/* For `takt cycle-frequency`: numbers as given, NULL: not. */
 struct option_frequency {
     const char *feed_max, *acceleration, *jerk, *resolution, *tolerance, *frequency;
     bool radius_table;
     const char *svg, *html;
 };
 
-/* Of `takt machine`. */
+/* For `takt machine`. */
 struct option_pack {
     bool pack, unpack, sector;
 };
 
-/* Of `takt calibrate` and `takt correct`. */
+/* For `takt calibrate` and `takt correct`. */
 struct option_correction {
     const char *grid, *axis, *from, *to, *noise, *comp, *table, *tolerance;
     double seed, comp_type;

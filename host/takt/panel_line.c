@@ -111,7 +111,7 @@ static const char *refusal_text(struct panel_line *line)
         [PANEL_REFUSAL_CONTROL] = ": another panel has claimed control",
         [PANEL_REFUSAL_VALUE] = ": the value is out of range",
         [PANEL_REFUSAL_ADDRESS] = ": it cannot be written",
-        [PANEL_REFUSAL_BUSY] = ": the controller has not taken it; try again",
+        [PANEL_REFUSAL_BUSY] = ": the controller did not take it in time; try again",
     };
     const struct panel_register *row = &panel_registers[REGISTER_REFUSAL];
     uint16_t reason = 0;

@@ -151,13 +151,13 @@ enum command_status panel_upload_settings(struct panel_line *line, const char *p
     if (!text_read(&text, path))
         return STATUS_INPUT;
     if (text.length == 0 || text.length > PANEL_PROGRAM_BYTES_MAX)
-        message_error(path, 0, 0, "these are no settings: takt machine --pack makes them");
+        message_error(path, 0, 0, "not a file of settings: takt machine --pack makes them");
     else
         status = bring(line, &text, PANEL_UPLOAD_SETTINGS);
     if (status == STATUS_INPUT)
         report_reason(line);
     if (status == STATUS_DONE && !quiet)
-        (void)printf("%s: %zu bytes; they count from the controller's next start on\n", path,
+        (void)printf("%s: %zu bytes; they take effect at the controller's next start\n", path,
                      text.length);
     text_free(&text);
     return status;
@@ -172,7 +172,7 @@ enum command_status panel_upload_plan(struct panel_line *line, const char *path,
     if (!text_read(&text, path))
         return STATUS_INPUT;
     if (text.length < REPLAY_HEADER_BYTES || text.length > PANEL_PROGRAM_BYTES_MAX)
-        message_error(path, 0, 0, "this is no compiled program; takt compile writes them");
+        message_error(path, 0, 0, "not a compiled program; takt compile makes them");
     else if (begin(line, &text, PANEL_UPLOAD_PLAN, PANEL_UPLOAD_STREAM))
         status = stream(line, &text, starts);
     if (status == STATUS_INPUT)

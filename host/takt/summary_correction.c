@@ -101,11 +101,10 @@ static void write_tool_point(FILE *stream, const struct summary *summary)
     if (!tool->is_watched)
         return;
     (void)fprintf(stream,
-                  "  tool point    off by %.2f um at most, %.2f um in the mean, in %u rests\n",
+                  "  tool point    off by %.2f um at most, %.2f um on average, in %u rests\n",
                   1e3 * tool->at_rest.max_mm, 1e3 * tool_point_mean(&tool->at_rest),
                   (unsigned)tool->at_rest.count);
-    (void)fprintf(stream,
-                  "                %.2f um at most, %.2f um in the mean, by the setpoints\n",
+    (void)fprintf(stream, "                %.2f um at most, %.2f um on average, by the setpoints\n",
                   1e3 * tool->of_setpoints.max_mm, 1e3 * tool_point_mean(&tool->of_setpoints));
 }
 

@@ -66,7 +66,7 @@ def check_refusals():
         (["--drives", "elsewhere"], 2, "internal or external is expected"),
         (["--drives", "internal", "--bus", "slcan:/dev/null"], 2, "are on the embedded bus"),
         (["--bus", "slcan:/no/such/device"], 3, "cannot be used"),
-        (["--bus", "socketcand:127.0.0.1:1"], 3, "nobody can be reached"),
+        (["--bus", "socketcand:127.0.0.1:1"], 3, "no connection"),
         (["--bus", "socketcan:nosuch0"], 3, "socketcan:nosuch0"),
     ):
         got, _, err = bus_pair.run_controller("refused", *options)

@@ -8,6 +8,7 @@ COMMANDS = "run", "plan", "check", "canon", "trace", "machine", "serve", "panel"
 PROGRAM = t.write("part.ngc", "F600\nG1 X10\nG2 X20 I5\nG4 P0.5\nG0 Z5\nM2\n")
 
 status, out, _ = t.run("help")
+t.check(t.run("help", "help")[:2] == (status, out), "help is a command with help")
 t.check(status == 0 and all(f"\n  {name} " in out for name in COMMANDS), "help lists the commands", out)
 for name in COMMANDS:
     status, out, _ = t.run("help", name)

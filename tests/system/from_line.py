@@ -60,7 +60,7 @@ for line, said in (
     ("0", "number of a line"),
     ("1.5", "number of a line"),
     ("x", "number of a line"),
-    ("99", "never comes to line 99"),
+    ("99", "never reaches line 99"),
 ):
     status, out, err = t.run("run", PROGRAM, "--from-line", line)
     t.check(status == 2 and out == "" and said in err, "--from-line " + line, status, err)

@@ -81,7 +81,7 @@ t.check(abs(middle[0] - 2) < 0.01 and abs(middle[1] - 1) < 0.01, "at F times the
 
 for name, options, text in (
     ("fast", ("--set", "axis.Z.max_velocity_mm_s=10"), "pitch times speed of the spindle is"),
-    ("short", ("--set", "axis.Z.max_acceleration_mm_s2=5"), "catching up and coming to rest take"),
+    ("short", ("--set", "axis.Z.max_acceleration_mm_s2=5"), "the lead-in and stopping take"),
     ("lag", ("--set", "spindle.ripple_percent=100", "--set", "spindle.ripple_per_revolution=1", "--set",
              "spindle.thread_tolerance_mm=0.001"), "off the spindle's angle, more than the allowed"),
     ("waits", ("--set", "spindle.torque_limit_percent=1", "--set", "spindle.inertia_kg_m2=1"), "it has not turned as commanded"),

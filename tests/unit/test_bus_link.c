@@ -178,8 +178,8 @@ static void test_a_bus_that_is_not_there_is_refused(void)
 {
     expect_refused("slcan:/no/such/device", "No such file", true);
     expect_refused("slcan:/dev/null", "cannot be used", true);
-    expect_refused("slcan:127.0.0.1:1", "nobody can be reached", true);
-    expect_refused("socketcand:127.0.0.1:1", "nobody can be reached", true);
+    expect_refused("slcan:127.0.0.1:1", "no connection", true);
+    expect_refused("socketcand:127.0.0.1:1", "no connection", true);
     expect_refused("slcan:pty:/no/such/folder/can", "cannot be made", true);
 }
 

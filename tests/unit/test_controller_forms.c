@@ -43,13 +43,13 @@ static void test_the_default_machine_can_work(void)
 static void test_an_interpolator_a_limiter_and_a_landing_for_comparison_are_refused(void)
 {
     machine.interpolator = INTERPOLATOR_ROTATE;
-    expect("'interpolator' of this machine is for comparison: this image has its default alone");
+    expect("'interpolator' of this machine is for comparison: this image has only its default");
     machine_set_default(&machine);
     machine.limiter = LIMITER_SMOOTH;
-    expect("'limiter' of this machine is for comparison: this image has its default alone");
+    expect("'limiter' of this machine is for comparison: this image has only its default");
     machine_set_default(&machine);
     machine.landing = LANDING_SCALE;
-    expect("'landing' of this machine is for comparison: this image has its default alone");
+    expect("'landing' of this machine is for comparison: this image has only its default");
 }
 
 int main(void)

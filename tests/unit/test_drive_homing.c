@@ -117,8 +117,7 @@ static void test_a_home_with_the_other_sign_is_a_fault_that_says_so(void)
     run_until(DRIVES_BRAKING);
     TEST_ASSERT_EQUAL_INT(TAKT_ERROR_DRIVE_HOME_OFFSET, drives_get_fault(&drives)->code);
     assert_text(
-        "after homing axis Z (node 3) is at 1.9 mm: turn home_offset_is_position, its drive "
-        "means the other");
+        "after homing axis Z (node 3) is at 1.9 mm: change home_offset_is_position for this drive");
 }
 
 static void test_a_home_near_zero_has_no_sign(void)
