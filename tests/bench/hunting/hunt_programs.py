@@ -9,7 +9,8 @@ TIME_S = (0.5, 10)
 MOTIONS = (2, 400)
 # Of every axis on either side, mm or degrees.
 TRAVEL = 2000
-# Limits that a machine file may have.
+# Limits that a machine file may have. takt refuses accelerations and jerks lower than 5e-12 and 1e-12 of the travel in a
+# cycle's units, which rounding of setpoints would hide.
 HIGHEST = (1e5, 1e7, 1e10)
 # Arcs are not smaller: takt refuses those whose centre is on their start.
 RADIUS_MM = 2e-3
@@ -59,7 +60,9 @@ def random_machine(rng):
     for letter in letters:
         factors = [decades(rng, 1 / math.sqrt(apart), math.sqrt(apart)) for _ in range(3)]
         unit = 1 if letter in hunt_path.LINEAR else decades(rng, 0.3, 30)
-        axes[letter] = tuple(min(float(f"{unit * b * f:.6g}"), most) for b, f, most in zip(base, factors, HIGHEST))
+        lowest = (0, 5e-12 * TRAVEL / (cycle_us * 1e-6) ** 2, 1e-12 * TRAVEL / (cycle_us * 1e-6) ** 3)
+        values = [float(f"{unit * b * f:.6g}") for b, f in zip(base, factors)]
+        axes[letter] = tuple(min(max(v, low), high) for v, low, high in zip(values, lowest, HIGHEST))
     law = rng.choice(("jerk", "jerk", "smooth", "gentle"))
     return Machine(axes, cycle_us, law, int(round(decades(rng, 2, 256))))
 
