@@ -1,0 +1,27 @@
+"""A short hunt with fixed seeds: what must hold of random programs today. The long one is tests/bench/hunt.
+
+Exact path, all kinds of failures: every motion is planned by itself in closed form, its setpoints are evaluated on its
+curve, so nothing hangs on a search that may fail. Within a tolerance (G64 P), on the built-in mill: limits, feed, ends
+and that no setpoint is outside; the rate along a smoothed curve is bounded by what its own pieces say, and each piece is
+looked at before it is handed on. Order, corners and time of smoothed paths depend on the search, and are known to fail:
+they are the long hunt's.
+"""
+
+import os
+import subprocess
+import sys
+
+import takt_test as t
+
+HUNT = os.path.join(t.SOURCE, "tests", "bench", "hunt")
+KINDS = "velocity,acceleration,jerk,outside,exact,end,feed,refused,fault,crash"
+
+
+def hunt(claim, *arguments):
+    done = subprocess.run([sys.executable, HUNT, "--judge", sys.argv[1], *arguments], capture_output=True, text=True, check=False)
+    t.check(done.returncode == 0, claim, done.stdout, done.stderr)
+
+
+hunt("exact paths hold on any machine", "30", "1", "--exact")
+hunt("smoothed paths hold their limits", "12", "1", "--machines", "builtin", "--kinds", KINDS)
+t.finish()
