@@ -173,6 +173,7 @@ void ahead_path_foot(const struct ahead_path *path, const double x[AXIS_LINEAR_C
     double best = MATHS_INFINITY;
     size_t k = ahead_path_find(path, place_mm - reach_mm, hint);
 
+    *foot = (struct ahead_foot){.element = k, .place_mm = place_mm, .distance_mm = best};
     for (; k < path->count && path->element[k].start_mm <= place_mm + reach_mm; k++)
         try_element(path, k, x, place_mm, reach_mm, &best, foot);
 }
