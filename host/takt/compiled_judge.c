@@ -147,7 +147,7 @@ static bool judge_cycle(struct trial *t, const struct cycle_record *record)
     t->out_of_order = t->out_of_order || record->block < t->block;
     t->block = record->block;
     t->figures->cycles++;
-    return t->on_board || tube_judge_add(&t->tube, &record->cmd);
+    return t->on_board || tube_judge_add(&t->tube, &record->cmd, record->block);
 }
 
 /* MOTION_CYCLE: goes on. */
