@@ -20,6 +20,9 @@
 #define POLISH_STEPS 3
 #define REPAIRS_MAX  12
 
+/* A trajectory that has grown beyond so many times what is of use in a round is not waited for. */
+#define ROUND_GROWTH 2
+
 /* Intervals before and behind those to be repaired that are worked on; of a slow-down before and behind its middle. */
 #define MARGIN      120
 #define SLOW_MARGIN 24
@@ -56,6 +59,7 @@ struct solver {
     size_t jobs_max;
     unsigned repair;
     double stuck_mm;
+    size_t longest; /* a trajectory of more intervals is of no use */
     bool stopped;
     bool (*progress)(void *context, double part);
     void *context;
@@ -372,27 +376,32 @@ static enum solver_result failed(const struct solver *s)
     return s->stopped ? SOLVER_STOPPED : SOLVER_MEMORY;
 }
 
+static enum solver_result give_up(struct solver *s)
+{
+    s->stuck_mm = place_of_worst(s);
+    return SOLVER_STUCK;
+}
+
 static enum solver_result repair_all(struct solver *s)
 {
     s->part_round = 0;
     for (s->repair = 0; measure_all(s) > 1; s->repair++) {
-        if (s->repair == REPAIRS_MAX) {
-            s->stuck_mm = place_of_worst(s);
-            return SOLVER_STUCK;
-        }
+        if (s->repair == REPAIRS_MAX || s->trail->intervals > s->longest)
+            return give_up(s);
         if (!plan_repair(s) || !do_jobs(s))
             return failed(s);
     }
-    return SOLVER_DONE;
+    return s->trail->intervals > s->longest ? give_up(s) : SOLVER_DONE;
 }
 
 enum solver_result solver_run(struct solver *s, const struct ahead_path *path,
-                              const struct ahead_limits *limits, struct trail *trail,
+                              const struct ahead_limits *limits, struct trail *trail, size_t longest,
                               bool (*progress)(void *context, double part), void *context)
 {
     s->path = path;
     s->limits = limits;
     s->trail = trail;
+    s->longest = longest;
     s->stopped = false;
     s->progress = progress;
     s->context = context;
@@ -401,6 +410,8 @@ enum solver_result solver_run(struct solver *s, const struct ahead_path *path,
         s->part_round = 1.0 / (SOLVER_ROUNDS + 1);
         if (!plan_round(s, round) || !do_jobs(s))
             return failed(s);
+        if (s->trail->intervals / ROUND_GROWTH > s->longest)
+            return give_up(s);
     }
     s->part_done = (double)SOLVER_ROUNDS / (SOLVER_ROUNDS + 1);
     return repair_all(s);

@@ -71,7 +71,7 @@ static struct trail solve(const struct ahead_path *path, unsigned workers)
 
     TEST_ASSERT_NOT_NULL(s);
     TEST_ASSERT_TRUE(guess_trail(path, &limits, &t));
-    TEST_ASSERT_EQUAL(SOLVER_DONE, solver_run(s, path, &limits, &t, NULL, NULL));
+    TEST_ASSERT_EQUAL(SOLVER_DONE, solver_run(s, path, &limits, &t, SIZE_MAX, NULL, NULL));
     solver_free(s);
     return t;
 }
@@ -152,7 +152,7 @@ static void test_the_place_where_it_is_stuck_is_on_the_path(void)
     path.element[2].tolerance_mm = 3e-7;
     TEST_ASSERT_TRUE(guess_trail(&path, &limits, &t));
     guessed = t.intervals;
-    TEST_ASSERT_EQUAL(SOLVER_STUCK, solver_run(s, &path, &limits, &t, NULL, NULL));
+    TEST_ASSERT_EQUAL(SOLVER_STUCK, solver_run(s, &path, &limits, &t, SIZE_MAX, NULL, NULL));
     TEST_ASSERT_TRUE(t.intervals > guessed);
     TEST_ASSERT_DOUBLE_WITHIN(2.6, 12.5, solver_stuck_mm(s));
     solver_free(s);
