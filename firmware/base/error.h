@@ -68,6 +68,7 @@
     X(CALL_P_MISSING, "'%w' needs P, the number of the program to call")                           \
     X(JUMP_BACK, "'%w' has to go back in the text, which a stream cannot")                         \
     X(CIRCLE, "the program is in an endless loop: %v lines without a move")                        \
+    X(ENDLESS, "the program does not end: %v lines have been read again")                          \
     X(MODES_NOT_SAVED, "'%w' finds no saved modes: no M70 or M73 in this call")                    \
     X(PROGRAM_FULL, "no room for '%w' beside the names, calls and saved modes there are")          \
     X(FROM_LINE_MISSED, "the program never reaches line %v")                                       \
@@ -158,6 +159,7 @@
     X(TABLE_PAIR_TWICE, "the correction '%w' is in two tables of the same axis")                   \
     X(TABLE_RESERVE, "axis %w would need %v percent of its limits, more than has been reserved")   \
     /* machine and drives */                                                                       \
+    X(STALLED, "the setpoint has stood for %v s, and nothing the program asks for explains it")    \
     X(SPINDLE_SLOW, "the spindle has not reached its speed in time")                               \
     X(DRIVE_FAULT, "the drive of axis %w reports %x: %m")                                          \
     X(DRIVE_STATE, "the drive of axis %w has left operation: its state is '%m'")                   \

@@ -396,6 +396,12 @@ bool flow_count_line(struct program *p)
         f->furthest = lexer_place(&p->lexer);
         return true;
     }
+    f->lines_repeated++;
+    if (p->config.repeats_max > 0 && f->lines_repeated > p->config.repeats_max) {
+        diagnostic_set(&p->error, TAKT_ERROR_ENDLESS, p->lexer.line, 0, "", 0,
+                       p->config.repeats_max);
+        return false;
+    }
     if (f->lines_again++ < PROGRAM_CIRCLE_LINES_MAX) {
         return true;
     }

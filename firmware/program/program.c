@@ -165,9 +165,62 @@ static bool read_line(struct program *p)
     return false;
 }
 
+static bool is_elsewhere(const struct point *a, const struct point *b)
+{
+    bool differs = false;
+
+    for (unsigned i = 0; i < AXIS_COUNT; i++) {
+        differs = differs || a->at[i] != b->at[i];
+    }
+    return differs;
+}
+
+/* Does a move go somewhere, or wait? A program may repeat it for ever, which takes as long. */
+static bool takes_time(const struct move *m, const struct point *from)
+{
+    switch (m->kind) {
+    case MOVE_RAPID:
+    case MOVE_FEED:
+    case MOVE_THREAD:
+    case MOVE_TAP:
+    case MOVE_TAP_OUT:
+        return is_elsewhere(&m->end, from);
+    case MOVE_DWELL:
+        return m->dwell_s > 0.0;
+    case MOVE_SPINDLE:
+    case MOVE_ORIENT:
+    case MOVE_COOLANT:
+    case MOVE_TOOL:
+    case MOVE_OUTPUT:
+        return false;
+    case MOVE_ARC_CW:
+    case MOVE_ARC_CCW:
+    case MOVE_INVOLUTE_CW:
+    case MOVE_INVOLUTE_CCW:
+    case MOVE_PROBE:
+    case MOVE_INPUT:
+    case MOVE_STOP:
+    case MOVE_END:
+        break;
+    }
+    return true;
+}
+
+/* Has the line just read, begun at a place, made a move that takes time? */
+static bool has_progress(const struct program *p, const struct point *from)
+{
+    bool has = p->cycle.code != NULL;
+
+    for (unsigned i = 0; i < p->queue_count && !has; i++) {
+        has = takes_time(&p->queue[(p->queue_first + i) % PROGRAM_QUEUE_MAX], from);
+    }
+    return has;
+}
+
 /* One step further; false: p->error is set. */
 static bool advance(struct program *p)
 {
+    const struct point from = p->modes.at;
     const bool good = read_line(p);
 
     if (!good) {
@@ -176,7 +229,7 @@ static bool advance(struct program *p)
     if (p->approach.pending) {
         return approach_drop(p) && good;
     }
-    if (p->queue_count > 0 || p->cycle.code != NULL) {
+    if (has_progress(p, &from)) {
         p->flow.lines_again = 0;
     }
     return good;

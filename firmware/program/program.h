@@ -31,6 +31,7 @@ struct program_config {
     double spindle_max_rpm;     /* 0: no limit */
     bool spindle_encoder;       /* its angle is measured: threads can be cut */
     uint32_t from_line;         /* start in the middle, at this line; 0: at the beginning */
+    uint32_t repeats_max;       /* lines that may be read again in all; 0: any number */
     uint32_t correction_layers; /* of position-error correction, for M120 and M121: 0 ... 8 */
     bool exact_path;            /* treat every G64 as G61 */
     bool block_delete;          /* skip lines that begin with '/' */

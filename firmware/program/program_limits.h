@@ -70,7 +70,7 @@
 #endif
 /* Largest number of an O-word. */
 #define PROGRAM_LABEL_MAX 99999999
-/* Lines read again without a move in between, until the program is taken to run in a circle. Fuzzing has less time. */
+/* Lines read again without a move in between that takes time, until the program is taken to run in a circle. Fuzzing has less time. */
 #ifndef PROGRAM_CIRCLE_LINES_MAX
 #define PROGRAM_CIRCLE_LINES_MAX 1000000
 #endif

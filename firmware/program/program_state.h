@@ -217,7 +217,8 @@ struct program_flow {
     bool value_returned;
     double value;
     struct program_place furthest; /* everything before it has been read */
-    uint32_t lines_again;          /* lines read again since the last move */
+    uint32_t lines_again;          /* lines read again since the last move that takes time */
+    uint32_t lines_repeated;       /* lines read again in all */
     double kept[PROGRAM_KEPT_MAX]; /* what calls keep: a stack */
     struct program_block block[PROGRAM_BLOCKS_MAX];
     struct program_sub sub[PROGRAM_SUBS_MAX];

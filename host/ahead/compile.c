@@ -1,5 +1,6 @@
 #include "ahead/compile.h"
 
+#include "ahead/exact.h"
 #include "ahead/guess.h"
 #include "ahead/vector.h"
 #include "base/fnv.h"
@@ -10,6 +11,10 @@
 /* Exact path: the axes stop where the direction changes by more than this, and stay within so much of an increment. */
 #define EXACT_CHANGE 1e-6
 #define EXACT_PART   0.5
+
+/* A section of which less than this part of its time, or so many knots, could be won is not optimised. */
+#define WORTH_PART  0.001
+#define WORTH_KNOTS 2
 
 static uint64_t add_number(uint64_t digest, uint64_t number)
 {
@@ -46,10 +51,15 @@ static void set_limits(struct compile *c)
     const struct plan_limits *of = &c->config.limits;
 
     c->limits.step_s = (double)step_cycles(c->config.cycle_us) * 1e-6 * c->config.cycle_us;
+    c->exact = *of;
+    c->exact.cycle_s = c->limits.step_s;
     for (int i = 0; i < AXIS_LINEAR_COUNT; i++) {
         c->limits.velocity_mm_s[i] = COMPILE_SPEED_PART * of->velocity_mm_s[i];
         c->limits.acceleration_mm_s2[i] = (1 - COMPILE_RESERVE) * of->acceleration_mm_s2[i];
         c->limits.jerk_mm_s3[i] = (1 - COMPILE_RESERVE) * of->jerk_mm_s3[i];
+        c->exact.velocity_mm_s[i] = c->limits.velocity_mm_s[i];
+        c->exact.acceleration_mm_s2[i] = c->limits.acceleration_mm_s2[i];
+        c->exact.jerk_mm_s3[i] = c->limits.jerk_mm_s3[i];
         if ((of->axes & (1U << i)) == 0) { /* it never moves: any limit will do */
             c->limits.velocity_mm_s[i] = 1;
             c->limits.acceleration_mm_s2[i] = 1;
@@ -117,24 +127,50 @@ static bool tell_progress(void *context, double part)
            c->config.progress(c->config.context, done / maths_max(all, 1), c->time_s);
 }
 
-static enum compile_result result_of(struct compile *c, enum solver_result result)
+/* Optimised, or where that finds nothing better the exact path, which is lent and given back. */
+static enum compile_result optimise(struct compile *c, struct trail *exact)
 {
-    double place_mm;
+    struct trail trail = {0};
+    enum compile_result result = COMPILE_DONE;
 
-    switch (result) {
+    if (!guess_trail(&c->path, &c->limits, &trail))
+        return COMPILE_MEMORY;
+    switch (solver_run(c->solver, &c->path, &c->limits, &trail, exact->intervals, tell_progress, c)) {
     case SOLVER_DONE:
+        trail_free(exact);
+        *exact = trail;
         return COMPILE_DONE;
     case SOLVER_STOPPED:
-        return COMPILE_STOPPED;
+        result = COMPILE_STOPPED;
+        break;
     case SOLVER_MEMORY:
-        return COMPILE_MEMORY;
+        result = COMPILE_MEMORY;
+        break;
     case SOLVER_STUCK:
         break;
     }
-    place_mm = solver_stuck_mm(c->solver);
-    c->wrong.line = c->path.element[ahead_path_find(&c->path, place_mm, 0)].line;
-    c->wrong.why = "no motion was found here that keeps limits and tolerance";
-    return COMPILE_STUCK;
+    trail_free(&trail);
+    return result;
+}
+
+/* Can more be won than the knots at both ends? */
+static bool is_worth_it(const struct compile *c, const struct trail *exact)
+{
+    const double least_s = exact_least_s(&c->path, &c->exact);
+    const double exact_s = (double)(exact->intervals - TRAIL_ENDS) * c->limits.step_s;
+
+    return exact_s > (1 + WORTH_PART) * least_s + WORTH_KNOTS * c->limits.step_s;
+}
+
+/* The section on its exact path, within every limit. */
+static bool drive_exactly(const struct compile *c, struct trail *trail)
+{
+    if (!exact_trail(&c->path, &c->exact, false, trail))
+        return false;
+    if (exact_is_legal(trail, &c->exact))
+        return true;
+    trail_free(trail);
+    return exact_trail(&c->path, &c->exact, true, trail);
 }
 
 /* Plans and writes what has been collected. */
@@ -145,9 +181,9 @@ static enum compile_result end_section(struct compile *c)
 
     if (c->path.count == 0)
         return COMPILE_DONE;
-    if (!guess_trail(&c->path, &c->limits, &trail))
+    if (!drive_exactly(c, &trail))
         return COMPILE_MEMORY;
-    result = result_of(c, solver_run(c->solver, &c->path, &c->limits, &trail, tell_progress, c));
+    result = !c->config.exact && is_worth_it(c, &trail) ? optimise(c, &trail) : COMPILE_DONE;
     if (result == COMPILE_DONE) {
         c->time_s += (double)trail.intervals * c->limits.step_s;
         encoder_add(&c->encoder, &c->path, &trail);
@@ -230,10 +266,19 @@ static void share_tolerance(struct compile *c, struct ahead_element *e)
     c->tolerance_mm = own_mm;
 }
 
+static struct ahead_shape shape_of(const struct move *move)
+{
+    return (struct ahead_shape){.kind = move->kind,
+                                .plane = move->plane,
+                                .turns = move->turns,
+                                .centre_mm = {move->centre_mm[0], move->centre_mm[1]},
+                                .base_radius_mm = move->base_radius_mm};
+}
+
 static enum compile_result add_motion(struct compile *c, const struct move *move)
 {
     const char *why = why_unfit(move);
-    struct ahead_element e = {.line = move->line};
+    struct ahead_element e = {.line = move->line, .shape = shape_of(move)};
     enum compile_result result = COMPILE_DONE;
 
     c->blocks++;

@@ -26,7 +26,6 @@ enum compile_result {
     COMPILE_STOPPED, /* as asked */
     COMPILE_MEMORY,
     COMPILE_UNFIT, /* a move that cannot be compiled: compile.wrong */
-    COMPILE_STUCK, /* no legal motion was found: compile.wrong */
     COMPILE_UNWRITTEN
 };
 
@@ -37,6 +36,7 @@ struct compile_config {
     uint32_t
         text_size; /* of the program, and its CRC-32: for whoever has no time to read it twice */
     uint32_t text_crc;
+    bool exact; /* every section on the exact path */
     unsigned workers;
     uint32_t blocks; /* about so many in the program: for the progress */
     bool (*progress)(void *context, double part, double time_s);
@@ -46,6 +46,7 @@ struct compile_config {
 struct compile {
     struct compile_config config;
     struct ahead_limits limits;
+    struct plan_limits exact; /* the same for the planner on board, a cycle for each knot */
     struct solver *solver;
     struct encoder encoder;
     struct ahead_path path; /* of the section that is being collected */

@@ -73,7 +73,7 @@ static double joint_of(const struct problem_cell *cell)
     return most * JOINT_PART;
 }
 
-double excess_measure(const struct problem_window *w, const struct problem *p, double *beyond)
+double excess_measure(const struct problem_window *w, const struct problem *p)
 {
     size_t hint = ahead_path_find(w->path, w->trail->place_mm[2 * w->first], 0);
     double most = 0;
@@ -87,7 +87,7 @@ double excess_measure(const struct problem_window *w, const struct problem *p, d
         here = maths_max(here, limits_of(w->limits, control));
         here = maths_max(here, feed_of(w->limits, control, feed_mm_s));
         here = maths_max(here, joint_of(&p->cell[i]));
-        beyond[i] = here;
+        w->trail->beyond[w->first + i] = here;
         most = maths_max(most, here);
     }
     return most;

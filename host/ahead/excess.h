@@ -10,9 +10,9 @@
 #define EXCESS_TOLERANCE_PART 0.985
 
 /*
- * p: the problem built for the window. Sets beyond[i] of every interval: the largest of velocity, acceleration, jerk and feed over its limit and
- * of the distance over its tolerance; <= 1: legal. Returns the largest.
+ * p: the problem built for the window. Sets the trail's beyond of every interval of the window: the largest of velocity,
+ * acceleration, jerk and feed over its limit and of the distance over its tolerance; <= 1: legal. Returns the largest.
  */
-double excess_measure(const struct problem_window *w, const struct problem *p, double *beyond);
+double excess_measure(const struct problem_window *w, const struct problem *p);
 
 #endif

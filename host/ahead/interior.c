@@ -346,8 +346,20 @@ static void advance(struct interior *w, double primal, double dual)
     }
 }
 
-/* Mehrotra's centring: the cube of what a step straight to the end would leave. */
-static void iterate(struct interior *w, double mu)
+/* Numbers too far apart for the matrix leave no direction. */
+static bool has_direction(const struct interior *w)
+{
+    double sum = 0;
+
+    for (size_t f = 0; f < w->free; f++) {
+        for (int i = 0; i < 4; i++)
+            sum += maths_abs(w->dz[f][i]);
+    }
+    return maths_is_finite(sum);
+}
+
+/* Mehrotra's centring: the cube of what a step straight to the end would leave. False: it cannot be taken. */
+static bool iterate(struct interior *w, double mu)
 {
     double primal;
     double dual;
@@ -357,7 +369,10 @@ static void iterate(struct interior *w, double mu)
     direction(w, 0, false, &primal, &dual);
     part = mean_after(w, primal, dual) / mu;
     direction(w, mu * maths_max(part * part * part, 1e-3), true, &primal, &dual);
+    if (!has_direction(w))
+        return false;
     advance(w, maths_min(1, STEP_PART * primal), maths_min(1, STEP_PART * dual));
+    return true;
 }
 
 double (*interior_solve(struct interior *w, const struct problem *p))[4]
@@ -373,9 +388,8 @@ double (*interior_solve(struct interior *w, const struct problem *p))[4]
     for (int i = 0; i < ITERATIONS_MAX; i++) {
         const double mu = take_values(w);
 
-        if (mu * 2 * CELL_ROWS < GAP_END)
+        if (mu * 2 * CELL_ROWS < GAP_END || !iterate(w, mu))
             break;
-        iterate(w, mu);
     }
     return w->z;
 }

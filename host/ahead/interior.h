@@ -20,7 +20,10 @@ struct interior; /* memory for windows of up to so many cells */
 struct interior *interior_new(size_t cells_max);
 void interior_free(struct interior *w);
 
-/* The change (d, e) of control points TRAIL_ENDS ... cells - 1 of the window; valid until the next call. */
+/*
+ * The change (d, e) of control points TRAIL_ENDS ... cells - 1 of the window, finite whatever the problem is; valid until
+ * the next call.
+ */
 double (*interior_solve(struct interior *w, const struct problem *p))[4];
 
 #endif

@@ -144,6 +144,15 @@ static double nearest_on_curve(const struct ahead_path *path, size_t k, const do
     return s_mm;
 }
 
+double ahead_path_place(const struct ahead_path *path, size_t element, const double x[3],
+                        double near_mm)
+{
+    const struct ahead_element *e = &path->element[element];
+
+    return nearest_on_curve(path, element, x, e->start_mm, e->start_mm + e->curve.length_mm,
+                            near_mm);
+}
+
 /* Compares the nearest place of one element with the best so far. */
 static void try_element(const struct ahead_path *path, size_t k, const double x[3], double place_mm,
                         double reach_mm, double *best, struct ahead_foot *foot)
@@ -173,6 +182,7 @@ void ahead_path_foot(const struct ahead_path *path, const double x[AXIS_LINEAR_C
     double best = MATHS_INFINITY;
     size_t k = ahead_path_find(path, place_mm - reach_mm, hint);
 
+    *foot = (struct ahead_foot){.element = k, .place_mm = place_mm, .distance_mm = best};
     for (; k < path->count && path->element[k].start_mm <= place_mm + reach_mm; k++)
         try_element(path, k, x, place_mm, reach_mm, &best, foot);
 }

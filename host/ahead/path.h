@@ -5,6 +5,7 @@
 #define TAKT_HOST_AHEAD_PATH_H
 
 #include "geometry/curve.h"
+#include "program/move.h"
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -17,8 +18,18 @@ enum ahead_joint {
     AHEAD_SHARP   /* and along the path as well */
 };
 
+/* What a motion is, beside its end (program/move.h). */
+struct ahead_shape {
+    enum move_kind kind;
+    enum plane plane;
+    unsigned turns;
+    double centre_mm[2];
+    double base_radius_mm;
+};
+
 struct ahead_element {
     struct curve curve;
+    struct ahead_shape shape;
     double start_mm;     /* along the section's path */
     double feed_mm_s;    /* programmed; infinite for a rapid */
     double tolerance_mm; /* largest distance of the setpoints from it */
@@ -54,6 +65,10 @@ double ahead_path_length(const struct ahead_path *path);
 
 /* The element that holds a place; hint: where to begin to look. */
 size_t ahead_path_find(const struct ahead_path *path, double place_mm, size_t hint);
+
+/* The place of an element that is nearest to a point; near_mm: where to begin to look. */
+double ahead_path_place(const struct ahead_path *path, size_t element,
+                        const double x[AXIS_LINEAR_COUNT], double near_mm);
 
 /* The point and the unit tangent at a place of an element. */
 void ahead_path_at(const struct ahead_path *path, size_t element, double place_mm,

@@ -20,6 +20,9 @@
 #define POLISH_STEPS 3
 #define REPAIRS_MAX  12
 
+/* A trajectory that has grown beyond so many times what is of use in a round is not waited for. */
+#define ROUND_GROWTH 2
+
 /* Intervals before and behind those to be repaired that are worked on; of a slow-down before and behind its middle. */
 #define MARGIN      120
 #define SLOW_MARGIN 24
@@ -42,7 +45,6 @@ struct job {
 struct bench {
     struct interior *interior;
     struct problem problem;
-    double *beyond;
     double (*slow)[4];
 };
 
@@ -55,9 +57,9 @@ struct solver {
     struct job *job;
     size_t jobs;
     size_t jobs_max;
-    double *beyond; /* of every interval of the trajectory */
     unsigned repair;
     double stuck_mm;
+    size_t longest; /* a trajectory of more intervals is of no use */
     bool stopped;
     bool (*progress)(void *context, double part);
     void *context;
@@ -70,16 +72,14 @@ static bool bench_allocate(struct bench *b)
 {
     b->interior = interior_new(WINDOW_MAX);
     b->problem.cell = calloc(WINDOW_MAX, sizeof *b->problem.cell);
-    b->beyond = calloc(WINDOW_MAX, sizeof *b->beyond);
     b->slow = calloc(WINDOW_MAX, sizeof *b->slow);
-    return b->interior != NULL && b->problem.cell != NULL && b->beyond != NULL && b->slow != NULL;
+    return b->interior != NULL && b->problem.cell != NULL && b->slow != NULL;
 }
 
 static void bench_free(struct bench *b)
 {
     interior_free(b->interior);
     free(b->problem.cell);
-    free(b->beyond);
     free(b->slow);
 }
 
@@ -106,7 +106,6 @@ void solver_free(struct solver *s)
     for (unsigned i = 0; i < s->workers; i++)
         bench_free(&s->bench[i]);
     free(s->job);
-    free(s->beyond);
     free(s);
 }
 
@@ -138,18 +137,19 @@ static double measure(struct bench *b, const struct problem_window *w)
 {
     b->problem.cells = w->trail->intervals;
     problem_build(&b->problem, w);
-    return excess_measure(w, &b->problem, b->beyond);
+    return excess_measure(w, &b->problem);
 }
 
 /* e around every interval that is beyond its limits: passed more slowly, by more in every repair. */
-static void slow_down(const struct solver *s, struct bench *b, size_t cells)
+static void slow_down(const struct solver *s, struct bench *b, const struct trail *piece)
 {
     const double part = SLOW_PART * (double)(s->repair - SLOW_FROM + 1);
     const double low = maths_min(part, 0.3);
+    const size_t cells = piece->intervals;
 
     memset(b->slow, 0, cells * sizeof *b->slow);
     for (size_t i = 0; i < cells; i++) {
-        if (b->beyond[i] <= 1)
+        if (piece->beyond[i] <= 1)
             continue;
         for (size_t k = i > SLOW_MARGIN ? i - SLOW_MARGIN : 0; k < i + SLOW_MARGIN; k++) {
             const double x = ((double)k - (double)i) / SLOW_MARGIN;
@@ -168,7 +168,7 @@ static bool replace_slower(const struct solver *s, struct bench *b, struct trail
     struct trail slower;
 
     (void)measure(b, &w);
-    slow_down(s, b, piece->intervals);
+    slow_down(s, b, piece);
     if (!warp_window(&w, piece->intervals, b->slow, true, &slower))
         return false;
     trail_free(piece);
@@ -301,15 +301,11 @@ static bool plan_round(struct solver *s, unsigned round)
     return true;
 }
 
-/* How far every interval is beyond its limits. */
-static bool measure_all(struct solver *s, double *worst)
+/* How far every interval is beyond its limits; the largest. */
+static double measure_all(struct solver *s)
 {
-    double *grown = realloc(s->beyond, s->trail->intervals * sizeof *grown);
+    double worst = 0;
 
-    if (grown == NULL)
-        return false;
-    s->beyond = grown;
-    *worst = 0;
     for (size_t first = 0; first < s->trail->intervals; first += WINDOW) {
         const struct problem_window w = {s->path, s->limits, s->trail, first, INSIDE};
         struct problem *p = &s->bench[0].problem;
@@ -317,9 +313,9 @@ static bool measure_all(struct solver *s, double *worst)
 
         p->cells = left < WINDOW ? left : WINDOW;
         problem_build(p, &w);
-        *worst = maths_max(*worst, excess_measure(&w, p, s->beyond + first));
+        worst = maths_max(worst, excess_measure(&w, p));
     }
-    return true;
+    return worst;
 }
 
 /* The end of the stretch to be repaired that begins at or behind first; its begin; the trajectory's end: none. */
@@ -330,14 +326,14 @@ static size_t next_repair(const struct solver *s, size_t first, size_t *end)
     size_t last;
     size_t begin;
 
-    while (bad < all && s->beyond[bad] <= 1)
+    while (bad < all && s->trail->beyond[bad] <= 1)
         bad++;
     if (bad == all)
         return all;
     begin = bad > first + MARGIN ? bad - MARGIN : first;
     last = bad;
     for (size_t i = bad; i < all && i <= last + MARGIN && i < begin + WINDOW - MARGIN; i++) {
-        if (s->beyond[i] > 1)
+        if (s->trail->beyond[i] > 1)
             last = i;
     }
     *end = last + MARGIN < all ? last + MARGIN : all;
@@ -369,7 +365,7 @@ static double place_of_worst(const struct solver *s)
     size_t worst = 0;
 
     for (size_t i = 0; i < s->trail->intervals; i++) {
-        if (s->beyond[i] > s->beyond[worst])
+        if (s->trail->beyond[i] > s->trail->beyond[worst])
             worst = i;
     }
     return s->trail->place_mm[2 * worst];
@@ -380,30 +376,32 @@ static enum solver_result failed(const struct solver *s)
     return s->stopped ? SOLVER_STOPPED : SOLVER_MEMORY;
 }
 
-static enum solver_result repair_all(struct solver *s)
+static enum solver_result give_up(struct solver *s)
 {
-    double worst = 0;
-
-    for (s->repair = 0; s->repair < REPAIRS_MAX; s->repair++) {
-        if (!measure_all(s, &worst))
-            return failed(s);
-        if (worst <= 1)
-            return SOLVER_DONE;
-        s->part_round = 0;
-        if (!plan_repair(s) || !do_jobs(s))
-            return failed(s);
-    }
     s->stuck_mm = place_of_worst(s);
     return SOLVER_STUCK;
 }
 
+static enum solver_result repair_all(struct solver *s)
+{
+    s->part_round = 0;
+    for (s->repair = 0; measure_all(s) > 1; s->repair++) {
+        if (s->repair == REPAIRS_MAX || s->trail->intervals > s->longest)
+            return give_up(s);
+        if (!plan_repair(s) || !do_jobs(s))
+            return failed(s);
+    }
+    return s->trail->intervals > s->longest ? give_up(s) : SOLVER_DONE;
+}
+
 enum solver_result solver_run(struct solver *s, const struct ahead_path *path,
-                              const struct ahead_limits *limits, struct trail *trail,
+                              const struct ahead_limits *limits, struct trail *trail, size_t longest,
                               bool (*progress)(void *context, double part), void *context)
 {
     s->path = path;
     s->limits = limits;
     s->trail = trail;
+    s->longest = longest;
     s->stopped = false;
     s->progress = progress;
     s->context = context;
@@ -412,6 +410,8 @@ enum solver_result solver_run(struct solver *s, const struct ahead_path *path,
         s->part_round = 1.0 / (SOLVER_ROUNDS + 1);
         if (!plan_round(s, round) || !do_jobs(s))
             return failed(s);
+        if (s->trail->intervals / ROUND_GROWTH > s->longest)
+            return give_up(s);
     }
     s->part_done = (double)SOLVER_ROUNDS / (SOLVER_ROUNDS + 1);
     return repair_all(s);

@@ -33,14 +33,15 @@ struct solver *solver_new(unsigned workers);
 void solver_free(struct solver *s);
 
 /*
- * Improves a trajectory along a path until it is legal. Progress is told from 0 to 1 now and then, by one thread; false
+ * Improves a trajectory along a path until it is legal; longest: the intervals beyond which it is of no use, and the solver
+ * gives up (SOLVER_STUCK). Progress is told from 0 to 1 now and then, by one thread; false
  * from it stops the work. progress may be NULL.
  */
 enum solver_result solver_run(struct solver *s, const struct ahead_path *path,
-                              const struct ahead_limits *limits, struct trail *trail,
+                              const struct ahead_limits *limits, struct trail *trail, size_t longest,
                               bool (*progress)(void *context, double part), void *context);
 
-/* After SOLVER_STUCK: the place along the path. */
+/* After SOLVER_STUCK: the place along the path that is farthest beyond what it has to keep. */
 double solver_stuck_mm(const struct solver *s);
 
 #endif

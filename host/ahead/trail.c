@@ -7,7 +7,8 @@ bool trail_allocate(struct trail *t, size_t intervals)
     t->intervals = intervals;
     t->control = calloc(intervals + TRAIL_ENDS, sizeof *t->control);
     t->place_mm = calloc(2 * intervals + 1, sizeof *t->place_mm);
-    if (t->control != NULL && t->place_mm != NULL)
+    t->beyond = calloc(intervals, sizeof *t->beyond);
+    if (t->control != NULL && t->place_mm != NULL && t->beyond != NULL)
         return true;
     trail_free(t);
     return false;
@@ -17,6 +18,7 @@ void trail_free(struct trail *t)
 {
     free(t->control);
     free(t->place_mm);
+    free(t->beyond);
     *t = (struct trail){0};
 }
 

@@ -20,6 +20,7 @@ struct trail {
     size_t intervals;
     double (*control)[3]; /* intervals + 3, mm; owned */
     double *place_mm;     /* along the path, at every half knot: 2 intervals + 1; owned */
+    double *beyond;       /* of every interval, by excess_measure; owned */
 };
 
 /* False: out of memory. */

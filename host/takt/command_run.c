@@ -169,7 +169,7 @@ static enum command_status finish(struct run *run)
         summary_write_text(stream, &summary);
         run_outputs_list(&run->outputs, stream);
     }
-    return summary_held(&summary) ? STATUS_DONE : STATUS_FAILED;
+    return summary_status(&summary);
 }
 
 static enum command_status simulate(struct run *run)
@@ -309,7 +309,9 @@ const struct command command_run = {
             "\n"
             "Exit status: 0 every check held; 1 a check failed or a drive faulted; 2 error in the "
             "program, a file or an\n"
-            "option; 3 a file cannot be written; 130 interrupted.\n"
+            "option; 3 a file cannot be written; 4 every check held, but --until was reached "
+            "before the\n"
+            "program's end; 130 interrupted.\n"
             "\n"
             "Examples:\n"
             "  takt run part.ngc --report part.html\n"

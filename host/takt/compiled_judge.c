@@ -7,6 +7,8 @@
 #include "takt/judge.h"
 #include "takt/message.h"
 
+#include <stdarg.h>
+#include <stdio.h>
 #include <stdlib.h>
 
 /* What is off the tolerance by no more than this is rounding. */
@@ -50,6 +52,18 @@ struct trial {
 static size_t read_stream(void *context, uint8_t *bytes, size_t size)
 {
     return fread(bytes, 1, size, context);
+}
+
+/* What the caller may tell: the motion, of a line of the program if it is not 0, is not to be written. */
+__attribute__((format(printf, 3, 4))) static void refuse(struct trial *t, uint32_t line,
+                                                         const char *why, ...)
+{
+    va_list arguments;
+
+    t->figures->why_line = line;
+    va_start(arguments, why);
+    (void)vsnprintf(t->figures->why, sizeof t->figures->why, why, arguments);
+    va_end(arguments);
 }
 
 static void begin(struct trial *t, FILE *stream)
@@ -147,7 +161,7 @@ static bool judge_cycle(struct trial *t, const struct cycle_record *record)
     t->out_of_order = t->out_of_order || record->block < t->block;
     t->block = record->block;
     t->figures->cycles++;
-    return t->on_board || tube_judge_add(&t->tube, &record->cmd);
+    return t->on_board || tube_judge_add(&t->tube, &record->cmd, record->block);
 }
 
 /* MOTION_CYCLE: goes on. */
@@ -187,23 +201,21 @@ static enum command_status replay(struct trial *t)
     }
     if (result == MOTION_DONE)
         return STATUS_DONE;
-    message_error(t->session->program.name, 0, 0,
-                  "the compiled motion does not fit the program after block %u: nothing is written",
-                  (unsigned)t->block);
+    refuse(t, 0, "the compiled motion does not fit the program after block %u",
+           (unsigned)t->block);
     return STATUS_FAILED;
 }
 
-static bool keeps(const struct trial *t, const char *what, int axis, double ratio, double most)
+static bool keeps(struct trial *t, const char *what, int axis, double ratio, double most)
 {
     if (ratio <= most)
         return true;
-    message_error(t->session->program.name, 0, 0,
-                  "the compiled motion has %.6g times the %s limit of axis %c: nothing is written",
-                  ratio, what, AXIS_LETTERS[axis]);
+    refuse(t, 0, "the compiled motion has %.6g times the %s limit of axis %c", ratio, what,
+           AXIS_LETTERS[axis]);
     return false;
 }
 
-static bool keeps_limits(const struct trial *t)
+static bool keeps_limits(struct trial *t)
 {
     const struct compiled_figures *f = t->figures;
 
@@ -238,15 +250,12 @@ static enum command_status conclude(struct trial *t)
     tube_judge_finish(&t->tube);
     f->tube = t->tube.figures;
     if (f->tube.beyond_mm > BEYOND_MAX_MM) {
-        message_error(t->session->program.name, f->tube.beyond_line, 0,
-                      "the compiled motion is %.6f mm beyond the tolerance here: nothing is "
-                      "written",
-                      f->tube.beyond_mm);
+        refuse(t, f->tube.beyond_line, "the compiled motion is %.6f mm beyond the tolerance here",
+               f->tube.beyond_mm);
         return STATUS_FAILED;
     }
     if (t->out_of_order) {
-        message_error(t->session->program.name, 0, 0,
-                      "the compiled motion does not keep the order of blocks: nothing is written");
+        refuse(t, 0, "the compiled motion does not keep the order of blocks");
         return STATUS_FAILED;
     }
     return keeps_limits(t) ? STATUS_DONE : STATUS_FAILED;

@@ -7,7 +7,7 @@
 
 #include "takt/compiled.h"
 
-/* STATUS_DONE: it keeps limits, tolerance and order; else after a message that says what it does not. */
+/* STATUS_DONE: it keeps limits, tolerance and order. STATUS_FAILED: figures say what it does not; else after a message. */
 enum command_status compiled_judge(const struct session *s, FILE *stream,
                                    struct compiled_figures *figures);
 

@@ -234,7 +234,7 @@ bool judge_add(struct judge *j, const struct cycle_record *record, const struct 
     raise_to(&j->figures.correction_mm, judge_distance(&record->cmd, &record->set));
     j->cmd = record->cmd;
     j->figures.cycles++;
-    return tube_judge_add(&j->tube, &record->cmd);
+    return tube_judge_add(&j->tube, &record->cmd, record->block);
 }
 
 /* A probing move may end early: where the axes have come to rest. That this is on its way has been seen by judge_path. */

@@ -77,6 +77,7 @@ struct options {
     bool exact_path;
     bool block_delete;
     uint32_t from_line; /* 0: from the beginning */
+    uint32_t lines_max; /* read again; 0: OPTIONS_LINES_MAX */
     bool save_parameters;
     const char *probe;
     const char *override;
@@ -128,6 +129,12 @@ struct option_row {
     const char *help;
 };
 
+/*
+ * Lines that loops and subroutines may read again in all, unless --lines-max says otherwise: some seconds of reading, and
+ * with a move of a millisecond each some hours of cutting.
+ */
+#define OPTIONS_LINES_MAX 10000000
+
 /* Rows in common; each list of rows ends with OPTIONS_END. */
 #define OPTIONS_MACHINE                                                                            \
     {"machine", OPTION_TEXT, offsetof(struct options, machine), "FILE",                            \
@@ -154,6 +161,8 @@ struct option_row {
          "parameters, LinuxCNC's .var"},                                                           \
         {"from-line", OPTION_LINE, offsetof(struct options, from_line), "N",                       \
          "start in the middle: all modes as there, and a safe way to it"},                         \
+        {"lines-max", OPTION_LINE, offsetof(struct options, lines_max), "N",                       \
+         "lines that loops may repeat in all, until the program is endless (10 million)"},         \
         {"exact-path", OPTION_FLAG, offsetof(struct options, exact_path), NULL,                    \
          "treat every G64 as G61"},                                                                \
     {                                                                                              \

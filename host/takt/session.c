@@ -69,6 +69,7 @@ void session_begin_reading(const struct session *s, struct session_reading *read
     reading->parameters = s->parameters.values;
     controller_program_config(&controller, config);
     config->waits = config->waits && s->runs;
+    config->repeats_max = s->options->lines_max > 0 ? s->options->lines_max : OPTIONS_LINES_MAX;
     program_text_read(&s->program, &reading->text, source);
 }
 

@@ -32,6 +32,13 @@ bool summary_held(const struct summary *summary)
     return true;
 }
 
+enum command_status summary_status(const struct summary *summary)
+{
+    if (!summary_held(summary))
+        return STATUS_FAILED;
+    return summary->outcome == OUTCOME_STOPPED ? STATUS_STOPPED : STATUS_DONE;
+}
+
 /* axis: index, or AXIS_COUNT for a check that is not of an axis. */
 static void add_check(struct summary *summary, const char *name, unsigned axis, const char *unit,
                       double value, double limit)

@@ -65,6 +65,8 @@ struct summary_source {
 
 void summary_set(struct summary *summary, const struct summary_source *source);
 bool summary_held(const struct summary *summary);
+/* With which takt run ends. */
+enum command_status summary_status(const struct summary *summary);
 const char *summary_outcome_name(enum summary_outcome outcome);
 double summary_program_time_s(const struct summary *summary);
 double summary_realtime_ratio(const struct summary *summary); /* 0: no time has passed */

@@ -87,6 +87,7 @@ static void add_head(cJSON *root, const struct summary *summary)
         cJSON_AddStringToObject(root, "fault", summary->fault);
     else
         cJSON_AddNullToObject(root, "fault");
+    cJSON_AddNumberToObject(root, "exit_status", summary_status(summary));
     cJSON_AddNumberToObject(root, "blocks", summary->figures.blocks);
     cJSON_AddNumberToObject(root, "cycles", (double)summary->figures.cycles);
     cJSON_AddNumberToObject(root, "cycle_time_s", summary->cycle_s);

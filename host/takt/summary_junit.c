@@ -50,14 +50,29 @@ static void write_case(FILE *stream, const struct summary *summary,
     (void)fputs("</failure>\n  </testcase>\n", stream);
 }
 
+/* The program's end, of a run that --until has stopped before it. */
+static void write_end(FILE *stream, const struct summary *summary)
+{
+    (void)fputs("  <testcase classname=\"", stream);
+    write_escaped(stream, summary->program);
+    (void)fputs("\" name=\"end\" time=\"0\">\n    <skipped message=\"--until came before the "
+                "program's end\"/>\n  </testcase>\n",
+                stream);
+}
+
 void summary_write_junit(FILE *stream, const struct summary *summary)
 {
+    const unsigned stopped = summary->outcome == OUTCOME_STOPPED ? 1 : 0;
+
     (void)fputs("<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuite name=\"takt run ", stream);
     write_escaped(stream, summary->program);
     (void)fprintf(stream,
-                  "\" tests=\"%u\" failures=\"%u\" errors=\"0\" skipped=\"0\" time=\"%.3f\">\n",
-                  summary->checks, count_failures(summary), summary->wall_time_s);
+                  "\" tests=\"%u\" failures=\"%u\" errors=\"0\" skipped=\"%u\" time=\"%.3f\">\n",
+                  summary->checks + stopped, count_failures(summary), stopped,
+                  summary->wall_time_s);
     for (unsigned i = 0; i < summary->checks; i++)
         write_case(stream, summary, &summary->check[i]);
+    if (stopped > 0)
+        write_end(stream, summary);
     (void)fputs("</testsuite>\n", stream);
 }

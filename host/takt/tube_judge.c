@@ -15,6 +15,15 @@
 #define REACH_STEPS      4
 #define REACH_TOLERANCES 20
 
+/*
+ * Where the setpoint is within the tolerance of the path up to so many pieces beyond the motion that is executed, no more are
+ * gone to; so many behind it are not left yet. What the planner on board rounds at once is shorter (smooth/route.h).
+ */
+#define CROWD 128
+
+/* The motion that is said to be executed may be so many off: curves over several have the number of one. */
+#define NUMBER_ROOM 16
+
 /* Steps to the nearest place of a bent curve. */
 #define REFINE_STEPS 5
 
@@ -41,6 +50,7 @@ struct nearest {
 struct stride {
     struct tube_segment segment;
     struct point to;
+    uint32_t motion; /* that is said to be executed */
 };
 
 void tube_judge_init(struct tube_judge *t, const struct program_config *program,
@@ -154,6 +164,7 @@ static double follow_piece(struct tube_judge *t, size_t k, const struct stride *
             piece->corner_mm, maths_sqrt(ahead_mm * ahead_mm + b.distance_mm * b.distance_mm));
     piece->reached = b.first <= 1;
     piece->from = piece->reached ? b.first : from;
+    t->looks++;
     if (of_tolerance < n->of_tolerance)
         *n = (struct nearest){
             .piece = k, .part = b.part, .distance_mm = b.distance_mm, .of_tolerance = of_tolerance};
@@ -169,9 +180,13 @@ static bool has_piece(struct tube_judge *t, size_t k)
 static bool follow(struct tube_judge *t, const struct stride *step, struct nearest *n)
 {
     double entered = NOT_ENTERED;
-    size_t active = 0;
+    size_t active = 0, said = 0;
 
     for (size_t k = 0; (k < t->active || entered >= 0) && has_piece(t, k); k++) {
+        if (tube_path_at(&t->path, k)->motion.number <= step->motion)
+            said = k;
+        if (k >= t->active && k > said + CROWD && n->of_tolerance <= 1)
+            break;
         if (entered < 0 && !tube_path_at(&t->path, k)->reached)
             continue;
         entered = follow_piece(t, k, step, entered, n);
@@ -328,9 +343,37 @@ static double length_before(const struct tube_piece *piece, double part)
                                       : m->travel_mm + piece->from_mm + part * piece->length_mm;
 }
 
-static struct stride step_to(const struct tube_judge *t, const struct point *setpoint)
+/* Is the setpoint on the motion that is executed, as is said? */
+static bool is_believed(const struct tube_piece *piece, const struct stride *step)
 {
-    struct stride step = {.segment = {.start = t->last}, .to = *setpoint};
+    return piece->reached && piece->motion.number + NUMBER_ROOM >= step->motion &&
+           piece->motion.number <= step->motion &&
+           look_beside(&piece->segment, piece->from, &step->to, 0).distance_mm <=
+               piece->motion.tolerance_mm;
+}
+
+/* Pieces far behind the motion that is executed are not gone back to, if their ends have been come to. */
+static void leave_crowd(struct tube_judge *t, const struct stride *step)
+{
+    size_t k = CROWD + 1;
+
+    while (k < t->active && !is_believed(tube_path_at(&t->path, k), step))
+        k++;
+    for (; k < t->active && k > CROWD; k--) {
+        const struct tube_piece *piece = tube_path_at(&t->path, 0);
+
+        if (piece->ends && piece->corner_mm > allowed_mm(t, piece))
+            return;
+        settle_corner(t);
+        tube_path_drop(&t->path);
+        t->active--;
+    }
+}
+
+static struct stride step_to(const struct tube_judge *t, const struct point *setpoint,
+                             uint32_t motion)
+{
+    struct stride step = {.segment = {.start = t->last}, .to = *setpoint, .motion = motion};
 
     for (int i = 0; i < AXIS_COUNT; i++) {
         const double way = setpoint->at[i] - t->last.at[i];
@@ -342,9 +385,9 @@ static struct stride step_to(const struct tube_judge *t, const struct point *set
     return step;
 }
 
-bool tube_judge_add(struct tube_judge *t, const struct point *setpoint)
+bool tube_judge_add(struct tube_judge *t, const struct point *setpoint, uint32_t motion)
 {
-    const struct stride step = step_to(t, setpoint);
+    const struct stride step = step_to(t, setpoint, motion);
     struct nearest n = {.of_tolerance = MATHS_INFINITY};
     bool left;
 
@@ -355,6 +398,7 @@ bool tube_judge_add(struct tube_judge *t, const struct point *setpoint)
     if (left)
         find_again(t, &step);
     t->figures.path_length_mm = length_before(tube_path_at(&t->path, n.piece), n.part);
+    leave_crowd(t, &step);
     drop_left(t);
     t->last = *setpoint;
     return !t->path.failed;

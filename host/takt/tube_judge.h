@@ -8,6 +8,10 @@
  * bend in between (Alt and Godau's way to decide on a Frechet distance). The nearest of them counts. Where there is no
  * such place left the path has been left: that is how far off the setpoint is, and the path is looked for near by, ahead.
  * Memory is what lies within reach.
+ *
+ * Where motions of a few tolerances go to and fro, a setpoint may be on any number of them. The motion that the run says it
+ * executes then chooses: if the setpoint is near it, places far ahead are not gone to yet, and those far behind are left.
+ * A run that says what is wrong has fewer places to be at, never more, so that it is judged more strictly.
  */
 #ifndef TAKT_HOST_TUBE_JUDGE_H
 #define TAKT_HOST_TUBE_JUDGE_H
@@ -31,6 +35,7 @@ struct tube_judge {
     bool exact_elsewhere; /* the ends of exact motions are judged by others */
     size_t active;        /* pieces before this one may be where the setpoint is */
     struct point last;    /* setpoint */
+    uint64_t looks;       /* work: pieces that a setpoint has been compared with */
     struct tube_figures figures;
 };
 
@@ -38,8 +43,8 @@ struct tube_judge {
 void tube_judge_init(struct tube_judge *t, const struct program_config *program,
                      const struct source *source, double exact_mm);
 void tube_judge_free(struct tube_judge *t);
-/* The next setpoint. False: out of memory. */
-bool tube_judge_add(struct tube_judge *t, const struct point *setpoint);
+/* The next setpoint, and the motion it is said to be of. False: out of memory. */
+bool tube_judge_add(struct tube_judge *t, const struct point *setpoint, uint32_t motion);
 /* What the program has been told (G38, M66): everything before it has been executed, but for the rest of a probing move. */
 void tube_judge_answer(struct tube_judge *t, const struct program_answer *answer);
 /* After the last setpoint of a program that has been executed to its end. */

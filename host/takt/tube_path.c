@@ -63,7 +63,8 @@ static void append_point(struct tube_path *p)
 {
     struct tube_piece *piece;
 
-    p->motion = (struct tube_motion){.tolerance_mm = p->exact_mm, .travel_mm = p->travel_mm};
+    p->motion = (struct tube_motion){
+        .number = p->motions, .tolerance_mm = p->exact_mm, .travel_mm = p->travel_mm};
     p->cut_to_mm = 0;
     piece = append(p, &p->end, &p->end);
     if (piece == NULL)
@@ -107,6 +108,7 @@ static void take_motion(struct tube_path *p, const struct move *move, const stru
     p->motion = (struct tube_motion){
         .curve = *curve,
         .line = move->line,
+        .number = p->motions,
         .rounded = rounded,
         .probing = move->kind == MOVE_PROBE,
         .tolerance_mm = tolerance_mm,
@@ -135,6 +137,7 @@ static bool read_motion(struct tube_path *p)
             break;
         if (!move_is_motion(&move))
             continue;
+        p->motions++;
         p->end = move.end;
         if (move_curve(&move, &start, &curve)) {
             take_motion(p, &move, &curve);

@@ -29,6 +29,7 @@ struct tube_segment {
 struct tube_motion {
     struct curve curve;
     uint32_t line;
+    uint32_t number;     /* of the program's motions, from 1; 0: the place where it begins */
     bool rounded;        /* G64 P: to be kept within a tolerance, not exactly */
     bool probing;        /* may end early */
     double tolerance_mm; /* P, or of an exact one what it may be off */
@@ -54,6 +55,7 @@ struct tube_path {
     bool ended;                /* there are no more motions */
     bool failed;               /* out of memory */
     struct point end;          /* of what has been read */
+    uint32_t motions;          /* likewise, those without a length too */
     double travel_mm;          /* of what has been read */
     struct tube_motion motion; /* read last, */
     double cut_to_mm;          /* how far pieces have been made of it, */

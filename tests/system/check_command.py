@@ -39,6 +39,13 @@ t.check(lines == [2, 3, 5, 6, 8, 11, 12, 13, 14, 15], "every faulty line is name
 t.check(warnings == [], "and nothing is a warning", warnings)
 t.check("part.ngc: 10 errors" in said, "the errors are counted", said)
 
+# A loop without end is refused by every command that reads programs, with its line.
+for body, line, said in (("G1 X0", 3, "circle"), ("G1 X1\nG1 X0", 2, "does not end")):
+    path = t.write("loop.ngc", f"F100\no1 while [1]\n{body}\no1 endwhile\nM2\n")
+    for command in (["check"], ["plan"], ["canon"], ["run"], ["compile", "-o", "loop.plan"]):
+        status, _, err = t.run(command[0], path, "--lines-max", "2000000", *command[1:])
+        t.check(status == 2 and f"loop.ngc:{line}:" in err and said in err, f"{command[0]}: an endless loop is refused", status, err)
+
 # An error on one line does not make errors of the lines that follow from it.
 status, errors, _, said = findings("G21 F100 G1 X0\nX1 Y$\nX2\nG41.1 D4 X20 ?\nX40\nG40 X60\nM2\n")
 t.check([line for line, _ in errors] == [2, 4], "errors do not breed", errors, said)

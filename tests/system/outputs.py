@@ -105,7 +105,8 @@ check_schema(failed)
 # --until stops in time.
 status, _, _ = t.run("run", PROGRAM, "--until", "0.25", "--json", "a.json", "--trace", "a.csv", "--quiet")
 stopped = t.load_json("a.json")
-t.check(status == 0 and stopped["outcome"] == "stopped" and stopped["cycles"] == 250, "--until", stopped["cycles"])
+t.check(status == 4 and stopped["exit_status"] == 4 and stopped["outcome"] == "stopped" and stopped["cycles"] == 250,
+        "--until has a status of its own", status, stopped["cycles"])
 check_schema(stopped)
 
 # What cannot be written is said before anything moves, and what was there stays.

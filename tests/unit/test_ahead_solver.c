@@ -71,7 +71,7 @@ static struct trail solve(const struct ahead_path *path, unsigned workers)
 
     TEST_ASSERT_NOT_NULL(s);
     TEST_ASSERT_TRUE(guess_trail(path, &limits, &t));
-    TEST_ASSERT_EQUAL(SOLVER_DONE, solver_run(s, path, &limits, &t, NULL, NULL));
+    TEST_ASSERT_EQUAL(SOLVER_DONE, solver_run(s, path, &limits, &t, SIZE_MAX, NULL, NULL));
     solver_free(s);
     return t;
 }
@@ -139,12 +139,34 @@ static void test_two_cores_find_the_same_bits_as_one(void)
     ahead_path_free(&path);
 }
 
+/* A tolerance below what the curve's own bend takes: nothing fits, and each repair has slowed it down. */
+static void test_the_place_where_it_is_stuck_is_on_the_path(void)
+{
+    struct solver *s = solver_new(1);
+    struct ahead_path path;
+    struct trail t;
+    size_t guessed;
+
+    TEST_ASSERT_NOT_NULL(s);
+    make_square(&path);
+    path.element[2].tolerance_mm = 3e-7;
+    TEST_ASSERT_TRUE(guess_trail(&path, &limits, &t));
+    guessed = t.intervals;
+    TEST_ASSERT_EQUAL(SOLVER_STUCK, solver_run(s, &path, &limits, &t, SIZE_MAX, NULL, NULL));
+    TEST_ASSERT_TRUE(t.intervals > guessed);
+    TEST_ASSERT_DOUBLE_WITHIN(2.6, 12.5, solver_stuck_mm(s));
+    solver_free(s);
+    trail_free(&t);
+    ahead_path_free(&path);
+}
+
 int main(void)
 {
     UNITY_BEGIN();
     RUN_TEST(test_the_band_solver_solves);
     RUN_TEST(test_differences_of_control_points_keep_the_limits);
     RUN_TEST(test_every_corner_is_passed_within_the_tolerance);
+    RUN_TEST(test_the_place_where_it_is_stuck_is_on_the_path);
     RUN_TEST(test_two_cores_find_the_same_bits_as_one);
     return UNITY_END();
 }

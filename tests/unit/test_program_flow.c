@@ -350,6 +350,9 @@ static void test_a_program_that_runs_in_a_circle_without_a_move_is_stopped(void)
 {
     expect_refused("o1 while [1]\n#1=[#1+1]\no1 endwhile\n", TAKT_ERROR_CIRCLE, 2);
     expect_refused("M99\n", TAKT_ERROR_CIRCLE, 1);
+    expect_refused("o1 while [1]\nG0 X0\no1 endwhile\n", TAKT_ERROR_CIRCLE, 2);
+    expect_refused("F100 G1 X5\no1 while [1]\nG1 X5\nM8\nM9\no1 endwhile\n", TAKT_ERROR_CIRCLE, 2);
+    expect_refused("o1 while [1]\nG4 P0\no1 endwhile\n", TAKT_ERROR_CIRCLE, 2);
     TEST_ASSERT_EQUAL_INT(PROGRAM_END,
                           program_next(&reader.program, &(struct move){0}, &reader.diagnostic));
 }

@@ -7,6 +7,7 @@
 
 #include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 #define PI 3.14159265358979323846
@@ -19,12 +20,14 @@
 static struct parameters parameters;
 static struct source_text text;
 static struct tube_judge judge;
+static uint32_t motion; /* that is said to be executed */
 static char program_text[400000];
 
 void setUp(void)
 {
     parameters_clear(&parameters);
     memset(&judge, 0, sizeof judge);
+    motion = UINT32_MAX / 2; /* none to be believed */
 }
 
 void tearDown(void)
@@ -54,7 +57,7 @@ static void begin(const char *program)
 
 static void to_point(const struct point *p)
 {
-    TEST_ASSERT_TRUE(tube_judge_add(&judge, p));
+    TEST_ASSERT_TRUE(tube_judge_add(&judge, p, motion));
 }
 
 static void jump_to(double x, double y)
@@ -342,6 +345,60 @@ static void test_a_program_that_is_not_done_to_its_end_is_seen(void)
     TEST_ASSERT_DOUBLE_WITHIN(1e-6, 10, judge.figures.corner_part);
 }
 
+/* So many motions in a loop of a few tolerances; looks that its setpoints need. */
+static uint64_t looks_of(const char *loop[2], unsigned motions, double way_x, double way_y)
+{
+    size_t size = (size_t)snprintf(program_text, sizeof program_text, "G64 P0.1\nF100\n");
+
+    for (unsigned k = 0; k < motions; k++)
+        size += (size_t)snprintf(program_text + size, sizeof program_text - size, "%s\n",
+                                 loop[k % 2]);
+    begin(program_text);
+    for (motion = 1; motion <= motions; motion++)
+        go_to(motion % 2 == 1 ? way_x : 0, motion % 2 == 1 ? way_y : 0);
+    finish_within(0, 0);
+    return judge.looks;
+}
+
+static void test_work_is_in_proportion_to_motions_however_often_they_go_over_the_same_place(void)
+{
+    static const char *const stroke[] = {"0.05", "0.1", "0.2", "0.4", "0.5", "0.7", "1"};
+
+    for (unsigned i = 0; i < sizeof stroke / sizeof stroke[0]; i++) {
+        char there[32];
+        const char *loop[2] = {there, "G1 X0"};
+        uint64_t few, many;
+
+        (void)snprintf(there, sizeof there, "G1 X%s", stroke[i]);
+        few = looks_of(loop, 400, strtod(stroke[i], NULL), 0);
+        many = looks_of(loop, 1600, strtod(stroke[i], NULL), 0);
+        TEST_ASSERT_TRUE(many < 5 * few);
+        TEST_ASSERT_TRUE(many < 1600U * 300U * (unsigned)(1 + strtod(stroke[i], NULL) / STEP_MM));
+    }
+}
+
+/* What is said to be executed is not believed against what the setpoints are. */
+static void test_no_motion_that_is_said_to_be_executed_hides_what_is_left_out(void)
+{
+    for (motion = 0; motion < 2000; motion += 250) {
+        size_t size = (size_t)snprintf(program_text, sizeof program_text, "G64 P0.1\nF100\n");
+
+        for (unsigned k = 0; k < 500; k++)
+            size += (size_t)snprintf(program_text + size, sizeof program_text - size,
+                                     "G1 X0.3\nG1 X0\n");
+        (void)snprintf(program_text + size, sizeof program_text - size,
+                       "G1 Y1\nG1 Y0\nG1 X0.3\nG1 X0\nG1 X-1\n");
+        begin(program_text);
+        for (unsigned k = 0; k < 100; k++) {
+            go_to(0.3, 0);
+            go_to(0, 0);
+        }
+        go_to(-1, 0);
+        tube_judge_finish(&judge);
+        TEST_ASSERT_FALSE(is_within());
+    }
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -365,6 +422,8 @@ int main(void)
     RUN_TEST(test_a_radian_counts_as_a_millimetre);
     RUN_TEST(test_a_probing_move_ends_where_the_axes_come_to_rest);
     RUN_TEST(test_what_an_answer_comes_before_must_have_been_done);
+    RUN_TEST(test_work_is_in_proportion_to_motions_however_often_they_go_over_the_same_place);
+    RUN_TEST(test_no_motion_that_is_said_to_be_executed_hides_what_is_left_out);
     RUN_TEST(test_a_program_that_is_not_done_to_its_end_is_seen);
     return UNITY_END();
 }
