@@ -192,7 +192,7 @@ static void point_at(const struct product *p, const struct motion *m, bool lande
         *at = b->curve.end;
     } else {
         *at = m->at;
-        curve_point(&b->curve, maths_clamp(p->way_mm, 0.0, b->length_mm), at);
+        curve_point(&b->curve, maths_clamp(p->way_mm, 0.0, b->length_mm) * b->scale, at);
     }
 }
 

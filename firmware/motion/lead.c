@@ -8,6 +8,9 @@
 /* Long ago: more cycles than any window. */
 #define LONG_AGO UINT32_C(0x7fffffff)
 
+/* Path units a cycle: of more, half a unit is less than 1e-5. */
+#define SLOW_UNITS 65536.0
+
 void lead_init(struct lead *l, enum law law, uint64_t at)
 {
     memset(l, 0, sizeof(*l));
@@ -56,10 +59,23 @@ static void count_changes(struct lead *l, double change)
     l->since_minus = change < 0.0 ? 0 : l->since_minus < LONG_AGO ? l->since_minus + 1 : LONG_AGO;
 }
 
+/*
+ * A way in whole units. Of so few in a cycle what rounding leaves counts in the next one, or a slow feed would be another,
+ * and one below half a unit never get anywhere.
+ */
+static uint64_t whole_way(struct lead *l, double way_mm)
+{
+    const double units = way_mm * PATH_UNITS_PER_MM + l->owed;
+    const uint64_t whole = (uint64_t)(units + 0.5);
+
+    l->owed = units < SLOW_UNITS ? units - (double)whole : 0.0;
+    return whole;
+}
+
 static void go(struct lead *l, double feed)
 {
     l->abrupt = l->abrupt && feed == 0.0;
-    l->at += path_units(0.5 * (l->feed + feed));
+    l->at += whole_way(l, 0.5 * (l->feed + feed));
     count_changes(l, feed - l->feed);
     l->feed = feed;
 }
@@ -72,6 +88,7 @@ static void come_to_rest(struct lead *l, uint64_t position)
 {
     l->abrupt = l->at == position;
     l->at = position;
+    l->owed = 0.0;
     count_changes(l, -1.0);
     l->feed = 0.0;
 }
@@ -119,7 +136,7 @@ static void run_on(struct lead *l, uint64_t setpoint, bool hold)
     }
     const bool stops = b.feed == 0.0 && l->feed > 0.0; /* however little is left of the feed */
 
-    if (b.rest || stops || b.feed < l->feed - LEAD_CHANGE_MIN * b.a) {
+    if (b.rest || stops || b.feed < l->feed - lead_change_min(b.a, l->feed)) {
         slow_down(l, &b);
     } else {
         go(l, hold || l->here.late ? l->feed : lead_speed_up(l, b.at_mm, low));

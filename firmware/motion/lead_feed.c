@@ -415,5 +415,5 @@ double lead_speed_up(const struct lead *l, double at_mm, double low)
     const double top = is_open(l) ? feed_to_wait(l, l->feed + a) : l->feed + a;
     const double v = feed_to_keep(l, at_mm, top, low);
 
-    return v > l->feed + LEAD_CHANGE_MIN * a ? maths_max(l->feed, feed_to_land(l, v)) : l->feed;
+    return v > l->feed + lead_change_min(a, v) ? maths_max(l->feed, feed_to_land(l, v)) : l->feed;
 }

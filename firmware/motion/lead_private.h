@@ -13,9 +13,6 @@
 /* Rounding of feed squared. */
 #define LEAD_ENERGY_SLACK 1e-6
 
-/* A change of feed by less than this part of the acceleration is rounding. */
-#define LEAD_CHANGE_MIN 1e-9
-
 /* What braking is for: a feed, how hard it may be reached, and if it is 0, where to come to rest in this cycle. */
 struct lead_brake {
     double at_mm; /* the lead point, from the ceiling's origin */
@@ -28,6 +25,14 @@ struct lead_brake {
 static inline const struct ceiling_piece *lead_piece(const struct lead *l, uint32_t k)
 {
     return &l->here.ceiling->piece[k];
+}
+
+/* A change from one feed to a higher one, or back, by less than this is rounding: a part of the acceleration, or of it. */
+static inline double lead_change_min(double a, double higher)
+{
+    const double part = 1e-9 * a;
+
+    return part < 0.5 * higher ? part : 0.5 * higher;
 }
 
 /* Is there a piece under the lead point, and not the end of all that is known? */

@@ -398,7 +398,9 @@ static void place(struct motion *m, const struct block *b, double local, double 
         m->at = b->curve.end;
         return;
     }
-    curve_point(&b->curve, maths_clamp(local / PATH_UNITS_PER_MM, 0.0, b->length_mm), &m->at);
+    const double s_mm = local / PATH_UNITS_PER_MM * b->scale;
+
+    curve_point(&b->curve, maths_clamp(s_mm, 0.0, b->curve.length_mm), &m->at);
 }
 
 /* The lead point moves and its average with it. */
@@ -494,7 +496,7 @@ static void fill_record(struct motion *m, const struct block *b, struct cycle_re
     record->cycle = m->cycles;
     record->block = b->number;
     record->line = b->move.line;
-    record->feed_mm_s = m->feed / m->cycle_s;
+    record->feed_mm_s = m->feed / m->cycle_s * b->scale;
     record->override_percent = 100.0 * m->request.feed_ratio;
     record->limiter = block_is_motion(b) ? limiter_of(m, b) : 1.0;
     record->cmd = m->at;

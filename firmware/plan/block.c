@@ -16,6 +16,7 @@
 #include "base/maths.h"
 #include "geometry/involute.h"
 #include "plan/path_unit.h"
+#include "plan/scale.h"
 
 #include <string.h>
 
@@ -211,9 +212,23 @@ static void limit_cusp_plane(struct block_shape *shape, enum axis first, enum ax
         maths_min(shape->line_j_mm_s3, j / (ratio * involute_cusp_jerk(bounds->cusp_rad)));
 }
 
+/* Derivatives by the path, of which a mm is so much of the curve; the radius stays what it is. */
+static void scale_bounds(struct curve_bounds *b, double scale)
+{
+    const double square = scale * scale;
+
+    for (int i = 0; i < AXIS_COUNT; i++) {
+        b->first[i] *= scale;
+        b->second[i] *= square;
+        b->third[i] *= square * scale;
+    }
+    b->second_along *= square;
+    b->third_across *= square * scale;
+}
+
 /* Limits of the axes, and for bent curves the chord error. */
 static void limit_axes(struct block_shape *shape, struct bound *c, const struct curve *curve,
-                       const struct plan_limits *limits)
+                       double scale, const struct plan_limits *limits)
 {
     struct curve_bounds bounds;
     enum axis first = AXIS_COUNT;
@@ -221,6 +236,7 @@ static void limit_axes(struct block_shape *shape, struct bound *c, const struct 
     const bool bent = curve_plane(curve, &first, &second);
 
     curve_bound(curve, &bounds);
+    scale_bounds(&bounds, scale);
     for (int i = 0; i < AXIS_COUNT; i++) {
         if (bounds.first[i] > 0.0) {
             bound_lower(c, limits->velocity_mm_s[i] / bounds.first[i], GOVERNOR_VELOCITY);
@@ -237,7 +253,7 @@ static void limit_axes(struct block_shape *shape, struct bound *c, const struct 
         limit_bent_plane(shape, first, second, &bounds, limits);
     }
     if (bent) {
-        bound_lower(c, chord_ceiling(curve, &bounds, limits), GOVERNOR_CHORD);
+        bound_lower(c, chord_ceiling(curve, &bounds, limits) / scale, GOVERNOR_CHORD);
     }
 }
 
@@ -249,14 +265,15 @@ void block_set_motion(struct block *b, const struct move *move, const struct cur
     memset(b, 0, sizeof(*b));
     b->move = *move;
     b->curve = *curve;
-    b->feed_program_mm_s = move->kind == MOVE_RAPID ? MATHS_INFINITY : move->feed_mm_s;
-    b->length = path_units(curve->length_mm);
-    b->length_mm = curve->length_mm;
+    b->scale = scale_of_curve(curve, scale_of_machine(limits));
+    b->feed_program_mm_s = move->kind == MOVE_RAPID ? MATHS_INFINITY : move->feed_mm_s / b->scale;
+    b->length_mm = curve->length_mm / b->scale;
+    b->length = path_units(b->length_mm);
     b->rotary = curve_is_rotary(curve);
     b->end = JOINT_STOP;
     b->shape.line_a_mm_s2 = MATHS_INFINITY;
     b->shape.line_j_mm_s3 = MATHS_INFINITY;
-    limit_axes(&b->shape, &c, curve, limits);
+    limit_axes(&b->shape, &c, curve, b->scale, limits);
     bound_lower(&c, CYCLE_BLOCKS_MAX * b->length_mm / limits->cycle_s, GOVERNOR_SHORT);
     b->feed_cap_mm_s = c.feed_mm_s;
     b->cap = c.governor;
@@ -272,8 +289,10 @@ void block_set_smooth(struct block *b, const struct smooth_piece *piece, double 
     b->move = *piece->move;
     b->number = piece->number;
     curve_set_spline(&b->curve, piece->control, unit_mm * piece->interval_s);
-    b->length = path_units(b->curve.length_mm);
+    b->rotary = piece->rotary;
+    b->scale = 1.0;
     b->length_mm = b->curve.length_mm;
+    b->length = path_units(b->length_mm);
     b->feed_program_mm_s = rate->programmed * unit_mm;
     b->feed_cap_mm_s = rate->most * unit_mm;
     b->cap = GOVERNOR_SMOOTH;

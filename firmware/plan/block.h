@@ -53,13 +53,14 @@ struct block {
     struct move move; /* the canonical move it came from */
     uint32_t number;  /* of the motion, from 1; a wait has the number of the motion before it */
     bool continues;   /* another piece of the same move follows */
-    bool rotary;      /* the path is counted in rad: no linear axis moves */
+    bool rotary;      /* no linear axis moves: programmed feeds count rad */
     enum joint_kind end;
     enum governor cap; /* of feed_cap_mm_s */
     uint64_t start;    /* path position, path units (path_unit.h) */
     uint64_t length;   /* path units; 0: a wait, the axes stand */
     struct curve curve;
-    double length_mm;
+    double scale;     /* mm of the curve for a mm of path (scale.h); what follows is by the path */
+    double length_mm; /* of the path */
     struct block_shape shape;
 
     double feed_program_mm_s; /* as programmed; infinite for a rapid */

@@ -48,16 +48,25 @@ struct joint_steps {
     double r_s_mm;   /* R, s/mm */
 };
 
-static void joint_measure(const struct curve *before, const struct curve *after,
+/* Tangent and curvature by the path, at a place of a block's curve. */
+static void measure_at(const struct block *b, double at_mm, struct point *t, struct point *k)
+{
+    curve_tangent(&b->curve, at_mm, t);
+    curve_curvature(&b->curve, at_mm, k);
+    for (int i = 0; i < AXIS_COUNT; i++) {
+        t->at[i] *= b->scale;
+        k->at[i] *= b->scale * b->scale;
+    }
+}
+
+static void joint_measure(const struct block *before, const struct block *after,
                           const struct plan_limits *limits, struct joint_steps *steps)
 {
     const double cycle = limits->cycle_s;
     struct point t0, t1, k0, k1;
 
-    curve_tangent(before, before->length_mm, &t0);
-    curve_tangent(after, 0.0, &t1);
-    curve_curvature(before, before->length_mm, &k0);
-    curve_curvature(after, 0.0, &k1);
+    measure_at(before, before->curve.length_mm, &t0, &k0);
+    measure_at(after, 0.0, &t1, &k1);
     *steps = (struct joint_steps){0.0, 0.0, 0.0};
     for (int i = 0; i < AXIS_COUNT; i++) {
         if ((limits->axes >> i & 1U) != 0) {
@@ -172,6 +181,18 @@ static bool is_worth_passing(const struct block *before, const struct block *aft
     return ramp_s(fall, a, j * (1.0 - share)) * fall <= WORTH * ramp_s(top, a, j) * top;
 }
 
+/*
+ * The lead point brakes in whole cycles, and so comes to a low feed too late: by half of a cycle's way at the feed before,
+ * or by a cycle2 / 8 at most. The two cycles by which a ceiling begins earlier (ceiling.h) make up for that if it is at least
+ * a quarter of that feed, or a cycle / 16. A slower block is come to at rest.
+ */
+static bool is_too_slow(const struct block *before, const struct block *after, double cycle_s)
+{
+    const double top = block_top_feed(after);
+
+    return 4.0 * top < block_top_feed(before) && 16.0 * top < before->a_mm_s2 * cycle_s;
+}
+
 void joint_stop(struct block *b)
 {
     b->end = JOINT_STOP;
@@ -195,11 +216,11 @@ void joint_form(struct block *before, struct block *after, const struct plan_lim
     const double reach_mm_s = shorter_mm / apart_s;
     struct joint_steps steps;
 
-    if (before->move.path == PATH_EXACT_STOP || before->rotary != after->rotary) {
+    if (before->move.path == PATH_EXACT_STOP) {
         joint_stop(before);
         return;
     }
-    joint_measure(&before->curve, &after->curve, limits, &steps);
+    joint_measure(before, after, limits, &steps);
     double v = alone_feed(&steps);
     const double top = maths_min(block_top_feed(before), block_top_feed(after));
 
@@ -209,7 +230,8 @@ void joint_form(struct block *before, struct block *after, const struct plan_lim
     const double share =
         joint_share(&steps, maths_min(v, top), joint_crowding(before, after, apart_s));
 
-    if (v < top && !is_worth_passing(before, after, v, share, limits->cycle_s)) {
+    if (is_too_slow(before, after, limits->cycle_s) ||
+        (v < top && !is_worth_passing(before, after, v, share, limits->cycle_s))) {
         joint_stop(before);
         return;
     }

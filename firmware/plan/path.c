@@ -4,6 +4,7 @@
 #include "base/maths.h"
 #include "plan/joint.h"
 #include "plan/path_unit.h"
+#include "plan/scale.h"
 #include "plan/share.h"
 
 #include <assert.h>
@@ -32,6 +33,7 @@ void path_init(struct path *p, const struct plan_limits *limits, const struct po
     memset(p, 0, sizeof(*p));
     p->limits = *limits;
     p->end = *start;
+    p->ring.scale = scale_of_machine(limits);
     init_smooth(p);
 }
 
@@ -60,8 +62,10 @@ static bool has_slot(const struct path *p, uint32_t size)
 
 bool path_has_room(const struct path *p)
 {
+    const uint64_t ahead = p->position - path_start(p, handoff_get_count(&p->kept));
+
     return has_slot(p, RECORD_SHORT_MAX) && !is_splitting(p) && !p->has_next &&
-           smooth_has_room(&p->smooth);
+           ahead < SCALE_LENGTH_UNITS && smooth_has_room(&p->smooth);
 }
 
 /* The newest block, or the one that becomes it. */

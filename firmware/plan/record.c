@@ -343,7 +343,7 @@ uint32_t record_write(uint8_t bytes[RECORD_MAX], const struct block *b,
     to = bytes + HEAD_SIZE;
     bytes[AT_END] = has_end ? (uint8_t)put_coordinates(&to, &end) : 0;
     if ((flags & FLAG_REVOLUTION) != 0) {
-        bytes_put_double(&to, b->move.feed_rev_mm);
+        bytes_put_double(&to, b->move.feed_rev_mm / b->scale);
     }
     if (block_is_motion(b)) {
         put_motion(&to, b, flags);
@@ -568,6 +568,4 @@ void record_finish(const uint8_t *record, struct block *b)
                !move_is_involute(&b->move)) {
         (void)move_curve(&b->move, &start, &b->curve);
     }
-    b->length_mm = b->curve.length_mm;
-    b->rotary = curve_is_rotary(&b->curve);
 }

@@ -66,7 +66,7 @@ uint32_t record_write(uint8_t bytes[RECORD_MAX], const struct block *b,
 /* Parts of records that are needed alone. */
 enum move_kind record_kind(const uint8_t *record);
 unsigned record_modes_number(const uint8_t *record);
-/* 0: the feed does not follow the spindle. */
+/* Of path for a revolution; 0: the feed does not follow the spindle. */
 double record_feed_rev(const uint8_t *record);
 void record_set_governor(uint8_t *record, enum governor governor);
 
@@ -74,7 +74,7 @@ void record_set_governor(uint8_t *record, enum governor governor);
 void record_read_move(const uint8_t *record, const struct record_modes *modes, struct move *move);
 
 /*
- * Number, move, curve, length, and what governs the feed of a block, in four parts, so that a control cycle need not do
+ * Number, move, curve, and what governs the feed of a block, in four parts, so that a control cycle need not do
  * all: the first returns what the second goes on with; the third tells whether it had anything to do. before: the records
  * of the RECORD_BEFORE blocks before it, the nearest first; NULL where there is none. All else of the block stays as it
  * was.

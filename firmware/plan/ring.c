@@ -1,6 +1,7 @@
 #include "plan/ring.h"
 
 #include "base/maths.h"
+#include "plan/scale.h"
 
 #include <assert.h>
 #include <string.h>
@@ -172,6 +173,7 @@ static void read_limits(const struct path_block *from, uint64_t end, struct bloc
     b->j_mm_s3 = (double)from->j_mm_s3;
     b->feed_joint_mm_s = (double)from->feed_joint_mm_s;
     b->end = (enum joint_kind)from->end;
+    b->rotary = from->rotary;
     b->continues = from->continues;
 }
 
@@ -188,8 +190,12 @@ static void take(struct path_ring *r, uint32_t index, struct path_view *view)
 static enum view_state finish(const struct path_ring *r, uint32_t index, uint64_t end,
                               struct path_view *view)
 {
-    record_finish(ring_record(r, index), &view->block);
-    read_limits(ring_at(r, index), end, &view->block);
+    struct block *b = &view->block;
+
+    record_finish(ring_record(r, index), b);
+    b->scale = scale_of_curve(&b->curve, r->scale);
+    b->length_mm = b->curve.length_mm / b->scale;
+    read_limits(ring_at(r, index), end, b);
     return VIEW_READ;
 }
 

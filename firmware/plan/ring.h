@@ -47,7 +47,7 @@ struct path_block {
     unsigned motion : 1;       /* else a wait, the axes stand */
     unsigned rapid : 1;
     unsigned continues : 1;      /* another piece of the same move follows */
-    unsigned rotary : 1;         /* the path is counted in rad */
+    unsigned rotary : 1;         /* no linear axis moves: programmed feeds count rad */
     unsigned may_feed : 1;       /* obeys the feed override */
     unsigned may_hold : 1;       /* and the operator's hold */
     unsigned per_revolution : 1; /* the feed follows the spindle */
@@ -71,6 +71,7 @@ struct path_ring {
     uint32_t modes_used[PATH_MODES_MAX]; /* the newest block of these modes, plus 1; 0: none yet */
     unsigned modes_newest;
     struct record_chain chain;
+    double scale;   /* of the machine (scale.h) */
     uint32_t place; /* of the next record, in bytes */
     uint8_t byte[PATH_BYTES_MAX];
     struct path_view

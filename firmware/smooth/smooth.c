@@ -421,6 +421,7 @@ static void set_piece(struct smooth *s, struct smooth_piece *piece)
     route_move(&s->route, element, &s->move);
     piece->move = &s->move;
     piece->number = route_element(&s->route, element)->number;
+    piece->rotary = route_element(&s->route, element)->rotary;
     piece->interval_s = w->interval_s;
     for (unsigned k = 0; k < 4; k++) {
         set_control(s, i + k, &piece->control[k]);

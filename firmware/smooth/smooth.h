@@ -38,7 +38,8 @@ struct smooth_piece {
     struct smooth_change change; /* the same in all pieces of a chain in which the axes move */
     bool
         stop; /* comes to rest at its end, though the chain goes on: no way on was found in motion */
-    bool last; /* of the chain: ends at rest, in the end of the last motion */
+    bool rotary; /* no linear axis moves in that motion */
+    bool last;   /* of the chain: ends at rest, in the end of the last motion */
 };
 
 /* Samples at the window's beginning as they were proved, to fall back on; half as many where the window has half. */

@@ -116,7 +116,7 @@ static double evaluate_end(const struct block *block, const struct point *end)
 {
     struct point p;
 
-    curve_point(&block->curve, block->length_mm, &p);
+    curve_point(&block->curve, block->length_mm * block->scale, &p);
     return judge_distance(&p, end);
 }
 

@@ -85,7 +85,7 @@ static enum governor governor_of(const struct path *path, uint32_t index,
     const struct ceiling_request program = {.feed_ratio = 1, .rapid_ratio = 1};
     const double feed_mm_s = ceiling_block_feed(path, index, &program);
 
-    if (planned->feed_cruise_mm_s < feed_mm_s * (1 - 1e-6))
+    if (planned->feed_cruise_mm_s < feed_mm_s * planned->block->scale * (1 - 1e-6))
         return GOVERNOR_RAMP;
     return block_governor(planned->block, planned->block->feed_program_mm_s);
 }
@@ -103,7 +103,7 @@ static double passed_at(const struct planner *p, const struct block *block, doub
         return p->cycle_s * (double)p->cycles_before;
     if (!(feed_mm_s > 0))
         return now_s;
-    return now_s - maths_clamp(beyond_mm / feed_mm_s, 0, p->cycle_s);
+    return now_s - maths_clamp(beyond_mm * block->scale / feed_mm_s, 0, p->cycle_s);
 }
 
 static void enter(struct planner *p, double feed_mm_s, double now_s)

@@ -1,5 +1,6 @@
 """The command line: help, suggestions, and the commands that only read."""
 
+import os
 import re
 
 import takt_test as t
@@ -50,6 +51,18 @@ run_cycles = t.json.loads(t.run("run", PROGRAM, "--json", "-", "--quiet")[1])["c
 rows_s = sum(block["time_s"] for block in plan["blocks"])
 t.check(abs(rows_s - plan["totals"]["time_s"]) < 1e-9, "the rows' times add up", rows_s, plan["totals"])
 t.check(plan["totals"]["cycles"] == run_cycles, "the plan takes as long as the run", plan["totals"], run_cycles)
+
+# Rotary axes: smoothed alone, in degrees; beside hardly any way of a linear one, as long as alone.
+SIX = ("--machine", os.path.join(os.environ["TAKT_SOURCE"], "tests/golden/mill6.ini"))
+turns = t.write("turns.ngc", "G64 P0.01\nF2000\nG1 A90\nA180 B20\nX10\nM2\n")
+blocks = t.json.loads(t.run("plan", turns, *SIX, "--json", "-")[1])["blocks"]
+t.check(abs(blocks[0]["length_deg"] - 90) < 1 and "length_mm" in blocks[2], "smoothed motions of rotary axes alone", blocks)
+t.check(abs(blocks[0]["feed_cruise_deg_min"] - 2000) < 1, "their feed", blocks[0])
+cycles = []
+for way in ("A360", "X0.001 A360", "X0.0001 A360", "X0.00000001 A360", "X[0.000000001] A360"):
+    turn = t.write("turn.ngc", f"G61\nF20000\nG1 {way}\nM2\n")
+    cycles.append(t.json.loads(t.run("plan", turn, *SIX, "--json", "-")[1])["totals"]["cycles"])
+t.check(len(set(cycles)) == 1, "a tiny linear part takes no time", cycles)
 
 # Smoothed: two lines that are nearly one become one row; its length and feed are those of the curve.
 with open("smooth.ngc", "w", encoding="utf-8") as file:

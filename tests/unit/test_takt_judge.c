@@ -198,6 +198,7 @@ static void test_a_passed_end_is_where_the_executed_path_leads(void)
     TEST_ASSERT_TRUE(curve_set_line(&executed.curve, &start, &end));
     executed.end = JOINT_PASSED;
     executed.length_mm = 9.75;
+    executed.scale = 1;
     cycle(1, 9, 0);
     executed.end = JOINT_STOP;
     landed_cycle(2, 20, 0);

@@ -1,0 +1,97 @@
+#include "plan/scale.h"
+
+#include "base/maths.h"
+#include "plan/path_unit.h"
+
+/*
+ * Rounding changes the third difference of setpoints by 2 units, and by three times 8 where one so near to an end is put on
+ * it (motion/motion.c): with so many units in the least J tau^3 that is less than 1/2048 of the jerk limit.
+ */
+#define JERK_UNITS 65536.0
+
+/* The sums of the averages: product of the boxes times the way between lead point and setpoint. */
+#define SUM_UNITS 9223372036854775808.0
+
+/* Of one block: with what is ahead of it (path.c) differences of positions stay within 63 bits. */
+#define LENGTH_UNITS 2305843009213693952.0
+
+/* Fastest way in a cycle along axes from ... to - 1. */
+static double fastest(const struct plan_limits *limits, unsigned from, unsigned to)
+{
+    double square = 0.0;
+
+    for (unsigned i = from; i < to; i++) {
+        if ((limits->axes >> i & 1U) != 0) {
+            square += limits->velocity_mm_s[i] * limits->velocity_mm_s[i];
+        }
+    }
+    return maths_sqrt(square) * limits->cycle_s;
+}
+
+/* Units of a scale of 1 in the least J tau^3. */
+static double least_jerk(const struct plan_limits *limits)
+{
+    const double t = limits->cycle_s;
+    double least = MATHS_INFINITY;
+
+    for (unsigned i = 0; i < AXIS_COUNT; i++) {
+        if ((limits->axes >> i & 1U) != 0) {
+            least = maths_min(least, limits->jerk_mm_s3[i] * (t * t * t));
+        }
+    }
+    return least * PATH_UNITS_PER_MM;
+}
+
+/* Likewise in the largest sum: the lead point is half a window ahead. */
+static double largest_sum(const struct plan_limits *limits)
+{
+    const uint32_t cycles = law_cycles_max(limits->law);
+    double product = 1.0;
+
+    for (unsigned i = 0; i < law_boxes(limits->law); i++) {
+        product *= (double)law_box_cycles(i, cycles);
+    }
+    return 0.5 * (double)law_window_cycles(limits->law, cycles) * product * PATH_UNITS_PER_MM *
+           maths_max(fastest(limits, 0, AXIS_LINEAR_COUNT),
+                     fastest(limits, AXIS_LINEAR_COUNT, AXIS_COUNT));
+}
+
+double scale_of_machine(const struct plan_limits *limits)
+{
+    const double jerk = least_jerk(limits);
+    const double sum = largest_sum(limits);
+    double scale = 1.0;
+
+    while (jerk < JERK_UNITS * scale && 2.0 * sum < SUM_UNITS * scale) {
+        scale *= 0.5;
+    }
+    while (sum >= SUM_UNITS * scale) {
+        scale *= 2.0;
+    }
+    return scale;
+}
+
+/* |d abc / ds|^2 */
+static double turning_square(const struct curve *c)
+{
+    double square = 0.0;
+
+    for (unsigned i = AXIS_LINEAR_COUNT; i < AXIS_COUNT; i++) {
+        if (c->slope.at[i] != 0.0) {
+            square += c->slope.at[i] * c->slope.at[i];
+        }
+    }
+    return square;
+}
+
+/* A smoothed curve counts its nominal time (block.c). */
+double scale_of_curve(const struct curve *c, double machine)
+{
+    if (c->kind == CURVE_SPLINE) {
+        return 1.0;
+    }
+    const double square = c->rotary ? 1.0 : turning_square(c);
+    const double scale = square > 1.0 ? machine / maths_sqrt(square) : machine;
+
+    return maths_max(scale, c->length_mm * (PATH_UNITS_PER_MM / (double)SCALE_LENGTH_UNITS));
+}
