@@ -40,7 +40,7 @@ t.check(warnings == [], "and nothing is a warning", warnings)
 t.check("part.ngc: 10 errors" in said, "the errors are counted", said)
 
 # A loop without end is refused by every command that reads programs, with its line.
-for body, line, said in (("G1 X0", 3, "circle"), ("G1 X1\nG1 X0", 2, "does not end")):
+for body, line, said in (("G1 X0", 3, "endless loop"), ("G1 X1\nG1 X0", 2, "does not end")):
     path = t.write("loop.ngc", f"F100\no1 while [1]\n{body}\no1 endwhile\nM2\n")
     for command in (["check"], ["plan"], ["canon"], ["run"], ["compile", "-o", "loop.plan"]):
         status, _, err = t.run(command[0], path, "--lines-max", "2000000", *command[1:])
