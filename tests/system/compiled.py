@@ -72,7 +72,7 @@ class Chain:
         rise = self.rng.choice((0, 0, self.rng.uniform(-3, 3)))
         centre = self.at[0] + i, self.at[1] + j
         self.at = [round(x, 5), round(y, 5), round(self.at[2] + rise, 5)]
-        self.lines.append("G90.1 G%d X%.5f Y%.5f Z%.5f I%.5f J%.5f" % (2 if sign < 0 else 2, *self.at, *centre))
+        self.lines.append("G90.1 G%d X%.5f Y%.5f Z%.5f I%.5f J%.5f" % (2 if sign < 0 else 3, *self.at, *centre))
         self.heading += sweep
         return None
 
