@@ -52,6 +52,7 @@ struct lead_halt {
     uint64_t span;  /* where that span starts, */
     uint64_t end;   /* and that block ends */
     uint64_t left;  /* the last end that has been left again */
+    double a;       /* mm/cycle2: the lowest of the blocks of the motion up to there */
 };
 
 struct lead {

@@ -425,12 +425,8 @@ double lead_speed_up(const struct lead *l, double at_mm, double low)
         return l->feed;
     }
     const double top = is_open(l) ? feed_to_wait(l, l->feed + a) : l->feed + a;
-    const double v = feed_to_keep(l, at_mm, top, low);
+    const double kept = feed_to_keep(l, at_mm, top, low);
+    const double v = l->halt.found ? feed_to_halt(l, kept) : kept;
 
-    if (l->halt.found) {
-        const double halting = feed_to_halt(l, v);
-
-        return halting > l->feed + LEAD_CHANGE_MIN * a ? halting : l->feed;
-    }
     return v > l->feed + LEAD_CHANGE_MIN * a ? maths_max(l->feed, feed_to_land(l, v)) : l->feed;
 }

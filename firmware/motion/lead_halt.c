@@ -5,11 +5,13 @@
  * The ceilings know nothing of it: in them the motion is passed. The lead point alone halts, as in a hold, but at the next
  * end E of a motion in its span, if it can come to rest there:
  *
- *     w^2 <= 2 a (E - s - w k)      k the cycles until it may brake, a the acceleration of the piece that it is in
+ *     w^2 <= 2 a (E - s - w k)
  *
- * It speeds up only so far that this holds when it may brake again, and comes to a piece of less acceleration only if it
- * holds with that; until then it stays in the one it is in (lead_place.c). Wherever a hold keeps the limits so does a halt:
- * no window, joint or promise of a ceiling depends on the operator's switch.
+ * with k the cycles until it may brake, a the lowest acceleration of the piece that it is in, of the motion's blocks and of
+ * the joint that ends the span. It speeds up only so far that this holds when it may brake again, and comes to a piece that
+ * belongs to what is behind E only if it holds with that one's acceleration; until then it stays in the one it is in
+ * (lead_place.c). Wherever a hold keeps the limits so does a halt: no window, joint or promise of a ceiling depends on the
+ * operator's switch.
  *
  * Too fast for the next end it slows down as in a hold, and so on until there is one that it can rest at. If that end is a
  * joint which has to be landed on in motion, the next one is in the span behind. The ceiling's own stops need nothing.
@@ -53,11 +55,16 @@ void lead_leave_halt(struct lead *l)
     l->halt.found = false;
 }
 
+/* Not harder than the joint behind allows: it can be rested at too when the halt is taken back (can_rest_before). */
 double lead_halt_acceleration(const struct lead *l)
 {
-    return lead_has_piece(l)
-               ? maths_min(l->here.early_a, (double)lead_piece(l, l->here.piece)->acceleration)
-               : l->here.early_a;
+    const uint32_t landing = lead_landing(l);
+    double a = maths_min(l->halt.a, l->here.early_a);
+
+    if (lead_has_piece(l)) {
+        a = maths_min(a, (double)lead_piece(l, l->here.piece)->acceleration);
+    }
+    return landing == CEILING_NONE ? a : maths_min(a, (double)lead_piece(l, landing)->acceleration);
 }
 
 /* By how much feed squared is below what it may be; < 0: it is above. */
@@ -68,8 +75,13 @@ static double spare_energy(const struct lead *l, double a)
     return 2.0 * a * (path_mm(l->at, l->halt.end) - l->feed * wait) - lead_square(l->feed);
 }
 
+bool lead_can_halt(const struct lead *l, double a)
+{
+    return spare_energy(l, a) >= LEAD_ENERGY_SLACK * lead_square(l->feed);
+}
+
 /* Rounding, and a last cycle of braking that is a little harder, take back no end that has been found. */
-bool lead_keeps_halt(const struct lead *l, double a)
+static bool keeps_halt(const struct lead *l, double a)
 {
     return spare_energy(l, a) >=
            -LEAD_ENERGY_SLACK * lead_square(l->feed) - 2.0 * LEAD_REST_PART * lead_square(a);
@@ -79,15 +91,17 @@ static bool can_rest(const struct lead *l, bool found)
 {
     const double a = lead_halt_acceleration(l);
 
-    return l->feed == 0.0 ||
-           (found ? lead_keeps_halt(l, a)
-                  : spare_energy(l, a) >= LEAD_ENERGY_SLACK * lead_square(l->feed));
+    return l->feed == 0.0 || lead_can_halt(l, a) || (found && keeps_halt(l, a));
 }
 
-static void look_at(struct lead *l, const struct path *path, uint32_t block)
+/* The block begins a motion, or goes on with that of the one before. */
+static void look_at(struct lead *l, const struct path *path, uint32_t block, bool begins)
 {
+    const double a = ceiling_block_acceleration(path, block, l->cycles);
+
     l->halt.block = block;
     l->halt.end = path_end(path, block);
+    l->halt.a = begins ? a : maths_min(l->halt.a, a);
 }
 
 /* From the setpoint's block on, or the one behind if that ends where the span starts. */
@@ -97,7 +111,7 @@ static void begin(struct lead *l, const struct path *path)
 
     l->halt.begun = true;
     l->halt.span = l->span;
-    look_at(l, path, before ? path->first + 1 : path->first);
+    look_at(l, path, before ? path->first + 1 : path->first, true);
 }
 
 /* Does the block end a motion, ahead, and has not been left? */
@@ -129,7 +143,7 @@ static bool find_end(struct lead *l, const struct ceiling *c)
         if (is_last(c, l->halt.block)) {
             return false;
         }
-        look_at(l, c->path, l->halt.block + 1);
+        look_at(l, c->path, l->halt.block + 1, !path_at(c->path, l->halt.block)->continues);
     }
     return is_end_ahead(l, c->path) && !span_stops(c->path, l->halt.block);
 }

@@ -168,7 +168,8 @@ static bool may_enter(const struct lead *l, const struct ceiling *c, uint32_t k)
     if (!p->opens || l->feed == 0.0 || lead_is_beyond(l->entered, start)) {
         return true;
     }
-    if (l->halt.found && !lead_keeps_halt(l, (double)p->acceleration)) {
+    if (l->halt.found && lead_is_beyond(start, l->halt.end) &&
+        !lead_can_halt(l, (double)p->acceleration)) {
         return false;
     }
     if (is_as_planned(l, c, k) || is_no_lower(l, c, k + 1)) {

@@ -110,9 +110,9 @@ static inline void lead_approach_landing(struct lead *l, bool hold, struct lead_
 }
 /* lead_halt.c: looks for the end to halt at (halt.found). True: it is too fast for the next one. */
 bool lead_seek_halt(struct lead *l);
-/* lead_halt.c: how hard it brakes for it, mm/cycle2; and could it brake so hard only? */
+/* lead_halt.c: how hard it brakes for it, mm/cycle2; and could it come to rest there if it braked by a? */
 double lead_halt_acceleration(const struct lead *l);
-bool lead_keeps_halt(const struct lead *l, double a);
+bool lead_can_halt(const struct lead *l, double a);
 /* lead_feed.c: brakes for the end that it halts at. */
 void lead_brake_to_halt(const struct lead *l, struct lead_brake *b);
 /* lead_feed.c: the feed to speed up to in this cycle under the ceiling low; the present one: it may not. */

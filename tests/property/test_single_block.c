@@ -463,6 +463,20 @@ static void test_left_on_smoothed_motions_end(void)
     check_on(true);
 }
 
+/* Found by longer runs of this test. */
+static void test_rare_programs_keep_the_limits(void)
+{
+    /* switched off before a joint of less acceleration, too late to land on it or to rest there */
+    TEST_ASSERT_TRUE(check_program(372, false, SINGLE_SWITCHED));
+    TEST_ASSERT_TRUE(check_program(2044, false, SINGLE_SWITCHED));
+    /* a motion of blocks of less and less acceleration, and a joint behind, was passed */
+    first_seed = 204;
+    programs = 5;
+    test_left_on_every_motion_ends_at_rest();
+    first_seed = 2890;
+    test_left_on_every_motion_ends_at_rest();
+}
+
 int main(int argc, char **argv)
 {
     read_number_and_first(argc, argv, &programs, &first_seed);
@@ -471,5 +485,6 @@ int main(int argc, char **argv)
     RUN_TEST(test_switched_while_smoothed_paths_are_run_it_breaks_nothing);
     RUN_TEST(test_left_on_every_motion_ends_at_rest);
     RUN_TEST(test_left_on_smoothed_motions_end);
+    RUN_TEST(test_rare_programs_keep_the_limits);
     return UNITY_END();
 }
