@@ -47,7 +47,6 @@ struct controller_config {
     const struct program_modes *modes;    /* the program goes on with; NULL: those it begins with */
     bool exact_path;                      /* every G64 is treated as G61 */
     bool block_delete;                    /* skip lines that begin with '/' */
-    bool single_block;                    /* every motion ends at rest */
     bool keeps_outputs; /* the end of the program leaves spindle and coolant as they are */
     uint32_t from_line; /* start in the middle, at this line; 0: at the beginning */
 };

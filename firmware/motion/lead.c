@@ -17,6 +17,7 @@ void lead_init(struct lead *l, enum law law, uint64_t at)
     l->law = law;
     l->at = at;
     l->span = at - 1;
+    l->halt.left = at;
     l->standing = true;
 }
 
@@ -129,7 +130,11 @@ static void run_on(struct lead *l, uint64_t setpoint, bool hold)
     if (hold) {
         b.feed = 0.0;
     }
-    lead_approach_landing(l, hold, &b);
+    if (l->halt.found) {
+        lead_brake_to_halt(l, &b);
+    } else {
+        lead_approach_landing(l, hold, &b);
+    }
     if (l->run.active) {
         run_landing(l);
         return;
@@ -223,7 +228,7 @@ static bool begin_span(struct lead *l, bool hold, struct lead_start *start)
     if (l->standing) {
         return l->released && !hold && leave_stop(l, start);
     }
-    return (l->run.over || !hold) && leave_joint(l, start);
+    return (l->run.over || !(hold || l->halt.found)) && leave_joint(l, start);
 }
 
 bool lead_step(struct lead *l, uint64_t setpoint, bool hold, struct lead_start *start)
@@ -236,12 +241,14 @@ bool lead_step(struct lead *l, uint64_t setpoint, bool hold, struct lead_start *
     if (l->standing) {
         return false;
     }
+    const bool too_fast = lead_seek_halt(l);
+
     l->before = l->at;
     follow_landing(l);
     if (l->run.active) {
         run_landing(l);
     } else if (lead_has_piece(l)) {
-        run_on(l, setpoint, hold);
+        run_on(l, setpoint, hold || too_fast);
     } else {
         wait_for_more(l);
     }

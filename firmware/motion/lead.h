@@ -43,6 +43,18 @@ struct lead_place {
     uint64_t low_leave; /* path position */
 };
 
+/* Where the lead point halts: at the end of a motion in its span, or nowhere. */
+struct lead_halt {
+    bool on;        /* at the end of every motion that it can come to rest in */
+    bool begun;     /* the next end has been looked for, */
+    bool found;     /* and it comes to rest there, and stays */
+    uint32_t block; /* the path's: those before it, in its span, end no motion ahead */
+    uint64_t span;  /* where that span starts, */
+    uint64_t end;   /* and that block ends */
+    uint64_t left;  /* the last end that has been left again */
+    double a;       /* mm/cycle2: the lowest of the blocks of the motion up to there */
+};
+
 struct lead {
     enum law law;
     uint64_t at;
@@ -64,6 +76,7 @@ struct lead {
     uint64_t joint;           /* the next one to land on, where there is one */
     double landing_feed;      /* for it */
     struct landing_run run;
+    struct lead_halt halt;
 };
 
 /* At rest at a position; lead_release lets it leave. */
@@ -87,6 +100,12 @@ void lead_stand(struct lead *l, uint64_t at);
 
 /* The stop at which everything stands has been served. */
 void lead_release(struct lead *l);
+
+/* From now on it halts at the end of every motion that it can come to rest in; or it does not. */
+void lead_end_blocks(struct lead *l, bool on);
+/* Is it at rest there? It stays until it is told that the setpoint has come. */
+bool lead_has_halted(const struct lead *l);
+void lead_leave_halt(struct lead *l);
 
 /* A span that begins: the averages start anew from where the lead point is, as if it had always moved by step. */
 struct lead_start {

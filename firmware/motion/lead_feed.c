@@ -30,9 +30,6 @@
 /* Rounding of positions as doubles, path units. */
 #define END_UNITS 64.0
 
-/* The last deceleration to rest may be more than the allowed one by this part. */
-#define REST_PART 2e-4
-
 /* -- braking -- */
 
 /* Feed at the end of a piece: 0 at a joint that is only come to rest at, whatever follows. */
@@ -74,8 +71,8 @@ static bool brake_for(const struct lead *l, const struct place *p, struct lead_b
 
     b->a = maths_max(b->a, p->a);
     b->feed = maths_min(b->feed, feed);
-    return p->feed == 0.0 && feed < maths_max(REST_PART * p->a, l->feed - p->a) &&
-           l->feed < p->a * (1.0 + 2.0 * REST_PART);
+    return p->feed == 0.0 && feed < maths_max(LEAD_REST_PART * p->a, l->feed - p->a) &&
+           l->feed < p->a * (1.0 + 2.0 * LEAD_REST_PART);
 }
 
 static void rest_at(const struct lead *l, uint64_t position, struct lead_brake *b)
@@ -92,6 +89,11 @@ static void brake_to_rest(const struct lead *l, uint64_t position, double a, str
     if (brake_for(l, &place, b)) {
         rest_at(l, position, b);
     }
+}
+
+void lead_brake_to_halt(const struct lead *l, struct lead_brake *b)
+{
+    brake_to_rest(l, l->halt.end, lead_halt_acceleration(l), b);
 }
 
 /* Where the end of piece k is come to rest at: the end of its block exactly, if that is where it ends. */
@@ -370,6 +372,16 @@ void lead_consider_landing(struct lead *l, bool hold, struct lead_brake *b)
 
 /* -- speeding up -- */
 
+/* The highest feed v up to top that can be kept for a window and braked from to where it halts: as in a piece. */
+static double feed_to_halt(const struct lead *l, double top)
+{
+    const double a = lead_halt_acceleration(l);
+    const double m = a * (l->window + 0.5);
+    const double root = m * m + 2.0 * a * (path_mm(l->at, l->halt.end) - 0.5 * l->feed);
+
+    return root > 0.0 ? maths_min(top, maths_sqrt(root) - m) : 0.0;
+}
+
 /* Highest feed v with v^2 <= u + 2 a (x_end - x), x = s + (w + v)/2 + N v: what a piece's end asks for. */
 static double feed_in_piece(const struct lead *l, const struct ceiling_piece *p, double gap_mm)
 {
@@ -413,7 +425,8 @@ double lead_speed_up(const struct lead *l, double at_mm, double low)
         return l->feed;
     }
     const double top = is_open(l) ? feed_to_wait(l, l->feed + a) : l->feed + a;
-    const double v = feed_to_keep(l, at_mm, top, low);
+    const double kept = feed_to_keep(l, at_mm, top, low);
+    const double v = l->halt.found ? feed_to_halt(l, kept) : kept;
 
     return v > l->feed + lead_change_min(a, v) ? maths_max(l->feed, feed_to_land(l, v)) : l->feed;
 }

@@ -165,8 +165,14 @@ static bool may_enter(const struct lead *l, const struct ceiling *c, uint32_t k)
     const struct ceiling_piece *p = &c->piece[k + 1];
     const uint64_t start = ceiling_start(c, k + 1);
 
-    if (!p->opens || l->feed == 0.0 || lead_is_beyond(l->entered, start) ||
-        is_as_planned(l, c, k) || is_no_lower(l, c, k + 1)) {
+    if (!p->opens || l->feed == 0.0 || lead_is_beyond(l->entered, start)) {
+        return true;
+    }
+    if (l->halt.found && lead_is_beyond(start, l->halt.end) &&
+        !lead_can_halt(l, (double)p->acceleration)) {
+        return false;
+    }
+    if (is_as_planned(l, c, k) || is_no_lower(l, c, k + 1)) {
         return true;
     }
     return l->feed * lead_entry_cycles(l) <= path_mm(l->at, start) &&

@@ -1,6 +1,6 @@
 /*
- * What the parts of the lead point share: lead.c moves it, lead_feed.c finds the feed, lead_place.c finds its place in a
- * ceiling.
+ * What the parts of the lead point share: lead.c moves it, lead_feed.c finds the feed, lead_halt.c where to halt, lead_place.c
+ * its place in a ceiling.
  */
 #ifndef TAKT_MOTION_LEAD_PRIVATE_H
 #define TAKT_MOTION_LEAD_PRIVATE_H
@@ -12,6 +12,9 @@
 
 /* Rounding of feed squared. */
 #define LEAD_ENERGY_SLACK 1e-6
+
+/* The last deceleration to rest may be more than the allowed one by this part. */
+#define LEAD_REST_PART 2e-4
 
 /* What braking is for: a feed, how hard it may be reached, and if it is 0, where to come to rest in this cycle. */
 struct lead_brake {
@@ -110,6 +113,13 @@ static inline void lead_approach_landing(struct lead *l, bool hold, struct lead_
         lead_consider_landing(l, hold, b);
     }
 }
+/* lead_halt.c: looks for the end to halt at (halt.found). True: it is too fast for the next one. */
+bool lead_seek_halt(struct lead *l);
+/* lead_halt.c: how hard it brakes for it, mm/cycle2; and could it come to rest there if it braked by a? */
+double lead_halt_acceleration(const struct lead *l);
+bool lead_can_halt(const struct lead *l, double a);
+/* lead_feed.c: brakes for the end that it halts at. */
+void lead_brake_to_halt(const struct lead *l, struct lead_brake *b);
 /* lead_feed.c: the feed to speed up to in this cycle under the ceiling low; the present one: it may not. */
 double lead_speed_up(const struct lead *l, double at_mm, double low);
 

@@ -37,11 +37,6 @@ void motion_init(struct motion *m, struct path *path, const struct point *start,
                                           .proportional = proportional};
 }
 
-void motion_stop_each(struct motion *m)
-{
-    m->request.stops = true;
-}
-
 static const struct block *first_block(const struct motion *m)
 {
     return path_first(m->path);
@@ -79,8 +74,7 @@ uint32_t motion_ahead(struct motion *m)
 }
 
 /* What is asked for, whole: a late background may have been asked anew while it took it. */
-static struct ceiling_request take_request(const struct motion *m, uint64_t *room,
-                                           uint32_t *restarts)
+static struct ceiling_request take_request(const struct motion *m, uint32_t *restarts)
 {
     struct ceiling_request request;
     uint32_t times;
@@ -88,7 +82,6 @@ static struct ceiling_request take_request(const struct motion *m, uint64_t *roo
     do {
         times = handoff_get_count(&m->asked);
         request = m->request;
-        *room = m->room;
         *restarts = m->asked_restarts;
     } while (times != handoff_get_count(&m->asked));
     return request;
@@ -110,30 +103,14 @@ static bool is_unchanged(const struct motion *m, const struct ceiling_request *r
 
     return m->made_holds && reaches_far(m, c, request->lead) &&
            m->made.feed_ratio == request->feed_ratio &&
-           m->made.rapid_ratio == request->rapid_ratio && m->made.stops == request->stops &&
+           m->made.rapid_ratio == request->rapid_ratio &&
            m->made.spindle_rev_s == request->spindle_rev_s;
-}
-
-/* The first block that can still be stopped at: its end is beyond the room that braking may take. */
-static uint32_t first_stop(const struct motion *m, const struct ceiling_request *request,
-                           uint64_t room)
-{
-    const uint64_t from = request->lead + room;
-    uint32_t i = request->first;
-
-    for (; i != m->path->closed; i++) {
-        if ((int64_t)(path_end(m->path, i) - from) >= 0) {
-            break;
-        }
-    }
-    return i;
 }
 
 void motion_build(struct motion *m)
 {
-    uint64_t room;
     uint32_t restarts;
-    struct ceiling_request request = take_request(m, &room, &restarts);
+    const struct ceiling_request request = take_request(m, &restarts);
 
     m->path->spare = PATH_NO_SPARE;
     if (is_unchanged(m, &request)) {
@@ -141,9 +118,6 @@ void motion_build(struct motion *m)
         return;
     }
     m->built_restarts = restarts;
-    if (request.stops) {
-        request.stops_from = m->used.stops ? m->used.stops_from : first_stop(m, &request, room);
-    }
     ceiling_build(ceiling_of(m, 1 - m->active), m->path, &request);
     m->made = request;
     m->made_closed = m->path->closed;
@@ -156,24 +130,13 @@ void motion_build(struct motion *m)
 
 /* -- exchange with the background -- */
 
-/*
- * Does the ceiling that was made take away a single block's end that is a stop for the lead point: it stands there and the
- * setpoint has not come, or it has left it since the ceiling was asked for, with the window of the span behind?
- */
-static bool takes_stop(const struct motion *m)
-{
-    return m->used.stops && !m->made.stops &&
-           (m->made.span != m->lead.span || (m->lead.standing && m->lag != 0.0));
-}
-
 /* A ceiling of a path that has been dropped since is of no use. */
 static void offer_ceiling(struct motion *m)
 {
-    m->made_holds = m->built_restarts == m->restarts && !takes_stop(m);
+    m->made_holds = m->built_restarts == m->restarts;
     if (m->made_holds) {
         m->active = 1 - m->active;
         m->has_ceiling = true;
-        m->used = m->made;
         lead_set_ceiling(&m->lead, ceiling_of(m, m->active));
     }
     handoff_set_flag(&m->wanted, false);
@@ -199,27 +162,6 @@ static uint64_t piece_leave(const struct motion *m)
     return ceiling_leave(here->ceiling, here->piece);
 }
 
-/*
- * The way in which the lead point can come to rest: the two exchanges that a new ceiling takes to be in use, a window at
- * constant feed, and braking: v t + v^2 / 2 a.
- */
-static uint64_t braking_room(const struct motion *m)
-{
-    const struct lead *l = &m->lead;
-    const struct lead_place *here = &l->here;
-
-    if (here->ceiling == NULL || here->piece >= here->ceiling->count || l->feed == 0.0) {
-        return 0;
-    }
-    const struct ceiling_piece *p = &here->ceiling->piece[here->piece];
-    const double a = (double)p->acceleration;
-    const double cycles = 2.0 * MOTION_EXCHANGE_CYCLES;
-    const double v = maths_clamp(l->feed + cycles * a, l->feed,
-                                 maths_max(l->feed, ceiling_feed(here->ceiling, p->feed_max_mm_s)));
-
-    return (uint64_t)((v * (l->window + cycles) + 0.5 * v * v / a) * PATH_UNITS_PER_MM);
-}
-
 /* An override asked for while the lead point brakes waits for the next block (seed 003 section 2). 0 is a hold. */
 static void ask(struct motion *m, const struct motion_operator *wanted)
 {
@@ -235,8 +177,6 @@ static void ask(struct motion *m, const struct motion_operator *wanted)
             m->request.spindle_rev_s = wanted->spindle_rev_s;
         }
     }
-    m->request.stops = wanted->single_block;
-    m->room = wanted->single_block ? braking_room(m) : 0;
     m->asked_leave = leave;
     m->asked_restarts = m->restarts;
     m->request.first = m->path->first;
@@ -356,7 +296,7 @@ static bool is_held(const struct motion *m, const struct motion_operator *wanted
 /* Is the end of the oldest block a stop? */
 static bool ends_at_rest(const struct motion *m)
 {
-    return ceiling_stops(&m->used, m->path, m->path->first);
+    return span_stops(m->path, m->path->first);
 }
 
 /*
@@ -385,6 +325,12 @@ static double find_block(struct motion *m, const struct block *b, double *length
     return local;
 }
 
+/* Has the setpoint come to where the lead point halts? */
+static bool is_halted(const struct motion *m)
+{
+    return lead_has_halted(&m->lead) && m->lag == 0.0;
+}
+
 static void place(struct motion *m, const struct block *b, double local, double length,
                   struct cycle_record *record)
 {
@@ -394,7 +340,8 @@ static void place(struct motion *m, const struct block *b, double local, double 
     if (maths_abs(local - length) <= LANDED_UNITS) {
         m->done = ends_at_rest(m) && m->lead.standing && m->lag == 0.0;
         m->rested = 0;
-        record->landed = (m->done || span_lands(m->path, m->current)) && !b->continues;
+        record->landed =
+            (m->done || is_halted(m) || span_lands(m->path, m->current)) && !b->continues;
         m->at = b->curve.end;
         return;
     }
@@ -438,6 +385,10 @@ static const struct block *move_on(struct motion *m, const struct motion_operato
     if (may_leave(m, wanted)) {
         lead_release(&m->lead);
     }
+    if (is_halted(m)) {
+        lead_leave_halt(&m->lead);
+    }
+    lead_end_blocks(&m->lead, wanted->single_block);
     m->rested++;
     move_lead(m, is_held(m, wanted));
 
@@ -483,7 +434,7 @@ void motion_end_here(struct motion *m)
 
 bool motion_rests(const struct motion *m)
 {
-    return m->done || m->feed == 0.0;
+    return m->done || m->feed == 0.0 || is_halted(m);
 }
 
 bool motion_is_idle(const struct motion *m)

@@ -69,8 +69,6 @@ struct motion {
     bool built;       /* and has made it */
     struct ceiling_request request;
     uint64_t asked_leave;        /* of the piece the lead point was in then */
-    struct ceiling_request used; /* what the ceiling in use was made for */
-    uint64_t room; /* beyond the lead point it may be too late for stops, path units */
     struct ceiling_request made; /* what the last ceiling was made for, and of how many blocks */
     uint32_t made_closed;
     bool made_holds;   /* and it is the one in use */
@@ -85,9 +83,6 @@ struct motion {
 
 /* start: where the machine stands. The path is read here, and passed; it must outlive m. */
 void motion_init(struct motion *m, struct path *path, const struct point *start, bool proportional);
-
-/* Before the first ceiling: as if single_block had been set all along. */
-void motion_stop_each(struct motion *m);
 
 /* Background: what a ceiling is asked for; NULL: none is. Until it has been made the path may smooth motions. */
 const struct ceiling_request *motion_wanted(struct motion *m);

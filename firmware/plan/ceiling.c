@@ -90,14 +90,6 @@ double ceiling_block_acceleration(const struct path *path, uint32_t index, uint3
     return (double)maths_float_below(a);
 }
 
-bool ceiling_stops(const struct ceiling_request *request, const struct path *path, uint32_t index)
-{
-    const struct path_block *b = path_at(path, index);
-
-    return b->end == JOINT_STOP ||
-           (request->stops && !b->continues && (int32_t)(index - request->stops_from) >= 0);
-}
-
 /*
  * Could the lead point not come to rest before a place any more when this ceiling is taken? By then it has gone on at its
  * feed, which it keeps for a window before it brakes: w t + w^2 / 2 a.
@@ -362,7 +354,7 @@ static void lay_blocks(struct builder *s)
             begin_span(s, i);
         }
         lay_block(s, i);
-        const bool stops = ceiling_stops(s->request, s->path, i);
+        const bool stops = span_stops(s->path, i);
 
         fresh = stops || span_lands(s->path, i);
         if (stops) {

@@ -88,8 +88,6 @@ struct ceiling_request {
     double rapid_ratio;   /* likewise of rapids, <= 1 */
     double spindle_rev_s; /* > 0: as measured, for feeds per revolution; 0: as commanded */
     bool proportional;    /* scale the whole diagram instead of the programmed feed alone */
-    bool stops;           /* every motion ends at rest, from this block on */
-    uint32_t stops_from;
 };
 
 /*
@@ -110,9 +108,6 @@ unsigned ceiling_overrides(const struct ceiling *c, uint32_t k);
 
 /* Cycles of the first averaging box in the span that begins with a piece. */
 uint32_t ceiling_cycles(const struct ceiling *c, uint32_t k);
-
-/* Does a block of the path end at rest? */
-bool ceiling_stops(const struct ceiling_request *request, const struct path *path, uint32_t index);
 
 /* Feed ceiling of one block under a request, mm/s. */
 double ceiling_block_feed(const struct path *path, uint32_t index,

@@ -48,15 +48,14 @@ static struct rest_feeds own_feeds(const struct rest_span *r, uint32_t index)
 
 static bool ends_span(const struct rest_span *r, uint32_t index)
 {
-    return span_lands(r->path, index) || ceiling_stops(r->request, r->path, index);
+    return span_lands(r->path, index) || span_stops(r->path, index);
 }
 
-/* Stops of single blocks may go: a block before one of them must keep its ceiling. */
 static void find_end(struct rest_span *r, uint32_t index)
 {
     for (; index != r->path->closed && path_at(r->path, index)->motion; index++) {
         if (ends_span(r, index)) {
-            r->rests = path_at(r->path, index)->end == JOINT_STOP;
+            r->rests = span_stops(r->path, index);
             r->end = index + 1;
             return;
         }
@@ -69,7 +68,7 @@ void rest_begin(struct rest_span *r, const struct path *path, const struct ceili
     const uint64_t start = path_at(path, index)->start;
     const bool first = index == request->first;
     const bool inside = first && ((int64_t)(request->lead - start) > 0 || request->span == start);
-    const bool rests = first || ceiling_stops(request, path, index - 1);
+    const bool rests = first || span_stops(path, index - 1);
 
     *r = (struct rest_span){.path = path, .request = request, .cycles = cycles};
     r->start = inside ? request->span : start;

@@ -49,7 +49,6 @@ struct span {
     double feed_end;
     bool known; /* the parts reach to its end, */
     bool stops; /* where it rests */
-    bool fixed; /* and will always end */
     unsigned count;
     struct part part[PARTS_MAX];
 };
@@ -71,6 +70,11 @@ struct trial {
     unsigned count;
     struct laid laid[PARTS_MAX];
 };
+
+bool span_stops(const struct path *path, uint32_t index)
+{
+    return path_at(path, index)->end == JOINT_STOP;
+}
 
 bool span_lands(const struct path *path, uint32_t index)
 {
@@ -125,9 +129,8 @@ static void survey(struct span *s, const struct path *path, const struct ceiling
             !add_block(s, path, index, &asked) || index == path->closed) {
             return;
         }
-        s->stops = ceiling_stops(request, path, index);
+        s->stops = span_stops(path, index);
         s->known = s->stops || span_lands(path, index);
-        s->fixed = b->end == JOINT_STOP || span_lands(path, index);
         s->feed_end = s->stops ? 0.0 : (double)b->feed_joint_mm_s * s->cycle_s;
     }
 }
@@ -136,7 +139,7 @@ static void survey(struct span *s, const struct path *path, const struct ceiling
 static double feed_at_start(const struct path *path, const struct ceiling_request *request,
                             uint32_t index)
 {
-    return index == request->first || ceiling_stops(request, path, index - 1)
+    return index == request->first || span_stops(path, index - 1)
                ? 0.0
                : (double)path_at(path, index - 1)->feed_joint_mm_s * path->limits.cycle_s;
 }
@@ -347,5 +350,5 @@ struct span_window span_window(const struct path *path, const struct ceiling_req
     survey(&s, path, request, index);
     s.feed_start = maths_min(feed_at_start(path, request, index), s.part[0].feed);
     s.feed_end = maths_min(s.feed_end, s.part[s.count - 1].feed);
-    return (struct span_window){best_box(&s), s.fixed};
+    return (struct span_window){best_box(&s), s.known};
 }

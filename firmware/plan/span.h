@@ -14,7 +14,10 @@ struct span_window {
     bool known;      /* found with all of the span known: more blocks do not change it */
 };
 
-/* Does a span end with a block, at a joint that is passed and landed on? */
+/* Does a span end with a block, at a stop? */
+bool span_stops(const struct path *path, uint32_t index);
+
+/* Or at a joint that is passed and landed on? */
 bool span_lands(const struct path *path, uint32_t index);
 
 /*

@@ -91,7 +91,6 @@ static void start_text(struct service *s, enum service_job job)
     struct controller_config config = service_controller_config(s);
 
     config.keeps_outputs = true;
-    config.single_block = config.single_block && job == SERVICE_MDI;
     config.modes = s->has_modes && job == SERVICE_MDI ? &s->modes : NULL;
     source_open_text(&config.source, &s->source_text, s->text, s->text_length);
     controller_start_program(&s->controller, &config, &s->at);

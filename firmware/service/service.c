@@ -26,7 +26,6 @@ struct controller_config service_controller_config(const struct service *s)
         .correction = s->config.correction,
         .exact_path = s->config.exact_path,
         .block_delete = s->settings.block_delete,
-        .single_block = s->settings.single_block,
     };
 }
 

@@ -78,19 +78,6 @@ static void test_a_slow_block_that_the_setpoint_can_be_too_fast_in_keeps_its_cei
     TEST_ASSERT_TRUE(ceiling.piece[2].feed_mm_s == 10.0F);
 }
 
-/* What is beside the end of a single block may be in motion when it is come to. */
-static void test_the_end_of_a_single_block_lifts_nothing_before_it(void)
-{
-    push(10.0, 50.0);
-    push(0.03, 10.0);
-    push(10.0, 10.0);
-    request.stops = true;
-    request.stops_from = 1;
-    build();
-    TEST_ASSERT_TRUE(ceiling.piece[1].feed_mm_s == 10.0F);
-    TEST_ASSERT_TRUE(ceiling.piece[1].stop);
-}
-
 /* The span was not begun at rest: its first block may be come to at any feed. */
 static void test_a_block_behind_a_landed_joint_is_not_lifted(void)
 {
@@ -120,7 +107,6 @@ int main(void)
     RUN_TEST(test_it_is_as_fast_as_the_average_of_an_even_acceleration);
     RUN_TEST(test_short_slow_blocks_at_both_ends_do_not_hold_up_the_lead_point);
     RUN_TEST(test_a_slow_block_that_the_setpoint_can_be_too_fast_in_keeps_its_ceiling);
-    RUN_TEST(test_the_end_of_a_single_block_lifts_nothing_before_it);
     RUN_TEST(test_a_block_behind_a_landed_joint_is_not_lifted);
     RUN_TEST(test_the_highest_feed_is_lifted_with_its_own_ceiling);
     return UNITY_END();

@@ -87,15 +87,6 @@ static void test_a_window_is_known_when_the_end_of_the_span_is(void)
     TEST_ASSERT_TRUE(span_window(&path, &request, 0).known);
 }
 
-/* An operator's stop may be taken back. */
-static void test_a_stop_asked_for_makes_no_window_known(void)
-{
-    push(1.0, 100.0);
-    push(100.0, 100.0);
-    request.stops = true;
-    TEST_ASSERT_FALSE(span_window(&path, &request, 0).known);
-}
-
 /* The window that a ceiling was made with is kept when more of the span is seen, by a lead point close to it. */
 static void test_a_window_once_promised_is_kept_close_by(void)
 {
@@ -130,7 +121,6 @@ int main(void)
     RUN_TEST(test_a_span_whose_end_is_out_of_sight_has_the_longest_window);
     RUN_TEST(test_the_override_does_not_change_the_window);
     RUN_TEST(test_a_window_is_known_when_the_end_of_the_span_is);
-    RUN_TEST(test_a_stop_asked_for_makes_no_window_known);
     RUN_TEST(test_a_window_once_promised_is_kept_close_by);
     RUN_TEST(test_a_span_of_many_parts_has_a_window);
     return UNITY_END();

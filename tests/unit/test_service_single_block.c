@@ -203,6 +203,30 @@ static void test_whatever_the_operator_switches_limits_hold_and_holds_are_at_blo
     }
 }
 
+/* Too short to brake in, sharp corners: while the first is run, at every cycle once. */
+static void test_switched_on_in_any_cycle_of_short_blocks_it_keeps_the_limits(void)
+{
+    for (unsigned cycles = 1; cycles <= 50; cycles++) {
+        bench_set_up();
+        begin_judging();
+        load(
+            "G21 G61 F6000\nG1 X-0.005 Y0.05 F1919.807\nG1 X-0.004 Y0.049\nG1 X0.035 Y0.017\nM2\n");
+        must(REGISTER_CYCLE_START, 1);
+        judged_cycles(cycles);
+        must(REGISTER_SINGLE_BLOCK, 1);
+        for (unsigned i = 0; i < 3 && service_get_state(&service) != PANEL_IDLE; i++) {
+            judged_cycles(150);
+            if (service_get_state(&service) == PANEL_HELD)
+                must(REGISTER_CYCLE_START, 1);
+        }
+        judged_wait_for(PANEL_IDLE);
+        TEST_ASSERT_EQUAL_INT64(PANEL_OUTCOME_COMPLETED, shown(REGISTER_OUTCOME));
+        TEST_ASSERT_DOUBLE_WITHIN(PLACE_MM, 0.035, service.at.at[AXIS_X]);
+        TEST_ASSERT_TRUE(most_acceleration <= 1000.0 * 1.0001);
+        TEST_ASSERT_TRUE(most_jerk <= 50000.0 * 1.001);
+    }
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -210,6 +234,7 @@ int main(void)
     RUN_TEST(test_blocks_too_short_to_brake_in_are_passed);
     RUN_TEST(test_switched_off_it_holds_no_more);
     RUN_TEST(test_a_switch_that_was_on_for_a_moment_changes_nothing);
+    RUN_TEST(test_switched_on_in_any_cycle_of_short_blocks_it_keeps_the_limits);
     RUN_TEST(test_whatever_the_operator_switches_limits_hold_and_holds_are_at_block_ends);
     return UNITY_END();
 }

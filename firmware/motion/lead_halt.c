@@ -1,0 +1,163 @@
+/*
+ * Goal: every motion that can still be come to rest in ends at rest, exactly at its end, whenever that is asked for and
+ * taken back (single block).
+ *
+ * The ceilings know nothing of it: in them the motion is passed. The lead point alone halts, as in a hold, but at the next
+ * end E of a motion in its span, if it can come to rest there:
+ *
+ *     w^2 <= 2 a (E - s - w k)
+ *
+ * with k the cycles until it may brake, a the lowest acceleration of the piece that it is in, of the motion's blocks and of
+ * the joint that ends the span. It speeds up only so far that this holds when it may brake again, and comes to a piece that
+ * belongs to what is behind E only if it holds with that one's acceleration; until then it stays in the one it is in
+ * (lead_place.c). Wherever a hold keeps the limits so does a halt: no window, joint or promise of a ceiling depends on the
+ * operator's switch.
+ *
+ * Too fast for the next end it slows down as in a hold, and so on until there is one that it can rest at. If that end is a
+ * joint which has to be landed on in motion, the next one is in the span behind. The ceiling's own stops need nothing.
+ *
+ *     feed |  ___                          ends of motions |, the lead point at s: the first two are too near, it halts
+ *          |     \_                        at E
+ *          |       |\_|_____
+ *          +-----s-+--+-----\E------------> position
+ *
+ * Rejected: stops in the ceilings, from a block on that is far enough when one is asked for. Another window of the span
+ * before, a joint landed on in between, where the lead point is set half a window ahead, or less acceleration behind it
+ * brought the lead point to such a stop too fast: 25 times the acceleration, and back on the path. Windows that a stop had
+ * made were promised to spans that were none when it was taken back.
+ */
+#include "motion/lead_private.h"
+
+#include "base/maths.h"
+#include "plan/path.h"
+#include "plan/span.h"
+
+#include <assert.h>
+
+/* Blocks that are gone on by in a cycle, at most: twice what the lead point can pass in it (plan/block.c). */
+#define BLOCKS_MAX 16
+
+void lead_end_blocks(struct lead *l, bool on)
+{
+    l->halt.on = on;
+    l->halt.begun = l->halt.begun && on;
+    l->halt.found = l->halt.found && on;
+}
+
+bool lead_has_halted(const struct lead *l)
+{
+    return l->halt.found && l->feed == 0.0 && l->at == l->halt.end;
+}
+
+void lead_leave_halt(struct lead *l)
+{
+    l->halt.left = l->halt.end;
+    l->halt.found = false;
+}
+
+/* Not harder than the joint behind allows: it can be rested at too when the halt is taken back (can_rest_before). */
+double lead_halt_acceleration(const struct lead *l)
+{
+    const uint32_t landing = lead_landing(l);
+    double a = maths_min(l->halt.a, l->here.early_a);
+
+    if (lead_has_piece(l)) {
+        a = maths_min(a, (double)lead_piece(l, l->here.piece)->acceleration);
+    }
+    return landing == CEILING_NONE ? a : maths_min(a, (double)lead_piece(l, landing)->acceleration);
+}
+
+/* By how much feed squared is below what it may be; < 0: it is above. */
+static double spare_energy(const struct lead *l, double a)
+{
+    const double wait = maths_max(0.0, l->window - (double)l->since_plus);
+
+    return 2.0 * a * (path_mm(l->at, l->halt.end) - l->feed * wait) - lead_square(l->feed);
+}
+
+bool lead_can_halt(const struct lead *l, double a)
+{
+    return spare_energy(l, a) >= LEAD_ENERGY_SLACK * lead_square(l->feed);
+}
+
+/* Rounding, and a last cycle of braking that is a little harder, take back no end that has been found. */
+static bool keeps_halt(const struct lead *l, double a)
+{
+    return spare_energy(l, a) >=
+           -LEAD_ENERGY_SLACK * lead_square(l->feed) - 2.0 * LEAD_REST_PART * lead_square(a);
+}
+
+static bool can_rest(const struct lead *l, bool found)
+{
+    const double a = lead_halt_acceleration(l);
+
+    return l->feed == 0.0 || lead_can_halt(l, a) || (found && keeps_halt(l, a));
+}
+
+/* The block begins a motion, or goes on with that of the one before. */
+static void look_at(struct lead *l, const struct path *path, uint32_t block, bool begins)
+{
+    const double a = ceiling_block_acceleration(path, block, l->cycles);
+
+    l->halt.block = block;
+    l->halt.end = path_end(path, block);
+    l->halt.a = begins ? a : maths_min(l->halt.a, a);
+}
+
+/* From the setpoint's block on, or the one behind if that ends where the span starts. */
+static void begin(struct lead *l, const struct path *path)
+{
+    const bool before = lead_is_beyond(l->span, path_end(path, path->first));
+
+    l->halt.begun = true;
+    l->halt.span = l->span;
+    look_at(l, path, before ? path->first + 1 : path->first, true);
+}
+
+/* Does the block end a motion, ahead, and has not been left? */
+static bool is_end_ahead(const struct lead *l, const struct path *path)
+{
+    const struct lead_halt *h = &l->halt;
+
+    return !path_at(path, h->block)->continues && lead_is_beyond(h->end, l->at) &&
+           !lead_is_beyond(h->left, h->end);
+}
+
+/* Is it the last one of the span, or of all that is known? */
+static bool is_last(const struct ceiling *c, uint32_t block)
+{
+    return span_stops(c->path, block) || span_lands(c->path, block) ||
+           block + 1 == c->first + c->piece[c->count - 1].leave;
+}
+
+/* Goes on to the next end of a motion, in its span. False: none is known. */
+static bool find_end(struct lead *l, const struct ceiling *c)
+{
+    const bool passed = (int32_t)(l->halt.block - c->path->first) < 0;
+
+    assert(c->count > 0); /* it is in a span */
+    if (!l->halt.begun || passed || l->halt.span != l->span) {
+        begin(l, c->path);
+    }
+    for (unsigned i = 0; i < BLOCKS_MAX && !is_end_ahead(l, c->path); i++) {
+        if (is_last(c, l->halt.block)) {
+            return false;
+        }
+        look_at(l, c->path, l->halt.block + 1, !path_at(c->path, l->halt.block)->continues);
+    }
+    return is_end_ahead(l, c->path) && !span_stops(c->path, l->halt.block);
+}
+
+bool lead_seek_halt(struct lead *l)
+{
+    struct lead_halt *h = &l->halt;
+    const bool found = h->found;
+    const uint64_t end = h->end;
+
+    h->found = false;
+    if (!h->on || l->run.active || !find_end(l, l->here.ceiling)) {
+        return false;
+    }
+    h->found = can_rest(l, found && h->end == end);
+    return !h->found;
+}
