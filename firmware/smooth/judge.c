@@ -23,6 +23,9 @@
 /* Between the places looked at the curve goes on by less than this part of the tolerance. */
 #define JUDGED 0.985f
 
+/* A rate does not change faster than this times what it may change by on every piece. */
+#define CHANGE_MOST 64.0
+
 /* Places looked at in a piece. */
 #define PLACES 4
 
@@ -145,6 +148,36 @@ void judge_rate(const struct judge_need *need, const struct route *r, uint32_t e
     }
     rate->programmed =
         need->feed_mm_s > 0.0f ? route_programmed(r, element) / need->feed_mm_s : SINGLE_INFINITY;
+}
+
+/* What is left at a rate for r' and r'' = r'/R, R the rounding: see most_of_axis(). */
+static float change_of_axis(const struct judge_need *need, const struct route_slots *slots,
+                            float rounding_s, unsigned i, float rate, float by)
+{
+    const float first = need->first[i];
+    const float second = need->second[i];
+    const float a = LIMIT * slots->acceleration_mm_s2[i] - second * rate * rate;
+    const float j = LIMIT * slots->jerk_mm_s3[i] - need->third[i] * rate * rate * rate;
+    const float per_by = first / rounding_s + 3.0f * second * rate;
+
+    by = first * by > a ? a / first : by;
+    return per_by * by > j ? j / per_by : by;
+}
+
+double judge_change_on(const struct judge_need *need, const struct route *r,
+                       const struct judge_change *change, float rate)
+{
+    double most = CHANGE_MOST * change->by;
+    double by = change->by;
+
+    for (unsigned i = 0; i < r->slots.count; i++) {
+        most = (double)change_of_axis(need, &r->slots, (float)change->rounding_s, i, rate,
+                                      (float)most);
+    }
+    while (2.0 * by <= most) {
+        by *= 2.0;
+    }
+    return by;
 }
 
 static bool place_is_near(const struct window *w, const struct route *r, unsigned piece,

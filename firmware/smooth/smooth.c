@@ -34,8 +34,12 @@
 #define STALL_PART    0.1
 #define STALL_WINDOWS 2
 
-/* Nominal time between samples, as a part of the time in which the jerk crosses the tolerance, cbrt(P/J). */
-#define INTERVAL_PART 0.7
+/*
+ * Nominal time between samples, as a part of the time that a way of the tolerance takes: cbrt(P/J) where jerk binds,
+ * sqrt(P/A) where acceleration does, whichever is longer. Found on machines of P J^2/A^3 = 4e-4 ... 640: README.md.
+ */
+#define INTERVAL_OF_JERK         0.7
+#define INTERVAL_OF_ACCELERATION 0.9
 
 /* What a microcontroller is ready to give for smoothing. */
 _Static_assert(sizeof(struct smooth) + sizeof(union smooth_scratch) <= 27UL * 1024UL,
@@ -77,21 +81,22 @@ bool smooth_has_room(const struct smooth *s)
     return !s->open || (!s->finished && route_has_room(&s->route));
 }
 
-/* cbrt(P/J) of the axis with the most jerk, at least a cycle, at most a quarter of the longest A/J. */
+/* Of the axis that crosses the tolerance soonest, at least a cycle. */
 static double interval_of(const struct smooth_limits *limits, double tolerance_mm)
 {
-    double jerk = 0.0;
-    double ramp = 0.0;
+    double soonest = MATHS_INFINITY;
 
     for (int i = 0; i < AXIS_COUNT; i++) {
         if ((limits->axes >> i & 1U) != 0) {
-            jerk = maths_max(jerk, smooth_weight(i) * limits->jerk_mm_s3[i]);
-            ramp = maths_max(ramp, limits->acceleration_mm_s2[i] / limits->jerk_mm_s3[i]);
+            const double p = tolerance_mm / smooth_weight(i);
+            const double jerk = INTERVAL_OF_JERK * maths_cbrt(p / limits->jerk_mm_s3[i]);
+            const double acceleration =
+                INTERVAL_OF_ACCELERATION * maths_sqrt(p / limits->acceleration_mm_s2[i]);
+
+            soonest = maths_min(soonest, maths_max(jerk, acceleration));
         }
     }
-    const double interval = INTERVAL_PART * maths_cbrt(tolerance_mm / jerk);
-
-    return maths_max(limits->cycle_s, maths_min(interval, 0.25 * ramp));
+    return maths_max(limits->cycle_s, soonest);
 }
 
 /* How far merged lines may leave the programmed ends: G64 Q, but the tolerance is worth more to smoothing. */
@@ -430,8 +435,8 @@ static void set_piece(struct smooth *s, struct smooth_piece *piece)
     judge_rate(&need, &s->route, element, &s->change, &rate);
     piece->rate.most = maths_min((double)rate.most, 1.0);
     piece->rate.programmed = (double)rate.programmed;
-    piece->change.by = s->change.by;
-    piece->change.rounded = s->change.rounded;
+    piece->change.by = judge_change_on(&need, &s->route, &s->change, (float)piece->rate.most);
+    piece->change.rounded = piece->change.by / s->change.rounding_s;
     piece->stop = s->stops && s->taken + 1 == s->ready;
     piece->last = s->finished && w->at_end && i + 4 == w->count;
 }

@@ -35,7 +35,8 @@ struct smooth_piece {
     struct point control[4];
     double interval_s;
     struct smooth_rate rate;
-    struct smooth_change change; /* the same in all pieces of a chain in which the axes move */
+    struct smooth_change
+        change; /* rounded over the same time in all pieces in which the axes move */
     bool
         stop; /* comes to rest at its end, though the chain goes on: no way on was found in motion */
     bool rotary; /* no linear axis moves in that motion */

@@ -5,12 +5,6 @@
 
 #include <string.h>
 
-/*
- * A setpoint may be at places so many tolerances away: where motions of few tolerances turn back, a curve that is within
- * one of all of them and of their corners may pass one corner a little before the one that comes first.
- */
-#define WITHIN_TOLERANCES 3
-
 /* How far ahead of what has been left the path is looked for: so many steps, and so many tolerances. */
 #define REACH_STEPS      4
 #define REACH_TOLERANCES 20
@@ -113,7 +107,7 @@ static struct beside look_beside(const struct tube_segment *s, double from, cons
 
 static double within_of(const struct tube_piece *piece)
 {
-    return WITHIN_TOLERANCES * piece->motion.tolerance_mm + piece->motion.cut_mm;
+    return piece->motion.tolerance_mm + piece->motion.cut_mm;
 }
 
 static struct point end_of(const struct tube_segment *s)
@@ -404,12 +398,29 @@ bool tube_judge_add(struct tube_judge *t, const struct point *setpoint, uint32_t
     return !t->path.failed;
 }
 
+/* The axes stand before this piece, which has not been come to: it must be near them all the same. */
+static void measure_rest(struct tube_judge *t, const struct tube_piece *piece)
+{
+    const double distance_mm = judge_distance(&t->last, &piece->segment.start);
+
+    if (piece->motion.rounded) {
+        raise_to(&t->figures.path_part, distance_mm / piece->motion.tolerance_mm);
+        raise_to(&t->figures.deviation_mm, distance_mm);
+    }
+    if (piece->motion.rounded || !t->exact_elsewhere)
+        note_beyond(t, distance_mm - allowed_mm(t, piece), piece->motion.line);
+}
+
 /* All that can be read but its last piece has been left by now. */
 static void leave_all(struct tube_judge *t)
 {
     while (has_piece(t, 1)) {
         settle_corner(t);
         tube_path_drop(&t->path);
+        if (t->active > 1)
+            t->active--;
+        else
+            measure_rest(t, tube_path_at(&t->path, 0));
     }
 }
 

@@ -4,8 +4,8 @@
  *
  * It knows nothing of the planner's reasoning: it reads the part program itself and follows the setpoints along it, never
  * backwards and leaving nothing out. What it remembers are the places of the path at which the last setpoint may be:
- * those within some tolerances of it that can be come to from such places of the setpoint before, past every corner and
- * bend in between (Alt and Godau's way to decide on a Frechet distance). The nearest of them counts. Where there is no
+ * those within the tolerance of it that can be come to from such places of the setpoint before, past every corner and bend
+ * in between, which are within the tolerance too (Alt and Godau's way to decide on a Frechet distance). The nearest of them counts. Where there is no
  * such place left the path has been left: that is how far off the setpoint is, and the path is looked for near by, ahead.
  * Memory is what lies within reach.
  *

@@ -5,8 +5,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Pieces of bent curves are off by this part of the tolerance at most. */
-#define CUT_PART 0.125
+/* Pieces of bent curves are off by this part of the tolerance at most: so much more has the order of places on them. */
+#define CUT_PART 0.002
 
 /* At first; it grows. */
 #define CAPACITY 64
