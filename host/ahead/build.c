@@ -83,13 +83,14 @@ static double bend_of(const struct ahead_limits *l, double (*control)[3])
 }
 
 /*
- * Between the places that are looked at the curve bends away by a t^2 / 8, with half a knot for t. It is the acceleration that
- * there is, not the limit: else a higher limit would narrow the tolerance.
+ * Between places t knots apart the curve bends away by a t^2 / 8: half a knot for the path, a cycle for its joints, which are
+ * judged by the straight lines between setpoints. It is the acceleration that there is, not the limit: else a higher limit
+ * would narrow the tolerance.
  */
 static double radius_of(const struct problem_window *w, const struct ahead_element *e,
-                        double (*control)[3])
+                        double (*control)[3], double t)
 {
-    const double sag_mm = bend_of(w->limits, control) / 32;
+    const double sag_mm = bend_of(w->limits, control) * t * t / 8;
     const double least_mm = LEAST_PART * e->tolerance_mm;
 
     return maths_max(least_mm, maths_min(w->inside * e->tolerance_mm,
@@ -120,7 +121,7 @@ static void set_tube(const struct problem_window *w, struct problem_ball *ball,
     if (!is_beside(ball))
         memset(ball->along, 0, sizeof ball->along);
     memcpy(ball->weight, weight, sizeof ball->weight);
-    ball->radius_mm = radius_of(w, e, control);
+    ball->radius_mm = radius_of(w, e, control, 0.5);
 }
 
 /* Where the curve is nearest to a point, from the half knot nearest to it on. */
@@ -199,7 +200,8 @@ static void add_joint(struct problem *p, const struct problem_window *w,
     trail_weights(u - (double)k, ball->weight);
     trail_sum(w->trail->control + k, ball->weight, x);
     vector_from_to(e->curve.end.at, x, ball->offset);
-    ball->radius_mm = radius_of(w, e, w->trail->control + k);
+    ball->radius_mm =
+        radius_of(w, e, w->trail->control + k, w->limits->cycle_s / w->limits->step_s);
 }
 
 static void set_joints(struct problem *p, const struct problem_window *w)
