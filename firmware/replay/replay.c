@@ -5,11 +5,8 @@
 
 #include <string.h>
 
-/* A section's start and the axes may differ by rounding to quanta. */
+/* A section's start and the axes may differ by this, and by rounding to quanta. */
 #define START_MAX_MM 1e-6
-
-/* More than these need not be there to go on: the ring holds no more. */
-#define BRAKE_INTERVALS_MAX (INTAKE_INTERVALS_MAX - 2 * REPLAY_RECORD_INTERVALS)
 
 /* Blocks that one cycle passes at most. */
 #define PASS_MAX 64
@@ -40,10 +37,10 @@ static void begin_intake(struct replay *r, const struct plan_limits *limits)
     r->step = 1.0 / (double)h->step_cycles;
     rate_init(&r->rate, limits, h->kept);
     r->highest = r->intake->source.is_lost != NULL
-                     ? rate_highest(&r->rate, BRAKE_INTERVALS_MAX / r->step)
+                     ? rate_highest(&r->rate, REPLAY_BRAKE_INTERVALS_MAX / r->step)
                      : 1.0;
     r->brake_intervals = (uint32_t)maths_min(maths_ceil(rate_brake_cycles(&r->rate) * r->step) + 2,
-                                             BRAKE_INTERVALS_MAX);
+                                             REPLAY_BRAKE_INTERVALS_MAX);
 }
 
 void replay_read(struct replay *r, const struct plan_limits *limits)
@@ -121,7 +118,8 @@ static void take_end(struct replay *r)
 static bool starts_at(const struct replay *r, const struct point *at)
 {
     for (int i = 0; i < AXIS_LINEAR_COUNT; i++) {
-        if (maths_abs((double)r->section.start[i] * r->quantum_mm - at->at[i]) > START_MAX_MM) {
+        if (maths_abs((double)r->section.start[i] * r->quantum_mm - at->at[i]) >
+            START_MAX_MM + 0.5 * r->quantum_mm) {
             return false;
         }
     }

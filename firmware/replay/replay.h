@@ -18,6 +18,9 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+/* More intervals need not be there to go on: the ring holds no more. */
+#define REPLAY_BRAKE_INTERVALS_MAX (INTAKE_INTERVALS_MAX - 2 * REPLAY_RECORD_INTERVALS)
+
 /* Single block: a stop at the end of a block that is passed without one otherwise. */
 enum replay_stop {
     REPLAY_NO_STOP,

@@ -54,34 +54,43 @@ static void set_axis(const struct problem *p, struct problem_cell *cell, double 
     }
 }
 
-/* |q' + d'| sqrt(y) <= F, by its tangent. */
+/* |q' + d' + q' e / 2| <= F */
 static void set_feed(const struct problem_window *w, struct problem_cell *cell,
                      double (*control)[3], double feed_mm_s)
 {
     const double limit = feed_mm_s * w->limits->step_s;
     double way[3];
-    double length;
 
     trail_sum(control, difference, way);
-    length = vector_length(way);
-    cell->feed = 0;
-    if (!maths_is_finite(limit) || length < 0.5 * limit)
+    cell->feed_scale = 0;
+    if (!maths_is_finite(limit) || vector_length(way) < 0.5 * limit)
         return;
-    cell->feed = length / limit;
+    cell->feed_scale = 1 / limit;
     for (int i = 0; i < 3; i++)
-        cell->feed_way[i] = way[i] / (length * limit);
-    for (int k = 0; k < 4; k++)
-        cell->feed_time[k] = 0.5 * cell->feed * difference_value[k];
+        cell->feed_now[i] = way[i] / limit;
+}
+
+/* The larger of an interval's accelerations at its ends, mm a knot squared, but no more than all axes may have. */
+static double bend_of(const struct ahead_limits *l, double (*control)[3])
+{
+    const double most = vector_length(l->acceleration_mm_s2) * l->step_s * l->step_s;
+    double here[3];
+    double next[3];
+
+    trail_sum(control, knot_second, here);
+    trail_sum(control + 1, knot_second, next);
+    return maths_min(most, maths_max(vector_length(here), vector_length(next)));
 }
 
 /*
- * Between the places that are looked at the curve bends away by a t^2 / 8 at most: half a knot for the path, a cycle for
- * its joints, which are judged by the straight lines between setpoints.
+ * Between places t knots apart the curve bends away by a t^2 / 8: half a knot for the path, a cycle for its joints, which are
+ * judged by the straight lines between setpoints. It is the acceleration that there is, not the limit: else a higher limit
+ * would narrow the tolerance.
  */
-static double radius_of(const struct problem_window *w, const struct ahead_element *e)
+static double radius_of(const struct problem_window *w, const struct ahead_element *e,
+                        double (*control)[3], double t)
 {
-    const double t = 0.5 * w->limits->step_s;
-    const double sag_mm = vector_length(w->limits->acceleration_mm_s2) * t * t / 8;
+    const double sag_mm = bend_of(w->limits, control) * t * t / 8;
     const double least_mm = LEAST_PART * e->tolerance_mm;
 
     return maths_max(least_mm, maths_min(w->inside * e->tolerance_mm,
@@ -112,7 +121,7 @@ static void set_tube(const struct problem_window *w, struct problem_ball *ball,
     if (!is_beside(ball))
         memset(ball->along, 0, sizeof ball->along);
     memcpy(ball->weight, weight, sizeof ball->weight);
-    ball->radius_mm = radius_of(w, e);
+    ball->radius_mm = radius_of(w, e, control, 0.5);
 }
 
 /* Where the curve is nearest to a point, from the half knot nearest to it on. */
@@ -191,7 +200,8 @@ static void add_joint(struct problem *p, const struct problem_window *w,
     trail_weights(u - (double)k, ball->weight);
     trail_sum(w->trail->control + k, ball->weight, x);
     vector_from_to(e->curve.end.at, x, ball->offset);
-    ball->radius_mm = radius_of(w, e);
+    ball->radius_mm =
+        radius_of(w, e, w->trail->control + k, w->limits->cycle_s / w->limits->step_s);
 }
 
 static void set_joints(struct problem *p, const struct problem_window *w)

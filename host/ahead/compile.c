@@ -5,6 +5,7 @@
 #include "ahead/vector.h"
 #include "base/fnv.h"
 #include "base/maths.h"
+#include "replay/replay.h"
 
 #include <string.h>
 
@@ -15,6 +16,9 @@
 /* A section of which less than this part of its time, or so many knots, could be won is not optimised. */
 #define WORTH_PART  0.001
 #define WORTH_KNOTS 2
+
+/* With the whole tolerance, a half and so on. */
+#define TRIES 4
 
 static uint64_t add_number(uint64_t digest, uint64_t number)
 {
@@ -38,11 +42,40 @@ uint64_t compile_digest(uint64_t digest, const struct move *m)
     return fnv_add_double(digest, m->base_radius_mm);
 }
 
-static uint32_t step_cycles(uint32_t cycle_us)
+/* The time in which the axes cross the smallest tolerance; 0: nothing is blended. */
+static double crossing_s(const struct compile_config *config)
 {
-    const uint32_t step_us = (uint32_t)(1e6 * COMPILE_STEP_S + 0.5);
+    const struct plan_limits *of = &config->limits;
+    double least_s = MATHS_INFINITY;
 
-    return (step_us + cycle_us - 1) / cycle_us;
+    if (!(config->tolerance_part > 0))
+        return 0;
+    for (int i = 0; i < AXIS_LINEAR_COUNT; i++) {
+        if ((of->axes & (1U << i)) != 0)
+            least_s = maths_min(
+                least_s, maths_max(maths_cbrt(config->tolerance_mm / of->jerk_mm_s3[i]),
+                                   maths_sqrt(config->tolerance_mm / of->acceleration_mm_s2[i])));
+    }
+    return least_s;
+}
+
+/* Knots so far apart that a controller that is fed while it runs holds what it brakes on. */
+static double braking_cycles(const struct compile_config *config)
+{
+    struct rate rate;
+
+    rate_init(&rate, &config->limits, 1 - COMPILE_RESERVE_KEPT);
+    return maths_ceil(rate_brake_cycles(&rate) / REPLAY_BRAKE_INTERVALS_MAX);
+}
+
+static uint32_t step_cycles(const struct compile_config *config)
+{
+    const double cycle_s = 1e-6 * config->cycle_us;
+    const double most = maths_max(maths_ceil(COMPILE_STEP_S / cycle_s - 1e-9), 1);
+    const double wanted =
+        (double)(uint32_t)(maths_min(crossing_s(config), 1) / (COMPILE_CROSSING_KNOTS * cycle_s));
+
+    return (uint32_t)maths_clamp(maths_max(wanted, braking_cycles(config)), 1, most);
 }
 
 /* What the optimiser may use of the machine. */
@@ -50,7 +83,9 @@ static void set_limits(struct compile *c)
 {
     const struct plan_limits *of = &c->config.limits;
 
-    c->limits.step_s = (double)step_cycles(c->config.cycle_us) * 1e-6 * c->config.cycle_us;
+    c->step_cycles = step_cycles(&c->config);
+    c->limits.cycle_s = 1e-6 * c->config.cycle_us;
+    c->limits.step_s = (double)c->step_cycles * c->limits.cycle_s;
     c->exact = *of;
     c->exact.cycle_s = c->limits.step_s;
     for (int i = 0; i < AXIS_LINEAR_COUNT; i++) {
@@ -68,18 +103,29 @@ static void set_limits(struct compile *c)
     }
 }
 
+/* Third differences of an axis's control points: J h^3 at most, 2 A h^2 and 4 V h. */
+static double largest_third(const struct plan_limits *of, int axis, double step_s)
+{
+    const double by_jerk = of->jerk_mm_s3[axis] * step_s * step_s * step_s;
+    const double by_acceleration = 2 * of->acceleration_mm_s2[axis] * step_s * step_s;
+    const double by_velocity = 4 * of->velocity_mm_s[axis] * step_s;
+
+    return maths_min(by_jerk, maths_min(by_acceleration, by_velocity));
+}
+
 static struct replay_header header_of(const struct compile *c)
 {
     const struct plan_limits *of = &c->config.limits;
     struct replay_header h = {
         .cycle_us = c->config.cycle_us,
-        .step_cycles = step_cycles(c->config.cycle_us),
+        .step_cycles = c->step_cycles,
         .ceiling_percent = c->config.ceiling_percent,
         .text_size = c->config.text_size,
         .text_crc = c->config.text_crc,
         .kept = 1 - COMPILE_RESERVE_KEPT,
     };
-    double jerk = 0;
+    const double step_s = c->limits.step_s;
+    double third_mm = 0;
 
     for (int i = 0; i < AXIS_LINEAR_COUNT; i++) {
         if ((of->axes & (1U << i)) == 0)
@@ -87,9 +133,9 @@ static struct replay_header header_of(const struct compile *c)
         h.velocity_mm_s[i] = of->velocity_mm_s[i];
         h.acceleration_mm_s2[i] = of->acceleration_mm_s2[i];
         h.jerk_mm_s3[i] = of->jerk_mm_s3[i];
-        jerk = maths_max(jerk, of->jerk_mm_s3[i]);
+        third_mm = maths_max(third_mm, largest_third(of, i, step_s));
     }
-    h.quantum_bits = encoder_quantum_bits(jerk, c->limits.step_s);
+    h.quantum_bits = encoder_quantum_bits(third_mm);
     return h;
 }
 
@@ -127,29 +173,54 @@ static bool tell_progress(void *context, double part)
            c->config.progress(c->config.context, done / maths_max(all, 1), c->time_s);
 }
 
-/* Optimised, or where that finds nothing better the exact path, which is lent and given back. */
+static enum compile_result try_once(struct compile *c, const struct trail *exact,
+                                    struct trail *trail, bool *stuck)
+{
+    *stuck = false;
+    if (!guess_trail(&c->path, &c->limits, trail))
+        return COMPILE_MEMORY;
+    switch (
+        solver_run(c->solver, &c->path, &c->limits, trail, exact->intervals, tell_progress, c)) {
+    case SOLVER_DONE:
+        return COMPILE_DONE;
+    case SOLVER_STOPPED:
+        return COMPILE_STOPPED;
+    case SOLVER_MEMORY:
+        return COMPILE_MEMORY;
+    case SOLVER_STUCK:
+        *stuck = true;
+        break;
+    }
+    return COMPILE_DONE;
+}
+
+static void narrow(struct ahead_path *path)
+{
+    for (size_t k = 0; k < path->count; k++)
+        path->element[k].tolerance_mm *= 0.5;
+}
+
+/*
+ * Optimised, or where that finds nothing better the exact path, which is lent and given back. Where a tolerance is too wide
+ * for its path, so that nothing legal is found, half of it may do.
+ */
 static enum compile_result optimise(struct compile *c, struct trail *exact)
 {
     struct trail trail = {0};
     enum compile_result result = COMPILE_DONE;
+    bool stuck = true;
 
-    if (!guess_trail(&c->path, &c->limits, &trail))
-        return COMPILE_MEMORY;
-    switch (solver_run(c->solver, &c->path, &c->limits, &trail, exact->intervals, tell_progress, c)) {
-    case SOLVER_DONE:
+    for (int tries = 0; tries < TRIES && stuck && result == COMPILE_DONE; tries++) {
+        result = try_once(c, exact, &trail, &stuck);
+        if (result != COMPILE_DONE || stuck)
+            trail_free(&trail);
+        if (stuck)
+            narrow(&c->path);
+    }
+    if (result == COMPILE_DONE && !stuck) {
         trail_free(exact);
         *exact = trail;
-        return COMPILE_DONE;
-    case SOLVER_STOPPED:
-        result = COMPILE_STOPPED;
-        break;
-    case SOLVER_MEMORY:
-        result = COMPILE_MEMORY;
-        break;
-    case SOLVER_STUCK:
-        break;
     }
-    trail_free(&trail);
     return result;
 }
 
@@ -183,7 +254,8 @@ static enum compile_result end_section(struct compile *c)
         return COMPILE_DONE;
     if (!drive_exactly(c, &trail))
         return COMPILE_MEMORY;
-    result = !c->config.exact && is_worth_it(c, &trail) ? optimise(c, &trail) : COMPILE_DONE;
+    result =
+        c->config.tolerance_part > 0 && is_worth_it(c, &trail) ? optimise(c, &trail) : COMPILE_DONE;
     if (result == COMPILE_DONE) {
         c->time_s += (double)trail.intervals * c->limits.step_s;
         encoder_add(&c->encoder, &c->path, &trail);
@@ -278,6 +350,7 @@ static struct ahead_shape shape_of(const struct move *move)
 static enum compile_result add_motion(struct compile *c, const struct move *move)
 {
     const char *why = why_unfit(move);
+    const double part = c->config.tolerance_part > 0 ? c->config.tolerance_part : 1;
     struct ahead_element e = {.line = move->line, .shape = shape_of(move)};
     enum compile_result result = COMPILE_DONE;
 
@@ -292,7 +365,7 @@ static enum compile_result add_motion(struct compile *c, const struct move *move
     e.exact = is_exact(move);
     e.stop = move->path == PATH_EXACT_STOP;
     e.tolerance_mm =
-        e.exact ? EXACT_PART * c->config.limits.chord_error_max_mm : move->tolerance_mm;
+        e.exact ? EXACT_PART * c->config.limits.chord_error_max_mm : part * move->tolerance_mm;
     e.feed_mm_s = move->kind == MOVE_RAPID ? MATHS_INFINITY
                                            : 0.01 * c->config.ceiling_percent * move->feed_mm_s;
     if (begins_section(c, &e))

@@ -13,8 +13,13 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-/* Time between knots of the curve, and so three axes' 3 kB a second; a slower control cycle has one knot each. */
-#define COMPILE_STEP_S 0.002
+/*
+ * Time between knots of the curve, at most, and so three axes' 3 kB a second; a slower control cycle has one knot each. Less
+ * where the time in which the tolerance is crossed, T = max(cbrt(P / J), sqrt(P / A)), is less than so many knots, and one
+ * cycle where nothing is blended, for every section takes two knots longer than its exact path.
+ */
+#define COMPILE_STEP_S         0.002
+#define COMPILE_CROSSING_KNOTS 2
 
 /* Part of acceleration and jerk left to changes of the rate (firmware/replay/rate.h), and of velocity to rounding. */
 #define COMPILE_RESERVE      0.005
@@ -36,7 +41,8 @@ struct compile_config {
     uint32_t
         text_size; /* of the program, and its CRC-32: for whoever has no time to read it twice */
     uint32_t text_crc;
-    bool exact; /* every section on the exact path */
+    double tolerance_part; /* of the tolerance that is used; 0: every section on the exact path */
+    double tolerance_mm;   /* the smallest of motions that are blended; 0: none is */
     unsigned workers;
     uint32_t blocks; /* about so many in the program: for the progress */
     bool (*progress)(void *context, double part, double time_s);
@@ -46,6 +52,7 @@ struct compile_config {
 struct compile {
     struct compile_config config;
     struct ahead_limits limits;
+    uint32_t step_cycles;     /* between knots */
     struct plan_limits exact; /* the same for the planner on board, a cycle for each knot */
     struct solver *solver;
     struct encoder encoder;

@@ -32,9 +32,9 @@ void encoder_begin(struct encoder *e, FILE *stream, const struct replay_header *
     e->bytes = sizeof nothing;
 }
 
-uint32_t encoder_quantum_bits(double jerk_mm_s3, double step_s)
+uint32_t encoder_quantum_bits(double third_mm)
 {
-    double third = jerk_mm_s3 * step_s * step_s * step_s;
+    double third = third_mm;
     uint32_t bits = 0;
 
     for (; bits < QUANTUM_BITS_MAX && 2 * third <= THIRD_MAX; bits++)

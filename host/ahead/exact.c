@@ -146,8 +146,8 @@ static double smallest_tolerance(const struct ahead_path *path)
     return least;
 }
 
-bool exact_trail(const struct ahead_path *path, const struct plan_limits *limits,
-                 bool stops, struct trail *trail)
+bool exact_trail(const struct ahead_path *path, const struct plan_limits *limits, bool stops,
+                 struct trail *trail)
 {
     struct exact *x = calloc(1, sizeof *x);
     bool done;
@@ -190,8 +190,8 @@ bool exact_is_legal(const struct trail *trail, const struct plan_limits *limits)
 
     for (size_t k = 0; k < trail->intervals && legal; k++) {
         for (int i = 0; i < AXIS_LINEAR_COUNT; i++)
-            legal = legal && ((limits->axes & (1U << i)) == 0 ||
-                              is_within(trail->control + k, i, limits));
+            legal = legal &&
+                    ((limits->axes & (1U << i)) == 0 || is_within(trail->control + k, i, limits));
     }
     return legal;
 }
@@ -205,8 +205,8 @@ static double fastest(const struct ahead_element *e, const struct plan_limits *l
         vector_from_to(e->curve.start.at, e->curve.end.at, t);
         for (int i = 0; i < AXIS_LINEAR_COUNT; i++) {
             if (t[i] != 0)
-                speed = maths_min(speed, limits->velocity_mm_s[i] * e->curve.length_mm /
-                                             maths_abs(t[i]));
+                speed = maths_min(speed,
+                                  limits->velocity_mm_s[i] * e->curve.length_mm / maths_abs(t[i]));
         }
     }
     return maths_min(speed, e->feed_mm_s);

@@ -18,6 +18,7 @@ struct guess {
     double *place_mm;  /* of each node */
     double *square;    /* feed squared there, mm2/s2 */
     double *rate;      /* acceleration from this node to the next, mm/s2 */
+    double *jerk;      /* likewise, mm/s3 */
     size_t *element;   /* that begins at, or holds, the node */
     double *reached_s; /* when the node is passed */
 };
@@ -32,6 +33,7 @@ static void guess_free(struct guess *g)
     free(g->place_mm);
     free(g->square);
     free(g->rate);
+    free(g->jerk);
     free(g->element);
     free(g->reached_s);
 }
@@ -44,10 +46,11 @@ static bool guess_allocate(struct guess *g)
     g->place_mm = calloc(g->count, sizeof *g->place_mm);
     g->square = calloc(g->count, sizeof *g->square);
     g->rate = calloc(g->count, sizeof *g->rate);
+    g->jerk = calloc(g->count, sizeof *g->jerk);
     g->element = calloc(g->count, sizeof *g->element);
     g->reached_s = calloc(g->count, sizeof *g->reached_s);
-    return g->place_mm != NULL && g->square != NULL && g->rate != NULL && g->element != NULL &&
-           g->reached_s != NULL;
+    return g->place_mm != NULL && g->square != NULL && g->rate != NULL && g->jerk != NULL &&
+           g->element != NULL && g->reached_s != NULL;
 }
 
 /* How much of a limit one unit along the direction leaves: min_i limit_i / |t_i|. */
@@ -92,8 +95,12 @@ static double feed_at(const struct guess *g, const struct ahead_element *e, cons
 }
 
 /*
- * A corner with the change of direction d, passed with triangular acceleration (smooth path, blends):
- * v <= (6 P sqrt(J / m) / |d|)^(2/3), v <= A^2 / (J m), m the largest component of d.
+ * A corner with the change of direction d, m its largest component, is passed within P = |d| v T / 12 by a triangle of
+ * acceleration, T = 2 sqrt(v m / J), and within P = |d| v T / 8 by an even one, T = v m / A: the slower of
+ *
+ *     v = (6 P sqrt(J / m) / |d|)^(2/3),    v = sqrt(8 P A / (m |d|))
+ *
+ * so that no higher limit and no larger tolerance makes it slower.
  */
 static double corner_feed(const struct guess *g, double tolerance_mm, const double from[3],
                           const double to[3])
@@ -102,14 +109,16 @@ static double corner_feed(const struct guess *g, double tolerance_mm, const doub
     const double j = smallest(g->limits->jerk_mm_s3);
     double d[3];
     double m;
+    double length;
     double root;
 
     vector_from_to(from, to, d);
     m = vector_largest(d);
     if (m < 1e-9)
         return MATHS_INFINITY;
-    root = maths_cbrt(6 * tolerance_mm * maths_sqrt(j / m) / vector_length(d));
-    return maths_min(root * root, a * a / (j * m));
+    length = vector_length(d);
+    root = maths_cbrt(6 * tolerance_mm * maths_sqrt(j / m) / length);
+    return maths_min(root * root, maths_sqrt(8 * tolerance_mm * a / (m * length)));
 }
 
 static void set_element(struct guess *g, size_t k, size_t *node, double previous[3])
@@ -130,6 +139,7 @@ static void set_element(struct guess *g, size_t k, size_t *node, double previous
             feed = maths_min(feed, corner_feed(g, e->tolerance_mm, previous, t));
         g->square[*node] = feed * feed;
         g->rate[*node] = GUESS_PART * along(g->limits->acceleration_mm_s2, t);
+        g->jerk[*node] = GUESS_PART * along(g->limits->jerk_mm_s3, t);
     }
     ahead_path_at(g->path, k, e->start_mm + e->curve.length_mm, p, previous);
 }
@@ -147,19 +157,26 @@ static void set_nodes(struct guess *g)
     g->square[0] = 0;
 }
 
-/* v^2 <= v_next^2 + 2 a ds, backwards and then forwards; a whole piece is never at rest. */
+/*
+ * The feed squared at the end of a piece, from that at its begin: v^2 + 2 a ds by an even acceleration; and by that of a
+ * ramp from rest whose jerk is even, a = sqrt(J v) / 2, so that d(v^(3/2)) = 3/4 sqrt(J) ds.
+ */
+static double ramp(const struct guess *g, size_t k, double square)
+{
+    const double ds = g->place_mm[k + 1] - g->place_mm[k];
+    const double v = maths_sqrt(square);
+    const double root = maths_cbrt(v * maths_sqrt(v) + 0.75 * maths_sqrt(g->jerk[k]) * ds);
+
+    return maths_min(square + 2 * g->rate[k] * ds, root * root * root * root);
+}
+
+/* Backwards and then forwards. */
 static void limit_ramps(struct guess *g)
 {
-    for (size_t k = g->count - 1; k > 0; k--) {
-        const double ds = g->place_mm[k] - g->place_mm[k - 1];
-
-        g->square[k - 1] = maths_min(g->square[k - 1], g->square[k] + 2 * g->rate[k - 1] * ds);
-    }
-    for (size_t k = 0; k + 1 < g->count; k++) {
-        const double ds = g->place_mm[k + 1] - g->place_mm[k];
-
-        g->square[k + 1] = maths_min(g->square[k + 1], g->square[k] + 2 * g->rate[k] * ds);
-    }
+    for (size_t k = g->count - 1; k > 0; k--)
+        g->square[k - 1] = maths_min(g->square[k - 1], ramp(g, k - 1, g->square[k]));
+    for (size_t k = 0; k + 1 < g->count; k++)
+        g->square[k + 1] = maths_min(g->square[k + 1], ramp(g, k, g->square[k]));
 }
 
 /* A piece between two rests is driven as if its middle were passed at the feed its ramps allow. */

@@ -1,4 +1,4 @@
-/* What the optimiser keeps: the limits of the linear axes, and the time between knots. */
+/* What the optimiser keeps: the limits of the linear axes, and the times between knots and between setpoints. */
 #ifndef TAKT_HOST_AHEAD_LIMITS_H
 #define TAKT_HOST_AHEAD_LIMITS_H
 
@@ -6,7 +6,8 @@ struct ahead_limits {
     double velocity_mm_s[3];
     double acceleration_mm_s2[3];
     double jerk_mm_s3[3];
-    double step_s; /* between knots of the curve */
+    double step_s;  /* between knots of the curve */
+    double cycle_s; /* between setpoints */
 };
 
 #endif

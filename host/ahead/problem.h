@@ -43,9 +43,8 @@ struct problem_ball {
 struct problem_cell {
     double now[3][FORM_COUNT];     /* of every axis: the derivative as it is */
     double time[3][FORM_COUNT][4]; /* what e changes of it */
-    double feed;                   /* likewise of the feed; 0: no limit binds */
-    double feed_way[3];            /* its direction, over the limit */
-    double feed_time[4];
+    double feed_now[3];            /* the velocity as it is, over the feed */
+    double feed_scale;             /* 1 / feed, knots; 0: no limit binds */
     struct problem_ball ball[CELL_BALLS];
 };
 

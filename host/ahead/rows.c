@@ -10,6 +10,7 @@
 
 /* Weights of the change of the curve in each form; of e in what jerk may be more or less. */
 static const double form_weight[FORM_COUNT][4] = {{-1, 1, 0, 0}, {1, -2, 1, 0}, {-1, 3, -3, 1}};
+static const double difference_value[4] = {0.5, 0.5, 0, 0};
 static const double middle_value[4] = {1.0 / 48, 23.0 / 48, 23.0 / 48, 1.0 / 48};
 
 /* sum_k weight_k z of unknown which of point k */
@@ -61,6 +62,26 @@ static void ball_place(const struct problem_ball *ball, const double z[CELL_UNKN
         place[i] /= ball->radius_mm;
 }
 
+/* The velocity's change over the feed. */
+static void feed_change(const struct problem_cell *cell, const double z[CELL_UNKNOWNS],
+                        double change[3])
+{
+    const double time = 0.5 * sum_of(z, difference_value, 3);
+
+    for (int i = 0; i < 3; i++)
+        change[i] =
+            cell->feed_scale * sum_of(z, form_weight[FORM_VELOCITY], i) + cell->feed_now[i] * time;
+}
+
+/* The velocity, over the feed. */
+static void feed_of(const struct problem_cell *cell, const double z[CELL_UNKNOWNS],
+                    double velocity[3])
+{
+    feed_change(cell, z, velocity);
+    for (int i = 0; i < 3; i++)
+        velocity[i] += cell->feed_now[i];
+}
+
 void rows_value(const struct problem *p, const struct problem_cell *cell,
                 const double z[CELL_UNKNOWNS], double c[CELL_ROWS])
 {
@@ -76,12 +97,11 @@ void rows_value(const struct problem *p, const struct problem_cell *cell,
         }
     }
     *row = 1;
-    if (cell->feed > 0) {
-        double way[3];
+    if (cell->feed_scale > 0) {
+        double velocity[3];
 
-        for (int i = 0; i < 3; i++)
-            way[i] = sum_of(z, form_weight[FORM_VELOCITY], i);
-        *row = 1 - cell->feed - vector_dot(way, cell->feed_way) - sum_of(z, cell->feed_time, 3);
+        feed_of(cell, z, velocity);
+        *row = 0.5 * (1 - vector_dot(velocity, velocity));
     }
     row++;
     for (int i = 0; i < CELL_BALLS; i++) {
@@ -125,12 +145,13 @@ void rows_product(const struct problem *p, const struct problem_cell *cell,
         }
     }
     *row = 0;
-    if (cell->feed > 0) {
-        double way[3];
+    if (cell->feed_scale > 0) {
+        double velocity[3];
+        double change[3];
 
-        for (int i = 0; i < 3; i++)
-            way[i] = sum_of(dz, form_weight[FORM_VELOCITY], i);
-        *row = vector_dot(way, cell->feed_way) + sum_of(dz, cell->feed_time, 3);
+        feed_of(cell, z, velocity);
+        feed_change(cell, dz, change);
+        *row = vector_dot(velocity, change);
     }
     row++;
     for (int i = 0; i < CELL_BALLS; i++)
@@ -151,6 +172,19 @@ static void add_ball(const struct problem_ball *ball, const double z[CELL_UNKNOW
     }
 }
 
+static void add_velocity(const struct problem_cell *cell, const double z[CELL_UNKNOWNS], double v,
+                         double b[CELL_UNKNOWNS])
+{
+    double velocity[3];
+
+    feed_of(cell, z, velocity);
+    for (int k = 0; k < 4; k++) {
+        for (int i = 0; i < 3; i++)
+            b[4 * k + i] += v * cell->feed_scale * form_weight[FORM_VELOCITY][k] * velocity[i];
+        b[4 * k + 3] += v * 0.5 * difference_value[k] * vector_dot(velocity, cell->feed_now);
+    }
+}
+
 void rows_transpose(const struct problem *p, const struct problem_cell *cell,
                     const double z[CELL_UNKNOWNS], const double v[CELL_ROWS],
                     double b[CELL_UNKNOWNS])
@@ -168,11 +202,8 @@ void rows_transpose(const struct problem *p, const struct problem_cell *cell,
             }
         }
     }
-    for (int k = 0; k < 4 && cell->feed > 0; k++) {
-        for (int i = 0; i < 3; i++)
-            b[4 * k + i] += *row * form_weight[FORM_VELOCITY][k] * cell->feed_way[i];
-        b[4 * k + 3] += *row * cell->feed_time[k];
-    }
+    if (cell->feed_scale > 0)
+        add_velocity(cell, z, *row, b);
     row++;
     for (int i = 0; i < CELL_BALLS; i++, row++) {
         if (cell->ball[i].radius_mm > 0)
@@ -223,19 +254,26 @@ static void add_axis(const struct problem *p, const struct problem_cell *cell, i
     }
 }
 
-static void add_feed(const struct problem_cell *cell, double w,
-                     double k[CELL_UNKNOWNS][CELL_UNKNOWNS])
+/* k += w (V^T v)(V^T v)^T + m V^T V, V the velocity's derivative by the unknowns */
+static void add_feed(const struct problem_cell *cell, const double z[CELL_UNKNOWNS], double w,
+                     double m, double k[CELL_UNKNOWNS][CELL_UNKNOWNS])
 {
-    double g[CELL_UNKNOWNS];
+    double g[CELL_UNKNOWNS] = {0};
 
-    for (int i = 0; i < 4; i++) {
-        for (int axis = 0; axis < 3; axis++)
-            g[4 * i + axis] = form_weight[FORM_VELOCITY][i] * cell->feed_way[axis];
-        g[4 * i + 3] = cell->feed_time[i];
-    }
+    add_velocity(cell, z, 1, g);
     for (int i = 0; i < CELL_UNKNOWNS; i++) {
         for (int j = 0; j <= i; j++)
             k[i][j] += w * g[i] * g[j];
+    }
+    for (int axis = 0; axis < 3; axis++) {
+        double along[4];
+        double time[4];
+
+        for (int i = 0; i < 4; i++) {
+            along[i] = cell->feed_scale * form_weight[FORM_VELOCITY][i];
+            time[i] = 0.5 * difference_value[i] * cell->feed_now[axis];
+        }
+        add_square(k, axis, m, along, time);
     }
 }
 
@@ -271,8 +309,8 @@ void rows_normal(const struct problem *p, const struct problem_cell *cell,
 {
     for (int axis = 0; axis < 3; axis++)
         add_axis(p, cell, axis, w + ROWS_AXIS + (size_t)2 * FORM_COUNT * (size_t)axis, k);
-    if (cell->feed > 0)
-        add_feed(cell, w[ROWS_FEED], k);
+    if (cell->feed_scale > 0)
+        add_feed(cell, z, w[ROWS_FEED], m[ROWS_FEED], k);
     for (int i = 0; i < CELL_BALLS; i++) {
         if (cell->ball[i].radius_mm > 0)
             add_ball_square(&cell->ball[i], z, w[ROWS_BALL + i], m[ROWS_BALL + i], k);

@@ -20,6 +20,14 @@
 #define POLISH_STEPS 3
 #define REPAIRS_MAX  12
 
+/*
+ * The rounds end when so many in a row, with windows cut both ways, each change less than this part of the time; the first ones
+ * bring the guess within the limits and say nothing.
+ */
+#define FIRST_ROUNDS 2
+#define STILL_ROUNDS 2
+#define STILL_PART   3e-4
+
 /* A trajectory that has grown beyond so many times what is of use in a round is not waited for. */
 #define ROUND_GROWTH 2
 
@@ -27,9 +35,10 @@
 #define MARGIN      120
 #define SLOW_MARGIN 24
 
-/* From this repair on time is added, with e = -SLOW_PART in the first of them. */
-#define SLOW_FROM 2
-#define SLOW_PART 0.06
+/* From this repair on time is added, with e between these. */
+#define SLOW_FROM  2
+#define SLOW_LEAST 1e-3
+#define SLOW_MOST  0.3
 
 enum job_kind { JOB_KEEP, JOB_ROUND, JOB_REPAIR };
 
@@ -140,17 +149,28 @@ static double measure(struct bench *b, const struct problem_window *w)
     return excess_measure(w, &b->problem);
 }
 
-/* e around every interval that is beyond its limits: passed more slowly, by more in every repair. */
+/*
+ * By how much an interval is passed more slowly: enough for its velocity, e = -2 (beyond - 1), and twice as much in every
+ * repair.
+ */
+static double slowness(const struct solver *s, double beyond)
+{
+    const double least = maths_max(2 * (beyond - 1), SLOW_LEAST);
+
+    return maths_min(least * (double)(UINT32_C(1) << (s->repair - SLOW_FROM)), SLOW_MOST);
+}
+
+/* e around every interval that is beyond its limits. */
 static void slow_down(const struct solver *s, struct bench *b, const struct trail *piece)
 {
-    const double part = SLOW_PART * (double)(s->repair - SLOW_FROM + 1);
-    const double low = maths_min(part, 0.3);
     const size_t cells = piece->intervals;
 
     memset(b->slow, 0, cells * sizeof *b->slow);
     for (size_t i = 0; i < cells; i++) {
         if (piece->beyond[i] <= 1)
             continue;
+        const double low = slowness(s, piece->beyond[i]);
+
         for (size_t k = i > SLOW_MARGIN ? i - SLOW_MARGIN : 0; k < i + SLOW_MARGIN; k++) {
             const double x = ((double)k - (double)i) / SLOW_MARGIN;
             const double bump = (1 - x * x) * (1 - x * x);
@@ -394,9 +414,18 @@ static enum solver_result repair_all(struct solver *s)
     return s->trail->intervals > s->longest ? give_up(s) : SOLVER_DONE;
 }
 
+/* Has a round changed the time by next to nothing? */
+static bool is_still(size_t before, size_t after)
+{
+    const double change = (double)before - (double)after;
+
+    return maths_abs(change) <= STILL_PART * (double)after;
+}
+
 enum solver_result solver_run(struct solver *s, const struct ahead_path *path,
-                              const struct ahead_limits *limits, struct trail *trail, size_t longest,
-                              bool (*progress)(void *context, double part), void *context)
+                              const struct ahead_limits *limits, struct trail *trail,
+                              size_t longest, bool (*progress)(void *context, double part),
+                              void *context)
 {
     s->path = path;
     s->limits = limits;
@@ -405,13 +434,16 @@ enum solver_result solver_run(struct solver *s, const struct ahead_path *path,
     s->stopped = false;
     s->progress = progress;
     s->context = context;
-    for (unsigned round = 0; round < SOLVER_ROUNDS; round++) {
+    for (unsigned round = 0, still = 0; round < SOLVER_ROUNDS && still < STILL_ROUNDS; round++) {
+        const size_t before = trail->intervals;
+
         s->part_done = (double)round / (SOLVER_ROUNDS + 1);
         s->part_round = 1.0 / (SOLVER_ROUNDS + 1);
         if (!plan_round(s, round) || !do_jobs(s))
             return failed(s);
-        if (s->trail->intervals / ROUND_GROWTH > s->longest)
+        if (trail->intervals / ROUND_GROWTH > s->longest)
             return give_up(s);
+        still = round >= FIRST_ROUNDS && is_still(before, trail->intervals) ? still + 1 : 0;
     }
     s->part_done = (double)SOLVER_ROUNDS / (SOLVER_ROUNDS + 1);
     return repair_all(s);

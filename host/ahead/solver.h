@@ -16,8 +16,8 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-/* Rounds of one section. */
-#define SOLVER_ROUNDS 5
+/* Rounds of one section, at most. */
+#define SOLVER_ROUNDS 40
 
 enum solver_result {
     SOLVER_DONE,
@@ -38,8 +38,9 @@ void solver_free(struct solver *s);
  * from it stops the work. progress may be NULL.
  */
 enum solver_result solver_run(struct solver *s, const struct ahead_path *path,
-                              const struct ahead_limits *limits, struct trail *trail, size_t longest,
-                              bool (*progress)(void *context, double part), void *context);
+                              const struct ahead_limits *limits, struct trail *trail,
+                              size_t longest, bool (*progress)(void *context, double part),
+                              void *context);
 
 /* After SOLVER_STUCK: the place along the path that is farthest beyond what it has to keep. */
 double solver_stuck_mm(const struct solver *s);

@@ -155,19 +155,25 @@ static void sample(const struct warp *a, struct trail *t)
     }
 }
 
-/* c_k = p_k - (p_(k-1) - 2 p_k + p_(k+1)) / 6: a cubic is met exactly. */
-static void points_to_control(struct trail *t)
+/*
+ * (c_(k-1) + 4 c_k + c_(k+1)) / 6 = p_k between the ends, which are known: by elimination, pivot_k = 1 / (4 - pivot_(k-1)).
+ * What has not been moved is found again, jumps of jerk included.
+ */
+static void points_to_control(struct trail *t, double *pivot)
 {
-    double before[3];
+    double(*c)[3] = t->control;
+    const size_t end = t->intervals;
 
-    vector_copy(t->control[TRAIL_ENDS - 1], before);
-    for (size_t k = TRAIL_ENDS; k < t->intervals; k++) {
-        for (int i = 0; i < 3; i++) {
-            const double here = t->control[k][i];
+    for (size_t k = TRAIL_ENDS; k < end; k++) {
+        const bool is_last = k + 1 == end;
 
-            t->control[k][i] = here - (before[i] - 2 * here + t->control[k + 1][i]) / 6;
-            before[i] = here;
-        }
+        pivot[k] = 1 / (4 - (k > TRAIL_ENDS ? pivot[k - 1] : 0));
+        for (int i = 0; i < 3; i++)
+            c[k][i] = pivot[k] * (6 * c[k][i] - c[k - 1][i] - (is_last ? c[end][i] : 0));
+    }
+    for (size_t k = end - 1; k-- > TRAIL_ENDS;) {
+        for (int i = 0; i < 3; i++)
+            c[k][i] -= pivot[k] * c[k + 1][i];
     }
 }
 
@@ -239,11 +245,19 @@ static bool take_moved(const struct warp *a, struct trail *t)
 
 static bool take_warped(struct warp *a, struct trail *t)
 {
+    double *pivot;
+
     if (!trail_allocate(t, end_on_a_knot(a)))
         return false;
+    pivot = calloc(t->intervals, sizeof *pivot);
+    if (pivot == NULL) {
+        trail_free(t);
+        return false;
+    }
     sample(a, t);
-    points_to_control(t);
     keep_ends(a, t);
+    points_to_control(t, pivot);
+    free(pivot);
     return true;
 }
 

@@ -199,12 +199,17 @@ static enum command_status simulate(struct run *run)
 }
 
 /* Who plans: the controller as it runs, or takt before it. */
-static enum command_status plan(struct run *run, const char *how)
+static enum command_status plan(struct run *run, const struct options *options)
 {
+    const char *how = options->plan;
     enum command_status status;
 
     if (how == NULL || strcmp(how, "board") == 0)
         return STATUS_DONE;
+    if (options->override_method != NULL)
+        message_command_warning("--override-method %s is not used: what is planned ahead of the "
+                                "run changes its rate in its own way",
+                                options->override_method);
     status = compiled_open(&run->compiled, &run->session, &run->totals,
                            strcmp(how, "ahead") == 0 ? NULL : how);
     run->session.compiled = &run->compiled;
@@ -230,7 +235,7 @@ static enum command_status execute(struct run *run, const struct options *option
     if (status == STATUS_DONE)
         status = session_check(&run->session, 1, &run->totals);
     if (status == STATUS_DONE)
-        status = plan(run, options->plan);
+        status = plan(run, options);
     if (status == STATUS_DONE)
         status = simulate(run);
     run_outputs_close(&run->outputs);

@@ -111,11 +111,12 @@ static void set_text(const struct session *s, struct compile_config *config)
 
 static enum command_status compile(struct making *m, const struct session *s,
                                    const struct session_totals *totals, uint32_t ceiling_percent,
-                                   bool exact, FILE *stream)
+                                   double tolerance_part, FILE *stream)
 {
     struct compile_config config = {.cycle_us = s->setup.machine.cycle_us,
                                     .ceiling_percent = ceiling_percent,
-                                    .exact = exact,
+                                    .tolerance_part = tolerance_part,
+                                    .tolerance_mm = totals->tolerance_mm,
                                     .workers = crew_cores(),
                                     .blocks = totals->motions,
                                     .progress = show,
@@ -144,9 +145,9 @@ static bool empty(FILE *stream)
     return ftruncate(fileno(stream), 0) == 0;
 }
 
-/* Compiled and judged. exact: nothing is optimised. */
+/* Compiled and judged. tolerance_part: of the tolerance that is used; 0: nothing is optimised. */
 static enum command_status make(const struct session *s, const struct session_totals *totals,
-                                uint32_t ceiling_percent, bool exact, FILE *stream,
+                                uint32_t ceiling_percent, double tolerance_part, FILE *stream,
                                 struct compiled_figures *figures)
 {
     struct making *m = calloc(1, sizeof *m);
@@ -158,7 +159,7 @@ static enum command_status make(const struct session *s, const struct session_to
         free(m);
         return STATUS_ENVIRONMENT;
     }
-    status = compile(m, s, totals, ceiling_percent, exact, stream);
+    status = compile(m, s, totals, ceiling_percent, tolerance_part, stream);
     figures->bytes = m->compile.encoder.bytes;
     compile_free(&m->compile);
     free(m);
@@ -169,8 +170,10 @@ enum command_status compiled_make(const struct session *s, const struct session_
                                   uint32_t ceiling_percent, FILE *stream,
                                   struct compiled_figures *figures)
 {
+    /* What the judge refuses is made with less of the tolerance, and at last on the exact path. */
+    static const double parts[] = {1, 0.8, 0.4, 0};
     const uint64_t start_ns = stopwatch_now_ns();
-    enum command_status status;
+    enum command_status status = STATUS_FAILED;
 
     *figures = (struct compiled_figures){0};
     if (totals->is_open) {
@@ -178,9 +181,8 @@ enum command_status compiled_make(const struct session *s, const struct session_
                       "what follows a probing move or M66 cannot be planned ahead");
         return STATUS_INPUT;
     }
-    status = make(s, totals, ceiling_percent, false, stream, figures);
-    if (status == STATUS_FAILED) /* what the judge refuses is driven on the exact path */
-        status = make(s, totals, ceiling_percent, true, stream, figures);
+    for (size_t i = 0; i < sizeof parts / sizeof parts[0] && status == STATUS_FAILED; i++)
+        status = make(s, totals, ceiling_percent, parts[i], stream, figures);
     if (status == STATUS_FAILED)
         message_error(s->program.name, figures->why_line, 0, "%s: nothing is written",
                       figures->why);

@@ -93,6 +93,9 @@ static void count_move(struct session_totals *totals, const struct move *move, s
     if (!move_is_motion(move))
         return;
     totals->motions++;
+    if (move->path == PATH_BLEND && move->tolerance_mm > 0 &&
+        (totals->tolerance_mm == 0 || move->tolerance_mm < totals->tolerance_mm))
+        totals->tolerance_mm = move->tolerance_mm;
     if (move_curve(move, at, &curve)) {
         totals->last = totals->motions;
         totals->curves++;

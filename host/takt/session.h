@@ -53,11 +53,12 @@ void session_begin_reading(const struct session *s, struct session_reading *read
                            struct program_config *config, struct source *source);
 
 struct session_totals {
-    uint32_t moves;   /* of all kinds */
-    uint32_t motions; /* that move axes */
-    uint32_t last;    /* number of the last motion that has a length; 0: none */
-    uint32_t curves;  /* motions that have a length */
-    double length_mm; /* of them; motions of rotary axes alone do not count */
+    uint32_t moves;      /* of all kinds */
+    uint32_t motions;    /* that move axes */
+    uint32_t last;       /* number of the last motion that has a length; 0: none */
+    uint32_t curves;     /* motions that have a length */
+    double length_mm;    /* of them; motions of rotary axes alone do not count */
+    double tolerance_mm; /* the smallest of motions that are blended; 0: none is */
     unsigned errors;
     unsigned warnings;
     bool is_open; /* only up to the first G38 or M66: what follows depends on what becomes of it */

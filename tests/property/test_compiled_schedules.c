@@ -130,6 +130,8 @@ static enum compile_result compile_program(struct run *r)
                                           .cycle_us =
                                               (uint32_t)maths_round(1e6 * r->limits.cycle_s),
                                           .ceiling_percent = r->ceiling_percent,
+                                          .tolerance_part = 1,
+                                          .tolerance_mm = r->tolerance_mm,
                                           .workers = 1,
                                           .blocks = r->moves};
     enum compile_result result = compile_begin(&compile, &config, &start, r->compiled);

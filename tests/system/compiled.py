@@ -328,8 +328,17 @@ def unfit():
         t.check(not os.path.exists("unfit.plan"), "and nothing is written", text)
 
 
+def override_methods():
+    t.write("method.ngc", "G21 G64 P0.01\nG1 X1 F600\nM2\n")
+    for plan, told in (("ahead", True), ("board", False)):
+        status, _, err = t.run("run", "method.ngc", "--plan", plan, "--quiet", "--override-method", "proportional")
+        t.check(status == 0 and ("--override-method proportional is not used" in err) == told,
+                "a method of overriding that the plan does not use is told", plan, status, err)
+
+
 if len(sys.argv) == 1:
     files()
+    override_methods()
     ceilings()
     unfit()
     stretches()

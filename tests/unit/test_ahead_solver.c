@@ -15,7 +15,8 @@
 static const struct ahead_limits limits = {.velocity_mm_s = {100, 100, 100},
                                            .acceleration_mm_s2 = {1000, 1000, 1000},
                                            .jerk_mm_s3 = {50000, 50000, 50000},
-                                           .step_s = 0.002};
+                                           .step_s = 0.002,
+                                           .cycle_s = 0.001};
 
 void setUp(void)
 {

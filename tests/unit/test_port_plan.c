@@ -47,6 +47,8 @@ static struct compile_config compile_config(void)
                                     .ceiling_percent = 100,
                                     .text_size = (uint32_t)text_size,
                                     .text_crc = crc32_add(CRC32_START, text, text_size),
+                                    .tolerance_part = 1,
+                                    .tolerance_mm = 0.01,
                                     .workers = 1};
 
     controller_plan_limits(&machine, &config.limits);
