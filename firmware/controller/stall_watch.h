@@ -22,7 +22,8 @@ struct stall_watch {
     double longest_s; /* that a standing setpoint is explained by ramps */
     double stood_s;   /* so far, by the override */
     struct point at;
-    uint64_t late; /* the controller's: exchanges that its background has missed, which are waited for */
+    uint64_t
+        late; /* the controller's: exchanges that its background has missed, which are waited for */
 };
 
 void stall_watch_init(struct stall_watch *w, const struct machine *machine);

@@ -24,7 +24,7 @@
 #define JUDGED 0.985f
 
 /* A rate does not change faster than this times what it may change by on every piece. */
-#define CHANGE_MOST 64.0
+#define CHANGE_MOST 64.0f
 
 /* Places looked at in a piece. */
 #define PLACES 4
@@ -164,18 +164,18 @@ static float change_of_axis(const struct judge_need *need, const struct route_sl
     return per_by * by > j ? j / per_by : by;
 }
 
-double judge_change_on(const struct judge_need *need, const struct route *r,
-                       const struct judge_change *change, float rate)
+float judge_change_on(const struct judge_need *need, const struct route *r,
+                      const struct judge_change *change, float rate)
 {
-    double most = CHANGE_MOST * change->by;
-    double by = change->by;
+    const float rounding_s = (float)change->rounding_s;
+    float by = (float)change->by;
+    float most = CHANGE_MOST * by;
 
     for (unsigned i = 0; i < r->slots.count; i++) {
-        most = (double)change_of_axis(need, &r->slots, (float)change->rounding_s, i, rate,
-                                      (float)most);
+        most = change_of_axis(need, &r->slots, rounding_s, i, rate, most);
     }
-    while (2.0 * by <= most) {
-        by *= 2.0;
+    while (2.0f * by <= most) {
+        by *= 2.0f;
     }
     return by;
 }

@@ -35,8 +35,8 @@ void judge_need(const struct window *w, const struct route *r, unsigned piece,
  * How fast the rate may change on a piece while it is not above a rate, 1/s: at least by change, and a power of two times
  * that, so that neighbours mostly have the same.
  */
-double judge_change_on(const struct judge_need *need, const struct route *r,
-                       const struct judge_change *change, float rate);
+float judge_change_on(const struct judge_need *need, const struct route *r,
+                      const struct judge_change *change, float rate);
 void judge_rate(const struct judge_need *need, const struct route *r, uint32_t element,
                 const struct judge_change *change, struct judge_rate *rate);
 /* Pieces from the first one on, count at most, that keep the tolerance and pass their corners within it. */

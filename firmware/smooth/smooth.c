@@ -435,7 +435,8 @@ static void set_piece(struct smooth *s, struct smooth_piece *piece)
     judge_rate(&need, &s->route, element, &s->change, &rate);
     piece->rate.most = maths_min((double)rate.most, 1.0);
     piece->rate.programmed = (double)rate.programmed;
-    piece->change.by = judge_change_on(&need, &s->route, &s->change, (float)piece->rate.most);
+    piece->change.by =
+        (double)judge_change_on(&need, &s->route, &s->change, (float)piece->rate.most);
     piece->change.rounded = piece->change.by / s->change.rounding_s;
     piece->stop = s->stops && s->taken + 1 == s->ready;
     piece->last = s->finished && w->at_end && i + 4 == w->count;

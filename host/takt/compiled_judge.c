@@ -201,8 +201,7 @@ static enum command_status replay(struct trial *t)
     }
     if (result == MOTION_DONE)
         return STATUS_DONE;
-    refuse(t, 0, "the compiled motion does not fit the program after block %u",
-           (unsigned)t->block);
+    refuse(t, 0, "the compiled motion does not fit the program after block %u", (unsigned)t->block);
     return STATUS_FAILED;
 }
 

@@ -66,10 +66,9 @@ void summary_write_junit(FILE *stream, const struct summary *summary)
 
     (void)fputs("<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuite name=\"takt run ", stream);
     write_escaped(stream, summary->program);
-    (void)fprintf(stream,
-                  "\" tests=\"%u\" failures=\"%u\" errors=\"0\" skipped=\"%u\" time=\"%.3f\">\n",
-                  summary->checks + stopped, count_failures(summary), stopped,
-                  summary->wall_time_s);
+    (void)fprintf(
+        stream, "\" tests=\"%u\" failures=\"%u\" errors=\"0\" skipped=\"%u\" time=\"%.3f\">\n",
+        summary->checks + stopped, count_failures(summary), stopped, summary->wall_time_s);
     for (unsigned i = 0; i < summary->checks; i++)
         write_case(stream, summary, &summary->check[i]);
     if (stopped > 0)

@@ -90,6 +90,7 @@ def check_planning(processor, most):
 
 def main():
     target.need_qemu()
+    target.image("m4f", "takt-desk")
     t.write("mill.ini", MACHINE)
     t.write("part.ngc", PROGRAM)
     t.write("chips.ngc", chips(300))

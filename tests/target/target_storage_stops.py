@@ -58,6 +58,7 @@ def least_ticks(name):
 
 def main():
     target.need_qemu()
+    target.image("m4f", "takt-storage")
     sets = {"a.settings": pack("a.settings", 1000), "b.settings": pack("b.settings", 2000)}
     t.check(sets["a.settings"] != sets["b.settings"], "the two sets differ")
     with open("flash.bin", "wb") as file:

@@ -427,6 +427,22 @@ static void test_a_search_in_vain_goes_on_behind_its_call(void)
     reader_expect_end(&reader);
 }
 
+/* A move each round, so that it is no endless loop of lines without one. */
+static void test_lines_are_not_read_again_more_often_than_the_host_lets_them(void)
+{
+    struct move move;
+    enum program_result result = PROGRAM_MOVE;
+
+    reader_prepare(&reader);
+    reader.config.repeats_max = 100;
+    reader_text(&reader, "o1 while [1]\nG0 X1\nG0 X0\no1 endwhile\n");
+    for (unsigned i = 0; i < 100 && result == PROGRAM_MOVE; i++) {
+        result = program_next(&reader.program, &move, &reader.diagnostic);
+    }
+    TEST_ASSERT_EQUAL_INT(PROGRAM_ERROR, result);
+    TEST_ASSERT_EQUAL_INT(TAKT_ERROR_ENDLESS, reader.diagnostic.code);
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -459,5 +475,6 @@ int main(void)
     RUN_TEST(test_a_stream_passes_over_text_but_never_goes_back);
     RUN_TEST(test_after_an_error_each_line_is_read_once_more_at_most);
     RUN_TEST(test_a_search_in_vain_goes_on_behind_its_call);
+    RUN_TEST(test_lines_are_not_read_again_more_often_than_the_host_lets_them);
     return UNITY_END();
 }

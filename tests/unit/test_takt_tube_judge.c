@@ -439,8 +439,8 @@ static uint64_t looks_of(const char *loop[2], unsigned motions, double way_x, do
     size_t size = (size_t)snprintf(program_text, sizeof program_text, "G64 P0.1\nF100\n");
 
     for (unsigned k = 0; k < motions; k++)
-        size += (size_t)snprintf(program_text + size, sizeof program_text - size, "%s\n",
-                                 loop[k % 2]);
+        size +=
+            (size_t)snprintf(program_text + size, sizeof program_text - size, "%s\n", loop[k % 2]);
     begin(program_text);
     for (motion = 1; motion <= motions; motion++)
         go_to(motion % 2 == 1 ? way_x : 0, motion % 2 == 1 ? way_y : 0);

@@ -80,7 +80,7 @@ static void judge_tube(const struct judge *j)
     size_t where = 0;
 
     for (size_t k = 0; k < j->rows; k++) {
-        double least = INFINITY;
+        double least = (double)INFINITY;
 
         for (size_t n = 0; n < j->pieces && least > worst; n++) {
             const struct piece *p = &j->piece[n];
@@ -106,7 +106,7 @@ static void judge_corners(const struct judge *j)
     for (size_t m = 0; m < j->motions; m++) {
         const struct motion *motion = &j->motion[m];
         const double within_mm = motion->tolerance_mm > 0 ? motion->tolerance_mm : ORDER_MM;
-        double least = INFINITY;
+        double least = (double)INFINITY;
 
         for (size_t k = 1; k < j->rows && least > worst; k++) {
             double way[AXES_MAX], off_mm;

@@ -94,7 +94,7 @@ static bool advance(struct judge *j, struct walk *w, size_t k, double factor, si
     step_of(j, k, step);
     square = pow(length_of(step, 0, j->axes), 2);
     w->first = j->pieces;
-    w->along_mm = -INFINITY;
+    w->along_mm = -(double)INFINITY;
     for (; n < j->pieces && (n <= *high || is_there(entered)); n++) {
         const struct piece *p = &j->piece[n];
         const struct span old = j->reach[n];
@@ -124,7 +124,8 @@ static double curve_distance(const struct judge *j, const struct piece *p, struc
                              const double *x)
 {
     const struct motion *m = &j->motion[p->motion];
-    double part = p->from + (reach.first + reach.last) / 2 * (p->to - p->from), least = INFINITY;
+    double part = p->from + (reach.first + reach.last) / 2 * (p->to - p->from),
+           least = (double)INFINITY;
 
     for (int i = 0; i < 6; i++) {
         double on[AXES_MAX], ahead[AXES_MAX], along = 0, square = 0, off[AXES_MAX];
@@ -270,7 +271,7 @@ static void judge_standing(const struct judge *j, struct walk *w, size_t k)
 static void judge_exact(const struct judge *j, struct walk *w, size_t k, size_t low, size_t high,
                         const double *before)
 {
-    double least = INFINITY;
+    double least = (double)INFINITY;
     const unsigned line = j->motion[j->piece[low].motion].line;
 
     for (size_t n = low; n <= high; n++) {
@@ -299,7 +300,7 @@ struct walk walk_along(struct judge *j, double factor, bool closely, const doubl
         }
         if (!closely)
             continue;
-        w.time_s[0][k] = w.time_s[1][k] = NAN;
+        w.time_s[0][k] = w.time_s[1][k] = (double)NAN;
         if (!has_rounded(j, &w))
             judge_exact(j, &w, k, low, high, before);
         else if (k > 0)
