@@ -111,7 +111,6 @@ void controller_init(struct controller *c, const struct controller_config *confi
     c->state = CONTROLLER_STARTING;
     spindle_watch_init(&c->spindle, cycle_s(&c->machine), c->machine.spindle_load_limit_percent,
                        c->machine.spindle_at_speed_s);
-    stall_watch_init(&c->stall, &c->machine);
     controller_lock_init(c);
     controller_drives_config(&c->machine, &drives);
     drives_init(&c->drives, &drives);
@@ -438,34 +437,6 @@ static void stand(struct controller *c)
     }
 }
 
-/* The axes stand by order of program, operator or spindle, or the program has gone on by a block. */
-static bool is_standing_explained(const struct controller *c, const struct motion_operator *asked)
-{
-    const struct block *block = motion_block(&c->motion);
-
-    return asked->hold || asked->stop || asked->wait || c->program_waits || c->program_late ||
-           c->state != CONTROLLER_RUNNING || c->motion.passed_first != c->path.first ||
-           !block_is_motion(block) || (c->replays && c->replay.waits) ||
-           ((block->move.feed_rev_mm != 0.0) && asked->spindle_rev_s == 0.0) ||
-           move_is_locked(&block->move);
-}
-
-/* A program that is executed and does not go on. */
-static void watch_stall(struct controller *c, const struct inputs *in)
-{
-    const struct motion_operator asked = operator_of(c, in);
-    const double ratio = maths_min(asked.feed_ratio, asked.rapid_ratio);
-    const bool explained = is_standing_explained(c, &asked) || c->motion.late != c->stall.late;
-    struct diagnostic stalled;
-
-    c->stall.late = c->motion.late;
-    if (stall_watch_cycle(&c->stall, &c->record.cmd, ratio, explained)) {
-        return;
-    }
-    diagnostic_set(&stalled, TAKT_ERROR_STALLED, c->record.line, 0, "", 0, c->stall.longest_s);
-    controller_fail(c, &stalled);
-}
-
 /* Nothing that stands behind the place in the program is done any more. */
 static bool rests_after_fault(const struct controller *c)
 {
@@ -483,7 +454,6 @@ void controller_cycle(struct controller *c, const struct inputs *inputs)
     follow_spindle(c, &inputs->spindle);
     if (c->state == CONTROLLER_RUNNING && !starts && !rests_after_fault(c)) {
         follow_path(c, inputs);
-        watch_stall(c, inputs);
     }
     if (c->has_record) {
         follow_events(c);

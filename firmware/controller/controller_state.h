@@ -11,7 +11,6 @@
 #include "controller/controller_reader.h"
 #include "controller/outputs.h"
 #include "controller/spindle_watch.h"
-#include "controller/stall_watch.h"
 #include "correction/correction.h"
 #include "drive/drives.h"
 #include "hal/inputs.h"
@@ -37,7 +36,6 @@ struct controller {
         program_error; /* TAKT_OK: none. Reported when everything before it has been done */
     struct outputs outputs;
     struct spindle_watch spindle;
-    struct stall_watch stall;
     struct lock lock;               /* threads */
     struct outputs_surface surface; /* G96 */
     /* cmd and set also without a program cycle: where the axes stand by the program, and what is sent to the drives */

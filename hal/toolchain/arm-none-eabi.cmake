@@ -58,6 +58,6 @@ if(TAKT_CPU STREQUAL cortex-m7)
 endif()
 # With little flash memory, those of them for size as well that gain least: 2 kB, and a cycle takes 1 to 2 % longer.
 if(TAKT_SMALL)
-  list(REMOVE_ITEM TAKT_FAST_SOURCES motion/lead.c motion/motion.c motion/lead_feed.c motion/lead_place.c
+  list(REMOVE_ITEM TAKT_FAST_SOURCES motion/lead.c motion/lead_feed.c motion/lead_place.c
     drive/drives_check.c drive/drives_receive.c drive/drives_send.c controller/controller.c)
 endif()

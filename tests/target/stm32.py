@@ -56,7 +56,7 @@ class Board:
         if not os.path.exists(self.log_path):
             return []
         with open(self.log_path, errors="replace") as file:
-            return file.read().splitlines()
+            return file.read().split("\n")[:-1]  # whole lines
 
     def wait_for(self, text):
         target.wait_for(lambda: any(text in line for line in self.log()), f"'{text}' on the log: {self.log()}")

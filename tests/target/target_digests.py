@@ -50,7 +50,7 @@ def compiled(arguments):
 
 def check(name, arguments, *options):
     status, out, err = t.run("run", *arguments, *options, "--json", "-", "--quiet")
-    if not t.check(status == 0, f"{name} runs on the host", err):
+    if not t.check(status in (0, 4), f"{name} runs on the host", err):
         return
     host = t.json.loads(out)
     for processor in target.BOARDS:

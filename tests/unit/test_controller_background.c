@@ -101,16 +101,6 @@ static void test_a_background_that_stops_is_waited_for_at_rest_and_counted(void)
     TEST_ASSERT_DOUBLE_WITHIN(1e-9, 55.0, controller.record.set.at[AXIS_X]);
 }
 
-/* No time at all is explained by ramps here, and the feed is less than a unit of the path a cycle. */
-static void test_a_setpoint_that_stands_without_a_reason_is_a_fault(void)
-{
-    start("G21 G1 X1 F0.0000001\nM2\n");
-    controller.stall.longest_s = 0.0;
-    TEST_ASSERT_EQUAL_INT(CONTROLLER_FAULTED, run(true));
-    TEST_ASSERT_EQUAL_INT(TAKT_ERROR_STALLED, controller_get_fault(&controller)->code);
-    TEST_ASSERT_EQUAL_UINT32(1, controller_get_fault(&controller)->line);
-}
-
 static void test_an_error_of_the_program_is_the_fault_when_its_moves_are_done(void)
 {
     start("G21 F3000 G1 X1\nX2\nX3 ?\nX4\n");
@@ -177,7 +167,6 @@ int main(void)
     UNITY_BEGIN();
     RUN_TEST(test_a_program_runs_to_its_end_while_the_background_keeps_up);
     RUN_TEST(test_a_background_that_stops_is_waited_for_at_rest_and_counted);
-    RUN_TEST(test_a_setpoint_that_stands_without_a_reason_is_a_fault);
     RUN_TEST(test_an_error_of_the_program_is_the_fault_when_its_moves_are_done);
     RUN_TEST(test_probing_that_must_make_contact_fails_when_nothing_answers);
     RUN_TEST(test_probing_that_may_fail_goes_on);

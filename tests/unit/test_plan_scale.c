@@ -47,7 +47,8 @@ static void test_the_path_is_as_long_as_the_longer_way_of_linear_and_rotary_axes
 
 static void test_the_programmed_time_stays_what_it_is(void)
 {
-    for (double x_mm = 1e-8; x_mm < 1e3; x_mm *= 10.0) {
+    for (int decade = -8; decade < 3; decade++) {
+        const double x_mm = maths_power(10.0, decade);
         const struct block b = block_to(x_mm, 9.0, x_mm / 5.0);
 
         TEST_ASSERT_DOUBLE_WITHIN(1e-12, 5.0, b.length_mm / b.feed_program_mm_s);
@@ -58,8 +59,8 @@ static void test_a_turn_has_the_same_limits_beside_any_short_way(void)
 {
     const struct block alone = block_to(0.0, 9.0, 1.0);
 
-    for (double x_mm = 1e-8; x_mm < 1.0; x_mm *= 10.0) {
-        const struct block b = block_to(x_mm, 9.0, 1.0);
+    for (int decade = -8; decade < 0; decade++) {
+        const struct block b = block_to(maths_power(10.0, decade), 9.0, 1.0);
 
         TEST_ASSERT_DOUBLE_WITHIN(1e-12, alone.feed_cap_mm_s, b.feed_cap_mm_s);
         TEST_ASSERT_DOUBLE_WITHIN(1e-12, alone.a_mm_s2, b.a_mm_s2);
@@ -71,7 +72,9 @@ static void test_a_turn_has_the_same_limits_beside_any_short_way(void)
 static void test_a_unit_does_not_show_in_the_jerk_of_a_slow_axis(void)
 {
     TEST_ASSERT_EQUAL_DOUBLE(1.0, scale_of_machine(&limits));
-    for (double jerk = 1e3; jerk > 1.0; jerk /= 3.0) {
+    for (int i = 0; i < 7; i++) {
+        const double jerk = 1e3 * maths_power(3.0, -i);
+
         limits.jerk_mm_s3[AXIS_C] = jerk;
         const double unit = scale_of_machine(&limits) / PATH_UNITS_PER_MM;
 
