@@ -256,10 +256,11 @@ static bool is_whole(const struct compiled *c)
 
 static bool read_header(const struct compiled *c, struct replay_header *h)
 {
-    uint8_t bytes[REPLAY_HEADER_BYTES] = {0};
+    uint8_t bytes[REPLAY_HEADER_BYTES];
     struct diagnostic why;
+    const size_t got = fread(bytes, 1, sizeof bytes, c->stream);
 
-    (void)fread(bytes, 1, sizeof bytes, c->stream); /* what is missing is 0, and damaged */
+    memset(bytes + got, 0, sizeof bytes - got); /* what is missing is 0, and damaged */
     return replay_fit_read(h, bytes, &why) || report(c, &why);
 }
 

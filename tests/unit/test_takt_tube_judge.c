@@ -461,7 +461,8 @@ static void test_work_is_in_proportion_to_motions_however_often_they_go_over_the
         few = looks_of(loop, 400, strtod(stroke[i], NULL), 0);
         many = looks_of(loop, 1600, strtod(stroke[i], NULL), 0);
         TEST_ASSERT_TRUE(many < 5 * few);
-        TEST_ASSERT_TRUE(many < 1600UL * 300UL * (unsigned long)(1 + strtod(stroke[i], NULL) / STEP_MM));
+        TEST_ASSERT_TRUE(many <
+                         1600UL * 300UL * (unsigned long)(1 + strtod(stroke[i], NULL) / STEP_MM));
     }
 }
 
