@@ -18,6 +18,7 @@ static const double knot_first[4] = {-0.5, 0, 0.5, 0};
 static const double difference[4] = {-1, 1, 0, 0}; /* of control points: bounds velocity */
 static const double difference_value[4] = {0.5, 0.5, 0, 0};
 static const double knot_second[4] = {1, -2, 1, 0};
+static const double next_second[4] = {0, 1, -2, 1};
 static const double middle_value[4] = {1.0 / 48, 23.0 / 48, 23.0 / 48, 1.0 / 48};
 static const double middle_first[4] = {-1.0 / 8, -5.0 / 8, 5.0 / 8, 1.0 / 8};
 static const double middle_second[4] = {0.5, -0.5, -0.5, 0.5};
@@ -78,7 +79,7 @@ static double bend_of(const struct ahead_limits *l, double (*control)[3])
     double next[3];
 
     trail_sum(control, knot_second, here);
-    trail_sum(control + 1, knot_second, next);
+    trail_sum(control, next_second, next);
     return maths_min(most, maths_max(vector_length(here), vector_length(next)));
 }
 
