@@ -86,7 +86,7 @@ static void check_text(const char *path, const char *text)
     FILE *file = fopen(path, "r");
 
     TEST_ASSERT_NOT_NULL(file);
-    TEST_ASSERT_TRUE(fread(there, 1, sizeof there - 1, file) < sizeof there);
+    TEST_ASSERT_EQUAL_UINT(strlen(text), fread(there, 1, sizeof there - 1, file));
     (void)fclose(file);
     TEST_ASSERT_EQUAL_STRING(text, there);
 }
