@@ -1,4 +1,5 @@
-"""A serial line with two ends that both have a path: two ptys, and a thread that carries bytes between them."""
+"""A serial line with two ends that both have a path: two ptys, and a thread that carries bytes between them. Or a pty in
+front of a line there is: for programs that know what to do with a pty."""
 
 import os
 import pty
@@ -8,11 +9,17 @@ import tty
 
 
 class Pair:
-    def __init__(self):
-        self.masters, self.slaves = zip(*(pty.openpty() for _ in range(2)))
+    def __init__(self, line=None):
+        """line: the path of the second end, if it is not a pty to be made."""
+        ptys = [pty.openpty() for _ in range(1 if line else 2)]
+        self.slaves = [slave for _, slave in ptys]
+        self.paths = [os.ttyname(slave) for slave in self.slaves]
+        self.masters = [master for master, _ in ptys]
+        if line:
+            self.masters.append(os.open(line, os.O_RDWR | os.O_NOCTTY))
+            tty.setraw(self.masters[-1])
         for slave in self.slaves:
             tty.setraw(slave)
-        self.paths = [os.ttyname(slave) for slave in self.slaves]
         self.ends = False
         self.is_cut = False
         self.thread = threading.Thread(target=self.carry, daemon=True)
