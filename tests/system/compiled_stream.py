@@ -19,7 +19,7 @@ def squares(count):
     return "G21 G90 G17 G64 P0.01 F3000\n" + "".join(f"G1 X{a} Y{-a}\nG1 X{a} Y{a}\nG1 X{-a} Y{a}\nG1 X{-a} Y{-a - 1}\n" for a in range(1, count + 1)) + "M2\n"
 
 
-TEXT, SHORT = squares(9), squares(2)
+TEXT, SHORT = squares(5), squares(2)
 
 
 def compiled(text, *options):
@@ -171,6 +171,7 @@ def check_refused(plan):
 
 check_setpoints()
 the_plan = compiled(TEXT)
+t.check(len(the_plan) > 2 * KEPT_BYTES, "the other plan is more than is kept anywhere", len(the_plan))
 check_command(the_plan)
 check_start(the_plan)
 check_late(the_plan)
