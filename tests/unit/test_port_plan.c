@@ -94,6 +94,22 @@ static void compile_text(void)
     TEST_ASSERT_LESS_THAN(PLAN_MAX, (int)plan_size);
 }
 
+/* The long text and its plan, which is made once. */
+static void write_long_plan(void)
+{
+    static char made[PLAN_MAX];
+    static size_t made_size;
+
+    write_text(SQUARES);
+    if (made_size == 0) {
+        compile_text();
+        made_size = plan_size;
+        memcpy(made, plan, made_size);
+    }
+    plan_size = made_size;
+    memcpy(plan, made, made_size);
+}
+
 static void upload_text(void)
 {
     wait_for(PANEL_IDLE);
@@ -177,8 +193,7 @@ static void refusal_text(char *into)
 
 static void test_a_streamed_plan_gives_the_setpoints_of_the_file(void)
 {
-    write_text(SQUARES);
-    compile_text();
+    write_long_plan();
     TEST_ASSERT_GREATER_THAN(PLANNED_BYTES, (int)plan_size);
     const uint64_t whole = digest_of_whole();
 
@@ -211,8 +226,7 @@ static void test_a_late_plan_brakes_within_limits_raises_an_alarm_and_goes_on(vo
 {
     struct point at;
 
-    write_text(SQUARES);
-    compile_text();
+    write_long_plan();
     begin_plan();
     TEST_ASSERT_EQUAL_UINT(0, set(REGISTER_CYCLE_START, 1));
     run_plan(plan_size * 2 / 3);
@@ -282,8 +296,7 @@ static void test_a_plan_that_is_given_up_or_wrong_ends_the_program_in_an_error(v
 {
     for (unsigned wrong = 0; wrong < 2; wrong++) {
         setUp();
-        write_text(SQUARES);
-        compile_text();
+        write_long_plan();
         begin_plan();
         if (wrong != 0)
             embedded_core.panel.upload.crc++;
