@@ -156,7 +156,7 @@ static bool is_as_planned(const struct lead *l, const struct ceiling *c, uint32_
 
     return path_mm(c->origin, l->before) < c->end_mm[k] &&
            l->feed * l->feed <= energy * (1.0 + LEAD_ENERGY_SLACK) &&
-           can_meet(c, k + 1, path_mm(c->origin, l->at), energy_of(l), false);
+           can_meet(c, k + 1, brake_position(l, c), energy_of(l), false);
 }
 
 /* From piece k to the next, past its end. */
