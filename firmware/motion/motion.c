@@ -8,7 +8,7 @@
 #include <assert.h>
 #include <string.h>
 
-/* A setpoint this close to the end of a landed block is on it: rounding of the lead point's positions, path units. */
+/* A setpoint this close to a joint that it lands on in motion is on it: rounding of the lead point's positions, path units. */
 #define LANDED_UNITS 8.0
 
 /* A ceiling that had no room for all blocks is made anew when the lead point has gone this part of its length. */
@@ -299,6 +299,12 @@ static bool ends_at_rest(const struct motion *m)
     return span_stops(m->path, m->path->first);
 }
 
+/* Is it on the joint behind the oldest block, but for rounding? At rest it is there exactly. */
+static bool is_landing(const struct motion *m, double local, double length)
+{
+    return maths_abs(local - length) <= LANDED_UNITS && span_lands(m->path, m->path->first);
+}
+
 /*
  * The setpoint's distance from the start of its block and that one's length, path units, after passing the blocks that it
  * has left from b on: those are not read.
@@ -310,8 +316,8 @@ static double find_block(struct motion *m, const struct block *b, double *length
     double local = (double)(int64_t)(m->lead.at - start) - m->lag;
 
     *length = (double)b->length;
-    for (unsigned passed = 0; local > *length + LANDED_UNITS; passed++) {
-        if (passed == PASS_MAX || ends_at_rest(m)) {
+    for (unsigned passed = 0; local > *length; passed++) {
+        if (passed == PASS_MAX || ends_at_rest(m) || is_landing(m, local, *length)) {
             break;
         }
         path_pass(m->path);
@@ -337,7 +343,7 @@ static void place(struct motion *m, const struct block *b, double local, double 
     if (local == 0.0) {
         return;
     }
-    if (maths_abs(local - length) <= LANDED_UNITS) {
+    if (local == length || is_landing(m, local, length)) {
         m->done = ends_at_rest(m) && m->lead.standing && m->lag == 0.0;
         m->rested = 0;
         record->landed =
@@ -412,6 +418,23 @@ static double limiter_of(const struct motion *m, const struct block *b)
     return maths_min(1.0, b->feed_cap_mm_s / wanted);
 }
 
+/* In a cycle that has little else to do. Where it has stalled the axes come to rest, and that is the end. */
+static void watch(struct motion *m, const struct motion_operator *wanted, const struct block *b)
+{
+    if (m->busy || m->cycles % MOTION_EXCHANGE_CYCLES != MOTION_EXCHANGE_CYCLES - 1) {
+        return;
+    }
+    if (!watch_look(m, !is_held(m, wanted) && !wanted->wait)) {
+        m->watch.line = b->move.line;
+        m->ending = true;
+    }
+}
+
+uint32_t motion_stalled_line(const struct motion *m)
+{
+    return m->watch.line;
+}
+
 /* At rest: what is left of the path is dropped. */
 static void end_path(struct motion *m)
 {
@@ -442,12 +465,32 @@ bool motion_is_idle(const struct motion *m)
     return m->path->first == m->path->pushed && !m->ending;
 }
 
-static void fill_record(struct motion *m, const struct block *b, struct cycle_record *record)
+/*
+ * Feed as it is programmed, of X, Y, Z or else of A, B, C. The path of a smoothed curve is nominal time: there by the way
+ * from one setpoint to the next.
+ */
+static double feed_gone(const struct motion *m, const struct block *b, const struct point *before)
+{
+    const int from = b->rotary ? AXIS_LINEAR_COUNT : 0;
+    const int to = b->rotary ? AXIS_COUNT : AXIS_LINEAR_COUNT;
+    double square = 0.0;
+
+    if (b->curve.kind != CURVE_SPLINE) {
+        return m->feed / m->cycle_s * b->scale;
+    }
+    for (int i = from; i < to; i++) {
+        square += (m->at.at[i] - before->at[i]) * (m->at.at[i] - before->at[i]);
+    }
+    return maths_sqrt(square) / m->cycle_s;
+}
+
+static void fill_record(struct motion *m, const struct block *b, const struct point *before,
+                        struct cycle_record *record)
 {
     record->cycle = m->cycles;
     record->block = b->number;
     record->line = b->move.line;
-    record->feed_mm_s = m->feed / m->cycle_s * b->scale;
+    record->feed_mm_s = feed_gone(m, b, before);
     record->override_percent = 100.0 * m->request.feed_ratio;
     record->limiter = block_is_motion(b) ? limiter_of(m, b) : 1.0;
     record->cmd = m->at;
@@ -473,6 +516,10 @@ enum motion_result motion_cycle(struct motion *m, const struct motion_operator *
     if (!m->has_ceiling && !m->built) {
         return MOTION_NOT_YET;
     }
+    if (m->watch.line != 0 && !m->ending) {
+        m->feed = 0.0;
+        return MOTION_STALLED;
+    }
     m->busy = false;
     exchange(m, wanted);
     const enum motion_result result = serve(m, &b);
@@ -482,11 +529,18 @@ enum motion_result motion_cycle(struct motion *m, const struct motion_operator *
     }
     record->landed = false;
     m->feed = 0.0;
-    b = b != NULL ? move_on(m, wanted, b, record) : motion_block(m);
+    const struct point before = m->at;
+
+    if (b != NULL) {
+        b = move_on(m, wanted, b, record);
+        watch(m, wanted, b);
+    } else {
+        b = motion_block(m);
+    }
     if (m->ending) {
         end_path(m);
     }
     read_ahead(m);
-    fill_record(m, b, record);
+    fill_record(m, b, &before, record);
     return MOTION_CYCLE;
 }

@@ -234,14 +234,20 @@ static bool is_worth_it(const struct compile *c, const struct trail *exact)
 }
 
 /* The section on its exact path, within every limit. */
-static bool drive_exactly(const struct compile *c, struct trail *trail)
+static bool drive_exactly(struct compile *c, struct trail *trail)
 {
-    if (!exact_trail(&c->path, &c->exact, false, trail))
+    if (!exact_trail(&c->path, &c->exact, false, trail, &c->wrong.line))
         return false;
     if (exact_is_legal(trail, &c->exact))
         return true;
     trail_free(trail);
-    return exact_trail(&c->path, &c->exact, true, trail);
+    return exact_trail(&c->path, &c->exact, true, trail, &c->wrong.line);
+}
+
+static enum compile_result not_driven(struct compile *c)
+{
+    c->wrong.why = "the axes do not go on here, and nothing explains it: a fault of the planner";
+    return c->wrong.line != 0 ? COMPILE_UNFIT : COMPILE_MEMORY;
 }
 
 /* Plans and writes what has been collected. */
@@ -253,7 +259,7 @@ static enum compile_result end_section(struct compile *c)
     if (c->path.count == 0)
         return COMPILE_DONE;
     if (!drive_exactly(c, &trail))
-        return COMPILE_MEMORY;
+        return not_driven(c);
     result =
         c->config.tolerance_part > 0 && is_worth_it(c, &trail) ? optimise(c, &trail) : COMPILE_DONE;
     if (result == COMPILE_DONE) {
