@@ -172,7 +172,7 @@ static bool may_enter(const struct lead *l, const struct ceiling *c, uint32_t k)
         !lead_can_halt(l, (double)p->acceleration)) {
         return false;
     }
-    if (is_as_planned(l, c, k) || is_no_lower(l, c, k + 1)) {
+    if (is_no_lower(l, c, k + 1) || is_as_planned(l, c, k)) {
         return true;
     }
     return l->feed * lead_entry_cycles(l) <= path_mm(l->at, start) &&

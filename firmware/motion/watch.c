@@ -19,7 +19,7 @@ static double explained_cycles(const struct motion *m)
     const double a = ceiling_block_acceleration(m->path, index, cycles);
 
     return path_length(m->path, index) / feed + 2.0 * feed / a + 4.0 * m->lead.window +
-           4.0 * MOTION_EXCHANGE_CYCLES;
+           WATCH_EVERY_CYCLES;
 }
 
 bool watch_look(struct motion *m, bool may_move)
@@ -31,6 +31,6 @@ bool watch_look(struct motion *m, bool may_move)
         w->parts = 0.0F;
         return true;
     }
-    w->parts += (float)(MOTION_EXCHANGE_CYCLES / explained_cycles(m));
+    w->parts += (float)(WATCH_EVERY_CYCLES / explained_cycles(m));
     return w->parts <= WATCH_PARTS;
 }

@@ -216,7 +216,7 @@ static void expect_feed_of_setpoints(bool rotary)
     while (cycle() == MOTION_CYCLE) {
         const double feed_mm_s = 1000.0 * way(&before, &record.cmd, rotary);
 
-        TEST_ASSERT_DOUBLE_WITHIN(1e-6, feed_mm_s, record.feed_mm_s);
+        TEST_ASSERT_DOUBLE_WITHIN(1e-6 * feed_mm_s, feed_mm_s, record.feed_mm_s);
         most = maths_max(most, feed_mm_s);
         before = record.cmd;
     }
