@@ -19,6 +19,9 @@ bool lexer_can_go_on(struct program_lexer *l);
  */
 enum lexer_result lexer_next_line(struct program_lexer *l, struct diagnostic *error);
 
+/* A character of the line's last comment, as it stands there; 0 behind its end. */
+char lexer_comment(const struct program_lexer *l, unsigned at);
+
 /* The column, from 1, of a character of the current line or of its end. */
 uint16_t lexer_column(const struct program_lexer *l, unsigned at);
 

@@ -121,6 +121,11 @@ void message_program_warning(const struct program_text *program,
     message_diagnostic("warning", program, diagnostic);
 }
 
+void message_from_program(const struct program_text *program, uint32_t line, const char *text)
+{
+    (void)fprintf(stderr, "%s:%u:1: message: %s\n", program->name, (unsigned)line, text);
+}
+
 void message_controller_warning(const struct controller *controller)
 {
     char text[DIAGNOSTIC_TEXT_MAX];

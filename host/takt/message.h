@@ -25,6 +25,8 @@ __attribute__((format(printf, 1, 2))) void message_command_error(const char *for
 __attribute__((format(printf, 1, 2))) void message_command_warning(const char *format, ...);
 
 /* What a controller has to say at its start, if it has. */
+/* What the program itself says in a comment of a line. */
+void message_from_program(const struct program_text *program, uint32_t line, const char *text);
 void message_controller_warning(const struct controller *controller);
 
 /* "; did you mean PREFIXWORD?", or "" when word is NULL: for the end of a message. Valid until the next call. */

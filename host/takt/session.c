@@ -1,5 +1,6 @@
 #include "takt/session.h"
 
+#include "program/comment_text.h"
 #include "takt/correction_file.h"
 #include "takt/interrupt.h"
 #include "takt/machine_file.h"
@@ -123,6 +124,16 @@ static bool check_move(const struct session *s, struct session_reading *reading,
     return totals->errors < errors_max;
 }
 
+/* What a program ends itself with; its error has room for the beginning alone. */
+static void say_abort(void *listener, const struct program *p)
+{
+    const struct session *s = listener;
+    char text[COMMENT_TEXT_MAX];
+
+    if (comment_read(p, text) == COMMENT_ABORT)
+        message_from_program(&s->program, p->lexer.line, text);
+}
+
 enum command_status session_check(const struct session *s, unsigned errors_max,
                                   struct session_totals *totals)
 {
@@ -133,6 +144,8 @@ enum command_status session_check(const struct session *s, unsigned errors_max,
     unsigned moves = 0;
 
     session_begin_reading(s, &reading, &config, &source);
+    config.say = say_abort;
+    config.listener = (void *)(uintptr_t)s;
     program_open(&reading.program, &config, &source);
     offset_open(&reading.offset, &config);
     at = config.start;
