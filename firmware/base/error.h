@@ -98,7 +98,7 @@
     X(CYCLE_UPSIDE_DOWN, "the bottom of '%w' is %v mm above its R")                                \
     X(CYCLE_TOO_LONG, "'%w' would repeat itself more than %v times")                               \
     X(THREAD_DEPTH, "the depth of the thread, '%w', must be above that of the first cut, J")       \
-    X(SPLINE_UNSUPPORTED, "'%w': splines are not supported; use lines and arcs")                   \
+    X(SPLINE_UNSUPPORTED, "'%w': splines are not supported")                                       \
     X(INVOLUTE_START, "the start is %v mm inside the involute's base circle")                      \
     X(INVOLUTE_END, "the end is %v mm off the involute")                                           \
     X(INVOLUTE_TURNS, "the base circle is too small: the involute would turn %v times")            \

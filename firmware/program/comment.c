@@ -11,7 +11,7 @@ unsigned comment_match(const struct program_lexer *l, const char *word)
 {
     unsigned at = 0;
 
-    while (lexer_comment(l, at) == ' ' || lexer_comment(l, at) == '\t') {
+    while (lexer_comment(l, at) == ' ') {
         at++;
     }
     while (*word != '\0' && lower(lexer_comment(l, at)) == *word) {

@@ -163,7 +163,11 @@ enum lexer_result lexer_next_line(struct program_lexer *l, struct diagnostic *er
     if (c == SOURCE_END) {
         return LEXER_END;
     }
-    l->line++;
+    if (c == LEXER_GOES_ON) {
+        c = next_byte(l);
+    } else {
+        l->line++;
+    }
     l->at = 0;
     l->length = 0;
     l->comment_length = 0;

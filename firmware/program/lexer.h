@@ -6,6 +6,9 @@
 
 #include "program/program.h"
 
+/* A line that begins with it goes on with the one before, whose number it has: a translator makes several lines of one. */
+#define LEXER_GOES_ON 0x1f
+
 enum lexer_result { LEXER_LINE, LEXER_END, LEXER_ERROR, LEXER_UNREADABLE };
 
 void lexer_open(struct program_lexer *l, const struct source *source);

@@ -5,6 +5,7 @@
 #include "takt/interrupt.h"
 #include "takt/machine_file.h"
 #include "takt/message.h"
+#include "takt/program_front.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -40,11 +41,30 @@ enum command_status session_open_machine(struct session *s, const struct options
                : STATUS_INPUT;
 }
 
+/* Translated, and with its subroutines. */
+static bool prepare_program(struct session *s)
+{
+    struct program_front front = {.codes = &s->setup.codes, .quiet = s->options->quiet};
+    const char *dialect = s->options->dialect != NULL ? s->options->dialect : "auto";
+    const unsigned found = dialect_find(dialect);
+
+    if (found > DIALECT_AUTO) {
+        message_command_error(
+            "--dialect %s: known are auto, linuxcnc, grbl, fanuc, haas, mach3 and marlin", dialect);
+        return false;
+    }
+    front.dialect = (enum dialect)found;
+    for (unsigned i = 0; i < s->options->subroutines.count; i++)
+        front.folder[front.folders++] = s->options->subroutines.item[i];
+    return program_front_prepare(&front, &s->program);
+}
+
 enum command_status session_open(struct session *s, const struct options *options)
 {
     if (session_open_machine(s, options) != STATUS_DONE)
         return STATUS_INPUT;
-    return program_text_open(&s->program, options->operand[0]) ? STATUS_DONE : STATUS_INPUT;
+    return program_text_open(&s->program, options->operand[0]) && prepare_program(s) ? STATUS_DONE
+                                                                                     : STATUS_INPUT;
 }
 
 void session_close(struct session *s)
