@@ -9,6 +9,7 @@
 
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 /* Moves between two looks at Ctrl-C. */
 #define SESSION_INTERRUPT_MOVES 4096
@@ -144,13 +145,14 @@ static bool check_move(const struct session *s, struct session_reading *reading,
     return totals->errors < errors_max;
 }
 
-/* What a program ends itself with; its error has room for the beginning alone. */
+/* What a program ends itself with, if that is more than its error has room for. */
 static void say_abort(void *listener, const struct program *p)
 {
     const struct session *s = listener;
     char text[COMMENT_TEXT_MAX];
+    const bool abort = comment_read(p, text) == COMMENT_ABORT;
 
-    if (comment_read(p, text) == COMMENT_ABORT)
+    if (abort && (strlen(text) >= DIAGNOSTIC_WORD_MAX || strchr(text, '.') != NULL))
         message_from_program(&s->program, p->lexer.line, text);
 }
 
