@@ -269,6 +269,22 @@ static bool split_assignment(const char *assignment, char word[], char instance[
     return true;
 }
 
+/* "codes.M31=ignore", where the code may have a point too. */
+static bool assign_code(struct machine_setup *setup, const char *assignment)
+{
+    const char *begin = assignment + sizeof MACHINE_FILE_CODES;
+    const size_t length = strcspn(begin, "=");
+    char name[MACHINE_FILE_WORD_MAX + 1];
+    const char *wrong = "CODE=USE is expected, such as codes.M31=ignore";
+
+    (void)snprintf(name, sizeof name, "%.*s", (int)length, begin);
+    if (begin[length] == '=')
+        wrong = set_code(setup, name, begin + length + 1);
+    if (wrong != NULL)
+        message_command_error("--set %s: %s", assignment, wrong);
+    return wrong == NULL;
+}
+
 bool machine_file_assign(struct machine_setup *setup, const char *assignment)
 {
     char word[MACHINE_FILE_WORD_MAX + 1], instance[MACHINE_FILE_WORD_MAX + 1],
@@ -278,18 +294,13 @@ bool machine_file_assign(struct machine_setup *setup, const char *assignment)
     const struct machine_key *key;
     const char *value;
 
+    if (strncmp(assignment, MACHINE_FILE_CODES ".", sizeof MACHINE_FILE_CODES) == 0)
+        return assign_code(setup, assignment);
     if (!split_assignment(assignment, word, instance, name, &value)) {
         message_command_error(
             "--set %s: expected SECTION.KEY=VALUE, such as axis.X.max_jerk_mm_s3=20000",
             assignment);
         return false;
-    }
-    if (strcmp(word, MACHINE_FILE_CODES) == 0 && instance[0] == '\0') {
-        const char *why = set_code(setup, name, value);
-
-        if (why != NULL)
-            message_command_error("--set %s: %s", assignment, why);
-        return why == NULL;
     }
     if (machine_section_find(setup, word, instance, &place, &wrong)) {
         key = machine_key_find(setup, place, name, &wrong);

@@ -1,5 +1,7 @@
 #include "takt/message.h"
 
+#include "takt/hint.h"
+
 #include <stdarg.h>
 #include <stdio.h>
 #include <string.h>
@@ -163,26 +165,23 @@ static void message_diagnostic(const char *kind, const struct program_text *prog
         message_show_line(program, diagnostic->line, column);
 }
 
-/* What to do about a code that only the machine's owner can know. */
-static void message_code_unknown(const struct diagnostic *diagnostic)
+/* What to do about it. */
+static void message_hint(const struct program_text *program, const struct diagnostic *d)
 {
-    const char *word = diagnostic->word;
-    const size_t digits = strspn(word + 1, "0123456789.");
+    char line[MESSAGE_LINE_MAX];
+    char hint[HINT_MAX];
+    const size_t length =
+        d->line > 0 ? program_text_line(program, d->line, 0, line, sizeof line) : 0;
+    const uint32_t column = message_column(program, d);
 
-    if (diagnostic->code == TAKT_ERROR_WORD_UNKNOWN && (word[0] == 'M' || word[0] == 'G') &&
-        digits > 0 && word[1 + digits] == '\0')
-        (void)fprintf(stderr,
-                      "    if this machine can do without it, add to the machine file, or as --set "
-                      "codes.%s=ignore:\n"
-                      "    [codes]\n"
-                      "    %s = ignore         (or: stop, output 3 on, subroutine NAME)\n",
-                      word, word);
+    hint_write(d, line, length, column > 0 ? column - 1 : length, hint);
+    (void)fputs(hint, stderr);
 }
 
 void message_program_error(const struct program_text *program, const struct diagnostic *diagnostic)
 {
     message_diagnostic("error", program, diagnostic);
-    message_code_unknown(diagnostic);
+    message_hint(program, diagnostic);
 }
 
 void message_program_warning(const struct program_text *program,

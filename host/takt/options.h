@@ -158,7 +158,7 @@ struct option_row {
 #define OPTIONS_PROGRAM                                                                            \
     OPTIONS_MACHINE,                                                                               \
         {"tools", OPTION_TEXT, offsetof(struct options, tools), "FILE",                            \
-         "tool table, LinuxCNC's .tbl"},                                                           \
+         "tool table, LinuxCNC's .tbl; auto: what the program itself says of its tools"},          \
         {"parameters", OPTION_TEXT, offsetof(struct options, parameters), "FILE",                  \
          "parameters, LinuxCNC's .var"},                                                           \
         {"dialect", OPTION_TEXT, offsetof(struct options, dialect), "NAME",                        \

@@ -6,6 +6,7 @@
 #include "takt/machine_file.h"
 #include "takt/message.h"
 #include "takt/program_front.h"
+#include "takt/tool_guess.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -27,7 +28,8 @@ static bool open_tables(struct session *s)
     if (parameters == NULL && s->setup.parameter_file[0] != '\0')
         parameters = s->setup.parameter_file;
     s->parameter_path = parameters;
-    if (tools != NULL && !tool_file_read(&s->tools, tools))
+    s->guesses_tools = tools != NULL && strcmp(tools, "auto") == 0;
+    if (tools != NULL && !s->guesses_tools && !tool_file_read(&s->tools, tools))
         return false;
     return parameters == NULL || parameter_file_read(&s->parameters, parameters);
 }
@@ -57,7 +59,8 @@ static bool prepare_program(struct session *s)
     front.dialect = (enum dialect)found;
     for (unsigned i = 0; i < s->options->subroutines.count; i++)
         front.folder[front.folders++] = s->options->subroutines.item[i];
-    return program_front_prepare(&front, &s->program);
+    return program_front_prepare(&front, &s->program) &&
+           (!s->guesses_tools || tool_guess(&s->tools, &s->program));
 }
 
 enum command_status session_open(struct session *s, const struct options *options)

@@ -92,6 +92,17 @@ for line, wrong in (("M31 = maybe", "known are ignore"), ("X31 = stop", "a code 
     status, out, err = t.run("machine", "bad.ini")
     t.check(status == 2 and "bad.ini:2:1: error: " in err and wrong in err, "a wrong declaration", err)
 
+# Tools by what the program says of them.
+t.write("tools.nc", "(T1 D=6.5 CR=0 - end mill)\n(T2 D=3.)\nG21 F100\nG0 X-20\nG41 D1\nG1 X0\nY5\nG40 X-20\nM2\n")
+status, found, err = moves("tools.nc", "--tools", "auto")
+t.check(status == 0 and found[1].startswith("feed X-3.250000 Y3.250000 "), "a radius from a comment", found, err)
+t.check("warning: --tools auto: 2 tools without a table, all of length 0, 0 of diameter 0" in err, "with a warning", err)
+t.write("tools.nc", "(T1 D=0.5)\nG20 F10\nG0 X-2\nG41 D1\nG1 X0\nY5\nG40 X-2\nM2\n")
+status, found, err = moves("tools.nc", "--tools", "auto")
+t.check(status == 0 and found[1].startswith("feed X-6.350000 "), "in inches", found, err)
+status, found, err = moves("tools.nc")
+t.check(status == 2 and "--tools auto" in err, "the message names it", err)
+
 # Subroutines in files: the program's folder, and others.
 os.makedirs("lib", exist_ok=True)
 t.write("main.ngc", "G21\nG0 X1\no<one> call [2]\nM98 P300\n")
