@@ -320,17 +320,16 @@ static bool take_goto(struct program *p, const struct oword *o)
     if (!expression_read(p, &line) || !expression_read(p, &blocks)) {
         return false;
     }
-    const unsigned kept = first_block(p) + (unsigned)(uint8_t)blocks;
-
-    if (kept > p->flow.blocks) {
-        return oword_error(p, TAKT_ERROR_OWORD_CROSSED, o, line);
+    if (!(blocks >= 0.0 && first_block(p) + blocks <= p->flow.blocks) ||
+        !(line >= 1.0 && line <= PROGRAM_LABEL_MAX)) {
+        return oword_error(p, TAKT_ERROR_OWORD_UNMATCHED, o, 0.0);
     }
     if (p->flow.failed) {
         return true;
     }
     const struct program_place place = {o->label.id, (uint32_t)line - 1U};
 
-    p->flow.blocks = (uint8_t)kept;
+    p->flow.blocks = (uint8_t)(first_block(p) + (unsigned)blocks);
     return flow_jump(p, &place, o);
 }
 

@@ -183,6 +183,7 @@ static void look_at_word(struct look *k, struct line_word *w)
         k->d->linuxcnc = true;
     if (w->kind != WORD_VALUE)
         return;
+    k->d->translates = k->d->translates || w->letter == '@' || w->letter == '^';
     look_at_code(k, w);
     if (has_exponent(l, w))
         note(k, BIT(DIALECT_GRBL), w);
@@ -248,6 +249,8 @@ void dialect_guess_line(struct dialect_detector *d, const char *bytes, size_t le
     }
     if (!line_read(&k.line, bytes, length))
         return;
+    d->translates = d->translates || contains(k.line.text, k.line.length, "#<_ini[") ||
+                    contains(k.line.text, k.line.length, "#<_hal[");
     d->calls = d->calls || line_find_code(&k.line, 'm', 980) != NULL;
     if (is_oword(&k.line)) {
         d->calls = d->calls || contains(k.line.text, k.line.length, "call");

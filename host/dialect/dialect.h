@@ -49,10 +49,22 @@ struct dialect_code {
     char subroutine[DIALECT_SUBROUTINE_MAX + 1];
 };
 
+/* What a program asks of LinuxCNC's configuration: #<_ini[SECTION]NAME>, #<_hal[PIN]>. */
+struct dialect_value {
+    char name[64]; /* "_ini[SECTION]NAME", "_hal[PIN]" */
+    double value;
+};
+
+/* What the machine file says about programs. */
 struct dialect_codes {
     unsigned count;
     struct dialect_code code[DIALECT_CODES_MAX];
+    unsigned values;
+    struct dialect_value value[DIALECT_CODES_MAX];
 };
+
+/* Adds a value, or changes it. NULL: it is right; else what is wrong. */
+const char *dialect_value_set(struct dialect_codes *codes, const char *name, const char *value);
 
 /* "M31" and "ignore", "output 3 on", "output 3 off", "subroutine NAME", "stop". NULL: it is right; else what is wrong. */
 const char *dialect_code_read(struct dialect_code *code, const char *name, const char *value);

@@ -2,6 +2,7 @@
 
 #include "dialect/line.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -91,4 +92,26 @@ void dialect_code_write(const struct dialect_code *code, char text[DIALECT_CODE_
     if (code->use == DIALECT_SUBROUTINE)
         (void)snprintf(text + length, DIALECT_CODE_TEXT_MAX - (size_t)length, " %s",
                        code->subroutine);
+}
+
+const char *dialect_value_set(struct dialect_codes *codes, const char *name, const char *value)
+{
+    char *end;
+    const double number = strtod(value, &end);
+    unsigned i = 0;
+
+    if ((strncmp(name, "_ini[", 5) != 0 && strncmp(name, "_hal[", 5) != 0) ||
+        strlen(name) >= sizeof codes->value[0].name)
+        return "the name of a value is expected, such as _ini[TRAJ]MAX_LINEAR_VELOCITY or "
+               "_hal[PIN]";
+    if (end == value || *end != '\0' || !isfinite(number))
+        return "a number is expected";
+    while (i < codes->values && strcmp(codes->value[i].name, name) != 0)
+        i++;
+    if (i == DIALECT_CODES_MAX)
+        return "there is no room for more values";
+    codes->values = i == codes->values ? i + 1 : codes->values;
+    codes->value[i].value = number;
+    (void)snprintf(codes->value[i].name, sizeof codes->value[i].name, "%s", name);
+    return NULL;
 }

@@ -15,6 +15,12 @@ static bool is_letter(char c)
     return c >= 'a' && c <= 'z';
 }
 
+/* What words begin with: letters, and the signs of polar coordinates. */
+static bool is_word(char c)
+{
+    return is_letter(c) || c == '@' || c == '^';
+}
+
 static bool is_space(char c)
 {
     return c == ' ' || c == '\t' || c == '\r';
@@ -162,7 +168,7 @@ static size_t read_word(struct line *l, struct line_word *w, size_t at)
     }
     if (c == '#')
         return read_assignment(l, w, at);
-    return is_letter(c) ? read_letter(l, w, at) : at + 1;
+    return is_word(c) ? read_letter(l, w, at) : at + 1;
 }
 
 static bool read_words(struct line *l)

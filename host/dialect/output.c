@@ -17,7 +17,8 @@ void output_add(struct dialect_text *t, const char *bytes, size_t length)
         t->bytes = grown;
         t->room = room;
     }
-    memcpy(t->bytes + t->length, bytes, length);
+    if (length > 0)
+        memcpy(t->bytes + t->length, bytes, length);
     t->length += length;
 }
 

@@ -452,10 +452,14 @@ static void translate_line(struct translator *t, const char *bytes, size_t lengt
         return;
     }
     flow_note_label(t, t->result->text.length);
-    if (is(t, NOT_FOREIGN))
+    values_translate(t);
+    polar_translate(t);
+    if (is(t, NOT_FOREIGN)) {
+        follow_modes(t);
         codes_translate(t);
-    else
+    } else {
         translate_foreign(t);
+    }
     t->begun = t->begun || (t->line.words > 0 && strchr("%o", t->line.word[0].letter) == NULL);
     put_out(t, jumps);
 }

@@ -65,6 +65,12 @@ void translate_note(struct translator *t, const struct line_word *w, const char 
 __attribute__((format(printf, 2, 3))) void translate_add(struct dialect_text *t, const char *format,
                                                          ...);
 
+/* #<_ini[...]> and #<_hal[...]> as numbers. */
+void values_translate(struct translator *t);
+
+/* @ and ^ as X and Y. */
+void polar_translate(struct translator *t);
+
 /* What becomes of the G and M words of the line. */
 void codes_translate(struct translator *t);
 

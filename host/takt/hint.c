@@ -148,12 +148,30 @@ static void write_code(const struct diagnostic *d, char text[HINT_MAX])
                        d->word, d->word);
 }
 
+/* LinuxCNC's configuration and signals: _INI[TRAJ]X is a number of the machine file. */
+static bool write_value(const struct diagnostic *d, char text[HINT_MAX])
+{
+    const bool asked = d->code == TAKT_ERROR_PARAMETER_UNDEFINED &&
+                       (strncmp(d->word, "_INI[", 5) == 0 || strncmp(d->word, "_HAL[", 5) == 0);
+
+    if (asked)
+        (void)snprintf(text, HINT_MAX,
+                       "    the machine file answers it, in the letters of the program:\n"
+                       "    [values]\n"
+                       "    _%c%c%c%s = NUMBER\n",
+                       line_lower(d->word[1]), line_lower(d->word[2]), line_lower(d->word[3]),
+                       d->word + 4);
+    return asked;
+}
+
 void hint_write(const struct diagnostic *d, const char *line, size_t length, size_t at,
                 char text[HINT_MAX])
 {
     const char *hint = find(d->code);
 
     text[0] = '\0';
+    if (write_value(d, text))
+        return;
     if (hint != NULL)
         write(text, hint);
     else if (d->code == TAKT_ERROR_WORD_UNKNOWN)

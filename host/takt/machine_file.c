@@ -12,6 +12,8 @@
 
 /* The section whose keys are codes of programs. */
 #define MACHINE_FILE_CODES "codes"
+/* The section whose keys are parameters that programs ask for. */
+#define MACHINE_FILE_VALUES "values"
 
 /* Where reading is. inih calls back for lines it has asked for, one line at a time. */
 struct machine_reader {
@@ -23,7 +25,8 @@ struct machine_reader {
     size_t length;
     unsigned errors;
     bool axes_named;
-    bool in_codes;    /* the section this line stands in is [codes] */
+    bool in_codes;    /* the section this line stands in is [codes], */
+    bool in_values;   /* or [values] */
     bool place_known; /* it is another one that is known */
     struct machine_place place;
     uint32_t set_in_line[MACHINE_KEYS_MAX][AXIS_COUNT]; /* 0: not yet */
@@ -82,9 +85,10 @@ static bool reader_enter_section(struct machine_reader *r, size_t offset)
     if (strcmp(word, machine_section_names[SECTION_AXIS]) == 0)
         forget_default_axes(r);
     r->in_codes = strcmp(word, MACHINE_FILE_CODES) == 0 && instance[0] == '\0';
-    r->place_known =
-        !r->in_codes && machine_section_find(r->setup, word, instance, &r->place, &wrong);
-    if (!r->place_known && !r->in_codes)
+    r->in_values = strcmp(word, MACHINE_FILE_VALUES) == 0 && instance[0] == '\0';
+    r->place_known = !r->in_codes && !r->in_values &&
+                     machine_section_find(r->setup, word, instance, &r->place, &wrong);
+    if (!r->place_known && !r->in_codes && !r->in_values)
         reader_error(r, offset + 1, wrong.text);
     return true;
 }
@@ -162,10 +166,9 @@ static const char *set_code(struct machine_setup *setup, const char *name, const
     return wrong;
 }
 
-static void take_code(struct machine_reader *r, const char *name, const char *value)
+/* What came of a key that is in no table. */
+static void take_free(struct machine_reader *r, const char *wrong)
 {
-    const char *wrong = set_code(r->setup, name, value);
-
     if (wrong != NULL)
         reader_error(r, 0, wrong);
 }
@@ -182,7 +185,9 @@ static int reader_take(void *context, const char *section, const char *name, con
         return 1;
     }
     if (r->in_codes)
-        take_code(r, name, value);
+        take_free(r, set_code(r->setup, name, value));
+    if (r->in_values)
+        take_free(r, dialect_value_set(&r->setup->codes, name, value));
     if (!r->place_known)
         return 1; /* no key of the table, or reported with the section */
     key = machine_key_find(r->setup, r->place, name, &wrong);
@@ -269,17 +274,19 @@ static bool split_assignment(const char *assignment, char word[], char instance[
     return true;
 }
 
-/* "codes.M31=ignore", where the code may have a point too. */
-static bool assign_code(struct machine_setup *setup, const char *assignment)
+/* "codes.M31=ignore", "values._hal[a.b]=1": names of their own, which may have points. */
+static bool assign_free(struct machine_setup *setup, const char *assignment, bool code)
 {
-    const char *begin = assignment + sizeof MACHINE_FILE_CODES;
+    const char *begin = strchr(assignment, '.') + 1;
     const size_t length = strcspn(begin, "=");
     char name[MACHINE_FILE_WORD_MAX + 1];
-    const char *wrong = "CODE=USE is expected, such as codes.M31=ignore";
+    const char *wrong = "NAME=VALUE is expected, such as codes.M31=ignore";
 
     (void)snprintf(name, sizeof name, "%.*s", (int)length, begin);
-    if (begin[length] == '=')
+    if (begin[length] == '=' && code)
         wrong = set_code(setup, name, begin + length + 1);
+    else if (begin[length] == '=')
+        wrong = dialect_value_set(&setup->codes, name, begin + length + 1);
     if (wrong != NULL)
         message_command_error("--set %s: %s", assignment, wrong);
     return wrong == NULL;
@@ -294,8 +301,10 @@ bool machine_file_assign(struct machine_setup *setup, const char *assignment)
     const struct machine_key *key;
     const char *value;
 
-    if (strncmp(assignment, MACHINE_FILE_CODES ".", sizeof MACHINE_FILE_CODES) == 0)
-        return assign_code(setup, assignment);
+    const bool code = strncmp(assignment, MACHINE_FILE_CODES ".", sizeof MACHINE_FILE_CODES) == 0;
+
+    if (code || strncmp(assignment, MACHINE_FILE_VALUES ".", sizeof MACHINE_FILE_VALUES) == 0)
+        return assign_free(setup, assignment, code);
     if (!split_assignment(assignment, word, instance, name, &value)) {
         message_command_error(
             "--set %s: expected SECTION.KEY=VALUE, such as axis.X.max_jerk_mm_s3=20000",
@@ -427,6 +436,10 @@ static void write_codes(FILE *file, const struct dialect_codes *codes)
         dialect_code_write(&codes->code[i], text);
         (void)fprintf(file, "%s\n", text);
     }
+    if (codes->values > 0)
+        (void)fprintf(file, "\n[%s]\n", MACHINE_FILE_VALUES);
+    for (unsigned i = 0; i < codes->values; i++)
+        (void)fprintf(file, "%s = %.9g\n", codes->value[i].name, codes->value[i].value);
 }
 
 void machine_file_write(FILE *file, const struct machine_setup *setup)

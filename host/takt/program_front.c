@@ -125,7 +125,8 @@ static void add_bytes(struct joint *j, const char *bytes, size_t length)
         t->bytes = grown;
         t->room = room;
     }
-    memcpy(t->bytes + t->length, bytes, length);
+    if (length > 0)
+        memcpy(t->bytes + t->length, bytes, length);
     t->length += length;
 }
 

@@ -92,6 +92,16 @@ for line, wrong in (("M31 = maybe", "known are ignore"), ("X31 = stop", "a code 
     status, out, err = t.run("machine", "bad.ini")
     t.check(status == 2 and "bad.ini:2:1: error: " in err and wrong in err, "a wrong declaration", err)
 
+# What programs ask of LinuxCNC's configuration is answered by the machine file.
+t.write("ask.ngc", "G21\nG0 X#<_ini[axis_x]reach> Y#<_hal[probe.height]>\nM2\n")
+status, found, err = moves("ask.ngc", "--set", "values._hal[probe.height]=12.5")
+t.check(status == 2 and "\n    [values]\n    _ini[AXIS_X]REACH = NUMBER\n" in err, "the message has the line", err)
+t.write("mill.ini", "[values]\n_ini[AXIS_X]REACH = 7\n_hal[probe.height] = 12.5\n")
+status, found, err = moves("ask.ngc", "--machine", "mill.ini")
+t.check((status, err) == (0, "") and found[0] == rapid(7, 12.5), "numbers of the machine file", found, err)
+t.check(t.run("machine", "mill.ini")[1].endswith("\n[values]\n_ini[AXIS_X]REACH = 7\n_hal[probe.height] = 12.5\n"),
+        "which are printed with it")
+
 # Tools by what the program says of them.
 t.write("tools.nc", "(T1 D=6.5 CR=0 - end mill)\n(T2 D=3.)\nG21 F100\nG0 X-20\nG41 D1\nG1 X0\nY5\nG40 X-20\nM2\n")
 status, found, err = moves("tools.nc", "--tools", "auto")

@@ -10,7 +10,7 @@ static struct dialect_codes codes;
 
 void setUp(void)
 {
-    codes.count = 0;
+    codes.count = codes.values = 0;
 }
 
 void tearDown(void)
@@ -213,6 +213,37 @@ static void test_declarations_that_make_no_sense_are_told(void)
                                      wrong[i][1]);
 }
 
+static void test_polar_words_become_x_and_y(void)
+{
+    TEST_ASSERT_TRUE(guess("G0 @1 ^2").translates);
+    TEST_ASSERT_EQUAL_INT(DIALECT_LINUXCNC, guess("G0 @1 ^2").dialect);
+    expect(DIALECT_LINUXCNC, "G90 G1 @1 ^[2*#3] (c)\n",
+           "#<_polar_radius>=[[1]+0*[SQRT[#5420*#5420+#5421*#5421]]] "
+           "#<_polar_angle>=[[[2*#3]]+0*[ATAN[#5421]/[#5420]]]\n"
+           "|G90 G1             X[#<_polar_radius>*COS[#<_polar_angle>]-0*#5420] "
+           "Y[#<_polar_radius>*SIN[#<_polar_angle>]-0*#5421](c)\n");
+    expect(DIALECT_LINUXCNC, "G91\nG81 ^9 L2\n",
+           "G91\n#<_polar_radius>=[SQRT[#5420*#5420+#5421*#5421]] "
+           "#<_polar_angle>=[[9]+#<_incremental>*[ATAN[#5421]/[#5420]]]\n"
+           "|G81       X[#<_polar_radius>*COS[#<_polar_angle>]-#<_incremental>*#5420] "
+           "Y[#<_polar_radius>*SIN[#<_polar_angle>]-#<_incremental>*#5421]\n"
+           "|#<_polar_radius>=[SQRT[#5420*#5420+#5421*#5421]] "
+           "#<_polar_angle>=[[9]+#<_incremental>*[ATAN[#5421]/[#5420]]]\n"
+           "|G81       X[#<_polar_radius>*COS[#<_polar_angle>]-#<_incremental>*#5420] "
+           "Y[#<_polar_radius>*SIN[#<_polar_angle>]-#<_incremental>*#5421]\n");
+}
+
+static void test_values_of_the_machine_file_are_numbers(void)
+{
+    TEST_ASSERT_NULL(dialect_value_set(&codes, "_ini[traj]MAX_speed", "2.5"));
+    TEST_ASSERT_NULL(dialect_value_set(&codes, "_hal[my.pin]", "-1"));
+    TEST_ASSERT_NOT_NULL(dialect_value_set(&codes, "_hal[my.pin]", "1x"));
+    TEST_ASSERT_NOT_NULL(dialect_value_set(&codes, "pin", "1"));
+    TEST_ASSERT_TRUE(guess("#1=#<_INI[a]b>").translates);
+    expect(DIALECT_LINUXCNC, "G0 X#< _ini[TRAJ]max_speed> Y[1+#<_hal[my.pin]>] Z#<_ini[a]b>\n",
+           "G0 X[2.500000000]           Y[1+[-1.000000000] ] Z#<_ini[a]b>\n");
+}
+
 static void test_a_byte_order_mark_is_no_part_of_the_program(void)
 {
     TEST_ASSERT_TRUE(guess("\xef\xbb\xbfG0 X1").translates);
@@ -239,6 +270,8 @@ int main(void)
     RUN_TEST(test_printers_leave_their_way);
     RUN_TEST(test_declared_codes_do_what_the_machine_file_says);
     RUN_TEST(test_declarations_that_make_no_sense_are_told);
+    RUN_TEST(test_polar_words_become_x_and_y);
+    RUN_TEST(test_values_of_the_machine_file_are_numbers);
     RUN_TEST(test_a_byte_order_mark_is_no_part_of_the_program);
     return UNITY_END();
 }
