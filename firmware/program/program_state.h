@@ -255,7 +255,8 @@ struct program_cycle {
     double hole_mm[2], step_mm[2];   /* the current hole; from one to the next */
     double start_mm, retract_mm, clear_mm, bottom_mm, middle_mm; /* across the plane */
     double aside_mm[2], peck_mm, dwell_s;
-    double depth_mm; /* the current peck's */
+    double clearance_mm; /* above the last cut, between pecks */
+    double depth_mm;     /* the current peck's */
     uint32_t repeats;
     unsigned stage, substage;
     bool first;
