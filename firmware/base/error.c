@@ -101,9 +101,26 @@ static const char *unit_of(const char *word)
     return word[0] >= 'A' && word[0] <= 'C' ? "degrees" : "mm";
 }
 
+/* All texts, one behind the other, each with its zero: pointers to them would take more room than the way there. */
+#define TAKT_ERROR_ROOM(name, text) char name[sizeof(text)];
+static const struct templates {
+    TAKT_ERRORS(TAKT_ERROR_ROOM)
+}
+#undef TAKT_ERROR_ROOM
 #define TAKT_ERROR_TEXT(name, text) text,
-static const char *const TEMPLATE[TAKT_ERROR_TOTAL] = {TAKT_ERRORS(TAKT_ERROR_TEXT)};
+TEMPLATES = {TAKT_ERRORS(TAKT_ERROR_TEXT)};
 #undef TAKT_ERROR_TEXT
+
+static const char *template_at(int index)
+{
+    const char *text = (const char *)&TEMPLATES;
+    for (; index > 0; index--) {
+        while (*text != '\0')
+            text++;
+        text++;
+    }
+    return text;
+}
 
 /* What a percent sign with this letter stands for; false: it stands for itself. */
 static bool text_add_place(struct text *t, char letter, const struct diagnostic *d)
@@ -149,7 +166,7 @@ size_t diagnostic_text(const struct diagnostic *d, char *text)
     if (d->code == TAKT_OK) {
         text_add_string(&t, "no error");
     } else if (index >= 0 && index < (int)TAKT_ERROR_TOTAL) {
-        text_add_template(&t, TEMPLATE[index], d);
+        text_add_template(&t, template_at(index), d);
     } else {
         text_add_string(&t, "error ");
         text_add_value(&t, (double)(int)d->code);

@@ -22,7 +22,6 @@
     X(COMMENT_UNCLOSED, "a comment is not closed")                                                 \
     X(NUMBER_EXPECTED, "a number is missing after '%w'")                                           \
     X(WORD_UNKNOWN, "unknown word '%w'")                                                           \
-    X(COMMENT_NESTED, "a comment opens inside a comment")                                          \
     X(WORD_REPEATED, "the word '%w' is given twice")                                               \
     X(WORD_UNUSED, "no code on this line uses the word '%w'")                                      \
     X(WORD_SHARED, "two codes on this line claim the word '%w'")                                   \
@@ -33,6 +32,7 @@
     X(AXIS_MISSING, "the machine has no axis %w")                                                  \
     X(AXIS_WORD_MISSING, "'%w' needs an axis word")                                                \
     X(BRACKET_EXPECTED, "a '[' is missing after '%w'")                                             \
+    X(FUNCTION_UNKNOWN, "there is no function '%w'")                                               \
     X(BRACKET_UNCLOSED, "a '[' is not closed")                                                     \
     X(OPERATOR_EXPECTED, "an operator or ']' is missing after '%w'")                               \
     X(SLASH_EXPECTED, "ATAN needs two values: ATAN[y]/[x]")                                        \
@@ -71,12 +71,13 @@
     X(ENDLESS, "the program does not end: %v lines have been read again")                          \
     X(MODES_NOT_SAVED, "'%w' finds no saved modes: no M70 or M73 in this call")                    \
     X(PROGRAM_FULL, "no room for '%w' beside the names, calls and saved modes there are")          \
+    X(ABORTED, "the program ends itself:%w")                                                       \
     X(FROM_LINE_MISSED, "the program never reaches line %v")                                       \
     X(FROM_LINE_PROBE, "what this probing move finds is not known to a start at line %v")          \
     X(FROM_LINE_CUTTER, "line %v is inside a compensated contour: start before its G41 or G42")    \
     /* motion */                                                                                   \
     X(ARC_ENDPOINT, "the arc's end is %v mm off its circle")                                       \
-    X(FEED_MISSING, "a cutting move needs a feed: no F has been given")                            \
+    X(FEED_MISSING, "a cutting move needs a feed: F above 0 comes first")                          \
     X(TRAVEL_EXCEEDED, "axis %w would leave its travel: %v %u, limit %l %u")                       \
     X(MOTION_MODE_MISSING, "the word '%w' needs a motion code (G0, G1, G2 or G3)")                 \
     X(ARC_CENTRE_MISSING, "the arc's centre is missing: '%w' needs R, or I J K of its plane")      \
@@ -97,7 +98,7 @@
     X(CYCLE_UPSIDE_DOWN, "the bottom of '%w' is %v mm above its R")                                \
     X(CYCLE_TOO_LONG, "'%w' would repeat itself more than %v times")                               \
     X(THREAD_DEPTH, "the depth of the thread, '%w', must be above that of the first cut, J")       \
-    X(SPLINE_UNSUPPORTED, "'%w': splines are not supported; use lines and arcs")                   \
+    X(SPLINE_UNSUPPORTED, "'%w': splines are not supported")                                       \
     X(INVOLUTE_START, "the start is %v mm inside the involute's base circle")                      \
     X(INVOLUTE_END, "the end is %v mm off the involute")                                           \
     X(INVOLUTE_TURNS, "the base circle is too small: the involute would turn %v times")            \

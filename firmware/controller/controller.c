@@ -79,6 +79,8 @@ void controller_program_config(const struct controller_config *config,
     program->from_line = config->from_line;
     program->sharp_corners = machine->sharp_corners;
     program->correction_layers = CORRECTION_LAYERS_COUNT;
+    program->say = config->say;
+    program->listener = config->listener;
     program->modes = config->modes;
     program->tools = config->tools;
     program->parameters = config->parameters;

@@ -45,8 +45,10 @@ struct controller_config {
     const struct correction_tables *correction; /* NULL: no tables; see correction_init */
     const struct replay_source *compiled; /* of the same program: replayed. NULL: planned here */
     const struct program_modes *modes;    /* the program goes on with; NULL: those it begins with */
-    bool exact_path;                      /* every G64 is treated as G61 */
-    bool block_delete;                    /* skip lines that begin with '/' */
+    void (*say)(void *listener, const struct program *p); /* as of struct program_config */
+    void *listener;
+    bool exact_path;    /* every G64 is treated as G61 */
+    bool block_delete;  /* skip lines that begin with '/' */
     bool keeps_outputs; /* the end of the program leaves spindle and coolant as they are */
     uint32_t from_line; /* start in the middle, at this line; 0: at the beginning */
 };

@@ -31,6 +31,8 @@
 struct crossing {
     double point[2];
     double end_mm, begin_mm; /* places on the first and on the second */
+    bool
+        far; /* another one is nearer to their corner: this one may belong to the other end of an arc */
 };
 
 struct offset_item *contour_item(struct offset *o, unsigned place)
@@ -174,7 +176,7 @@ static double cut_mm(const struct planar *k, const struct planar *e, const struc
     return is_within(k, e, c) ? cut * (1.0 - CUSP_RATIO) : cut;
 }
 
-/* All crossings, the nearest to the corner first. */
+/* All crossings, the nearest to the corner first, which alone is not far. */
 static unsigned sorted_crossings(const struct planar *k, const struct planar *e,
                                  struct crossing found[2])
 {
@@ -190,20 +192,20 @@ static unsigned sorted_crossings(const struct planar *k, const struct planar *e,
         found[0] = found[1];
         found[1] = first;
     }
+    for (unsigned i = 0; i < count; i++) {
+        found[i].far = i > 0;
+    }
     return count;
 }
 
-/*
- * The crossings within both ways. Of neighbours only the one nearest to their common corner counts: another one belongs
- * to the other end of an arc.
- */
-static unsigned find_crossings(const struct planar *k, const struct planar *e, bool neighbours,
+/* The crossings within both ways. */
+static unsigned find_crossings(const struct planar *k, const struct planar *e,
                                struct crossing found[2])
 {
     const unsigned all = sorted_crossings(k, e, found);
     unsigned count = 0;
 
-    for (unsigned i = 0; i < all && !(neighbours && i == 1); i++) {
+    for (unsigned i = 0; i < all; i++) {
         if (is_within(k, e, &found[i])) {
             found[count] = found[i];
             found[count].end_mm = maths_min(found[i].end_mm, planar_length(k));
@@ -276,17 +278,16 @@ static double gouge_before(struct offset *o, unsigned place, const struct planar
 
 /*
  * What the tool would cut away of everything from place on when the piece there and the new one meet at the crossing;
- * nothing to worry about when they are neighbours.
+ * nothing to worry about when they are neighbours and it is the one at their corner.
  */
 static double gouge_behind(struct offset *o, unsigned place, const struct offset_item *piece,
-                           const struct trial *t)
+                           const struct trial *t, bool between)
 {
     const struct offset_item *at = contour_item(o, place);
     const struct planar k = real_way(o, at, &t->k);
     struct planar before;
     struct planar behind;
     const double radius_mm = o->pattern.cutter_radius_mm;
-    bool between = false;
     double gouge_mm = 0.0;
 
     for (unsigned i = place + 1; i < o->count; i++) {
@@ -309,7 +310,7 @@ static double gouge_behind(struct offset *o, unsigned place, const struct offset
 }
 
 /* Begins or goes on with a gap. The first way in it tells how far the tool is in the way. */
-static void leave_out(struct offset *o, struct offset_piece *piece)
+void contour_leave_out(struct offset *o, struct offset_piece *piece)
 {
     const struct offset_live *newest = contour_newest(o);
     struct planar wanted;
@@ -331,14 +332,17 @@ static void leave_out(struct offset *o, struct offset_piece *piece)
 
 /* Both ways end and begin at the crossing, if that is one that counts. */
 static bool meet_at(struct offset *o, unsigned place, struct offset_piece *piece,
-                    const struct crossing *c)
+                    const struct crossing *c, bool neighbours)
 {
     struct planar *k = &contour_live(o, contour_item(o, place))->way;
     struct trial t = {*k, piece->live.way};
 
     planar_end_at(&t.k, c->end_mm, c->point);
     planar_begin_at(&t.e, c->begin_mm, c->point);
-    if (!turns_inside(o, &t) || gouge_behind(o, place, &piece->item, &t) > OFFSET_GOUGE_MM) {
+    const bool far = neighbours && c->far;
+    const double most_mm = far ? OFFSET_ROUNDING_MM : OFFSET_GOUGE_MM;
+
+    if (!turns_inside(o, &t) || gouge_behind(o, place, &piece->item, &t, far) > most_mm) {
         return false;
     }
     *k = t.k;
@@ -353,10 +357,10 @@ static bool join_at(struct offset *o, unsigned place, struct offset_piece *piece
     unsigned count = 0;
 
     if (is_way(k)) {
-        count = find_crossings(&contour_live(o, k)->way, &piece->live.way, neighbours, found);
+        count = find_crossings(&contour_live(o, k)->way, &piece->live.way, found);
     }
     for (unsigned i = 0; i < count; i++) {
-        if (meet_at(o, place, piece, &found[i])) {
+        if (meet_at(o, place, piece, &found[i], neighbours)) {
             remove_behind(o, place);
             append(o, piece);
             o->gap = false;
@@ -366,8 +370,8 @@ static bool join_at(struct offset *o, unsigned place, struct offset_piece *piece
     return false;
 }
 
-/* at_corner: the piece begins where the contour's last one ends, in an inner corner. */
-static void join(struct offset *o, struct offset_piece *piece, bool at_corner)
+/* at_corner: the piece begins where the contour's last one ends, in an inner corner. False: it crosses none. */
+static bool join(struct offset *o, struct offset_piece *piece, bool at_corner)
 {
     const struct offset_live *newest = at_corner && !o->gap ? contour_newest(o) : NULL;
 
@@ -375,22 +379,22 @@ static void join(struct offset *o, struct offset_piece *piece, bool at_corner)
         const struct offset_item *k = contour_item(o, i - 1);
 
         if (join_at(o, i - 1, piece, is_way(k) && contour_live(o, k) == newest)) {
-            return;
+            return true;
         }
     }
-    leave_out(o, piece);
+    return false;
 }
 
 void contour_continue(struct offset *o, struct offset_piece *piece)
 {
-    if (o->gap) {
-        join(o, piece, false);
-    } else {
+    if (!o->gap) {
         append(o, piece);
+    } else if (!join(o, piece, false)) {
+        contour_leave_out(o, piece);
     }
 }
 
-void contour_continue_inside(struct offset *o, struct offset_piece *piece)
+bool contour_meet_inside(struct offset *o, struct offset_piece *piece)
 {
-    join(o, piece, true);
+    return join(o, piece, true);
 }

@@ -34,7 +34,13 @@ struct offset_live *contour_newest(struct offset *o);
  */
 void contour_continue(struct offset *o, struct offset_piece *piece);
 
-/* The same for a way behind an inner corner at the start of the programmed way. */
-void contour_continue_inside(struct offset *o, struct offset_piece *piece);
+/*
+ * The same for a way behind an inner corner at the start of the programmed way. False: it crosses none, and nothing has
+ * changed.
+ */
+bool contour_meet_inside(struct offset *o, struct offset_piece *piece);
+
+/* Such a way is swallowed. */
+void contour_leave_out(struct offset *o, struct offset_piece *piece);
 
 #endif

@@ -20,6 +20,7 @@ struct corner {
     double before[2]; /* direction, length 1 */
     double angle_rad;
     double left_mm;
+    bool thin; /* an inner corner that may be passed as an outer one */
 };
 
 static bool is_inner(double angle_rad, double left_mm)
@@ -42,16 +43,36 @@ static bool cusp_is_inner(double bend, double left_mm, double angle_rad)
     return bend * left_mm < 0.0 || (off_rad > OFFSET_CUSP_SURE_RAD && is_inner(angle_rad, left_mm));
 }
 
-static double cusp_angle(const struct offset *o, const struct planar *next, double left_mm,
-                         double angle_rad)
+/* The same corner, passed on the other side. */
+static double other_way(double angle_rad)
+{
+    return angle_rad > 0.0 ? angle_rad - MATHS_TWO_PI : angle_rad + MATHS_TWO_PI;
+}
+
+/*
+ * Directions that say inner beside bends that say outer: the ways enclose a lens, and then cross. A tool of the radius r that
+ * goes around their corner cuts into it, at the place x from there, by
+ *
+ *     x off - x^2 (bend + 1 / r) / 2 <= off^2 / (2 (bend + 1 / r))
+ */
+static bool is_thin(double bend, double left_mm, double angle_rad)
+{
+    const double off_rad = MATHS_PI - maths_abs(angle_rad);
+    const double depth_mm =
+        off_rad * off_rad / (2.0 * (maths_abs(bend) + 1.0 / maths_abs(left_mm)));
+
+    return bend * left_mm > 0.0 && depth_mm <= OFFSET_ROUNDING_MM;
+}
+
+static void turn_cusp(const struct offset *o, const struct planar *next, struct corner *c)
 {
     const double bend = planar_bend_to(&o->last) + planar_bend_from(next);
-    const bool inner = cusp_is_inner(bend, left_mm, angle_rad);
+    const bool inner = cusp_is_inner(bend, c->left_mm, c->angle_rad);
 
-    if (inner == is_inner(angle_rad, left_mm)) {
-        return angle_rad;
+    c->thin = inner && !o->gap && is_thin(bend, c->left_mm, c->angle_rad);
+    if (inner != is_inner(c->angle_rad, c->left_mm)) {
+        c->angle_rad = other_way(c->angle_rad);
     }
-    return angle_rad > 0.0 ? angle_rad - MATHS_TWO_PI : angle_rad + MATHS_TWO_PI;
 }
 
 static struct corner corner_between(const struct offset *o, const struct offset_item *next,
@@ -67,7 +88,7 @@ static struct corner corner_between(const struct offset *o, const struct offset_
     planar_tangent_from(&wanted, behind);
     c.angle_rad = maths_atan2(planar_turn(c.before, behind), planar_dot(c.before, behind));
     if (maths_abs(c.angle_rad) > MATHS_PI - OFFSET_CUSP_RAD) {
-        c.angle_rad = cusp_angle(o, &wanted, left_mm, c.angle_rad);
+        turn_cusp(o, &wanted, &c);
     }
     return c;
 }
@@ -228,14 +249,20 @@ static void turn_outside(struct offset *o, const struct offset_piece *next, cons
 
 void corner_turn(struct offset *o, struct offset_piece *next, double left_mm)
 {
-    const struct corner c = corner_between(o, &next->item, left_mm);
+    struct corner c = corner_between(o, &next->item, left_mm);
 
     if (is_blunt(&c) && turn_blunt(o, next, &c)) {
         return;
     }
     if (is_inner(c.angle_rad, left_mm)) {
-        contour_continue_inside(o, next);
-        return;
+        if (contour_meet_inside(o, next)) {
+            return;
+        }
+        if (!c.thin) {
+            contour_leave_out(o, next);
+            return;
+        }
+        c.angle_rad = other_way(c.angle_rad);
     }
     if (c.angle_rad != 0.0) {
         turn_outside(o, next, &c);

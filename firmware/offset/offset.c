@@ -233,11 +233,17 @@ static bool close_contour(struct offset *o, struct diagnostic *d)
     return !o->gap || fail(d, TAKT_ERROR_OFFSET_GOUGE, o->gouge_line, o->gouge_mm);
 }
 
+/* Whatever comes after another tool begins where that is: compensation is off by then. */
+static bool settles(const struct move *m)
+{
+    return m->kind == MOVE_TOOL && (m->tool_change || m->tool_loaded);
+}
+
 static bool ends_contour(const struct offset *o, const struct move *m)
 {
     const bool leaves = move_is_motion(m) && (!is_compensated(m) || m->cutter_entry);
 
-    return o->started && (leaves || m->kind == MOVE_END);
+    return o->started && (leaves || settles(m) || m->kind == MOVE_END);
 }
 
 static bool take(struct offset *o, struct move *m, struct diagnostic *d)
@@ -399,12 +405,16 @@ static bool give_out(struct offset *o, const struct program *p, struct move *mov
 }
 
 /* After the last of a contour: goes on with what has been put off. */
-static bool go_on(struct offset *o, struct diagnostic *d)
+static bool go_on(struct offset *o, struct program *p, struct diagnostic *d)
 {
     o->closed = false;
     o->started = false;
     if (o->is_waiting) {
         o->is_waiting = false;
+        if (settles(&o->waiting)) {
+            o->wanted_at = o->at;
+            program_settle(p, &o->at);
+        }
         return take(o, &o->waiting, d);
     }
     if (o->is_held) {
@@ -508,7 +518,7 @@ enum program_result offset_next(struct offset *o, struct program *p, struct move
     }
     while (result == PROGRAM_MOVE && !is_ready(o)) {
         if (o->closed) {
-            result = go_on(o, diagnostic) ? PROGRAM_MOVE : PROGRAM_ERROR;
+            result = go_on(o, p, diagnostic) ? PROGRAM_MOVE : PROGRAM_ERROR;
         } else {
             result = read_on(o, p, diagnostic);
         }

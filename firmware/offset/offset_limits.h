@@ -28,4 +28,7 @@
 /* Nearer than this they alone decide: the directions of a programmed cusp differ by its rounding. */
 #define OFFSET_CUSP_SURE_RAD 1e-3
 
+/* Half of the last place that programs are written with: by so much the ends of their arcs are off the circles. */
+#define OFFSET_ROUNDING_MM 5e-4
+
 #endif

@@ -253,7 +253,8 @@ bool calls_return(struct program *p, const struct oword *o)
     if (frame->numbered) {
         return oword_error(p, TAKT_ERROR_SUB_STYLE, o, 0.0);
     }
-    if (!oword_same_label(&p->flow.sub[frame->sub].label, &o->label)) {
+    if (!oword_same_label(&p->flow.sub[frame->sub].label, &o->label) &&
+        !(o->kind == OWORD_RETURN && flow_is_in_block(p, o))) {
         return oword_error(p, TAKT_ERROR_SUB_NOT_INSIDE, o, 0.0);
     }
     const bool good = read_returned(p, o);

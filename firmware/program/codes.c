@@ -31,84 +31,84 @@
 
 #define SPLINE(number_x10)                                                                         \
     {                                                                                              \
-        'g', number_x10, GROUP_MOTION, STEP_MOTION, WORDS_SPLINE, 0, modes_refuse_spline           \
+        'g', number_x10, GROUP_MOTION, STEP_MOTION, 0, WORDS_SPLINE, modes_refuse_spline           \
     }
 
 /* With the words it takes beside those that all cycles take. */
 #define CYCLE(number_x10, words, cycle)                                                            \
     {                                                                                              \
-        'g', number_x10, GROUP_MOTION, STEP_MOTION, WORDS_CYCLE | (words), cycle, cycles_start     \
+        'g', number_x10, GROUP_MOTION, STEP_MOTION, cycle, WORDS_CYCLE | (words), cycles_start     \
     }
 
 #define SWITCH(number_x10, which)                                                                  \
     {                                                                                              \
-        'm', number_x10, GROUP_OVERRIDE, STEP_OVERRIDE, LETTER_BIT('p'), which, modes_set_override \
+        'm', number_x10, GROUP_OVERRIDE, STEP_OVERRIDE, which, LETTER_BIT('p'), modes_set_override \
     }
 
 #define OUTPUT(number_x10, words, what)                                                            \
     {                                                                                              \
-        'm', number_x10, GROUP_CHANNEL, STEP_CHANNEL, words, what, events_set_output               \
+        'm', number_x10, GROUP_CHANNEL, STEP_CHANNEL, what, words, events_set_output               \
     }
 
 #define PROBE(number_x10, what)                                                                    \
     {                                                                                              \
-        'g', number_x10, GROUP_MOTION, STEP_MOTION, LETTERS_AXES, what, probe_move                 \
+        'g', number_x10, GROUP_MOTION, STEP_MOTION, what, LETTERS_AXES, probe_move                 \
     }
 
 #define SYSTEM(number_x10, system)                                                                 \
     {                                                                                              \
-        'g', number_x10, GROUP_SYSTEM, STEP_SYSTEM, 0, system, coordinates_select                  \
+        'g', number_x10, GROUP_SYSTEM, STEP_SYSTEM, system, 0, coordinates_select                  \
     }
 
 /* Sorted by letter, then number. */
 static const struct program_code codes[] = {
-    {'f', CODE_ANY, GROUP_NONE, STEP_FEED, LETTER_BIT('f'), 0, modes_set_feed},
+    {'f', CODE_ANY, GROUP_NONE, STEP_FEED, 0, LETTER_BIT('f'), modes_set_feed},
 
-    {'g', 0, GROUP_MOTION, STEP_MOTION, LETTERS_AXES, MOVE_RAPID, straight_move},
-    {'g', 10, GROUP_MOTION, STEP_MOTION, LETTERS_AXES, MOVE_FEED, straight_move},
-    {'g', 20, GROUP_MOTION, STEP_MOTION, WORDS_ARC, MOVE_ARC_CW, circular_move},
-    {'g', 22, GROUP_MOTION, STEP_MOTION, WORDS_INVOLUTE, MOVE_INVOLUTE_CW, involute_move},
-    {'g', 30, GROUP_MOTION, STEP_MOTION, WORDS_ARC, MOVE_ARC_CCW, circular_move},
-    {'g', 32, GROUP_MOTION, STEP_MOTION, WORDS_INVOLUTE, MOVE_INVOLUTE_CCW, involute_move},
-    {'g', 40, GROUP_NON_MODAL, STEP_DWELL, LETTER_BIT('p'), 0, events_dwell},
+    {'g', 0, GROUP_MOTION, STEP_MOTION, MOVE_RAPID, LETTERS_AXES, straight_move},
+    {'g', 10, GROUP_MOTION, STEP_MOTION, MOVE_FEED, LETTERS_AXES, straight_move},
+    {'g', 20, GROUP_MOTION, STEP_MOTION, MOVE_ARC_CW, WORDS_ARC, circular_move},
+    {'g', 22, GROUP_MOTION, STEP_MOTION, MOVE_INVOLUTE_CW, WORDS_INVOLUTE, involute_move},
+    {'g', 30, GROUP_MOTION, STEP_MOTION, MOVE_ARC_CCW, WORDS_ARC, circular_move},
+    {'g', 32, GROUP_MOTION, STEP_MOTION, MOVE_INVOLUTE_CCW, WORDS_INVOLUTE, involute_move},
+    {'g', 40, GROUP_NON_MODAL, STEP_DWELL, 0, LETTER_BIT('p'), events_dwell},
     SPLINE(50),
     SPLINE(51),
     SPLINE(52),
     SPLINE(53),
-    {'g', 70, GROUP_DIAMETER, STEP_DIAMETER, 0, 1, modes_set_diameter},
+    {'g', 70, GROUP_DIAMETER, STEP_DIAMETER, 1, 0, modes_set_diameter},
     {'g', 80, GROUP_DIAMETER, STEP_DIAMETER, 0, 0, modes_set_diameter},
-    {'g', 100, GROUP_NON_MODAL, STEP_SETTING, WORDS_SETTING, 0, setting_run},
-    {'g', 170, GROUP_PLANE, STEP_PLANE, 0, PLANE_XY, modes_set_plane},
-    {'g', 180, GROUP_PLANE, STEP_PLANE, 0, PLANE_ZX, modes_set_plane},
-    {'g', 190, GROUP_PLANE, STEP_PLANE, 0, PLANE_YZ, modes_set_plane},
-    {'g', 200, GROUP_UNITS, STEP_UNITS, 0, 1, modes_set_units},
+    {'g', 100, GROUP_NON_MODAL, STEP_SETTING, 0, WORDS_SETTING, setting_run},
+    {'g', 170, GROUP_PLANE, STEP_PLANE, PLANE_XY, 0, modes_set_plane},
+    {'g', 180, GROUP_PLANE, STEP_PLANE, PLANE_ZX, 0, modes_set_plane},
+    {'g', 190, GROUP_PLANE, STEP_PLANE, PLANE_YZ, 0, modes_set_plane},
+    {'g', 200, GROUP_UNITS, STEP_UNITS, 1, 0, modes_set_units},
     {'g', 210, GROUP_UNITS, STEP_UNITS, 0, 0, modes_set_units},
-    {'g', 280, GROUP_NON_MODAL, STEP_REFERENCE, LETTERS_AXES, PARAMETER_REFERENCE_1,
+    {'g', 280, GROUP_NON_MODAL, STEP_REFERENCE, PARAMETER_REFERENCE_1, LETTERS_AXES,
      straight_to_reference},
-    {'g', 281, GROUP_NON_MODAL, STEP_REFERENCE, 0, PARAMETER_REFERENCE_1, straight_store_reference},
-    {'g', 300, GROUP_NON_MODAL, STEP_REFERENCE, LETTERS_AXES, PARAMETER_REFERENCE_2,
+    {'g', 281, GROUP_NON_MODAL, STEP_REFERENCE, PARAMETER_REFERENCE_1, 0, straight_store_reference},
+    {'g', 300, GROUP_NON_MODAL, STEP_REFERENCE, PARAMETER_REFERENCE_2, LETTERS_AXES,
      straight_to_reference},
-    {'g', 301, GROUP_NON_MODAL, STEP_REFERENCE, 0, PARAMETER_REFERENCE_2, straight_store_reference},
-    {'g', 330, GROUP_MOTION, STEP_MOTION, LETTERS_AXES | LETTER_BIT('k'), 0, straight_thread},
-    {'g', 331, GROUP_MOTION, STEP_MOTION, LETTERS_LINEAR | LETTER_BIT('i') | LETTER_BIT('k'), 0,
+    {'g', 301, GROUP_NON_MODAL, STEP_REFERENCE, PARAMETER_REFERENCE_2, 0, straight_store_reference},
+    {'g', 330, GROUP_MOTION, STEP_MOTION, 0, LETTERS_AXES | LETTER_BIT('k'), straight_thread},
+    {'g', 331, GROUP_MOTION, STEP_MOTION, 0, LETTERS_LINEAR | LETTER_BIT('i') | LETTER_BIT('k'),
      straight_tap},
     PROBE(382, 0),
     PROBE(383, PROBE_OPTIONAL),
     PROBE(384, PROBE_AWAY),
     PROBE(385, PROBE_OPTIONAL + PROBE_AWAY),
     {'g', 400, GROUP_CUTTER, STEP_CUTTER, 0, 0, cutter_cancel},
-    {'g', 410, GROUP_CUTTER, STEP_CUTTER, LETTER_BIT('d'), CUTTER_LEFT, cutter_use_tool},
-    {'g', 411, GROUP_CUTTER, STEP_CUTTER, LETTER_BIT('d') | LETTER_BIT('l'), CUTTER_LEFT,
+    {'g', 410, GROUP_CUTTER, STEP_CUTTER, CUTTER_LEFT, LETTER_BIT('d'), cutter_use_tool},
+    {'g', 411, GROUP_CUTTER, STEP_CUTTER, CUTTER_LEFT, LETTER_BIT('d') | LETTER_BIT('l'),
      cutter_use_diameter},
-    {'g', 420, GROUP_CUTTER, STEP_CUTTER, LETTER_BIT('d'), CUTTER_RIGHT, cutter_use_tool},
-    {'g', 421, GROUP_CUTTER, STEP_CUTTER, LETTER_BIT('d') | LETTER_BIT('l'), CUTTER_RIGHT,
+    {'g', 420, GROUP_CUTTER, STEP_CUTTER, CUTTER_RIGHT, LETTER_BIT('d'), cutter_use_tool},
+    {'g', 421, GROUP_CUTTER, STEP_CUTTER, CUTTER_RIGHT, LETTER_BIT('d') | LETTER_BIT('l'),
      cutter_use_diameter},
-    {'g', 430, GROUP_TOOL_LENGTH, STEP_TOOL_LENGTH, LETTER_BIT('h'), 0, coordinates_use_tool},
-    {'g', 431, GROUP_TOOL_LENGTH, STEP_TOOL_LENGTH, LETTERS_AXES, 0, coordinates_set_tool_offset},
-    {'g', 432, GROUP_TOOL_LENGTH, STEP_TOOL_LENGTH, LETTERS_AXES | LETTER_BIT('h'), 0,
+    {'g', 430, GROUP_TOOL_LENGTH, STEP_TOOL_LENGTH, 0, LETTER_BIT('h'), coordinates_use_tool},
+    {'g', 431, GROUP_TOOL_LENGTH, STEP_TOOL_LENGTH, 0, LETTERS_AXES, coordinates_set_tool_offset},
+    {'g', 432, GROUP_TOOL_LENGTH, STEP_TOOL_LENGTH, 0, LETTERS_AXES | LETTER_BIT('h'),
      coordinates_add_tool_offset},
     {'g', 490, GROUP_TOOL_LENGTH, STEP_TOOL_LENGTH, 0, 0, coordinates_drop_tool},
-    {'g', 520, GROUP_NON_MODAL, STEP_AXIS_OFFSET, LETTERS_AXES, 1, coordinates_set_axis_offset},
+    {'g', 520, GROUP_NON_MODAL, STEP_AXIS_OFFSET, 1, LETTERS_AXES, coordinates_set_axis_offset},
     {'g', 530, GROUP_NON_MODAL, STEP_MACHINE, 0, 0, coordinates_use_machine},
     SYSTEM(540, 1),
     SYSTEM(550, 2),
@@ -119,17 +119,17 @@ static const struct program_code codes[] = {
     SYSTEM(591, 7),
     SYSTEM(592, 8),
     SYSTEM(593, 9),
-    {'g', 610, GROUP_PATH, STEP_PATH, 0, PATH_EXACT, modes_set_path},
-    {'g', 611, GROUP_PATH, STEP_PATH, 0, PATH_EXACT_STOP, modes_set_path},
-    {'g', 640, GROUP_PATH, STEP_PATH, LETTER_BIT('p') | LETTER_BIT('q'), PATH_BLEND,
-     modes_set_path},
-    CYCLE(730, LETTER_BIT('q'), CYCLE_CHIP_BREAK),
+    {'g', 610, GROUP_PATH, STEP_PATH, PATH_EXACT, 0, modes_set_path},
+    {'g', 611, GROUP_PATH, STEP_PATH, PATH_EXACT_STOP, 0, modes_set_path},
+    {'g', 640, GROUP_PATH, STEP_PATH, PATH_BLEND,
+     LETTER_BIT('p') | LETTER_BIT('q') | LETTER_BIT('r'), modes_set_path},
+    CYCLE(730, LETTER_BIT('d') | LETTER_BIT('q'), CYCLE_CHIP_BREAK),
     CYCLE(740, LETTER_BIT('p'), CYCLE_TAP + CYCLE_LEFT),
-    {'g', 760, GROUP_MOTION, STEP_MOTION, WORDS_THREADING, 0, threading_start},
+    {'g', 760, GROUP_MOTION, STEP_MOTION, 0, WORDS_THREADING, threading_start},
     {'g', 800, GROUP_MOTION, STEP_MOTION, 0, 0, straight_cancel},
     CYCLE(810, 0, CYCLE_DRILL),
     CYCLE(820, LETTER_BIT('p'), CYCLE_DRILL_WAIT),
-    CYCLE(830, LETTER_BIT('q'), CYCLE_PECK),
+    CYCLE(830, LETTER_BIT('d') | LETTER_BIT('q'), CYCLE_PECK),
     CYCLE(840, LETTER_BIT('p'), CYCLE_TAP),
     CYCLE(850, 0, CYCLE_REAM),
     CYCLE(860, LETTER_BIT('p'), CYCLE_BORE_STOP),
@@ -137,62 +137,62 @@ static const struct program_code codes[] = {
     CYCLE(880, LETTER_BIT('p'), CYCLE_BORE_PAUSE),
     CYCLE(890, LETTER_BIT('p'), CYCLE_BORE_WAIT),
     {'g', 900, GROUP_DISTANCE, STEP_DISTANCE, 0, 0, modes_set_distance},
-    {'g', 901, GROUP_CENTRE, STEP_CENTRE, 0, 1, modes_set_centre},
-    {'g', 910, GROUP_DISTANCE, STEP_DISTANCE, 0, 1, modes_set_distance},
+    {'g', 901, GROUP_CENTRE, STEP_CENTRE, 1, 0, modes_set_centre},
+    {'g', 910, GROUP_DISTANCE, STEP_DISTANCE, 1, 0, modes_set_distance},
     {'g', 911, GROUP_CENTRE, STEP_CENTRE, 0, 0, modes_set_centre},
-    {'g', 920, GROUP_NON_MODAL, STEP_AXIS_OFFSET, LETTERS_AXES, 0, coordinates_set_axis_offset},
-    {'g', 921, GROUP_AXIS_APPLIED, STEP_AXIS_APPLIED, 0, 1, coordinates_cancel_axis_offset},
+    {'g', 920, GROUP_NON_MODAL, STEP_AXIS_OFFSET, 0, LETTERS_AXES, coordinates_set_axis_offset},
+    {'g', 921, GROUP_AXIS_APPLIED, STEP_AXIS_APPLIED, 1, 0, coordinates_cancel_axis_offset},
     {'g', 922, GROUP_AXIS_APPLIED, STEP_AXIS_APPLIED, 0, 0, coordinates_cancel_axis_offset},
     {'g', 923, GROUP_AXIS_APPLIED, STEP_AXIS_APPLIED, 0, 0, coordinates_restore_axis_offset},
-    {'g', 930, GROUP_FEED_MODE, STEP_FEED_MODE, 0, FEED_INVERSE_TIME, modes_set_feed_mode},
-    {'g', 940, GROUP_FEED_MODE, STEP_FEED_MODE, 0, FEED_PER_MINUTE, modes_set_feed_mode},
-    {'g', 950, GROUP_FEED_MODE, STEP_FEED_MODE, 0, FEED_PER_REVOLUTION, modes_set_feed_mode},
-    {'g', 960, GROUP_SPINDLE_MODE, STEP_SPINDLE_MODE, LETTER_BIT('d'), 1, events_set_spindle_mode},
+    {'g', 930, GROUP_FEED_MODE, STEP_FEED_MODE, FEED_INVERSE_TIME, 0, modes_set_feed_mode},
+    {'g', 940, GROUP_FEED_MODE, STEP_FEED_MODE, FEED_PER_MINUTE, 0, modes_set_feed_mode},
+    {'g', 950, GROUP_FEED_MODE, STEP_FEED_MODE, FEED_PER_REVOLUTION, 0, modes_set_feed_mode},
+    {'g', 960, GROUP_SPINDLE_MODE, STEP_SPINDLE_MODE, 1, LETTER_BIT('d'), events_set_spindle_mode},
     {'g', 970, GROUP_SPINDLE_MODE, STEP_SPINDLE_MODE, 0, 0, events_set_spindle_mode},
     {'g', 980, GROUP_RETRACT, STEP_RETRACT, 0, 0, modes_set_retract},
-    {'g', 990, GROUP_RETRACT, STEP_RETRACT, 0, 1, modes_set_retract},
+    {'g', 990, GROUP_RETRACT, STEP_RETRACT, 1, 0, modes_set_retract},
 
     {'m', 0, GROUP_STOP, STEP_STOP, 0, 0, events_stop},
-    {'m', 10, GROUP_STOP, STEP_STOP, 0, 1, events_stop},
+    {'m', 10, GROUP_STOP, STEP_STOP, 1, 0, events_stop},
     {'m', 20, GROUP_STOP, STEP_STOP, 0, 0, events_end},
-    {'m', 30, GROUP_SPINDLE, STEP_SPINDLE, 0, SPINDLE_CW, events_turn_spindle},
-    {'m', 40, GROUP_SPINDLE, STEP_SPINDLE, 0, SPINDLE_CCW, events_turn_spindle},
-    {'m', 50, GROUP_SPINDLE, STEP_SPINDLE, 0, SPINDLE_OFF, events_turn_spindle},
+    {'m', 30, GROUP_SPINDLE, STEP_SPINDLE, SPINDLE_CW, 0, events_turn_spindle},
+    {'m', 40, GROUP_SPINDLE, STEP_SPINDLE, SPINDLE_CCW, 0, events_turn_spindle},
+    {'m', 50, GROUP_SPINDLE, STEP_SPINDLE, SPINDLE_OFF, 0, events_turn_spindle},
     {'m', 60, GROUP_TOOL_CHANGE, STEP_TOOL_CHANGE, 0, 0, events_change_tool},
-    {'m', 70, GROUP_COOLANT, STEP_COOLANT, 0, COOLANT_MIST, events_set_coolant},
-    {'m', 80, GROUP_COOLANT, STEP_COOLANT, 0, COOLANT_FLOOD, events_set_coolant},
-    {'m', 90, GROUP_COOLANT, STEP_COOLANT, 0, COOLANT_OFF, events_set_coolant},
-    {'m', 190, GROUP_SPINDLE, STEP_SPINDLE, LETTER_BIT('p') | LETTER_BIT('q') | LETTER_BIT('r'), 0,
+    {'m', 70, GROUP_COOLANT, STEP_COOLANT, COOLANT_MIST, 0, events_set_coolant},
+    {'m', 80, GROUP_COOLANT, STEP_COOLANT, COOLANT_FLOOD, 0, events_set_coolant},
+    {'m', 90, GROUP_COOLANT, STEP_COOLANT, COOLANT_OFF, 0, events_set_coolant},
+    {'m', 190, GROUP_SPINDLE, STEP_SPINDLE, 0, LETTER_BIT('p') | LETTER_BIT('q') | LETTER_BIT('r'),
      events_orient_spindle},
     {'m', 300, GROUP_STOP, STEP_STOP, 0, 0, events_end},
-    {'m', 480, GROUP_OVERRIDE, STEP_OVERRIDE, 0, 1, modes_set_overrides},
+    {'m', 480, GROUP_OVERRIDE, STEP_OVERRIDE, 1, 0, modes_set_overrides},
     {'m', 490, GROUP_OVERRIDE, STEP_OVERRIDE, 0, 0, modes_set_overrides},
     SWITCH(500, OVERRIDE_FEED),
     SWITCH(510, OVERRIDE_SPINDLE),
     SWITCH(520, OVERRIDE_ADAPTIVE),
     SWITCH(530, OVERRIDE_HOLD),
     {'m', 600, GROUP_STOP, STEP_STOP, 0, 0, events_stop},
-    {'m', 610, GROUP_TOOL_CHANGE, STEP_TOOL_CHANGE, LETTER_BIT('q'), 0, events_load_tool},
+    {'m', 610, GROUP_TOOL_CHANGE, STEP_TOOL_CHANGE, 0, LETTER_BIT('q'), events_load_tool},
     OUTPUT(620, LETTER_BIT('p'), OUTPUT_ON + OUTPUT_WITH_MOTION),
     OUTPUT(630, LETTER_BIT('p'), OUTPUT_WITH_MOTION),
     OUTPUT(640, LETTER_BIT('p'), OUTPUT_ON),
     OUTPUT(650, LETTER_BIT('p'), 0),
-    {'m', 660, GROUP_CHANNEL, STEP_CHANNEL,
-     LETTER_BIT('e') | LETTER_BIT('l') | LETTER_BIT('p') | LETTER_BIT('q'), 0, events_read_input},
+    {'m', 660, GROUP_CHANNEL, STEP_CHANNEL, 0,
+     LETTER_BIT('e') | LETTER_BIT('l') | LETTER_BIT('p') | LETTER_BIT('q'), events_read_input},
     OUTPUT(670, LETTER_BIT('e') | LETTER_BIT('q'), OUTPUT_ANALOGUE + OUTPUT_WITH_MOTION),
     OUTPUT(680, LETTER_BIT('e') | LETTER_BIT('q'), OUTPUT_ANALOGUE),
     {'m', 700, GROUP_MODES, STEP_MODES, 0, 0, saved_modes_run_code},
-    {'m', 710, GROUP_MODES, STEP_MODES, 0, 1, saved_modes_run_code},
-    {'m', 720, GROUP_MODES, STEP_MODES, 0, 2, saved_modes_run_code},
-    {'m', 730, GROUP_MODES, STEP_MODES, 0, 3, saved_modes_run_code},
-    {'m', 980, GROUP_STOP, STEP_STOP, LETTER_BIT('l') | LETTER_BIT('p'), 0, calls_run_code},
-    {'m', 990, GROUP_STOP, STEP_STOP, 0, 1, calls_run_code},
-    {'m', 1200, GROUP_CORRECTION, STEP_CORRECTION, LETTER_BIT('p'), 1, modes_set_correction},
-    {'m', 1210, GROUP_CORRECTION, STEP_CORRECTION, LETTER_BIT('p'), 0, modes_set_correction},
+    {'m', 710, GROUP_MODES, STEP_MODES, 1, 0, saved_modes_run_code},
+    {'m', 720, GROUP_MODES, STEP_MODES, 2, 0, saved_modes_run_code},
+    {'m', 730, GROUP_MODES, STEP_MODES, 3, 0, saved_modes_run_code},
+    {'m', 980, GROUP_STOP, STEP_STOP, 0, LETTER_BIT('l') | LETTER_BIT('p'), calls_run_code},
+    {'m', 990, GROUP_STOP, STEP_STOP, 1, 0, calls_run_code},
+    {'m', 1200, GROUP_CORRECTION, STEP_CORRECTION, 1, LETTER_BIT('p'), modes_set_correction},
+    {'m', 1210, GROUP_CORRECTION, STEP_CORRECTION, 0, LETTER_BIT('p'), modes_set_correction},
 
-    {'s', CODE_ANY, GROUP_NONE, STEP_SPEED, LETTER_BIT('s'), 0, events_set_speed},
+    {'s', CODE_ANY, GROUP_NONE, STEP_SPEED, 0, LETTER_BIT('s'), events_set_speed},
 
-    {'t', CODE_ANY, GROUP_NONE, STEP_TOOL_SELECT, LETTER_BIT('t'), 0, events_select_tool},
+    {'t', CODE_ANY, GROUP_NONE, STEP_TOOL_SELECT, 0, LETTER_BIT('t'), events_select_tool},
 };
 
 #undef CYCLE

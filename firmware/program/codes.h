@@ -83,8 +83,8 @@ struct program_code {
     uint16_t number_x10; /* G92.1 is 921, M3 is 30 */
     enum group group;
     enum step step;
-    uint32_t words; /* letters it uses: bit 0 is A */
-    int argument;   /* for the handler */
+    int16_t argument; /* for the handler */
+    uint32_t words;   /* letters it uses: bit 0 is A */
     /* False: p->error is set. */
     bool (*run)(struct program *p, const struct program_code *code);
 };

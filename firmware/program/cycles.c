@@ -11,6 +11,9 @@
 
 #include <string.h>
 
+/* Rapid into a hole ends so far above where it was cut last, without D: 0.010 inch, as in LinuxCNC. */
+#define PECK_CLEARANCE_MM 0.254
+
 void cycles_open(struct program *p)
 {
     p->cycle.code = NULL;
@@ -148,6 +151,8 @@ static void set_heights(struct program *p, struct program_cycle *c, const struct
     c->middle_mm = w->middle_mm + (p->modes.incremental ? c->bottom_mm : 0.0);
     c->clear_mm = p->modes.retract_to_r ? c->retract_mm : maths_max(c->retract_mm, w->initial_mm);
     c->peck_mm = w->peck_mm;
+    c->clearance_mm =
+        words_has(p, 'd') ? words_value(p, 'd') * p->modes.unit_mm : PECK_CLEARANCE_MM;
     c->dwell_s = w->dwell_s;
     c->aside_mm[0] = w->aside_mm[0];
     c->aside_mm[1] = w->aside_mm[1];

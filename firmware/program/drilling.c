@@ -6,9 +6,6 @@
 
 #include <string.h>
 
-/* Rapid into a hole ends so far above where it was cut last: 0.010 inch, as in LinuxCNC. */
-#define PECK_CLEARANCE_MM 0.254
-
 enum act {
     ACT_END,
     ACT_RAPID,
@@ -138,7 +135,7 @@ static bool peck(struct program *p, enum act act, bool *done, struct move *move)
         return go(p, MOVE_RAPID, c->retract_mm, HOLE, move);
     default:
         c->substage = 1;
-        return go(p, MOVE_RAPID, c->depth_mm + PECK_CLEARANCE_MM, HOLE, move);
+        return go(p, MOVE_RAPID, c->depth_mm + c->clearance_mm, HOLE, move);
     }
 }
 

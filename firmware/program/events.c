@@ -158,6 +158,7 @@ bool events_load_tool(struct program *p, const struct program_code *code)
     return true;
 }
 
+/* Without R and P it only stops. */
 bool events_orient_spindle(struct program *p, const struct program_code *code)
 {
     const double degrees = words_has(p, 'r') ? words_value(p, 'r') : 0.0;
@@ -165,6 +166,11 @@ bool events_orient_spindle(struct program *p, const struct program_code *code)
     uint32_t way = ORIENT_SHORTEST;
 
     (void)code;
+    if (!words_has(p, 'r') && !words_has(p, 'p')) {
+        p->modes.direction = SPINDLE_OFF;
+        events_tell_spindle(p);
+        return true;
+    }
     if (degrees < 0.0 || degrees > DEGREES_MAX) {
         return report_error_letter(p, TAKT_ERROR_WORD_OUT_OF_RANGE, 'r', degrees);
     }

@@ -142,38 +142,52 @@ static bool read_name(struct program *p, struct program_reference *reference)
     return true;
 }
 
-bool expression_read_reference(struct program *p, struct program_reference *reference)
+/* *value: what stands for its number, if it has no name. */
+static bool read_reference(struct program *p, struct program_reference *reference, double *value)
 {
     const unsigned begin = p->lexer.at - 1U;
-    double value;
-    double number;
 
     if (lexer_accept(&p->lexer, '<')) {
         return read_name(p, reference);
     }
-    if (!expression_read(p, &value)) {
+    if (!expression_read(p, value)) {
         return false;
     }
+    double number;
+    const bool whole = expression_whole(*value, &number);
+
     reference->span = span_from(p, begin);
-    if (!expression_whole(value, &number) || number < 1.0 || number > PARAMETER_NUMBER_MAX) {
-        return report_error(p, TAKT_ERROR_PARAMETER_NUMBER, reference->span, value);
-    }
-    reference->number = (uint16_t)number;
+    reference->number =
+        whole && number >= 1.0 && number <= PARAMETER_NUMBER_MAX ? (uint16_t)number : 0;
     return true;
 }
 
-/* False when nothing of that name is known. */
-static bool find_named(struct program *p, const struct program_reference *reference, double *value)
+bool expression_read_reference(struct program *p, struct program_reference *reference)
 {
-    const char *name = p->lexer.text + reference->span.begin;
-    const size_t length = (size_t)(reference->span.end - reference->span.begin);
-    const double *named = names_find(&p->names, name, length);
+    const bool named = p->lexer.text[p->lexer.at] == '<';
+    double value = 0.0;
 
-    if (named == NULL) {
+    return read_reference(p, reference, &value) &&
+           (named || reference->number != 0 ||
+            report_error(p, TAKT_ERROR_PARAMETER_NUMBER, reference->span, value));
+}
+
+bool expression_find_named(const struct program *p, const char *name, size_t length, double *value)
+{
+    const int place = names_find(&p->names, name, length);
+
+    if (place < 0) {
         return predefined_get(p, name, length, value);
     }
-    *value = *named;
+    *value = p->names.value[place];
     return true;
+}
+
+static bool find_named(const struct program *p, const struct program_reference *reference,
+                       double *value)
+{
+    return expression_find_named(p, p->lexer.text + reference->span.begin,
+                                 (size_t)(reference->span.end - reference->span.begin), value);
 }
 
 static bool read_parameter(struct program *p, double *value)
@@ -209,7 +223,7 @@ static bool read_atan(struct program *p, double *value)
     return true;
 }
 
-/* EXISTS[#<name>], from its bracket on: 1 when it has been set; numbered parameters always exist. */
+/* EXISTS[#<name>], from its bracket on: 1 when it has been set, or when there is a parameter of this number. */
 static bool read_exists(struct program *p, double *value)
 {
     struct program_reference reference = {0};
@@ -218,13 +232,15 @@ static bool read_exists(struct program *p, double *value)
     if (!lexer_accept(&p->lexer, '#')) {
         return missing_here(p, TAKT_ERROR_NUMBER_EXPECTED);
     }
-    if (!expression_read_reference(p, &reference)) {
+    const bool named = p->lexer.text[p->lexer.at] == '<';
+
+    if (!read_reference(p, &reference, value)) {
         return false;
     }
     if (!lexer_accept(&p->lexer, ']')) {
         return missing_here(p, TAKT_ERROR_BRACKET_UNCLOSED);
     }
-    *value = reference.number != 0 || find_named(p, &reference, value) ? 1.0 : 0.0;
+    *value = reference.number != 0 || (named && find_named(p, &reference, value)) ? 1.0 : 0.0;
     return true;
 }
 
@@ -238,8 +254,14 @@ static bool read_function(struct program *p, double *value)
         return missing_here(p, TAKT_ERROR_NUMBER_EXPECTED);
     }
     l->at = (uint16_t)(begin + function->length);
+    while (l->text[l->at] >= 'a' && l->text[l->at] <= 'z') {
+        l->at++;
+    }
     const struct program_span span = span_from(p, begin);
 
+    if (l->at != begin + function->length) {
+        return report_error(p, TAKT_ERROR_FUNCTION_UNKNOWN, span, 0.0);
+    }
     if (l->text[l->at] != '[') {
         return report_error(p, TAKT_ERROR_BRACKET_EXPECTED, span, 0.0);
     }

@@ -50,6 +50,11 @@ static struct program_block *find_block(struct program *p, const struct oword *o
     return NULL;
 }
 
+bool flow_is_in_block(struct program *p, const struct oword *o)
+{
+    return find_block(p, o) != NULL;
+}
+
 static struct program_block *innermost(struct program *p)
 {
     return &p->flow.block[p->flow.blocks - 1];
@@ -303,6 +308,31 @@ static bool leave_round(struct program *p, const struct oword *o)
     return true;
 }
 
+/*
+ * O<place> GOTO [line] [blocks]: what a translator makes of a jump. The line begins at this place of the text, inside so many
+ * blocks of this call.
+ */
+static bool take_goto(struct program *p, const struct oword *o)
+{
+    double line;
+    double blocks;
+
+    if (!expression_read(p, &line) || !expression_read(p, &blocks)) {
+        return false;
+    }
+    if (!(blocks >= 0.0 && first_block(p) + blocks <= p->flow.blocks) ||
+        !(line >= 1.0 && line <= PROGRAM_LABEL_MAX)) {
+        return oword_error(p, TAKT_ERROR_OWORD_UNMATCHED, o, 0.0);
+    }
+    if (p->flow.failed) {
+        return true;
+    }
+    const struct program_place place = {o->label.id, (uint32_t)line - 1U};
+
+    p->flow.blocks = (uint8_t)(first_block(p) + (unsigned)blocks);
+    return flow_jump(p, &place, o);
+}
+
 static bool (*const actions[])(struct program *, const struct oword *) = {
     [OWORD_PROGRAM] = calls_begin_program,
     [OWORD_SUB] = calls_define,
@@ -320,6 +350,7 @@ static bool (*const actions[])(struct program *, const struct oword *) = {
     [OWORD_ENDREPEAT] = take_endrepeat,
     [OWORD_BREAK] = leave_round,
     [OWORD_CONTINUE] = leave_round,
+    [OWORD_GOTO] = take_goto,
 };
 
 static bool is_branch(enum oword_kind kind)
@@ -392,8 +423,10 @@ bool flow_count_line(struct program *p)
 {
     struct program_flow *f = &p->flow;
 
-    if (lexer_this_line(&p->lexer).offset >= f->furthest.offset) {
-        f->furthest = lexer_place(&p->lexer);
+    const uint64_t offset = lexer_this_line(&p->lexer).offset;
+
+    if (offset >= f->furthest.offset) {
+        f->furthest = offset == f->furthest.offset ? lexer_place(&p->lexer) : f->furthest;
         return true;
     }
     f->lines_repeated++;

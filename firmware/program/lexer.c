@@ -3,8 +3,9 @@
 /* What has been seen of a line while it is read. */
 struct scan {
     uint32_t column;         /* of the last character, from 1 */
-    char comment;            /* '(' or ';' while in one, else 0 */
-    uint32_t comment_column; /* where it began */
+    uint32_t open;           /* parentheses of the comment being read that are not closed */
+    bool rest;               /* the rest of the line is a comment */
+    uint32_t comment_column; /* where the comment began */
     bool failed;
 };
 
@@ -17,6 +18,7 @@ void lexer_open(struct program_lexer *l, const struct source *source)
     l->line = 0;
     l->at = 0;
     l->length = 0;
+    l->comment_length = 0;
     l->nesting = 0;
     l->text[0] = '\0';
 }
@@ -85,25 +87,43 @@ static void append(struct program_lexer *l, char c, uint32_t column)
     l->text[l->length++] = c;
 }
 
-static void scan_comment(const struct program_lexer *l, struct scan *s, struct diagnostic *error,
-                         char c)
+static void begin_comment(struct program_lexer *l, struct scan *s, char c)
 {
-    if (s->comment == ';') {
-        return;
+    s->open = c == '(' ? 1 : 0;
+    s->rest = c == ';';
+    s->comment_column = s->column;
+    l->comment_length = 0;
+}
+
+/*
+ * What a comment says may be an order. It is kept behind the text, backwards from the end of its room: with the character that
+ * begins it they are never longer than the line.
+ *
+ *     text ... 0            ... tnemmoc
+ */
+static void scan_comment(struct program_lexer *l, struct scan *s, char c)
+{
+    if (!s->rest) {
+        s->open += c == '(' ? 1U : 0U;
+        s->open -= c == ')' ? 1U : 0U;
     }
-    if (c == ')') {
-        s->comment = '\0';
-    } else if (c == '(') {
-        fail(l, s, error, TAKT_ERROR_COMMENT_NESTED, s->column, c);
+    if ((s->open > 0 || s->rest) && s->column <= PROGRAM_LINE_MAX) {
+        l->text[PROGRAM_LINE_MAX - l->comment_length++] = c;
     }
+}
+
+char lexer_comment(const struct program_lexer *l, unsigned at)
+{
+    return at < l->comment_length ? l->text[PROGRAM_LINE_MAX - at] : '\0';
 }
 
 static void scan_character(struct program_lexer *l, struct scan *s, struct diagnostic *error,
                            char c)
 {
     if (c == '(' || c == ';') {
-        s->comment = c;
-        s->comment_column = s->column;
+        begin_comment(l, s, c);
+    } else if (c > ' ' && c <= '~' && s->column > PROGRAM_LINE_MAX) {
+        fail(l, s, error, TAKT_ERROR_LINE_TOO_LONG, s->column, c);
     } else if (c > ' ' && c <= '~') {
         append(l, c, s->column);
     } else if (c != ' ' && c != '\t') {
@@ -117,10 +137,8 @@ static void scan_byte(struct program_lexer *l, struct scan *s, struct diagnostic
         return;
     }
     s->column++;
-    if (s->column > PROGRAM_LINE_MAX) {
-        fail(l, s, error, TAKT_ERROR_LINE_TOO_LONG, s->column, c);
-    } else if (s->comment != '\0') {
-        scan_comment(l, s, error, c);
+    if (s->open > 0 || s->rest) {
+        scan_comment(l, s, c);
     } else {
         scan_character(l, s, error, c);
     }
@@ -128,7 +146,7 @@ static void scan_byte(struct program_lexer *l, struct scan *s, struct diagnostic
 
 static void close_line(struct program_lexer *l, struct scan *s, struct diagnostic *error)
 {
-    if (s->comment == '(') {
+    if (s->open > 0) {
         fail(l, s, error, TAKT_ERROR_COMMENT_UNCLOSED, s->comment_column, '(');
     }
     l->text[l->length] = '\0';
@@ -145,9 +163,14 @@ enum lexer_result lexer_next_line(struct program_lexer *l, struct diagnostic *er
     if (c == SOURCE_END) {
         return LEXER_END;
     }
-    l->line++;
+    if (c == LEXER_GOES_ON) {
+        c = next_byte(l);
+    } else {
+        l->line++;
+    }
     l->at = 0;
     l->length = 0;
+    l->comment_length = 0;
     l->nesting = 0;
     while (c >= 0 && c != '\n') {
         scan_byte(l, &s, error, (char)c);

@@ -6,6 +6,9 @@
 
 #include "program/program.h"
 
+/* A line that begins with it goes on with the one before, whose number it has: a translator makes several lines of one. */
+#define LEXER_GOES_ON 0x1f
+
 enum lexer_result { LEXER_LINE, LEXER_END, LEXER_ERROR, LEXER_UNREADABLE };
 
 void lexer_open(struct program_lexer *l, const struct source *source);
@@ -18,6 +21,9 @@ bool lexer_can_go_on(struct program_lexer *l);
  * can be read. LEXER_UNREADABLE: the source fails.
  */
 enum lexer_result lexer_next_line(struct program_lexer *l, struct diagnostic *error);
+
+/* A character of the line's last comment, as it stands there; 0 behind its end. */
+char lexer_comment(const struct program_lexer *l, unsigned at);
 
 /* The column, from 1, of a character of the current line or of its end. */
 uint16_t lexer_column(const struct program_lexer *l, unsigned at);

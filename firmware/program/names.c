@@ -111,16 +111,16 @@ bool names_keep(struct program *p, uint16_t *place)
 
 /* -- parameters -- */
 
-double *names_find(struct program_names *names, const char *name, size_t length)
+int names_find(const struct program_names *names, const char *name, size_t length)
 {
     const uint8_t call = call_of(names, name);
 
     for (unsigned i = 0; i < names->count; i++) {
         if (names->of_call[i] == call && is_text_at(names, names->place[i], name, length)) {
-            return &names->value[i];
+            return (int)i;
         }
     }
-    return NULL;
+    return -1;
 }
 
 double *names_add(struct program *p, const char *name, size_t length)

@@ -10,8 +10,8 @@
 
 #include "program/program.h"
 
-/* The global, or the local of the current call; NULL when nothing of that name has been set. */
-double *names_find(struct program_names *names, const char *name, size_t length);
+/* Which it is of the globals and the locals of the current call; -1 when nothing of that name has been set. */
+int names_find(const struct program_names *names, const char *name, size_t length);
 
 /* Adds a name that is not there, with the value 0; NULL when there is no room. */
 double *names_add(struct program *p, const char *name, size_t length);

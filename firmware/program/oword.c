@@ -28,6 +28,7 @@ static const struct keyword keywords[] = {
     {"endrepeat", OWORD_ENDREPEAT},
     {"break", OWORD_BREAK},
     {"continue", OWORD_CONTINUE},
+    {"goto", OWORD_GOTO},
 };
 
 #define KEYWORDS (sizeof(keywords) / sizeof(keywords[0]))

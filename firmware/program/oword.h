@@ -23,6 +23,7 @@ enum oword_kind {
     OWORD_ENDREPEAT,
     OWORD_BREAK,
     OWORD_CONTINUE,
+    OWORD_GOTO,
     OWORD_M98, /* no O-words, but calls like them */
     OWORD_M99
 };

@@ -1,6 +1,7 @@
 #include "program/program.h"
 
 #include "program/approach.h"
+#include "program/comment.h"
 #include "program/coordinates.h"
 #include "program/cutter.h"
 #include "program/cycles.h"
@@ -105,7 +106,7 @@ static bool take_line(struct program *p)
     struct program_lexer *l = &p->lexer;
 
     if (l->length == 0) {
-        return true;
+        return flow_is_skipping(p) || comment_run(p);
     }
     const bool first = p->phase == PROGRAM_AT_START;
 
@@ -123,7 +124,7 @@ static bool take_line(struct program *p)
         return true;
     }
     tool_values_begin_line(p);
-    return words_read(p) && run_line(p);
+    return words_read(p) && comment_run(p) && run_line(p);
 }
 
 /* The line to start at waits until the way to it has been fetched. */
@@ -279,6 +280,16 @@ void program_answer(struct program *p, const struct program_answer *answer)
         break;
     }
     p->question = QUESTION_NONE;
+}
+
+void program_settle(struct program *p, const struct point *at)
+{
+    for (unsigned i = 0; i < p->queue_count; i++) {
+        if (move_is_motion(&p->queue[(p->queue_first + i) % PROGRAM_QUEUE_MAX])) {
+            return;
+        }
+    }
+    p->modes.at = *at;
 }
 
 bool program_warning(struct program *p, struct diagnostic *diagnostic)

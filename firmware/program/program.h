@@ -19,6 +19,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+struct program;
 struct program_modes;
 
 /* What the interpreter must know of the machine and the session. Copied by program_open. */
@@ -37,6 +38,12 @@ struct program_config {
     bool block_delete;          /* skip lines that begin with '/' */
     bool waits;                 /* PROGRAM_WAIT until program_answer; else no contact, input 0 */
     bool sharp_corners;         /* for the room offset: outer corners are not rounded */
+    /*
+     * NULL, or hears of every line that is executed and has a comment, before anything else of it: the comment is that of
+     * p->lexer. It changes nothing of p.
+     */
+    void (*say)(void *listener, const struct program *p);
+    void *listener;
     const struct program_modes *modes; /* to go on with; NULL: those a program begins with */
     const struct tool_table *tools;    /* may be NULL: empty table */
     struct parameters *parameters;     /* numbered parameters, read and written; never NULL */
@@ -81,6 +88,12 @@ enum program_result program_next(struct program *p, struct move *move,
 
 /* After the caller has run a MOVE_PROBE or a MOVE_INPUT, before the next move is asked for. Else it does nothing. */
 void program_answer(struct program *p, const struct program_answer *answer);
+
+/*
+ * The tool is at *at, not where the program has left it: after a contour without a move that leaves it. What the line being
+ * read still moves comes first. Before more is asked for.
+ */
+void program_settle(struct program *p, const struct point *at);
 
 /*
  * What the lines read so far leave for the next, also for another text that goes on with it, but for cutter

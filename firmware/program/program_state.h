@@ -19,12 +19,13 @@ struct program_lexer {
     struct source source;
     char input[PROGRAM_INPUT_MAX];
     size_t input_at, input_length;
-    uint64_t input_offset;             /* of input in the text */
-    uint64_t line_offset;              /* of the current line */
-    uint32_t line;                     /* number of the current line, from 1 */
-    uint16_t at;                       /* next character to read */
-    uint16_t length;                   /* of text */
-    uint16_t end_column;               /* of its end, from 1; 0: not known */
+    uint64_t input_offset;   /* of input in the text */
+    uint64_t line_offset;    /* of the current line */
+    uint32_t line;           /* number of the current line, from 1 */
+    uint16_t at;             /* next character to read */
+    uint16_t length;         /* of text */
+    uint16_t end_column;     /* of its end, from 1; 0: not known */
+    uint16_t comment_length; /* of its last comment, which lies backwards at the end of text */
     char text[PROGRAM_LINE_MAX + 1];   /* ends in zero */
     uint8_t dropped[PROGRAM_LINE_MAX]; /* characters before each of it that are not in text */
     uint8_t nesting;                   /* values being read now */
@@ -254,7 +255,8 @@ struct program_cycle {
     double hole_mm[2], step_mm[2];   /* the current hole; from one to the next */
     double start_mm, retract_mm, clear_mm, bottom_mm, middle_mm; /* across the plane */
     double aside_mm[2], peck_mm, dwell_s;
-    double depth_mm; /* the current peck's */
+    double clearance_mm; /* above the last cut, between pecks */
+    double depth_mm;     /* the current peck's */
     uint32_t repeats;
     unsigned stage, substage;
     bool first;

@@ -9,6 +9,7 @@
 #define FIXTURE_SYSTEM 9
 
 enum what {
+    TOOLS_AGAIN = 0, /* the table is read again: it is what it was */
     TOOL = 1,
     SYSTEM = 2,
     TOOL_BY_POSITION = 10,
@@ -200,13 +201,18 @@ bool setting_run(struct program *p, const struct program_code *code)
 {
     uint32_t what;
 
-    if (!words_has(p, 'l') || !words_has(p, 'p')) {
-        return report_missing(p, code->step, words_has(p, 'l') ? 'p' : 'l');
+    if (!words_has(p, 'l')) {
+        return report_missing(p, code->step, 'l');
     }
-    if (!words_whole(p, 'l', TOOL, SYSTEM_BY_POSITION, &what)) {
+    if (!words_whole(p, 'l', TOOLS_AGAIN, SYSTEM_BY_POSITION, &what)) {
         return false;
     }
+    if (what != TOOLS_AGAIN && !words_has(p, 'p')) {
+        return report_missing(p, code->step, 'p');
+    }
     switch (what) {
+    case TOOLS_AGAIN:
+        return true;
     case SYSTEM:
     case SYSTEM_BY_POSITION:
         return run_system(p, code, what == SYSTEM_BY_POSITION);

@@ -302,11 +302,9 @@ static bool swap_named(struct program *p, struct program_assignment *a)
 {
     const char *name = p->lexer.text + a->reference.span.begin;
     const size_t length = (size_t)(a->reference.span.end - a->reference.span.begin);
-    double *place = names_find(&p->names, name, length);
+    const int known = names_find(&p->names, name, length);
+    double *place = known >= 0 ? &p->names.value[known] : names_add(p, name, length);
 
-    if (place == NULL) {
-        place = names_add(p, name, length);
-    }
     if (place == NULL) {
         return false;
     }

@@ -161,7 +161,8 @@ static enum command_status finish(struct run *run)
     if (run->session.options->report != NULL && run->session.compiled != NULL)
         run_outputs_set_shares(&run->outputs,
                                compiled_shares_json(&run->session, run->compiled.stream));
-    if (!run_outputs_commit(&run->outputs, &summary, &run->session.parameters))
+    if (!announcer_finish(&run->simulation->announcer) ||
+        !run_outputs_commit(&run->outputs, &summary, &run->session.parameters))
         return STATUS_ENVIRONMENT;
     if (source.outcome == OUTCOME_FAULTED)
         report_fault(run, summary.fault);

@@ -10,6 +10,11 @@
 
 #define MACHINE_FILE_WORD_MAX 63
 
+/* The section whose keys are codes of programs. */
+#define MACHINE_FILE_CODES "codes"
+/* The section whose keys are parameters that programs ask for. */
+#define MACHINE_FILE_VALUES "values"
+
 /* Where reading is. inih calls back for lines it has asked for, one line at a time. */
 struct machine_reader {
     struct machine_setup *setup;
@@ -20,7 +25,9 @@ struct machine_reader {
     size_t length;
     unsigned errors;
     bool axes_named;
-    bool place_known; /* the section this line stands in is known */
+    bool in_codes;    /* the section this line stands in is [codes], */
+    bool in_values;   /* or [values] */
+    bool place_known; /* it is another one that is known */
     struct machine_place place;
     uint32_t set_in_line[MACHINE_KEYS_MAX][AXIS_COUNT]; /* 0: not yet */
 };
@@ -77,8 +84,11 @@ static bool reader_enter_section(struct machine_reader *r, size_t offset)
     split_section(section, word, instance);
     if (strcmp(word, machine_section_names[SECTION_AXIS]) == 0)
         forget_default_axes(r);
-    r->place_known = machine_section_find(r->setup, word, instance, &r->place, &wrong);
-    if (!r->place_known)
+    r->in_codes = strcmp(word, MACHINE_FILE_CODES) == 0 && instance[0] == '\0';
+    r->in_values = strcmp(word, MACHINE_FILE_VALUES) == 0 && instance[0] == '\0';
+    r->place_known = !r->in_codes && !r->in_values &&
+                     machine_section_find(r->setup, word, instance, &r->place, &wrong);
+    if (!r->place_known && !r->in_codes && !r->in_values)
         reader_error(r, offset + 1, wrong.text);
     return true;
 }
@@ -136,6 +146,33 @@ static bool reader_is_new(struct machine_reader *r, const struct machine_key *ke
     return true;
 }
 
+/* NULL: it is taken; else what is wrong. A code that is there already changes. */
+static const char *set_code(struct machine_setup *setup, const char *name, const char *value)
+{
+    struct dialect_codes *codes = &setup->codes;
+    struct dialect_code code;
+    const char *wrong = dialect_code_read(&code, name, value);
+
+    for (unsigned i = 0; i < codes->count && wrong == NULL; i++) {
+        if (codes->code[i].letter == code.letter && codes->code[i].number_x10 == code.number_x10) {
+            codes->code[i] = code;
+            return NULL;
+        }
+    }
+    if (wrong == NULL && codes->count == DIALECT_CODES_MAX)
+        wrong = "there is no room for more codes";
+    if (wrong == NULL)
+        codes->code[codes->count++] = code;
+    return wrong;
+}
+
+/* What came of a key that is in no table. */
+static void take_free(struct machine_reader *r, const char *wrong)
+{
+    if (wrong != NULL)
+        reader_error(r, 0, wrong);
+}
+
 static int reader_take(void *context, const char *section, const char *name, const char *value)
 {
     struct machine_reader *r = context;
@@ -147,8 +184,12 @@ static int reader_take(void *context, const char *section, const char *name, con
         reader_error(r, 0, "a key stands before the first [section]");
         return 1;
     }
+    if (r->in_codes)
+        take_free(r, set_code(r->setup, name, value));
+    if (r->in_values)
+        take_free(r, dialect_value_set(&r->setup->codes, name, value));
     if (!r->place_known)
-        return 1; /* reported with the section */
+        return 1; /* no key of the table, or reported with the section */
     key = machine_key_find(r->setup, r->place, name, &wrong);
     if (key == NULL) {
         reader_error(r, 0, wrong.text);
@@ -233,6 +274,24 @@ static bool split_assignment(const char *assignment, char word[], char instance[
     return true;
 }
 
+/* "codes.M31=ignore", "values._hal[a.b]=1": names of their own, which may have points. */
+static bool assign_free(struct machine_setup *setup, const char *assignment, bool code)
+{
+    const char *begin = strchr(assignment, '.') + 1;
+    const size_t length = strcspn(begin, "=");
+    char name[MACHINE_FILE_WORD_MAX + 1];
+    const char *wrong = "NAME=VALUE is expected, such as codes.M31=ignore";
+
+    (void)snprintf(name, sizeof name, "%.*s", (int)length, begin);
+    if (begin[length] == '=' && code)
+        wrong = set_code(setup, name, begin + length + 1);
+    else if (begin[length] == '=')
+        wrong = dialect_value_set(&setup->codes, name, begin + length + 1);
+    if (wrong != NULL)
+        message_command_error("--set %s: %s", assignment, wrong);
+    return wrong == NULL;
+}
+
 bool machine_file_assign(struct machine_setup *setup, const char *assignment)
 {
     char word[MACHINE_FILE_WORD_MAX + 1], instance[MACHINE_FILE_WORD_MAX + 1],
@@ -242,6 +301,10 @@ bool machine_file_assign(struct machine_setup *setup, const char *assignment)
     const struct machine_key *key;
     const char *value;
 
+    const bool code = strncmp(assignment, MACHINE_FILE_CODES ".", sizeof MACHINE_FILE_CODES) == 0;
+
+    if (code || strncmp(assignment, MACHINE_FILE_VALUES ".", sizeof MACHINE_FILE_VALUES) == 0)
+        return assign_free(setup, assignment, code);
     if (!split_assignment(assignment, word, instance, name, &value)) {
         message_command_error(
             "--set %s: expected SECTION.KEY=VALUE, such as axis.X.max_jerk_mm_s3=20000",
@@ -363,6 +426,22 @@ static void write_places_of_axes(FILE *file, const struct machine_setup *setup,
     }
 }
 
+static void write_codes(FILE *file, const struct dialect_codes *codes)
+{
+    char text[DIALECT_CODE_TEXT_MAX];
+
+    if (codes->count > 0)
+        (void)fprintf(file, "\n[%s]\n", MACHINE_FILE_CODES);
+    for (unsigned i = 0; i < codes->count; i++) {
+        dialect_code_write(&codes->code[i], text);
+        (void)fprintf(file, "%s\n", text);
+    }
+    if (codes->values > 0)
+        (void)fprintf(file, "\n[%s]\n", MACHINE_FILE_VALUES);
+    for (unsigned i = 0; i < codes->values; i++)
+        (void)fprintf(file, "%s = %.9g\n", codes->value[i].name, codes->value[i].value);
+}
+
 void machine_file_write(FILE *file, const struct machine_setup *setup)
 {
     static const enum machine_section single[] = {SECTION_MACHINE,    SECTION_SPINDLE,
@@ -379,4 +458,5 @@ void machine_file_write(FILE *file, const struct machine_setup *setup)
     write_places_of_axes(file, setup, SECTION_AXIS);
     write_places_of_axes(file, setup, SECTION_DRIVE);
     write_places_of_axes(file, setup, SECTION_STEPPER);
+    write_codes(file, &setup->codes);
 }

@@ -6,6 +6,7 @@
 
 #include "controller/machine.h"
 #include "deviation/deviation.h"
+#include "dialect/dialect.h"
 #include "drives/drive_plant.h"
 #include "spindle/virtual_spindle.h"
 #include "stepper/virtual_steppers.h"
@@ -32,6 +33,7 @@ struct machine_setup {
     struct virtual_stepper_config stepper[AXIS_COUNT]; /* of each axis, if it has a step drive */
     struct virtual_spindle_config spindle;             /* see machine_setup_get_spindle */
     struct panel_setup panel;
+    struct dialect_codes codes; /* what becomes of codes that takt does not know */
 };
 
 /* The built-in machine. Axes it does not have hold what they get when a file or --set adds them. */

@@ -23,8 +23,11 @@ message_warning(const char *file, uint32_t line, uint32_t column, const char *fo
 /* About the command line, or what the machine it runs on refuses. */
 __attribute__((format(printf, 1, 2))) void message_command_error(const char *format, ...);
 __attribute__((format(printf, 1, 2))) void message_command_warning(const char *format, ...);
+__attribute__((format(printf, 1, 2))) void message_command_note(const char *format, ...);
 
 /* What a controller has to say at its start, if it has. */
+/* What the program itself says in a comment of a line. */
+void message_from_program(const struct program_text *program, uint32_t line, const char *text);
 void message_controller_warning(const struct controller *controller);
 
 /* "; did you mean PREFIXWORD?", or "" when word is NULL: for the end of a message. Valid until the next call. */

@@ -11,7 +11,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define OPTIONS_ROWS_MAX 32
+#define OPTIONS_ROWS_MAX 48
 
 static unsigned options_count(const struct option_row *rows)
 {

@@ -72,7 +72,9 @@ struct options {
     struct option_list set;
     const char *tools;
     const char *parameters;
-    struct option_list drive_type; /* [AXIS=]can|step */
+    const char *dialect;
+    struct option_list subroutines; /* folders */
+    struct option_list drive_type;  /* [AXIS=]can|step */
     const char *interpolator;
     bool exact_path;
     bool block_delete;
@@ -156,9 +158,14 @@ struct option_row {
 #define OPTIONS_PROGRAM                                                                            \
     OPTIONS_MACHINE,                                                                               \
         {"tools", OPTION_TEXT, offsetof(struct options, tools), "FILE",                            \
-         "tool table, LinuxCNC's .tbl"},                                                           \
+         "tool table, LinuxCNC's .tbl; auto: what the program itself says of its tools"},          \
         {"parameters", OPTION_TEXT, offsetof(struct options, parameters), "FILE",                  \
          "parameters, LinuxCNC's .var"},                                                           \
+        {"dialect", OPTION_TEXT, offsetof(struct options, dialect), "NAME",                        \
+         "what the program is written for: auto (default), linuxcnc, grbl, fanuc, haas, mach3, "   \
+         "marlin"},                                                                                \
+        {"subroutines", OPTION_LIST, offsetof(struct options, subroutines), "FOLDER",              \
+         "where files of subroutines are, beside the program's own folder"},                       \
         {"from-line", OPTION_LINE, offsetof(struct options, from_line), "N",                       \
          "start in the middle: all modes as there, and a safe way to it"},                         \
         {"lines-max", OPTION_LINE, offsetof(struct options, lines_max), "N",                       \

@@ -3,6 +3,7 @@
 #include "takt/program_text.h"
 
 #include <fcntl.h>
+#include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -45,6 +46,11 @@ bool program_text_open(struct program_text *text, const char *path)
 
 void program_text_close(struct program_text *text)
 {
+    for (unsigned i = 0; i < text->pieces; i++) {
+        text_free(&text->piece[i].found);
+        free(text->piece[i].name);
+    }
+    free(text->piece);
     if (text->is_file)
         (void)close(text->file);
     text_free(&text->whole);
@@ -183,12 +189,55 @@ static size_t take_line(struct line_search *s, size_t first, char *bytes, size_t
     return count > 0 && bytes[count - 1] == '\r' ? count - 1 : count;
 }
 
+/* The file that a line is found in. */
+static const struct program_piece *piece_of(const struct program_text *text, uint32_t line)
+{
+    unsigned i = text->pieces;
+
+    while (i > 1 && text->piece[i - 1].first_line > line)
+        i--;
+    return &text->piece[i - 1];
+}
+
+const char *program_text_place(const struct program_text *text, uint32_t *line)
+{
+    if (text->pieces == 0 || *line == 0)
+        return text->name;
+    const struct program_piece *piece = piece_of(text, *line);
+
+    *line -= piece->first_line - 1;
+    return piece->name;
+}
+
+static size_t found_line(const struct text *text, uint32_t line, size_t first, char *bytes,
+                         size_t size)
+{
+    size_t position = 0;
+    const char *start = "";
+    size_t length = 0;
+
+    for (uint32_t i = 0; i < line; i++) {
+        if (!text_next_line(text, &position, &start, &length))
+            return 0;
+    }
+    const size_t left = length > first ? length - first : 0;
+    const size_t count = left < size ? left : size;
+
+    memcpy(bytes, start + (left > 0 ? first : 0), count);
+    return count;
+}
+
 size_t program_text_line(const struct program_text *text, uint32_t line, size_t first, char *bytes,
                          size_t size)
 {
     static struct program_text_reader reader;
     static struct line_search search;
 
+    if (text->pieces > 0) {
+        const struct program_piece *piece = piece_of(text, line);
+
+        return found_line(&piece->found, line - (piece->first_line - 1), first, bytes, size);
+    }
     search.length = 0;
     search.at = 0;
     program_text_read(text, &reader, &search.source);

@@ -15,6 +15,13 @@
 
 #define PROGRAM_TEXT_PIECE 16384
 
+/* A file that the text consists of, as it is found. The first is the program, the others are subroutines. */
+struct program_piece {
+    uint32_t first_line; /* of its lines in the text; its own count from 1 */
+    char *name;          /* owned */
+    struct text found;   /* owned */
+};
+
 struct program_text {
     const char *name; /* for messages: the path, or "<stdin>". Not owned */
     bool is_file;     /* else whole */
@@ -22,7 +29,13 @@ struct program_text {
     int64_t size; /* when it was opened; and when it had last been changed then */
     struct timespec changed;
     struct text whole;
+    /* of one that has been prepared (program_front.h) */
+    unsigned pieces; /* 0: it is read as it is found */
+    struct program_piece *piece;
 };
+
+/* Where a line is found: its file, and *line becomes that of the file. */
+const char *program_text_place(const struct program_text *text, uint32_t *line);
 
 /* One reading of it; several may go on at once. */
 struct program_text_reader {

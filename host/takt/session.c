@@ -1,12 +1,16 @@
 #include "takt/session.h"
 
+#include "program/comment_text.h"
 #include "takt/correction_file.h"
 #include "takt/interrupt.h"
 #include "takt/machine_file.h"
 #include "takt/message.h"
+#include "takt/program_front.h"
+#include "takt/tool_guess.h"
 
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 /* Moves between two looks at Ctrl-C. */
 #define SESSION_INTERRUPT_MOVES 4096
@@ -24,7 +28,8 @@ static bool open_tables(struct session *s)
     if (parameters == NULL && s->setup.parameter_file[0] != '\0')
         parameters = s->setup.parameter_file;
     s->parameter_path = parameters;
-    if (tools != NULL && !tool_file_read(&s->tools, tools))
+    s->guesses_tools = tools != NULL && strcmp(tools, "auto") == 0;
+    if (tools != NULL && !s->guesses_tools && !tool_file_read(&s->tools, tools))
         return false;
     return parameters == NULL || parameter_file_read(&s->parameters, parameters);
 }
@@ -39,11 +44,31 @@ enum command_status session_open_machine(struct session *s, const struct options
                : STATUS_INPUT;
 }
 
+/* Translated, and with its subroutines. */
+static bool prepare_program(struct session *s)
+{
+    struct program_front front = {.codes = &s->setup.codes, .quiet = s->options->quiet};
+    const char *dialect = s->options->dialect != NULL ? s->options->dialect : "auto";
+    const unsigned found = dialect_find(dialect);
+
+    if (found > DIALECT_AUTO) {
+        message_command_error(
+            "--dialect %s: known are auto, linuxcnc, grbl, fanuc, haas, mach3 and marlin", dialect);
+        return false;
+    }
+    front.dialect = (enum dialect)found;
+    for (unsigned i = 0; i < s->options->subroutines.count; i++)
+        front.folder[front.folders++] = s->options->subroutines.item[i];
+    return program_front_prepare(&front, &s->program) &&
+           (!s->guesses_tools || tool_guess(&s->tools, &s->program));
+}
+
 enum command_status session_open(struct session *s, const struct options *options)
 {
     if (session_open_machine(s, options) != STATUS_DONE)
         return STATUS_INPUT;
-    return program_text_open(&s->program, options->operand[0]) ? STATUS_DONE : STATUS_INPUT;
+    return program_text_open(&s->program, options->operand[0]) && prepare_program(s) ? STATUS_DONE
+                                                                                     : STATUS_INPUT;
 }
 
 void session_close(struct session *s)
@@ -123,6 +148,17 @@ static bool check_move(const struct session *s, struct session_reading *reading,
     return totals->errors < errors_max;
 }
 
+/* What a program ends itself with, if that is more than its error has room for. */
+static void say_abort(void *listener, const struct program *p)
+{
+    const struct session *s = listener;
+    char text[COMMENT_TEXT_MAX];
+    const bool abort = comment_read(p, text) == COMMENT_ABORT;
+
+    if (abort && (strlen(text) >= DIAGNOSTIC_WORD_MAX || strchr(text, '.') != NULL))
+        message_from_program(&s->program, p->lexer.line, text);
+}
+
 enum command_status session_check(const struct session *s, unsigned errors_max,
                                   struct session_totals *totals)
 {
@@ -133,6 +169,8 @@ enum command_status session_check(const struct session *s, unsigned errors_max,
     unsigned moves = 0;
 
     session_begin_reading(s, &reading, &config, &source);
+    config.say = say_abort;
+    config.listener = (void *)(uintptr_t)s;
     program_open(&reading.program, &config, &source);
     offset_open(&reading.offset, &config);
     at = config.start;

@@ -26,6 +26,7 @@ struct session {
     struct machine_setup setup;
     struct program_text program;
     struct tool_file tools;
+    bool guesses_tools;         /* --tools auto: by what the program says */
     const char *parameter_path; /* NULL: none */
     struct parameter_file parameters;
     bool runs; /* set it when the program is run: a check then ends at the first G38 or M66 */

@@ -14,6 +14,26 @@
 #define FEED_PERCENT_MAX  120
 #define RAPID_PERCENT_MAX 100
 
+/* Contacts go into the program's own file. */
+static void note_contact(struct simulation *s)
+{
+    struct program_answer answer;
+    const uint32_t answers = controller_get_answers(&s->controller, &answer);
+
+    if (answers != s->answers && answer.contact)
+        announcer_add_contact(&s->announcer, &s->parameters);
+    s->answers = answers;
+}
+
+/* The contact of the move before comes first. */
+static void say(void *simulation, const struct program *p)
+{
+    struct simulation *s = simulation;
+
+    note_contact(s);
+    announcer_say(&s->announcer, p);
+}
+
 static void start_controller(struct simulation *s, const struct session *session,
                              struct can_port port)
 {
@@ -26,12 +46,15 @@ static void start_controller(struct simulation *s, const struct session *session
         .compiled = session->compiled != NULL ? &session->compiled->source : NULL,
         .reader = &s->reader,
         .parameters = &s->parameters,
+        .say = say,
+        .listener = s,
         .exact_path = session->options->exact_path,
         .block_delete = session->options->block_delete,
         .from_line = session->options->from_line,
     };
 
     s->parameters = session->parameters.values;
+    announcer_init(&s->announcer, &session->program);
     program_text_read(&session->program, &s->text, &config.source);
     controller_init(&s->controller, &config);
     message_controller_warning(&s->controller);
@@ -129,6 +152,7 @@ void simulation_close(struct simulation *s)
         return;
     if (s->has_target)
         target_close(&s->target);
+    announcer_close(&s->announcer);
     field_close(&s->field);
     free_overrides(s);
     free(s);
@@ -212,6 +236,7 @@ bool simulation_step(struct simulation *s)
 {
     if (!control(s))
         return false;
+    note_contact(s);
     step_spindle(s);
     if (!s->has_begun && controller_get_record(&s->controller) != NULL) {
         s->has_begun = true;

@@ -10,6 +10,7 @@
 #include "hal/inputs.h"
 #include "probe/virtual_probe.h"
 #include "spindle/virtual_spindle.h"
+#include "takt/announcer.h"
 #include "takt/correction_watch.h"
 #include "takt/cycle_cost.h"
 #include "takt/field.h"
@@ -29,6 +30,8 @@ struct simulation {
     struct inject script;            /* of faults */
     struct parameters parameters;    /* what the program sets */
     struct program_text_reader text;
+    struct announcer announcer; /* of what the program says */
+    uint32_t answers;           /* to its questions, so far */
     struct virtual_probe probe;
     struct override_file feed_override, rapid_override;
     struct inputs inputs; /* of the next cycle */

@@ -45,7 +45,12 @@ static const struct faulty table[] = {
     {"G0 X-", TAKT_ERROR_NUMBER_EXPECTED, 1, 5, "-"},
     {"N G0", TAKT_ERROR_NUMBER_EXPECTED, 1, 1, "N"},
     {"G0 (x", TAKT_ERROR_COMMENT_UNCLOSED, 1, 4, "("},
-    {"G0 (x(", TAKT_ERROR_COMMENT_NESTED, 1, 6, "("},
+    {"G0 (x(y)", TAKT_ERROR_COMMENT_UNCLOSED, 1, 4, "("},
+    {"G0 XSQRTT[4]", TAKT_ERROR_FUNCTION_UNKNOWN, 1, 5, "SQRTT"},
+    {"G0 XSINY1", TAKT_ERROR_FUNCTION_UNKNOWN, 1, 5, "SINY"},
+    {"(abort, no tool)", TAKT_ERROR_ABORTED, 1, 0, " no tool"},
+    {"G0 X1 ( Abort,)", TAKT_ERROR_ABORTED, 1, 0, ""},
+    {"; ABORT,x", TAKT_ERROR_ABORTED, 1, 0, "x"},
 };
 
 static void check(const struct faulty *f)

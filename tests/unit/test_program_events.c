@@ -35,6 +35,18 @@ static void expect_tool(uint32_t tool, bool change)
     TEST_ASSERT_EQUAL_INT(change, move.tool_change);
 }
 
+static void test_orienting_without_angle_and_way_stops_the_spindle(void)
+{
+    reader_open(&reader, "S100 M3\nM19\nM3\nM19 P1\nM3\nM19 R0");
+    expect_spindle(SPINDLE_CW, 100.0);
+    expect_spindle(SPINDLE_OFF, 0.0);
+    expect_spindle(SPINDLE_CW, 100.0);
+    (void)reader_next(&reader, MOVE_ORIENT);
+    expect_spindle(SPINDLE_CW, 100.0);
+    (void)reader_next(&reader, MOVE_ORIENT);
+    reader_expect_end(&reader);
+}
+
 static void check_error(const char *text, enum takt_error code, const char *word)
 {
     reader_expect_refused(&reader, text, code);
@@ -199,6 +211,7 @@ static void test_the_exact_path_can_be_forced(void)
 int main(void)
 {
     UNITY_BEGIN();
+    RUN_TEST(test_orienting_without_angle_and_way_stops_the_spindle);
     RUN_TEST(test_the_spindle_hears_of_speed_once);
     RUN_TEST(test_the_spindle_s_maximum_is_used_with_a_warning);
     RUN_TEST(test_no_more_warnings_are_kept_than_there_is_room_for);

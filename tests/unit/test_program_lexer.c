@@ -106,10 +106,63 @@ static void test_an_unclosed_comment_is_found_where_it_opens(void)
     expect_line(2, "y2");
 }
 
-static void test_comments_do_not_nest(void)
+static void test_comments_nest(void)
 {
-    open_text("(a(b))\ny2");
-    expect_error(TAKT_ERROR_COMMENT_NESTED, 1, 3);
+    open_text("(a(b)c)x1(d(e)\ny2");
+    expect_error(TAKT_ERROR_COMMENT_UNCLOSED, 1, 10);
+    open_text("(a(b)c)x1(d(e))\ny2");
+    expect_line(1, "x1");
+    expect_line(2, "y2");
+}
+
+static void expect_comment(const char *comment)
+{
+    unsigned at = 0;
+
+    for (; comment[at] != '\0'; at++) {
+        TEST_ASSERT_EQUAL_INT(comment[at], lexer_comment(&lexer, at));
+    }
+    TEST_ASSERT_EQUAL_INT('\0', lexer_comment(&lexer, at));
+}
+
+static void test_the_last_comment_of_a_line_is_kept_as_it_stands_there(void)
+{
+    open_text("x1 ( first ) y2 (A (b) C)z3\nz4\n; rest (of it");
+    expect_line(1, "x1y2z3");
+    expect_comment("A (b) C");
+    expect_line(2, "z4");
+    expect_comment("");
+    expect_line(3, "");
+    expect_comment(" rest (of it");
+}
+
+/* A line of the largest length that is all text and comment: neither runs into the other. */
+static void test_text_and_comment_fill_a_line(void)
+{
+    char text[PROGRAM_LINE_MAX + 1];
+
+    memset(text, 'X', PROGRAM_LINE_MAX);
+    text[PROGRAM_LINE_MAX] = '\0';
+    text[100] = '(';
+    text[PROGRAM_LINE_MAX - 1] = ')';
+    open_text(text);
+    TEST_ASSERT_EQUAL_INT(LEXER_LINE, lexer_next_line(&lexer, &diagnostic));
+    TEST_ASSERT_EQUAL_UINT(100, lexer.length);
+    TEST_ASSERT_EQUAL_UINT(PROGRAM_LINE_MAX - 102, lexer.comment_length);
+    TEST_ASSERT_EQUAL_INT('x', lexer.text[99]);
+    TEST_ASSERT_EQUAL_INT('\0', lexer.text[100]);
+    TEST_ASSERT_EQUAL_INT('X', lexer_comment(&lexer, lexer.comment_length - 1U));
+}
+
+static void test_a_comment_may_be_longer_than_a_line(void)
+{
+    char text[2 * PROGRAM_LINE_MAX];
+
+    memset(text, 'c', sizeof(text));
+    memcpy(text, "x1 (", 4);
+    memcpy(text + sizeof(text) - 5, ")\ny2", 5);
+    open_text(text);
+    expect_line(1, "x1");
     expect_line(2, "y2");
 }
 
@@ -131,7 +184,7 @@ static void test_one_character_more_is_too_long(void)
     char text[PROGRAM_LINE_MAX + 4];
 
     memset(text, ' ', sizeof(text));
-    memcpy(text + PROGRAM_LINE_MAX + 1, "\nY", 3);
+    memcpy(text + PROGRAM_LINE_MAX, "X\nY", 4);
     open_text(text);
     expect_error(TAKT_ERROR_LINE_TOO_LONG, 1, PROGRAM_LINE_MAX + 1);
     TEST_ASSERT_EQUAL_DOUBLE(PROGRAM_LINE_MAX, diagnostic.value);
@@ -273,7 +326,10 @@ int main(void)
     RUN_TEST(test_lines_end_with_lf_or_crlf_or_the_text);
     RUN_TEST(test_an_empty_text_has_no_line);
     RUN_TEST(test_an_unclosed_comment_is_found_where_it_opens);
-    RUN_TEST(test_comments_do_not_nest);
+    RUN_TEST(test_comments_nest);
+    RUN_TEST(test_the_last_comment_of_a_line_is_kept_as_it_stands_there);
+    RUN_TEST(test_text_and_comment_fill_a_line);
+    RUN_TEST(test_a_comment_may_be_longer_than_a_line);
     RUN_TEST(test_a_line_of_the_largest_length_is_read);
     RUN_TEST(test_one_character_more_is_too_long);
     RUN_TEST(test_a_line_of_a_megabyte_is_passed_over);

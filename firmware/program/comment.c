@@ -1,0 +1,45 @@
+#include "program/comment.h"
+
+#include "program/lexer.h"
+
+static char lower(char c)
+{
+    return c >= 'A' && c <= 'Z' ? (char)(c - 'A' + 'a') : c;
+}
+
+unsigned comment_match(const struct program_lexer *l, const char *word)
+{
+    unsigned at = 0;
+
+    while (lexer_comment(l, at) == ' ') {
+        at++;
+    }
+    while (*word != '\0' && lower(lexer_comment(l, at)) == *word) {
+        word++;
+        at++;
+    }
+    return *word == '\0' ? at : 0;
+}
+
+static bool end_program(struct program *p, unsigned from)
+{
+    char text[DIAGNOSTIC_WORD_MAX];
+    size_t length = 0;
+
+    while (length < sizeof(text) && from < p->lexer.comment_length) {
+        text[length++] = lexer_comment(&p->lexer, from++);
+    }
+    diagnostic_set(&p->error, TAKT_ERROR_ABORTED, p->lexer.line, 0, text, length, 0.0);
+    p->phase = PROGRAM_ENDED;
+    return false;
+}
+
+bool comment_run(struct program *p)
+{
+    const unsigned abort = comment_match(&p->lexer, "abort,");
+
+    if (p->config.say != NULL && p->lexer.comment_length > 0) {
+        p->config.say(p->config.listener, p);
+    }
+    return abort == 0 || end_program(p, abort);
+}

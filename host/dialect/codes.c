@@ -1,0 +1,121 @@
+/*
+ * Codes: what the machine file declares, then what the table of differences has.
+ */
+#include "dialect/difference.h"
+#include "dialect/translate.h"
+
+#include <stdio.h>
+#include <string.h>
+
+/* Words that only the code in front of them can mean. */
+#define OWN_WORDS "dehijklpqr"
+
+static void drop_code(struct translator *t, struct line_word *w)
+{
+    struct line *l = &t->line;
+    unsigned i = (unsigned)(w - l->word);
+
+    line_blank(l, w);
+    for (i++; i < l->words && l->word[i].kind == WORD_VALUE &&
+              strchr(OWN_WORDS, l->word[i].letter) != NULL;
+         i++)
+        line_blank(l, &l->word[i]);
+}
+
+static const struct dialect_code *declared(const struct translator *t, const struct line_word *w)
+{
+    const int number = line_code(w);
+
+    for (unsigned i = 0; i < t->codes->count && number >= 0; i++) {
+        if (t->codes->code[i].letter == w->letter && t->codes->code[i].number_x10 == number)
+            return &t->codes->code[i];
+    }
+    return NULL;
+}
+
+/* The value of a word behind the code, which the code has for itself. */
+static void take_argument(struct line *l, unsigned from, char letter, char *text, size_t size)
+{
+    (void)snprintf(text, size, "0");
+    for (unsigned i = from; i < l->words && strchr(OWN_WORDS, l->word[i].letter) != NULL; i++) {
+        const struct line_word *w = &l->word[i];
+
+        if (w->kind == WORD_VALUE && w->letter == letter)
+            (void)snprintf(text, size, "%.*s", (int)(w->end - w->value_begin),
+                           &l->text[w->value_begin]);
+    }
+}
+
+static void call_subroutine(struct translator *t, struct line_word *w,
+                            const struct dialect_code *code)
+{
+    const unsigned from = (unsigned)(w - t->line.word) + 1;
+    char p[64];
+    char q[64];
+    char r[64];
+
+    take_argument(&t->line, from, 'p', p, sizeof p);
+    take_argument(&t->line, from, 'q', q, sizeof q);
+    take_argument(&t->line, from, 'r', r, sizeof r);
+    translate_add(&t->behind, "o<%s> call [%s] [%s] [%s]", code->subroutine, p, q, r);
+}
+
+static void use_declared(struct translator *t, struct line_word *w, const struct dialect_code *code)
+{
+    switch (code->use) {
+    case DIALECT_IGNORE:
+        break;
+    case DIALECT_STOP:
+        translate_add(&t->behind, "M0");
+        break;
+    case DIALECT_OUTPUT_ON:
+    case DIALECT_OUTPUT_OFF:
+        translate_add(&t->behind, "M%u P%u", code->use == DIALECT_OUTPUT_ON ? 64U : 65U,
+                      code->number);
+        break;
+    case DIALECT_SUBROUTINE:
+        call_subroutine(t, w, code);
+        break;
+    }
+    drop_code(t, w);
+}
+
+/* False: nothing is left of the line. */
+static bool use_difference(struct translator *t, struct line_word *w, const struct difference *row)
+{
+    if (row->kind == DIFFERENCE_REPLACE) {
+        (void)line_replace(&t->line, w, row->text);
+        return true;
+    }
+    if (row->kind != DIFFERENCE_QUIET)
+        translate_note(t, w, row->text);
+    if (row->kind != DIFFERENCE_LINE) {
+        drop_code(t, w);
+        return true;
+    }
+    if (line_code(w) == 1170) /* M117 shows the rest of its line */
+        translate_add(&t->behind, "(msg,%.200s)", &t->line.text[w->end]);
+    (void)line_read(&t->line, "", 0);
+    return false;
+}
+
+void codes_translate(struct translator *t)
+{
+    struct line *l = &t->line;
+
+    for (unsigned i = 0; i < l->words; i++) {
+        struct line_word *w = &l->word[i];
+        const struct dialect_code *code = declared(t, w);
+        const int number = line_code(w);
+
+        if (code != NULL) {
+            use_declared(t, w, code);
+            continue;
+        }
+        const struct difference *row =
+            number >= 0 ? difference_find(t->dialect, w->letter, (unsigned)number) : NULL;
+
+        if (row != NULL && !use_difference(t, w, row))
+            return;
+    }
+}

@@ -1,0 +1,350 @@
+/*
+ * Flow of Fanuc's macros in O-words.
+ *
+ *     WHILE [a] DO1 ... END1      o91000001 while [a] ... o91000001 endwhile
+ *     IF [a] THEN x               o9200nnnn if [a] / x / o9200nnnn endif
+ *     GOTO 10                     o<place> goto [line] [loops]: filled in when all lines have their places
+ *     G65 P1000 A1 B2             o1000 call [1] [2] ...; O1000 ... M99 is then o1000 sub ... o1000 endsub
+ */
+#include "dialect/translate.h"
+
+#include "dialect/output.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define LOOP_LABEL 91000000U
+#define IF_LABEL   92000000U
+/* Arguments of G65: A to Z are #1 to #26, in Fanuc's order. */
+#define ARGUMENTS 26
+#define TEXT_MAX  1024
+
+static bool has(const uint32_t *numbers, unsigned count, uint32_t number)
+{
+    for (unsigned i = 0; i < count; i++) {
+        if (numbers[i] == number)
+            return true;
+    }
+    return false;
+}
+
+static void remember(uint32_t *numbers, unsigned *count, double number)
+{
+    if (*count < TRANSLATE_PROGRAMS_MAX && !has(numbers, *count, (uint32_t)number))
+        numbers[(*count)++] = (uint32_t)number;
+}
+
+void flow_survey(struct survey *s, struct line *l)
+{
+    const struct line_word *first = l->words > 0 ? &l->word[0] : NULL;
+    const struct line_word *p = line_find(l, 'p', 0);
+
+    if (first != NULL && first->letter == 'o' && first->is_number)
+        remember(s->program, &s->programs, first->value);
+    if (p != NULL && p->is_number && line_find_code(l, 'g', 650) != NULL)
+        remember(s->macro, &s->macros, p->value);
+    for (unsigned i = 0; i < l->words; i++)
+        s->jumps = s->jumps || line_is_keyword(l, &l->word[i], "goto");
+}
+
+static void copy(const struct line *l, const struct line_word *w, char *text, size_t size)
+{
+    (void)snprintf(text, size, "%.*s", (int)(w->end - w->begin), &l->text[w->begin]);
+}
+
+/* ---- jumps ---- */
+
+void flow_note_label(struct translator *t, size_t offset)
+{
+    const struct line_word *w = t->line.words > 0 ? &t->line.word[0] : NULL;
+
+    if (!t->survey.jumps || w == NULL || w->letter != 'n' || !w->is_number)
+        return;
+    if (t->labels == t->label_room) {
+        const size_t room = 2 * t->label_room + 256;
+        struct label *grown = realloc(t->label, room * sizeof *grown);
+
+        t->result->text.failed = t->result->text.failed || grown == NULL;
+        if (grown == NULL)
+            return;
+        t->label = grown;
+        t->label_room = room;
+    }
+    t->label[t->labels++] =
+        (struct label){t->program, (uint32_t)w->value, t->number, offset, t->depth};
+}
+
+/* The number behind GOTO is a word without a letter: digits among what is left of the line. */
+static bool read_target(const struct line *l, const struct line_word *w, uint32_t *number)
+{
+    char *end;
+    const char *begin = &l->text[w->end];
+
+    *number = (uint32_t)strtoul(begin, &end, 10);
+    return end != begin;
+}
+
+/* Where it is filled in is a place in behind, until the line is put out. */
+static void add_jump(struct translator *t, uint32_t number)
+{
+    if (t->jumps < TRANSLATE_JUMPS_MAX)
+        t->jump[t->jumps++] =
+            (struct jump){t->program, number, t->number, t->behind.length + 1, t->depth};
+    translate_add(&t->behind, "o00000000 goto [00000000] [00]");
+}
+
+static const struct label *find_label(const struct translator *t, const struct jump *j)
+{
+    for (unsigned i = 0; i < t->labels; i++) {
+        if (t->label[i].program == j->program && t->label[i].number == j->number)
+            return &t->label[i];
+    }
+    return NULL;
+}
+
+bool flow_finish(struct translator *t)
+{
+    for (unsigned i = 0; i < t->jumps; i++) {
+        const struct jump *j = &t->jump[i];
+        const struct label *label = find_label(t, j);
+        char text[64];
+
+        if (label == NULL || label->depth > j->depth || label->offset > 99999999U) {
+            t->result->wrong_line = j->line;
+            t->result->wrong_number = j->number;
+            return false;
+        }
+        const int length = snprintf(text, sizeof text, "o%08u goto [%08u] [%02u]",
+                                    (unsigned)label->offset, (unsigned)label->line, label->depth);
+
+        memcpy(t->result->text.bytes + j->patch, text, (size_t)length);
+    }
+    return true;
+}
+
+/* ---- loops and branches ---- */
+
+static void take_while(struct translator *t, unsigned at)
+{
+    struct line *l = &t->line;
+    char condition[TEXT_MAX] = "[1]";
+    uint32_t number = 0;
+
+    for (unsigned i = at; i < l->words; i++) {
+        struct line_word *w = &l->word[i];
+
+        if (w->kind == WORD_BRACKET)
+            copy(l, w, condition, sizeof condition);
+        if (line_is_keyword(l, w, "do"))
+            (void)read_target(l, w, &number);
+    }
+    translate_add(&t->before, "o%u while %s", LOOP_LABEL + number, condition);
+    t->depth++;
+    line_read(l, "", 0);
+}
+
+static void take_end(struct translator *t, unsigned at)
+{
+    uint32_t number = 0;
+
+    (void)read_target(&t->line, &t->line.word[at], &number);
+    translate_add(&t->behind, "o%u endwhile", LOOP_LABEL + number);
+    t->depth -= t->depth > 0 ? 1 : 0;
+    line_read(&t->line, "", 0);
+}
+
+static void take_goto(struct translator *t, unsigned at)
+{
+    uint32_t number = 0;
+
+    if (!read_target(&t->line, &t->line.word[at], &number))
+        return;
+    line_read(&t->line, "", 0);
+    add_jump(t, number);
+}
+
+static void take_alarm(struct translator *t);
+
+/* IF [a] GOTO 10; IF [a] THEN #1 = 2 */
+static void take_if(struct translator *t, unsigned at)
+{
+    struct line *l = &t->line;
+    const uint32_t label = IF_LABEL + t->number % 1000000U;
+    char condition[TEXT_MAX];
+    char rest[TEXT_MAX];
+    unsigned then = at + 2;
+
+    if (then >= l->words || l->word[at + 1].kind != WORD_BRACKET)
+        return;
+    copy(l, &l->word[at + 1], condition, sizeof condition);
+    const bool jumps = line_is_keyword(l, &l->word[then], "goto");
+    const size_t begin = jumps ? l->word[then].begin : l->word[then].end;
+
+    (void)snprintf(rest, sizeof rest, "%s", &l->text[begin]);
+    if (!jumps && !line_is_keyword(l, &l->word[then], "then"))
+        return;
+    translate_add(&t->before, "o%u if %s", label, condition);
+    line_read(l, rest, strlen(rest));
+    if (jumps)
+        take_goto(t, 0);
+    take_alarm(t);
+    translate_add(&t->behind, "o%u endif", label);
+}
+
+/* #3000 = 1 (TEXT) is an alarm, #3006 = 1 (TEXT) a stop with a message. */
+static void take_alarm(struct translator *t)
+{
+    struct line *l = &t->line;
+    double number = 0.0;
+    char text[TEXT_MAX] = "";
+
+    for (unsigned i = 0; i < l->words; i++) {
+        struct line_word *w = &l->word[i];
+
+        if (w->kind == WORD_COMMENT && w->letter == '(')
+            (void)snprintf(text, sizeof text, "%.*s", (int)(w->end - w->begin) - 2,
+                           &l->text[w->begin + 1]);
+        if (w->kind == WORD_ASSIGNED)
+            number = strtod(&l->text[w->begin + 1], NULL);
+    }
+    if (number != 3000.0 && number != 3006.0)
+        return;
+    line_read(l, "", 0);
+    if (number == 3000.0) {
+        translate_add(&t->behind, "(abort,%.200s)", text);
+        return;
+    }
+    translate_add(&t->behind, "(msg,%.200s)", text);
+    translate_add(&t->behind, "M0");
+}
+
+/* ---- subprograms ---- */
+
+/* Which of #1 to #26 a letter is; 0: none. */
+static unsigned argument_of(char letter)
+{
+    static const char letters[] = "abcijkde.h..m...qrstuvwxyz";
+    const char *at = strchr(letters, letter);
+
+    return at != NULL && letter != '.' ? (unsigned)(at - letters) + 1 : 0;
+}
+
+static void call(struct translator *t, uint32_t program, char arguments[ARGUMENTS][48])
+{
+    char text[ARGUMENTS * 52];
+    size_t length = 0;
+
+    for (unsigned i = 0; i < ARGUMENTS; i++)
+        length += (size_t)snprintf(text + length, sizeof text - length, " [%s]", arguments[i]);
+    translate_add(&t->behind, "o%u call%s", (unsigned)program, text);
+    line_read(&t->line, "", 0);
+}
+
+/* G65 P1000 A1 B2 */
+static void take_macro_call(struct translator *t)
+{
+    struct line *l = &t->line;
+    const struct line_word *p = line_find(l, 'p', 0);
+    char arguments[ARGUMENTS][48];
+
+    if (line_find_code(l, 'g', 650) == NULL || p == NULL || !p->is_number)
+        return;
+    for (unsigned i = 0; i < ARGUMENTS; i++)
+        (void)snprintf(arguments[i], sizeof arguments[i], "0");
+    for (unsigned i = 0; i < l->words; i++) {
+        const struct line_word *w = &l->word[i];
+        const unsigned number = w->kind == WORD_VALUE ? argument_of(w->letter) : 0;
+
+        if (number > 0)
+            (void)snprintf(arguments[number - 1], sizeof arguments[0], "%.*s",
+                           (int)(w->end - w->value_begin), &l->text[w->value_begin]);
+    }
+    call(t, (uint32_t)p->value, arguments);
+}
+
+/* M98 of a program that G65 calls too: it sees its caller's parameters. */
+static void take_sub_call(struct translator *t)
+{
+    struct line *l = &t->line;
+    struct line_word *p = line_find(l, 'p', 0);
+    char arguments[ARGUMENTS][48];
+    char text[32];
+
+    if (line_find_code(l, 'm', 980) == NULL || p == NULL || !p->is_number)
+        return;
+    const uint32_t number = (uint32_t)p->value;
+
+    if (has(t->survey.macro, t->survey.macros, number)) {
+        for (unsigned i = 0; i < ARGUMENTS; i++)
+            (void)snprintf(arguments[i], sizeof arguments[i], "#%u", i + 1);
+        call(t, number, arguments);
+    } else if (number > 9999 && line_find(l, 'l', 0) == NULL &&
+               !has(t->survey.program, t->survey.programs, number) &&
+               has(t->survey.program, t->survey.programs, number % 10000)) {
+        (void)snprintf(text, sizeof text, "P%u L%u", (unsigned)(number % 10000),
+                       (unsigned)(number / 10000));
+        (void)line_replace(l, p, text);
+    }
+}
+
+static void end_macro(struct translator *t)
+{
+    if (t->macro != 0)
+        translate_add(&t->before, "o%u endsub", (unsigned)t->macro);
+    t->macro = 0;
+}
+
+/* O1000, M99 and the second % */
+static void take_program(struct translator *t)
+{
+    struct line *l = &t->line;
+    struct line_word *first = l->words > 0 ? &l->word[0] : NULL;
+    struct line_word *back = line_find_code(l, 'm', 990);
+    char text[32];
+
+    if (first != NULL && first->letter == 'o' && first->is_number) {
+        end_macro(t);
+        t->program++;
+        t->depth = 0;
+        if (has(t->survey.macro, t->survey.macros, (uint32_t)first->value)) {
+            t->macro = (uint32_t)first->value;
+            (void)snprintf(text, sizeof text, "o%u sub", (unsigned)t->macro);
+            (void)line_replace(l, first, text);
+        }
+    } else if (first != NULL && first->letter == '%') {
+        end_macro(t);
+    } else if (back != NULL && t->macro != 0) {
+        line_blank(l, back);
+        translate_add(&t->behind, "o%u return", (unsigned)t->macro);
+    }
+}
+
+static bool has_keyword(const struct line *l, const char *keyword, unsigned *at)
+{
+    for (*at = 0; *at < l->words; (*at)++) {
+        if (line_is_keyword(l, &l->word[*at], keyword))
+            return true;
+    }
+    return false;
+}
+
+void flow_translate(struct translator *t)
+{
+    struct line *l = &t->line;
+    unsigned at;
+
+    take_program(t);
+    take_macro_call(t);
+    take_sub_call(t);
+    if (has_keyword(l, "if", &at))
+        take_if(t, at);
+    else if (has_keyword(l, "while", &at) || has_keyword(l, "do", &at))
+        take_while(t, at);
+    else if (has_keyword(l, "end", &at))
+        take_end(t, at);
+    else if (has_keyword(l, "goto", &at))
+        take_goto(t, at);
+    else
+        take_alarm(t);
+}

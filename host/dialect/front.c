@@ -1,0 +1,117 @@
+#include "dialect/dialect.h"
+
+#include "dialect/line.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+static const char *const names[DIALECT_COUNT + 1] = {
+    [DIALECT_LINUXCNC] = "linuxcnc", [DIALECT_GRBL] = "grbl",   [DIALECT_FANUC] = "fanuc",
+    [DIALECT_HAAS] = "haas",         [DIALECT_MACH3] = "mach3", [DIALECT_MARLIN] = "marlin",
+    [DIALECT_AUTO] = "auto",
+};
+
+const char *dialect_name(enum dialect dialect)
+{
+    return (unsigned)dialect <= DIALECT_COUNT ? names[dialect] : NULL;
+}
+
+unsigned dialect_find(const char *name)
+{
+    unsigned i = 0;
+
+    while (i <= DIALECT_COUNT && strcmp(names[i], name) != 0)
+        i++;
+    return i;
+}
+
+/* "M31", "G187", "M31.1" */
+static bool read_name(struct dialect_code *code, const char *name)
+{
+    char *end;
+    const double number = name[0] != '\0' ? strtod(name + 1, &end) : -1.0;
+
+    code->letter = line_lower(name[0]);
+    if ((code->letter != 'g' && code->letter != 'm') || end == name + 1 || *end != '\0' ||
+        !(number >= 0.0 && number < 6500.0))
+        return false;
+    code->number_x10 = (uint16_t)(number * 10.0 + 0.5);
+    return true;
+}
+
+static bool is_subroutine(const char *name)
+{
+    const size_t length = strlen(name);
+
+    return length > 0 && length <= DIALECT_SUBROUTINE_MAX && strpbrk(name, " \t<>[]()#;") == NULL;
+}
+
+const char *dialect_code_read(struct dialect_code *code, const char *name, const char *value)
+{
+    char state[4];
+    char behind;
+
+    *code = (struct dialect_code){0};
+    if (!read_name(code, name))
+        return "a code is expected, such as M31 or G187";
+    if (strcmp(value, "ignore") == 0)
+        return NULL;
+    if (strcmp(value, "stop") == 0) {
+        code->use = DIALECT_STOP;
+        return NULL;
+    }
+    if (strncmp(value, "subroutine ", 11) == 0) {
+        code->use = DIALECT_SUBROUTINE;
+        (void)snprintf(code->subroutine, sizeof code->subroutine, "%s", value + 11);
+        return is_subroutine(value + 11) ? NULL : "the name of a subroutine is expected";
+    }
+    if (sscanf(value, "output %u %3s%c", &code->number, state, &behind) == 2 &&
+        (strcmp(state, "on") == 0 || strcmp(state, "off") == 0)) {
+        code->use = strcmp(state, "on") == 0 ? DIALECT_OUTPUT_ON : DIALECT_OUTPUT_OFF;
+        return NULL;
+    }
+    return "known are ignore, stop, output NUMBER on, output NUMBER off and subroutine NAME";
+}
+
+void dialect_code_write(const struct dialect_code *code, char text[DIALECT_CODE_TEXT_MAX])
+{
+    static const char *const uses[] = {"ignore", "stop", "output", "output", "subroutine"};
+    int length = snprintf(text, DIALECT_CODE_TEXT_MAX, "%c%u", code->letter - 'a' + 'A',
+                          code->number_x10 / 10U);
+
+    if (code->number_x10 % 10U != 0)
+        length += snprintf(text + length, DIALECT_CODE_TEXT_MAX - (size_t)length, ".%u",
+                           code->number_x10 % 10U);
+    length +=
+        snprintf(text + length, DIALECT_CODE_TEXT_MAX - (size_t)length, " = %s", uses[code->use]);
+    if (code->use == DIALECT_OUTPUT_ON || code->use == DIALECT_OUTPUT_OFF)
+        (void)snprintf(text + length, DIALECT_CODE_TEXT_MAX - (size_t)length, " %u %s",
+                       code->number, code->use == DIALECT_OUTPUT_ON ? "on" : "off");
+    if (code->use == DIALECT_SUBROUTINE)
+        (void)snprintf(text + length, DIALECT_CODE_TEXT_MAX - (size_t)length, " %s",
+                       code->subroutine);
+}
+
+const char *dialect_value_set(struct dialect_codes *codes, const char *name, const char *value)
+{
+    char *end;
+    const double number = strtod(value, &end);
+    unsigned i = 0;
+
+    if ((strncmp(name, "_ini[", 5) != 0 && strncmp(name, "_hal[", 5) != 0) ||
+        strlen(name) >= sizeof codes->value[0].name)
+        return "the name of a value is expected, such as _ini[TRAJ]MAX_LINEAR_VELOCITY or "
+               "_hal[PIN]";
+    if (end == value || *end != '\0' || !isfinite(number))
+        return "a number is expected";
+    while (i < codes->values && strcmp(codes->value[i].name, name) != 0)
+        i++;
+    if (i == DIALECT_CODES_MAX)
+        return "there is no room for more values";
+    codes->values = i == codes->values ? i + 1 : codes->values;
+    codes->value[i].value = number;
+    (void)snprintf(codes->value[i].name, sizeof codes->value[i].name, "%s", name);
+    return NULL;
+}

@@ -1,0 +1,70 @@
+/*
+ * A line in pieces, as far as they can be told apart without knowing what they mean.
+ */
+#ifndef TAKT_HOST_DIALECT_LINE_H
+#define TAKT_HOST_DIALECT_LINE_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#define LINE_MAX_BYTES 2048
+#define LINE_WORDS_MAX 128
+
+enum word_kind {
+    WORD_VALUE,    /* a letter and its value */
+    WORD_BARE,     /* a letter alone */
+    WORD_KEYWORD,  /* IF WHILE DO END GOTO THEN, its letter the first of them */
+    WORD_BRACKET,  /* [ ... ] behind a keyword */
+    WORD_ASSIGNED, /* #1 = value */
+    WORD_COMMENT,
+    WORD_OTHER /* a character that belongs to nothing */
+};
+
+struct line_word {
+    enum word_kind kind;
+    char letter;         /* in lower case; of others their first character */
+    bool is_number;      /* the value is a plain number, */
+    double value;        /* this one */
+    bool has_point;      /* and it is written with a point */
+    uint16_t begin, end; /* in text */
+    uint16_t value_begin;
+};
+
+struct line {
+    char text[LINE_MAX_BYTES + 1];
+    size_t length;
+    unsigned words;
+    struct line_word word[LINE_WORDS_MAX];
+};
+
+/* False: it is too long, or has too many words, to be looked at. */
+bool line_read(struct line *l, const char *bytes, size_t length);
+
+/* The first word of a letter with a value, from a place on; NULL: none. */
+struct line_word *line_find(struct line *l, char letter, unsigned from);
+
+/* A G or M word with this number, times ten; NULL: none. */
+struct line_word *line_find_code(struct line *l, char letter, unsigned number_x10);
+
+/* Number of a code, times ten; -1: it is none. */
+int line_code(const struct line_word *w);
+
+/* Is the word this keyword, given in lower case? */
+bool line_is_keyword(const struct line *l, const struct line_word *w, const char *keyword);
+
+/* Spaces take the place of a word, so that all others keep their columns. */
+void line_blank(struct line *l, struct line_word *w);
+
+/* A text takes the place of a word; the words have to be read again if it is longer. False: no room. */
+bool line_replace(struct line *l, struct line_word *w, const char *text);
+
+/* At the end, or in front of a comment that reaches to the end; with a space before it. */
+bool line_append(struct line *l, const char *text);
+
+/* Nothing is left but spaces. */
+bool line_is_blank(const struct line *l);
+
+char line_lower(char c);
+
+#endif

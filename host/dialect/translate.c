@@ -1,0 +1,518 @@
+#include "dialect/translate.h"
+
+#include "dialect/output.h"
+
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define AXES "xyzabc"
+/* A dwell written without a point is in milliseconds from here on: nobody waits for less than that, or for minutes. */
+#define DWELL_MS_MIN  100.0
+#define LINE_TEXT_MAX 2304
+
+void translate_add(struct dialect_text *t, const char *format, ...)
+{
+    static const char goes_on = DIALECT_GOES_ON;
+    char text[LINE_TEXT_MAX];
+    va_list arguments;
+
+    va_start(arguments, format);
+    const int length = vsnprintf(text, sizeof text, format, arguments);
+
+    va_end(arguments);
+    output_add(t, &goes_on, 1);
+    output_add(t, text, length < (int)sizeof text ? (size_t)length : sizeof text - 1);
+    output_add(t, "\n", 1);
+}
+
+void translate_note(struct translator *t, const struct line_word *w, const char *meaning)
+{
+    struct dialect_result *r = t->result;
+    struct dialect_note note = {.line = t->number, .column = w->begin + 1U, .meaning = meaning};
+
+    (void)snprintf(note.word, sizeof note.word, "%.*s", (int)(w->end - w->begin),
+                   &t->line.text[w->begin]);
+    for (unsigned i = 0; i < r->notes; i++) {
+        if (strcmp(r->note[i].word, note.word) == 0)
+            return;
+    }
+    if (r->notes < DIALECT_NOTES_MAX)
+        r->note[r->notes++] = note;
+}
+
+static bool is(const struct translator *t, unsigned dialects)
+{
+    return ((1U << t->dialect) & dialects) != 0;
+}
+
+#define GRBL        (1U << DIALECT_GRBL)
+#define MARLIN      (1U << DIALECT_MARLIN)
+#define MACROS      (1U << DIALECT_FANUC | 1U << DIALECT_HAAS)
+#define NOT_FOREIGN (1U << DIALECT_LINUXCNC)
+
+/* ---- whole lines ---- */
+
+static void clear_line(struct translator *t)
+{
+    (void)line_read(&t->line, "", 0);
+}
+
+/* Orders of senders, and remarks as other languages have them. */
+static bool is_no_line(const struct line *l)
+{
+    const char *text = l->text;
+
+    return (text[0] != '\0' && strchr("$?!~", text[0]) != NULL) || strncmp(text, "//", 2) == 0 ||
+           (text[0] == '#' &&
+            (text[1] == ' ' || (line_lower(text[1]) >= 'a' && line_lower(text[1]) <= 'z')));
+}
+
+/* A comment that is not closed ends with its line. */
+static void close_comment(struct line *l)
+{
+    for (unsigned i = 0; i < l->words; i++) {
+        const struct line_word *w = &l->word[i];
+
+        if (w->kind == WORD_COMMENT && w->letter == '(' && l->text[w->end - 1] != ')')
+            l->text[w->begin] = ';';
+    }
+}
+
+/* N10 G1 X1*57 */
+static void drop_checksum(struct line *l)
+{
+    const char *star = strrchr(l->text, '*');
+
+    if (star == NULL || strpbrk(l->text, "[(;") != NULL ||
+        strspn(star + 1, "0123456789 \r") != strlen(star + 1))
+        return;
+    l->length = (size_t)(star - l->text);
+    l->text[l->length] = '\0';
+    (void)line_read(l, l->text, l->length);
+}
+
+static void translate_start(struct translator *t)
+{
+    struct line *l = &t->line;
+
+    if (is_no_line(l))
+        clear_line(t);
+    drop_checksum(l);
+    close_comment(l);
+    if (l->words == 0)
+        return;
+    if (l->text[0] == '%' && l->words > 1)
+        (void)line_read(l, "%", 1);
+    if (l->text[0] == ':')
+        l->text[0] = 'O';
+    (void)line_read(l, l->text, l->length);
+    struct line_word *first = &l->word[0];
+
+    if (first->letter == 'o' && first->kind == WORD_BARE) {
+        for (size_t i = 0; i < l->length && l->text[i] != '(' && l->text[i] != ';'; i++)
+            l->text[i] = ' ';
+        (void)line_read(l, l->text, l->length);
+    }
+    if (l->text[0] == '/' && l->text[1] >= '1' && l->text[1] <= '9' && is(t, MACROS)) {
+        l->text[1] = ' ';
+        (void)line_read(l, l->text, l->length);
+    }
+}
+
+/* ---- numbers ---- */
+
+/* 1.5e-17 is written out. */
+static void write_out(struct line *l, struct line_word *w)
+{
+    char *end;
+    char text[64];
+    const double value = strtod(&l->text[w->value_begin], &end);
+    const int length = snprintf(text, sizeof text, "%c%.9f", l->text[w->begin], value);
+
+    w->end = (uint16_t)(end - l->text);
+    if (length > 0 && length < (int)sizeof text)
+        (void)line_replace(l, w, text);
+}
+
+static void translate_numbers(struct translator *t)
+{
+    struct line *l = &t->line;
+
+    for (unsigned i = 0; i < l->words; i++) {
+        const struct line_word *w = &l->word[i];
+        const char *behind = &l->text[w->end];
+
+        if (w->kind == WORD_VALUE && w->is_number && line_lower(behind[0]) == 'e' &&
+            (behind[1] == '-' || behind[1] == '+') && behind[2] >= '0' && behind[2] <= '9')
+            write_out(l, &l->word[i]);
+    }
+}
+
+/* ---- modes that later words are understood by ---- */
+
+static void follow_modes(struct translator *t)
+{
+    struct line *l = &t->line;
+    static const char across[] = {'k', 'j', 'i'};
+
+    for (unsigned plane = 0; plane < 3; plane++) {
+        if (line_find_code(l, 'g', 170 + 10 * plane) != NULL)
+            t->across = across[plane];
+    }
+    if (line_find_code(l, 'g', 900) != NULL)
+        t->incremental = false;
+    if (line_find_code(l, 'g', 910) != NULL)
+        t->incremental = true;
+}
+
+static bool has_axis(struct line *l)
+{
+    for (unsigned i = 0; i < l->words; i++) {
+        if (l->word[i].kind == WORD_VALUE && strchr(AXES, l->word[i].letter) != NULL)
+            return true;
+    }
+    return false;
+}
+
+/* Motions and cycles; and what uses axis words beside them. */
+static void look_for_motion(struct line *l, bool *motion, bool *other)
+{
+    static const uint16_t others[] = {40, 100, 280, 281, 300, 301, 520, 530, 920, 431, 432};
+
+    *motion = *other = false;
+    for (unsigned i = 0; i < l->words; i++) {
+        const int number = l->word[i].letter == 'g' ? line_code(&l->word[i]) : -1;
+
+        *motion = *motion || (number >= 0 && number < 40) || number == 330 || number == 331 ||
+                  (number >= 382 && number <= 385) || (number >= 730 && number <= 890);
+        for (size_t k = 0; k < sizeof others / sizeof others[0]; k++)
+            *other = *other || number == others[k];
+    }
+}
+
+/* G0 that is in effect at the start, or was given beside G28, which has the axis words of that line. */
+static void translate_motion(struct translator *t)
+{
+    bool motion;
+    bool other;
+
+    look_for_motion(&t->line, &motion, &other);
+    if (has_axis(&t->line) && !motion && !other &&
+        (t->motion_is_owed || (is(t, GRBL) && !t->has_motion))) {
+        (void)line_append(&t->line, "G0");
+        motion = true;
+    }
+    t->has_motion = t->has_motion || motion;
+    t->motion_is_owed = t->motion_is_owed && !motion;
+}
+
+static void translate_arc(struct translator *t)
+{
+    struct line *l = &t->line;
+    struct line_word *w = line_find(l, t->across, 0);
+    unsigned centres = 0;
+
+    for (const char *c = "ijk"; *c != '\0'; c++)
+        centres += line_find(l, *c, 0) != NULL ? 1U : 0U;
+    if (w != NULL && w->is_number && w->value == 0.0 && centres > 1)
+        line_blank(l, w);
+}
+
+/* ---- reference ---- */
+
+/* An axis that is named, whatever its value: it goes there straight. */
+static bool make_bare(struct translator *t, struct line_word *w)
+{
+    const bool counts = w->kind == WORD_BARE || is(t, MARLIN);
+    char text[] = "x0";
+
+    if (strchr(AXES, w->letter) == NULL || w->letter == ' ' || !counts)
+        return false;
+    text[0] = t->line.text[w->begin];
+    (void)line_replace(&t->line, w, text);
+    return true;
+}
+
+/* U V W are distances along X Y Z. */
+static bool make_distance(struct line *l, struct line_word *w)
+{
+    if (w->kind != WORD_VALUE || (w->letter != 'u' && w->letter != 'v' && w->letter != 'w'))
+        return false;
+    l->text[w->begin] = (char)(w->letter - 'u' + 'X');
+    return line_read(l, l->text, l->length);
+}
+
+static void set_incremental(struct translator *t)
+{
+    struct line *l = &t->line;
+    struct line_word *absolute = line_find_code(l, 'g', 900);
+
+    if (absolute != NULL)
+        line_blank(l, absolute);
+    if (t->incremental || line_find_code(l, 'g', 910) != NULL)
+        return;
+    (void)line_append(l, "G91");
+    translate_add(&t->behind, "G90");
+}
+
+static void drop_motion(struct translator *t)
+{
+    for (unsigned number = 0; number <= 10; number += 10) {
+        struct line_word *w = line_find_code(&t->line, 'g', number);
+
+        if (w != NULL && has_axis(&t->line)) {
+            line_blank(&t->line, w);
+            t->motion_is_owed = number == 0;
+        }
+    }
+}
+
+static void translate_reference(struct translator *t)
+{
+    struct line *l = &t->line;
+    bool relative = false;
+
+    if (line_find_code(l, 'g', 280) == NULL && line_find_code(l, 'g', 300) == NULL)
+        return;
+    for (unsigned i = 0; i < l->words; i++) {
+        if (make_bare(t, &l->word[i]) || (is(t, MACROS) && make_distance(l, &l->word[i])))
+            relative = true;
+        else if (l->word[i].kind == WORD_BARE)
+            line_blank(l, &l->word[i]);
+    }
+    drop_motion(t);
+    if (relative)
+        set_incremental(t);
+}
+
+/* ---- words ---- */
+
+static void set_value(struct line *l, struct line_word *w, char letter, double value)
+{
+    char text[64];
+
+    (void)snprintf(text, sizeof text, "%c%.6f", letter, value);
+    (void)line_replace(l, w, text);
+}
+
+/* P of a dwell in seconds, from milliseconds; X, U and S are other names of it. */
+static void translate_dwell(struct translator *t)
+{
+    struct line *l = &t->line;
+    struct line_word *p = line_find(l, 'p', 0);
+    const bool dwells = line_find_code(l, 'g', 40) != NULL;
+
+    if (!dwells && line_find_code(l, 'g', 820) == NULL && line_find_code(l, 'g', 890) == NULL)
+        return;
+    for (unsigned i = 0; i < l->words && dwells && p == NULL; i++) {
+        struct line_word *w = &l->word[i];
+
+        if (w->kind == WORD_VALUE && w->is_number &&
+            strchr(is(t, MARLIN) ? "s" : "xu", w->letter) != NULL) {
+            set_value(l, w, 'P', w->value);
+            return;
+        }
+    }
+    if (p != NULL && p->is_number && !p->has_point &&
+        (p->value >= DWELL_MS_MIN || (is(t, MARLIN) && dwells)))
+        set_value(l, p, 'P', 1e-3 * p->value);
+}
+
+/* G54.1 P1 to P3 and G154 are the last three systems here. */
+static void translate_system(struct translator *t)
+{
+    static const uint16_t codes[] = {541, 540, 1540};
+    struct line *l = &t->line;
+    struct line_word *p = line_find(l, 'p', 0);
+
+    for (size_t i = 0; i < sizeof codes / sizeof codes[0]; i++) {
+        struct line_word *w = line_find_code(l, 'g', codes[i]);
+        char text[16];
+
+        if (w != NULL && p != NULL && p->is_number && p->value >= 1.0 && p->value <= 3.0) {
+            (void)snprintf(text, sizeof text, "G59.%u", (unsigned)p->value);
+            line_blank(l, p);
+            (void)line_replace(l, w, text);
+            return;
+        }
+    }
+}
+
+/* G50 S2000 is the highest speed for the G96 that follows; without S it ends a scale that is not there. */
+static void translate_speed_limit(struct translator *t)
+{
+    struct line *l = &t->line;
+    struct line_word *w = line_find_code(l, 'g', 500);
+    struct line_word *s = line_find(l, 's', 0);
+
+    if (w != NULL) {
+        line_blank(l, w);
+        if (s != NULL) {
+            (void)snprintf(t->speed_limit, sizeof t->speed_limit, "D%.*s",
+                           (int)(s->end - s->value_begin), &l->text[s->value_begin]);
+            line_blank(l, s);
+        }
+    } else if (line_find_code(l, 'g', 960) != NULL && line_find(l, 'd', 0) == NULL) {
+        (void)line_append(l, t->speed_limit);
+    }
+}
+
+/* Turning: feeds per minute and per turn, T0101 that changes the tool, diameters. */
+static void translate_lathe(struct translator *t)
+{
+    struct line *l = &t->line;
+    struct line_word *minute = line_find_code(l, 'g', 980);
+    struct line_word *turn = line_find_code(l, 'g', 990);
+    struct line_word *tool = line_find(l, 't', 0);
+    char text[32];
+
+    if (!t->survey.lathe)
+        return;
+    if (!t->begun && l->words > 0 && l->word[0].letter != '%' && l->word[0].letter != 'o')
+        translate_add(&t->before, "G18 G7");
+    if (minute != NULL)
+        (void)line_replace(l, minute, "G94");
+    if (turn != NULL)
+        (void)line_replace(l, turn, "G95");
+    if (tool != NULL && tool->is_number && tool->value >= 100.0) {
+        (void)snprintf(text, sizeof text, "T%u M6", (unsigned)(tool->value / 100.0));
+        (void)line_replace(l, tool, text);
+    }
+}
+
+static void translate_extruder(struct translator *t)
+{
+    struct line *l = &t->line;
+    struct line_word *shift = line_find_code(l, 'g', 920);
+
+    for (unsigned i = 0; i < l->words; i++) {
+        struct line_word *w = &l->word[i];
+
+        if (w->letter == 'e' && (w->kind == WORD_VALUE || w->kind == WORD_BARE))
+            line_blank(l, w);
+    }
+    if (shift != NULL && !has_axis(l))
+        line_blank(l, shift);
+}
+
+/* ---- a line ---- */
+
+static void translate_foreign(struct translator *t)
+{
+    translate_start(t);
+    translate_numbers(t);
+    if (is(t, MACROS))
+        flow_translate(t);
+    codes_translate(t);
+    if (is(t, MARLIN))
+        translate_extruder(t);
+    if (is(t, MACROS | MARLIN))
+        translate_dwell(t);
+    if (is(t, MACROS)) {
+        translate_system(t);
+        translate_lathe(t);
+    }
+    translate_speed_limit(t);
+    follow_modes(t);
+    translate_reference(t);
+    translate_arc(t);
+    translate_motion(t);
+}
+
+/* All lines that one has become, the first without DIALECT_GOES_ON. */
+static void put_out(struct translator *t, unsigned jumps)
+{
+    struct dialect_text *out = &t->result->text;
+    struct dialect_text all = {0};
+
+    output_add(&all, t->before.bytes, t->before.length);
+    if (!line_is_blank(&t->line) || t->before.length + t->behind.length == 0)
+        translate_add(&all, "%s", t->line.text);
+    for (unsigned i = jumps; i < t->jumps; i++)
+        t->jump[i].patch += out->length + all.length - 1;
+    output_add(&all, t->behind.bytes, t->behind.length);
+    output_add(out, all.bytes + 1, all.length - 1);
+    out->failed = out->failed || all.failed || t->before.failed || t->behind.failed;
+    dialect_text_free(&all);
+    t->before.length = t->behind.length = 0;
+}
+
+static void translate_line(struct translator *t, const char *bytes, size_t length)
+{
+    const unsigned jumps = t->jumps;
+
+    t->number++;
+    if (length > 0 && bytes[length - 1] == '\r')
+        length--;
+    if (!line_read(&t->line, bytes, length)) {
+        output_add(&t->result->text, bytes, length);
+        output_add(&t->result->text, "\n", 1);
+        return;
+    }
+    flow_note_label(t, t->result->text.length);
+    values_translate(t);
+    polar_translate(t);
+    if (is(t, NOT_FOREIGN)) {
+        follow_modes(t);
+        codes_translate(t);
+    } else {
+        translate_foreign(t);
+    }
+    t->begun = t->begun || (t->line.words > 0 && strchr("%o", t->line.word[0].letter) == NULL);
+    put_out(t, jumps);
+}
+
+/* Calls take for each line of a text; a byte order mark is no part of the first. */
+static void each_line(struct translator *t, const char *bytes, size_t length,
+                      void (*take)(struct translator *, const char *, size_t))
+{
+    const char *end = bytes + length;
+
+    if (length >= 3 && memcmp(bytes, "\xef\xbb\xbf", 3) == 0)
+        bytes += 3;
+    while (bytes < end) {
+        const char *next = memchr(bytes, '\n', (size_t)(end - bytes));
+
+        take(t, bytes, (size_t)((next != NULL ? next : end) - bytes));
+        bytes = next != NULL ? next + 1 : end;
+    }
+}
+
+static void survey_line(struct translator *t, const char *bytes, size_t length)
+{
+    struct line *l = &t->line;
+
+    if (!line_read(l, bytes, length))
+        return;
+    flow_survey(&t->survey, l);
+    t->survey.lathe = t->survey.lathe ||
+                      (line_find_code(l, 'g', 500) != NULL && line_find(l, 's', 0) != NULL) ||
+                      (line_find_code(l, 'g', 280) != NULL && line_find(l, 'u', 0) != NULL);
+}
+
+bool dialect_translate(enum dialect dialect, const struct dialect_codes *codes, const char *bytes,
+                       size_t length, struct dialect_result *result)
+{
+    struct translator *t = calloc(1, sizeof *t);
+
+    *result = (struct dialect_result){0};
+    if (t == NULL)
+        return false;
+    t->dialect = dialect;
+    t->codes = codes;
+    t->result = result;
+    t->across = 'k';
+    if (is(t, MACROS))
+        each_line(t, bytes, length, survey_line);
+    if (t->survey.lathe)
+        t->across = 'j';
+    each_line(t, bytes, length, translate_line);
+    (void)flow_finish(t);
+    dialect_text_free(&t->before);
+    dialect_text_free(&t->behind);
+    free(t->label);
+    free(t);
+    return !result->text.failed;
+}

@@ -1,0 +1,85 @@
+/*
+ * Inside a translation: what its sources share.
+ */
+#ifndef TAKT_HOST_DIALECT_TRANSLATE_H
+#define TAKT_HOST_DIALECT_TRANSLATE_H
+
+#include "dialect/dialect.h"
+#include "dialect/line.h"
+
+#define TRANSLATE_PROGRAMS_MAX 128
+#define TRANSLATE_JUMPS_MAX    1024
+#define TRANSLATE_LINES_MAX    16
+
+/* A line with a number N that a jump can go to. */
+struct label {
+    uint32_t program, number, line;
+    size_t offset;  /* in the text */
+    unsigned depth; /* loops it is in */
+};
+
+/* A jump whose target is filled in at the end. */
+struct jump {
+    uint32_t program, number, line;
+    size_t patch; /* in the text: where its digits begin */
+    unsigned depth;
+};
+
+/* What has been seen of the whole text before. */
+struct survey {
+    bool lathe;
+    unsigned programs, macros;
+    uint32_t program[TRANSLATE_PROGRAMS_MAX]; /* O1000 */
+    uint32_t macro[TRANSLATE_PROGRAMS_MAX];   /* called by G65 */
+    bool jumps;
+};
+
+struct translator {
+    enum dialect dialect;
+    const struct dialect_codes *codes;
+    struct dialect_result *result;
+    struct survey survey;
+    struct line line;                   /* the current one */
+    uint32_t number;                    /* of it */
+    struct dialect_text before, behind; /* lines of their own, each with its end */
+    /* what the words so far leave for the next */
+    char across;          /* centre word that arcs of the plane do not have: 'k' in G17 */
+    bool incremental;     /* G91 */
+    bool has_motion;      /* there has been a motion code */
+    bool motion_is_owed;  /* G0 stood beside G28: it holds from the next line on */
+    bool begun;           /* a line with words has passed */
+    char speed_limit[24]; /* G50 S */
+    uint32_t program;     /* number of O1000 lines so far */
+    uint32_t macro;       /* the current program is called by G65; 0: it is not */
+    unsigned depth;       /* open loops */
+    unsigned labels, jumps;
+    struct label *label;
+    struct jump jump[TRANSLATE_JUMPS_MAX];
+    size_t label_room;
+};
+
+/* Tells of a word that is left out, once for each. */
+void translate_note(struct translator *t, const struct line_word *w, const char *meaning);
+
+/* Adds a line; the first of all lines that one becomes loses its DIALECT_GOES_ON. */
+__attribute__((format(printf, 2, 3))) void translate_add(struct dialect_text *t, const char *format,
+                                                         ...);
+
+/* #<_ini[...]> and #<_hal[...]> as numbers. */
+void values_translate(struct translator *t);
+
+/* @ and ^ as X and Y. */
+void polar_translate(struct translator *t);
+
+/* What becomes of the G and M words of the line. */
+void codes_translate(struct translator *t);
+
+/* WHILE, DO, END, IF, GOTO, G65 and what goes with them. */
+void flow_survey(struct survey *s, struct line *l);
+void flow_translate(struct translator *t);
+/* The line begins at this place of the text. */
+void flow_note_label(struct translator *t, size_t offset);
+/* Fills in where jumps go. False: one has no target; the result says which. */
+bool flow_finish(struct translator *t);
+
+#endif

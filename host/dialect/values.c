@@ -1,0 +1,53 @@
+/*
+ * #<_ini[SECTION]NAME> and #<_hal[PIN]>: what LinuxCNC takes from its configuration and its signals is a number of the machine
+ * file here.
+ */
+#include "dialect/translate.h"
+
+#include <stdio.h>
+#include <string.h>
+
+/* Spaces and case do not count in names. The length of what has been passed; 0: it is another name. */
+static size_t match(const char *text, const char *name)
+{
+    size_t at = 0;
+
+    for (; *name != '\0'; name++) {
+        while (text[at] == ' ' || text[at] == '\t')
+            at++;
+        if (line_lower(text[at++]) != line_lower(*name))
+            return 0;
+    }
+    while (text[at] == ' ' || text[at] == '\t')
+        at++;
+    return text[at] == '>' ? at + 1 : 0;
+}
+
+static bool replace_at(struct translator *t, size_t at)
+{
+    struct line *l = &t->line;
+
+    for (unsigned i = 0; i < t->codes->values; i++) {
+        const struct dialect_value *v = &t->codes->value[i];
+        const size_t length = match(&l->text[at + 2], v->name);
+        char text[48];
+
+        if (length > 0) {
+            struct line_word whole = {.begin = (uint16_t)at, .end = (uint16_t)(at + 2 + length)};
+
+            (void)snprintf(text, sizeof text, "[%.9f]", v->value);
+            return line_replace(l, &whole, text);
+        }
+    }
+    return false;
+}
+
+void values_translate(struct translator *t)
+{
+    for (size_t at = 0; t->codes->values > 0 && at + 2 < t->line.length; at++) {
+        const char *text = &t->line.text[at];
+
+        if (text[0] == '#' && text[1] == '<')
+            (void)replace_at(t, at);
+    }
+}

@@ -1,0 +1,141 @@
+"""Programs as they are found: other dialects, codes of the machine file, and subroutines in files of their own."""
+
+import os
+
+import takt_test as t
+
+
+def moves(*arguments):
+    """Status, moves without their lines, and messages."""
+    status, out, err = t.run("canon", *arguments)
+    return status, [line.split(maxsplit=1)[1] for line in out.splitlines()], err
+
+
+def rapid(x, y=0, z=0):
+    return f"rapid X{x:.6f} Y{y:.6f} Z{z:.6f}"
+
+
+# What LinuxCNC reads is read as ever, without a word.
+t.write("plain.ngc", "O1000 (HAAS)\nG21 G0 X1\nM98 P2000\nM30\nO2000\nG0 Y1\nM99\n")
+status, found, err = moves("plain.ngc")
+t.check((status, err) == (0, "") and found[:2] == [rapid(1), rapid(1, 1)], "a program for LinuxCNC", found, err)
+
+# Fanuc's macros: the line numbers are those of the program.
+t.write("macro.nc", """\
+%
+O0001(LOOPS)
+G21 G90
+#1=0
+WHILE [#1 LT 2] DO1
+#1=[#1+1]
+IF [#1 EQ 2] THEN G0 Y#1
+G0 X#1
+END1
+N10 #1=[#1+1]
+IF [#1 LT 4] GOTO 10
+G0 Z#1
+GOTO 20
+G0 X99
+N20 G65 P9001 A5. B6.
+G0 G28 G91 Z0.
+G90 X3
+M30
+O9001
+G0 X#1 Y#2
+M99
+%
+""")
+status, found, err = moves("macro.nc")
+t.check(status == 0 and found == [rapid(1), rapid(1, 2), rapid(2, 2), rapid(2, 2, 4), rapid(5, 6, 4), rapid(5, 6, 4),
+                                  rapid(5, 6, 0), rapid(3, 6, 0), "end"], "loops, jumps and macros", found, err)
+t.check(err == "takt canon: note: macro.nc is read as fanuc, since line 5 has 'WHILE' (--dialect says otherwise)\n",
+        "the note says which, and why", err)
+lines = [line.split()[0] for line in t.run("canon", "macro.nc")[1].splitlines()]
+t.check(lines == ["8", "7", "8", "12", "20", "16", "16", "17", "18"], "moves have the lines of the program", lines)
+status, found, err = moves("macro.nc", "--dialect", "linuxcnc")
+t.check(status == 2 and err.startswith("macro.nc:5:1: error: "), "the dialect can be told", err)
+status, found, err = moves("macro.nc", "--dialect", "fanoc")
+t.check(status == 2 and "known are auto, linuxcnc, grbl, fanuc" in err, "one that is not known", err)
+
+# Errors stand where they are in the program as it was found.
+t.write("wrong.nc", "G54.1 P1\nIF[#1 EQ 0] THEN  G0 X1 Q3\nM30\n")
+status, found, err = moves("wrong.nc")
+t.check(status == 2 and "wrong.nc:2:25: error: no code on this line uses the word 'Q3'\n" in err, "the column", err)
+t.write("jump.nc", "G0 X1\nGOTO 7\nM30\n")
+status, found, err = moves("jump.nc")
+t.check(status == 2 and "jump.nc:2:1: error: GOTO 7: " in err, "a jump to nowhere", err)
+
+# A printer's program is the way of its nozzle.
+t.write("print.gcode", "M104 S200\nG28 X0 Y0\nG92 E0\nG1 X5 E1.5 F600\nM104 S0\n")
+status, found, err = moves("print.gcode")
+t.check(status == 0 and found == [rapid(0), rapid(0), "feed X5.000000 Y0.000000 Z0.000000 F600.000000", "end"],
+        "a printer", found, err)
+t.check(err.count("'M104' is left out (marlin: temperature)") == 1, "what is left out is told once", err)
+
+# Codes that only the owner of a machine can know: the message has the line to add.
+t.write("codes.ngc", "G21\nG0 X1 M31\nM32 P2 (conveyor)\nM33\nM34\nM2\n")
+status, found, err = moves("codes.ngc")
+t.check(status == 2 and "codes.ngc:2:7: error: unknown word 'M31'" in err and "\n    [codes]\n    M31 = ignore " in err,
+        "the message has the line", err)
+t.write("mill.ini", "[codes]\nM31 = ignore\nM32 = subroutine conveyor\nM33=output 3 on\nM34 = stop\n")
+t.write("conveyor.ngc", "o<conveyor> sub\nG0 Y#1\no<conveyor> endsub\n")
+status, found, err = moves("codes.ngc", "--machine", "mill.ini")
+t.check((status, err) == (0, "") and found == [rapid(1), rapid(1, 2), "output P3 Q1.000000", "stop", "end"],
+        "declared codes", found, err)
+status, found, err = moves("codes.ngc", "--machine", "mill.ini", "--set", "codes.M34=ignore")
+t.check(status == 0 and "stop" not in found, "--set declares codes too", found, err)
+status, out, err = t.run("machine", "mill.ini")
+t.check(status == 0 and out.endswith("\n[codes]\nM31 = ignore\nM32 = subroutine conveyor\nM33 = output 3 on\nM34 = stop\n"),
+        "a machine file is printed with them", out[-200:])
+for line, wrong in (("M31 = maybe", "known are ignore"), ("X31 = stop", "a code is expected")):
+    t.write("bad.ini", "[codes]\n" + line + "\n")
+    status, out, err = t.run("machine", "bad.ini")
+    t.check(status == 2 and "bad.ini:2:1: error: " in err and wrong in err, "a wrong declaration", err)
+
+# What programs ask of LinuxCNC's configuration is answered by the machine file.
+t.write("ask.ngc", "G21\nG0 X#<_ini[axis_x]reach> Y#<_hal[probe.height]>\nM2\n")
+status, found, err = moves("ask.ngc", "--set", "values._hal[probe.height]=12.5")
+t.check(status == 2 and "\n    [values]\n    _ini[AXIS_X]REACH = NUMBER\n" in err, "the message has the line", err)
+t.write("mill.ini", "[values]\n_ini[AXIS_X]REACH = 7\n_hal[probe.height] = 12.5\n")
+status, found, err = moves("ask.ngc", "--machine", "mill.ini")
+t.check((status, err) == (0, "") and found[0] == rapid(7, 12.5), "numbers of the machine file", found, err)
+t.check(t.run("machine", "mill.ini")[1].endswith("\n[values]\n_ini[AXIS_X]REACH = 7\n_hal[probe.height] = 12.5\n"),
+        "which are printed with it")
+
+# Tools by what the program says of them.
+t.write("tools.nc", "(T1 D=6.5 CR=0 - end mill)\n(T2 D=3.)\nG21 F100\nG0 X-20\nG41 D1\nG1 X0\nY5\nG40 X-20\nM2\n")
+status, found, err = moves("tools.nc", "--tools", "auto")
+t.check(status == 0 and found[1].startswith("feed X-3.250000 Y3.250000 "), "a radius from a comment", found, err)
+t.check("warning: --tools auto: 2 tools without a table, all of length 0, 0 of diameter 0" in err, "with a warning", err)
+t.write("tools.nc", "(T1 D=0.5)\nG20 F10\nG0 X-2\nG41 D1\nG1 X0\nY5\nG40 X-2\nM2\n")
+status, found, err = moves("tools.nc", "--tools", "auto")
+t.check(status == 0 and found[1].startswith("feed X-6.350000 "), "in inches", found, err)
+status, found, err = moves("tools.nc")
+t.check(status == 2 and "--tools auto" in err, "the message names it", err)
+
+# Subroutines in files: the program's folder, and others.
+os.makedirs("lib", exist_ok=True)
+t.write("main.ngc", "G21\nG0 X1\no<one> call [2]\nM98 P300\n")
+t.write("one.ngc", "%\no<one> sub\nG0 Y#1\no<two> call [#1+1]\no<one> endsub\n%\n")
+t.write("lib/two.ngc", "; comes from elsewhere\no<two> sub\nG0 Z#1\no<two> endsub\nM2\n")
+t.write("lib/300.ngc", "O300\nG0 X9\nM99\n")
+status, found, err = moves("main.ngc", "--subroutines", "lib")
+t.check((status, err) == (0, "") and found == [rapid(1), rapid(1, 2), rapid(1, 2, 3), rapid(9, 2, 3), "end"],
+        "subroutines in files", found, err)
+t.write("lib/two.ngc", "o<two> sub\n\n  G0 Z#1 K3\no<two> endsub\n")
+status, found, err = moves("main.ngc", "--subroutines", "lib")
+t.check(status == 2 and err.startswith("lib/two.ngc:3:10: error: ") and "\n      G0 Z#1 K3\n" in err,
+        "an error in such a file is told with its own line", err)
+status, found, err = moves("main.ngc")
+t.check(status == 2 and "calls a subroutine" in err, "a folder that is not named is not looked into", err)
+t.write("loop.ngc", "G21\no<self> call\nM2\n")
+t.write("self.ngc", "o<self> sub\no<self> call\no<self> endsub\n")
+status, found, err = moves("loop.ngc")
+t.check(status == 2 and "self.ngc:2:" in err, "one that calls itself ends", err)
+
+# Runs have the same setpoints as the program written for takt.
+t.write("same.ngc", "G21 G90 F600\nG0 X1\nG1 Y2\nG4 P0.5\nG2 X2 I0.5 J0\nM2\n")
+t.write("same.nc", "G21 G90 F600\n$H\nG0 X1\nG1 Y2\nG4 P0.5\nG2 X2 I0.5 J0 K0\nM2\n")
+digests = [[line for line in t.run("run", name)[1].splitlines() if "digest" in line] for name in ("same.ngc", "same.nc")]
+t.check(digests[0] == digests[1] and digests[0], "the same setpoints", digests)
+t.finish()

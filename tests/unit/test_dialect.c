@@ -1,0 +1,277 @@
+/* host/dialect: what a program is written for, and what its lines become. */
+#include "dialect/dialect.h"
+
+#include "unity.h"
+
+#include <string.h>
+
+static struct dialect_result result;
+static struct dialect_codes codes;
+
+void setUp(void)
+{
+    codes.count = codes.values = 0;
+}
+
+void tearDown(void)
+{
+    dialect_text_free(&result.text);
+}
+
+/* A text becomes another one; "|" begins what goes on with the line before. */
+static void expect(enum dialect dialect, const char *from, const char *to)
+{
+    char found[4096];
+
+    TEST_ASSERT_TRUE(dialect_translate(dialect, &codes, from, strlen(from), &result));
+    TEST_ASSERT_TRUE(result.text.length < sizeof found);
+    memcpy(found, result.text.bytes, result.text.length);
+    found[result.text.length] = '\0';
+    for (char *c = found; *c != '\0'; c++)
+        *c = *c == DIALECT_GOES_ON ? '|' : *c;
+    TEST_ASSERT_EQUAL_STRING(to, found);
+    dialect_text_free(&result.text);
+}
+
+static struct dialect_guess guess(const char *text)
+{
+    struct dialect_detector detector = {0};
+
+    while (*text != '\0') {
+        const size_t length = strcspn(text, "\n");
+
+        dialect_guess_line(&detector, text, length, &codes);
+        text += length + (text[length] == '\n' ? 1 : 0);
+    }
+    return dialect_guess_end(&detector);
+}
+
+static void declare(const char *name, const char *value)
+{
+    TEST_ASSERT_NULL(dialect_code_read(&codes.code[codes.count++], name, value));
+}
+
+static void test_programs_for_linuxcnc_stay_as_they_are(void)
+{
+    static const char text[] = "%\n; x\n o<a> sub\nG5.1 X1 (G69)\n  #<b>=[1+2]  \n\n\tG1 X#<b>\n";
+
+    expect(DIALECT_LINUXCNC, text, text);
+}
+
+static void test_only_what_linuxcnc_cannot_read_tells_of_another_dialect(void)
+{
+    static const struct {
+        const char *text;
+        enum dialect dialect;
+        uint32_t line;
+    } table[] = {
+        {"G21\nG1 X1 F100 (haas, fanuc, marlin)\nM30", DIALECT_LINUXCNC, 0},
+        {"O1000\nG43 H1 Z1\nM98 P1000\nG81 R1 Z-1\nM99", DIALECT_LINUXCNC, 0},
+        {"o<x> sub\nG69\n$H\no<x> endsub", DIALECT_LINUXCNC, 0},
+        {"#<x> = 3\nG28 X", DIALECT_LINUXCNC, 0},
+        {"G5.1 X1 Y1 I1 J1", DIALECT_LINUXCNC, 0},
+        {"M31\nM101", DIALECT_LINUXCNC, 0},
+        {"G21\n$H", DIALECT_GRBL, 2},
+        {"// mill\nG0 X1", DIALECT_GRBL, 1},
+        {"# mill\nG0 X1", DIALECT_GRBL, 1},
+        {"G1 X1.5e-17", DIALECT_GRBL, 1},
+        {"G2 X1 I1 J0 K0", DIALECT_GRBL, 1},
+        {"G0 X1\nG28 X", DIALECT_MARLIN, 2},
+        {"G54.1 P2", DIALECT_FANUC, 1},
+        {"WHILE [#1 LT 3] DO1", DIALECT_FANUC, 1},
+        {"N1 IF[#1EQ1]GOTO 5", DIALECT_FANUC, 1},
+        {"G0 G28 G91 Z0.", DIALECT_FANUC, 1},
+        {":0100", DIALECT_FANUC, 1},
+        {"(VF2 HAAS)\nG54.1 P2", DIALECT_HAAS, 2},
+        {"G103 P1", DIALECT_HAAS, 1},
+        {"(Mach3)\nG69", DIALECT_MACH3, 2},
+        {"G92 E0\nG1 X1 E2", DIALECT_MARLIN, 1},
+        {"M104 S200", DIALECT_MARLIN, 1},
+    };
+
+    for (size_t i = 0; i < sizeof table / sizeof table[0]; i++) {
+        const struct dialect_guess g = guess(table[i].text);
+
+        TEST_ASSERT_EQUAL_STRING_MESSAGE(dialect_name(table[i].dialect), dialect_name(g.dialect),
+                                         table[i].text);
+        TEST_ASSERT_EQUAL_UINT32_MESSAGE(table[i].line, g.line, table[i].text);
+    }
+}
+
+static void test_senders_orders_and_remarks_are_no_lines(void)
+{
+    expect(DIALECT_GRBL, "$H\n?\n// a\n# b\nG0 X1 G0 (open\nN1 G1 X2*71\n",
+           "\n\n\n\nG0 X1 G0 ;open\nN1 G1 X2\n");
+}
+
+static void test_numbers_with_exponents_are_written_out(void)
+{
+    expect(DIALECT_GRBL, "G0 X1 Y-2.5e-3 Z1e+2\n", "G0 X1 Y-0.002500000 Z100.000000000\n");
+}
+
+static void test_a_centre_across_the_plane_that_is_0_is_left_out(void)
+{
+    expect(DIALECT_GRBL, "G2 X1 I1 J0 K0\nG18\nG2 X1 I0 J0 K1\nG17 G2 X1 K1 I1\n",
+           "G2 X1 I1 J0   \nG18\nG2 X1 I0    K1\nG17 G2 X1 K1 I1\n");
+}
+
+static void test_grbl_begins_with_rapids(void)
+{
+    expect(DIALECT_GRBL, "G21\nX1\nX2\n", "G21\nX1 G0\nX2\n");
+}
+
+static void test_axes_that_are_named_alone_go_to_their_reference(void)
+{
+    expect(DIALECT_GRBL, "G28 X Y\nG91 G28 Z\nG28 X1\n",
+           "G28 X0 Y0 G91\n|G90\nG91 G28 Z0\nG28 X1\n");
+    expect(DIALECT_MARLIN, "G28 X1 W\n", "G28 X0   G91\n|G90\n");
+}
+
+static void test_a_rapid_beside_a_reference_holds_from_the_next_line_on(void)
+{
+    expect(DIALECT_FANUC, "G1 X1\nG0 G28 G91 Z0.\nG90 X5\nX6\n",
+           "G1 X1\n   G28 G91 Z0.\nG90 X5 G0\nX6\n");
+    expect(DIALECT_FANUC, "G28 U0. W0.\n", "G18 G7\n|G28 X0. Z0. G91\n|G90\n");
+}
+
+static void test_loops_branches_and_jumps_become_o_words(void)
+{
+    expect(DIALECT_FANUC, "WHILE[#1LT3]DO2\n#1=#1\nEND2\n",
+           "o91000002 while [#1LT3]\n#1=#1\no91000002 endwhile\n");
+    expect(DIALECT_FANUC, "IF [#1 EQ 1] THEN #2=3\n",
+           "o92000001 if [#1 EQ 1]\n| #2=3\n|o92000001 endif\n");
+    expect(DIALECT_FANUC, "N5 G1\nIF[#1EQ1]GOTO5\nGOTO 9\nN9 M30\n",
+           "N5 G1\no92000002 if [#1EQ1]\n|o00000000 goto [00000001] [00]\n|o92000002 endif\n"
+           "o00000107 goto [00000004] [00]\nN9 M30\n");
+    expect(DIALECT_FANUC, "N1 #3000=1(STOP IT)\n#3006=1 (LOOK)\n",
+           "(abort,STOP IT)\n(msg,LOOK)\n|M0\n");
+}
+
+static void test_a_jump_to_nowhere_is_told(void)
+{
+    static const char text[] = "G1\nGOTO 7\nO1\nN7 G1\n";
+
+    TEST_ASSERT_TRUE(dialect_translate(DIALECT_FANUC, &codes, text, sizeof text - 1, &result));
+    TEST_ASSERT_EQUAL_UINT32(2, result.wrong_line);
+    TEST_ASSERT_EQUAL_UINT(7, result.wrong_number);
+}
+
+static void test_macros_are_called_with_their_arguments(void)
+{
+    expect(DIALECT_FANUC, "G65 P9001 A1. B#3 Z-2\nO9001\nM99\n%\n",
+           "o9001 call [1.] [#3] [0] [0] [0] [0] [0] [0] [0] [0] [0] [0] [0] [0] [0] [0] [0] [0] "
+           "[0] [0] [0] "
+           "[0] [0] [0] [0] [-2]\no9001 sub\no9001 return\no9001 endsub\n|%\n");
+    expect(DIALECT_FANUC, "M98 P31000\nO1000\nM99\n", "M98 P1000 L3\nO1000\nM99\n");
+}
+
+static void test_dwells_in_milliseconds_become_seconds(void)
+{
+    expect(DIALECT_FANUC, "G4 P500\nG4 P1.5\nG4 X2.\nG4 P2\n",
+           "G4 P0.500000\nG4 P1.5\nG4 P2.000000\nG4 P2\n");
+    expect(DIALECT_MARLIN, "G4 P50\nG4 S2\n", "G4 P0.050000\nG4 P2.000000\n");
+}
+
+static void test_more_systems_are_the_last_ones_here(void)
+{
+    expect(DIALECT_FANUC, "G54.1 P2 X1\nG54 P3\n", "G59.2    X1\nG59.3   \n");
+}
+
+static void test_turning_has_diameters_and_limits_of_speed(void)
+{
+    expect(DIALECT_FANUC, "O1\nG50 S2000\nT0101\nG96 S200\nG99 G1 X5 F.1\n",
+           "O1\nG18 G7\nT1 M6\nG96 S200 D2000\nG95 G1 X5 F.1\n");
+}
+
+static void test_printers_leave_their_way(void)
+{
+    expect(DIALECT_MARLIN, "M104 S200\nG92 E0\nG1 X1 E2.5 F600 ;E\nM117 Hello X1\nM600\n",
+           "\n      \nG1 X1      F600 ;E\n(msg, Hello X1)\nM0  \n");
+    TEST_ASSERT_EQUAL_UINT(2, result.notes);
+    TEST_ASSERT_EQUAL_STRING("M104", result.note[0].word);
+}
+
+static void test_declared_codes_do_what_the_machine_file_says(void)
+{
+    declare("M31", "ignore");
+    declare("m44", "stop");
+    declare("M45.1", "output 3 off");
+    declare("G187", "subroutine smooth");
+    expect(DIALECT_LINUXCNC, "G0 X1 M31 P5 Y2\nM44 M3\nM45.1\nG187 P1 R#3 F5\nM311\n",
+           "G0 X1        Y2\n    M3\n|M0\nM65 P3\n            F5\n|o<smooth> call [1] [0] "
+           "[#3]\nM311\n");
+}
+
+static void test_declarations_that_make_no_sense_are_told(void)
+{
+    static const char *const wrong[][2] = {
+        {"M", "ignore"}, {"X1", "ignore"}, {"M31", "ignored"},  {"M31", "output on"},
+        {"M31", ""},     {"M31x", "stop"}, {"M31", "output 3"}, {"M31", "subroutine "}};
+
+    for (size_t i = 0; i < sizeof wrong / sizeof wrong[0]; i++)
+        TEST_ASSERT_NOT_NULL_MESSAGE(dialect_code_read(&codes.code[0], wrong[i][0], wrong[i][1]),
+                                     wrong[i][1]);
+}
+
+static void test_polar_words_become_x_and_y(void)
+{
+    TEST_ASSERT_TRUE(guess("G0 @1 ^2").translates);
+    TEST_ASSERT_EQUAL_INT(DIALECT_LINUXCNC, guess("G0 @1 ^2").dialect);
+    expect(DIALECT_LINUXCNC, "G90 G1 @1 ^[2*#3] (c)\n",
+           "#<_polar_radius>=[[1]+0*[SQRT[#5420*#5420+#5421*#5421]]] "
+           "#<_polar_angle>=[[[2*#3]]+0*[ATAN[#5421]/[#5420]]]\n"
+           "|G90 G1             X[#<_polar_radius>*COS[#<_polar_angle>]-0*#5420] "
+           "Y[#<_polar_radius>*SIN[#<_polar_angle>]-0*#5421](c)\n");
+    expect(DIALECT_LINUXCNC, "G91\nG81 ^9 L2\n",
+           "G91\n#<_polar_radius>=[SQRT[#5420*#5420+#5421*#5421]] "
+           "#<_polar_angle>=[[9]+#<_incremental>*[ATAN[#5421]/[#5420]]]\n"
+           "|G81       X[#<_polar_radius>*COS[#<_polar_angle>]-#<_incremental>*#5420] "
+           "Y[#<_polar_radius>*SIN[#<_polar_angle>]-#<_incremental>*#5421]\n"
+           "|#<_polar_radius>=[SQRT[#5420*#5420+#5421*#5421]] "
+           "#<_polar_angle>=[[9]+#<_incremental>*[ATAN[#5421]/[#5420]]]\n"
+           "|G81       X[#<_polar_radius>*COS[#<_polar_angle>]-#<_incremental>*#5420] "
+           "Y[#<_polar_radius>*SIN[#<_polar_angle>]-#<_incremental>*#5421]\n");
+}
+
+static void test_values_of_the_machine_file_are_numbers(void)
+{
+    TEST_ASSERT_NULL(dialect_value_set(&codes, "_ini[traj]MAX_speed", "2.5"));
+    TEST_ASSERT_NULL(dialect_value_set(&codes, "_hal[my.pin]", "-1"));
+    TEST_ASSERT_NOT_NULL(dialect_value_set(&codes, "_hal[my.pin]", "1x"));
+    TEST_ASSERT_NOT_NULL(dialect_value_set(&codes, "pin", "1"));
+    TEST_ASSERT_TRUE(guess("#1=#<_INI[a]b>").translates);
+    expect(DIALECT_LINUXCNC, "G0 X#< _ini[TRAJ]max_speed> Y[1+#<_hal[my.pin]>] Z#<_ini[a]b>\n",
+           "G0 X[2.500000000]           Y[1+[-1.000000000] ] Z#<_ini[a]b>\n");
+}
+
+static void test_a_byte_order_mark_is_no_part_of_the_program(void)
+{
+    TEST_ASSERT_TRUE(guess("\xef\xbb\xbfG0 X1").translates);
+    expect(DIALECT_LINUXCNC, "\xef\xbb\xbfG0 X1\r\n", "G0 X1\n");
+}
+
+int main(void)
+{
+    UNITY_BEGIN();
+    RUN_TEST(test_programs_for_linuxcnc_stay_as_they_are);
+    RUN_TEST(test_only_what_linuxcnc_cannot_read_tells_of_another_dialect);
+    RUN_TEST(test_senders_orders_and_remarks_are_no_lines);
+    RUN_TEST(test_numbers_with_exponents_are_written_out);
+    RUN_TEST(test_a_centre_across_the_plane_that_is_0_is_left_out);
+    RUN_TEST(test_grbl_begins_with_rapids);
+    RUN_TEST(test_axes_that_are_named_alone_go_to_their_reference);
+    RUN_TEST(test_a_rapid_beside_a_reference_holds_from_the_next_line_on);
+    RUN_TEST(test_loops_branches_and_jumps_become_o_words);
+    RUN_TEST(test_a_jump_to_nowhere_is_told);
+    RUN_TEST(test_macros_are_called_with_their_arguments);
+    RUN_TEST(test_dwells_in_milliseconds_become_seconds);
+    RUN_TEST(test_more_systems_are_the_last_ones_here);
+    RUN_TEST(test_turning_has_diameters_and_limits_of_speed);
+    RUN_TEST(test_printers_leave_their_way);
+    RUN_TEST(test_declared_codes_do_what_the_machine_file_says);
+    RUN_TEST(test_declarations_that_make_no_sense_are_told);
+    RUN_TEST(test_polar_words_become_x_and_y);
+    RUN_TEST(test_values_of_the_machine_file_are_numbers);
+    RUN_TEST(test_a_byte_order_mark_is_no_part_of_the_program);
+    return UNITY_END();
+}
