@@ -24,9 +24,18 @@ unsigned drives_cycle_frames(unsigned count, uint8_t length[DRIVES_CYCLE_FRAMES_
  *     C = 47 + 8 n + floor((34 + 8 n - 1) / 4)
  * Davis, Burns, Bril, Lukkien: Controller Area Network schedulability analysis, Real-Time Systems 35 (2007), eq. 1.
  */
-static uint32_t frame_bits_worst(uint32_t n)
+uint32_t drives_frame_bits(uint32_t n)
 {
     return 47 + 8 * n + (34 + 8 * n - 1) / 4;
+}
+
+/* True: the bus carries it. */
+static bool set_share(struct drives_load *load, uint32_t bitrate, uint32_t cycle_us)
+{
+    double capacity_bits = 1e-6 * (double)cycle_us * (double)bitrate;
+    load->capacity_bits = (uint32_t)capacity_bits;
+    load->percent = 100.0 * load->bits / capacity_bits;
+    return load->percent <= 100.0;
 }
 
 bool drives_predict_load(unsigned count, uint32_t bitrate, uint32_t cycle_us,
@@ -34,13 +43,19 @@ bool drives_predict_load(unsigned count, uint32_t bitrate, uint32_t cycle_us,
 {
     uint8_t length[DRIVES_CYCLE_FRAMES_MAX];
     unsigned frames = drives_cycle_frames(count, length);
-    double capacity_bits = 1e-6 * (double)cycle_us * (double)bitrate;
     load->bits = 0;
     for (unsigned i = 0; i < frames; i++)
-        load->bits += frame_bits_worst(length[i]);
-    load->capacity_bits = (uint32_t)capacity_bits;
-    load->percent = 100.0 * load->bits / capacity_bits;
-    return load->percent <= 100.0;
+        load->bits += drives_frame_bits(length[i]);
+    return set_share(load, bitrate, cycle_us);
+}
+
+void drives_get_load(const struct drives *d, struct drives_load *load)
+{
+    load->bits = drives_frame_bits(0) + drives_frame_bits(DRIVES_STATUS_LENGTH) +
+                 drives_frame_bits(HEARTBEAT_LENGTH);
+    for (unsigned i = 0; i < d->count; i++)
+        load->bits += d->axis[i].bits;
+    (void)set_share(load, d->bitrate, d->cycle_us);
 }
 
 /* "1310 of 1000 bits". */
