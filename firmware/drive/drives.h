@@ -96,6 +96,7 @@ enum drives_state {
 enum drives_given_up {
     DRIVES_NO_PAIR, /* its target does not share a frame with that of another drive: no dummy mapping */
     DRIVES_NO_MAPPING, /* its PDOs are taken as they are */
+    DRIVES_NO_SILENCE, /* it sends PDOs that nobody wants */
     DRIVES_NO_CSP,     /* it follows targets in interpolated position mode */
     DRIVES_NO_MODES,   /* it does not tell its modes (6502): cyclic synchronous position is tried */
     DRIVES_NO_MODE_PDO,     /* its mode (6060) is told by SDO */
@@ -161,6 +162,16 @@ const struct diagnostic *drives_get_fault(const struct drives *d);
  */
 #define DRIVES_CYCLE_FRAMES_MAX (3 + AXIS_COUNT + (AXIS_COUNT + 1) / 2)
 unsigned drives_cycle_frames(unsigned count, uint8_t length[DRIVES_CYCLE_FRAMES_MAX]);
+
+/* The PDOs of a cycle as the start has found them: a frame of each drive's status, position and target; of targets in
+ * pairs one. Returns their number. */
+struct drives_pdo {
+    uint16_t id;
+    uint8_t length; /* bytes at most */
+    bool is_target;
+};
+#define DRIVES_CYCLE_PDOS_MAX (3 * AXIS_COUNT)
+unsigned drives_get_pdos(const struct drives *d, struct drives_pdo pdo[DRIVES_CYCLE_PDOS_MAX]);
 
 /* What a cycle takes of the bus. */
 struct drives_load {

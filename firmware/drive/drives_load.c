@@ -51,11 +51,41 @@ bool drives_predict_load(unsigned count, uint32_t bitrate, uint32_t cycle_us,
 
 void drives_get_load(const struct drives *d, struct drives_load *load)
 {
-    load->bits = drives_frame_bits(0) + drives_frame_bits(DRIVES_STATUS_LENGTH) +
-                 drives_frame_bits(HEARTBEAT_LENGTH);
-    for (unsigned i = 0; i < d->count; i++)
+    bool has_error = false;
+    load->bits = drives_frame_bits(0) + drives_frame_bits(HEARTBEAT_LENGTH);
+    for (unsigned i = 0; i < d->count; i++) {
         load->bits += d->axis[i].bits;
+        has_error = has_error || !drives_has_given_up(&d->axis[i], DRIVES_NO_ERROR_PDO);
+    }
+    if (has_error)
+        load->bits += drives_frame_bits(DRIVES_STATUS_LENGTH);
     (void)set_share(load, d->bitrate, d->cycle_us);
+}
+
+/* Of a TPDO with something that ends at this byte: one that the drive keeps may hold more. */
+static uint8_t length_at_most(const struct drives_axis *axis, unsigned end)
+{
+    bool is_kept = axis->config.keeps_settings || drives_has_given_up(axis, DRIVES_NO_MAPPING);
+    return (uint8_t)(is_kept ? CAN_DATA_MAX : end);
+}
+
+unsigned drives_get_pdos(const struct drives *d, struct drives_pdo pdo[DRIVES_CYCLE_PDOS_MAX])
+{
+    unsigned count = 0;
+    for (unsigned i = 0; i < d->count; i++) {
+        const struct drives_axis *axis = &d->axis[i];
+        bool is_one = axis->status_id == axis->position_id;
+        uint8_t status = length_at_most(axis, axis->status_at + 2u);
+        uint8_t position = length_at_most(axis, axis->position_at + 4u);
+        if (!is_one)
+            pdo[count++] = (struct drives_pdo){axis->status_id, status, false};
+        pdo[count++] = (struct drives_pdo){axis->position_id,
+                                           is_one && status > position ? status : position, false};
+        if (!axis->is_paired || i & 1)
+            pdo[count++] =
+                (struct drives_pdo){axis->target_frame.cob_id, axis->target_frame.length, true};
+    }
+    return count;
 }
 
 /* "1310 of 1000 bits". */

@@ -7,8 +7,8 @@
  *     2, 3   RPDO3,4 what has found no place so far, else not valid
  *     4      RPDO1   again, if the target has found no place: target, controlword
  *     5      TPDO1   statusword, position                              every SYNC
- *     6      TPDO2   what has found no place, else error code, following error (event, 100 ms)
- *     7, 8   TPDO3,4 what has found no place, else not valid
+ *     6 - 8  TPDO2-4 the same, if they have found no place in one PDO; error code, following error (event, 100 ms)
+ *     9 - 12 TPDO1-4 again, if they have found no such place: each in one of its own
  *
  * A PDO is told as CiA 301, 7.5.2.36 has it: not valid, type, no mapping, entries, their number, valid. An entry that is
  * refused is left out, and so is the last one as long as their number is. Is anything else refused, the PDO is read: its
@@ -23,11 +23,14 @@
 #include <stddef.h>
 #include <string.h>
 
+/* RPDOs, and as many TPDOs, that are used or made not valid. */
+#define PDOS 4
+
 #define PASS_TARGET 1
 #define PASS_AGAIN  4
 #define PASS_STATUS 5
-#define PASS_ERROR  6
-#define PASSES      9
+#define PASS_APART  9
+#define PASSES      13
 
 #define PDO_SYNC_MAX 240
 #define COB_ID_MASK  0x7FFu
@@ -74,7 +77,7 @@ static bool is_transmitted(const struct drives_mapping *m)
 /* From 0. */
 static unsigned number_of(const struct drives_mapping *m)
 {
-    return is_transmitted(m) ? m->pass - PASS_STATUS : m->pass % PASS_AGAIN;
+    return (is_transmitted(m) ? (unsigned)m->pass - PASS_STATUS : (unsigned)m->pass) % PDOS;
 }
 
 static unsigned parameters_of(const struct drives_mapping *m)
@@ -99,7 +102,7 @@ static void add(struct pdo *pdo, uint32_t object, bool is_wanted)
 static void want_target(const struct drives *d, struct pdo *pdo)
 {
     const struct drives_axis *axis = &d->axis[d->at_axis];
-    if (!axis->is_paired) {
+    if (!axis->is_paired || d->mapping.pass == PASS_AGAIN) {
         add(pdo, target_of(axis), true);
         return;
     }
@@ -126,21 +129,28 @@ static void want_received(const struct drives *d, struct pdo *pdo)
 static void want_transmitted(const struct drives *d, struct pdo *pdo)
 {
     const struct drives_axis *axis = &d->axis[d->at_axis];
+    bool has_no_error = axis->error_id == NO_TPDO && d->mapping.pass < PASS_APART;
     add(pdo, CIA402_STATUSWORD, axis->status_id == NO_TPDO);
     add(pdo, CIA402_POSITION_ACTUAL, axis->position_id == NO_TPDO);
     if (pdo->mapping.count > 0) {
         pdo->transmission = PDO_EVERY_SYNC;
-    } else if (d->mapping.pass == PASS_ERROR) {
-        add(pdo, CIA402_ERROR_CODE, true);
-        add(pdo, CIA402_FOLLOWING_ERROR, true);
+    } else {
+        add(pdo, CIA402_ERROR_CODE, has_no_error);
+        add(pdo, CIA402_FOLLOWING_ERROR, has_no_error);
     }
+}
+
+static bool has_reports(const struct drives_axis *axis)
+{
+    return axis->status_id != NO_TPDO && axis->position_id != NO_TPDO;
 }
 
 static void begin(struct drives *d)
 {
     struct drives_mapping *m = &d->mapping;
     unsigned first = is_transmitted(m) ? PDO_TPDO1_FUNCTION : PDO_RPDO1_FUNCTION;
-    bool keeps = d->axis[d->at_axis].config.keeps_settings;
+    struct drives_axis *axis = &d->axis[d->at_axis];
+    bool keeps = axis->config.keeps_settings;
     memset(&m->pdo, 0, sizeof m->pdo);
     m->pdo.transmission = PDO_EVENT;
     m->pdo.cob_id = (uint16_t)(first + number_of(m) * PDO_NEXT_FUNCTION + d->node[d->at_axis]);
@@ -152,10 +162,17 @@ static void begin(struct drives *d)
     m->entry = 0;
     m->is_taken = !keeps;
     m->step = keeps ? READ_ID : OFF;
-    if (m->pass == PASS_AGAIN && (m->pdo.mapping.count == 0 || keeps))
+    if (m->pass == PASS_AGAIN && (m->pdo.mapping.count == 0 || keeps)) {
         m->step = DONE;
-    else if (m->pass == PASS_AGAIN)
-        d->axis[d->at_axis].control_frame.length = 0;
+    } else if (m->pass == PASS_AGAIN) {
+        axis->control_frame.length = 0;
+        axis->control_frame.mode = DRIVES_NOWHERE;
+    } else if (m->pass == PASS_APART && has_reports(axis)) {
+        m->pass = PASSES;
+    } else if (m->pass == PASS_APART) {
+        axis->bits = 0;
+        axis->given_up &= ~(1u << DRIVES_NO_SILENCE);
+    }
 }
 
 /* ---- Telling and reading it ---- */
@@ -188,7 +205,8 @@ static bool find_telling(const struct drives_mapping *m, struct drives_step *ste
     case TYPE:
         return set_write(step, parameters, OBJECT_PDO_TYPE, 1, pdo->transmission) && count > 0;
     case CLEAR:
-        return set_write(step, mapping, 0, 1, 0) && count > 0;
+        return set_write(step, mapping, 0, 1, 0) &&
+               (count > 0 || (is_transmitted(m) && !m->is_taken));
     case ENTRY:
         return m->entry < count &&
                set_write(step, mapping, m->entry + 1u, 4, pdo->mapping.object[m->entry]);
@@ -238,6 +256,12 @@ static bool is_used(const struct drives_axis *axis, const struct pdo *pdo)
            axis->error_id == pdo->cob_id;
 }
 
+static bool is_unwanted(const struct drives *d)
+{
+    const struct drives_mapping *m = &d->mapping;
+    return is_transmitted(m) && m->pdo.mapping.count > 0 && !is_used(&d->axis[d->at_axis], &m->pdo);
+}
+
 static bool find_reading(const struct drives *d, struct drives_step *step)
 {
     const struct drives_mapping *m = &d->mapping;
@@ -262,8 +286,7 @@ static bool find_reading(const struct drives *d, struct drives_step *step)
         return is_entry && !is_transmitted(m) && is_used(axis, &m->pdo) && is_rest(axis, object) &&
                set_read(step, object >> 16, object >> 8 & 0xFF);
     default:
-        return is_transmitted(m) && m->pdo.mapping.count > 0 && !is_used(axis, &m->pdo) &&
-               !axis->config.keeps_settings &&
+        return is_unwanted(d) && !axis->config.keeps_settings &&
                set_write(step, parameters, OBJECT_PDO_COB_ID, 4, m->id | OBJECT_PDO_NOT_VALID);
     }
 }
@@ -290,27 +313,41 @@ static void take_received(struct drives *d)
         drives_give_up(d, d->at_axis, DRIVES_NO_SYNC_TARGET);
 }
 
-/* Statusword and position in one frame are better than apart. */
-static void take_transmitted(struct drives_axis *axis, const struct pdo *pdo)
+static void count_bits(struct drives_axis *axis, unsigned length)
 {
+    axis->bits = (uint16_t)(axis->bits + drives_frame_bits(length));
+}
+
+/* An unwanted TPDO stays. */
+static void suffer(struct drives *d)
+{
+    drives_give_up(d, d->at_axis, DRIVES_NO_SILENCE);
+    if (d->mapping.pdo.transmission <= PDO_SYNC_MAX)
+        count_bits(&d->axis[d->at_axis], d->mapping.pdo.mapping.length);
+}
+
+static void take_transmitted(struct drives_axis *axis, const struct drives_mapping *m)
+{
+    const struct pdo *pdo = &m->pdo;
     uint8_t status = byte_of(pdo, CIA402_STATUSWORD),
             position = byte_of(pdo, CIA402_POSITION_ACTUAL);
     bool has_both = status != DRIVES_NOWHERE && position != DRIVES_NOWHERE;
     bool is_cyclic = pdo->transmission == PDO_EVERY_SYNC;
+    bool is_taken = is_cyclic && (has_both || m->pass >= PASS_APART);
     if (node_id(pdo->cob_id) != axis->config.node)
         return;
-    if (is_cyclic && status != DRIVES_NOWHERE && (has_both || axis->status_id == NO_TPDO)) {
+    if (is_taken && status != DRIVES_NOWHERE && axis->status_id == NO_TPDO) {
         axis->status_id = pdo->cob_id;
         axis->status_at = status;
     }
-    if (is_cyclic && position != DRIVES_NOWHERE && (has_both || axis->position_id == NO_TPDO)) {
+    if (is_taken && position != DRIVES_NOWHERE && axis->position_id == NO_TPDO) {
         axis->position_id = pdo->cob_id;
         axis->position_at = position;
     }
     if (!is_cyclic && byte_of(pdo, CIA402_ERROR_CODE) == 0)
         axis->error_id = pdo->cob_id;
     if (is_cyclic && is_used(axis, pdo))
-        axis->bits = (uint16_t)(axis->bits + drives_frame_bits(pdo->mapping.length));
+        count_bits(axis, pdo->mapping.length);
 }
 
 /* Of entries: a drive may have mapped more than a frame holds only by mistake. */
@@ -329,7 +366,7 @@ static void take_layout(struct drives *d)
     if (m->pdo.mapping.length == 0)
         m->pdo.mapping.count = 0;
     else if (is_transmitted(m))
-        take_transmitted(&d->axis[d->at_axis], &m->pdo);
+        take_transmitted(&d->axis[d->at_axis], m);
     else
         take_received(d);
     m->entry = 0;
@@ -350,16 +387,9 @@ static void part_pair(struct drives *d)
 static void take_told(struct drives *d)
 {
     struct drives_mapping *m = &d->mapping;
-    const struct drives_axis *axis = &d->axis[d->at_axis];
-    bool is_shared = !is_transmitted(m) && axis->is_paired && m->pdo.transmission == PDO_EVERY_SYNC;
-    if (is_shared && (!m->is_taken || m->pdo.mapping.count != 2)) {
-        part_pair(d);
-    } else if (m->is_taken || m->pdo.mapping.count == 0) {
+    m->step = m->is_taken ? SILENCE : READ_ID;
+    if (m->is_taken)
         take_layout(d);
-        m->step = DONE;
-    } else {
-        m->step = READ_ID;
-    }
 }
 
 /* ---- Answers ---- */
@@ -387,9 +417,12 @@ static bool take_refusal(struct drives *d, uint32_t abort_code)
     d->read[0] = abort_code;
     switch (m->step) {
     case OFF:
-        if (sdo_says_absent(abort_code))
+        if (sdo_says_absent(abort_code)) {
             mapping->count = 0;
-        else if (drop_no_rtr(m))
+            m->step = ON;
+            return true;
+        }
+        if (drop_no_rtr(m))
             return false;
         break;
     case ON:
@@ -397,10 +430,10 @@ static bool take_refusal(struct drives *d, uint32_t abort_code)
             return false;
         break;
     case CLEAR:
-        drives_give_up(d, d->at_axis, DRIVES_NO_MAPPING);
-        m->is_taken = false;
-        m->step = TIMER;
-        return true;
+        if (mapping->count > 0)
+            drives_give_up(d, d->at_axis, DRIVES_NO_MAPPING);
+        m->step = COUNT;
+        break;
     case ENTRY:
         remove_entry(mapping, m->entry);
         return false;
@@ -420,13 +453,13 @@ static bool take_refusal(struct drives *d, uint32_t abort_code)
 static void take_telling(struct drives *d, const struct drives_answer *answer)
 {
     struct drives_mapping *m = &d->mapping;
-    if (answer->abort_code != SDO_ABORT_NONE) {
-        m->step = (uint8_t)(m->step + take_refusal(d, answer->abort_code));
-    } else if (m->step == ENTRY) {
-        m->entry++;
-    } else {
-        m->step++;
-    }
+    bool is_done = answer->abort_code == SDO_ABORT_NONE || take_refusal(d, answer->abort_code);
+    if (m->step == ENTRY)
+        m->entry = (uint8_t)(m->entry + is_done);
+    else
+        m->step = (uint8_t)(m->step + is_done);
+    if (m->step == ENTRY && m->pdo.mapping.count == 0 && answer->abort_code == SDO_ABORT_NONE)
+        m->is_taken = true; /* it cannot be made not valid, but is empty */
 }
 
 static void store_rest(struct drives_frame *frame, const struct pdo *pdo, uint32_t object,
@@ -488,6 +521,8 @@ static void take_reading(struct drives *d, const struct drives_answer *answer)
         take_rest(d, answer);
         break;
     default:
+        if (!is_good)
+            suffer(d);
         break;
     }
 }
@@ -518,6 +553,11 @@ static void pass_step(struct drives *d)
     case READ_REST:
         if (++m->entry >= m->pdo.mapping.count)
             m->step++;
+        break;
+    case SILENCE:
+        if (is_unwanted(d))
+            suffer(d);
+        m->step++;
         break;
     case DONE:
         m->pass++;
@@ -559,8 +599,18 @@ static bool try_interpolation(struct drives *d)
         return false;
     axis->follow_mode = CIA402_MODE_INTERPOLATED_POSITION;
     drives_forget_pdos(axis);
-    d->mapping.pass = 0;
+    d->mapping.pass = d->mapping.step = 0;
     return true;
+}
+
+/* Its target is where a pair has it: halves of one frame (target_pdo.h). */
+static bool shares_frame(const struct drives *d)
+{
+    const struct drives_frame *frame = &d->axis[d->at_axis].target_frame;
+    struct pdo pdo;
+    target_pdo_set(&pdo, d->node, d->count, d->at_axis);
+    return frame->cob_id == pdo.cob_id && frame->length == pdo.mapping.length &&
+           frame->target == byte_of(&pdo, CIA402_TARGET_POSITION);
 }
 
 /* Nothing is left to be mapped: what goes by SDO, and whether the rest suffices. True: there is more to map after all. */
@@ -568,6 +618,10 @@ static bool finish(struct drives *d)
 {
     struct drives_axis *axis = &d->axis[d->at_axis];
     axis->mode = axis->follow_mode;
+    if (axis->is_paired && !shares_frame(d)) {
+        part_pair(d);
+        return false;
+    }
     if (axis->target_frame.length == 0)
         return try_interpolation(d) || raise_unmapped(d, target_of(axis));
     if (axis->status_id == NO_TPDO)
@@ -583,7 +637,7 @@ static bool finish(struct drives *d)
     if (axis->error_id == NO_TPDO)
         drives_give_up(d, d->at_axis, DRIVES_NO_ERROR_PDO);
     if (!axis->is_paired || d->at_axis & 1)
-        axis->bits = (uint16_t)(axis->bits + drives_frame_bits(axis->target_frame.length));
+        count_bits(axis, axis->target_frame.length);
     return false;
 }
 

@@ -48,9 +48,22 @@ void drives_enter_phase(struct drives *d, enum drives_phase phase)
         drives_begin_axis(d, 0);
 }
 
+/* A request to another drive is waited for: its answer would be taken for that to the next one. */
+static void begin_again(struct drives *d, uint8_t booted)
+{
+    bool is_stale =
+        d->phase == DRIVES_CONFIGURE && sdo_client_is_busy(&d->sdo) && d->sdo.node != booted;
+    drives_enter_phase(d, DRIVES_CONFIGURE);
+    d->is_stale = is_stale;
+    if (is_stale)
+        d->sdo.result = SDO_BUSY;
+}
+
 void drives_start_again(struct drives *d, unsigned index)
 {
     struct drives_axis *axis = &d->axis[index];
+    if (axis->reset_pending)
+        return; /* it does not know of its reset yet, and will boot again */
     axis->booted = true;
     axis->started = false;
     axis->heard = false;
@@ -59,7 +72,13 @@ void drives_start_again(struct drives *d, unsigned index)
     if (d->phase >= DRIVES_SELECT || d->restarts++ == RESTARTS_MAX)
         drives_raise(d, index, TAKT_ERROR_DRIVE_REBOOTED, 0, NULL);
     else if (d->phase != DRIVES_BOOT)
-        drives_enter_phase(d, DRIVES_CONFIGURE);
+        begin_again(d, d->node[index]);
+}
+
+static void raise_absent(struct drives *d, unsigned index)
+{
+    drives_raise(d, index, TAKT_ERROR_DRIVE_ABSENT,
+                 2e-3 * drives_cycles_ms(d, d->boot_timeout_cycles), NULL);
 }
 
 /* Reset once, and once more when that has taken too long: the order may have been lost, or the answer. */
@@ -73,8 +92,7 @@ static void boot(struct drives *d)
         if (d->phase_cycles == d->boot_timeout_cycles)
             d->axis[i].reset_pending = true;
         else if (d->phase_cycles > 2 * d->boot_timeout_cycles)
-            drives_raise(d, i, TAKT_ERROR_DRIVE_ABSENT,
-                         2e-3 * drives_cycles_ms(d, d->boot_timeout_cycles), NULL);
+            raise_absent(d, i);
     }
     if (all)
         drives_enter_phase(d, DRIVES_CONFIGURE);
@@ -152,12 +170,19 @@ static void take_answer(struct drives *d)
         drives_take_map(d, &answer);
 }
 
-/* No answer: the request is repeated, and then the drive is lost. */
+/*
+ * No answer: the request is repeated, and then the drive is lost. The first one of a drive is repeated for as long as it
+ * may take to boot: what was heard may have been of the time before its reset.
+ */
 static void miss_answer(struct drives *d)
 {
     struct drives_step step;
-    if (d->repeats++ < DRIVES_SDO_REPEATS && find_step(d, &step))
+    bool is_first = d->at_part == DRIVES_ASK && d->at_step == 0;
+    bool may_boot = is_first && d->phase_cycles < 2 * d->boot_timeout_cycles;
+    if ((may_boot || d->repeats++ < DRIVES_SDO_REPEATS) && find_step(d, &step))
         ask(d, &step);
+    else if (is_first)
+        raise_absent(d, d->at_axis);
     else
         drives_raise_object(d, d->at_axis, d->sdo.object, TAKT_ERROR_DRIVE_UNANSWERED,
                             drives_cycles_ms(d, d->sdo_timeout_cycles), NULL);
@@ -165,6 +190,10 @@ static void miss_answer(struct drives *d)
 
 static void configure(struct drives *d)
 {
+    if (d->is_stale && !sdo_client_is_busy(&d->sdo)) {
+        d->is_stale = false;
+        d->sdo.result = SDO_IDLE;
+    }
     switch (d->sdo.result) {
     case SDO_BUSY:
         return;

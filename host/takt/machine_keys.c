@@ -4,7 +4,7 @@
 
 #define IN_SETUP(field)   offsetof(struct machine_setup, field)
 #define IN_AXIS(field)    offsetof(struct machine_axis, field)
-#define IN_DRIVE(field)   offsetof(struct drive_plant_config, field)
+#define IN_DRIVE(field)   offsetof(struct machine_drive, plant.field)
 #define IN_STEPPER(field) offsetof(struct virtual_stepper_config, field)
 
 /* Rows of the table by what they hold. Ranges: from (above: without) the first number to the second. */
@@ -196,6 +196,12 @@ const struct machine_key machine_keys[] = {
     COUNT(SECTION_PANEL, "password", KEY_UINT32, IN_SETUP(panel.password), 0, 4294967295,
           "panels must write it to the register PASSWORD before anything else; 0: none"),
 
+    TEXT(SECTION_DRIVE, "eds", offsetof(struct machine_drive, eds), MACHINE_SETUP_PATH_MAX + 1,
+         "electronic data sheet (CiA 306): the drive has its objects, PDOs and modes; relative to this file's folder; empty: takt's own drive"),
+    COUNT(SECTION_DRIVE, "boot_time_ms", KEY_UINT32, offsetof(struct machine_drive, boot_ms), 0, 600000,
+          "from a reset to its boot-up message"),
+    COUNT(SECTION_DRIVE, "sdo_time_ms", KEY_UINT32, offsetof(struct machine_drive, sdo_ms), 0, 600000,
+          "from a request to its answer"),
     ABOVE(SECTION_DRIVE, "travel_per_revolution_mm", SCALE_LENGTH, IN_DRIVE(travel_per_revolution_mm), 0, 1e4,
           "travel of the axis per turn of the motor: the lead of its screw"),
     ABOVE(SECTION_DRIVE, "inertia_kg_m2", SCALE_NONE, IN_DRIVE(inertia_kg_m2), 0, 1e3,
