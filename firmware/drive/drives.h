@@ -95,10 +95,11 @@ enum drives_state {
  */
 enum drives_given_up {
     DRIVES_NO_PAIR, /* its target does not share a frame with that of another drive: no dummy mapping */
-    DRIVES_NO_MAPPING, /* its PDOs are taken as they are */
-    DRIVES_NO_SILENCE, /* it sends PDOs that nobody wants */
-    DRIVES_NO_CSP,     /* it follows targets in interpolated position mode */
-    DRIVES_NO_MODES,   /* it does not tell its modes (6502): cyclic synchronous position is tried */
+    DRIVES_NO_MAPPING,    /* its PDOs are taken as they are */
+    DRIVES_NO_SILENCE,    /* it sends PDOs that nobody wants */
+    DRIVES_NO_ONE_REPORT, /* statusword and position come in a PDO each */
+    DRIVES_NO_CSP,        /* it follows targets in interpolated position mode */
+    DRIVES_NO_MODES, /* it does not tell its modes (6502): cyclic synchronous position is tried */
     DRIVES_NO_MODE_PDO,     /* its mode (6060) is told by SDO */
     DRIVES_NO_CONTROL_PDO,  /* its controlword (6040) is told by SDO */
     DRIVES_NO_MODE_DISPLAY, /* it does not tell its mode (6061) */

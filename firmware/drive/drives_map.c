@@ -18,7 +18,7 @@
 #include "canopen/cia402.h"
 #include "canopen/objects.h"
 #include "canopen/target_pdo.h"
-#include "drive/drives_private.h"
+#include "drive/drives_layout.h"
 
 #include <stddef.h>
 #include <string.h>
@@ -28,15 +28,9 @@
 
 #define PASS_TARGET 1
 #define PASS_AGAIN  4
-#define PASS_STATUS 5
-#define PASS_APART  9
 #define PASSES      13
 
-#define PDO_SYNC_MAX 240
-#define COB_ID_MASK  0x7FFu
-
-/* No TPDO: the reserved identifiers of heartbeats. */
-#define NO_TPDO NODE_FUNCTION_MASK
+#define COB_ID_MASK 0x7FFu
 
 #define MAPPING_OFFSET (OBJECT_RPDO_MAPPING - OBJECT_RPDO)
 
@@ -61,34 +55,15 @@ enum step {
     DONE
 };
 
-void drives_forget_pdos(struct drives_axis *axis)
-{
-    axis->control_frame.length = axis->target_frame.length = 0;
-    axis->control_frame.mode = axis->target_frame.mode = DRIVES_NOWHERE;
-    axis->status_id = axis->position_id = axis->error_id = NO_TPDO;
-    axis->bits = 0;
-}
-
-static bool is_transmitted(const struct drives_mapping *m)
-{
-    return m->pass >= PASS_STATUS;
-}
-
 /* From 0. */
 static unsigned number_of(const struct drives_mapping *m)
 {
-    return (is_transmitted(m) ? (unsigned)m->pass - PASS_STATUS : (unsigned)m->pass) % PDOS;
+    return (drives_is_transmitted(m) ? (unsigned)m->pass - PASS_STATUS : (unsigned)m->pass) % PDOS;
 }
 
 static unsigned parameters_of(const struct drives_mapping *m)
 {
-    return (is_transmitted(m) ? OBJECT_TPDO : OBJECT_RPDO) + number_of(m);
-}
-
-static uint32_t target_of(const struct drives_axis *axis)
-{
-    return axis->follow_mode == CIA402_MODE_CYCLIC_SYNC_POSITION ? CIA402_TARGET_POSITION
-                                                                 : CIA402_INTERPOLATION;
+    return (drives_is_transmitted(m) ? OBJECT_TPDO : OBJECT_RPDO) + number_of(m);
 }
 
 /* ---- What is wanted ---- */
@@ -103,11 +78,11 @@ static void want_target(const struct drives *d, struct pdo *pdo)
 {
     const struct drives_axis *axis = &d->axis[d->at_axis];
     if (!axis->is_paired || d->mapping.pass == PASS_AGAIN) {
-        add(pdo, target_of(axis), true);
+        add(pdo, drives_target_of(axis), true);
         return;
     }
     target_pdo_set(pdo, d->node, d->count, d->at_axis);
-    pdo->mapping.object[d->at_axis & 1] = target_of(axis);
+    pdo->mapping.object[d->at_axis & 1] = drives_target_of(axis);
 }
 
 static void want_received(const struct drives *d, struct pdo *pdo)
@@ -148,17 +123,17 @@ static bool has_reports(const struct drives_axis *axis)
 static void begin(struct drives *d)
 {
     struct drives_mapping *m = &d->mapping;
-    unsigned first = is_transmitted(m) ? PDO_TPDO1_FUNCTION : PDO_RPDO1_FUNCTION;
+    unsigned first = drives_is_transmitted(m) ? PDO_TPDO1_FUNCTION : PDO_RPDO1_FUNCTION;
     struct drives_axis *axis = &d->axis[d->at_axis];
     bool keeps = axis->config.keeps_settings;
     memset(&m->pdo, 0, sizeof m->pdo);
     m->pdo.transmission = PDO_EVENT;
     m->pdo.cob_id = (uint16_t)(first + number_of(m) * PDO_NEXT_FUNCTION + d->node[d->at_axis]);
-    if (is_transmitted(m))
+    if (drives_is_transmitted(m))
         want_transmitted(d, &m->pdo);
     else
         want_received(d, &m->pdo);
-    m->id = m->pdo.cob_id | (is_transmitted(m) ? OBJECT_PDO_NO_RTR : 0);
+    m->id = m->pdo.cob_id | (drives_is_transmitted(m) ? OBJECT_PDO_NO_RTR : 0);
     m->entry = 0;
     m->is_taken = !keeps;
     m->step = keeps ? READ_ID : OFF;
@@ -191,7 +166,7 @@ static bool set_read(struct drives_step *step, unsigned index, unsigned sub)
 
 static bool is_event_driven(const struct drives_mapping *m)
 {
-    return is_transmitted(m) && m->pdo.transmission == PDO_EVENT;
+    return drives_is_transmitted(m) && m->pdo.transmission == PDO_EVENT;
 }
 
 static bool find_telling(const struct drives_mapping *m, struct drives_step *step)
@@ -206,7 +181,7 @@ static bool find_telling(const struct drives_mapping *m, struct drives_step *ste
         return set_write(step, parameters, OBJECT_PDO_TYPE, 1, pdo->transmission) && count > 0;
     case CLEAR:
         return set_write(step, mapping, 0, 1, 0) &&
-               (count > 0 || (is_transmitted(m) && !m->is_taken));
+               (count > 0 || (drives_is_transmitted(m) && !m->is_taken));
     case ENTRY:
         return m->entry < count &&
                set_write(step, mapping, m->entry + 1u, 4, pdo->mapping.object[m->entry]);
@@ -220,24 +195,17 @@ static bool find_telling(const struct drives_mapping *m, struct drives_step *ste
     }
 }
 
-/* Byte at which an object begins. */
-static uint8_t byte_of(const struct pdo *pdo, uint32_t object)
-{
-    int offset = pdo_offset(&pdo->mapping, object);
-    return offset < 0 ? DRIVES_NOWHERE : (uint8_t)offset;
-}
-
 static bool has(const struct pdo *pdo, uint32_t object)
 {
-    return byte_of(pdo, object) != DRIVES_NOWHERE;
+    return drives_byte_of(pdo, object) != DRIVES_NOWHERE;
 }
 
 static uint8_t type_for(const struct drives *d)
 {
     const struct pdo *pdo = &d->mapping.pdo;
-    bool has_cyclic = is_transmitted(&d->mapping)
+    bool has_cyclic = drives_is_transmitted(&d->mapping)
                           ? has(pdo, CIA402_STATUSWORD) || has(pdo, CIA402_POSITION_ACTUAL)
-                          : has(pdo, target_of(&d->axis[d->at_axis]));
+                          : has(pdo, drives_target_of(&d->axis[d->at_axis]));
     return has_cyclic ? PDO_EVERY_SYNC : PDO_EVENT;
 }
 
@@ -245,21 +213,14 @@ static uint8_t type_for(const struct drives *d)
 static bool is_rest(const struct drives_axis *axis, uint32_t object)
 {
     return object >> 16 >= OBJECT_DEVICE_TYPE && object != CIA402_CONTROLWORD &&
-           object != CIA402_MODE && object != target_of(axis);
-}
-
-static bool is_used(const struct drives_axis *axis, const struct pdo *pdo)
-{
-    return (axis->control_frame.length > 0 && axis->control_frame.cob_id == pdo->cob_id) ||
-           (axis->target_frame.length > 0 && axis->target_frame.cob_id == pdo->cob_id) ||
-           axis->status_id == pdo->cob_id || axis->position_id == pdo->cob_id ||
-           axis->error_id == pdo->cob_id;
+           object != CIA402_MODE && object != drives_target_of(axis);
 }
 
 static bool is_unwanted(const struct drives *d)
 {
     const struct drives_mapping *m = &d->mapping;
-    return is_transmitted(m) && m->pdo.mapping.count > 0 && !is_used(&d->axis[d->at_axis], &m->pdo);
+    return drives_is_transmitted(m) && m->pdo.mapping.count > 0 &&
+           !drives_uses(&d->axis[d->at_axis], &m->pdo);
 }
 
 static bool find_reading(const struct drives *d, struct drives_step *step)
@@ -283,8 +244,8 @@ static bool find_reading(const struct drives *d, struct drives_step *step)
                !axis->config.keeps_settings &&
                set_write(step, parameters, OBJECT_PDO_TYPE, 1, type_for(d));
     case READ_REST:
-        return is_entry && !is_transmitted(m) && is_used(axis, &m->pdo) && is_rest(axis, object) &&
-               set_read(step, object >> 16, object >> 8 & 0xFF);
+        return is_entry && !drives_is_transmitted(m) && drives_uses(axis, &m->pdo) &&
+               is_rest(axis, object) && set_read(step, object >> 16, object >> 8 & 0xFF);
     default:
         return is_unwanted(d) && !axis->config.keeps_settings &&
                set_write(step, parameters, OBJECT_PDO_COB_ID, 4, m->id | OBJECT_PDO_NOT_VALID);
@@ -292,85 +253,6 @@ static bool find_reading(const struct drives *d, struct drives_step *step)
 }
 
 /* ---- What is made of it ---- */
-
-static void take_received(struct drives *d)
-{
-    struct drives_axis *axis = &d->axis[d->at_axis];
-    const struct pdo *pdo = &d->mapping.pdo;
-    const struct drives_frame frame = {.cob_id = pdo->cob_id,
-                                       .length = pdo->mapping.length,
-                                       .control = byte_of(pdo, CIA402_CONTROLWORD),
-                                       .mode = byte_of(pdo, CIA402_MODE),
-                                       .target = byte_of(pdo, target_of(axis))};
-    bool is_better = axis->control_frame.length == 0 ||
-                     (axis->control_frame.mode == DRIVES_NOWHERE && frame.mode != DRIVES_NOWHERE);
-    if (frame.control != DRIVES_NOWHERE && is_better)
-        axis->control_frame = frame;
-    if (frame.target == DRIVES_NOWHERE || axis->target_frame.length > 0)
-        return;
-    axis->target_frame = frame;
-    if (pdo->transmission > PDO_SYNC_MAX)
-        drives_give_up(d, d->at_axis, DRIVES_NO_SYNC_TARGET);
-}
-
-static void count_bits(struct drives_axis *axis, unsigned length)
-{
-    axis->bits = (uint16_t)(axis->bits + drives_frame_bits(length));
-}
-
-/* An unwanted TPDO stays. */
-static void suffer(struct drives *d)
-{
-    drives_give_up(d, d->at_axis, DRIVES_NO_SILENCE);
-    if (d->mapping.pdo.transmission <= PDO_SYNC_MAX)
-        count_bits(&d->axis[d->at_axis], d->mapping.pdo.mapping.length);
-}
-
-static void take_transmitted(struct drives_axis *axis, const struct drives_mapping *m)
-{
-    const struct pdo *pdo = &m->pdo;
-    uint8_t status = byte_of(pdo, CIA402_STATUSWORD),
-            position = byte_of(pdo, CIA402_POSITION_ACTUAL);
-    bool has_both = status != DRIVES_NOWHERE && position != DRIVES_NOWHERE;
-    bool is_cyclic = pdo->transmission == PDO_EVERY_SYNC;
-    bool is_taken = is_cyclic && (has_both || m->pass >= PASS_APART);
-    if (node_id(pdo->cob_id) != axis->config.node)
-        return;
-    if (is_taken && status != DRIVES_NOWHERE && axis->status_id == NO_TPDO) {
-        axis->status_id = pdo->cob_id;
-        axis->status_at = status;
-    }
-    if (is_taken && position != DRIVES_NOWHERE && axis->position_id == NO_TPDO) {
-        axis->position_id = pdo->cob_id;
-        axis->position_at = position;
-    }
-    if (!is_cyclic && byte_of(pdo, CIA402_ERROR_CODE) == 0)
-        axis->error_id = pdo->cob_id;
-    if (is_cyclic && is_used(axis, pdo))
-        count_bits(axis, pdo->mapping.length);
-}
-
-/* Of entries: a drive may have mapped more than a frame holds only by mistake. */
-static uint8_t length_of(const struct pdo_mapping *mapping)
-{
-    unsigned bits = 0;
-    for (unsigned i = 0; i < mapping->count; i++)
-        bits += mapping->object[i] & 0xFF;
-    return (uint8_t)(bits <= 8 * CAN_DATA_MAX ? bits / 8 : 0);
-}
-
-static void take_layout(struct drives *d)
-{
-    struct drives_mapping *m = &d->mapping;
-    m->pdo.mapping.length = length_of(&m->pdo.mapping);
-    if (m->pdo.mapping.length == 0)
-        m->pdo.mapping.count = 0;
-    else if (is_transmitted(m))
-        take_transmitted(&d->axis[d->at_axis], m);
-    else
-        take_received(d);
-    m->entry = 0;
-}
 
 /* Neither of them shares a frame any more; the first of them is told so from its beginning. */
 static void part_pair(struct drives *d)
@@ -389,7 +271,7 @@ static void take_told(struct drives *d)
     struct drives_mapping *m = &d->mapping;
     m->step = m->is_taken ? SILENCE : READ_ID;
     if (m->is_taken)
-        take_layout(d);
+        drives_take_layout(d);
 }
 
 /* ---- Answers ---- */
@@ -462,15 +344,6 @@ static void take_telling(struct drives *d, const struct drives_answer *answer)
         m->is_taken = true; /* it cannot be made not valid, but is empty */
 }
 
-static void store_rest(struct drives_frame *frame, const struct pdo *pdo, uint32_t object,
-                       uint32_t value)
-{
-    unsigned at = byte_of(pdo, object), bytes = (object & 0xFF) / 8;
-    for (unsigned i = 0; i < bytes && i < 4 && frame->length > 0 && frame->cob_id == pdo->cob_id;
-         i++)
-        frame->data[at + i] = (uint8_t)(value >> 8 * i);
-}
-
 static void take_rest(struct drives *d, const struct drives_answer *answer)
 {
     struct drives_mapping *m = &d->mapping;
@@ -478,8 +351,8 @@ static void take_rest(struct drives *d, const struct drives_answer *answer)
     uint32_t object = m->pdo.mapping.object[m->entry++];
     if (answer->abort_code != SDO_ABORT_NONE)
         return;
-    store_rest(&axis->control_frame, &m->pdo, object, answer->value);
-    store_rest(&axis->target_frame, &m->pdo, object, answer->value);
+    drives_store_rest(&axis->control_frame, &m->pdo, object, answer->value);
+    drives_store_rest(&axis->target_frame, &m->pdo, object, answer->value);
 }
 
 /* A PDO that is not valid, or not of this kind of identifiers, is none. */
@@ -522,7 +395,7 @@ static void take_reading(struct drives *d, const struct drives_answer *answer)
         break;
     default:
         if (!is_good)
-            suffer(d);
+            drives_suffer(d);
         break;
     }
 }
@@ -547,7 +420,7 @@ static void pass_step(struct drives *d)
         take_told(d);
         break;
     case FOUND:
-        take_layout(d);
+        drives_take_layout(d);
         m->step++;
         break;
     case READ_REST:
@@ -556,7 +429,7 @@ static void pass_step(struct drives *d)
         break;
     case SILENCE:
         if (is_unwanted(d))
-            suffer(d);
+            drives_suffer(d);
         m->step++;
         break;
     case DONE:
@@ -610,7 +483,7 @@ static bool shares_frame(const struct drives *d)
     struct pdo pdo;
     target_pdo_set(&pdo, d->node, d->count, d->at_axis);
     return frame->cob_id == pdo.cob_id && frame->length == pdo.mapping.length &&
-           frame->target == byte_of(&pdo, CIA402_TARGET_POSITION);
+           frame->target == drives_byte_of(&pdo, CIA402_TARGET_POSITION);
 }
 
 /* Nothing is left to be mapped: what goes by SDO, and whether the rest suffices. True: there is more to map after all. */
@@ -623,11 +496,13 @@ static bool finish(struct drives *d)
         return false;
     }
     if (axis->target_frame.length == 0)
-        return try_interpolation(d) || raise_unmapped(d, target_of(axis));
+        return try_interpolation(d) || raise_unmapped(d, drives_target_of(axis));
     if (axis->status_id == NO_TPDO)
         return raise_unmapped(d, CIA402_STATUSWORD);
     if (axis->position_id == NO_TPDO)
         return raise_unmapped(d, CIA402_POSITION_ACTUAL);
+    if (axis->status_id != axis->position_id)
+        drives_give_up(d, d->at_axis, DRIVES_NO_ONE_REPORT);
     if (axis->follow_mode != CIA402_MODE_CYCLIC_SYNC_POSITION)
         drives_give_up(d, d->at_axis, DRIVES_NO_CSP);
     if (axis->control_frame.length == 0)
@@ -637,7 +512,7 @@ static bool finish(struct drives *d)
     if (axis->error_id == NO_TPDO)
         drives_give_up(d, d->at_axis, DRIVES_NO_ERROR_PDO);
     if (!axis->is_paired || d->at_axis & 1)
-        count_bits(axis, axis->target_frame.length);
+        drives_count_bits(axis, axis->target_frame.length);
     return false;
 }
 

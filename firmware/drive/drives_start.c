@@ -75,12 +75,6 @@ void drives_start_again(struct drives *d, unsigned index)
         begin_again(d, d->node[index]);
 }
 
-static void raise_absent(struct drives *d, unsigned index)
-{
-    drives_raise(d, index, TAKT_ERROR_DRIVE_ABSENT,
-                 2e-3 * drives_cycles_ms(d, d->boot_timeout_cycles), NULL);
-}
-
 /* Reset once, and once more when that has taken too long: the order may have been lost, or the answer. */
 static void boot(struct drives *d)
 {
@@ -92,7 +86,8 @@ static void boot(struct drives *d)
         if (d->phase_cycles == d->boot_timeout_cycles)
             d->axis[i].reset_pending = true;
         else if (d->phase_cycles > 2 * d->boot_timeout_cycles)
-            raise_absent(d, i);
+            drives_raise(d, i, TAKT_ERROR_DRIVE_ABSENT,
+                         2e-3 * drives_cycles_ms(d, d->boot_timeout_cycles), NULL);
     }
     if (all)
         drives_enter_phase(d, DRIVES_CONFIGURE);
@@ -181,8 +176,6 @@ static void miss_answer(struct drives *d)
     bool may_boot = is_first && d->phase_cycles < 2 * d->boot_timeout_cycles;
     if ((may_boot || d->repeats++ < DRIVES_SDO_REPEATS) && find_step(d, &step))
         ask(d, &step);
-    else if (is_first)
-        raise_absent(d, d->at_axis);
     else
         drives_raise_object(d, d->at_axis, d->sdo.object, TAKT_ERROR_DRIVE_UNANSWERED,
                             drives_cycles_ms(d, d->sdo_timeout_cycles), NULL);

@@ -118,7 +118,7 @@ struct drives {
     uint8_t restarts;   /* configurations begun again, since a drive had booted */
     uint8_t tells;      /* objects told by SDO in this phase */
     bool is_looking;    /* what could not be written is read */
-    bool is_stale;        /* the request under way is of a configuration that has been begun again */
+    bool is_stale;      /* the request under way is of a configuration that has been begun again */
     bool is_telling;    /* a controlword or a mode is being written */
     bool homed;         /* no axis is left to be homed */
     uint8_t home_order; /* axes of this order are being homed; 0: not yet */

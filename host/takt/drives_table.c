@@ -12,6 +12,8 @@ static const struct {
     [DRIVES_NO_MAPPING] = {"mapping", "1600 1A00",
                            "the mapping cannot be changed: PDOs are used as they are"},
     [DRIVES_NO_SILENCE] = {"silence", "1800", "sends PDOs that nobody needs, which load the bus"},
+    [DRIVES_NO_ONE_REPORT] = {"one_report", "6041 6064",
+                              "not in one PDO: two frames in every cycle"},
     [DRIVES_NO_CSP] = {"csp", "6502",
                        "interpolated position mode instead of cyclic synchronous position"},
     [DRIVES_NO_MODES] = {"modes", "6502",
@@ -118,10 +120,13 @@ const char *drives_table_remedy(const struct diagnostic *fault)
 {
     switch ((int)fault->code) {
     case TAKT_ERROR_DRIVE_ABSENT:
-        return "look at its power, node id, bit rate and termination; if it boots or answers more "
-               "slowly, make boot_timeout_ms or sdo_timeout_ms in [bus] longer";
+        return "look at its power, node id, bit rate and termination; if it boots more slowly, "
+               "make "
+               "boot_timeout_ms in [bus] longer";
     case TAKT_ERROR_DRIVE_UNANSWERED:
-        return "if it answers more slowly, make sdo_timeout_ms in [bus] longer";
+        return "if it answers more slowly, make sdo_timeout_ms in [bus] longer, if it boots more "
+               "slowly, "
+               "boot_timeout_ms";
     case TAKT_ERROR_DRIVE_TYPE:
     case TAKT_ERROR_DRIVE_IDENTITY:
         return "look at drive_node and the node ids of the drives; drive_vendor, drive_product, "

@@ -35,8 +35,8 @@ struct machine_setup {
     char parameter_file[MACHINE_SETUP_PATH_MAX + 1]; /* empty: none */
     char volume_table[MACHINE_SETUP_PATH_MAX + 1];   /* correction tables; empty: none */
     char axis_table[AXIS_COUNT][MACHINE_SETUP_PATH_MAX + 1];
-    struct deviation_config geometry; /* how the virtual machine differs from a perfect one */
-    struct machine_drive drive[AXIS_COUNT];            /* of each axis */
+    struct deviation_config geometry;       /* how the virtual machine differs from a perfect one */
+    struct machine_drive drive[AXIS_COUNT]; /* of each axis */
     struct virtual_stepper_config stepper[AXIS_COUNT]; /* of each axis, if it has a step drive */
     struct virtual_spindle_config spindle;             /* see machine_setup_get_spindle */
     struct panel_setup panel;

@@ -131,7 +131,9 @@ static void set_responses(struct summary *summary, const struct field *field,
     for (unsigned i = 0; i < summary->bus_plan.count; i++)
         nearest = maths_max(nearest, 100.0 * (double)summary->response_ns[i] /
                                          (double)summary->bus_plan.worst_ns[i]);
-    if (field->bus.fault_count == 0 && !drives_table_has(&summary->drives, DRIVES_NO_SILENCE))
+    bool is_planned = !drives_table_has(&summary->drives, DRIVES_NO_SILENCE) &&
+                      !drives_table_has(&summary->drives, DRIVES_NO_ONE_REPORT);
+    if (field->bus.fault_count == 0 && is_planned)
         add_check(summary, "bus_response", AXIS_COUNT, "%", nearest, 100);
 }
 

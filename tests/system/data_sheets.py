@@ -185,7 +185,7 @@ HABITS = {
     "no event timer": (no_event_timer, {"event_timer"}),
     "603F and 60F4 absent": (no_error_objects, {"error_pdo"}),
     "603F and 60F4 not mappable": (error_not_mappable, {"error_pdo"}),
-    "one entry a PDO": (one_entry_a_pdo, {"pair", "mode_pdo", "error_pdo"}),
+    "one entry a PDO": (one_entry_a_pdo, {"pair", "mode_pdo", "error_pdo", "one_report"}),
     "options read-only": (read_only_options, {"stop_option"}),
     "1006 read-only": (read_only_sync_period, {"sync_period"}),
     "60C2 read-only": (read_only_period, set()),

@@ -149,8 +149,7 @@ for seed in range(FIRST, FIRST + NUMBER):
         named = "(node " in err or "bits at worst" in err
         t.check(status == 1 and named and any(remedy in err for remedy in REMEDIES),
                 f"seed {seed}: the refusal names object and remedy", status, err, habits)
-        reason = err.strip().split(": ")[-1] if named else "?"
-        print("   ", seed, err.strip()[18:100], [h for i, h in enumerate(habits) if f"node {i+1})" in err])
+        reason = err.strip().split(": ")[-1]
         outcomes[reason] = outcomes.get(reason, 0) + 1
 for outcome, times in sorted(outcomes.items(), key=lambda item: -item[1]):
     print(f"{times:5} {outcome}")
