@@ -174,6 +174,14 @@ struct drives_pdo {
 #define DRIVES_CYCLE_PDOS_MAX (3 * AXIS_COUNT)
 unsigned drives_get_pdos(const struct drives *d, struct drives_pdo pdo[DRIVES_CYCLE_PDOS_MAX]);
 
+/* What a frame of this identifier tells in every cycle. */
+enum drives_report {
+    DRIVES_REPORTS_STATUS = 1,
+    DRIVES_REPORTS_POSITION = 2,
+    DRIVES_REPORTS_ALL = 3
+};
+unsigned drives_get_report(const struct drives *d, uint16_t id);
+
 /* What a cycle takes of the bus. */
 struct drives_load {
     uint32_t bits;          /* of all frames of a cycle, each with worst-case stuffing */

@@ -88,6 +88,18 @@ unsigned drives_get_pdos(const struct drives *d, struct drives_pdo pdo[DRIVES_CY
     return count;
 }
 
+unsigned drives_get_report(const struct drives *d, uint16_t id)
+{
+    unsigned report = 0;
+    for (unsigned i = 0; i < d->count; i++) {
+        if (d->axis[i].status_id == id)
+            report |= DRIVES_REPORTS_STATUS;
+        if (d->axis[i].position_id == id)
+            report |= DRIVES_REPORTS_POSITION;
+    }
+    return report;
+}
+
 /* "1310 of 1000 bits". */
 void drives_set_overload(const struct drives_load *load, struct diagnostic *fault)
 {

@@ -202,6 +202,11 @@ void field_close(struct field *field)
         dictionary_free(&field->sheet[i]);
 }
 
+void field_watch_drives(struct field *field, const struct drives *drives)
+{
+    field->lockstep.drives = drives;
+}
+
 struct can_port field_get_port(struct field *field)
 {
     return field->port;

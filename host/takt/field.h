@@ -68,6 +68,9 @@ enum command_status field_open(struct field *field, const struct machine_setup *
                                const struct field_options *options);
 void field_close(struct field *field);
 
+/* The controller's drives: it knows which frames are their answers. They must stay. */
+void field_watch_drives(struct field *field, const struct drives *drives);
+
 /* The controller's bus. */
 struct can_port field_get_port(struct field *field);
 /* Its step drives. */

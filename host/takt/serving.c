@@ -66,6 +66,7 @@ static void open_service(struct serving *s)
 
     plan_queue_init(&s->plan, &s->service);
     service_init(&s->service, &config);
+    field_watch_drives(&s->field, controller_get_drives(&s->service.controller));
     message_controller_warning(&s->service.controller);
     if (s->store.program != NULL)
         service_set_program(&s->service, (uint32_t)s->store.size,
