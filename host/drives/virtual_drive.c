@@ -389,9 +389,14 @@ enum nmt_state virtual_drive_get_nmt_state(const struct virtual_drive *drive)
     return drive->nmt;
 }
 
+/* A drive that cannot be told has the time between targets, once it is to follow them. */
 uint32_t virtual_drive_get_sync_period_us(const struct virtual_drive *drive)
 {
-    return drive->objects.communication.sync_period_us;
+    bool has_index;
+    const struct object_row *row = dictionary_find(drive->dictionary, 0x1006, 0, &has_index);
+    if (row != NULL && row->access == OBJECT_RW)
+        return drive->objects.communication.sync_period_us;
+    return drive->nmt == NMT_OPERATIONAL ? (uint32_t)(drive->interpolation_ns / MICROSECOND_NS) : 0;
 }
 
 bool virtual_drive_is_sync(const struct virtual_drive *drive, const struct can_frame *frame)

@@ -72,7 +72,7 @@ enum cia402_state virtual_drive_get_state(const struct virtual_drive *drive);
 enum nmt_state virtual_drive_get_nmt_state(const struct virtual_drive *drive);
 /* True position of the axis, unrounded. */
 double virtual_drive_get_position_mm(const struct virtual_drive *drive);
-/* Object 1006: what the controller says of the time between two SYNCs; 0: nothing. */
+/* What the controller says of the time between two SYNCs, object 1006, else 60C2; 0: nothing. */
 uint32_t virtual_drive_get_sync_period_us(const struct virtual_drive *drive);
 
 /* The frame is SYNC to this drive (object 1005). */

@@ -8,6 +8,7 @@ import os
 import random
 import sys
 
+import bus_pair
 import data_sheets
 import takt_test as t
 
@@ -93,12 +94,34 @@ refused("frames that do not fit into a cycle", "1075 of 1000 bits", "cycle_us", 
 status, err, _ = run(POCKET, "drive.1.eds=" + t.write("nothing.eds", "[6040]\nDataType=6\n"))
 t.check(status == 2 and "nothing.eds" in err and "[1000]" in err, "what is no data sheet is told so", err)
 
+# Drives of a sheet on a bus are what they are inside; without object 1006 SYNC is their clock all the same.
+for name in ("nothing optional", "one entry a PDO", "interpolated position only"):
+    sheet = sheet_of(1, data_sheets.HABITS[name][0])
+    embedded = bus_pair.run_controller("embedded", *[w for s in all_drives(sheet) for w in ("--set", s)])[1]
+    drives = bus_pair.Drives("socketcand:listen:0", "--eds", sheet)
+    status, summary, err = bus_pair.run_controller("outside", "--bus", "socketcand:" + drives.address)
+    if t.check(status == 0, f"{name}: runs over a bus", err):
+        t.check(summary["setpoint_digest"] == embedded["setpoint_digest"], f"{name}: with the same setpoints")
+    drives.stop()
+
 # The axes of a motor that turns the other way are where they would be.
 for name, settings in (("plain", []), ("turned", ["axis.X.increments_per_mm=-100000", "axis.Z.increments_per_mm=-100000"])):
     homed = [f"axis.{axis}.{key}" for axis in "XZ" for key in ("home_order=1", "home_method=35", "home_offset_mm=3")]
     options = [word for setting in settings + homed for word in ("--set", setting)]
     t.run("run", POCKET, "--quiet", "--trace", name + ".csv", *options)
 t.check(open("plain.csv", "rb").read() == open("turned.csv", "rb").read(), "turned motors give the same trace")
+
+# Homing goes by the drive's own directions: turned, the upper limit switch is where the lower one was.
+for method, turned in ((17, 18), (19, 20), (33, 34), (1, 2)):
+    traces = []
+    for number, increments in ((method, 100000), (turned, -100000)):
+        settings = ["axis.X.home_order=1", f"axis.X.home_method={number}", f"axis.X.increments_per_mm={increments}",
+                    "drive.1.limit_switch_min_mm=-40", "drive.1.home_switch_mm=-5", "drive.1.start_mm=-3"]
+        settings = settings if method != 19 else settings[:-1] + ["drive.1.start_mm=-8"]
+        t.run("run", POCKET, "--quiet", "--trace", "homed.csv", *[w for s in settings for w in ("--set", s)])
+        traces.append(open("homed.csv", "rb").read())
+        os.remove("homed.csv")
+    t.check(traces[0] == traces[1] if method != 19 else all(traces), f"homing by {turned} turned is homing by {method}")
 
 
 # ---- Random combinations ----
