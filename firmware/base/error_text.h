@@ -1,5 +1,5 @@
 /*
- * The texts of errors as they are stored: plain, or packed for images with little flash memory (hal/port/pack_texts.py).
+ * The texts of errors as they are stored: plain, or packed for images (hal/port/pack_texts.py).
  *
  * Packed bytes from ERROR_TEXT_PLAIN on stand for pairs of bytes, each of which may stand for a pair again; all others
  * are characters. A text ends with 0.

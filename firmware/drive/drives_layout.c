@@ -33,6 +33,17 @@ bool drives_uses(const struct drives_axis *axis, const struct pdo *pdo)
            axis->error_id == pdo->cob_id;
 }
 
+/* Than a target, and dummies. */
+static bool has_more(const struct drives_axis *axis, const struct pdo *pdo)
+{
+    const struct pdo_mapping *mapping = &pdo->mapping;
+    unsigned i = 0;
+    while (i < mapping->count &&
+           (mapping->object[i] == PDO_DUMMY_32 || mapping->object[i] == drives_target_of(axis)))
+        i++;
+    return i < mapping->count;
+}
+
 static void take_received(struct drives *d)
 {
     struct drives_axis *axis = &d->axis[d->at_axis];
@@ -41,6 +52,7 @@ static void take_received(struct drives *d)
                                        .length = pdo->mapping.length,
                                        .control = drives_byte_of(pdo, CIA402_CONTROLWORD),
                                        .mode = drives_byte_of(pdo, CIA402_MODE),
+                                       .is_mixed = has_more(axis, pdo),
                                        .target = drives_byte_of(pdo, drives_target_of(axis))};
     bool is_better = axis->control_frame.length == 0 ||
                      (axis->control_frame.mode == DRIVES_NOWHERE && frame.mode != DRIVES_NOWHERE);
@@ -78,11 +90,11 @@ static void take_transmitted(struct drives_axis *axis, const struct drives_mappi
         return;
     if (is_taken && status != DRIVES_NOWHERE && axis->status_id == NO_TPDO) {
         axis->status_id = pdo->cob_id;
-        axis->status_at = status;
+        axis->status_end = (uint8_t)(status + 2);
     }
     if (is_taken && position != DRIVES_NOWHERE && axis->position_id == NO_TPDO) {
         axis->position_id = pdo->cob_id;
-        axis->position_at = position;
+        axis->position_end = (uint8_t)(position + 4);
     }
     if (!is_cyclic && drives_byte_of(pdo, CIA402_ERROR_CODE) == 0)
         axis->error_id = pdo->cob_id;

@@ -75,8 +75,8 @@ unsigned drives_get_pdos(const struct drives *d, struct drives_pdo pdo[DRIVES_CY
     for (unsigned i = 0; i < d->count; i++) {
         const struct drives_axis *axis = &d->axis[i];
         bool is_one = axis->status_id == axis->position_id;
-        uint8_t status = length_at_most(axis, axis->status_at + 2u);
-        uint8_t position = length_at_most(axis, axis->position_at + 4u);
+        uint8_t status = length_at_most(axis, axis->status_end);
+        uint8_t position = length_at_most(axis, axis->position_end);
         if (!is_one)
             pdo[count++] = (struct drives_pdo){axis->status_id, status, false};
         pdo[count++] = (struct drives_pdo){axis->position_id,

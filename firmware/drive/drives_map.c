@@ -491,6 +491,7 @@ static bool finish(struct drives *d)
 {
     struct drives_axis *axis = &d->axis[d->at_axis];
     axis->mode = axis->follow_mode;
+    axis->beats_by_status = drives_has_given_up(axis, DRIVES_NO_HEARTBEAT);
     if (axis->is_paired && !shares_frame(d)) {
         part_pair(d);
         return false;

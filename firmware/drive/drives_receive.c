@@ -11,22 +11,30 @@
 static void take_statusword(struct drives *d, struct drives_axis *axis,
                             const struct can_frame *frame)
 {
-    if (frame->length < axis->status_at + 2)
+    if (frame->length < axis->status_end || !axis->started)
         return;
-    axis->statusword = little_endian_read16(frame->data + axis->status_at);
+    axis->statusword = little_endian_read16(frame->data + axis->status_end - 2);
     axis->heard = true;
-    if (drives_has_given_up(axis, DRIVES_NO_HEARTBEAT))
+    if (axis->beats_by_status)
         axis->beaten = d->cycle;
 }
 
 static void take_position(struct drives *d, struct drives_axis *axis, const struct can_frame *frame)
 {
-    if (frame->length < axis->position_at + 4)
+    if (frame->length < axis->position_end || !axis->started)
         return;
-    axis->actual_inc = (int32_t)little_endian_read32(frame->data + axis->position_at);
+    axis->actual_inc = (int32_t)little_endian_read32(frame->data + axis->position_end - 4);
     axis->actual_mm = axis->actual_inc / axis->config.increments_per_mm;
     axis->reported = d->cycle;
     d->actual.at[axis->config.axis] = axis->actual_mm;
+}
+
+/* Statusword and position, mostly in one frame; of a frame that is too short for it the position counts for nothing. */
+static void take_report(struct drives *d, struct drives_axis *axis, const struct can_frame *frame)
+{
+    if (axis->status_id == axis->position_id && frame->length >= axis->position_end)
+        take_statusword(d, axis, frame);
+    take_position(d, axis, frame);
 }
 
 /* "All errors are gone" may come in the same cycle as the error, which counts nevertheless. */
@@ -95,13 +103,12 @@ static void take_frame(struct drives *d, const struct can_frame *frame)
     if (index == AXIS_COUNT)
         return;
     struct drives_axis *axis = &d->axis[index];
-    bool is_report = frame->id == axis->status_id || frame->id == axis->position_id;
-    if (!is_report)
-        take_seldom(d, index, frame);
-    else if (axis->started && frame->id == axis->status_id)
+    if (frame->id == axis->position_id)
+        take_report(d, axis, frame);
+    else if (frame->id == axis->status_id)
         take_statusword(d, axis, frame);
-    if (axis->started && frame->id == axis->position_id)
-        take_position(d, axis, frame);
+    else
+        take_seldom(d, index, frame);
 }
 
 static void take_frames(struct drives *d, const struct can_port *port)

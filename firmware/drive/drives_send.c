@@ -83,13 +83,15 @@ static void send_targets(struct drives *d, const struct can_port *port)
     struct can_frame frame;
     for (unsigned i = 0; i < d->count; i++) {
         const struct drives_axis *axis = &d->axis[i];
-        if (axis->is_paired && i & 1)
-            little_endian_write32(frame.data + axis->target_frame.target,
-                                  (uint32_t)axis->target_inc);
+        const struct drives_frame *as = &axis->target_frame;
+        if (as->is_mixed)
+            fill(&frame, as, axis, axis->controlword);
         else
-            fill(&frame, &axis->target_frame, axis, axis->controlword);
+            little_endian_write32(frame.data + as->target, (uint32_t)axis->target_inc);
         if (axis->is_paired && !(i & 1))
             continue;
+        frame.id = as->cob_id;
+        frame.length = as->length;
         if (!send_frame(port, &frame) && d->state != DRIVES_STARTING)
             drives_raise(d, i, TAKT_ERROR_DRIVE_UNREACHABLE, 0, NULL);
     }

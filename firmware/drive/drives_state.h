@@ -34,6 +34,7 @@ struct drives_frame {
     uint16_t cob_id;
     uint8_t length;                /* 0: there is no such frame */
     uint8_t control, mode, target; /* byte it begins at; DRIVES_NOWHERE: it is not in the frame */
+    bool is_mixed;                 /* there is more in it than a target */
     uint8_t data[CAN_DATA_MAX];    /* whatever else is in it, as the drive had it */
 };
 
@@ -54,13 +55,14 @@ struct drives_axis {
     uint16_t status_id,
         position_id;   /* TPDOs with statusword and position; NODE_FUNCTION_MASK: none yet */
     uint16_t error_id; /* TPDO that begins with the error code; likewise */
-    uint8_t status_at, position_at; /* byte they begin at */
-    bool is_paired;                 /* its target shares a frame with that of its neighbour */
-    uint8_t follow_mode;            /* in which it follows targets */
-    uint8_t modes;                  /* object 6502, of the modes 1 ... 8 */
-    uint8_t told_mode;              /* by SDO */
-    uint16_t bits;                  /* of its frames in a cycle, at worst */
-    uint32_t given_up;              /* bits: enum drives_given_up */
+    uint8_t status_end, position_end; /* byte behind them */
+    bool beats_by_status;             /* it has no heartbeat: its status counts for one */
+    bool is_paired;                   /* its target shares a frame with that of its neighbour */
+    uint8_t follow_mode;              /* in which it follows targets */
+    uint8_t modes;                    /* object 6502, of the modes 1 ... 8 */
+    uint8_t told_mode;                /* by SDO */
+    uint16_t bits;                    /* of its frames in a cycle, at worst */
+    uint32_t given_up;                /* bits: enum drives_given_up */
 
     bool reset_pending;
     bool booted;       /* its boot-up message has come */

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""pack_texts.py error.h OUTPUT.c: the texts of errors in half their size, for images with little flash memory.
+"""pack_texts.py error.h OUTPUT.c: the texts of errors in half their size, for images.
 
 The pair of bytes that is most frequent in all texts gets a byte of its own, and so again (Gage: A new algorithm for data
 compression, C Users Journal 12, 1994). Same texts, same output."""
