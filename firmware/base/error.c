@@ -1,12 +1,14 @@
 #include "error.h"
 
 #include "decimal.h"
+#include "error_text.h"
 
 #define VALUE_PLACES 6
 
 struct text {
     char *start;
     size_t length;
+    bool has_percent; /* the last character was a percent sign, and is not in it yet */
 };
 
 /* Cuts at the end of the room, and keeps one place for the terminating zero. */
@@ -101,27 +103,6 @@ static const char *unit_of(const char *word)
     return word[0] >= 'A' && word[0] <= 'C' ? "degrees" : "mm";
 }
 
-/* All texts, one behind the other, each with its zero: pointers to them would take more room than the way there. */
-#define TAKT_ERROR_ROOM(name, text) char name[sizeof(text)];
-static const struct templates {
-    TAKT_ERRORS(TAKT_ERROR_ROOM)
-}
-#undef TAKT_ERROR_ROOM
-#define TAKT_ERROR_TEXT(name, text) text,
-TEMPLATES = {TAKT_ERRORS(TAKT_ERROR_TEXT)};
-#undef TAKT_ERROR_TEXT
-
-static const char *template_at(int index)
-{
-    const char *text = (const char *)&TEMPLATES;
-    for (; index > 0; index--) {
-        while (*text != '\0')
-            text++;
-        text++;
-    }
-    return text;
-}
-
 /* What a percent sign with this letter stands for; false: it stands for itself. */
 static bool text_add_place(struct text *t, char letter, const struct diagnostic *d)
 {
@@ -149,24 +130,46 @@ static bool text_add_place(struct text *t, char letter, const struct diagnostic 
     }
 }
 
-static void text_add_template(struct text *t, const char *template, const struct diagnostic *d)
+static void text_add_character(struct text *t, char c, const struct diagnostic *d)
 {
-    for (const char *c = template; *c != '\0'; c++) {
-        if (c[0] == '%' && text_add_place(t, c[1], d))
-            c++;
-        else
-            text_add(t, c, 1);
+    bool is_place = t->has_percent && text_add_place(t, c, d);
+    if (t->has_percent && !is_place)
+        text_add(t, "%", 1);
+    t->has_percent = !is_place && c == '%';
+    if (!is_place && c != '%')
+        text_add(t, &c, 1);
+}
+
+/* What a stored byte stands for: the first of a pair at once, the second after it. */
+static void text_add_stored(struct text *t, uint8_t byte, const struct diagnostic *d)
+{
+    uint8_t later[ERROR_TEXT_DEPTH];
+    unsigned count = 0;
+    later[count++] = byte;
+    while (count > 0) {
+        byte = later[--count];
+        for (; byte >= ERROR_TEXT_PLAIN; byte = error_text_pairs[byte - ERROR_TEXT_PLAIN][0])
+            later[count++] = error_text_pairs[byte - ERROR_TEXT_PLAIN][1];
+        text_add_character(t, (char)byte, d);
     }
+}
+
+static void text_add_template(struct text *t, const uint8_t *stored, const struct diagnostic *d)
+{
+    for (; *stored != '\0'; stored++)
+        text_add_stored(t, *stored, d);
+    if (t->has_percent)
+        text_add(t, "%", 1);
 }
 
 size_t diagnostic_text(const struct diagnostic *d, char *text)
 {
-    struct text t = {text, 0};
+    struct text t = {text, 0, false};
     int index = -1 - (int)d->code;
     if (d->code == TAKT_OK) {
         text_add_string(&t, "no error");
     } else if (index >= 0 && index < (int)TAKT_ERROR_TOTAL) {
-        text_add_template(&t, template_at(index), d);
+        text_add_template(&t, error_text_find((unsigned)index), d);
     } else {
         text_add_string(&t, "error ");
         text_add_value(&t, (double)(int)d->code);

@@ -176,6 +176,10 @@
     X(DRIVE_MODE, "the drive of axis %w does not take the mode %v")                                \
     X(DRIVE_REFUSES, "the drive of axis %w refuses with abort code %x: %m")                        \
     X(DRIVE_UNANSWERED, "the drive of axis %w does not answer within %v ms")                       \
+    X(DRIVE_UNMAPPED, "the drive of axis %w is in no PDO of every SYNC and refuses: %x, %m")       \
+    X(DRIVE_PERIOD, "the drive of axis %w keeps 60C2, %v us between targets; cycle_us is %l")      \
+    X(DRIVE_SCALING, "the drive of axis %w counts %v units in a turn of its motor; by "            \
+                     "increments_per_mm it is %l")                                                 \
     X(DRIVE_FOLLOWING, "axis %w lags %v %u behind its setpoint")                                   \
     X(DRIVE_HOMING, "the drive of axis %w reports an error while homing: statusword %x")           \
     X(DRIVE_HOMING_SLOW, "homing of axis %w has not ended within %v s")                            \

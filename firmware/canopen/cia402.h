@@ -24,6 +24,7 @@
 #define CIA402_POSITION_ACTUAL  PDO_MAPPED(0x6064, 0, 32)
 #define CIA402_FOLLOWING_WINDOW PDO_MAPPED(0x6065, 0, 32)
 #define CIA402_TARGET_POSITION  PDO_MAPPED(0x607A, 0, 32)
+#define CIA402_INTERPOLATION    PDO_MAPPED(0x60C1, 1, 32)
 #define CIA402_FOLLOWING_ERROR  PDO_MAPPED(0x60F4, 0, 32)
 
 /* Objects that are not mapped. Unit of lengths: increments; of times: s. */
@@ -34,6 +35,9 @@
 #define CIA402_FAULT_OPTION         0x605E
 #define CIA402_CONNECTION_OPTION    0x6007 /* what to do when the connection is lost */
 #define CIA402_HOME_OFFSET          0x607C
+#define CIA402_ENCODER_RESOLUTION   0x608F /* 1: increments in 2: turns of the motor */
+#define CIA402_GEAR_RATIO           0x6091 /* 1: turns of the motor are 2: turns of the shaft */
+#define CIA402_FEED_CONSTANT        0x6092 /* 1: increments in 2: turns of the shaft */
 #define CIA402_HOMING_METHOD        0x6098
 #define CIA402_HOMING_SPEEDS        0x6099 /* 1: towards the switch, 2: towards the zero mark */
 #define CIA402_HOMING_ACCELERATION  0x609A
@@ -70,6 +74,7 @@ enum cia402_state {
 #define CIA402_ENABLE_OPERATION 0x000F
 #define CIA402_FAULT_RESET      0x0080 /* acts when bit 7 rises */
 #define CIA402_START_HOMING     0x0010 /* beside ENABLE_OPERATION, in homing mode: acts when it rises */
+#define CIA402_INTERPOLATE      0x0010 /* the same in interpolated position mode: targets are followed */
 
 /* Bits of the statusword beside the state. */
 #define CIA402_VOLTAGE_ENABLED  0x0010
@@ -77,6 +82,7 @@ enum cia402_state {
 #define CIA402_FOLLOWS_TARGET   0x1000 /* cyclic synchronous modes: the target is being followed */
 #define CIA402_FOLLOWING_FAILED 0x2000
 #define CIA402_TARGET_REACHED   0x0400 /* homing: idle or done, see also HOMING_ATTAINED */
+#define CIA402_INTERPOLATES     0x1000 /* interpolated position mode only */
 #define CIA402_HOMING_ATTAINED  0x1000 /* homing mode only */
 #define CIA402_HOMING_ERROR     0x2000 /* homing mode only */
 

@@ -18,6 +18,9 @@
 #define PDO_TPDO2_FUNCTION 0x280
 #define PDO_RPDO2_FUNCTION 0x300
 
+/* From PDO n to PDO n + 1. */
+#define PDO_NEXT_FUNCTION 0x100
+
 /* Transmission types: every SYNC; at an event of the node (TPDO), at once (RPDO). */
 #define PDO_EVERY_SYNC 1
 #define PDO_EVENT      255

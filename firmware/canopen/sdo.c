@@ -22,3 +22,10 @@ void sdo_write_abort(struct can_frame *frame, uint16_t function, uint8_t node, u
 {
     sdo_write_initiate(frame, (uint16_t)(function + node), SDO_ABORT, object, code);
 }
+
+void sdo_write_word(struct can_frame *frame, uint8_t node, uint32_t object, uint16_t value)
+{
+    const uint8_t command =
+        SDO_REQUEST_DOWNLOAD | (SDO_EXPEDITED_MAX - 2) << 2 | SDO_EXPEDITED | SDO_SIZE_GIVEN;
+    sdo_write_initiate(frame, (uint16_t)(SDO_REQUEST_FUNCTION + node), command, object, value);
+}

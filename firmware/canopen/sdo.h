@@ -87,6 +87,12 @@ enum sdo_abort {
     SDO_ABORT_NO_DATA = 0x08000024
 };
 
+/* There is no such object. */
+static inline bool sdo_says_absent(uint32_t abort_code)
+{
+    return abort_code == SDO_ABORT_NO_OBJECT || abort_code == SDO_ABORT_NO_SUB_INDEX;
+}
+
 /* Meaning of an abort code in a few words; of one that CiA 301 does not know "unknown abort code". */
 const char *sdo_abort_text(uint32_t code);
 
@@ -107,6 +113,9 @@ uint32_t sdo_read_object(const struct can_frame *frame);
 /* A first frame, of either side. value: bytes 4 to 7. */
 void sdo_write_initiate(struct can_frame *frame, uint16_t cob_id, uint8_t command, uint32_t object,
                         uint32_t value);
+
+/* A request to write a number of two bytes. object: as it is mapped. */
+void sdo_write_word(struct can_frame *frame, uint8_t node, uint32_t object, uint16_t value);
 
 /* function: SDO_REQUEST_FUNCTION or SDO_RESPONSE_FUNCTION, by who aborts. */
 void sdo_write_abort(struct can_frame *frame, uint16_t function, uint8_t node, uint32_t object,

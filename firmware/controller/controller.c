@@ -490,6 +490,11 @@ enum controller_state controller_get_state(const struct controller *c)
     return c->state;
 }
 
+const struct drives *controller_get_drives(const struct controller *c)
+{
+    return &c->drives;
+}
+
 const struct diagnostic *controller_get_fault(const struct controller *c)
 {
     return &c->fault;

@@ -71,6 +71,8 @@ void controller_cycle(struct controller *c, const struct inputs *inputs);
 enum controller_state controller_get_state(const struct controller *c);
 /* What went wrong; meaningful in CONTROLLER_FAULTED. */
 const struct diagnostic *controller_get_fault(const struct controller *c);
+/* The drives as the controller knows them, to be looked at. */
+const struct drives *controller_get_drives(const struct controller *c);
 /*
  * What the last cycle did. NULL if it was no program cycle (drives starting, or after the end). The program cycles
  * are numbered 0, 1, 2, ... without gaps.

@@ -6,7 +6,6 @@
 
 #define START_TIMEOUT_S  5.0
 #define ANSWER_TIMEOUT_S 0.02
-#define SDO_TIMEOUT_S    0.5
 #define STOP_TIMEOUT_S   2.0
 #define BRAKE_TIMEOUT_S  3.0
 
@@ -38,7 +37,9 @@ static void add_drive(struct drives_config *config, const struct machine *machin
     *drive = (struct drives_config_axis){
         .axis = (enum axis)i,
         .node = axis->drive_node,
+        .keeps_settings = axis->drive_is_set_up != 0,
         .increments_per_mm = axis->increments_per_mm,
+        .travel_per_turn_mm = axis->travel_per_turn_mm,
         .following_error_max_mm = axis->following_error_max_mm,
         .identity = {axis->drive_vendor, axis->drive_product, axis->drive_revision,
                      axis->drive_serial},
@@ -53,9 +54,10 @@ void controller_drives_config(const struct machine *machine, struct drives_confi
     config->bitrate = machine->can_bitrate;
     config->controller_node = machine->controller_node;
     config->heartbeat_ms = (uint16_t)machine->heartbeat_ms;
+    config->boot_timeout_cycles = cycles_in(machine, 1e-3 * machine->boot_timeout_ms);
     config->start_timeout_cycles = cycles_in(machine, START_TIMEOUT_S);
     config->answer_timeout_cycles = cycles_in(machine, ANSWER_TIMEOUT_S);
-    config->sdo_timeout_cycles = cycles_in(machine, SDO_TIMEOUT_S);
+    config->sdo_timeout_cycles = cycles_in(machine, 1e-3 * machine->sdo_timeout_ms);
     config->stop_timeout_cycles = cycles_in(machine, STOP_TIMEOUT_S);
     config->brake_timeout_cycles = cycles_in(machine, BRAKE_TIMEOUT_S);
     for (unsigned i = 0; i < AXIS_COUNT; i++) {

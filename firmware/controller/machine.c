@@ -17,6 +17,8 @@ void machine_set_default(struct machine *machine)
     machine->thread_tolerance_mm = 0.1;
     machine->can_bitrate = 1000000;
     machine->heartbeat_ms = 100;
+    machine->boot_timeout_ms = 3000;
+    machine->sdo_timeout_ms = 2000;
     machine->controller_node = 127;
     correction_settings_set_default(&machine->correction);
     for (int i = 0; i < AXIS_LINEAR_COUNT; i++) {

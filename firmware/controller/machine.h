@@ -29,8 +29,12 @@ struct machine_axis {
     double max_jerk_mm_s3;         /* > 0 */
     double travel_min_mm;          /* machine coordinates; min < max */
     double travel_max_mm;
-    uint8_t drive_node;            /* CANopen node id 1 ... 127, one per axis */
-    double increments_per_mm;      /* drive position units per mm (per rad) */
+    uint8_t drive_node;      /* CANopen node id 1 ... 127, one per axis */
+    uint8_t drive_is_set_up; /* 1: by its maker's tool; it is only looked at, and told nothing */
+    double
+        increments_per_mm; /* drive position units per mm (per rad); < 0: the motor turns the other way */
+    double
+        travel_per_turn_mm; /* of its motor: increments_per_mm is checked by what the drive tells; 0: it is not */
     double following_error_max_mm; /* alarm beyond this lag; 0: not watched */
 
     uint32_t drive_type;     /* enum machine_drive_type */
@@ -78,7 +82,9 @@ struct machine {
     uint32_t can_bitrate;      /* bit/s */
     uint32_t
         heartbeat_ms; /* period of all heartbeats on the bus, up to 20,000; 0: there are none */
-    uint8_t controller_node; /* the controller's own node id, 1 ... 127, of no drive */
+    uint32_t boot_timeout_ms; /* a drive boots within, after a reset */
+    uint32_t sdo_timeout_ms;  /* a drive answers a request within */
+    uint8_t controller_node;  /* the controller's own node id, 1 ... 127, of no drive */
     struct correction_settings correction;
 };
 

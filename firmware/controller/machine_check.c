@@ -37,12 +37,13 @@ static bool refuse(const struct checked *c, enum takt_error code, double value, 
 static bool check_travel(const struct checked *c)
 {
     const struct machine_axis *axis = c->axis;
+    const double increments = maths_abs(axis->increments_per_mm);
 
     if (axis->travel_min_mm >= axis->travel_max_mm)
         return refuse(c, TAKT_ERROR_MACHINE_TRAVEL, 0, 0);
     if (axis->travel_min_mm > 0 || axis->travel_max_mm < 0)
         return refuse(c, TAKT_ERROR_MACHINE_TRAVEL_ZERO, 0, 0);
-    if (c->farthest_mm * axis->increments_per_mm > RANGE)
+    if (increments <= 0 || c->farthest_mm * increments > RANGE)
         return refuse(c, TAKT_ERROR_MACHINE_INCREMENTS, axis->increments_per_mm * c->unit, 0);
     return true;
 }
@@ -74,7 +75,7 @@ static bool check_steps(const struct checked *c)
 
 static bool check_home(const struct checked *c)
 {
-    return maths_abs(c->axis->home_offset_mm) * c->axis->increments_per_mm <= RANGE ||
+    return maths_abs(c->axis->home_offset_mm * c->axis->increments_per_mm) <= RANGE ||
            refuse(c, TAKT_ERROR_MACHINE_HOME, 0, 0);
 }
 

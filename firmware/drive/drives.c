@@ -1,7 +1,6 @@
 #include "base/maths.h"
 #include "canopen/cia402.h"
 #include "canopen/emcy.h"
-#include "canopen/target_pdo.h"
 #include "drive/drives_private.h"
 #include "drive/word.h"
 
@@ -16,18 +15,13 @@ static_assert(DRIVES_HISTORY > DRIVES_LATENCY_CYCLES, "the history is as long as
 static void init_axis(struct drives *d, unsigned index)
 {
     struct drives_axis *axis = &d->axis[index];
-    struct pdo target;
-    target_pdo_set(&target, d->node, d->count, index);
-    axis->target_cob_id = target.cob_id;
-    axis->target_offset = (uint8_t)pdo_offset(&target.mapping, CIA402_TARGET_POSITION);
+    axis->is_paired = (index | 1) < d->count;
     axis->reported = d->cycle - 1;
     axis->beaten = d->cycle - 1;
-    axis->mode = CIA402_MODE_CYCLIC_SYNC_POSITION;
+    axis->follow_mode = axis->mode = CIA402_MODE_CYCLIC_SYNC_POSITION;
     axis->reset_pending = true;
+    drives_forget_pdos(axis);
     d->axis_of_node[d->node[index]] = (uint8_t)index;
-    axis->target_last = true;
-    if (index > 0)
-        d->axis[index - 1].target_last = d->axis[index - 1].target_cob_id != target.cob_id;
 }
 
 static void take_times(struct drives *d, const struct drives_config *config)
@@ -37,6 +31,7 @@ static void take_times(struct drives *d, const struct drives_config *config)
     d->heartbeat_cycles = (uint32_t)config->heartbeat_ms * 1000 / config->cycle_us;
     d->heartless_most_cycles =
         d->heartbeat_cycles > 0 ? d->heartbeat_cycles * DRIVES_HEARTBEATS_LOST : UINT32_MAX;
+    d->boot_timeout_cycles = config->boot_timeout_cycles;
     d->start_timeout_cycles = config->start_timeout_cycles;
     d->answer_timeout_cycles = config->answer_timeout_cycles;
     d->sdo_timeout_cycles = config->sdo_timeout_cycles;
@@ -60,6 +55,7 @@ void drives_init(struct drives *d, const struct drives_config *config)
     memset(d->axis_of_node, AXIS_COUNT, sizeof d->axis_of_node);
     d->count = config->count;
     d->controller_node = config->controller_node;
+    d->bitrate = config->bitrate;
     d->homed = config->homed;
     take_times(d, config);
     for (unsigned i = 0; i < d->count; i++) {
@@ -211,6 +207,14 @@ void drives_stop_for(struct drives *d, const struct diagnostic *fault)
     if (d->state < DRIVES_STOPPING)
         d->fault = *fault;
     drives_brake(d);
+}
+
+uint32_t drives_get_given_up(const struct drives *d, enum axis axis)
+{
+    for (unsigned i = 0; i < d->count; i++)
+        if (d->axis[i].config.axis == axis)
+            return d->axis[i].given_up;
+    return 0;
 }
 
 void drives_get_statuswords(const struct drives *d, uint16_t statusword[AXIS_COUNT])

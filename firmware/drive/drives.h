@@ -46,8 +46,11 @@ struct drives_homing {
 
 struct drives_config_axis {
     enum axis axis;
-    uint8_t node;                  /* CANopen node id, 1 ... 127 */
-    double increments_per_mm;      /* drive position units per mm or rad */
+    uint8_t node;        /* CANopen node id, 1 ... 127 */
+    bool keeps_settings; /* it has been set up with its maker's tool: it is only looked at */
+    double
+        increments_per_mm; /* position units of the drive per mm or rad; < 0: it turns the other way */
+    double travel_per_turn_mm;     /* of its motor, to check increments_per_mm by; 0: not checked */
     double following_error_max_mm; /* alarm beyond; 0: not watched */
     struct drives_identity identity;
     struct drives_homing homing;
@@ -58,10 +61,12 @@ struct drives_config {
     struct drives_config_axis axis[AXIS_COUNT];
     bool homed; /* all axes have been homed since power-on: they are not homed again */
     uint32_t cycle_us;
-    uint32_t bitrate;               /* of the bus, bit/s */
-    uint8_t controller_node;        /* our own node id, for the heartbeat; none of the drives' */
-    uint16_t heartbeat_ms;          /* period, of the drives and our own; 0: no heartbeats */
-    uint32_t start_timeout_cycles;  /* all drives must be enabled within, homing not counted */
+    uint32_t bitrate;             /* of the bus, bit/s */
+    uint8_t controller_node;      /* our own node id, for the heartbeat; none of the drives' */
+    uint16_t heartbeat_ms;        /* period, of the drives and our own; 0: no heartbeats */
+    uint32_t boot_timeout_cycles; /* that a drive takes to boot at most; it is reset twice */
+    uint32_t
+        start_timeout_cycles; /* all drives must be enabled within, once they have been told everything */
     uint32_t answer_timeout_cycles; /* a drive silent for longer is lost: DRIVE_SILENT */
     uint32_t
         sdo_timeout_cycles; /* for an answer to a request, which is repeated DRIVES_SDO_REPEATS times */
@@ -82,6 +87,33 @@ enum drives_state {
     DRIVES_STOPPING, /* a fault, but setpoints are still followed: bring them to rest on the path */
     DRIVES_BRAKING,  /* every drive brakes by itself (quick stop); setpoints are ignored */
     DRIVES_FAULTED   /* at rest, as far as can be known */
+};
+
+/*
+ * What the start has done without, since a drive would not have it: bits of drives_get_given_up. A drive that already
+ * is as it should be has nothing given up, even where it refuses to be told.
+ */
+enum drives_given_up {
+    DRIVES_NO_PAIR, /* its target does not share a frame with that of another drive: no dummy mapping */
+    DRIVES_NO_MAPPING,    /* its PDOs are taken as they are */
+    DRIVES_NO_SILENCE,    /* it sends PDOs that nobody wants */
+    DRIVES_NO_ONE_REPORT, /* statusword and position come in a PDO each */
+    DRIVES_NO_CSP,        /* it follows targets in interpolated position mode */
+    DRIVES_NO_MODES, /* it does not tell its modes (6502): cyclic synchronous position is tried */
+    DRIVES_NO_MODE_PDO,     /* its mode (6060) is told by SDO */
+    DRIVES_NO_CONTROL_PDO,  /* its controlword (6040) is told by SDO */
+    DRIVES_NO_MODE_DISPLAY, /* it does not tell its mode (6061) */
+    DRIVES_NO_SYNC_TARGET,  /* its target acts when it comes, not with SYNC */
+    DRIVES_NO_ERROR_PDO,    /* it tells no error code (603F) beside its emergencies */
+    DRIVES_NO_EVENT_TIMER,  /* it tells that code when it changes, and never again */
+    DRIVES_NO_HEARTBEAT,    /* it sends none that is known (1017): its status alone is watched */
+    DRIVES_NO_WATCH,        /* it does not watch our heartbeat (1016) */
+    DRIVES_NO_SYNC_PERIOD,  /* it does not know the period of SYNC (1006), and may not miss it */
+    DRIVES_NO_PERIOD,       /* it does not know the time between targets (60C2) */
+    DRIVES_NO_STOP_OPTION,  /* it stops as it likes (6007, 605A, 605E) */
+    DRIVES_NO_HOMING_SPEED, /* it homes as fast as it likes (6099, 609A) */
+    DRIVES_NO_SCALING, /* it does not tell its scaling (6092, 608F): increments_per_mm is believed */
+    DRIVES_GIVEN_UP_COUNT
 };
 
 #include "drive/drives_state.h"
@@ -107,6 +139,9 @@ static inline void drives_get_actual(const struct drives *d, struct point *actua
 /* All axes that are to be homed have been: what the next configuration may say. */
 bool drives_are_homed(const struct drives *d);
 
+/* Bits 1 << enum drives_given_up of an axis; 0 too for axes without a drive. Complete once the drives are enabled. */
+uint32_t drives_get_given_up(const struct drives *d, enum axis axis);
+
 /* Last statusword (object 6041) of every axis; 0 for axes without a drive, or before it has reported. */
 void drives_get_statuswords(const struct drives *d, uint16_t statusword[AXIS_COUNT]);
 
@@ -129,6 +164,24 @@ const struct diagnostic *drives_get_fault(const struct drives *d);
 #define DRIVES_CYCLE_FRAMES_MAX (3 + AXIS_COUNT + (AXIS_COUNT + 1) / 2)
 unsigned drives_cycle_frames(unsigned count, uint8_t length[DRIVES_CYCLE_FRAMES_MAX]);
 
+/* The PDOs of a cycle as the start has found them: a frame of each drive's status, position and target; of targets in
+ * pairs one. Returns their number. */
+struct drives_pdo {
+    uint16_t id;
+    uint8_t length; /* bytes at most */
+    bool is_target;
+};
+#define DRIVES_CYCLE_PDOS_MAX (3 * AXIS_COUNT)
+unsigned drives_get_pdos(const struct drives *d, struct drives_pdo pdo[DRIVES_CYCLE_PDOS_MAX]);
+
+/* What a frame of this identifier tells in every cycle. */
+enum drives_report {
+    DRIVES_REPORTS_STATUS = 1,
+    DRIVES_REPORTS_POSITION = 2,
+    DRIVES_REPORTS_ALL = 3
+};
+unsigned drives_get_report(const struct drives *d, uint16_t id);
+
 /* What a cycle takes of the bus. */
 struct drives_load {
     uint32_t bits;          /* of all frames of a cycle, each with worst-case stuffing */
@@ -136,7 +189,10 @@ struct drives_load {
     double percent;
 };
 
-/* True: the bus carries the cycle. count: drives. */
+/* The same for the PDOs that the start has found: of the last start, complete once the drives are enabled. */
+void drives_get_load(const struct drives *d, struct drives_load *load);
+
+/* True: the bus carries the cycle, two targets in a frame. count: drives. */
 bool drives_predict_load(unsigned count, uint32_t bitrate, uint32_t cycle_us,
                          struct drives_load *load);
 

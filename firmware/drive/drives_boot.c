@@ -1,65 +1,186 @@
 /*
- * What the master asks and tells every drive before it is started, as a list of steps: who it is, when its heartbeat is
- * due, how it stops, its process data, and how it finds its home.
+ * What the master asks a drive before it is started, and what it tells it beside its process data (drives_map.c): who it
+ * is, in which mode it follows targets, how it is scaled; when its heartbeat is due, how it stops, how it finds its home.
  *
- * A PDO is rewritten as CiA 301, 7.5.2.36 has it: not valid, no mapping, entries, their number, valid.
+ * Hardly anything of that is required. What a drive refuses to be told is read, for it may be so already; if it is not,
+ * it is given up (enum drives_given_up), or the one thing that cannot be done without is a fault.
  */
 #include "base/maths.h"
 #include "canopen/cia402.h"
 #include "canopen/objects.h"
-#include "canopen/target_pdo.h"
 #include "drive/drives_private.h"
 
+#include <assert.h>
+#include <stddef.h>
+
 #define UINT32_LIMIT 4294967295.0
+#define INT32_LIMIT  2147483647.0
 
-/* PDOs that are used of each kind, and those that might be valid by default and must be silent. */
-#define PDO_USED   2
-#define PDO_UNUSED 2
-
-static const char *const identity_texts[] = {
-    "vendor id, object 1018:01,", "product code, object 1018:02,", "revision, object 1018:03,",
-    "serial number, object 1018:04,"};
-
-static const uint32_t *identity_of(const struct drives_identity *identity, unsigned sub)
+void drives_give_up(struct drives *d, unsigned index, enum drives_given_up what)
 {
-    const uint32_t *const parts[] = {&identity->vendor, &identity->product, &identity->revision,
-                                     &identity->serial};
-    return parts[sub - 1];
+    d->axis[index].given_up |= 1u << what;
 }
 
-static void set_read(struct drives_step *step, uint16_t index, uint8_t sub)
+static void raise_refusal(struct drives *d, uint32_t object, uint32_t abort_code)
 {
-    *step = (struct drives_step){.object = SDO_OBJECT(index, sub)};
+    drives_raise_object(d, d->at_axis, object, TAKT_ERROR_DRIVE_REFUSES, abort_code,
+                        sdo_abort_text(abort_code));
 }
 
-static void set_write(struct drives_step *step, unsigned index, uint8_t sub, uint8_t length,
-                      uint32_t value)
+/* ---- What it is asked ---- */
+
+#define ASKED_MODES   5
+#define ASKED_SCALING 6 /* from here on: only where it is checked */
+static const uint32_t asked[] = {
+    SDO_OBJECT(OBJECT_DEVICE_TYPE, 0),        SDO_OBJECT(OBJECT_IDENTITY, 1),
+    SDO_OBJECT(OBJECT_IDENTITY, 2),           SDO_OBJECT(OBJECT_IDENTITY, 3),
+    SDO_OBJECT(OBJECT_IDENTITY, 4),           SDO_OBJECT(CIA402_SUPPORTED_MODES, 0),
+    SDO_OBJECT(CIA402_ENCODER_RESOLUTION, 1), SDO_OBJECT(CIA402_ENCODER_RESOLUTION, 2),
+    SDO_OBJECT(CIA402_GEAR_RATIO, 1),         SDO_OBJECT(CIA402_GEAR_RATIO, 2),
+    SDO_OBJECT(CIA402_FEED_CONSTANT, 1),      SDO_OBJECT(CIA402_FEED_CONSTANT, 2),
+};
+#define ASKED_COUNT (sizeof asked / sizeof asked[0])
+
+bool drives_next_ask(struct drives *d, struct drives_step *step)
 {
-    *step =
-        (struct drives_step){.object = SDO_OBJECT(index, sub), .length = length, .value = value};
+    bool checks_scaling = d->axis[d->at_axis].config.travel_per_turn_mm > 0;
+    if (d->at_step == (checks_scaling ? ASKED_COUNT : ASKED_SCALING))
+        return false;
+    *step = (struct drives_step){.object = asked[d->at_step]};
+    return true;
 }
 
-static void set_option(struct drives_step *step, uint16_t index, uint32_t value)
+static void take_type(struct drives *d, const struct drives_answer *answer)
 {
-    set_write(step, index, 0, 2, value);
-    step->optional = true;
+    if (answer->abort_code != SDO_ABORT_NONE)
+        raise_refusal(d, asked[0], answer->abort_code);
+    else if ((answer->value & OBJECT_DEVICE_PROFILE_MASK) != OBJECT_DEVICE_PROFILE_402)
+        drives_raise(d, d->at_axis, TAKT_ERROR_DRIVE_TYPE, answer->value, NULL);
 }
 
-/* Who it is: the parts of the identity that matter, device type, modes. */
-#define IDENTITY_STEPS 6
-
-static void identity_step(const struct drives_config_axis *config, unsigned number,
-                          struct drives_step *step)
+static void take_identity(struct drives *d, const struct drives_answer *answer)
 {
-    if (number == 0) {
-        set_read(step, OBJECT_DEVICE_TYPE, 0);
-    } else if (number <= 4) {
-        set_read(step, OBJECT_IDENTITY, (uint8_t)number);
-        step->optional = *identity_of(&config->identity, number) == 0;
-    } else {
-        set_read(step, CIA402_SUPPORTED_MODES, 0);
+    static const char *const texts[] = {
+        "vendor id, object 1018:01,", "product code, object 1018:02,", "revision, object 1018:03,",
+        "serial number, object 1018:04,"};
+    const struct drives_identity *identity = &d->axis[d->at_axis].config.identity;
+    const uint32_t expected[] = {identity->vendor, identity->product, identity->revision,
+                                 identity->serial};
+    const unsigned part = d->at_step - 1u;
+    if (expected[part] == 0 ||
+        (answer->abort_code == SDO_ABORT_NONE && answer->value == expected[part]))
+        return;
+    if (answer->abort_code != SDO_ABORT_NONE)
+        raise_refusal(d, asked[d->at_step], answer->abort_code);
+    else
+        drives_raise(d, d->at_axis, TAKT_ERROR_DRIVE_IDENTITY, answer->value, texts[part]);
+}
+
+static uint8_t mode_bit(unsigned mode)
+{
+    return (uint8_t)(1u << (mode - 1));
+}
+
+/* Cyclic synchronous position, else interpolated position; a drive that does not tell is tried. */
+static void take_modes(struct drives *d, const struct drives_answer *answer)
+{
+    struct drives_axis *axis = &d->axis[d->at_axis];
+    const char *missing = NULL;
+    axis->modes = (uint8_t)answer->value;
+    axis->follow_mode = CIA402_MODE_CYCLIC_SYNC_POSITION;
+    if (answer->abort_code != SDO_ABORT_NONE || answer->value == 0) {
+        axis->modes = 0xFF;
+        drives_give_up(d, d->at_axis, DRIVES_NO_MODES);
+    }
+    if (!(axis->modes & mode_bit(CIA402_MODE_CYCLIC_SYNC_POSITION)))
+        axis->follow_mode = CIA402_MODE_INTERPOLATED_POSITION;
+    if (!(axis->modes & mode_bit(axis->follow_mode)))
+        missing = "cyclic synchronous position";
+    else if (axis->config.homing.order != 0 && !(axis->modes & mode_bit(CIA402_MODE_HOMING)))
+        missing = "homing";
+    if (missing != NULL)
+        drives_raise(d, d->at_axis, TAKT_ERROR_DRIVE_MODES, answer->value, missing);
+}
+
+/*
+ * Position units in a turn of the motor, CiA 402-2, 6091 and 6092; by an encoder alone where there is no feed constant:
+ *     units = feed / shaft turns * shaft turns / motor turns      or      increments / motor turns
+ * 0: the drive does not tell. Its objects are whole numbers: *rounding is what half a unit of the first makes of units.
+ */
+static double units_per_turn(const uint32_t read[6], double *rounding)
+{
+    const uint32_t *const encoder = read, *const gear = read + 2, *const feed = read + 4;
+    bool has_feed = feed[0] != 0 && feed[1] != 0;
+    const uint32_t *const scale = has_feed ? feed : encoder;
+    double units = 0;
+    if (scale[0] == 0 || scale[1] == 0)
+        return 0;
+    units = (double)scale[0] / scale[1];
+    if (has_feed && gear[0] != 0 && gear[1] != 0)
+        units = units * gear[1] / gear[0];
+    *rounding = 0.5 * units / scale[0];
+    return units;
+}
+
+static void check_scaling(struct drives *d)
+{
+    const struct drives_config_axis *config = &d->axis[d->at_axis].config;
+    double expected = maths_abs(config->increments_per_mm) * config->travel_per_turn_mm;
+    double rounding = 0;
+    double units = units_per_turn(d->read, &rounding);
+    if (units <= 0) {
+        drives_give_up(d, d->at_axis, DRIVES_NO_SCALING);
+    } else if (maths_abs(units - expected) > rounding) {
+        drives_raise(d, d->at_axis, TAKT_ERROR_DRIVE_SCALING, units, NULL);
+        diagnostic_set_limit(&d->fault, expected);
     }
 }
+
+void drives_take_ask(struct drives *d, const struct drives_answer *answer)
+{
+    if (d->at_step == 0)
+        take_type(d, answer);
+    else if (d->at_step < ASKED_MODES)
+        take_identity(d, answer);
+    else if (d->at_step == ASKED_MODES)
+        take_modes(d, answer);
+    else
+        d->read[d->at_step - ASKED_SCALING] =
+            answer->abort_code == SDO_ABORT_NONE ? answer->value : 0;
+    d->at_step++;
+    if (d->at_step == ASKED_COUNT)
+        check_scaling(d);
+}
+
+/* ---- What it is told ---- */
+
+#define REQUIRED  DRIVES_GIVEN_UP_COUNT
+#define SET_PLAIN 8 /* from here on: only where the axis is homed */
+
+struct setting {
+    uint16_t index;
+    uint8_t sub, length;
+    uint8_t given_up; /* if it is not so; REQUIRED: a fault */
+};
+
+#define SET_PERIOD   3
+#define SET_EXPONENT 4
+static const struct setting settings[] = {
+    {OBJECT_PRODUCER_HEARTBEAT, 0, 2, DRIVES_NO_HEARTBEAT},
+    {OBJECT_CONSUMER_HEARTBEAT, 1, 4, DRIVES_NO_WATCH},
+    {OBJECT_SYNC_PERIOD, 0, 4, DRIVES_NO_SYNC_PERIOD},
+    {CIA402_INTERPOLATION_PERIOD, 1, 1, DRIVES_NO_PERIOD},
+    {CIA402_INTERPOLATION_PERIOD, 2, 1, DRIVES_NO_PERIOD},
+    {CIA402_CONNECTION_OPTION, 0, 2, DRIVES_NO_STOP_OPTION},
+    {CIA402_QUICK_STOP_OPTION, 0, 2, DRIVES_NO_STOP_OPTION},
+    {CIA402_FAULT_OPTION, 0, 2, DRIVES_NO_STOP_OPTION},
+    {CIA402_HOMING_METHOD, 0, 1, REQUIRED},
+    {CIA402_HOMING_SPEEDS, 1, 4, DRIVES_NO_HOMING_SPEED},
+    {CIA402_HOMING_SPEEDS, 2, 4, DRIVES_NO_HOMING_SPEED},
+    {CIA402_HOMING_ACCELERATION, 0, 4, DRIVES_NO_HOMING_SPEED},
+    {CIA402_HOME_OFFSET, 0, 4, REQUIRED},
+};
+#define SET_COUNT (sizeof settings / sizeof settings[0])
 
 /*
  * Object 60C2: period = value * 10^exponent seconds, the value a byte. The largest unit that is exact; a period that
@@ -75,252 +196,124 @@ static void split_period(uint32_t cycle_us, uint32_t *value, int *exponent)
     }
 }
 
-/* Heartbeats, cycle, and that a drive brakes and switches off whatever ends its operation. */
-#define HABIT_STEPS 8
-
-static void habit_step(const struct drives *d, unsigned number, struct drives_step *step)
-{
-    uint32_t lost_ms = (uint32_t)d->heartbeat_ms * DRIVES_HEARTBEATS_LOST;
-    uint32_t period;
-    int exponent;
-    split_period(d->cycle_us, &period, &exponent);
-    switch (number) {
-    case 0:
-        set_write(step, OBJECT_PRODUCER_HEARTBEAT, 0, 2, d->heartbeat_ms);
-        break;
-    case 1:
-        set_write(step, OBJECT_CONSUMER_HEARTBEAT, 1, 4,
-                  (uint32_t)d->controller_node << 16 | lost_ms);
-        break;
-    case 2:
-        set_write(step, OBJECT_SYNC_PERIOD, 0, 4, d->cycle_us);
-        break;
-    case 3:
-        set_write(step, CIA402_INTERPOLATION_PERIOD, 1, 1, period);
-        break;
-    case 4:
-        set_write(step, CIA402_INTERPOLATION_PERIOD, 2, 1, (uint8_t)exponent);
-        break;
-    case 5:
-        set_option(step, CIA402_CONNECTION_OPTION, CIA402_CONNECTION_QUICK_STOP);
-        break;
-    case 6:
-        set_option(step, CIA402_QUICK_STOP_OPTION, CIA402_OPTION_QUICK_STOP_RAMP);
-        break;
-    default:
-        set_option(step, CIA402_FAULT_OPTION, CIA402_OPTION_QUICK_STOP_RAMP);
-        break;
-    }
-    step->optional = number != 0;
-}
-
-struct process_data {
-    uint16_t communication, mapping; /* objects */
-    uint32_t flags;                  /* of its COB-ID */
-    uint16_t event_ms;               /* 0: none */
-    struct pdo pdo;
-};
-
-static void set_pdo(struct process_data *data, bool transmits, unsigned number, unsigned cob_id,
-                    uint8_t type, uint32_t first, uint32_t second)
-{
-    uint32_t objects[2] = {first, second};
-    data->communication = (uint16_t)((transmits ? OBJECT_TPDO : OBJECT_RPDO) + number);
-    data->mapping = (uint16_t)((transmits ? OBJECT_TPDO_MAPPING : OBJECT_RPDO_MAPPING) + number);
-    data->flags = transmits ? OBJECT_PDO_NO_RTR : 0;
-    data->event_ms = transmits && type == PDO_EVENT ? DRIVES_EVENT_MS : 0;
-    data->pdo.cob_id = (uint16_t)cob_id;
-    data->pdo.transmission = type;
-    (void)pdo_map(&data->pdo.mapping, objects, 2);
-}
-
-/* RPDO1, RPDO2, TPDO1, TPDO2. */
-static void describe_pdo(const struct drives *d, unsigned index, unsigned which,
-                         struct process_data *data)
-{
-    unsigned node = d->node[index];
-    switch (which) {
-    case 0:
-        set_pdo(data, false, 0, PDO_RPDO1_FUNCTION + node, PDO_EVENT, CIA402_CONTROLWORD,
-                CIA402_MODE);
-        break;
-    case 1:
-        set_pdo(data, false, 1, 0, PDO_EVERY_SYNC, PDO_DUMMY_32, PDO_DUMMY_32);
-        target_pdo_set(&data->pdo, d->node, d->count, index);
-        break;
-    case 2:
-        set_pdo(data, true, 0, PDO_TPDO1_FUNCTION + node, PDO_EVERY_SYNC, CIA402_STATUSWORD,
-                CIA402_POSITION_ACTUAL);
-        break;
-    default:
-        set_pdo(data, true, 1, PDO_TPDO2_FUNCTION + node, PDO_EVENT, CIA402_ERROR_CODE,
-                CIA402_FOLLOWING_ERROR);
-        break;
-    }
-}
-
-/* Steps around the entries of a mapping; with an event timer one more. */
-#define PDO_STEPS 5
-
-static unsigned pdo_step_count(const struct process_data *data)
-{
-    return PDO_STEPS + data->pdo.mapping.count + (data->event_ms != 0 ? 1u : 0u);
-}
-
-static void pdo_step(const struct process_data *data, unsigned number, struct drives_step *step)
-{
-    const struct pdo_mapping *mapping = &data->pdo.mapping;
-    uint32_t cob_id = data->pdo.cob_id | data->flags;
-    unsigned count = mapping->count;
-    if (number == 0)
-        set_write(step, data->communication, OBJECT_PDO_COB_ID, 4, cob_id | OBJECT_PDO_NOT_VALID);
-    else if (number == 1)
-        set_write(step, data->communication, OBJECT_PDO_TYPE, 1, data->pdo.transmission);
-    else if (number == 2)
-        set_write(step, data->mapping, 0, 1, 0);
-    else if (number < 3 + count)
-        set_write(step, data->mapping, (uint8_t)(number - 2), 4, mapping->object[number - 3]);
-    else if (number == 3 + count)
-        set_write(step, data->mapping, 0, 1, count);
-    else if (number + 1 < pdo_step_count(data))
-        set_write(step, data->communication, OBJECT_PDO_EVENT_TIMER, 2, data->event_ms);
-    else
-        set_write(step, data->communication, OBJECT_PDO_COB_ID, 4, cob_id);
-}
-
-/* PDOs 3 and 4 have default identifiers of the same row. */
-static void unused_step(unsigned node, unsigned number, struct drives_step *step)
-{
-    bool transmits = number >= PDO_UNUSED;
-    unsigned which = PDO_USED + number % PDO_UNUSED;
-    unsigned base = (transmits ? PDO_TPDO1_FUNCTION : PDO_RPDO1_FUNCTION) + 0x100 * which;
-    set_write(step, (transmits ? OBJECT_TPDO : OBJECT_RPDO) + which, OBJECT_PDO_COB_ID, 4,
-              (base + node) | OBJECT_PDO_NOT_VALID | (transmits ? OBJECT_PDO_NO_RTR : 0));
-    step->optional = true;
-}
-
-/* increments = round(value * increments_per_mm), at least 0. */
+/* increments = round(value * increments_per_mm) of a velocity or an acceleration. */
 static uint32_t increments_of(const struct drives_config_axis *config, double value_mm)
 {
-    double increments = maths_round(value_mm * config->increments_per_mm);
+    double increments = maths_round(value_mm * maths_abs(config->increments_per_mm));
     return (uint32_t)maths_clamp(increments, 0, UINT32_LIMIT);
 }
-
-#define HOMING_STEPS 5
 
 /*
  * CiA 402: zero = home + home offset. So the offset is minus the coordinate that home is to have. There are drives whose
  * position at home is the offset.
  */
-static double home_offset_mm(const struct drives_homing *homing)
-{
-    return homing->offset_is_position ? homing->offset_mm : -homing->offset_mm;
-}
-
-static void homing_step(const struct drives_config_axis *config, unsigned number,
-                        struct drives_step *step)
+static uint32_t home_offset_of(const struct drives_config_axis *config)
 {
     const struct drives_homing *homing = &config->homing;
-    double offset_inc = maths_round(home_offset_mm(homing) * config->increments_per_mm);
-    switch (number) {
-    case 0:
-        set_write(step, CIA402_HOMING_METHOD, 0, 1, homing->method);
-        break;
-    case 1:
-        set_write(step, CIA402_HOMING_SPEEDS, 1, 4, increments_of(config, homing->velocity_mm_s));
-        break;
-    case 2:
-        set_write(step, CIA402_HOMING_SPEEDS, 2, 4, increments_of(config, homing->zero_mm_s));
-        break;
-    case 3:
-        set_write(step, CIA402_HOMING_ACCELERATION, 0, 4,
-                  increments_of(config, homing->acceleration_mm_s2));
-        break;
-    default:
-        set_write(step, CIA402_HOME_OFFSET, 0, 4,
-                  (uint32_t)(int32_t)maths_clamp(offset_inc, -2147483647.0, 2147483647.0));
-        break;
-    }
+    double offset_mm = homing->offset_is_position ? homing->offset_mm : -homing->offset_mm;
+    double offset_inc = maths_round(offset_mm * config->increments_per_mm);
+    return (uint32_t)(int32_t)maths_clamp(offset_inc, -INT32_LIMIT, INT32_LIMIT);
 }
 
-/* Process data and homing. */
-static bool late_step(const struct drives *d, unsigned index, unsigned number,
-                      struct drives_step *step)
+/* In the order of settings. */
+static uint32_t value_of(const struct drives *d, unsigned number)
 {
-    for (unsigned which = 0; which < 2 * PDO_USED; which++) {
-        struct process_data data;
-        describe_pdo(d, index, which, &data);
-        if (number < pdo_step_count(&data)) {
-            pdo_step(&data, number, step);
-            return true;
-        }
-        number -= pdo_step_count(&data);
-    }
-    if (number < 2 * PDO_UNUSED) {
-        unused_step(d->node[index], number, step);
-        return true;
-    }
-    number -= 2 * PDO_UNUSED;
-    if (d->axis[index].config.homing.order == 0 || number >= HOMING_STEPS)
+    const struct drives_config_axis *config = &d->axis[d->at_axis].config;
+    const struct drives_homing *homing = &config->homing;
+    uint32_t lost_ms = (uint32_t)d->heartbeat_ms * DRIVES_HEARTBEATS_LOST;
+    uint32_t period;
+    int exponent;
+    split_period(d->cycle_us, &period, &exponent);
+    const uint32_t values[] = {d->heartbeat_ms,
+                               (uint32_t)d->controller_node << 16 | lost_ms,
+                               d->cycle_us,
+                               period,
+                               (uint8_t)exponent,
+                               CIA402_CONNECTION_QUICK_STOP,
+                               CIA402_OPTION_QUICK_STOP_RAMP,
+                               CIA402_OPTION_QUICK_STOP_RAMP,
+                               homing->method,
+                               increments_of(config, homing->velocity_mm_s),
+                               increments_of(config, homing->zero_mm_s),
+                               increments_of(config, homing->acceleration_mm_s2),
+                               home_offset_of(config)};
+    static_assert(sizeof values / sizeof values[0] == SET_COUNT, "a value of every setting");
+    return values[number];
+}
+
+bool drives_next_set(struct drives *d, struct drives_step *step)
+{
+    const struct drives_axis *axis = &d->axis[d->at_axis];
+    if (d->at_step == (axis->config.homing.order != 0 ? SET_COUNT : SET_PLAIN))
         return false;
-    homing_step(&d->axis[index].config, number, step);
+    const struct setting *setting = &settings[d->at_step];
+    d->is_looking = d->is_looking || axis->config.keeps_settings;
+    *step = (struct drives_step){.object = SDO_OBJECT(setting->index, setting->sub),
+                                 .length = d->is_looking ? 0 : setting->length,
+                                 .value = value_of(d, d->at_step)};
     return true;
 }
 
-bool drives_find_step(const struct drives *d, unsigned index, unsigned number,
-                      struct drives_step *step)
+/* The drive has this value, and ours is another, or it could not be read. */
+static void miss(struct drives *d, const struct drives_answer *answer)
 {
-    if (number < IDENTITY_STEPS)
-        identity_step(&d->axis[index].config, number, step);
-    else if (number < IDENTITY_STEPS + HABIT_STEPS)
-        habit_step(d, number - IDENTITY_STEPS, step);
-    else
-        return late_step(d, index, number - IDENTITY_STEPS - HABIT_STEPS, step);
-    return true;
+    const struct setting *setting = &settings[d->at_step];
+    bool is_absent = sdo_says_absent(answer->abort_code);
+    if (setting->given_up != REQUIRED)
+        drives_give_up(d, d->at_axis, (enum drives_given_up)setting->given_up);
+    else if (!is_absent || value_of(d, d->at_step) != 0)
+        raise_refusal(d, SDO_OBJECT(setting->index, setting->sub),
+                      answer->abort_code != SDO_ABORT_NONE ? answer->abort_code : SDO_ABORT_VALUE);
 }
 
-static bool accept_identity(struct drives *d, unsigned index, uint8_t sub, uint32_t value)
+/*
+ * A drive that keeps a time between targets of its own makes its motion of it: a longer one lags behind, a shorter one
+ * stops between targets. With 0 it takes the time as it comes.
+ */
+static void check_period(struct drives *d)
 {
-    uint32_t expected = *identity_of(&d->axis[index].config.identity, sub);
-    if (expected == 0 || expected == value)
-        return true;
-    drives_raise(d, index, TAKT_ERROR_DRIVE_IDENTITY, value, identity_texts[sub - 1]);
-    return false;
+    double period_us = (uint8_t)d->read[0];
+    int exponent = (int8_t)(uint8_t)d->read[1];
+    for (; exponent < -6; exponent++)
+        period_us /= 10;
+    for (; exponent > -6; exponent--)
+        period_us *= 10;
+    if (period_us <= 0 || maths_abs(period_us - d->cycle_us) <= 0.5)
+        return;
+    drives_raise(d, d->at_axis, TAKT_ERROR_DRIVE_PERIOD, period_us, NULL);
+    diagnostic_set_limit(&d->fault, d->cycle_us);
 }
 
-static bool accept_mode(struct drives *d, unsigned index, uint32_t modes, unsigned mode,
-                        const char *name)
+/* What the drive has: read after a refusal, else what it has been told. */
+static void take_period(struct drives *d, const struct drives_answer *answer, uint32_t value)
 {
-    if (modes >> (mode - 1) & 1)
-        return true;
-    drives_raise(d, index, TAKT_ERROR_DRIVE_MODES, modes, name);
-    return false;
+    unsigned part = d->at_step - SET_PERIOD;
+    d->read[part] = answer->abort_code == SDO_ABORT_NONE ? value : 0;
+    d->read[2 + part] = answer->abort_code != SDO_ABORT_NONE;
+    if (part == 1 && drives_has_given_up(&d->axis[d->at_axis], DRIVES_NO_PERIOD) &&
+        d->read[2] + d->read[3] == 0)
+        check_period(d);
 }
 
-static bool accept_modes(struct drives *d, unsigned index, uint32_t modes)
+static uint32_t mask_of(const struct setting *setting)
 {
-    return accept_mode(d, index, modes, CIA402_MODE_CYCLIC_SYNC_POSITION,
-                       "cyclic synchronous position") &&
-           (d->axis[index].config.homing.order == 0 ||
-            accept_mode(d, index, modes, CIA402_MODE_HOMING, "homing"));
+    return setting->length == 4 ? UINT32_MAX : (1u << 8 * setting->length) - 1;
 }
 
-static bool accept_type(struct drives *d, unsigned index, uint32_t type)
+void drives_take_set(struct drives *d, const struct drives_answer *answer)
 {
-    if ((type & OBJECT_DEVICE_PROFILE_MASK) == OBJECT_DEVICE_PROFILE_402)
-        return true;
-    drives_raise(d, index, TAKT_ERROR_DRIVE_TYPE, type, NULL);
-    return false;
-}
-
-bool drives_accept(struct drives *d, unsigned index, const struct drives_step *step, uint32_t value)
-{
-    switch (sdo_index(step->object)) {
-    case OBJECT_DEVICE_TYPE:
-        return accept_type(d, index, value);
-    case OBJECT_IDENTITY:
-        return accept_identity(d, index, sdo_sub(step->object), value);
-    default:
-        return accept_modes(d, index, value);
+    const struct setting *setting = &settings[d->at_step];
+    uint32_t wanted = value_of(d, d->at_step) & mask_of(setting);
+    bool is_refused = answer->abort_code != SDO_ABORT_NONE;
+    if (!d->is_looking && is_refused && !sdo_says_absent(answer->abort_code)) {
+        d->is_looking = true;
+        return;
     }
+    uint32_t value = d->is_looking ? answer->value & mask_of(setting) : wanted;
+    if (is_refused || value != wanted)
+        miss(d, answer);
+    if (d->at_step == SET_PERIOD || d->at_step == SET_EXPONENT)
+        take_period(d, answer, value);
+    d->is_looking = false;
+    d->at_step++;
 }

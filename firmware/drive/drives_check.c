@@ -164,7 +164,7 @@ static bool rests(const struct drives *d, struct drives_axis *axis)
 {
     double moved_inc = maths_abs((double)axis->actual_inc - axis->braking_inc);
     bool still = drives_silent_cycles(d, axis) == 0 && is_switched_off(axis) &&
-                 moved_inc <= maths_max(REST_MM * axis->config.increments_per_mm, 1);
+                 moved_inc <= maths_max(REST_MM * maths_abs(axis->config.increments_per_mm), 1);
     axis->braking_inc = axis->actual_inc;
     axis->rest_cycles = still ? axis->rest_cycles + 1 : 0;
     return !axis->started || axis->rest_cycles >= REST_REPORTS;

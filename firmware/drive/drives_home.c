@@ -34,7 +34,7 @@ static void select_mode(struct drives_axis *axis, bool is_homing)
 {
     if (axis->mode == CIA402_MODE_HOMING)
         axis->target_inc = axis->actual_inc;
-    axis->mode = is_homing ? CIA402_MODE_HOMING : CIA402_MODE_CYCLIC_SYNC_POSITION;
+    axis->mode = is_homing ? CIA402_MODE_HOMING : axis->follow_mode;
     axis->command = 0;
 }
 
@@ -46,6 +46,50 @@ void drives_home_next(struct drives *d)
     d->home_order = order;
     d->homed = order == 0;
     drives_enter_phase(d, DRIVES_SELECT);
+}
+
+static void check_links(struct drives *d)
+{
+    for (unsigned i = 0; i < d->count; i++)
+        if (!drives_is_linked(d, &d->axis[i]))
+            (void)drives_check_links(d, i);
+}
+
+static bool is_late(const struct drives *d)
+{
+    return drives_cycles_ms(d, d->phase_cycles) > MODE_TIMEOUT_MS;
+}
+
+static void enter_enabled(struct drives *d)
+{
+    d->state = DRIVES_ENABLED;
+    for (unsigned i = 0; i < d->count; i++)
+        for (unsigned k = 0; k < DRIVES_HISTORY; k++)
+            d->sent_mm[k][i] = d->axis[i].actual_mm;
+}
+
+/* Interpolated position mode follows targets from controlword bit 4 on. */
+static bool follows(struct drives_axis *axis)
+{
+    const uint16_t told = CIA402_ENABLE_OPERATION | CIA402_INTERPOLATE;
+    if (axis->mode != CIA402_MODE_INTERPOLATED_POSITION)
+        return true;
+    axis->command = CIA402_INTERPOLATE;
+    return axis->controlword == told && axis->statusword & CIA402_INTERPOLATES;
+}
+
+void drives_follow(struct drives *d)
+{
+    bool all = true;
+    check_links(d);
+    for (unsigned i = 0; i < d->count && d->state == DRIVES_STARTING; i++) {
+        bool is_following = follows(&d->axis[i]);
+        if (!is_following && is_late(d))
+            drives_raise(d, i, TAKT_ERROR_DRIVE_MODE, d->axis[i].mode, NULL);
+        all = all && is_following;
+    }
+    if (all && d->state == DRIVES_STARTING)
+        enter_enabled(d);
 }
 
 /* All show their modes: those that are to be homed begin; without any the drives are ready. */
@@ -61,44 +105,44 @@ static void begin_homing(struct drives *d)
         axis->homing_seen = false;
         axis->homed = false;
     }
-    drives_enter_phase(d, DRIVES_HOME);
-    if (is_any)
-        return;
-    d->state = DRIVES_ENABLED;
-    for (unsigned i = 0; i < d->count; i++)
-        for (unsigned k = 0; k < DRIVES_HISTORY; k++)
-            d->sent_mm[k][i] = d->axis[i].actual_mm;
+    drives_enter_phase(d, is_any ? DRIVES_HOME : DRIVES_FOLLOW);
+    if (!is_any)
+        drives_follow(d);
 }
 
-static void check_links(struct drives *d)
+/* The drive shows its mode, or cannot. */
+static bool shows_mode(struct drives *d)
 {
-    for (unsigned i = 0; i < d->count; i++)
-        if (!drives_is_linked(d, &d->axis[i]))
-            (void)drives_check_links(d, i);
+    const struct drives_axis *axis = &d->axis[d->at_axis];
+    if (d->sdo.result == SDO_ABORTED)
+        drives_give_up(d, d->at_axis, DRIVES_NO_MODE_DISPLAY);
+    return d->sdo.result == SDO_ABORTED ||
+           (d->sdo.result == SDO_DONE && (uint8_t)sdo_client_number(&d->sdo) == axis->mode);
 }
 
 /* Modes are not in the statusword: object 6061 is read, of one drive after the other, until it agrees. */
 void drives_select(struct drives *d)
 {
     const uint32_t object = SDO_OBJECT(CIA402_MODE_DISPLAY >> 16, 0);
-    const struct drives_axis *axis = &d->axis[d->at_axis];
     check_links(d);
-    if (d->state != DRIVES_STARTING || sdo_client_is_busy(&d->sdo))
+    if (d->state != DRIVES_STARTING)
         return;
-    if (d->sdo.result == SDO_ABORTED) {
-        drives_raise_object(d, d->at_axis, object, TAKT_ERROR_DRIVE_REFUSES, d->sdo.abort_code,
-                            sdo_abort_text(d->sdo.abort_code));
+    if (d->is_telling || sdo_client_is_busy(&d->sdo)) {
+        if (d->is_telling && is_late(d))
+            drives_raise(d, d->at_axis, TAKT_ERROR_DRIVE_MODE, d->axis[d->at_axis].mode, NULL);
         return;
     }
-    if (d->sdo.result == SDO_DONE && sdo_client_number(&d->sdo) == axis->mode) {
+    if (shows_mode(d)) {
         d->at_axis++;
         d->phase_cycles = 0;
-    } else if (drives_cycles_ms(d, d->phase_cycles) > MODE_TIMEOUT_MS) {
-        drives_raise(d, d->at_axis, TAKT_ERROR_DRIVE_MODE, axis->mode, NULL);
+    } else if (is_late(d)) {
+        drives_raise(d, d->at_axis, TAKT_ERROR_DRIVE_MODE, d->axis[d->at_axis].mode, NULL);
         return;
     }
     if (d->at_axis == d->count)
         begin_homing(d);
+    else if (drives_tells_mode(&d->axis[d->at_axis]))
+        d->sdo.result = SDO_IDLE;
     else
         sdo_client_upload(&d->sdo, d->node[d->at_axis], object, d->sdo_timeout_cycles);
 }
@@ -108,7 +152,7 @@ static double overshoot_mm(const struct drives_config_axis *config)
 {
     const struct drives_homing *homing = &config->homing;
     double v = maths_max(homing->velocity_mm_s, homing->zero_mm_s);
-    return v * v / (2 * homing->acceleration_mm_s2) + 1 / config->increments_per_mm;
+    return v * v / (2 * homing->acceleration_mm_s2) + 1 / maths_abs(config->increments_per_mm);
 }
 
 /* Its home is where it should be, but for the sign. */
@@ -134,11 +178,12 @@ static void follow_homing(struct drives *d, unsigned index)
 {
     struct drives_axis *axis = &d->axis[index];
     const uint16_t done = CIA402_HOMING_ATTAINED | CIA402_TARGET_REACHED;
-    bool is_done = (axis->statusword & done) == done;
+    bool is_told = axis->controlword == (CIA402_ENABLE_OPERATION | CIA402_START_HOMING);
+    bool is_done = is_told && (axis->statusword & done) == done;
     double since_ms = drives_cycles_ms(d, d->phase_cycles);
-    if (axis->controlword == (CIA402_ENABLE_OPERATION | CIA402_START_HOMING) && !is_done)
+    if (is_told && !is_done)
         axis->homing_seen = true;
-    if (since_ms >= HOMING_SHOWN_MS && axis->statusword & CIA402_HOMING_ERROR)
+    if (is_told && since_ms >= HOMING_SHOWN_MS && axis->statusword & CIA402_HOMING_ERROR)
         drives_raise(d, index, TAKT_ERROR_DRIVE_HOMING, axis->statusword, NULL);
     else if (d->phase_cycles > axis->config.homing.timeout_cycles)
         drives_raise(d, index, TAKT_ERROR_DRIVE_HOMING_SLOW,

@@ -24,9 +24,18 @@ unsigned drives_cycle_frames(unsigned count, uint8_t length[DRIVES_CYCLE_FRAMES_
  *     C = 47 + 8 n + floor((34 + 8 n - 1) / 4)
  * Davis, Burns, Bril, Lukkien: Controller Area Network schedulability analysis, Real-Time Systems 35 (2007), eq. 1.
  */
-static uint32_t frame_bits_worst(uint32_t n)
+uint32_t drives_frame_bits(uint32_t n)
 {
     return 47 + 8 * n + (34 + 8 * n - 1) / 4;
+}
+
+/* True: the bus carries it. */
+static bool set_share(struct drives_load *load, uint32_t bitrate, uint32_t cycle_us)
+{
+    double capacity_bits = 1e-6 * (double)cycle_us * (double)bitrate;
+    load->capacity_bits = (uint32_t)capacity_bits;
+    load->percent = 100.0 * load->bits / capacity_bits;
+    return load->percent <= 100.0;
 }
 
 bool drives_predict_load(unsigned count, uint32_t bitrate, uint32_t cycle_us,
@@ -34,13 +43,61 @@ bool drives_predict_load(unsigned count, uint32_t bitrate, uint32_t cycle_us,
 {
     uint8_t length[DRIVES_CYCLE_FRAMES_MAX];
     unsigned frames = drives_cycle_frames(count, length);
-    double capacity_bits = 1e-6 * (double)cycle_us * (double)bitrate;
     load->bits = 0;
     for (unsigned i = 0; i < frames; i++)
-        load->bits += frame_bits_worst(length[i]);
-    load->capacity_bits = (uint32_t)capacity_bits;
-    load->percent = 100.0 * load->bits / capacity_bits;
-    return load->percent <= 100.0;
+        load->bits += drives_frame_bits(length[i]);
+    return set_share(load, bitrate, cycle_us);
+}
+
+void drives_get_load(const struct drives *d, struct drives_load *load)
+{
+    bool has_error = false;
+    load->bits = drives_frame_bits(0) + drives_frame_bits(HEARTBEAT_LENGTH);
+    for (unsigned i = 0; i < d->count; i++) {
+        load->bits += d->axis[i].bits;
+        has_error = has_error || !drives_has_given_up(&d->axis[i], DRIVES_NO_ERROR_PDO);
+    }
+    if (has_error)
+        load->bits += drives_frame_bits(DRIVES_STATUS_LENGTH);
+    (void)set_share(load, d->bitrate, d->cycle_us);
+}
+
+/* Of a TPDO with something that ends at this byte: one that the drive keeps may hold more. */
+static uint8_t length_at_most(const struct drives_axis *axis, unsigned end)
+{
+    bool is_kept = axis->config.keeps_settings || drives_has_given_up(axis, DRIVES_NO_MAPPING);
+    return (uint8_t)(is_kept ? CAN_DATA_MAX : end);
+}
+
+unsigned drives_get_pdos(const struct drives *d, struct drives_pdo pdo[DRIVES_CYCLE_PDOS_MAX])
+{
+    unsigned count = 0;
+    for (unsigned i = 0; i < d->count; i++) {
+        const struct drives_axis *axis = &d->axis[i];
+        bool is_one = axis->status_id == axis->position_id;
+        uint8_t status = length_at_most(axis, axis->status_end);
+        uint8_t position = length_at_most(axis, axis->position_end);
+        if (!is_one)
+            pdo[count++] = (struct drives_pdo){axis->status_id, status, false};
+        pdo[count++] = (struct drives_pdo){axis->position_id,
+                                           is_one && status > position ? status : position, false};
+        if (!axis->is_paired || i & 1)
+            pdo[count++] =
+                (struct drives_pdo){axis->target_frame.cob_id, axis->target_frame.length, true};
+    }
+    return count;
+}
+
+unsigned drives_get_report(const struct drives *d, uint16_t id)
+{
+    unsigned report = 0;
+    for (unsigned i = 0; i < d->count; i++) {
+        if (d->axis[i].status_id == id)
+            report |= DRIVES_REPORTS_STATUS;
+        if (d->axis[i].position_id == id)
+            report |= DRIVES_REPORTS_POSITION;
+    }
+    return report;
 }
 
 /* "1310 of 1000 bits". */

@@ -7,7 +7,7 @@
 #include "canopen/cia402.h"
 #include "drive/drives.h"
 
-/* TPDO1: statusword and actual position. TPDO2, error code and following error, is of the same length. */
+/* Statusword and actual position in one TPDO. That of error code and following error is of the same length. */
 #define DRIVES_STATUS_LENGTH 6
 
 /* Period of TPDO2. */
@@ -65,25 +65,53 @@ void drives_start(struct drives *d);
 void drives_start_again(struct drives *d, unsigned index);
 void drives_enter_phase(struct drives *d, enum drives_phase phase);
 
-/*
- * What a drive is asked and told before it is started: number counts from 0, whole drive by whole drive. False: there
- * are no more.
- */
+/* One request to the drive that is being configured, and what it has come to. */
 struct drives_step {
     uint32_t object; /* SDO_OBJECT */
     uint8_t length;  /* bytes to write; 0: it is read */
-    bool optional;   /* a drive may lack it */
     uint32_t value;  /* to write */
 };
-bool drives_find_step(const struct drives *d, unsigned index, unsigned number,
-                      struct drives_step *step);
-/* True: a drive may answer a reading step like this. Else the fault has been raised. */
-bool drives_accept(struct drives *d, unsigned index, const struct drives_step *step,
-                   uint32_t value);
+struct drives_answer {
+    uint32_t abort_code; /* SDO_ABORT_NONE: it has been done */
+    uint32_t value;      /* that has been read */
+};
 
-/* A cycle of the phases DRIVES_SELECT and DRIVES_HOME. */
+/*
+ * The parts of a configuration, enum drives_part. next: its next request; false: there is none. take: what has come of
+ * that; a drive that cannot be used has raised its fault.
+ */
+bool drives_next_ask(struct drives *d, struct drives_step *step);
+void drives_take_ask(struct drives *d, const struct drives_answer *answer);
+bool drives_next_set(struct drives *d, struct drives_step *step);
+void drives_take_set(struct drives *d, const struct drives_answer *answer);
+bool drives_next_map(struct drives *d, struct drives_step *step);
+void drives_take_map(struct drives *d, const struct drives_answer *answer);
+
+/* The drive that is being configured is to be configured anew, or is the next one. */
+void drives_begin_axis(struct drives *d, unsigned index);
+
+/* Nothing is known of its PDOs. */
+void drives_forget_pdos(struct drives_axis *axis);
+
+void drives_give_up(struct drives *d, unsigned index, enum drives_given_up what);
+
+static inline bool drives_has_given_up(const struct drives_axis *axis, enum drives_given_up what)
+{
+    return axis->given_up >> what & 1;
+}
+
+/* Its mode goes by SDO, and has not been told yet. */
+bool drives_tells_mode(const struct drives_axis *axis);
+/* The controlword that brings a drive on its way. */
+uint16_t drives_controlword(const struct drives_axis *axis);
+
+/* Bits of a frame with n bytes at worst. */
+uint32_t drives_frame_bits(uint32_t n);
+
+/* A cycle of the phases DRIVES_SELECT, DRIVES_HOME and DRIVES_FOLLOW. */
 void drives_select(struct drives *d);
 void drives_home(struct drives *d);
+void drives_follow(struct drives *d);
 /* The next order of axes that are homed; none: all drives are ready. */
 void drives_home_next(struct drives *d);
 

@@ -8,17 +8,33 @@
 /* Frames taken in one cycle at most, so that a babbling bus cannot hold the control cycle. */
 #define FRAMES_PER_CYCLE_MAX 256
 
-static void take_status(struct drives *d, unsigned index, const struct can_frame *frame)
+static void take_statusword(struct drives *d, struct drives_axis *axis,
+                            const struct can_frame *frame)
 {
-    struct drives_axis *axis = &d->axis[index];
-    if (frame->length < DRIVES_STATUS_LENGTH || !axis->started)
+    if (frame->length < axis->status_end || !axis->started)
         return;
-    axis->statusword = little_endian_read16(frame->data);
-    axis->actual_inc = (int32_t)little_endian_read32(frame->data + 2);
-    axis->actual_mm = axis->actual_inc / axis->config.increments_per_mm;
+    axis->statusword = little_endian_read16(frame->data + axis->status_end - 2);
     axis->heard = true;
+    if (axis->beats_by_status)
+        axis->beaten = d->cycle;
+}
+
+static void take_position(struct drives *d, struct drives_axis *axis, const struct can_frame *frame)
+{
+    if (frame->length < axis->position_end || !axis->started)
+        return;
+    axis->actual_inc = (int32_t)little_endian_read32(frame->data + axis->position_end - 4);
+    axis->actual_mm = axis->actual_inc / axis->config.increments_per_mm;
     axis->reported = d->cycle;
     d->actual.at[axis->config.axis] = axis->actual_mm;
+}
+
+/* Statusword and position, mostly in one frame; of a frame that is too short for it the position counts for nothing. */
+static void take_report(struct drives *d, struct drives_axis *axis, const struct can_frame *frame)
+{
+    if (axis->status_id == axis->position_id && frame->length >= axis->position_end)
+        take_statusword(d, axis, frame);
+    take_position(d, axis, frame);
 }
 
 /* "All errors are gone" may come in the same cycle as the error, which counts nevertheless. */
@@ -33,10 +49,10 @@ static void take_emergency(struct drives *d, unsigned index, const struct can_fr
     drives_complete_fault(d, index, emcy.code);
 }
 
-/* TPDO2: object 603F comes first. It is of use when the emergency has been lost. */
+/* Object 603F comes first. It is of use when the emergency has been lost. */
 static void take_error_code(struct drives *d, unsigned index, const struct can_frame *frame)
 {
-    if (frame->length >= DRIVES_STATUS_LENGTH)
+    if (frame->length >= 2)
         drives_complete_fault(d, index, little_endian_read16(frame->data));
 }
 
@@ -65,9 +81,6 @@ static void take_heartbeat(struct drives *d, unsigned index, const struct can_fr
 static void take_seldom(struct drives *d, unsigned index, const struct can_frame *frame)
 {
     switch (node_function(frame->id)) {
-    case PDO_TPDO2_FUNCTION:
-        take_error_code(d, index, frame);
-        break;
     case EMCY_FUNCTION:
         take_emergency(d, index, frame);
         break;
@@ -78,6 +91,8 @@ static void take_seldom(struct drives *d, unsigned index, const struct can_frame
         take_heartbeat(d, index, frame);
         break;
     default:
+        if (frame->id == d->axis[index].error_id)
+            take_error_code(d, index, frame);
         break;
     }
 }
@@ -87,8 +102,11 @@ static void take_frame(struct drives *d, const struct can_frame *frame)
     unsigned index = d->axis_of_node[node_id(frame->id)];
     if (index == AXIS_COUNT)
         return;
-    if (node_function(frame->id) == PDO_TPDO1_FUNCTION)
-        take_status(d, index, frame);
+    struct drives_axis *axis = &d->axis[index];
+    if (frame->id == axis->position_id)
+        take_report(d, axis, frame);
+    else if (frame->id == axis->status_id)
+        take_statusword(d, axis, frame);
     else
         take_seldom(d, index, frame);
 }

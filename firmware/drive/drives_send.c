@@ -6,11 +6,9 @@
 #include "drive/drives_private.h"
 
 #include <stddef.h>
+#include <string.h>
 
 #define INCREMENTS_MAX 2147483647.0
-
-/* RPDO1: controlword and mode of operation. */
-#define CONTROL_LENGTH 3
 
 static bool send_frame(const struct can_port *port, const struct can_frame *frame)
 {
@@ -43,21 +41,41 @@ static void send_heartbeat(struct drives *d, const struct can_port *port)
         d->beat_cycles = 0;
 }
 
-/* A controlword that is refused counts as not sent, and comes again in the next cycle. */
+/* Everything that is in it, as it is now. */
+static void fill(struct can_frame *frame, const struct drives_frame *as,
+                 const struct drives_axis *axis, uint16_t controlword)
+{
+    frame->id = as->cob_id;
+    frame->length = as->length;
+    memcpy(frame->data, as->data, sizeof frame->data);
+    if (as->control != DRIVES_NOWHERE)
+        little_endian_write16(frame->data + as->control, controlword);
+    if (as->mode != DRIVES_NOWHERE)
+        frame->data[as->mode] = axis->mode;
+    if (as->target != DRIVES_NOWHERE)
+        little_endian_write32(frame->data + as->target, (uint32_t)axis->target_inc);
+}
+
+/*
+ * A controlword that is refused counts as not sent, and comes again in the next cycle. One that has no PDO is told by
+ * SDO while the drives are started; after a fault nobody waits for an answer.
+ */
 static void send_controlword(struct drives_axis *axis, const struct can_port *port,
-                             uint16_t controlword)
+                             uint16_t controlword, bool is_urgent)
 {
     struct can_frame frame;
-    frame.id = (uint16_t)(PDO_RPDO1_FUNCTION + axis->config.node);
-    frame.length = CONTROL_LENGTH;
-    little_endian_write16(frame.data, controlword);
-    frame.data[2] = axis->mode;
+    if (axis->control_frame.length > 0)
+        fill(&frame, &axis->control_frame, axis, controlword);
+    else if (is_urgent)
+        sdo_write_word(&frame, axis->config.node, CIA402_CONTROLWORD, controlword);
+    else
+        return;
     if (send_frame(port, &frame))
         axis->controlword = controlword;
 }
 
 /*
- * The drives of a pair write into one frame; it is sent when its last drive has written. While
+ * The drives of a pair write into one frame; it is sent when its second drive has written. While
  * drives are being enabled nothing is lost by a refused frame, in operation a setpoint is.
  */
 static void send_targets(struct drives *d, const struct can_port *port)
@@ -65,11 +83,15 @@ static void send_targets(struct drives *d, const struct can_port *port)
     struct can_frame frame;
     for (unsigned i = 0; i < d->count; i++) {
         const struct drives_axis *axis = &d->axis[i];
-        little_endian_write32(frame.data + axis->target_offset, (uint32_t)axis->target_inc);
-        if (!axis->target_last)
+        const struct drives_frame *as = &axis->target_frame;
+        if (as->is_mixed)
+            fill(&frame, as, axis, axis->controlword);
+        else
+            little_endian_write32(frame.data + as->target, (uint32_t)axis->target_inc);
+        if (axis->is_paired && !(i & 1))
             continue;
-        frame.id = axis->target_cob_id;
-        frame.length = (uint8_t)(axis->target_offset + 4);
+        frame.id = as->cob_id;
+        frame.length = as->length;
         if (!send_frame(port, &frame) && d->state != DRIVES_STARTING)
             drives_raise(d, i, TAKT_ERROR_DRIVE_UNREACHABLE, 0, NULL);
     }
@@ -125,11 +147,8 @@ static void send_start(struct drives *d, const struct can_port *port)
 static void send_enabling(struct drives *d, const struct can_port *port)
 {
     struct drives_axis *turn = &d->axis[d->cycle % d->count];
-    if (turn->heard) {
-        enum cia402_state state = cia402_state(turn->statusword);
-        uint16_t command = state == CIA402_ENABLED ? turn->command : 0;
-        send_controlword(turn, port, (uint16_t)(cia402_step_to_enabled(state) | command));
-    }
+    if (turn->heard)
+        send_controlword(turn, port, drives_controlword(turn), false);
     for (unsigned i = 0; i < d->count; i++)
         if (!drives_axis_is_enabled(&d->axis[i]) || d->axis[i].mode == CIA402_MODE_HOMING)
             d->axis[i].target_inc = d->axis[i].actual_inc;
@@ -151,6 +170,7 @@ static void send_starting(struct drives *d, const struct can_port *port)
     case DRIVES_ENABLE:
     case DRIVES_SELECT:
     case DRIVES_HOME:
+    case DRIVES_FOLLOW:
         send_request(d, port);
         send_enabling(d, port);
         break;
@@ -202,7 +222,7 @@ static void send_quick_stop(struct drives *d, const struct can_port *port)
         bool is_told = axis->controlword == CIA402_QUICK_STOP_NOW;
         if (!is_told ||
             (i == turn && (drives_axis_is_enabled(axis) || drives_silent_cycles(d, axis) > 1)))
-            send_controlword(axis, port, CIA402_QUICK_STOP_NOW);
+            send_controlword(axis, port, CIA402_QUICK_STOP_NOW, true);
     }
 }
 

@@ -2,7 +2,7 @@
  * From power-on to the first setpoint: boot, configure, start, enable, home.
  *
  *     BOOT --all booted--> CONFIGURE --all told--> START --all started--> ENABLE --all enabled--> SELECT
- *       SELECT --modes shown, axes left to home--> HOME --they are--> SELECT ... --none left--> DRIVES_ENABLED
+ *       SELECT --modes shown, axes left to home--> HOME --they are--> SELECT ... --none left--> FOLLOW --> DRIVES_ENABLED
  *
  * A drive that boots before the end of ENABLE has forgotten what it was told: CONFIGURE begins again.
  */
@@ -10,41 +10,85 @@
 #include "canopen/emcy.h"
 #include "drive/drives_private.h"
 
-/* A node that has not booted is reset again after so long. */
-#define RESET_AGAIN_MS 500
+/* Configurations begun again because a drive has booted; one that always does is of no use. */
+#define RESTARTS_MAX 16
+
+/* A mode and four controlwords for each drive, twice. */
+#define TELLS_MAX (2 * 5 * AXIS_COUNT)
+
+static void rewind_to(struct drives *d, unsigned index)
+{
+    d->at_axis = (uint8_t)index;
+    d->at_part = DRIVES_ASK;
+    d->at_step = 0;
+    d->repeats = 0;
+    d->is_looking = false;
+    d->mapping.pass = d->mapping.step = 0;
+    d->sdo.result = SDO_IDLE;
+}
+
+/* Nothing is known of it but that it shares no frame. */
+void drives_begin_axis(struct drives *d, unsigned index)
+{
+    rewind_to(d, index);
+    if (index == d->count)
+        return;
+    d->axis[index].given_up &= 1u << DRIVES_NO_PAIR;
+    drives_forget_pdos(&d->axis[index]);
+}
 
 void drives_enter_phase(struct drives *d, enum drives_phase phase)
 {
     d->phase = phase;
     d->phase_cycles = 0;
-    d->at_axis = 0;
-    d->at_step = 0;
-    d->repeats = 0;
-    d->sdo.result = SDO_IDLE;
+    d->tells = 0;
+    d->is_telling = false;
+    rewind_to(d, 0);
+    if (phase == DRIVES_CONFIGURE)
+        drives_begin_axis(d, 0);
+}
+
+/* A request to another drive is waited for: its answer would be taken for that to the next one. */
+static void begin_again(struct drives *d, uint8_t booted)
+{
+    bool is_stale =
+        d->phase == DRIVES_CONFIGURE && sdo_client_is_busy(&d->sdo) && d->sdo.node != booted;
+    drives_enter_phase(d, DRIVES_CONFIGURE);
+    d->is_stale = is_stale;
+    if (is_stale)
+        d->sdo.result = SDO_BUSY;
 }
 
 void drives_start_again(struct drives *d, unsigned index)
 {
     struct drives_axis *axis = &d->axis[index];
+    if (axis->reset_pending)
+        return; /* it does not know of its reset yet, and will boot again */
     axis->booted = true;
     axis->started = false;
     axis->heard = false;
-    if (d->phase == DRIVES_SELECT || d->phase == DRIVES_HOME)
+    axis->controlword = 0;
+    axis->told_mode = CIA402_MODE_NONE;
+    if (d->phase >= DRIVES_SELECT || d->restarts++ == RESTARTS_MAX)
         drives_raise(d, index, TAKT_ERROR_DRIVE_REBOOTED, 0, NULL);
     else if (d->phase != DRIVES_BOOT)
-        drives_enter_phase(d, DRIVES_CONFIGURE);
+        begin_again(d, d->node[index]);
 }
 
+/* Reset once, and once more when that has taken too long: the order may have been lost, or the answer. */
 static void boot(struct drives *d)
 {
     bool all = true;
     for (unsigned i = 0; i < d->count; i++) {
         all = all && d->axis[i].booted;
-        if (!d->axis[i].booted && drives_cycles_ms(d, d->phase_cycles) >= RESET_AGAIN_MS)
+        if (d->axis[i].booted)
+            continue;
+        if (d->phase_cycles == d->boot_timeout_cycles)
             d->axis[i].reset_pending = true;
+        else if (d->phase_cycles > 2 * d->boot_timeout_cycles)
+            drives_raise(d, i, TAKT_ERROR_DRIVE_ABSENT,
+                         2e-3 * drives_cycles_ms(d, d->boot_timeout_cycles), NULL);
     }
-    if (drives_cycles_ms(d, d->phase_cycles) >= RESET_AGAIN_MS)
-        d->phase_cycles = 0;
     if (all)
         drives_enter_phase(d, DRIVES_CONFIGURE);
 }
@@ -58,63 +102,104 @@ static void ask(struct drives *d, const struct drives_step *step)
         sdo_client_upload(&d->sdo, d->node[d->at_axis], step->object, d->sdo_timeout_cycles);
 }
 
-static bool is_lacking(uint32_t abort_code)
+static bool next_of_part(struct drives *d, struct drives_step *step)
 {
-    return abort_code == SDO_ABORT_NO_OBJECT || abort_code == SDO_ABORT_NO_SUB_INDEX;
+    if (d->at_part == DRIVES_ASK)
+        return drives_next_ask(d, step);
+    return d->at_part == DRIVES_SET ? drives_next_set(d, step) : drives_next_map(d, step);
 }
 
-/* True: the step is done and the next may follow. */
-static bool finish_step(struct drives *d, const struct drives_step *step)
+/* The next request of the axis; false: it is configured, or of no use. */
+static bool find_step(struct drives *d, struct drives_step *step)
 {
-    const struct sdo_client *sdo = &d->sdo;
-    switch (sdo->result) {
-    case SDO_DONE:
-        return step->length > 0 || drives_accept(d, d->at_axis, step, sdo_client_number(sdo));
-    case SDO_ABORTED:
-        if (step->optional && is_lacking(sdo->abort_code))
+    while (d->at_part < DRIVES_PARTS && d->state == DRIVES_STARTING) {
+        unsigned part = d->at_part;
+        if (next_of_part(d, step))
             return true;
-        drives_raise_object(d, d->at_axis, step->object, TAKT_ERROR_DRIVE_REFUSES, sdo->abort_code,
-                            sdo_abort_text(sdo->abort_code));
-        return false;
-    case SDO_UNANSWERED:
-        if (d->repeats++ < DRIVES_SDO_REPEATS) {
-            ask(d, step);
-            return false;
+        if (d->at_part == part) {
+            d->at_part++;
+            d->at_step = 0;
         }
-        drives_raise_object(d, d->at_axis, step->object, TAKT_ERROR_DRIVE_UNANSWERED,
-                            drives_cycles_ms(d, d->sdo_timeout_cycles), NULL);
-        return false;
-    case SDO_IDLE:
-    case SDO_BUSY:
-        break;
     }
     return false;
+}
+
+static void check_load(struct drives *d)
+{
+    struct drives_load load;
+    drives_get_load(d, &load);
+    if (load.percent <= 100.0)
+        return;
+    drives_set_overload(&load, &d->fault);
+    drives_brake(d);
 }
 
 static void next_step(struct drives *d)
 {
     struct drives_step step;
     d->repeats = 0;
-    while (d->at_axis < d->count && !drives_find_step(d, d->at_axis, d->at_step, &step)) {
-        d->at_axis++;
-        d->at_step = 0;
+    while (d->at_axis < d->count && d->state == DRIVES_STARTING) {
+        if (find_step(d, &step)) {
+            ask(d, &step);
+            return;
+        }
+        drives_begin_axis(d, d->at_axis + 1u);
     }
-    if (d->at_axis < d->count)
+    if (d->state == DRIVES_STARTING)
+        check_load(d);
+    if (d->state == DRIVES_STARTING)
+        drives_enter_phase(d, DRIVES_START);
+}
+
+static void take_answer(struct drives *d)
+{
+    const struct sdo_client *sdo = &d->sdo;
+    bool is_done = sdo->result == SDO_DONE;
+    const struct drives_answer answer = {.abort_code = is_done ? SDO_ABORT_NONE : sdo->abort_code,
+                                         .value = is_done ? sdo_client_number(sdo) : 0};
+    if (d->at_part == DRIVES_ASK)
+        drives_take_ask(d, &answer);
+    else if (d->at_part == DRIVES_SET)
+        drives_take_set(d, &answer);
+    else
+        drives_take_map(d, &answer);
+}
+
+/*
+ * No answer: the request is repeated, and then the drive is lost. The first one of a drive is repeated for as long as it
+ * may take to boot: what was heard may have been of the time before its reset.
+ */
+static void miss_answer(struct drives *d)
+{
+    struct drives_step step;
+    bool is_first = d->at_part == DRIVES_ASK && d->at_step == 0;
+    bool may_boot = is_first && d->phase_cycles < 2 * d->boot_timeout_cycles;
+    if ((may_boot || d->repeats++ < DRIVES_SDO_REPEATS) && find_step(d, &step))
         ask(d, &step);
     else
-        drives_enter_phase(d, DRIVES_START);
+        drives_raise_object(d, d->at_axis, d->sdo.object, TAKT_ERROR_DRIVE_UNANSWERED,
+                            drives_cycles_ms(d, d->sdo_timeout_cycles), NULL);
 }
 
 static void configure(struct drives *d)
 {
-    struct drives_step step;
-    if (d->sdo.result == SDO_IDLE) {
-        next_step(d);
-        return;
+    if (d->is_stale && !sdo_client_is_busy(&d->sdo)) {
+        d->is_stale = false;
+        d->sdo.result = SDO_IDLE;
     }
-    if (!drives_find_step(d, d->at_axis, d->at_step, &step) || !finish_step(d, &step))
+    switch (d->sdo.result) {
+    case SDO_BUSY:
         return;
-    d->at_step++;
+    case SDO_UNANSWERED:
+        miss_answer(d);
+        return;
+    case SDO_DONE:
+    case SDO_ABORTED:
+        take_answer(d);
+        break;
+    case SDO_IDLE:
+        break;
+    }
     next_step(d);
 }
 
@@ -158,15 +243,83 @@ static void raise_not_enabled(struct drives *d, unsigned index)
 
 static void raise_late(struct drives *d)
 {
-    double timeout_ms = drives_cycles_ms(d, d->start_timeout_cycles);
     for (unsigned i = 0; i < d->count; i++)
-        if (!d->axis[i].booted)
-            drives_raise(d, i, TAKT_ERROR_DRIVE_ABSENT, 1e-3 * timeout_ms, NULL);
-    for (unsigned i = 0; i < d->count && d->phase == DRIVES_ENABLE; i++)
         if (!drives_axis_is_enabled(&d->axis[i]))
             raise_not_enabled(d, i);
-    if (d->state == DRIVES_STARTING)
-        drives_raise(d, d->at_axis, TAKT_ERROR_DRIVE_UNANSWERED, timeout_ms, NULL);
+}
+
+static void enable(struct drives *d)
+{
+    if (all_are_enabled(d))
+        enter_operation(d);
+    else if (d->phase_cycles > d->start_timeout_cycles)
+        raise_late(d);
+}
+
+/* ---- What does not fit into a PDO ---- */
+
+bool drives_tells_mode(const struct drives_axis *axis)
+{
+    return drives_has_given_up(axis, DRIVES_NO_MODE_PDO) && axis->told_mode != axis->mode;
+}
+
+uint16_t drives_controlword(const struct drives_axis *axis)
+{
+    enum cia402_state state = cia402_state(axis->statusword);
+    uint16_t command = state == CIA402_ENABLED ? axis->command : 0;
+    return (uint16_t)(cia402_step_to_enabled(state) | command);
+}
+
+static bool tells_control(const struct drives_axis *axis)
+{
+    return drives_has_given_up(axis, DRIVES_NO_CONTROL_PDO) && axis->heard &&
+           axis->controlword != drives_controlword(axis);
+}
+
+/* The mode first: the controlword is meant for it. */
+static void tell(struct drives *d, const struct drives_axis *axis)
+{
+    bool is_mode = drives_tells_mode(axis);
+    uint32_t object = (is_mode ? CIA402_MODE : CIA402_CONTROLWORD) & ~0xFFu;
+    sdo_client_download_number(&d->sdo, axis->config.node, object,
+                               is_mode ? axis->mode : drives_controlword(axis), is_mode ? 1 : 2,
+                               d->sdo_timeout_cycles);
+    d->is_telling = true;
+    d->tells = (uint8_t)(d->tells + (d->tells <= TELLS_MAX));
+}
+
+/* A lost one is told again, as a PDO would be, until its phase has lasted too long. */
+static void take_told(struct drives *d)
+{
+    unsigned index = d->axis_of_node[d->sdo.node];
+    struct drives_axis *axis = &d->axis[index];
+    d->is_telling = false;
+    if (d->sdo.result == SDO_ABORTED)
+        drives_raise_object(d, index, d->sdo.object, TAKT_ERROR_DRIVE_REFUSES, d->sdo.abort_code,
+                            sdo_abort_text(d->sdo.abort_code));
+    else if (d->sdo.result == SDO_DONE && sdo_index(d->sdo.object) == sdo_index(CIA402_MODE))
+        axis->told_mode = (uint8_t)sdo_client_number(&d->sdo);
+    else if (d->sdo.result == SDO_DONE)
+        axis->controlword = (uint16_t)sdo_client_number(&d->sdo);
+    d->sdo.result = SDO_IDLE;
+}
+
+static void tell_by_sdo(struct drives *d)
+{
+    if (d->is_telling && !sdo_client_is_busy(&d->sdo))
+        take_told(d);
+    if (d->sdo.result != SDO_IDLE || d->state != DRIVES_STARTING)
+        return;
+    for (unsigned i = 0; i < d->count && !d->is_telling; i++)
+        if (drives_tells_mode(&d->axis[i]) || tells_control(&d->axis[i]))
+            tell(d, &d->axis[i]);
+}
+
+/* The time of a slow request is not the drive's; but a drive that has to be told ever again does not get ready. */
+static void count_cycle(struct drives *d)
+{
+    if (!d->is_telling || d->tells > TELLS_MAX)
+        d->phase_cycles++;
 }
 
 static void run_phase(struct drives *d)
@@ -183,8 +336,7 @@ static void run_phase(struct drives *d)
             drives_enter_phase(d, DRIVES_ENABLE);
         break;
     case DRIVES_ENABLE:
-        if (all_are_enabled(d))
-            enter_operation(d);
+        enable(d);
         break;
     case DRIVES_SELECT:
         drives_select(d);
@@ -192,15 +344,18 @@ static void run_phase(struct drives *d)
     case DRIVES_HOME:
         drives_home(d);
         break;
+    case DRIVES_FOLLOW:
+        drives_follow(d);
+        break;
     }
 }
 
 void drives_start(struct drives *d)
 {
     sdo_client_tick(&d->sdo);
-    d->phase_cycles++;
-    run_phase(d);
-    if (d->state == DRIVES_STARTING && d->phase < DRIVES_SELECT &&
-        d->start_cycles++ >= d->start_timeout_cycles)
-        raise_late(d);
+    count_cycle(d);
+    if (d->phase >= DRIVES_ENABLE)
+        tell_by_sdo(d);
+    if (d->state == DRIVES_STARTING)
+        run_phase(d);
 }

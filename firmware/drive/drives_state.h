@@ -5,6 +5,7 @@
 #define TAKT_DRIVE_DRIVES_STATE_H
 
 #include "canopen/node.h"
+#include "canopen/pdo.h"
 #include "canopen/sdo_client.h"
 
 /*
@@ -19,15 +20,49 @@ enum drives_phase {
     DRIVES_CONFIGURE, /* each is checked and configured over SDO */
     DRIVES_START,     /* nodes become operational, one a cycle: that staggers their event timers */
     DRIVES_ENABLE,    /* statuswords lead to "operation enabled" */
-    DRIVES_SELECT, /* each shows the mode it is to be in: homing, or cyclic synchronous position */
-    DRIVES_HOME    /* the axes of one order look for their home */
+    DRIVES_SELECT, /* each shows the mode it is to be in: homing, or that in which targets are followed */
+    DRIVES_HOME,  /* the axes of one order look for their home */
+    DRIVES_FOLLOW /* drives in interpolated position mode begin to follow */
+};
+
+/* What a drive is configured by, in this order; then the next drive. */
+enum drives_part { DRIVES_ASK, DRIVES_SET, DRIVES_MAP, DRIVES_PARTS };
+
+/* A frame to a drive, as one of its RPDOs takes it. */
+#define DRIVES_NOWHERE 0xFF
+struct drives_frame {
+    uint16_t cob_id;
+    uint8_t length;                /* 0: there is no such frame */
+    uint8_t control, mode, target; /* byte it begins at; DRIVES_NOWHERE: it is not in the frame */
+    bool is_mixed;                 /* there is more in it than a target */
+    uint8_t data[CAN_DATA_MAX];    /* whatever else is in it, as the drive had it */
+};
+
+/* The PDO that is being configured. */
+struct drives_mapping {
+    uint8_t pass; /* which one, see drives_map.c */
+    uint8_t step;
+    uint8_t entry;  /* that is being told or read */
+    bool is_taken;  /* the drive has taken everything so far */
+    uint32_t id;    /* 1400:01 ff. as the drive has it */
+    struct pdo pdo; /* as it is told, then as the drive has it */
 };
 
 struct drives_axis {
     struct drives_config_axis config;
-    uint16_t target_cob_id; /* of the RPDO2 that carries the target */
-    uint8_t target_offset;  /* byte of the target in that frame */
-    bool target_last;       /* the frame is complete with it */
+    struct drives_frame control_frame; /* with the controlword */
+    struct drives_frame target_frame;  /* with the target */
+    uint16_t status_id,
+        position_id;   /* TPDOs with statusword and position; NODE_FUNCTION_MASK: none yet */
+    uint16_t error_id; /* TPDO that begins with the error code; likewise */
+    uint8_t status_end, position_end; /* byte behind them */
+    bool beats_by_status;             /* it has no heartbeat: its status counts for one */
+    bool is_paired;                   /* its target shares a frame with that of its neighbour */
+    uint8_t follow_mode;              /* in which it follows targets */
+    uint8_t modes;                    /* object 6502, of the modes 1 ... 8 */
+    uint8_t told_mode;                /* by SDO */
+    uint16_t bits;                    /* of its frames in a cycle, at worst */
+    uint32_t given_up;                /* bits: enum drives_given_up */
 
     bool reset_pending;
     bool booted;       /* its boot-up message has come */
@@ -60,6 +95,7 @@ struct drives {
     uint16_t heartbeat_ms;
     uint32_t heartbeat_cycles;      /* period */
     uint32_t heartless_most_cycles; /* without one from a drive */
+    uint32_t boot_timeout_cycles;
     uint32_t start_timeout_cycles;
     uint32_t answer_timeout_cycles;
     uint32_t sdo_timeout_cycles;
@@ -75,13 +111,22 @@ struct drives {
     uint32_t beat_cycles; /* since our last heartbeat */
 
     enum drives_phase phase;
-    uint32_t start_cycles; /* spent in DRIVES_STARTING, without homing */
     uint32_t phase_cycles; /* spent in the phase */
-    unsigned at_axis;      /* that is being configured or asked */
-    unsigned at_step;      /* of its configuration */
-    unsigned repeats;      /* of the request under way */
-    bool homed;            /* no axis is left to be homed */
-    uint8_t home_order;    /* axes of this order are being homed; 0: not yet */
+    uint32_t bitrate;
+    uint8_t at_axis;    /* that is being configured or asked */
+    uint8_t at_part;    /* of its configuration, enum drives_part */
+    uint8_t at_step;    /* of that part */
+    uint8_t repeats;    /* of the request under way */
+    uint8_t restarts;   /* configurations begun again, since a drive had booted */
+    uint8_t tells;      /* objects told by SDO in this phase */
+    bool is_looking;    /* what could not be written is read */
+    bool is_stale;      /* the request under way is of a configuration that has been begun again */
+    bool is_telling;    /* a controlword or a mode is being written */
+    bool homed;         /* no axis is left to be homed */
+    uint8_t home_order; /* axes of this order are being homed; 0: not yet */
+    uint32_t
+        read[6]; /* objects of the drive that is being configured: its period, or its scaling */
+    struct drives_mapping mapping;
     struct sdo_client sdo;
 
     struct diagnostic fault;

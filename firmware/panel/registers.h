@@ -241,6 +241,7 @@ enum panel_form {
     PANEL_SHOW32(ROW, DIGEST_HIGH, 52, "", 0, "FNV-1a 64 of all setpoints of the program so far: upper half") \
     PANEL_SHOW32(ROW, DIGEST_LOW, 54, "", 0, "lower half") \
     PANEL_SHOW32(ROW, UPLOAD_ROOM, 56, "byte", 0, "that can be handed in now") \
+    PANEL_SHOW32(ROW, DRIVES_GIVEN_UP, 58, "", 0, "bit i: what a drive does not have and is driven without, enum drives_given_up (firmware/drive)") \
     PANEL_SHOW_AXES(ROW, POSITION, 60, "mm", "setpoint, machine coordinates, without correction") \
     PANEL_SHOW_AXES(ROW, ACTUAL, 72, "mm", "position its drive reports") \
     PANEL_SHOW_AXES(ROW, FOLLOWING, 84, "mm", "setpoint minus the position reported for it") \

@@ -57,6 +57,8 @@ const struct settings_field settings_fields[] = {
     COUNT(30, can_bitrate, 10000, 1000000),
     COUNT(31, heartbeat_ms, 0, 20000),
     ROW(32, false, SETTINGS_U8, offsetof(struct machine, controller_node), 1, 1, 127, false, "controller_node"),
+    COUNT(33, boot_timeout_ms, 1, 600000),
+    COUNT(34, sdo_timeout_ms, 1, 600000),
 
     VECTOR(40, machine, CORRECTION_COORDINATES * CORRECTION_COORDINATES, CORRECTION_MOST),
     VECTOR(41, workpiece, CORRECTION_COORDINATES * CORRECTION_COORDINATES, CORRECTION_MOST),
@@ -86,7 +88,7 @@ const struct settings_field settings_fields[] = {
     OF_AXIS(104, SETTINGS_DOUBLE, travel_min_mm, -1e6, 0, false),
     OF_AXIS(105, SETTINGS_DOUBLE, travel_max_mm, 0, 1e6, false),
     OF_AXIS(106, SETTINGS_U8, drive_node, 1, 127, false),
-    OF_AXIS(107, SETTINGS_DOUBLE, increments_per_mm, 0, 1e11, true),
+    OF_AXIS(107, SETTINGS_DOUBLE, increments_per_mm, -1e11, 1e11, false),
     OF_AXIS(108, SETTINGS_DOUBLE, following_error_max_mm, 0, 1e6, false),
     OF_AXIS(109, SETTINGS_U32, drive_type, 0, 1, false),
     OF_AXIS(110, SETTINGS_DOUBLE, steps_per_mm, 0, 1e11, true),
@@ -103,6 +105,8 @@ const struct settings_field settings_fields[] = {
     OF_AXIS(121, SETTINGS_DOUBLE, home_offset_mm, -1e6, 1e6, false),
     OF_AXIS(122, SETTINGS_DOUBLE, home_timeout_s, 0, 3600, true),
     OF_AXIS(123, SETTINGS_U8, home_offset_is_position, 0, 1, false),
+    OF_AXIS(124, SETTINGS_DOUBLE, travel_per_turn_mm, 0, 1e6, false),
+    OF_AXIS(125, SETTINGS_U8, drive_is_set_up, 0, 1, false),
 };
 /* clang-format on */
 

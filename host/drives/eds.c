@@ -1,6 +1,6 @@
 #include "drives/eds.h"
 
-#include "drives/object_table.h"
+#include "drives/dictionary.h"
 
 #include <stdarg.h>
 #include <string.h>
@@ -30,22 +30,23 @@ static void write_file_info(FILE *stream, const char *name)
     (void)fputs(NEWLINE, stream);
 }
 
-static uint32_t constant_of(uint16_t index, uint8_t sub)
+static uint32_t constant_of(const struct dictionary *dictionary, uint16_t index, uint8_t sub)
 {
     bool has_index;
-    return (uint32_t)object_table_find(index, sub, &has_index)->initial;
+    const struct object_row *row = dictionary_find(dictionary, index, sub, &has_index);
+    return row != NULL ? (uint32_t)row->initial : 0;
 }
 
-static void write_device_info(FILE *stream)
+static void write_device_info(FILE *stream, const struct dictionary *dictionary)
 {
     static const unsigned kilobits[] = {10, 20, 50, 125, 250, 500, 800, 1000};
     char key[32];
     (void)fputs("[DeviceInfo]" NEWLINE, stream);
     write_pair(stream, "VendorName", "takt");
-    write_pair(stream, "VendorNumber", "0x%08X", (unsigned)constant_of(0x1018, 1));
+    write_pair(stream, "VendorNumber", "0x%08X", (unsigned)constant_of(dictionary, 0x1018, 1));
     write_pair(stream, "ProductName", "takt virtual drive");
-    write_pair(stream, "ProductNumber", "0x%08X", (unsigned)constant_of(0x1018, 2));
-    write_pair(stream, "RevisionNumber", "0x%08X", (unsigned)constant_of(0x1018, 3));
+    write_pair(stream, "ProductNumber", "0x%08X", (unsigned)constant_of(dictionary, 0x1018, 2));
+    write_pair(stream, "RevisionNumber", "0x%08X", (unsigned)constant_of(dictionary, 0x1018, 3));
     for (unsigned i = 0; i < sizeof kilobits / sizeof kilobits[0]; i++) {
         (void)snprintf(key, sizeof key, "BaudRate_%u", kilobits[i]);
         write_pair(stream, key, "1");
@@ -62,13 +63,13 @@ static void write_device_info(FILE *stream)
 }
 
 /* Data types that an RPDO may skip. */
-static void write_dummies(FILE *stream)
+static void write_dummies(FILE *stream, const struct dictionary *dictionary)
 {
     char key[16];
     (void)fputs("[DummyUsage]" NEWLINE, stream);
     for (unsigned type = 1; type <= OBJECT_UNSIGNED32; type++) {
         (void)snprintf(key, sizeof key, "Dummy%04X", type);
-        write_pair(stream, key, "%u", type >= OBJECT_INTEGER8);
+        write_pair(stream, key, "%u", dictionary->dummies >> type & 1);
     }
     (void)fputs(NEWLINE, stream);
 }
@@ -88,17 +89,18 @@ static bool is_listed(const struct object_row *row, enum eds_list list)
     return row->kind != OBJECT_SAME && list_of(row->index) == list;
 }
 
-static void write_list(FILE *stream, const char *name, enum eds_list list)
+static void write_list(FILE *stream, const struct dictionary *dictionary, const char *name,
+                       enum eds_list list)
 {
     unsigned count = 0;
-    for (unsigned i = 0; i < object_table_count; i++)
-        count += is_listed(&object_table[i], list);
+    for (unsigned i = 0; i < dictionary->count; i++)
+        count += is_listed(&dictionary->row[i], list);
     (void)fprintf(stream, "[%s]" NEWLINE, name);
     write_pair(stream, "SupportedObjects", "%u", count);
     count = 0;
-    for (unsigned i = 0; i < object_table_count; i++)
-        if (is_listed(&object_table[i], list))
-            (void)fprintf(stream, "%u=0x%04X" NEWLINE, ++count, object_table[i].index);
+    for (unsigned i = 0; i < dictionary->count; i++)
+        if (is_listed(&dictionary->row[i], list))
+            (void)fprintf(stream, "%u=0x%04X" NEWLINE, ++count, dictionary->row[i].index);
     (void)fputs(NEWLINE, stream);
 }
 
@@ -171,24 +173,25 @@ static void write_entry(FILE *stream, const struct object_row *row,
     (void)fputs(NEWLINE, stream);
 }
 
-static unsigned count_subs(const struct object_row *first)
+static unsigned count_subs(const struct dictionary *dictionary, const struct object_row *first)
 {
     unsigned count = 0;
-    const struct object_row *end = object_table + object_table_count;
+    const struct object_row *end = dictionary->row + dictionary->count;
     for (const struct object_row *row = first; row < end && row->index == first->index; row++)
         count++;
     return count;
 }
 
-static void write_row(FILE *stream, const struct object_row *row,
-                      const struct drive_objects *objects, uint8_t node)
+static void write_row(FILE *stream, const struct dictionary *dictionary,
+                      const struct object_row *row, const struct drive_objects *objects,
+                      uint8_t node)
 {
     bool is_compound = row->kind == OBJECT_ARRAY || row->kind == OBJECT_RECORD;
     if (is_compound) {
         (void)fprintf(stream, "[%04X]" NEWLINE, row->index);
         write_pair(stream, "ParameterName", "%s", row->title);
         write_pair(stream, "ObjectType", "0x%X", row->kind);
-        write_pair(stream, "SubNumber", "%u", count_subs(row));
+        write_pair(stream, "SubNumber", "%u", count_subs(dictionary, row));
         (void)fputs(NEWLINE, stream);
     }
     if (is_compound || row->kind == OBJECT_SAME)
@@ -200,15 +203,16 @@ static void write_row(FILE *stream, const struct object_row *row,
 
 void eds_write(FILE *stream, const struct virtual_drive *drive, const char *name)
 {
+    const struct dictionary *dictionary = drive->dictionary;
     struct drive_objects objects = drive->objects;
     objects.communication = drive->initial_communication;
     objects.settings = drive->initial_settings;
     write_file_info(stream, name);
-    write_device_info(stream);
-    write_dummies(stream);
-    write_list(stream, "MandatoryObjects", EDS_MANDATORY);
-    write_list(stream, "OptionalObjects", EDS_OPTIONAL);
-    write_list(stream, "ManufacturerObjects", EDS_MANUFACTURER);
-    for (unsigned i = 0; i < object_table_count; i++)
-        write_row(stream, &object_table[i], &objects, drive->config.node);
+    write_device_info(stream, dictionary);
+    write_dummies(stream, dictionary);
+    write_list(stream, dictionary, "MandatoryObjects", EDS_MANDATORY);
+    write_list(stream, dictionary, "OptionalObjects", EDS_OPTIONAL);
+    write_list(stream, dictionary, "ManufacturerObjects", EDS_MANUFACTURER);
+    for (unsigned i = 0; i < dictionary->count; i++)
+        write_row(stream, dictionary, &dictionary->row[i], &objects, drive->config.node);
 }

@@ -1,4 +1,4 @@
-#include "drives/object_table.h"
+#include "drives/dictionary.h"
 
 #include <string.h>
 
@@ -222,27 +222,15 @@ const struct object_row object_table[] = {
 
 const unsigned object_table_count = sizeof object_table / sizeof object_table[0];
 
-static uint32_t place(uint16_t index, uint8_t sub)
-{
-    return (uint32_t)index << 8 | sub;
-}
+const struct dictionary dictionary_own = {
+    .row = object_table,
+    .count = sizeof object_table / sizeof object_table[0],
+    .dummies = 0xFC /* all whole numbers */
+};
 
 const struct object_row *object_table_find(uint16_t index, uint8_t sub, bool *has_index)
 {
-    unsigned low = 0, high = object_table_count;
-    while (low < high) {
-        unsigned middle = (low + high) / 2;
-        if (place(object_table[middle].index, object_table[middle].sub) < place(index, sub))
-            low = middle + 1;
-        else
-            high = middle;
-    }
-    *has_index = (low < object_table_count && object_table[low].index == index) ||
-                 (low > 0 && object_table[low - 1].index == index);
-    if (low == object_table_count || object_table[low].index != index ||
-        object_table[low].sub != sub)
-        return NULL;
-    return &object_table[low];
+    return dictionary_find(&dictionary_own, index, sub, has_index);
 }
 
 unsigned object_type_bytes(enum object_type type)
@@ -324,17 +312,5 @@ void object_write(const struct object_row *row, struct drive_objects *objects, u
     default:
         memcpy(field, &raw, sizeof raw);
         break;
-    }
-}
-
-void object_table_set_initial(struct drive_objects *objects, uint8_t node)
-{
-    memset(objects, 0, sizeof *objects);
-    for (unsigned i = 0; i < object_table_count; i++) {
-        const struct object_row *row = &object_table[i];
-        if (object_type_bytes(row->type) == 0)
-            continue;
-        uint32_t added = row->flags & OBJECT_NODE_ID ? node : 0;
-        object_write(row, objects, (uint32_t)row->initial + added);
     }
 }

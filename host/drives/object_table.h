@@ -69,7 +69,4 @@ int64_t object_type_value(enum object_type type, uint32_t raw);
 uint32_t object_read(const struct object_row *row, const struct drive_objects *objects);
 void object_write(const struct object_row *row, struct drive_objects *objects, uint32_t raw);
 
-/* Every field gets its initial value, with the node id where it belongs. */
-void object_table_set_initial(struct drive_objects *objects, uint8_t node);
-
 #endif

@@ -9,6 +9,8 @@
 
 #define MICROSECOND_NS 1000u
 
+#define LAST_COMMUNICATION 0x1FFF
+
 /* SYNC counts as lost after this many of its periods (object 1006). */
 #define SYNC_LOST_PERIODS 3
 
@@ -83,11 +85,12 @@ void virtual_drive_init(struct virtual_drive *drive, const struct virtual_drive_
     memset(drive, 0, sizeof *drive);
     drive->config = *config;
     drive->port = *port;
+    drive->dictionary = config->dictionary != NULL ? config->dictionary : &dictionary_own;
     drive->nmt = NMT_BOOTED;
     drive_plant_init(&drive->plant, &config->plant);
     sdo_server_init(&drive->sdo, config->node, &owner);
     virtual_drive_init_objects(drive);
-    if (target)
+    if (target && drive->dictionary == &dictionary_own)
         set_target_pdo(drive, target);
     drive->initial_communication = drive->stored_communication = drive->objects.communication;
     drive->initial_settings = drive->stored_settings = drive->objects.settings;
@@ -171,6 +174,7 @@ static void enter_nmt_state(struct virtual_drive *drive, enum nmt_state next)
 void virtual_drive_boot(struct virtual_drive *drive)
 {
     drive->nmt = NMT_BOOTED;
+    drive->boot_ns = 0;
     restart_communication(drive);
     send_heartbeat(drive, NMT_BOOTED);
     virtual_drive_tell(drive, DRIVE_EVENT_BOOT, 0, 0);
@@ -182,13 +186,20 @@ static void reset(struct virtual_drive *drive, bool whole_node)
 {
     virtual_drive_lose_connection(drive);
     drive->objects.communication = drive->stored_communication;
+    dictionary_set_initial(drive->dictionary, DICTIONARY_MEMORY, &drive->objects,
+                           drive->config.node, 0, whole_node ? UINT16_MAX : LAST_COMMUNICATION);
     if (whole_node) {
         drive->objects.settings = drive->stored_settings;
         virtual_drive_derive(drive);
         virtual_drive_clear_history(drive);
         virtual_drive_reset_profile(drive);
     }
-    virtual_drive_boot(drive);
+    drive->nmt = NMT_BOOTED;
+    drive->requests.count = 0;
+    drive->boot_ns = drive->now_ns + drive->config.boot_us * (uint64_t)MICROSECOND_NS;
+    if (drive->boot_ns == drive->now_ns)
+        virtual_drive_boot(drive);
+    virtual_drive_look_soon(drive);
 }
 
 void virtual_drive_reboot(struct virtual_drive *drive)
@@ -248,13 +259,40 @@ static void take_sync(struct virtual_drive *drive, const struct can_frame *frame
     virtual_drive_send_synchronous(drive, frame);
 }
 
+/* Requests wait in a row; those for which there is no room are lost. */
+static void take_request(struct virtual_drive *drive, const struct can_frame *frame)
+{
+    struct drive_requests *r = &drive->requests;
+    if (drive->config.sdo_us == 0) {
+        sdo_server_take(&drive->sdo, frame);
+        return;
+    }
+    if (r->count == VIRTUAL_DRIVE_REQUESTS)
+        return;
+    if (r->count == 0)
+        r->due_ns = drive->now_ns + drive->config.sdo_us * (uint64_t)MICROSECOND_NS;
+    r->frame[r->count++] = *frame;
+    virtual_drive_look_soon(drive);
+}
+
+static void answer_request(struct virtual_drive *drive)
+{
+    struct drive_requests *r = &drive->requests;
+    if (r->count == 0 || drive->now_ns < r->due_ns)
+        return;
+    sdo_server_take(&drive->sdo, &r->frame[0]);
+    r->count--;
+    memmove(r->frame, r->frame + 1, r->count * sizeof r->frame[0]);
+    r->due_ns = drive->now_ns + drive->config.sdo_us * (uint64_t)MICROSECOND_NS;
+}
+
 static void take_other(struct virtual_drive *drive, const struct can_frame *frame)
 {
     if (frame->id == NMT_COMMAND_COB_ID)
         take_nmt_command(drive, frame);
     else if (frame->id == SDO_REQUEST_FUNCTION + drive->config.node) {
         if (drive->nmt != NMT_STOPPED)
-            sdo_server_take(&drive->sdo, frame);
+            take_request(drive, frame);
     } else {
         take_heartbeat(drive, frame);
     }
@@ -264,7 +302,8 @@ void virtual_drive_on_frame(struct virtual_drive *drive, const struct can_frame 
 {
     if (!(drive->accepts[frame->id >> 5 & 63] >> (frame->id & 31) & 1))
         return;
-    if (drive->faults.is_hung || frame->id > NODE_FUNCTION_MASK + NODE_ID_MASK)
+    if (drive->faults.is_hung || drive->boot_ns != 0 ||
+        frame->id > NODE_FUNCTION_MASK + NODE_ID_MASK)
         return;
     if (frame->id == drive->objects.communication.sync_cob_id)
         take_sync(drive, frame);
@@ -298,6 +337,14 @@ static void watch_connection(struct virtual_drive *drive)
 static void run_timers(struct virtual_drive *drive)
 {
     uint16_t heartbeat_ms = drive->objects.communication.producer_heartbeat_ms;
+    if (drive->boot_ns != 0) {
+        if (drive->now_ns >= drive->boot_ns)
+            virtual_drive_boot(drive);
+        else
+            drive->due_ns = drive->boot_ns;
+        return;
+    }
+    answer_request(drive);
     if (drive->now_ns >= drive->heartbeat_ns) {
         send_heartbeat(drive, drive->nmt);
         drive->heartbeat_ns = drive->now_ns + (uint64_t)heartbeat_ms * MILLISECOND_NS;
@@ -309,6 +356,8 @@ static void run_timers(struct virtual_drive *drive)
     drive->due_ns = earlier(drive->due_ns, drive->sync_lost_ns);
     for (unsigned i = 0; i < DRIVE_CONSUMERS; i++)
         drive->due_ns = earlier(drive->due_ns, drive->consumer_ns[i]);
+    if (drive->requests.count > 0)
+        drive->due_ns = earlier(drive->due_ns, drive->requests.due_ns);
     if (drive->emcy_count > 0)
         drive->due_ns = earlier(drive->due_ns, drive->emcy_ns);
 }
@@ -340,9 +389,14 @@ enum nmt_state virtual_drive_get_nmt_state(const struct virtual_drive *drive)
     return drive->nmt;
 }
 
+/* A drive that cannot be told has the time between targets, once it is to follow them. */
 uint32_t virtual_drive_get_sync_period_us(const struct virtual_drive *drive)
 {
-    return drive->objects.communication.sync_period_us;
+    bool has_index;
+    const struct object_row *row = dictionary_find(drive->dictionary, 0x1006, 0, &has_index);
+    if (row != NULL && row->access == OBJECT_RW)
+        return drive->objects.communication.sync_period_us;
+    return drive->nmt == NMT_OPERATIONAL ? (uint32_t)(drive->interpolation_ns / MICROSECOND_NS) : 0;
 }
 
 bool virtual_drive_is_sync(const struct virtual_drive *drive, const struct can_frame *frame)

@@ -11,6 +11,7 @@
 #include "canopen/emcy.h"
 #include "canopen/nmt.h"
 #include "canopen/pdo.h"
+#include "drives/dictionary.h"
 #include "drives/drive_event.h"
 #include "drives/drive_objects.h"
 #include "drives/drive_plant.h"
@@ -24,9 +25,13 @@
 #include <stdint.h>
 
 struct virtual_drive_config {
-    uint8_t node;             /* 1 ... 127 */
-    double increments_per_mm; /* position units of the drive per mm or rad; > 0 */
-    uint32_t cycle_us;        /* between two targets at power-on (object 60C2); 0: a millisecond */
+    uint8_t node; /* 1 ... 127 */
+    double
+        increments_per_mm; /* position units of the drive per mm or rad; < 0: its motor turns the other way */
+    uint32_t cycle_us; /* between two targets at power-on (object 60C2); 0: a millisecond */
+    uint32_t boot_us;  /* from a reset to the boot-up message */
+    uint32_t sdo_us;   /* from a request to its answer */
+    const struct dictionary *dictionary; /* must stay; NULL: takt's own */
     struct drive_plant_config plant;
 };
 
@@ -67,7 +72,7 @@ enum cia402_state virtual_drive_get_state(const struct virtual_drive *drive);
 enum nmt_state virtual_drive_get_nmt_state(const struct virtual_drive *drive);
 /* True position of the axis, unrounded. */
 double virtual_drive_get_position_mm(const struct virtual_drive *drive);
-/* Object 1006: what the controller says of the time between two SYNCs; 0: nothing. */
+/* What the controller says of the time between two SYNCs, object 1006, else 60C2; 0: nothing. */
 uint32_t virtual_drive_get_sync_period_us(const struct virtual_drive *drive);
 
 /* The frame is SYNC to this drive (object 1005). */

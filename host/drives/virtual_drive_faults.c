@@ -46,7 +46,8 @@ static bool overrides(const struct inject_fault *fault)
 static uint32_t shown_by(struct virtual_drive *drive, const struct inject_fault *fault)
 {
     bool has_index;
-    const struct object_row *row = object_table_find(fault->index, fault->sub, &has_index);
+    const struct object_row *row =
+        dictionary_find(drive->dictionary, fault->index, fault->sub, &has_index);
     if (fault->kind == INJECT_REPORT || !row)
         return fault->value;
     virtual_drive_refresh(drive, DRIVE_GROUP_ALL);

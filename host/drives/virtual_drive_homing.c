@@ -69,12 +69,13 @@ uint32_t virtual_drive_inputs(const struct virtual_drive *drive)
 {
     const struct drive_plant_config *c = &drive->config.plant;
     double table_mm = drive_plant_table_mm(&drive->plant);
+    bool is_turned = virtual_drive_sign(drive) < 0;
     uint32_t inputs = 0;
     if (table_mm <= c->limit_switch_min_mm)
-        inputs |= INPUT_NEGATIVE_LIMIT;
+        inputs |= is_turned ? INPUT_POSITIVE_LIMIT : INPUT_NEGATIVE_LIMIT;
     if (table_mm >= c->limit_switch_max_mm)
-        inputs |= INPUT_POSITIVE_LIMIT;
-    if (table_mm >= c->home_switch_mm)
+        inputs |= is_turned ? INPUT_NEGATIVE_LIMIT : INPUT_POSITIVE_LIMIT;
+    if (is_turned ? table_mm <= c->home_switch_mm : table_mm >= c->home_switch_mm)
         inputs |= INPUT_HOME;
     return inputs;
 }
@@ -82,9 +83,10 @@ uint32_t virtual_drive_inputs(const struct virtual_drive *drive)
 static double switch_mm(const struct virtual_drive *drive, uint32_t input)
 {
     const struct drive_plant_config *c = &drive->config.plant;
-    if (input == INPUT_NEGATIVE_LIMIT)
-        return c->limit_switch_min_mm;
-    return input == INPUT_POSITIVE_LIMIT ? c->limit_switch_max_mm : c->home_switch_mm;
+    uint32_t lower = virtual_drive_sign(drive) < 0 ? INPUT_POSITIVE_LIMIT : INPUT_NEGATIVE_LIMIT;
+    if (input == INPUT_HOME)
+        return c->home_switch_mm;
+    return input == lower ? c->limit_switch_min_mm : c->limit_switch_max_mm;
 }
 
 /* What the encoder reads at a position of the motor. */
@@ -94,7 +96,7 @@ static double encoder_mm(const struct virtual_drive *drive, double motor_mm)
 }
 
 /* The pulse comes once a turn, where the motor's angle is 0. */
-static void await_index(struct virtual_drive *drive, int8_t direction)
+static void await_index(struct virtual_drive *drive, double direction)
 {
     double turn_mm = drive->config.plant.travel_per_revolution_mm;
     double turns = drive->plant.position_mm / turn_mm;
@@ -125,7 +127,7 @@ void virtual_drive_begin_homing(struct virtual_drive *drive)
         return;
     }
     if (!method->input)
-        await_index(drive, method->edge);
+        await_index(drive, method->edge * virtual_drive_sign(drive));
     else
         drive->homing.phase = HOMING_SEARCH;
 }
@@ -141,18 +143,19 @@ void virtual_drive_interrupt_homing(struct virtual_drive *drive)
 
 static double speed_mm_s(const struct virtual_drive *drive, unsigned i)
 {
-    return drive->objects.settings.homing_velocity[i] / drive->increments_per_mm;
+    return drive->objects.settings.homing_velocity[i] / virtual_drive_scale(drive);
 }
 
 static void run_towards(struct virtual_drive *drive, int8_t direction, double velocity_mm_s,
                         uint32_t cycle_ns)
 {
     double acceleration_mm_s2 =
-        drive->objects.settings.homing_acceleration / drive->increments_per_mm;
-    virtual_drive_run_at(drive, direction * velocity_mm_s, acceleration_mm_s2, cycle_ns);
+        drive->objects.settings.homing_acceleration / virtual_drive_scale(drive);
+    virtual_drive_run_at(drive, direction * virtual_drive_sign(drive) * velocity_mm_s,
+                         acceleration_mm_s2, cycle_ns);
 }
 
-/* An end of the axis that the method does not want is where it fails. */
+/* Directions of a method are those of the drive. An end of the axis that the method does not want is where it fails. */
 static bool hits_other_end(const struct virtual_drive *drive, const struct method *method,
                            int8_t direction)
 {
@@ -162,7 +165,7 @@ static bool hits_other_end(const struct virtual_drive *drive, const struct metho
 
 static bool moves_in(const struct virtual_drive *drive, int8_t direction)
 {
-    return drive->plant.velocity_mm_s * direction > 0;
+    return drive->plant.velocity_mm_s * direction * virtual_drive_sign(drive) > 0;
 }
 
 static void fail(struct virtual_drive *drive)
@@ -196,7 +199,7 @@ static void find_edge(struct virtual_drive *drive, const struct method *method, 
         return;
     double past_mm = drive_plant_table_mm(&drive->plant) - switch_mm(drive, method->input);
     if (method->has_index)
-        await_index(drive, method->edge);
+        await_index(drive, method->edge * virtual_drive_sign(drive));
     else
         latch(drive, encoder_mm(drive, drive->plant.position_mm - past_mm));
 }
@@ -205,7 +208,7 @@ static void find_index(struct virtual_drive *drive, const struct method *method,
 {
     double index_mm = drive->homing.index_mm;
     run_towards(drive, method->edge, speed_mm_s(drive, 1), cycle_ns);
-    if ((drive->plant.position_mm - index_mm) * method->edge >= 0)
+    if ((drive->plant.position_mm - index_mm) * method->edge * virtual_drive_sign(drive) >= 0)
         latch(drive, encoder_mm(drive, index_mm));
     else if (hits_other_end(drive, method, method->edge))
         fail(drive);

@@ -32,7 +32,7 @@ double virtual_drive_actual_mm(const struct virtual_drive *drive)
 
 double virtual_drive_profile_deceleration_mm_s2(const struct virtual_drive *drive)
 {
-    return drive->objects.settings.profile_deceleration / drive->increments_per_mm;
+    return drive->objects.settings.profile_deceleration / virtual_drive_scale(drive);
 }
 
 /*
@@ -133,7 +133,7 @@ static void run_profile(struct virtual_drive *drive, double target_mm, const str
 static struct ramps profile_ramps(const struct virtual_drive *drive)
 {
     const struct drive_settings *s = &drive->objects.settings;
-    double per_mm = drive->increments_per_mm;
+    double per_mm = virtual_drive_scale(drive);
     double motor_mm_s =
         s->max_motor_speed_rpm / SECONDS_PER_MIN * drive->config.plant.travel_per_revolution_mm;
     uint32_t velocity = s->profile_velocity < s->max_profile_velocity ? s->profile_velocity
@@ -145,6 +145,8 @@ static struct ramps profile_ramps(const struct virtual_drive *drive)
 static int64_t limited(const struct virtual_drive *drive, int64_t position_inc)
 {
     const int32_t *limit = drive->objects.settings.position_limit;
+    if (limit[0] >= limit[1])
+        return position_inc; /* no limits */
     if (position_inc < limit[0])
         return limit[0];
     return position_inc > limit[1] ? limit[1] : position_inc;
@@ -191,7 +193,7 @@ static void check_reached(struct virtual_drive *drive, double target_mm, uint32_
 {
     const struct drive_settings *o = &drive->objects.settings;
     struct drive_setpoints *s = &drive->setpoints;
-    double window_mm = o->position_window / drive->increments_per_mm;
+    double window_mm = o->position_window / virtual_drive_scale(drive);
     bool is_inside = o->position_window == WINDOW_ANY ||
                      maths_abs(target_mm - drive->plant.measured_mm) <= window_mm;
     s->in_window_ns = is_inside ? s->in_window_ns + cycle_ns : 0;
@@ -225,7 +227,8 @@ static uint32_t period_cycles(const struct virtual_drive *drive, uint32_t cycle_
 static void run_interpolated(struct virtual_drive *drive, double target_inc, uint32_t cycle_ns)
 {
     const int32_t *limit = drive->objects.settings.position_limit;
-    double limited_inc = maths_clamp(target_inc, limit[0], limit[1]);
+    double limited_inc =
+        limit[0] < limit[1] ? maths_clamp(target_inc, limit[0], limit[1]) : target_inc;
     double goal_mm = limited_inc / drive->increments_per_mm + drive->origin_mm;
     double command_mm = goal_mm;
     if (goal_mm != drive->goal_mm) {
@@ -247,8 +250,9 @@ static void set_offsets(struct virtual_drive *drive)
     struct drive_plant *plant = &drive->plant;
     plant->velocity_offset_mm_s =
         p->velocity_offset ? p->velocity_offset / drive->increments_per_mm : 0;
-    plant->torque_offset_mm_s2 =
-        p->torque_offset ? p->torque_offset / TORQUE_PER_RATED * plant->mm_s2_per_rated : 0;
+    plant->torque_offset_mm_s2 = p->torque_offset ? virtual_drive_sign(drive) * p->torque_offset /
+                                                        TORQUE_PER_RATED * plant->mm_s2_per_rated
+                                                  : 0;
 }
 
 static void run_cyclic(struct virtual_drive *drive, uint32_t cycle_ns)

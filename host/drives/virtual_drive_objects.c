@@ -11,6 +11,8 @@
 #define SIGNATURE_SAVE 0x65766173u /* "save", the first letter in the lowest byte */
 #define SIGNATURE_LOAD 0x64616F6Cu /* "load" */
 
+#define PDO_NOT_VALID 0x80000000u
+
 #define NOT_WATCHED UINT32_MAX /* windows of position and following error */
 
 /* Turns of the motor per second, and per second squared, a drive starts with. */
@@ -26,7 +28,7 @@
 
 static uint32_t unsigned_increments(const struct virtual_drive *drive, double value)
 {
-    double increments = maths_round(value * drive->increments_per_mm);
+    double increments = maths_round(value * virtual_drive_scale(drive));
     return (uint32_t)maths_clamp(increments, 0, (double)UINT32_MAX);
 }
 
@@ -48,13 +50,34 @@ static void set_interpolation_period(struct drive_settings *s, uint32_t cycle_us
     s->interpolation_index = index;
 }
 
+static bool has_object(const struct virtual_drive *drive, unsigned index, uint8_t sub)
+{
+    bool has_index;
+    return dictionary_find(drive->dictionary, (uint16_t)index, sub, &has_index) != NULL;
+}
+
+/* Values of a data sheet, and PDOs that it has. */
+static void take_data_sheet(struct virtual_drive *drive)
+{
+    struct drive_communication *c = &drive->objects.communication;
+    dictionary_set_initial(drive->dictionary, DICTIONARY_NOT_OF_MACHINE, &drive->objects,
+                           drive->config.node, 0, UINT16_MAX);
+    for (unsigned i = 0; i < DRIVE_PDO_COUNT; i++) {
+        if (!has_object(drive, 0x1400 + i, 1) || !has_object(drive, 0x1600 + i, 0))
+            c->rpdo[i].cob_id |= PDO_NOT_VALID;
+        if (!has_object(drive, 0x1800 + i, 1) || !has_object(drive, 0x1A00 + i, 0))
+            c->tpdo[i].cob_id |= PDO_NOT_VALID;
+    }
+}
+
 /* What the machine makes of the initial values: everything that is counted in increments. */
 void virtual_drive_init_objects(struct virtual_drive *drive)
 {
     const struct drive_plant_config *plant = &drive->config.plant;
     struct drive_objects *o = &drive->objects;
     double turn_mm = plant->travel_per_revolution_mm;
-    object_table_set_initial(o, drive->config.node);
+    memset(o, 0, sizeof *o);
+    dictionary_set_initial(&dictionary_own, DICTIONARY_ALL, o, drive->config.node, 0, UINT16_MAX);
     drive->increments_per_mm = drive->config.increments_per_mm;
     o->identity.serial = drive->config.node;
     o->identity.encoder_counts = plant->encoder_counts_per_revolution;
@@ -78,6 +101,8 @@ void virtual_drive_init_objects(struct virtual_drive *drive)
     o->settings.homing_acceleration = unsigned_increments(drive, DEFAULT_HOMING_TURNS_S2 * turn_mm);
     o->settings.feed_increments = unsigned_increments(drive, turn_mm);
     set_interpolation_period(&o->settings, drive->config.cycle_us);
+    if (drive->dictionary != &dictionary_own)
+        take_data_sheet(drive);
 }
 
 /*
@@ -94,7 +119,8 @@ static void rescale(struct virtual_drive *drive)
                       s->feed_shaft == initial->feed_shaft &&
                       s->gear_motor == initial->gear_motor && s->gear_shaft == initial->gear_shaft;
     drive->increments_per_mm = is_initial ? drive->config.increments_per_mm
-                                          : turn / drive->config.plant.travel_per_revolution_mm;
+                                          : virtual_drive_sign(drive) * turn /
+                                                drive->config.plant.travel_per_revolution_mm;
 }
 
 /* A value of the machine that its object could not hold is used as long as nobody has changed it. */
@@ -103,7 +129,7 @@ static double in_mm(const struct virtual_drive *drive, uint32_t value, uint32_t 
 {
     bool is_initial =
         value == initial && drive->increments_per_mm == drive->config.increments_per_mm;
-    return is_initial ? machine : value / drive->increments_per_mm;
+    return is_initial ? machine : value / virtual_drive_scale(drive);
 }
 
 /* period = 60C2:01 10^60C2:02 seconds */
@@ -133,7 +159,8 @@ void virtual_drive_derive(struct virtual_drive *drive)
 
 static int16_t torque(const struct virtual_drive *drive)
 {
-    double torque = maths_round(TORQUE_PER_RATED * drive_plant_torque_ratio(&drive->plant));
+    double torque = maths_round(virtual_drive_sign(drive) * TORQUE_PER_RATED *
+                                drive_plant_torque_ratio(&drive->plant));
     return (int16_t)maths_clamp(torque, INT16_MIN, INT16_MAX);
 }
 
@@ -245,7 +272,7 @@ static uint32_t check_profile_write(const struct virtual_drive *drive, const str
     case 0x605A:
         return check_quick_stop((uint32_t)value);
     case 0x6060:
-        return virtual_drive_has_mode((int8_t)value) ? SDO_ABORT_NONE : SDO_ABORT_VALUE;
+        return virtual_drive_has_mode(drive, (int8_t)value) ? SDO_ABORT_NONE : SDO_ABORT_VALUE;
     case 0x6091:
     case 0x6092:
         return drive->state == CIA402_ENABLED ? SDO_ABORT_STATE : SDO_ABORT_NONE;
@@ -302,7 +329,8 @@ static void follow_communication_write(struct virtual_drive *drive, const struct
         restore(drive);
         break;
     case 0x1016:
-        virtual_drive_restart_consumer(drive, row->sub - 1u);
+        if (row->sub >= 1 && row->sub <= DRIVE_CONSUMERS)
+            virtual_drive_restart_consumer(drive, row->sub - 1u);
         break;
     case 0x1017:
         virtual_drive_restart_heartbeat(drive);
@@ -357,6 +385,8 @@ static uint32_t write_bytes(struct virtual_drive *drive, const struct object_row
                             const uint8_t *bytes, size_t length)
 {
     struct drive_process *p = &drive->objects.process;
+    if (row->flags & OBJECT_FIXED)
+        return SDO_ABORT_NONE; /* of a data sheet: it is not kept */
     if (row->type == OBJECT_STRING) {
         if (length >= DRIVE_LABEL_SIZE)
             return SDO_ABORT_TOO_LONG;
@@ -395,7 +425,8 @@ static uint32_t find(const struct virtual_drive *drive, uint32_t object,
 {
     bool has_index;
     uint32_t code;
-    *row = object_table_find((uint16_t)(object >> 16), (uint8_t)(object >> 8), &has_index);
+    *row = dictionary_find(drive->dictionary, (uint16_t)(object >> 16), (uint8_t)(object >> 8),
+                           &has_index);
     if (drive->faults.in_force && virtual_drive_aborts_sdo(drive, object, &code))
         return code;
     if (*row)
@@ -477,18 +508,18 @@ uint32_t virtual_drive_write_sdo(void *drive, uint32_t object, const uint8_t *by
 }
 
 /* The number a mapping entry names, and NULL for anything else. */
-static const struct object_row *find_number(uint32_t object)
+static const struct object_row *find_number(const struct virtual_drive *drive, uint32_t object)
 {
     bool has_index;
-    const struct object_row *row =
-        object_table_find((uint16_t)(object >> 16), (uint8_t)(object >> 8), &has_index);
+    const struct object_row *row = dictionary_find(drive->dictionary, (uint16_t)(object >> 16),
+                                                   (uint8_t)(object >> 8), &has_index);
     unsigned bits = row ? 8 * object_type_bytes((enum object_type)row->type) : 0;
     return bits != 0 && bits == (object & 0xFF) ? row : NULL;
 }
 
 bool virtual_drive_read_object(struct virtual_drive *drive, uint32_t object, uint32_t *value)
 {
-    const struct object_row *row = find_number(object);
+    const struct object_row *row = find_number(drive, object);
     if (!row)
         return false;
     virtual_drive_refresh(drive, DRIVE_GROUP_ALL);
@@ -498,7 +529,7 @@ bool virtual_drive_read_object(struct virtual_drive *drive, uint32_t object, uin
 
 bool virtual_drive_write_object(struct virtual_drive *drive, uint32_t object, uint32_t value)
 {
-    const struct object_row *row = find_number(object);
+    const struct object_row *row = find_number(drive, object);
     if (!row || row->access == OBJECT_RO || row->access == OBJECT_CONST)
         return false;
     return write_number(drive, row, value) == SDO_ABORT_NONE;

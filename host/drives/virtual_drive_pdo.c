@@ -24,17 +24,18 @@
 #define TPDO_MAPPING    0x1A00
 
 /* Data types as indices: places an RPDO skips. */
-static bool is_dummy(uint16_t index)
+static bool is_dummy(const struct virtual_drive *drive, uint16_t index)
 {
-    return index >= OBJECT_INTEGER8 && index <= OBJECT_UNSIGNED32;
+    return index >= OBJECT_INTEGER8 && index <= OBJECT_UNSIGNED32 &&
+           drive->dictionary->dummies >> index & 1;
 }
 
 /*
  * The row of a mapping entry, NULL for a dummy. False: there is no such object, of that length, that
  * may travel this way.
  */
-static bool find_mapped(uint32_t entry, enum object_flag direction, const struct object_row **row,
-                        uint32_t *code)
+static bool find_mapped(const struct virtual_drive *drive, uint32_t entry,
+                        enum object_flag direction, const struct object_row **row, uint32_t *code)
 {
     uint16_t index = (uint16_t)(entry >> 16);
     uint8_t sub = (uint8_t)(entry >> 8);
@@ -42,10 +43,10 @@ static bool find_mapped(uint32_t entry, enum object_flag direction, const struct
     bool has_index;
     *row = NULL;
     *code = SDO_ABORT_NOT_MAPPABLE;
-    if (is_dummy(index))
+    if (is_dummy(drive, index))
         return direction == OBJECT_TO_RPDO && sub == 0 &&
                bits == 8 * object_type_bytes((enum object_type)index);
-    *row = object_table_find(index, sub, &has_index);
+    *row = dictionary_find(drive->dictionary, index, sub, &has_index);
     if (!*row)
         *code = has_index ? SDO_ABORT_NO_SUB_INDEX : SDO_ABORT_NO_OBJECT;
     return *row && (*row)->flags & direction && bits == 8 * object_type_bytes((*row)->type);
@@ -85,7 +86,7 @@ static void add_mapped(struct virtual_drive *drive, struct drive_pdo *pdo, uint3
 {
     const struct object_row *row;
     uint32_t code;
-    if (!find_mapped(entry, direction, &row, &code))
+    if (!find_mapped(drive, entry, direction, &row, &code))
         return;
     pdo->row[pdo->count] = row;
     if (row && !(row->flags & OBJECT_FIXED))
@@ -170,6 +171,8 @@ void virtual_drive_update_pdo(struct virtual_drive *drive, uint16_t index)
 {
     const struct drive_communication *c = &drive->objects.communication;
     unsigned i = index & 0xFFu;
+    if (i >= DRIVE_PDO_COUNT)
+        return;
     if (index >= TPDO_PARAMETERS)
         update_tpdo(drive, i);
     else
@@ -420,21 +423,23 @@ static uint32_t check_parameters(const struct drive_pdo *pdo, uint8_t sub, uint3
     }
 }
 
-static uint32_t check_entry(uint32_t entry, enum object_flag direction)
+static uint32_t check_entry(const struct virtual_drive *drive, uint32_t entry,
+                            enum object_flag direction)
 {
     const struct object_row *row;
     uint32_t code;
-    return entry == 0 || find_mapped(entry, direction, &row, &code) ? SDO_ABORT_NONE : code;
+    return entry == 0 || find_mapped(drive, entry, direction, &row, &code) ? SDO_ABORT_NONE : code;
 }
 
 /* Sub-index 0 makes the entries below it valid: do all of them exist, and fit into a frame? */
-static uint32_t check_count(const struct drive_pdo_mapping *mapping, uint32_t count,
+static uint32_t check_count(const struct virtual_drive *drive,
+                            const struct drive_pdo_mapping *mapping, uint32_t count,
                             enum object_flag direction)
 {
     unsigned bits = 0;
     for (unsigned i = 0; i < count; i++) {
         uint32_t code = mapping->entry[i] == 0 ? (uint32_t)SDO_ABORT_NOT_MAPPABLE
-                                               : check_entry(mapping->entry[i], direction);
+                                               : check_entry(drive, mapping->entry[i], direction);
         if (code != SDO_ABORT_NONE)
             return code;
         bits += mapping->entry[i] & 0xFF;
@@ -442,13 +447,29 @@ static uint32_t check_count(const struct drive_pdo_mapping *mapping, uint32_t co
     return bits > 8 * CAN_DATA_MAX ? SDO_ABORT_PDO_LENGTH : SDO_ABORT_NONE;
 }
 
-/* The mapping changes only while the PDO is not valid, its entries only while none is in use. */
-static uint32_t check_mapping(const struct drive_pdo *pdo, const struct drive_pdo_mapping *mapping,
-                              enum object_flag direction, uint8_t sub, uint32_t value)
+/* A PDO whose identifier cannot be written is always valid. */
+static bool is_fixed(const struct virtual_drive *drive, uint16_t mapping_index)
 {
-    if (pdo->is_valid || (sub != 0 && mapping->count != 0))
+    bool has_index;
+    const struct object_row *row =
+        dictionary_find(drive->dictionary,
+                        (uint16_t)(mapping_index - RPDO_MAPPING + RPDO_PARAMETERS), 1, &has_index);
+    return row != NULL && row->access != OBJECT_RW;
+}
+
+/*
+ * The mapping changes only while the PDO is not valid, where it may be that; its entries only while
+ * none is in use.
+ */
+static uint32_t check_mapping(const struct virtual_drive *drive, const struct object_row *row,
+                              const struct drive_pdo *pdo, const struct drive_pdo_mapping *mapping,
+                              enum object_flag direction, uint32_t value)
+{
+    bool is_in_use = pdo->is_valid && !is_fixed(drive, row->index);
+    if (is_in_use || (row->sub != 0 && mapping->count != 0))
         return SDO_ABORT_ACCESS;
-    return sub == 0 ? check_count(mapping, value, direction) : check_entry(value, direction);
+    return row->sub == 0 ? check_count(drive, mapping, value, direction)
+                         : check_entry(drive, value, direction);
 }
 
 uint32_t virtual_drive_check_pdo_write(const struct virtual_drive *drive,
@@ -457,16 +478,18 @@ uint32_t virtual_drive_check_pdo_write(const struct virtual_drive *drive,
     const struct drive_communication *c = &drive->objects.communication;
     unsigned i = row->index & 0xFFu;
     if (i >= DRIVE_PDO_COUNT)
-        return SDO_ABORT_NO_OBJECT;
+        return SDO_ABORT_NONE; /* a PDO of a data sheet that is only memory */
     switch (row->index & 0xFF00) {
     case RPDO_PARAMETERS:
         return check_parameters(&drive->rpdo[i], row->sub, value);
     case TPDO_PARAMETERS:
         return check_parameters(&drive->tpdo[i], row->sub, value);
     case RPDO_MAPPING:
-        return check_mapping(&drive->rpdo[i], &c->rpdo_mapping[i], OBJECT_TO_RPDO, row->sub, value);
+        return check_mapping(drive, row, &drive->rpdo[i], &c->rpdo_mapping[i], OBJECT_TO_RPDO,
+                             value);
     case TPDO_MAPPING:
-        return check_mapping(&drive->tpdo[i], &c->tpdo_mapping[i], OBJECT_TO_TPDO, row->sub, value);
+        return check_mapping(drive, row, &drive->tpdo[i], &c->tpdo_mapping[i], OBJECT_TO_TPDO,
+                             value);
     default:
         return SDO_ABORT_NONE;
     }

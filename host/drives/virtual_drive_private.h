@@ -5,7 +5,7 @@
 #define TAKT_DRIVES_VIRTUAL_DRIVE_PRIVATE_H
 
 #include "canopen/emcy.h"
-#include "drives/object_table.h"
+#include "drives/dictionary.h"
 #include "drives/virtual_drive.h"
 
 #define DRIVE_NEVER    UINT64_MAX
@@ -41,6 +41,17 @@ void virtual_drive_set_filter(struct virtual_drive *drive);
 void virtual_drive_look_soon(struct virtual_drive *drive);
 void virtual_drive_restart_heartbeat(struct virtual_drive *drive);
 void virtual_drive_restart_consumer(struct virtual_drive *drive, unsigned i);
+
+/* -1: the motor turns the other way than the axis counts. */
+static inline double virtual_drive_sign(const struct virtual_drive *drive)
+{
+    return drive->increments_per_mm < 0 ? -1 : 1;
+}
+/* Position units per mm of what has no sign: velocities, accelerations, windows. */
+static inline double virtual_drive_scale(const struct virtual_drive *drive)
+{
+    return drive->increments_per_mm * virtual_drive_sign(drive);
+}
 
 /* As after NMT's reset of the node. */
 void virtual_drive_reboot(struct virtual_drive *drive);
@@ -92,7 +103,7 @@ uint32_t virtual_drive_write_sdo(void *drive, uint32_t object, const uint8_t *by
 uint16_t virtual_drive_statusword(const struct virtual_drive *drive);
 void virtual_drive_take_controlword(struct virtual_drive *drive, uint16_t controlword);
 void virtual_drive_take_mode(struct virtual_drive *drive, int8_t mode);
-bool virtual_drive_has_mode(int8_t mode);
+bool virtual_drive_has_mode(const struct virtual_drive *drive, int8_t mode);
 void virtual_drive_move(struct virtual_drive *drive, uint32_t cycle_ns);
 /* The drive fails: emergency, fault reaction, fault. */
 void virtual_drive_fail(struct virtual_drive *drive, uint16_t code, uint8_t error_register);

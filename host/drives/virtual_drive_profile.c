@@ -135,11 +135,16 @@ void virtual_drive_take_controlword(struct virtual_drive *drive, uint16_t contro
     virtual_drive_take_mode_controlword(drive, previous, controlword);
 }
 
-bool virtual_drive_has_mode(int8_t mode)
+/* Object 6502 says which of those that are written here; a sheet without it, or with an empty one, has them all. */
+bool virtual_drive_has_mode(const struct virtual_drive *drive, int8_t mode)
 {
-    return mode == CIA402_MODE_NONE || mode == CIA402_MODE_PROFILE_POSITION ||
-           mode == CIA402_MODE_HOMING || mode == CIA402_MODE_INTERPOLATED_POSITION ||
-           mode == CIA402_MODE_CYCLIC_SYNC_POSITION;
+    bool has_index;
+    const struct object_row *row = dictionary_find(drive->dictionary, 0x6502, 0, &has_index);
+    uint32_t modes = row != NULL && row->initial != 0 ? (uint32_t)row->initial : UINT32_MAX;
+    bool is_written = mode == CIA402_MODE_PROFILE_POSITION || mode == CIA402_MODE_HOMING ||
+                      mode == CIA402_MODE_INTERPOLATED_POSITION ||
+                      mode == CIA402_MODE_CYCLIC_SYNC_POSITION;
+    return mode == CIA402_MODE_NONE || (is_written && modes >> (mode - 1) & 1);
 }
 
 /* A mode the drive does not have is not taken: 6061 keeps showing the one before. */
@@ -147,7 +152,7 @@ void virtual_drive_take_mode(struct virtual_drive *drive, int8_t mode)
 {
     struct drive_process *p = &drive->objects.process;
     p->mode = mode;
-    if (mode == p->mode_display || !virtual_drive_has_mode(mode))
+    if (mode == p->mode_display || !virtual_drive_has_mode(drive, mode))
         return;
     virtual_drive_interrupt_homing(drive);
     p->mode_display = mode;

@@ -65,6 +65,15 @@ struct drive_faults {
     uint32_t shown[INJECT_FAULTS_MAX]; /* what it shows by fault i */
 };
 
+/* Requests that wait for their time; a master sends one after the other. */
+#define VIRTUAL_DRIVE_REQUESTS 4
+
+struct drive_requests {
+    unsigned count;
+    uint64_t due_ns; /* of the first */
+    struct can_frame frame[VIRTUAL_DRIVE_REQUESTS];
+};
+
 struct virtual_drive {
     uint32_t accepts[64]; /* bit id: frames with this identifier are looked at */
     struct virtual_drive_config config;
@@ -78,6 +87,9 @@ struct virtual_drive {
     uint16_t controlword; /* the one before, for edges */
     uint64_t now_ns;      /* since it was switched on */
     uint64_t due_ns;      /* nothing of all that waits for a time happens before */
+    uint64_t boot_ns;     /* it boots then, and hears nothing before; 0: it has booted */
+    struct drive_requests requests;
+    const struct dictionary *dictionary;
 
     /* For the position loop, from the objects. */
     double increments_per_mm;

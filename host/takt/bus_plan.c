@@ -4,11 +4,10 @@
 #include "canopen/node.h"
 #include "canopen/pdo.h"
 #include "canopen/sync.h"
-#include "canopen/target_pdo.h"
 
 #include <string.h>
 
-#define STATUS_LENGTH    6 /* statusword and position; error code and following error */
+#define ERROR_LENGTH     6 /* error code and following error */
 #define HEARTBEAT_LENGTH 1
 
 /*
@@ -23,35 +22,18 @@ static void add_message(struct bus_plan *plan, const char *name, unsigned id, un
         .id = (uint16_t)id, .length = (uint8_t)length, .period_ns = plan->cycle_ns};
 }
 
-/* The frame of a pair is added with its second drive, or with the last of an odd number. */
-static void add_drive(struct bus_plan *plan, const uint8_t nodes[], unsigned count, unsigned i)
+void bus_plan_set(struct bus_plan *plan, const struct machine *machine, const struct drives *drives)
 {
-    struct pdo target, next = {0};
-
-    add_message(plan, "TPDO1", PDO_TPDO1_FUNCTION + nodes[i], STATUS_LENGTH);
-    target_pdo_set(&target, nodes, count, i);
-    if (i + 1 < count)
-        target_pdo_set(&next, nodes, count, i + 1);
-    if (next.cob_id != target.cob_id)
-        add_message(plan, "RPDO2", target.cob_id, target.mapping.length);
-}
-
-void bus_plan_set(struct bus_plan *plan, const struct machine *machine)
-{
-    uint8_t nodes[AXIS_COUNT];
-    unsigned count = 0;
+    struct drives_pdo pdo[DRIVES_CYCLE_PDOS_MAX];
+    unsigned count = drives_get_pdos(drives, pdo);
 
     memset(plan, 0, sizeof *plan);
     plan->bitrate = machine->can_bitrate;
     plan->cycle_ns = (uint64_t)machine->cycle_us * 1000;
-    for (unsigned i = 0; i < AXIS_COUNT; i++) {
-        if (machine_axis_is_on_can(&machine->axis[i]))
-            nodes[count++] = machine->axis[i].drive_node;
-    }
     add_message(plan, "SYNC", SYNC_COB_ID, 0);
     for (unsigned i = 0; i < count; i++)
-        add_drive(plan, nodes, count, i);
-    add_message(plan, "TPDO2", PDO_TPDO2_FUNCTION + NODE_MIN, STATUS_LENGTH);
+        add_message(plan, pdo[i].is_target ? "RPDO2" : "TPDO1", pdo[i].id, pdo[i].length);
+    add_message(plan, "TPDO2", PDO_TPDO2_FUNCTION + NODE_MIN, ERROR_LENGTH);
     add_message(plan, "heartbeat", NMT_HEARTBEAT_FUNCTION + NODE_MIN, HEARTBEAT_LENGTH);
     (void)bus_response_predict(plan->message, plan->count, plan->bitrate, plan->worst_ns);
 }

@@ -8,14 +8,14 @@
 #include "bus/bus.h"
 #include "bus/bus_response.h"
 #include "controller/machine.h"
+#include "drive/drives.h"
 
 #include <stdbool.h>
 
 /*
- * SYNC, per drive a status and per pair the targets; and one TPDO2 and one heartbeat, which nodes
- * send in turns.
+ * SYNC, the PDOs of the drives in every cycle; and one TPDO2 and one heartbeat, which nodes send in turns.
  */
-#define BUS_PLAN_MAX (3 + AXIS_COUNT + (AXIS_COUNT + 1) / 2)
+#define BUS_PLAN_MAX (3 + DRIVES_CYCLE_PDOS_MAX)
 
 struct bus_plan {
     uint32_t bitrate; /* bit/s */
@@ -26,7 +26,8 @@ struct bus_plan {
     uint64_t worst_ns[BUS_PLAN_MAX]; /* from being given to the last bit; UINT64_MAX: no bound */
 };
 
-void bus_plan_set(struct bus_plan *plan, const struct machine *machine);
+void bus_plan_set(struct bus_plan *plan, const struct machine *machine,
+                  const struct drives *drives);
 
 /* What messages have taken at most on this bus since bus_clear_responses; 0: none was sent. */
 void bus_plan_get_observed(const struct bus_plan *plan, const struct bus *bus,

@@ -3,6 +3,7 @@
 #include "takt/command.h"
 
 #include "drives/eds.h"
+#include "takt/data_sheet.h"
 #include "takt/drive_service.h"
 #include "takt/inject_file.h"
 #include "takt/interrupt.h"
@@ -30,6 +31,8 @@ struct drives_command {
     const struct options *options;
     struct machine_setup setup;
     struct virtual_drives_config drives;
+    struct dictionary sheet[AXIS_COUNT]; /* of the machine's drives that have one */
+    struct dictionary given;             /* --eds with --bus: of all drives */
     struct inject script;
 };
 
@@ -56,8 +59,8 @@ static bool add_drive(struct drives_command *command, unsigned node)
     return true;
 }
 
-/* An axis of the machine with this node lends the drive its plant. */
-static void use_axis(struct drives_command *command, struct virtual_drive_config *drive)
+/* An axis of the machine with this node lends the drive its plant and its data sheet. */
+static bool use_axis(struct drives_command *command, struct virtual_drive_config *drive)
 {
     for (unsigned i = 0; i < AXIS_COUNT; i++) {
         const struct machine_axis *axis = &command->setup.machine.axis[i];
@@ -65,8 +68,12 @@ static void use_axis(struct drives_command *command, struct virtual_drive_config
         if (!axis->present || axis->drive_node != drive->node)
             continue;
         drive->increments_per_mm = axis->increments_per_mm;
-        drive->plant = command->setup.drive[i];
+        if (!data_sheet_set_drive(drive, &command->setup.drive[i], &command->sheet[i]))
+            return false;
     }
+    if (command->given.count > 0)
+        drive->dictionary = &command->given;
+    return true;
 }
 
 /* Reads "N" or "N-M" and steps over it. */
@@ -124,7 +131,8 @@ static bool set_drives(struct drives_command *command)
             return false;
     }
     for (unsigned i = 0; i < command->drives.count; i++)
-        use_axis(command, &command->drives.drive[i]);
+        if (!use_axis(command, &command->drives.drive[i]))
+            return false;
     return true;
 }
 
@@ -274,6 +282,15 @@ static enum command_status serve_with_spindle(const struct drives_command *comma
     return status;
 }
 
+/* With a bus the drives are those of a data sheet; without one theirs are written. */
+static bool load_given(struct drives_command *command)
+{
+    const struct options *options = command->options;
+
+    return options->bus == NULL || options->eds == NULL ||
+           data_sheet_load(&command->given, options->eds);
+}
+
 static bool check_logs(const struct options *options)
 {
     const char *bus_log = options->bus_log;
@@ -306,10 +323,10 @@ static enum command_status command_drives_execute(const struct options *options)
     }
     if (!check_logs(options))
         return STATUS_INPUT;
-    if (!machine_file_load(&command.setup, options) || !set_drives(&command) ||
-        !load_script(&command))
+    if (!machine_file_load(&command.setup, options) || !load_given(&command) ||
+        !set_drives(&command) || !load_script(&command))
         return STATUS_INPUT;
-    if (options->eds != NULL)
+    if (options->eds != NULL && options->bus == NULL)
         status = write_data_sheets(&command);
     if (status == STATUS_DONE && options->panel.spindle != NULL)
         status = serve_with_spindle(&command);
@@ -329,7 +346,8 @@ static const struct option_row rows[] = {
      "node ids, 1-3 or 1,2,5 (default: those of the machine's axes)"},
     OPTIONS_MACHINE,
     {"eds", OPTION_TEXT, offsetof(struct options, eds), "FILE|FOLDER",
-     "write the electronic data sheet, or one for each drive"},
+     "electronic data sheet: with --bus the drives are those of FILE; without, theirs are written "
+     "there"},
     {"inject", OPTION_TEXT, offsetof(struct options, inject), "FILE",
      "scripted faults; takt help inject explains them"},
     {"realtime", OPTION_FLAG, offsetof(struct options, realtime), NULL,
@@ -346,29 +364,37 @@ const struct command command_drives = {
     .name = "drives",
     .usage = "--bus BUS|--spindle WHERE [options]",
     .summary = "virtual CiA 402 drives, for any CANopen master",
-    .help = "Every drive is a CANopen node with the drive profile CiA 402 (profile position, "
-            "homing, interpolated\n"
-            "position, cyclic synchronous position) and a simulated motor, described by [drive N] "
-            "of the machine file.\n"
-            "They run until Ctrl-C or SIGTERM, which is status 0.\n"
-            "\n"
-            "Drives run by the wall clock, unless a controller sets the SYNC period in all of them "
-            "(object 1006), as takt\n"
-            "does. Then each SYNC is one period, however fast they arrive.\n"
-            "\n"
-            "--spindle adds a spindle behind the registers of a Delta VFD-B or MS300 converter, "
-            "with inertia, ramp,\n"
-            "torque limit and trips as [spindle] of the machine file says. Register 3000 (hex) "
-            "takes the torque of a cut,\n"
-            "0.1 % of the rated one; a number written to 3001 trips it.\n"
-            "\n"
-            "Examples:\n"
-            "  takt drives --bus socketcan:vcan0\n"
-            "  takt drives --spindle 127.0.0.1:1503\n"
-            "  takt drives --bus slcan:pty:can0.pty --machine mill3.ini --log drives.log\n"
-            "  takt drives --bus socketcan:vcan0 --quiet --bus-log bus.log\n"
-            "  takt drives --nodes 1-6 --eds data-sheets\n"
-            "  takt drives --bus socketcand:listen:29536 --inject faults.inject\n",
+    .help =
+        "Every drive is a CANopen node with the drive profile CiA 402 (profile position, "
+        "homing, interpolated\n"
+        "position, cyclic synchronous position) and a simulated motor, described by [drive N] "
+        "of the machine file.\n"
+        "They run until Ctrl-C or SIGTERM, which is status 0.\n"
+        "\n"
+        "Drives run by the wall clock, unless a controller sets the SYNC period in all of them "
+        "(object 1006), as takt\n"
+        "does. Then each SYNC is one period, however fast they arrive.\n"
+        "\n"
+        "--eds FILE, with --bus, makes them drives of another maker by his electronic data sheet "
+        "(CiA 306): their objects,\n"
+        "access, defaults, limits, PDOs and modes are those of the file, the motor is the same. "
+        "[drive N] of the machine\n"
+        "file has a sheet for each drive, and how long it takes to boot and to answer.\n"
+        "\n"
+        "--spindle adds a spindle behind the registers of a Delta VFD-B or MS300 converter, "
+        "with inertia, ramp,\n"
+        "torque limit and trips as [spindle] of the machine file says. Register 3000 (hex) "
+        "takes the torque of a cut,\n"
+        "0.1 % of the rated one; a number written to 3001 trips it.\n"
+        "\n"
+        "Examples:\n"
+        "  takt drives --bus socketcan:vcan0\n"
+        "  takt drives --spindle 127.0.0.1:1503\n"
+        "  takt drives --bus slcan:pty:can0.pty --machine mill3.ini --log drives.log\n"
+        "  takt drives --bus socketcan:vcan0 --quiet --bus-log bus.log\n"
+        "  takt drives --bus socketcan:vcan0 --eds epos4.eds\n"
+        "  takt drives --nodes 1-6 --eds data-sheets\n"
+        "  takt drives --bus socketcand:listen:29536 --inject faults.inject\n",
     .options = rows,
     .operands_min = 0,
     .operands_max = 0,

@@ -1,5 +1,6 @@
 #include "takt/field.h"
 
+#include "takt/data_sheet.h"
 #include "takt/inject_bus.h"
 #include "takt/message.h"
 
@@ -55,21 +56,26 @@ bool field_check_options(const struct field_options *options)
     return true;
 }
 
-static void set_drives(struct virtual_drives_config *config, const struct machine_setup *setup)
+static bool set_drives(struct field *field, struct virtual_drives_config *config,
+                       const struct machine_setup *setup)
 {
     config->count = 0;
     for (unsigned i = 0; i < AXIS_COUNT; i++) {
         const struct machine_axis *axis = &setup->machine.axis[i];
+        struct virtual_drive_config *drive = &config->drive[config->count];
 
         if (!machine_axis_is_on_can(axis))
             continue;
-        config->drive[config->count++] = (struct virtual_drive_config){
+        *drive = (struct virtual_drive_config){
             .node = axis->drive_node,
             .increments_per_mm = axis->increments_per_mm,
             .cycle_us = setup->machine.cycle_us,
-            .plant = setup->drive[i],
         };
+        if (!data_sheet_set_drive(drive, &setup->drive[i], &field->sheet[i]))
+            return false;
+        config->count++;
     }
+    return true;
 }
 
 /* Faults of the bus whose time counts from this anchor. */
@@ -107,7 +113,8 @@ static bool open_inside(struct field *field, const struct machine_setup *setup)
 
     (void)bus_init(&field->bus, setup->machine.can_bitrate); /* checked with the machine */
     field->port = bus_attach(&field->bus, NULL);
-    set_drives(&drives, setup);
+    if (!set_drives(field, &drives, setup))
+        return false;
     virtual_drives_init(&field->drives, &field->bus, &drives);
     return start_faults(field);
 }
@@ -182,6 +189,8 @@ enum command_status field_open(struct field *field, const struct machine_setup *
         status = STATUS_INPUT;
     if (status == STATUS_DONE && options->is_paced)
         start_pace(field);
+    if (status != STATUS_DONE)
+        field_close(field);
     return status;
 }
 
@@ -189,6 +198,13 @@ void field_close(struct field *field)
 {
     link_close(field->link);
     field->link = NULL;
+    for (unsigned i = 0; i < AXIS_COUNT; i++)
+        dictionary_free(&field->sheet[i]);
+}
+
+void field_watch_drives(struct field *field, const struct drives *drives)
+{
+    field->lockstep.drives = drives;
 }
 
 struct can_port field_get_port(struct field *field)

@@ -32,8 +32,9 @@ struct field_traffic {
 struct field {
     struct bus bus; /* both: not used with an outside bus */
     struct virtual_drives drives;
-    struct virtual_steppers steppers; /* inside, whatever the bus */
-    const struct inject *script;      /* of faults; NULL: none */
+    struct dictionary sheet[AXIS_COUNT]; /* of the drives, by axis; empty: takt's own */
+    struct virtual_steppers steppers;    /* inside, whatever the bus */
+    const struct inject *script;         /* of faults; NULL: none */
     bool has_enabled_faults; /* those that count from the drives' being enabled are on the bus */
     struct link *link;       /* NULL: bus and drives are inside */
     struct lockstep lockstep;
@@ -66,6 +67,9 @@ bool field_check_options(const struct field_options *options);
 enum command_status field_open(struct field *field, const struct machine_setup *setup,
                                const struct field_options *options);
 void field_close(struct field *field);
+
+/* The controller's drives: it knows which frames are their answers. They must stay. */
+void field_watch_drives(struct field *field, const struct drives *drives);
 
 /* The controller's bus. */
 struct can_port field_get_port(struct field *field);

@@ -62,7 +62,14 @@ static void keep_frame(struct lockstep *lockstep, const struct can_frame *frame)
     lockstep->frame[lockstep->written++ & (LOCKSTEP_FRAMES_MAX - 1)] = *frame;
 }
 
-/* True: it was the answer of a drive to SYNC. */
+static unsigned report_of(const struct lockstep *lockstep, uint16_t id)
+{
+    if (lockstep->drives != NULL)
+        return drives_get_report(lockstep->drives, id);
+    return node_function(id) == PDO_TPDO1_FUNCTION ? DRIVES_REPORTS_ALL : 0;
+}
+
+/* True: the answer of a drive to SYNC is complete with it. */
 static bool take_frame(struct lockstep *lockstep, const struct can_frame *frame)
 {
     struct lockstep_drive *drive = find_drive(lockstep, node_id(frame->id));
@@ -74,8 +81,10 @@ static bool take_frame(struct lockstep *lockstep, const struct can_frame *frame)
         return false;
     if (nmt_read_heartbeat(frame, &node, &state) && state != NMT_OPERATIONAL)
         drive->is_in_step = false; /* it will not answer before it is started again */
-    if (node_function(frame->id) != PDO_TPDO1_FUNCTION)
+    drive->reported |= (uint8_t)report_of(lockstep, frame->id);
+    if (drive->reported != DRIVES_REPORTS_ALL)
         return false;
+    drive->reported = 0;
     drive->has_answered = true;
     return true;
 }

@@ -3,7 +3,7 @@
  * every drive has come.
  *
  *     controller_cycle   SYNC, controlwords, targets  --->  drives
- *     lockstep_end_cycle                              <---  TPDO1 of every drive
+ *     lockstep_end_cycle                              <---  statusword and position of every drive
  *
  * So what the controller receives in a cycle does not depend on the speed of either side, and a run
  * over any bus gives the setpoints and positions of a run over the embedded one. Drives do their
@@ -18,6 +18,7 @@
 
 #include "base/point.h"
 #include "bus/link.h"
+#include "drive/drives.h"
 #include "hal/can.h"
 
 #include <stdbool.h>
@@ -39,11 +40,13 @@ struct lockstep_drive {
     uint8_t node;
     bool is_in_step;
     bool has_answered; /* in this cycle */
+    uint8_t reported;  /* in this cycle, enum drives_report */
 };
 
 /* Private. */
 struct lockstep {
-    struct link *link; /* the caller's */
+    struct link *link;           /* the caller's */
+    const struct drives *drives; /* of the controller: which frames are answers; NULL: TPDO1 is */
     struct can_port link_port;
     uint64_t cycle_ns;
     uint64_t cycle_start_ns; /* by link_clock_ns */

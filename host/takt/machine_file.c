@@ -219,12 +219,13 @@ static bool resolve_path(char *path, const char *machine_file)
     return true;
 }
 
-static bool resolve_tables(struct machine_setup *setup, const char *machine_file)
+static bool resolve_files(struct machine_setup *setup, const char *machine_file)
 {
     bool fits = resolve_path(setup->volume_table, machine_file);
 
     for (unsigned i = 0; i < AXIS_COUNT; i++)
-        fits = resolve_path(setup->axis_table[i], machine_file) && fits;
+        fits = resolve_path(setup->axis_table[i], machine_file) &&
+               resolve_path(setup->drive[i].eds, machine_file) && fits;
     return fits;
 }
 
@@ -245,7 +246,7 @@ bool machine_file_read(struct machine_setup *setup, const char *path)
         message_error(text.name, 0, 0, "tool_table or parameter_file: the path is too long");
         reader.errors++;
     }
-    if (!resolve_tables(setup, path)) {
+    if (!resolve_files(setup, path)) {
         message_error(text.name, 0, 0, "[correction]: the path of a table is too long");
         reader.errors++;
     }

@@ -4,7 +4,7 @@
 
 #define IN_SETUP(field)   offsetof(struct machine_setup, field)
 #define IN_AXIS(field)    offsetof(struct machine_axis, field)
-#define IN_DRIVE(field)   offsetof(struct drive_plant_config, field)
+#define IN_DRIVE(field)   offsetof(struct machine_drive, plant.field)
 #define IN_STEPPER(field) offsetof(struct virtual_stepper_config, field)
 
 /* Rows of the table by what they hold. Ranges: from (above: without) the first number to the second. */
@@ -99,8 +99,12 @@ const struct machine_key machine_keys[] = {
          "upper end of the travel"),
     COUNT(SECTION_AXIS, "drive_node", KEY_UINT8, IN_AXIS(drive_node), 1, 127,
           "CANopen node id of its drive"),
-    ABOVE(SECTION_AXIS, "increments_per_mm", SCALE_PER_LENGTH, IN_AXIS(increments_per_mm), 0, 1e9,
-          "position unit of its drive"),
+    FROM(SECTION_AXIS, "increments_per_mm", SCALE_PER_LENGTH, IN_AXIS(increments_per_mm), -1e9, 1e9,
+         "position unit of its drive; negative: its motor turns the other way"),
+    FROM(SECTION_AXIS, "travel_per_turn_mm", SCALE_LENGTH, IN_AXIS(travel_per_turn_mm), 0, 1e6,
+         "travel in a turn of the motor: increments_per_mm is checked by what the drive tells of its scaling (608F, 6091, 6092); 0: it is not"),
+    COUNT(SECTION_AXIS, "drive_is_set_up", KEY_UINT8, IN_AXIS(drive_is_set_up), 0, 1,
+          "1: its maker's tool has set up the drive, PDOs and all: takt looks at it and changes nothing"),
     FROM(SECTION_AXIS, "following_error_max_mm", SCALE_LENGTH, IN_AXIS(following_error_max_mm), 0, 1e6,
          "alarm of the controller beyond this lag; 0: not watched"),
     CHOICE(SECTION_AXIS, "drive_type", KEY_DRIVE_TYPE, IN_AXIS(drive_type),
@@ -178,6 +182,10 @@ const struct machine_key machine_keys[] = {
           "CAN, bit/s"),
     COUNT(SECTION_BUS, "heartbeat_ms", KEY_UINT32, IN_SETUP(machine.heartbeat_ms), 0, 20000,
           "period of the heartbeats of drives and controller; three missed are an alarm; 0: none"),
+    COUNT(SECTION_BUS, "boot_timeout_ms", KEY_UINT32, IN_SETUP(machine.boot_timeout_ms), 1, 600000,
+          "longest time a drive takes to boot; then it is reset once more, and after as long it is missing"),
+    COUNT(SECTION_BUS, "sdo_timeout_ms", KEY_UINT32, IN_SETUP(machine.sdo_timeout_ms), 1, 600000,
+          "longest time a drive takes to answer a request while it is started"),
     COUNT(SECTION_BUS, "controller_node", KEY_UINT8, IN_SETUP(machine.controller_node), 1, 127,
           "CANopen node id of the controller"),
 
@@ -188,6 +196,12 @@ const struct machine_key machine_keys[] = {
     COUNT(SECTION_PANEL, "password", KEY_UINT32, IN_SETUP(panel.password), 0, 4294967295,
           "panels must write it to the register PASSWORD before anything else; 0: none"),
 
+    TEXT(SECTION_DRIVE, "eds", offsetof(struct machine_drive, eds), MACHINE_SETUP_PATH_MAX + 1,
+         "electronic data sheet (CiA 306): the drive has its objects, PDOs and modes; relative to this file's folder; empty: takt's own drive"),
+    COUNT(SECTION_DRIVE, "boot_time_ms", KEY_UINT32, offsetof(struct machine_drive, boot_ms), 0, 600000,
+          "from a reset to its boot-up message"),
+    COUNT(SECTION_DRIVE, "sdo_time_ms", KEY_UINT32, offsetof(struct machine_drive, sdo_ms), 0, 600000,
+          "from a request to its answer"),
     ABOVE(SECTION_DRIVE, "travel_per_revolution_mm", SCALE_LENGTH, IN_DRIVE(travel_per_revolution_mm), 0, 1e4,
           "travel of the axis per turn of the motor: the lead of its screw"),
     ABOVE(SECTION_DRIVE, "inertia_kg_m2", SCALE_NONE, IN_DRIVE(inertia_kg_m2), 0, 1e3,

@@ -37,12 +37,12 @@ static void set_rotary(struct machine_setup *setup, unsigned axis)
 {
     setup->machine.axis[axis] = rotary_default;
     setup->machine.axis[axis].drive_node = (uint8_t)(axis + 1);
-    setup->drive[axis].travel_per_revolution_mm = 10.0 * DEGREE;
-    setup->drive[axis].quick_stop_deceleration_mm_s2 = 1800.0 * DEGREE;
-    setup->drive[axis].following_error_window_mm = 5.0 * DEGREE;
-    setup->drive[axis].pitch_error_period_mm = 10.0 * DEGREE;
-    setup->drive[axis].limit_switch_min_mm = -360000.0 * DEGREE;
-    setup->drive[axis].limit_switch_max_mm = 360000.0 * DEGREE;
+    setup->drive[axis].plant.travel_per_revolution_mm = 10.0 * DEGREE;
+    setup->drive[axis].plant.quick_stop_deceleration_mm_s2 = 1800.0 * DEGREE;
+    setup->drive[axis].plant.following_error_window_mm = 5.0 * DEGREE;
+    setup->drive[axis].plant.pitch_error_period_mm = 10.0 * DEGREE;
+    setup->drive[axis].plant.limit_switch_min_mm = -360000.0 * DEGREE;
+    setup->drive[axis].plant.limit_switch_max_mm = 360000.0 * DEGREE;
 }
 
 void machine_setup_set_default(struct machine_setup *setup)
@@ -53,7 +53,7 @@ void machine_setup_set_default(struct machine_setup *setup)
     setup->geometry.table_axis = AXIS_COUNT;
     (void)snprintf(setup->panel.listen, sizeof setup->panel.listen, "127.0.0.1:1502");
     for (unsigned i = 0; i < AXIS_COUNT; i++) {
-        drive_plant_set_default(&setup->drive[i]);
+        drive_plant_set_default(&setup->drive[i].plant);
         setup->stepper[i] =
             (struct virtual_stepper_config){.has_encoder = 1, .rate_max_hz = STEPPER_RATE_HZ};
         if (i >= AXIS_LINEAR_COUNT)
@@ -74,7 +74,7 @@ __attribute__((format(printf, 1, 2))) static const char *problem(const char *for
 
 static const char *check_drive(const struct machine_setup *setup, unsigned axis)
 {
-    const char *field = drive_plant_check(&setup->drive[axis]);
+    const char *field = drive_plant_check(&setup->drive[axis].plant);
 
     if (field == NULL)
         return NULL;

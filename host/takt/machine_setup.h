@@ -22,14 +22,22 @@ struct panel_setup {
     uint32_t password;                       /* 0: none */
 };
 
+/* A virtual drive: its motor, and what it is like on the bus. */
+struct machine_drive {
+    struct drive_plant_config plant;
+    char eds[MACHINE_SETUP_PATH_MAX + 1]; /* its data sheet; empty: takt's own drive */
+    uint32_t boot_ms;
+    uint32_t sdo_ms;
+};
+
 struct machine_setup {
     struct machine machine;
     char tool_table[MACHINE_SETUP_PATH_MAX + 1];     /* empty: none */
     char parameter_file[MACHINE_SETUP_PATH_MAX + 1]; /* empty: none */
     char volume_table[MACHINE_SETUP_PATH_MAX + 1];   /* correction tables; empty: none */
     char axis_table[AXIS_COUNT][MACHINE_SETUP_PATH_MAX + 1];
-    struct deviation_config geometry; /* how the virtual machine differs from a perfect one */
-    struct drive_plant_config drive[AXIS_COUNT];       /* of each axis */
+    struct deviation_config geometry;       /* how the virtual machine differs from a perfect one */
+    struct machine_drive drive[AXIS_COUNT]; /* of each axis */
     struct virtual_stepper_config stepper[AXIS_COUNT]; /* of each axis, if it has a step drive */
     struct virtual_spindle_config spindle;             /* see machine_setup_get_spindle */
     struct panel_setup panel;

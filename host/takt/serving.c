@@ -4,6 +4,7 @@
 
 #include "base/crc32.h"
 #include "takt/cutting_feed.h"
+#include "takt/drives_table.h"
 #include "takt/interrupt.h"
 #include "takt/message.h"
 #include "takt/stopwatch.h"
@@ -66,6 +67,7 @@ static void open_service(struct serving *s)
 
     plan_queue_init(&s->plan, &s->service);
     service_init(&s->service, &config);
+    field_watch_drives(&s->field, controller_get_drives(&s->service.controller));
     message_controller_warning(&s->service.controller);
     if (s->store.program != NULL)
         service_set_program(&s->service, (uint32_t)s->store.size,
@@ -188,6 +190,20 @@ static void control(struct serving *s)
         update_health(s);
 }
 
+/* Once, when the drives are enabled: what they do without. */
+static void tell_drives(struct serving *s)
+{
+    const struct drives *drives = controller_get_drives(&s->service.controller);
+    struct drives_table table;
+
+    if (s->has_told_drives || drives_get_state(drives) != DRIVES_ENABLED)
+        return;
+    s->has_told_drives = true;
+    drives_table_set(&table, drives);
+    if (!s->session.options->quiet)
+        drives_table_write_text(stderr, &table);
+}
+
 /* An order is answered when a snapshot shows what came of it. */
 static void serve_cycle(struct serving *s)
 {
@@ -201,6 +217,7 @@ static void serve_cycle(struct serving *s)
     service_background(&s->service);
     control(s);
     step_spindle(s);
+    tell_drives(s);
     service_look(&s->service, exchange_next_snapshot(&s->exchange));
     exchange_publish(&s->exchange);
     if (order != NULL)

@@ -138,6 +138,7 @@ enum command_status simulation_open(const struct session *session, struct simula
         simulation_close(s);
         return status;
     }
+    field_watch_drives(&s->field, controller_get_drives(&s->controller));
     tool_point_init(&s->tool_point, &session->setup);
     correction_watch_init(&s->correction, s->tool_point.cycle_s);
     s->program = session->program.name;

@@ -117,12 +117,13 @@ static void set_cost(struct summary *summary, const struct cycle_cost *cost)
     summary->cost_max_ns = (double)cost->max_ns;
 }
 
-/* Predicted and observed; what faults of the bus have done to frames is no fault of the prediction. */
-static void set_responses(struct summary *summary, const struct field *field)
+/* Predicted and observed; what faults of the bus and frames that nobody wants have done is no fault of the prediction. */
+static void set_responses(struct summary *summary, const struct field *field,
+                          const struct drives *drives)
 {
     double nearest = 0;
 
-    bus_plan_set(&summary->bus_plan, summary->machine);
+    bus_plan_set(&summary->bus_plan, summary->machine, drives);
     summary->responses_observed = field->link == NULL && summary->figures.cycles > 0;
     if (!summary->responses_observed)
         return;
@@ -130,7 +131,9 @@ static void set_responses(struct summary *summary, const struct field *field)
     for (unsigned i = 0; i < summary->bus_plan.count; i++)
         nearest = maths_max(nearest, 100.0 * (double)summary->response_ns[i] /
                                          (double)summary->bus_plan.worst_ns[i]);
-    if (field->bus.fault_count == 0)
+    bool is_planned = !drives_table_has(&summary->drives, DRIVES_NO_SILENCE) &&
+                      !drives_table_has(&summary->drives, DRIVES_NO_ONE_REPORT);
+    if (field->bus.fault_count == 0 && is_planned)
         add_check(summary, "bus_response", AXIS_COUNT, "%", nearest, 100);
 }
 
@@ -152,10 +155,21 @@ static void set_target(struct summary *summary, const struct simulation *simulat
     add_check(summary, "target", AXIS_COUNT, "cycles", (double)simulation->target.differences, 0);
 }
 
+static void set_fault(struct summary *summary, const struct diagnostic *fault)
+{
+    const char *remedy = drives_table_remedy(fault);
+    char text[DIAGNOSTIC_TEXT_MAX];
+
+    (void)diagnostic_text(fault, text);
+    (void)snprintf(summary->fault, sizeof summary->fault, "%s%s%s", text,
+                   remedy[0] != '\0' ? ": " : "", remedy);
+}
+
 void summary_set(struct summary *summary, const struct summary_source *source)
 {
     const struct simulation *simulation = source->simulation;
     const struct machine *machine = &source->session->setup.machine;
+    const struct drives *drives = controller_get_drives(&simulation->controller);
 
     *summary = (struct summary){
         .program = source->session->program.name,
@@ -173,8 +187,11 @@ void summary_set(struct summary *summary, const struct summary_source *source)
         .bus_predicted_percent = machine_setup_predict_load_percent(machine),
     };
     tool_point_finish(&summary->tool_point);
+    drives_table_set(&summary->drives, drives);
+    if (summary->drives.load.percent > 0)
+        summary->bus_predicted_percent = summary->drives.load.percent;
     if (source->outcome == OUTCOME_FAULTED)
-        diagnostic_text(controller_get_fault(&simulation->controller), summary->fault);
+        set_fault(summary, controller_get_fault(&simulation->controller));
     set_cost(summary, &simulation->cost);
     for (unsigned i = 0; i < AXIS_COUNT; i++) {
         if (machine->axis[i].present)
@@ -183,7 +200,7 @@ void summary_set(struct summary *summary, const struct summary_source *source)
     check_path(summary);
     check_blocks(summary, source);
     add_check(summary, "bus_load", AXIS_COUNT, "%", summary->bus_load_percent, 100);
-    set_responses(summary, &simulation->field);
+    set_responses(summary, &simulation->field, drives);
     set_pace(summary, &simulation->field);
     set_target(summary, simulation);
     add_check(summary, "fault", AXIS_COUNT, "", source->outcome == OUTCOME_FAULTED ? 1 : 0, 0);

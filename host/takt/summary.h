@@ -6,6 +6,7 @@
 
 #include "base/error.h"
 #include "takt/bus_plan.h"
+#include "takt/drives_table.h"
 #include "takt/judge.h"
 #include "takt/session.h"
 #include "takt/simulation.h"
@@ -25,11 +26,14 @@ struct summary_check {
     double value, limit;
 };
 
+/* The text of a fault, and what helps. */
+#define SUMMARY_FAULT_MAX 400
+
 struct summary {
     const char *program;
     const struct machine *machine;
     enum summary_outcome outcome;
-    char fault[DIAGNOSTIC_TEXT_MAX]; /* OUTCOME_FAULTED */
+    char fault[SUMMARY_FAULT_MAX]; /* OUTCOME_FAULTED */
     double cycle_s;
     double wall_time_s;
     struct judge_figures figures;
@@ -40,6 +44,7 @@ struct summary {
     uint64_t bus_frames;
     double bus_load_percent;
     double bus_predicted_percent;
+    struct drives_table drives;
     bool responses_observed; /* by a program, and on the embedded bus */
     struct bus_plan bus_plan;
     uint64_t response_ns[BUS_PLAN_MAX]; /* observed, of the plan's messages */

@@ -229,6 +229,7 @@ char *summary_json(const struct summary *summary)
     summary_correction_add_json(root, summary);
     summary_steps_add_json(root, summary);
     add_bus(root, summary);
+    drives_table_add_json(root, &summary->drives, summary->machine);
     add_pace(root, summary);
     add_cost(root, summary);
     add_target(root, summary);

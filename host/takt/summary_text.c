@@ -133,6 +133,7 @@ static void write_path(FILE *stream, const struct summary *summary)
     (void)fprintf(stream, "  bus           %" PRIu64 " frames, load %.1f %% (worst case %.1f %%)\n",
                   summary->bus_frames, summary->bus_load_percent, summary->bus_predicted_percent);
     write_response(stream, summary);
+    drives_table_write_text(stream, &summary->drives);
     write_pace(stream, summary);
     summary_steps_write_text(stream, summary);
     write_target(stream, summary);

@@ -54,6 +54,7 @@ static void init_master(uint16_t heartbeat_ms)
         .bitrate = 1000000,
         .controller_node = 127,
         .heartbeat_ms = heartbeat_ms,
+        .boot_timeout_cycles = 500,
         .start_timeout_cycles = 1000,
         .answer_timeout_cycles = 3,
         .sdo_timeout_cycles = 100,

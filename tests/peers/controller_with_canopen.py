@@ -33,7 +33,7 @@ def free_port():
 class Bench:
     """A running controller and three drives on one bus."""
 
-    def __init__(self, *settings):
+    def __init__(self, *settings, habits=None):
         port = free_port()
         command = [TAKT, "run", "part.ngc", "--exact-path", "--json", "run.json", "--quiet", "--bus",
                    f"socketcand:listen:{port}", "--drives", "external", "--set", "bus.heartbeat_ms=5000"]
@@ -43,7 +43,7 @@ class Bench:
         self.network = canopen.Network()
         self.network.NOTIFIER_CYCLE = 0.1
         self.connect(port)
-        self.drives = [node402.Drive(self.network, number) for number in (1, 2, 3)]
+        self.drives = [node402.Drive(self.network, number, habits=habits) for number in (1, 2, 3)]
 
     def connect(self, port):
         """As soon as the controller listens; until then python-can would complain."""
@@ -164,4 +164,5 @@ def main():
     test_emergency()
 
 
-main()
+if __name__ == "__main__":
+    main()

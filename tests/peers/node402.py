@@ -2,6 +2,7 @@
 drive profile is written here from the standard, independently of takt's. Time is counted in SYNCs."""
 
 import struct
+import threading
 
 import canopen
 from canopen import objectdictionary as od
@@ -22,6 +23,7 @@ VARIABLES = [
 RECORDS = [
     (0x1016, [(1, U32, RW, 0)]),
     (0x1018, [(1, U32, RO, VENDOR), (2, U32, RO, PRODUCT), (3, U32, RO, 1), (4, U32, RO, 99)]),
+    (0x60C1, [(1, I32, RW, 0)]),
     (0x60C2, [(1, U8, RW, 1), (2, I8, RW, -3)]),
     (0x6099, [(1, U32, RW, 0), (2, U32, RW, 0)]),
 ]
@@ -36,23 +38,56 @@ def variable(index, sub, kind, access, default):
     return entry
 
 
-def dictionary(node):
+class Habits:
+    """What a drive does otherwise than takt's own. Objects are indices, or (index, sub-index)."""
+
+    def __init__(self, absent=(), read_only=(), not_mappable=(), limits=(), entries=8, maps=None, dummies=True, pdos=2,
+                 modes=0xA0, boots_after=0.0, code=0x06090030):
+        self.absent, self.read_only, self.not_mappable = set(absent), set(read_only), set(not_mappable)
+        self.limits = dict(limits)  # highest value of an object
+        self.entries, self.maps, self.dummies, self.pdos = entries, maps, dummies, pdos
+        self.modes, self.boots_after, self.code = modes, boots_after, code
+
+    def has(self, index, sub):
+        return index not in self.absent and (index, sub) not in self.absent
+
+    def access(self, index, sub, access):
+        return RO if index in self.read_only or (index, sub) in self.read_only else access
+
+
+def process_data(node, habits):
+    """Records of the PDOs; with maps (of 1600 ff. and 1A00 ff.) they are valid and fixed."""
+    records = []
+    for number in range(habits.pdos):
+        fixed = habits.maps is not None
+        objects = {first: (habits.maps or {}).get(first + number, []) for first in (0x1600, 0x1A00)}
+        invalid = {first: 0 if fixed and objects[first] else 0x80000000 for first in objects}
+        types = {first: 1 if {0x607A0020, 0x60640020} & set(objects[first]) else 255 for first in objects}
+        records.append((0x1400 + number, [(1, U32, RW, invalid[0x1600] | 0x200 + 0x100 * number + node), (2, U8, RW, types[0x1600])]))
+        records.append((0x1800 + number, [(1, U32, RW, invalid[0x1A00] | 0x40000180 + 0x100 * number + node),
+                                          (2, U8, RW, types[0x1A00]), (3, U16, RW, 0), (5, U16, RW, 0)]))
+        for first, mapped in objects.items():
+            records.append((first + number, [(sub, U32, RO if fixed else RW, mapped[sub - 1] if sub <= len(mapped) else 0)
+                                             for sub in range(1, habits.entries + 1)]))
+    return records
+
+
+def dictionary(node, habits):
     result = od.ObjectDictionary()
     for index, kind, access, default in VARIABLES:
-        result.add_object(variable(index, 0, kind, access, default))
-    records = list(RECORDS)
-    for number, cob_id in enumerate((0x200, 0x300)):
-        records.append((0x1400 + number, [(1, U32, RW, 0x80000000 | cob_id + node), (2, U8, RW, 255)]))
-        records.append((0x1600 + number, [(sub, U32, RW, 0) for sub in range(1, 9)]))
-    for number, cob_id in enumerate((0x180, 0x280)):
-        records.append((0x1800 + number, [(1, U32, RW, 0xC0000000 | cob_id + node), (2, U8, RW, 255),
-                                          (3, U16, RW, 0), (5, U16, RW, 0)]))
-        records.append((0x1A00 + number, [(sub, U32, RW, 0) for sub in range(1, 9)]))
-    for index, subs in records:
+        if habits.has(index, 0) and (index != 0x0007 or habits.dummies):
+            value = habits.modes if index == 0x6502 else default
+            result.add_object(variable(index, 0, kind, habits.access(index, 0, access), value))
+    for index, subs in list(RECORDS) + process_data(node, habits):
+        subs = [(sub, kind, habits.access(index, sub, access), default) for sub, kind, access, default in subs
+                if habits.has(index, sub)]
+        if not subs:
+            continue
         record = od.ODRecord(f"{index:04X}", index)
         counts_are_set = 0x1600 <= index < 0x1800 or 0x1A00 <= index < 0x1C00
-        record.add_member(variable(index, 0, U8, RW if counts_are_set else RO,
-                                   0 if counts_are_set else subs[-1][0]))
+        mapped = sum(1 for sub in subs if sub[3]) if habits.maps is not None else 0
+        record.add_member(variable(index, 0, U8, RW if counts_are_set and habits.maps is None else RO,
+                                   mapped if counts_are_set else subs[-1][0]))
         for sub, kind, access, default in subs:
             record.add_member(variable(index, sub, kind, access, default))
         result.add_object(record)
@@ -62,8 +97,10 @@ def dictionary(node):
 class Drive:
     """The node, and a motor that is where its target says one SYNC later."""
 
-    def __init__(self, network, number, at=0):
-        self.node = network.create_node(canopen.LocalNode(number, dictionary(number)))
+    def __init__(self, network, number, at=0, habits=None):
+        self.habits = habits or Habits()
+        self.node = network.create_node(canopen.LocalNode(number, dictionary(number, self.habits)))
+        self.node.add_write_callback(self.on_write)
         self.network, self.number = network, number
         self.state, self.mode, self.controlword = "off", 0, 0
         self.at = self.goal = at
@@ -80,13 +117,44 @@ class Drive:
     def get(self, index, sub=0):
         return int.from_bytes(self.node.get_data(index, sub), "little")
 
+    def on_write(self, index, subindex, od, data):  # names of the library
+        """What may not be written, or not to this value. Mode and controlword act at once."""
+        value, habits = int.from_bytes(data, "little"), self.habits
+        is_entry = (0x1600 <= index < 0x1800 or 0x1A00 <= index < 0x1C00) and subindex > 0
+        if index in habits.read_only or (index, subindex) in habits.read_only:
+            raise canopen.SdoAbortedError(0x06010002)
+        if value > habits.limits.get(index, 0xFFFFFFFF):
+            raise canopen.SdoAbortedError(habits.code)
+        if is_entry and value and value >> 16 >= 0x1000 and value >> 16 not in self.node.object_dictionary:
+            raise canopen.SdoAbortedError(0x06020000)
+        if is_entry and value >> 16 < 0x1000 and value and not habits.dummies:
+            raise canopen.SdoAbortedError(0x06040041)
+        if is_entry and value >> 16 in habits.not_mappable:
+            raise canopen.SdoAbortedError(0x06040041)
+        if index == 0x6060:
+            self.set_mode(value)
+        elif index == 0x6040:
+            self.set_control(value)
+
     def on_nmt(self, _, data, __):
         if data[1] not in (0, self.number):
             return
         if data[0] in (129, 130):
-            self.reset()
+            self.boot_later()
         elif data[0] == 1:
             self.connect()
+
+    def boot_later(self):
+        """It hears nothing until it has booted."""
+        if not self.habits.boots_after:
+            self.reset()
+            return
+        self.network.unsubscribe(0x600 + self.number)
+        threading.Timer(self.habits.boots_after, self.boot).start()
+
+    def boot(self):
+        self.network.subscribe(0x600 + self.number, self.node.sdo.on_request)
+        self.reset()
 
     def reset(self):
         for index in [i for i in self.node.data_store if 0x1000 <= i < 0x2000]:
@@ -102,18 +170,26 @@ class Drive:
                 for cob_id in [pdo.cob_id] if pdo.cob_id in self.network.subscribers else []:
                     self.network.unsubscribe(cob_id)
                 pdo.read()
-        self.node.rpdo[1].add_callback(self.on_control)
-        self.node.rpdo[2].add_callback(self.on_target)
+        for pdo in self.node.rpdo.map.values():
+            pdo.add_callback(self.on_rpdo)
 
-    def mapped(self, pdo):
-        return {var.index: var.raw for var in pdo.map}
+    def set_mode(self, mode):
+        self.mode = mode
+        self.node.data_store.setdefault(0x6061, {})[0] = struct.pack("<b", mode)
 
-    def on_control(self, pdo):
-        values = self.mapped(pdo)
-        before, self.controlword = self.controlword, values[0x6040]
-        self.mode = values[0x6060]
-        self.node.data_store.setdefault(0x6061, {})[0] = struct.pack("<b", self.mode)
+    def set_control(self, word):
+        before, self.controlword = self.controlword, word
         self.obey(before)
+
+    def on_rpdo(self, pdo):
+        values = {var.index: var.raw for var in pdo.map}
+        if 0x6060 in values:
+            self.set_mode(values[0x6060])
+        if 0x6040 in values:
+            self.set_control(values[0x6040])
+        target = values.get(0x607A if self.mode != 7 else 0x60C1)
+        if target is not None and (self.mode != 7 or self.controlword & 0x10):
+            self.pending = target
 
     def obey(self, before):
         word = self.controlword
@@ -131,15 +207,12 @@ class Drive:
         if self.mode == 6 and self.state == "enabled" and word & 0x10 and not before & 0x10:
             self.is_homed, self.homing_syncs = False, self.homed_after
 
-    def on_target(self, pdo):
-        self.pending = self.mapped(pdo)[0x607A]
-
     def statusword(self):
         word = STATUS[self.state]
         if self.mode == 6:
             word |= 0x0400 if self.homing_syncs == 0 else 0
             word |= 0x1000 if self.is_homed else 0
-        elif self.state == "enabled":
+        elif self.state == "enabled" and (self.mode != 7 or self.controlword & 0x10):
             word |= 0x1000
         return word
 
@@ -149,10 +222,12 @@ class Drive:
         self.move()
         if self.silent_after is not None and len(self.targets) >= self.silent_after:
             return
-        tpdo = self.node.tpdo[1]
-        for var in tpdo.map:
-            var.raw = {0x6041: self.statusword(), 0x6064: self.at}[var.index]
-        tpdo.transmit()
+        for tpdo in self.node.tpdo.map.values():
+            if not tpdo.enabled or tpdo.trans_type != 1:
+                continue
+            for var in tpdo.map:
+                var.raw = {0x6041: self.statusword(), 0x6064: self.at, 0x6061: self.mode}.get(var.index, 0)
+            tpdo.transmit()
 
     def move(self):
         if self.state == "stopping":

@@ -84,6 +84,7 @@ static void init(uint64_t seed)
         .bitrate = 1000000,
         .controller_node = 127,
         .heartbeat_ms = 100,
+        .boot_timeout_cycles = 100,
         .start_timeout_cycles = 400,
         .answer_timeout_cycles = 20,
         .sdo_timeout_cycles = 10,

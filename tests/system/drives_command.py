@@ -33,6 +33,8 @@ refused(["--bus", "slcan:pty", "--log", "all.log", "--bus-log", "all.log"], "sam
 refused(["--bus", "slcan:pty", "--bus-log", "no/such/folder/bus.log"], "no/such/folder/bus.log: it cannot be written: No such", 3)
 refused(["--eds", "no/such/folder/x.eds"], "no/such/folder", 3)
 refused(["--eds", ".", "--inject", "no.inject"], "no.inject")
+refused(["--bus", "socketcand:listen:0", "--eds", "no.eds"], "no.eds:0:0: error: cannot be opened")
+refused(["--bus", "socketcand:listen:0", "--eds", t.write("no.eds", "[1000]\n")], "no.eds:0:0: error: this is no drive")
 for text, said in (
     ("power drive 1 jamm\n", "bad.inject:1:15: error: 'jamm' is no fault of a drive; known are emcy"),
     ("\npower drive 9 jam\n", "bad.inject:2:0: error: there is no drive with node 9"),

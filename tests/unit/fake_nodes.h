@@ -13,7 +13,7 @@
 
 #define FAKE_NODES_PENDING 128
 #define FAKE_NODES_WRITTEN 512
-#define FAKE_NODES_RULES   8
+#define FAKE_NODES_RULES   16
 
 /* An answer out of the ordinary. node 0: every node's. */
 struct fake_rule {
@@ -21,6 +21,7 @@ struct fake_rule {
     uint32_t object;
     uint32_t value;      /* of a reading request */
     uint32_t abort_code; /* not 0: the request is aborted */
+    uint32_t write_code; /* not 0: so it is if it writes */
     unsigned silent;     /* so many requests are not answered */
 };
 
@@ -91,9 +92,11 @@ static inline void fake_nodes_answer(struct fake_nodes *nodes, const struct can_
         rule->silent--;
         return;
     }
-    if (rule && rule->abort_code != 0) {
-        sdo_write_abort(fake_nodes_add(nodes), SDO_RESPONSE_FUNCTION, node, object,
-                        rule->abort_code);
+    uint32_t code = !rule                                 ? 0
+                    : !is_upload && rule->write_code != 0 ? rule->write_code
+                                                          : rule->abort_code;
+    if (code != 0) {
+        sdo_write_abort(fake_nodes_add(nodes), SDO_RESPONSE_FUNCTION, node, object, code);
         return;
     }
     if (!is_upload)

@@ -54,6 +54,7 @@ static inline struct drives_config three_axes(void)
         .cycle_us = 1000,
         .bitrate = 1000000,
         .controller_node = 127,
+        .boot_timeout_cycles = 100,
         .start_timeout_cycles = START_CYCLES,
         .answer_timeout_cycles = 2,
         .sdo_timeout_cycles = 10,

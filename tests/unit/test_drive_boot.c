@@ -56,7 +56,7 @@ static void test_a_node_that_never_boots_is_named(void)
 {
     nodes.mute = 2;
     assert_refused(TAKT_ERROR_DRIVE_ABSENT,
-                   "the drive of axis Y (node 2) has not booted within 2 s");
+                   "the drive of axis Y (node 2) has not booted within 1 s");
 }
 
 /* Writes of a node to the objects of one PDO, in order. */
@@ -186,12 +186,12 @@ static void test_the_drive_the_machine_file_names_is_taken(void)
     TEST_ASSERT_EQUAL_INT(DRIVES_ENABLED, drives_get_state(&drives));
 }
 
-static void test_a_drive_without_the_cyclic_mode_is_refused(void)
+static void test_a_drive_that_cannot_follow_targets_is_refused(void)
 {
-    set_rule((struct fake_rule){.object = SDO_OBJECT(0x6502, 0), .value = 0x61});
+    set_rule((struct fake_rule){.object = SDO_OBJECT(0x6502, 0), .value = 0x21});
     assert_refused(TAKT_ERROR_DRIVE_MODES,
                    "the drive of axis X (node 1) has no cyclic synchronous position mode: the "
-                   "modes, object 6502, are 0061");
+                   "modes, object 6502, are 0021");
 }
 
 static void test_what_a_drive_may_lack_is_passed_over(void)
@@ -210,18 +210,156 @@ static void test_what_a_drive_may_lack_is_passed_over(void)
 static void test_a_refusal_is_told_with_object_code_and_meaning(void)
 {
     set_rule((struct fake_rule){
-        .node = 2, .object = SDO_OBJECT(0x1600, 1), .abort_code = SDO_ABORT_NOT_MAPPABLE});
+        .node = 2, .object = SDO_OBJECT(0x1000, 0), .abort_code = SDO_ABORT_GENERAL});
     assert_refused(TAKT_ERROR_DRIVE_REFUSES,
-                   "the drive of axis Y (node 2), object 1600:01, refuses with abort code "
-                   "06040041: object cannot be mapped into the PDO");
+                   "the drive of axis Y (node 2), object 1000:00, refuses with abort code "
+                   "08000000: general error");
 }
 
-static void test_an_optional_object_that_is_refused_for_its_value_is_a_fault(void)
+static bool gave_up(enum axis axis, enum drives_given_up what)
 {
-    set_rule((struct fake_rule){.object = SDO_OBJECT(0x1006, 0), .abort_code = SDO_ABORT_VALUE});
-    assert_refused(TAKT_ERROR_DRIVE_REFUSES,
-                   "the drive of axis X (node 1), object 1006:00, refuses with abort code "
-                   "06090030: invalid value");
+    return drives_get_given_up(&drives, axis) >> what & 1;
+}
+
+static void test_nothing_is_given_up_by_drives_that_take_everything(void)
+{
+    run_start();
+    for (unsigned i = 0; i < DRIVES; i++)
+        TEST_ASSERT_EQUAL_HEX32(0, drives_get_given_up(&drives, (enum axis)(AXIS_X + (int)i)));
+}
+
+static void test_an_optional_object_that_is_refused_for_any_reason_is_given_up(void)
+{
+    static const uint32_t codes[] = {SDO_ABORT_VALUE, SDO_ABORT_READ_ONLY, SDO_ABORT_TOO_HIGH,
+                                     SDO_ABORT_STATE, 0x12345678};
+    for (unsigned i = 0; i < sizeof codes / sizeof codes[0]; i++) {
+        setUp();
+        set_rule((struct fake_rule){.object = SDO_OBJECT(0x1006, 0), .abort_code = codes[i]});
+        run_start();
+        TEST_ASSERT_EQUAL_INT(DRIVES_ENABLED, drives_get_state(&drives));
+        TEST_ASSERT_TRUE(gave_up(AXIS_X, DRIVES_NO_SYNC_PERIOD));
+    }
+}
+
+static void set_read_only(uint32_t object, uint32_t value)
+{
+    set_rule(
+        (struct fake_rule){.object = object, .value = value, .write_code = SDO_ABORT_READ_ONLY});
+}
+
+static void test_what_cannot_be_told_but_is_so_already_is_not_given_up(void)
+{
+    set_read_only(SDO_OBJECT(0x605E, 0), 2);
+    set_read_only(SDO_OBJECT(0x1017, 0), 100);
+    run_start();
+    TEST_ASSERT_EQUAL_INT(DRIVES_ENABLED, drives_get_state(&drives));
+    TEST_ASSERT_EQUAL_HEX32(0, drives_get_given_up(&drives, AXIS_X));
+}
+
+static void test_the_same_time_between_targets_in_other_units_is_taken(void)
+{
+    set_read_only(SDO_OBJECT(0x60C2, 1), 10);
+    set_read_only(SDO_OBJECT(0x60C2, 2), 0xFC);
+    run_start();
+    TEST_ASSERT_EQUAL_INT(DRIVES_ENABLED, drives_get_state(&drives));
+}
+
+static void test_a_drive_that_keeps_another_time_between_targets_is_refused(void)
+{
+    set_read_only(SDO_OBJECT(0x60C2, 1), 1);
+    set_read_only(SDO_OBJECT(0x60C2, 2), 0xFE);
+    assert_refused(TAKT_ERROR_DRIVE_PERIOD,
+                   "the drive of axis X (node 1) keeps 60C2, 10000 us between targets; cycle_us is "
+                   "1000");
+}
+
+static void test_axes_of_drives_without_dummies_have_frames_of_their_own(void)
+{
+    const struct fake_written alone[] = {
+        {2, SDO_OBJECT(0x1401, 1), 0x80000302, 4}, {2, SDO_OBJECT(0x1401, 2), 1, 1},
+        {2, SDO_OBJECT(0x1601, 0), 0, 1},          {2, SDO_OBJECT(0x1601, 1), 0x607A0020, 4},
+        {2, SDO_OBJECT(0x1601, 0), 1, 1},          {2, SDO_OBJECT(0x1401, 1), 0x302, 4}};
+    set_rule((struct fake_rule){
+        .node = 1, .object = SDO_OBJECT(0x1601, 2), .write_code = SDO_ABORT_NO_OBJECT});
+    run_start();
+    TEST_ASSERT_EQUAL_INT(DRIVES_ENABLED, drives_get_state(&drives));
+    assert_writes(2, 0x1401, 0x1601, alone, 6);
+    TEST_ASSERT_TRUE(gave_up(AXIS_X, DRIVES_NO_PAIR) && gave_up(AXIS_Y, DRIVES_NO_PAIR));
+    TEST_ASSERT_FALSE(gave_up(AXIS_Z, DRIVES_NO_PAIR));
+}
+
+static void test_the_load_is_that_of_the_frames_that_were_found(void)
+{
+    struct drives_load load;
+    run_start();
+    drives_get_load(&drives, &load);
+    TEST_ASSERT_EQUAL_UINT32(55 + 135 + 95 + 345 + 180, load.bits);
+    setUp();
+    set_rule((struct fake_rule){
+        .node = 1, .object = SDO_OBJECT(0x1601, 2), .write_code = SDO_ABORT_NOT_MAPPABLE});
+    run_start();
+    drives_get_load(&drives, &load);
+    TEST_ASSERT_EQUAL_UINT32(55 + 3 * 95 + 345 + 180, load.bits);
+}
+
+static void test_a_drive_that_cannot_report_in_every_cycle_is_refused(void)
+{
+    for (uint16_t index = 0x1A00; index < 0x1A04; index++)
+        set_rule((struct fake_rule){
+            .node = 3, .object = SDO_OBJECT(index, 0), .write_code = SDO_ABORT_READ_ONLY});
+    assert_refused(TAKT_ERROR_DRIVE_UNMAPPED,
+                   "the drive of axis Z (node 3), object 6041:00, is in no PDO of every SYNC and "
+                   "refuses: 06010002, object can only be read");
+}
+
+static void test_scaling_is_checked_by_the_travel_of_a_turn(void)
+{
+    config.axis[1].travel_per_turn_mm = 10;
+    set_rule((struct fake_rule){.object = SDO_OBJECT(0x6092, 1), .value = 20000});
+    set_rule((struct fake_rule){.object = SDO_OBJECT(0x6092, 2), .value = 1});
+    set_rule((struct fake_rule){.object = SDO_OBJECT(0x6091, 1), .value = 2});
+    set_rule((struct fake_rule){.object = SDO_OBJECT(0x6091, 2), .value = 1});
+    run_start();
+    TEST_ASSERT_EQUAL_INT(DRIVES_ENABLED, drives_get_state(&drives));
+    setUp();
+    config.axis[1].travel_per_turn_mm = 10;
+    set_rule((struct fake_rule){.object = SDO_OBJECT(0x608F, 1), .value = 4096});
+    set_rule((struct fake_rule){.object = SDO_OBJECT(0x608F, 2), .value = 1});
+    assert_refused(TAKT_ERROR_DRIVE_SCALING,
+                   "the drive of axis Y (node 2) counts 4096 units in a turn of its motor; by "
+                   "increments_per_mm it is 10000");
+}
+
+static void test_a_drive_that_boots_slowly_is_reset_once(void)
+{
+    nodes.mute = 3;
+    config.boot_timeout_cycles = 1000;
+    drives_init(&drives, &config);
+    for (unsigned i = 0; i < 900; i++)
+        cycle();
+    nmt_write_heartbeat(fake_nodes_add(&nodes), 3, NMT_BOOTED);
+    nodes.mute = 0;
+    run_until(DRIVES_ENABLED);
+    TEST_ASSERT_EQUAL_UINT(0, nodes.resets[3] - 1);
+}
+
+static void test_a_drive_that_has_been_set_up_is_told_nothing(void)
+{
+    static const uint32_t has[][2] = {
+        {SDO_OBJECT(0x1400, 1), 0x201},      {SDO_OBJECT(0x1600, 0), 2},
+        {SDO_OBJECT(0x1600, 1), 0x60400010}, {SDO_OBJECT(0x1600, 2), 0x60600008},
+        {SDO_OBJECT(0x1401, 1), 0x301},      {SDO_OBJECT(0x1401, 2), 1},
+        {SDO_OBJECT(0x1601, 0), 1},          {SDO_OBJECT(0x1601, 1), 0x607A0020},
+        {SDO_OBJECT(0x1800, 1), 0x40000181}, {SDO_OBJECT(0x1800, 2), 1},
+        {SDO_OBJECT(0x1A00, 0), 2},          {SDO_OBJECT(0x1A00, 1), 0x60410010},
+        {SDO_OBJECT(0x1A00, 2), 0x60640020}};
+    config.count = 1;
+    config.axis[0].keeps_settings = true;
+    for (unsigned i = 0; i < sizeof has / sizeof has[0]; i++)
+        set_rule((struct fake_rule){.object = has[i][0], .value = has[i][1]});
+    run_start();
+    TEST_ASSERT_EQUAL_INT(DRIVES_ENABLED, drives_get_state(&drives));
+    TEST_ASSERT_EQUAL_UINT(0, nodes.written_count);
 }
 
 static void test_a_request_without_an_answer_is_repeated_twice_and_no_more(void)
@@ -300,10 +438,20 @@ int main(void)
     RUN_TEST(test_a_node_of_another_profile_is_refused);
     RUN_TEST(test_another_drive_than_the_machine_file_names_is_refused);
     RUN_TEST(test_the_drive_the_machine_file_names_is_taken);
-    RUN_TEST(test_a_drive_without_the_cyclic_mode_is_refused);
+    RUN_TEST(test_a_drive_that_cannot_follow_targets_is_refused);
     RUN_TEST(test_what_a_drive_may_lack_is_passed_over);
     RUN_TEST(test_a_refusal_is_told_with_object_code_and_meaning);
-    RUN_TEST(test_an_optional_object_that_is_refused_for_its_value_is_a_fault);
+    RUN_TEST(test_nothing_is_given_up_by_drives_that_take_everything);
+    RUN_TEST(test_an_optional_object_that_is_refused_for_any_reason_is_given_up);
+    RUN_TEST(test_what_cannot_be_told_but_is_so_already_is_not_given_up);
+    RUN_TEST(test_the_same_time_between_targets_in_other_units_is_taken);
+    RUN_TEST(test_a_drive_that_keeps_another_time_between_targets_is_refused);
+    RUN_TEST(test_axes_of_drives_without_dummies_have_frames_of_their_own);
+    RUN_TEST(test_the_load_is_that_of_the_frames_that_were_found);
+    RUN_TEST(test_a_drive_that_cannot_report_in_every_cycle_is_refused);
+    RUN_TEST(test_scaling_is_checked_by_the_travel_of_a_turn);
+    RUN_TEST(test_a_drive_that_boots_slowly_is_reset_once);
+    RUN_TEST(test_a_drive_that_has_been_set_up_is_told_nothing);
     RUN_TEST(test_a_request_without_an_answer_is_repeated_twice_and_no_more);
     RUN_TEST(test_a_drive_that_boots_while_it_is_configured_is_configured_again);
     RUN_TEST(test_a_drive_that_does_not_show_its_mode_is_refused);

@@ -34,6 +34,7 @@ static void init_loop(unsigned count, uint32_t bitrate, double start_mm)
         .bitrate = 1000000,
         .controller_node = 127,
         .heartbeat_ms = 100,
+        .boot_timeout_cycles = 500,
         .start_timeout_cycles = 1000,
         .answer_timeout_cycles = 2,
         .sdo_timeout_cycles = 20,

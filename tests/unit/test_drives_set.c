@@ -59,6 +59,7 @@ void setUp(void)
                                            .bitrate = 1000000,
                                            .controller_node = 127,
                                            .heartbeat_ms = 100,
+                                           .boot_timeout_cycles = 500,
                                            .start_timeout_cycles = 1000,
                                            .answer_timeout_cycles = 20,
                                            .sdo_timeout_cycles = 20,

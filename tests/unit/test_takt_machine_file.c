@@ -111,7 +111,7 @@ static void test_rotary_values_are_degrees_outside_and_radians_inside(void)
                   "travel_per_revolution_deg = 3\n"));
     TEST_ASSERT_EQUAL_DOUBLE(180 * DEGREE, setup.machine.axis[AXIS_A].max_velocity_mm_s);
     TEST_ASSERT_EQUAL_DOUBLE(1000 / DEGREE, setup.machine.axis[AXIS_A].increments_per_mm);
-    TEST_ASSERT_EQUAL_DOUBLE(3 * DEGREE, setup.drive[AXIS_A].travel_per_revolution_mm);
+    TEST_ASSERT_EQUAL_DOUBLE(3 * DEGREE, setup.drive[AXIS_A].plant.travel_per_revolution_mm);
 }
 
 static void test_a_refused_value_changes_nothing(void)

@@ -1,0 +1,134 @@
+#include "drive/drives_layout.h"
+
+#include "canopen/cia402.h"
+
+#include <stddef.h>
+
+uint32_t drives_target_of(const struct drives_axis *axis)
+{
+    return axis->follow_mode == CIA402_MODE_CYCLIC_SYNC_POSITION ? CIA402_TARGET_POSITION
+                                                                 : CIA402_INTERPOLATION;
+}
+
+/* Byte at which an object begins. */
+uint8_t drives_byte_of(const struct pdo *pdo, uint32_t object)
+{
+    int offset = pdo_offset(&pdo->mapping, object);
+    return offset < 0 ? DRIVES_NOWHERE : (uint8_t)offset;
+}
+
+void drives_forget_pdos(struct drives_axis *axis)
+{
+    axis->control_frame.length = axis->target_frame.length = 0;
+    axis->control_frame.mode = axis->target_frame.mode = DRIVES_NOWHERE;
+    axis->status_id = axis->position_id = axis->error_id = NO_TPDO;
+    axis->bits = 0;
+}
+
+bool drives_uses(const struct drives_axis *axis, const struct pdo *pdo)
+{
+    return (axis->control_frame.length > 0 && axis->control_frame.cob_id == pdo->cob_id) ||
+           (axis->target_frame.length > 0 && axis->target_frame.cob_id == pdo->cob_id) ||
+           axis->status_id == pdo->cob_id || axis->position_id == pdo->cob_id ||
+           axis->error_id == pdo->cob_id;
+}
+
+/* Than a target, and dummies. */
+static bool has_more(const struct drives_axis *axis, const struct pdo *pdo)
+{
+    const struct pdo_mapping *mapping = &pdo->mapping;
+    unsigned i = 0;
+    while (i < mapping->count &&
+           (mapping->object[i] == PDO_DUMMY_32 || mapping->object[i] == drives_target_of(axis)))
+        i++;
+    return i < mapping->count;
+}
+
+static void take_received(struct drives *d)
+{
+    struct drives_axis *axis = &d->axis[d->at_axis];
+    const struct pdo *pdo = &d->mapping.pdo;
+    const struct drives_frame frame = {.cob_id = pdo->cob_id,
+                                       .length = pdo->mapping.length,
+                                       .control = drives_byte_of(pdo, CIA402_CONTROLWORD),
+                                       .mode = drives_byte_of(pdo, CIA402_MODE),
+                                       .is_mixed = has_more(axis, pdo),
+                                       .target = drives_byte_of(pdo, drives_target_of(axis))};
+    bool is_better = axis->control_frame.length == 0 ||
+                     (axis->control_frame.mode == DRIVES_NOWHERE && frame.mode != DRIVES_NOWHERE);
+    if (frame.control != DRIVES_NOWHERE && is_better)
+        axis->control_frame = frame;
+    if (frame.target == DRIVES_NOWHERE || axis->target_frame.length > 0)
+        return;
+    axis->target_frame = frame;
+    if (pdo->transmission > PDO_SYNC_MAX)
+        drives_give_up(d, d->at_axis, DRIVES_NO_SYNC_TARGET);
+}
+
+void drives_count_bits(struct drives_axis *axis, unsigned length)
+{
+    axis->bits = (uint16_t)(axis->bits + drives_frame_bits(length));
+}
+
+/* An unwanted TPDO stays. */
+void drives_suffer(struct drives *d)
+{
+    drives_give_up(d, d->at_axis, DRIVES_NO_SILENCE);
+    if (d->mapping.pdo.transmission <= PDO_SYNC_MAX)
+        drives_count_bits(&d->axis[d->at_axis], d->mapping.pdo.mapping.length);
+}
+
+static void take_transmitted(struct drives_axis *axis, const struct drives_mapping *m)
+{
+    const struct pdo *pdo = &m->pdo;
+    uint8_t status = drives_byte_of(pdo, CIA402_STATUSWORD),
+            position = drives_byte_of(pdo, CIA402_POSITION_ACTUAL);
+    bool has_both = status != DRIVES_NOWHERE && position != DRIVES_NOWHERE;
+    bool is_cyclic = pdo->transmission == PDO_EVERY_SYNC;
+    bool is_taken = is_cyclic && (has_both || m->pass >= PASS_APART);
+    if (node_id(pdo->cob_id) != axis->config.node)
+        return;
+    if (is_taken && status != DRIVES_NOWHERE && axis->status_id == NO_TPDO) {
+        axis->status_id = pdo->cob_id;
+        axis->status_end = (uint8_t)(status + 2);
+    }
+    if (is_taken && position != DRIVES_NOWHERE && axis->position_id == NO_TPDO) {
+        axis->position_id = pdo->cob_id;
+        axis->position_end = (uint8_t)(position + 4);
+    }
+    if (!is_cyclic && drives_byte_of(pdo, CIA402_ERROR_CODE) == 0)
+        axis->error_id = pdo->cob_id;
+    if (is_cyclic && drives_uses(axis, pdo))
+        drives_count_bits(axis, pdo->mapping.length);
+}
+
+/* Of entries: a drive may have mapped more than a frame holds only by mistake. */
+static uint8_t length_of(const struct pdo_mapping *mapping)
+{
+    unsigned bits = 0;
+    for (unsigned i = 0; i < mapping->count; i++)
+        bits += mapping->object[i] & 0xFF;
+    return (uint8_t)(bits <= 8 * CAN_DATA_MAX ? bits / 8 : 0);
+}
+
+void drives_take_layout(struct drives *d)
+{
+    struct drives_mapping *m = &d->mapping;
+    m->pdo.mapping.length = length_of(&m->pdo.mapping);
+    if (m->pdo.mapping.length == 0)
+        m->pdo.mapping.count = 0;
+    else if (drives_is_transmitted(m))
+        take_transmitted(&d->axis[d->at_axis], m);
+    else
+        take_received(d);
+    m->entry = 0;
+}
+
+void drives_store_rest(struct drives_frame *frame, const struct pdo *pdo, uint32_t object,
+                       uint32_t value)
+{
+    unsigned at = drives_byte_of(pdo, object), bytes = (object & 0xFF) / 8;
+    for (unsigned i = 0; i < bytes && i < 4 && frame->length > 0 && frame->cob_id == pdo->cob_id;
+         i++)
+        frame->data[at + i] = (uint8_t)(value >> 8 * i);
+}

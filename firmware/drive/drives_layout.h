@@ -1,0 +1,40 @@
+/*
+ * What is in the PDOs of a drive, wherever it is: from mappings to frames. For the sources of this room.
+ */
+#ifndef TAKT_DRIVE_DRIVES_LAYOUT_H
+#define TAKT_DRIVE_DRIVES_LAYOUT_H
+
+#include "drive/drives_private.h"
+
+/* Passes of drives_map.c from which TPDOs are meant, and from which one of either report will do. */
+#define PASS_STATUS 5
+#define PASS_APART  9
+
+#define PDO_SYNC_MAX 240
+
+/* No TPDO: the reserved identifiers of heartbeats. */
+#define NO_TPDO NODE_FUNCTION_MASK
+
+static inline bool drives_is_transmitted(const struct drives_mapping *m)
+{
+    return m->pass >= PASS_STATUS;
+}
+
+/* Byte at which an object begins; DRIVES_NOWHERE: it is not in it. */
+uint8_t drives_byte_of(const struct pdo *pdo, uint32_t object);
+/* The object that is the target, by the mode in which the drive follows. */
+uint32_t drives_target_of(const struct drives_axis *axis);
+/* Something of this PDO is used. */
+bool drives_uses(const struct drives_axis *axis, const struct pdo *pdo);
+
+/* The PDO being configured is known: what is in it has its place. */
+void drives_take_layout(struct drives *d);
+/* It has nothing that is wanted, and stays. */
+void drives_suffer(struct drives *d);
+/* The drive's value of what else is in a frame. */
+void drives_store_rest(struct drives_frame *frame, const struct pdo *pdo, uint32_t object,
+                       uint32_t value);
+/* A frame of this length is sent in every cycle. */
+void drives_count_bits(struct drives_axis *axis, unsigned length);
+
+#endif

@@ -1,0 +1,530 @@
+/*
+ * The process data of a drive: told as takt would have them, and taken as the drive has them.
+ *
+ *     pass   PDO     wanted                                            type
+ *     0      RPDO1   controlword, mode                                 at once
+ *     1      RPDO2   target, and a dummy for that of the neighbour     SYNC
+ *     2, 3   RPDO3,4 what has found no place so far, else not valid
+ *     4      RPDO1   again, if the target has found no place: target, controlword
+ *     5      TPDO1   statusword, position                              every SYNC
+ *     6 - 8  TPDO2-4 the same, if they have found no place in one PDO; error code, following error (event, 100 ms)
+ *     9 - 12 TPDO1-4 again, if they have found no such place: each in one of its own
+ *
+ * A PDO is told as CiA 301, 7.5.2.36 has it: not valid, type, no mapping, entries, their number, valid. An entry that is
+ * refused is left out, and so is the last one as long as their number is. Is anything else refused, the PDO is read: its
+ * identifier, type and entries, wherever in it they are, are what counts. So a drive whose PDOs are fixed needs no case
+ * of its own, and what is in a frame beside what takt knows keeps the value that the drive has for it.
+ */
+#include "canopen/cia402.h"
+#include "canopen/objects.h"
+#include "canopen/target_pdo.h"
+#include "drive/drives_layout.h"
+
+#include <stddef.h>
+#include <string.h>
+
+/* RPDOs, and as many TPDOs, that are used or made not valid. */
+#define PDOS 4
+
+#define PASS_TARGET 1
+#define PASS_AGAIN  4
+#define PASSES      13
+
+#define COB_ID_MASK 0x7FFu
+
+#define MAPPING_OFFSET (OBJECT_RPDO_MAPPING - OBJECT_RPDO)
+
+enum step {
+    BEGIN,
+    OFF,
+    TYPE,
+    CLEAR,
+    ENTRY,
+    COUNT,
+    TIMER,
+    ON,
+    TOLD,
+    READ_ID,
+    READ_TYPE,
+    READ_COUNT,
+    READ_ENTRY,
+    SET_TYPE, /* by what has been found in it */
+    FOUND,
+    READ_REST, /* values of what takt does not know */
+    SILENCE,   /* a TPDO with nothing that is wanted */
+    DONE
+};
+
+/* From 0. */
+static unsigned number_of(const struct drives_mapping *m)
+{
+    return (drives_is_transmitted(m) ? (unsigned)m->pass - PASS_STATUS : (unsigned)m->pass) % PDOS;
+}
+
+static unsigned parameters_of(const struct drives_mapping *m)
+{
+    return (drives_is_transmitted(m) ? OBJECT_TPDO : OBJECT_RPDO) + number_of(m);
+}
+
+/* ---- What is wanted ---- */
+
+static void add(struct pdo *pdo, uint32_t object, bool is_wanted)
+{
+    if (is_wanted)
+        pdo->mapping.object[pdo->mapping.count++] = object;
+}
+
+static void want_target(const struct drives *d, struct pdo *pdo)
+{
+    const struct drives_axis *axis = &d->axis[d->at_axis];
+    if (!axis->is_paired || d->mapping.pass == PASS_AGAIN) {
+        add(pdo, drives_target_of(axis), true);
+        return;
+    }
+    target_pdo_set(pdo, d->node, d->count, d->at_axis);
+    pdo->mapping.object[d->at_axis & 1] = drives_target_of(axis);
+}
+
+static void want_received(const struct drives *d, struct pdo *pdo)
+{
+    const struct drives_axis *axis = &d->axis[d->at_axis];
+    unsigned pass = d->mapping.pass;
+    bool has_target = axis->target_frame.length > 0;
+    bool has_control = pass == PASS_TARGET || axis->control_frame.length > 0;
+    if (pass > 0 && !has_target) {
+        pdo->transmission = PDO_EVERY_SYNC;
+        want_target(d, pdo);
+        add(pdo, CIA402_CONTROLWORD, pass == PASS_AGAIN);
+    } else if (pass != PASS_AGAIN && !has_control) {
+        add(pdo, CIA402_CONTROLWORD, true);
+        add(pdo, CIA402_MODE, true);
+    }
+}
+
+static void want_transmitted(const struct drives *d, struct pdo *pdo)
+{
+    const struct drives_axis *axis = &d->axis[d->at_axis];
+    bool has_no_error = axis->error_id == NO_TPDO && d->mapping.pass < PASS_APART;
+    add(pdo, CIA402_STATUSWORD, axis->status_id == NO_TPDO);
+    add(pdo, CIA402_POSITION_ACTUAL, axis->position_id == NO_TPDO);
+    if (pdo->mapping.count > 0) {
+        pdo->transmission = PDO_EVERY_SYNC;
+    } else {
+        add(pdo, CIA402_ERROR_CODE, has_no_error);
+        add(pdo, CIA402_FOLLOWING_ERROR, has_no_error);
+    }
+}
+
+static bool has_reports(const struct drives_axis *axis)
+{
+    return axis->status_id != NO_TPDO && axis->position_id != NO_TPDO;
+}
+
+static void begin(struct drives *d)
+{
+    struct drives_mapping *m = &d->mapping;
+    unsigned first = drives_is_transmitted(m) ? PDO_TPDO1_FUNCTION : PDO_RPDO1_FUNCTION;
+    struct drives_axis *axis = &d->axis[d->at_axis];
+    bool keeps = axis->config.keeps_settings;
+    memset(&m->pdo, 0, sizeof m->pdo);
+    m->pdo.transmission = PDO_EVENT;
+    m->pdo.cob_id = (uint16_t)(first + number_of(m) * PDO_NEXT_FUNCTION + d->node[d->at_axis]);
+    if (drives_is_transmitted(m))
+        want_transmitted(d, &m->pdo);
+    else
+        want_received(d, &m->pdo);
+    m->id = m->pdo.cob_id | (drives_is_transmitted(m) ? OBJECT_PDO_NO_RTR : 0);
+    m->entry = 0;
+    m->is_taken = !keeps;
+    m->step = keeps ? READ_ID : OFF;
+    if (m->pass == PASS_AGAIN && (m->pdo.mapping.count == 0 || keeps)) {
+        m->step = DONE;
+    } else if (m->pass == PASS_AGAIN) {
+        axis->control_frame.length = 0;
+        axis->control_frame.mode = DRIVES_NOWHERE;
+    } else if (m->pass == PASS_APART && has_reports(axis)) {
+        m->pass = PASSES;
+    } else if (m->pass == PASS_APART) {
+        axis->bits = 0;
+        axis->given_up &= ~(1u << DRIVES_NO_SILENCE);
+    }
+}
+
+/* ---- Telling and reading it ---- */
+
+static bool set_write(struct drives_step *step, unsigned index, unsigned sub, uint8_t length,
+                      uint32_t value)
+{
+    *step = (struct drives_step){SDO_OBJECT(index, sub), length, value};
+    return true;
+}
+
+static bool set_read(struct drives_step *step, unsigned index, unsigned sub)
+{
+    return set_write(step, index, sub, 0, 0);
+}
+
+static bool is_event_driven(const struct drives_mapping *m)
+{
+    return drives_is_transmitted(m) && m->pdo.transmission == PDO_EVENT;
+}
+
+static bool find_telling(const struct drives_mapping *m, struct drives_step *step)
+{
+    const unsigned parameters = parameters_of(m), mapping = parameters + MAPPING_OFFSET;
+    const struct pdo *pdo = &m->pdo;
+    const unsigned count = pdo->mapping.count;
+    switch (m->step) {
+    case OFF:
+        return set_write(step, parameters, OBJECT_PDO_COB_ID, 4, m->id | OBJECT_PDO_NOT_VALID);
+    case TYPE:
+        return set_write(step, parameters, OBJECT_PDO_TYPE, 1, pdo->transmission) && count > 0;
+    case CLEAR:
+        return set_write(step, mapping, 0, 1, 0) &&
+               (count > 0 || (drives_is_transmitted(m) && !m->is_taken));
+    case ENTRY:
+        return m->entry < count &&
+               set_write(step, mapping, m->entry + 1u, 4, pdo->mapping.object[m->entry]);
+    case COUNT:
+        return set_write(step, mapping, 0, 1, count) && count > 0;
+    case TIMER:
+        return set_write(step, parameters, OBJECT_PDO_EVENT_TIMER, 2, DRIVES_EVENT_MS) &&
+               count > 0 && is_event_driven(m);
+    default:
+        return set_write(step, parameters, OBJECT_PDO_COB_ID, 4, m->id) && count > 0;
+    }
+}
+
+static bool has(const struct pdo *pdo, uint32_t object)
+{
+    return drives_byte_of(pdo, object) != DRIVES_NOWHERE;
+}
+
+static uint8_t type_for(const struct drives *d)
+{
+    const struct pdo *pdo = &d->mapping.pdo;
+    bool has_cyclic = drives_is_transmitted(&d->mapping)
+                          ? has(pdo, CIA402_STATUSWORD) || has(pdo, CIA402_POSITION_ACTUAL)
+                          : has(pdo, drives_target_of(&d->axis[d->at_axis]));
+    return has_cyclic ? PDO_EVERY_SYNC : PDO_EVENT;
+}
+
+/* What a frame holds beside that: dummies have no value. */
+static bool is_rest(const struct drives_axis *axis, uint32_t object)
+{
+    return object >> 16 >= OBJECT_DEVICE_TYPE && object != CIA402_CONTROLWORD &&
+           object != CIA402_MODE && object != drives_target_of(axis);
+}
+
+static bool is_unwanted(const struct drives *d)
+{
+    const struct drives_mapping *m = &d->mapping;
+    return drives_is_transmitted(m) && m->pdo.mapping.count > 0 &&
+           !drives_uses(&d->axis[d->at_axis], &m->pdo);
+}
+
+static bool find_reading(const struct drives *d, struct drives_step *step)
+{
+    const struct drives_mapping *m = &d->mapping;
+    const struct drives_axis *axis = &d->axis[d->at_axis];
+    const unsigned parameters = parameters_of(m), mapping = parameters + MAPPING_OFFSET;
+    const uint32_t object = m->pdo.mapping.object[m->entry & (PDO_MAPPED_MAX - 1)];
+    bool is_entry = m->entry < m->pdo.mapping.count;
+    switch (m->step) {
+    case READ_ID:
+        return set_read(step, parameters, OBJECT_PDO_COB_ID);
+    case READ_TYPE:
+        return set_read(step, parameters, OBJECT_PDO_TYPE);
+    case READ_COUNT:
+        return set_read(step, mapping, 0);
+    case READ_ENTRY:
+        return is_entry && set_read(step, mapping, m->entry + 1u);
+    case SET_TYPE:
+        return m->pdo.transmission != type_for(d) && m->pdo.mapping.count > 0 &&
+               !axis->config.keeps_settings &&
+               set_write(step, parameters, OBJECT_PDO_TYPE, 1, type_for(d));
+    case READ_REST:
+        return is_entry && !drives_is_transmitted(m) && drives_uses(axis, &m->pdo) &&
+               is_rest(axis, object) && set_read(step, object >> 16, object >> 8 & 0xFF);
+    default:
+        return is_unwanted(d) && !axis->config.keeps_settings &&
+               set_write(step, parameters, OBJECT_PDO_COB_ID, 4, m->id | OBJECT_PDO_NOT_VALID);
+    }
+}
+
+/* ---- What is made of it ---- */
+
+/* Neither of them shares a frame any more; the first of them is told so from its beginning. */
+static void part_pair(struct drives *d)
+{
+    unsigned first = d->at_axis & ~1u;
+    for (unsigned i = first; i < first + 2; i++) {
+        d->axis[i].is_paired = false;
+        drives_give_up(d, i, DRIVES_NO_PAIR);
+    }
+    drives_begin_axis(d, first);
+}
+
+/* Everything that could be told has been. */
+static void take_told(struct drives *d)
+{
+    struct drives_mapping *m = &d->mapping;
+    m->step = m->is_taken ? SILENCE : READ_ID;
+    if (m->is_taken)
+        drives_take_layout(d);
+}
+
+/* ---- Answers ---- */
+
+static void remove_entry(struct pdo_mapping *mapping, unsigned entry)
+{
+    for (unsigned i = entry + 1; i < mapping->count; i++)
+        mapping->object[i - 1] = mapping->object[i];
+    mapping->count--;
+}
+
+/* Some drives have no bit for that, and refuse it. */
+static bool drop_no_rtr(struct drives_mapping *m)
+{
+    bool is_set = m->id & OBJECT_PDO_NO_RTR;
+    m->id &= ~OBJECT_PDO_NO_RTR;
+    return is_set;
+}
+
+/* What follows from a refusal. True: the next step is due. */
+static bool take_refusal(struct drives *d, uint32_t abort_code)
+{
+    struct drives_mapping *m = &d->mapping;
+    struct pdo_mapping *mapping = &m->pdo.mapping;
+    d->read[0] = abort_code;
+    switch (m->step) {
+    case OFF:
+        if (sdo_says_absent(abort_code)) {
+            mapping->count = 0;
+            m->step = ON;
+            return true;
+        }
+        if (drop_no_rtr(m))
+            return false;
+        break;
+    case ON:
+        if (drop_no_rtr(m))
+            return false;
+        break;
+    case CLEAR:
+        if (mapping->count > 0)
+            drives_give_up(d, d->at_axis, DRIVES_NO_MAPPING);
+        m->step = COUNT;
+        break;
+    case ENTRY:
+        remove_entry(mapping, m->entry);
+        return false;
+    case COUNT:
+        mapping->count--;
+        return mapping->count == 0;
+    case TIMER:
+        drives_give_up(d, d->at_axis, DRIVES_NO_EVENT_TIMER);
+        return true;
+    default:
+        break;
+    }
+    m->is_taken = false;
+    return true;
+}
+
+static void take_telling(struct drives *d, const struct drives_answer *answer)
+{
+    struct drives_mapping *m = &d->mapping;
+    bool is_done = answer->abort_code == SDO_ABORT_NONE || take_refusal(d, answer->abort_code);
+    if (m->step == ENTRY)
+        m->entry = (uint8_t)(m->entry + is_done);
+    else
+        m->step = (uint8_t)(m->step + is_done);
+    if (m->step == ENTRY && m->pdo.mapping.count == 0 && answer->abort_code == SDO_ABORT_NONE)
+        m->is_taken = true; /* it cannot be made not valid, but is empty */
+}
+
+static void take_rest(struct drives *d, const struct drives_answer *answer)
+{
+    struct drives_mapping *m = &d->mapping;
+    struct drives_axis *axis = &d->axis[d->at_axis];
+    uint32_t object = m->pdo.mapping.object[m->entry++];
+    if (answer->abort_code != SDO_ABORT_NONE)
+        return;
+    drives_store_rest(&axis->control_frame, &m->pdo, object, answer->value);
+    drives_store_rest(&axis->target_frame, &m->pdo, object, answer->value);
+}
+
+/* A PDO that is not valid, or not of this kind of identifiers, is none. */
+static bool is_usable(uint32_t id)
+{
+    return (id & ~(uint32_t)OBJECT_PDO_NO_RTR) <= COB_ID_MASK;
+}
+
+static void take_reading(struct drives *d, const struct drives_answer *answer)
+{
+    struct drives_mapping *m = &d->mapping;
+    struct pdo_mapping *mapping = &m->pdo.mapping;
+    bool is_good = answer->abort_code == SDO_ABORT_NONE;
+    uint8_t step = m->step++;
+    switch (step) {
+    case READ_ID:
+        m->id = answer->value;
+        m->pdo.cob_id = (uint16_t)(answer->value & COB_ID_MASK);
+        mapping->count = 0;
+        if (!is_good || !is_usable(answer->value))
+            m->step = DONE;
+        break;
+    case READ_TYPE:
+        m->pdo.transmission = is_good ? (uint8_t)answer->value : PDO_EVENT;
+        break;
+    case READ_COUNT:
+        m->entry = 0;
+        mapping->count = (uint8_t)(is_good && answer->value <= PDO_MAPPED_MAX ? answer->value : 0);
+        break;
+    case READ_ENTRY:
+        mapping->object[m->entry++] = is_good ? answer->value : 0;
+        m->step = READ_ENTRY;
+        break;
+    case SET_TYPE:
+        m->pdo.transmission = is_good ? type_for(d) : m->pdo.transmission;
+        break;
+    case READ_REST:
+        m->step = READ_REST;
+        take_rest(d, answer);
+        break;
+    default:
+        if (!is_good)
+            drives_suffer(d);
+        break;
+    }
+}
+
+void drives_take_map(struct drives *d, const struct drives_answer *answer)
+{
+    if (d->mapping.step < TOLD)
+        take_telling(d, answer);
+    else
+        take_reading(d, answer);
+}
+
+/* Steps without a request. */
+static void pass_step(struct drives *d)
+{
+    struct drives_mapping *m = &d->mapping;
+    switch (m->step) {
+    case BEGIN:
+        begin(d);
+        break;
+    case TOLD:
+        take_told(d);
+        break;
+    case FOUND:
+        drives_take_layout(d);
+        m->step++;
+        break;
+    case READ_REST:
+        if (++m->entry >= m->pdo.mapping.count)
+            m->step++;
+        break;
+    case SILENCE:
+        if (is_unwanted(d))
+            drives_suffer(d);
+        m->step++;
+        break;
+    case DONE:
+        m->pass++;
+        m->step = BEGIN;
+        break;
+    default:
+        m->step++;
+        break;
+    }
+}
+
+static bool find_request(const struct drives *d, struct drives_step *step)
+{
+    switch (d->mapping.step) {
+    case BEGIN:
+    case TOLD:
+    case FOUND:
+    case DONE:
+        return false;
+    default:
+        return d->mapping.step < TOLD ? find_telling(&d->mapping, step) : find_reading(d, step);
+    }
+}
+
+static bool raise_unmapped(struct drives *d, uint32_t object)
+{
+    drives_raise_object(d, d->at_axis, object, TAKT_ERROR_DRIVE_UNMAPPED, d->read[0],
+                        sdo_abort_text(d->read[0]));
+    return false;
+}
+
+/* An interpolating drive may have its other target mapped. True: it has been begun anew. */
+static bool try_interpolation(struct drives *d)
+{
+    struct drives_axis *axis = &d->axis[d->at_axis];
+    const unsigned interpolates = 1u << (CIA402_MODE_INTERPOLATED_POSITION - 1);
+    if (axis->follow_mode != CIA402_MODE_CYCLIC_SYNC_POSITION || !(axis->modes & interpolates) ||
+        drives_has_given_up(axis, DRIVES_NO_MODES))
+        return false;
+    axis->follow_mode = CIA402_MODE_INTERPOLATED_POSITION;
+    drives_forget_pdos(axis);
+    d->mapping.pass = d->mapping.step = 0;
+    return true;
+}
+
+/* Its target is where a pair has it: halves of one frame (target_pdo.h). */
+static bool shares_frame(const struct drives *d)
+{
+    const struct drives_frame *frame = &d->axis[d->at_axis].target_frame;
+    struct pdo pdo;
+    target_pdo_set(&pdo, d->node, d->count, d->at_axis);
+    return frame->cob_id == pdo.cob_id && frame->length == pdo.mapping.length &&
+           frame->target == drives_byte_of(&pdo, CIA402_TARGET_POSITION);
+}
+
+/* Nothing is left to be mapped: what goes by SDO, and whether the rest suffices. True: there is more to map after all. */
+static bool finish(struct drives *d)
+{
+    struct drives_axis *axis = &d->axis[d->at_axis];
+    axis->mode = axis->follow_mode;
+    axis->beats_by_status = drives_has_given_up(axis, DRIVES_NO_HEARTBEAT);
+    if (axis->is_paired && !shares_frame(d)) {
+        part_pair(d);
+        return false;
+    }
+    if (axis->target_frame.length == 0)
+        return try_interpolation(d) || raise_unmapped(d, drives_target_of(axis));
+    if (axis->status_id == NO_TPDO)
+        return raise_unmapped(d, CIA402_STATUSWORD);
+    if (axis->position_id == NO_TPDO)
+        return raise_unmapped(d, CIA402_POSITION_ACTUAL);
+    if (axis->status_id != axis->position_id)
+        drives_give_up(d, d->at_axis, DRIVES_NO_ONE_REPORT);
+    if (axis->follow_mode != CIA402_MODE_CYCLIC_SYNC_POSITION)
+        drives_give_up(d, d->at_axis, DRIVES_NO_CSP);
+    if (axis->control_frame.length == 0)
+        drives_give_up(d, d->at_axis, DRIVES_NO_CONTROL_PDO);
+    if (axis->control_frame.mode == DRIVES_NOWHERE && axis->target_frame.mode == DRIVES_NOWHERE)
+        drives_give_up(d, d->at_axis, DRIVES_NO_MODE_PDO);
+    if (axis->error_id == NO_TPDO)
+        drives_give_up(d, d->at_axis, DRIVES_NO_ERROR_PDO);
+    if (!axis->is_paired || d->at_axis & 1)
+        drives_count_bits(axis, axis->target_frame.length);
+    return false;
+}
+
+bool drives_next_map(struct drives *d, struct drives_step *step)
+{
+    do {
+        while (d->mapping.pass < PASSES && d->at_part == DRIVES_MAP) {
+            if (find_request(d, step))
+                return true;
+            pass_step(d);
+        }
+    } while (d->at_part == DRIVES_MAP && finish(d));
+    return false;
+}

@@ -1,0 +1,58 @@
+#include "drives/dictionary.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+static uint32_t place(uint16_t index, uint8_t sub)
+{
+    return (uint32_t)index << 8 | sub;
+}
+
+const struct object_row *dictionary_find(const struct dictionary *dictionary, uint16_t index,
+                                         uint8_t sub, bool *has_index)
+{
+    const struct object_row *row = dictionary->row;
+    unsigned low = 0, high = dictionary->count;
+    while (low < high) {
+        unsigned middle = (low + high) / 2;
+        if (place(row[middle].index, row[middle].sub) < place(index, sub))
+            low = middle + 1;
+        else
+            high = middle;
+    }
+    *has_index = (low < dictionary->count && row[low].index == index) ||
+                 (low > 0 && row[low - 1].index == index);
+    if (low == dictionary->count || row[low].index != index || row[low].sub != sub)
+        return NULL;
+    return &row[low];
+}
+
+static bool is_of(const struct object_row *row, enum dictionary_part part)
+{
+    if (part == DICTIONARY_NOT_OF_MACHINE)
+        return !(row->flags & OBJECT_BY_MACHINE);
+    return part == DICTIONARY_ALL || row->field >= offsetof(struct drive_objects, extra);
+}
+
+void dictionary_set_initial(const struct dictionary *dictionary, enum dictionary_part part,
+                            struct drive_objects *objects, uint8_t node, uint16_t first,
+                            uint16_t last)
+{
+    for (unsigned i = 0; i < dictionary->count; i++) {
+        const struct object_row *row = &dictionary->row[i];
+        if (object_type_bytes((enum object_type)row->type) == 0 || row->index < first ||
+            row->index > last || !is_of(row, part))
+            continue;
+        uint32_t added = row->flags & OBJECT_NODE_ID ? node : 0;
+        object_write(row, objects, (uint32_t)row->initial + added);
+    }
+}
+
+void dictionary_free(struct dictionary *dictionary)
+{
+    if (dictionary->names == NULL)
+        return;
+    free(dictionary->names);
+    free((void *)(uintptr_t)dictionary->row);
+    *dictionary = (struct dictionary){0};
+}

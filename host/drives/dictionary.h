@@ -1,0 +1,54 @@
+/*
+ * The object dictionary of a virtual drive: takt's own (object_table.h), or that of an electronic data sheet (CiA 306), so
+ * that a master can be tried against a drive that is not there.
+ *
+ * Of a data sheet count: which objects there are, their access, defaults and limits, what may be mapped where, the number
+ * of PDOs and of their entries, dummies, and the modes. Objects that takt's own drive has, of the same size, do what they
+ * do there; all others are memory.
+ */
+#ifndef TAKT_DRIVES_DICTIONARY_H
+#define TAKT_DRIVES_DICTIONARY_H
+
+#include "drives/object_table.h"
+
+struct dictionary {
+    const struct object_row *row; /* by rising index and sub-index */
+    unsigned count;
+    uint8_t dummies; /* bit n: RPDOs may skip a place of data type n */
+    char *names;     /* owned; NULL: takt's own dictionary */
+};
+
+extern const struct dictionary dictionary_own;
+
+#define DICTIONARY_PROBLEM_MAX 120
+
+/* What is wrong with a data sheet. */
+struct dictionary_problem {
+    unsigned line; /* from 1; 0: the whole */
+    char text[DICTIONARY_PROBLEM_MAX + 1];
+};
+
+/*
+ * Reads the text of a data sheet, or of a configuration file, whose parameter values count where it has no default. False:
+ * *wrong says why. A value that is not understood counts as none, as it is with the tools that write them.
+ */
+bool dictionary_read(struct dictionary *dictionary, const char *text, size_t length,
+                     struct dictionary_problem *wrong);
+/* Of dictionary_read. */
+void dictionary_free(struct dictionary *dictionary);
+
+/* NULL: no such entry. *has_index: the index exists, so the sub-index is what is missing. */
+const struct object_row *dictionary_find(const struct dictionary *dictionary, uint16_t index,
+                                         uint8_t sub, bool *has_index);
+
+enum dictionary_part { DICTIONARY_ALL, DICTIONARY_NOT_OF_MACHINE, DICTIONARY_MEMORY };
+
+/*
+ * Default values of the objects from one index to another, with the node id where it belongs; of all, without those that
+ * the machine decides, or only of those that are nothing but memory.
+ */
+void dictionary_set_initial(const struct dictionary *dictionary, enum dictionary_part part,
+                            struct drive_objects *objects, uint8_t node, uint16_t first,
+                            uint16_t last);
+
+#endif

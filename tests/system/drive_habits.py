@@ -1,0 +1,179 @@
+"""drive_habits.py [NUMBER FIRST]: drives with the habits of real ones, by their data sheets: one by one, and by seed.
+
+Each habit by itself boots and runs the pocket with the setpoints of takt's own drives. Random combinations on one to six
+axes either do the same with a short program, or are refused by one message that names object and remedy; none hangs."""
+
+import json
+import os
+import random
+import sys
+
+import bus_pair
+import data_sheets
+import takt_test as t
+
+POCKET = os.path.join(t.EXAMPLES, "pocket.ngc")
+NUMBER, FIRST = (int(word) for word in (sys.argv[1:3] or ["12", "1"]))
+AXES = "XYZABC"
+
+
+def run(program, *settings):
+    """Status, error output and summary."""
+    options = [word for setting in settings for word in ("--set", setting)]
+    if os.path.exists("run.json"):
+        os.remove("run.json")
+    status, _, err = t.run("run", program, "--quiet", "--json", "run.json", *options)
+    return status, err, json.load(open("run.json", encoding="utf-8")) if os.path.exists("run.json") else None
+
+
+def sheet_of(node, *changes):
+    sheet = data_sheets.read("own.eds")
+    for change in changes:
+        change(sheet, random.Random(1))
+    return data_sheets.write(f"drive{node}.eds", sheet)
+
+
+def all_drives(path):
+    return [f"drive.{node}.eds={path}" for node in (1, 2, 3)]
+
+
+t.check(t.run("drives", "--nodes", "1", "--eds", "own.eds")[0] == 0, "our own data sheet is written")
+DIGEST = run(POCKET)[2]["setpoint_digest"]
+
+
+def runs(claim, given_up, *settings):
+    status, err, summary = run(POCKET, *settings)
+    if not t.check(status == 0 and summary["setpoint_digest"] == DIGEST, f"{claim}: boots and runs the pocket", err):
+        return
+    found = {name for drive in summary["drives"] for name in drive["given_up"]}
+    t.check(found == given_up, f"{claim}: what is given up is told", found, given_up)
+
+
+def refused(claim, *texts_and_settings):
+    texts = [word for word in texts_and_settings if "=" not in word]
+    status, err, _ = run(POCKET, *(word for word in texts_and_settings if "=" in word))
+    t.check(status == 1 and all(text in err for text in texts), f"{claim}: is refused with object and remedy", err)
+
+
+# Our own drive by its data sheet is our own drive.
+runs("our own data sheet", set(), *all_drives("own.eds"))
+t.check(t.run("drives", "--nodes", "1", "--eds", "again.eds", "--set", "drive.1.eds=own.eds")[0] == 0, "it is written again")
+own, again = data_sheets.read("own.eds"), data_sheets.read("again.eds")
+own["FileInfo"] = again["FileInfo"] = {}
+for name in ("1021", "2000", "2001"):  # texts and bytes of a sheet are but memory
+    own[name]["DataType"] = again[name]["DataType"] = own[name]["ObjectType"] = again[name]["ObjectType"] = ""
+    own[name].pop("DefaultValue", 0), again[name].pop("DefaultValue", 0)
+t.check(own == again, "and is the same", [name for name in own if own[name] != again.get(name)])
+
+for name, (change, lost) in data_sheets.HABITS.items():
+    runs(name, lost, *all_drives(sheet_of(1, change)))
+    runs(name + ", on one of three", lost, "drive.2.eds=" + sheet_of(1, change))
+runs("boots slowly", set(), "drive.1.boot_time_ms=600", "drive.2.boot_time_ms=2000")
+runs("boots as slowly as allowed", set(), "drive.2.boot_time_ms=9000", "bus.boot_timeout_ms=10000")
+runs("answers slowly", set(), "drive.1.sdo_time_ms=1500", "drive.3.sdo_time_ms=700")
+runs("controlword by slow SDO", {"mode_pdo", "control_pdo"}, "drive.1.sdo_time_ms=1500",
+     "drive.1.eds=" + sheet_of(1, data_sheets.control_not_mappable))
+runs("motors that turn the other way", set(), "axis.X.increments_per_mm=-100000", "axis.Z.increments_per_mm=-50000")
+runs("scaling that fits", set(), "axis.X.travel_per_turn_mm=10", "axis.Y.travel_per_turn_mm=10")
+runs("a fixed mapping that the maker's tool has set up", {"pair", "error_pdo", "silence"}, "axis.X.drive_is_set_up=1",
+     "axis.Y.drive_is_set_up=1", "axis.Z.drive_is_set_up=1",
+     *all_drives(sheet_of(1, data_sheets.fixed_mapping, lambda sheet, _: [
+         sheet[name].update(DefaultValue=kind) for name, kind in (("1402sub2", "1"), ("1800sub2", "255"), ("1802sub2", "1"))],
+         lambda sheet, _: sheet["1017"].update(DefaultValue="100"),
+         lambda sheet, _: sheet["1006"].update(DefaultValue="1000"),
+         lambda sheet, _: sheet["1016sub1"].update(DefaultValue=str(127 << 16 | 300)))))
+
+refused("another time between targets", "60C2", "10000 us", "cycle_us", "drive.2.eds=" + sheet_of(2, data_sheets.other_period))
+refused("wrong scaling", "increments_per_mm", "1000000 units", "axis.Y.travel_per_turn_mm=5")
+refused("a drive that cannot follow", "6502", "set-up", "drive.1.eds=" + sheet_of(
+    1, lambda sheet, _: sheet["6502"].update(DefaultValue="0x21")))
+refused("a drive that is slower than allowed", "boot_timeout_ms", "drive.3.boot_time_ms=20000")
+refused("a drive that answers later than allowed", "_timeout_ms", "drive.3.sdo_time_ms=15000")
+refused("frames that do not fit into a cycle", "1075 of 1000 bits", "cycle_us", "axis.A.drive_node=4", *(
+    f"drive.{node}.eds=" + sheet_of(node, data_sheets.no_dummies) for node in (1, 2, 3, 4)))
+status, err, _ = run(POCKET, "drive.1.eds=" + t.write("nothing.eds", "[6040]\nDataType=6\n"))
+t.check(status == 2 and "nothing.eds" in err and "[1000]" in err, "what is no data sheet is told so", err)
+
+# Drives of a sheet on a bus are what they are inside; without object 1006 SYNC is their clock all the same.
+for name in ("nothing optional", "one entry a PDO", "interpolated position only"):
+    sheet = sheet_of(1, data_sheets.HABITS[name][0])
+    embedded = bus_pair.run_controller("embedded", *[w for s in all_drives(sheet) for w in ("--set", s)])[1]
+    drives = bus_pair.Drives("socketcand:listen:0", "--eds", sheet)
+    status, summary, err = bus_pair.run_controller("outside", "--bus", "socketcand:" + drives.address)
+    if t.check(status == 0, f"{name}: runs over a bus", err):
+        t.check(summary["setpoint_digest"] == embedded["setpoint_digest"], f"{name}: with the same setpoints")
+    drives.stop()
+
+# The axes of a motor that turns the other way are where they would be.
+for name, settings in (("plain", []), ("turned", ["axis.X.increments_per_mm=-100000", "axis.Z.increments_per_mm=-100000"])):
+    homed = [f"axis.{axis}.{key}" for axis in "XZ" for key in ("home_order=1", "home_method=35", "home_offset_mm=3")]
+    options = [word for setting in settings + homed for word in ("--set", setting)]
+    t.run("run", POCKET, "--quiet", "--trace", name + ".csv", *options)
+t.check(open("plain.csv", "rb").read() == open("turned.csv", "rb").read(), "turned motors give the same trace")
+
+# Homing goes by the drive's own directions: turned, the upper limit switch is where the lower one was.
+for method, turned in ((17, 18), (19, 20), (33, 34), (1, 2)):
+    traces = []
+    for number, increments in ((method, 100000), (turned, -100000)):
+        settings = ["axis.X.home_order=1", f"axis.X.home_method={number}", f"axis.X.increments_per_mm={increments}",
+                    "drive.1.limit_switch_min_mm=-40", "drive.1.home_switch_mm=-5", "drive.1.start_mm=-3"]
+        settings = settings if method != 19 else settings[:-1] + ["drive.1.start_mm=-8"]
+        t.run("run", POCKET, "--quiet", "--trace", "homed.csv", *[w for s in settings for w in ("--set", s)])
+        traces.append(open("homed.csv", "rb").read())
+        os.remove("homed.csv")
+    t.check(traces[0] == traces[1] if method != 19 else all(traces), f"homing by {turned} turned is homing by {method}")
+
+
+# ---- Random combinations ----
+
+t.write("short.ngc", "G21 G90 G61 F3000\nG1 X2 Y1\nG3 X0 Y0 I-1 J-0.5\nG0 X1\nM2\n")
+t.write("six.ngc", "G21 G90 G61 F3000\nG1 X2 Y1 A20\nG3 X0 Y0 I-1 J-0.5\nG0 X1 A0\nM2\n")
+
+
+def random_machine(seed):
+    """Settings of a machine, names of the habits of its drives."""
+    draw = random.Random(seed)
+    count = draw.randint(1, 6)
+    cycle_us = draw.choice([1000, 1000, 1000, 2000] if count < 5 else [2000, 4000])
+    lines = [f"[machine]\ncycle_us = {cycle_us}\n[bus]\nboot_timeout_ms = 1500\nsdo_timeout_ms = 400\n"]
+    habits = []
+    for node, axis in enumerate(AXES[:count], 1):
+        sheet = data_sheets.read("own.eds")
+        names = data_sheets.draw_habits(sheet, 1000 * seed + node)
+        data_sheets.write(f"drive{node}.eds", sheet)
+        lines.append(f"[axis {axis}]\ndrive_node = {node}\n")
+        if draw.random() < 0.3:
+            lines.append(f"increments_per_{'mm' if node <= 3 else 'deg'} = -20000\n")
+        lines.append(f"[drive {node}]\neds = drive{node}.eds\nboot_time_ms = {draw.choice([0, 0, 0, 700, 1400])}\n"
+                     f"sdo_time_ms = {draw.choice([0, 0, 0, 3, 300])}\n")
+        habits.append(names)
+    return "".join(lines), count, cycle_us, habits
+
+
+REMEDIES = ("cycle_us", "maker's tool", "_timeout_ms", "set-up")
+outcomes = {}
+for seed in range(FIRST, FIRST + NUMBER):
+    machine, count, cycle_us, habits = random_machine(seed)
+    t.write("machine.ini", machine)
+    plain = "".join(line for line in machine.splitlines(True) if "eds" not in line and "time_ms" not in line)
+    t.write("plain.ini", plain)
+    program = {1: "line.ngc", 4: "six.ngc", 5: "six.ngc", 6: "six.ngc"}.get(count, "short.ngc")
+    t.write("line.ngc", "G21 G90 G61 F3000\nG1 X2\nG1 X-1\nM2\n")
+    results = []
+    for name in ("machine.ini", "plain.ini"):
+        status, out, err = t.run("run", program, "--quiet", "--json", "-", "--machine", name)
+        results.append((status, json.loads(out) if out else None, err))
+    (status, summary, err), (_, expected, plain_err) = results
+    t.check(expected is not None, f"seed {seed}: the machine is one", plain_err)
+    if status == 0:
+        t.check(summary["setpoint_digest"] == expected["setpoint_digest"], f"seed {seed}: the setpoints are the same", habits)
+        outcomes["runs"] = outcomes.get("runs", 0) + 1
+    else:
+        named = "(node " in err or "bits at worst" in err
+        t.check(status == 1 and named and any(remedy in err for remedy in REMEDIES),
+                f"seed {seed}: the refusal names object and remedy", status, err, habits)
+        reason = err.strip().split(": ")[-1]
+        outcomes[reason] = outcomes.get(reason, 0) + 1
+for outcome, times in sorted(outcomes.items(), key=lambda item: -item[1]):
+    print(f"{times:5} {outcome}")
+t.finish()
