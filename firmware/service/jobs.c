@@ -37,8 +37,10 @@ void service_end_job(struct service *s, enum panel_outcome outcome)
 {
     if (s->job == SERVICE_MDI && outcome == PANEL_OUTCOME_COMPLETED)
         keep_modes(s);
-    if (s->job == SERVICE_PROGRAM)
+    if (s->job == SERVICE_PROGRAM) {
         service_forget_plan(s);
+        s->cut_line = outcome == PANEL_OUTCOME_COMPLETED ? 0 : s->controller.record.line;
+    }
     if (s->job != SERVICE_NOTHING) {
         s->outcome = outcome;
         s->runs++;
@@ -80,6 +82,9 @@ bool service_start_program(struct service *s)
         config.compiled = &plan;
     if (s->program_size == 0 || !programs->open(programs->context, &config.source))
         return false;
+    config.from_line = s->settings.start_line;
+    s->settings.start_line = 0;
+    s->controller.record.line = 0;
     controller_start_program(&s->controller, &config, &s->at);
     s->has_modes = false;
     begin_job(s, SERVICE_PROGRAM);

@@ -289,6 +289,7 @@ static void set_rise(struct service *s, unsigned axis, int64_t value)
 static void adopt_program(struct service *s)
 {
     service_forget_plan(s);
+    s->cut_line = 0;
     s->config.programs.adopt(s->config.programs.context);
 }
 

@@ -124,7 +124,8 @@ if os.path.exists("/dev/full"):
     status, _, err = t.run("run", PROGRAM, "--json", "/dev/full", "--trace", "full.csv", "--quiet")
     t.check(status == 3 and "full" in err and not os.path.exists("full.csv"), "a full disk", status, err)
 
-# Interrupted: no partial file, status 130. The signal is sent when the files are open aside, seen by their names.
+# Interrupted: the axes come to rest, and the files show the run up to there. The signal is sent when the files are open
+# aside, seen by their names.
 long_program = t.write("long.ngc", "G21 G90 F100\n" + "".join(f"G1 X{i % 2 * 400}\n" for i in range(1, 3000)))
 before = listing()
 process = subprocess.Popen([t.TAKT, "run", long_program, "--junit", "i.xml", "--json", "i.json"], stderr=subprocess.DEVNULL, stdout=subprocess.DEVNULL)
@@ -132,7 +133,12 @@ while process.poll() is None and not any(".part-" in name for name in listing())
     pass
 process.send_signal(signal.SIGINT)
 t.check(process.wait() == 130, "interrupted: status 130", process.returncode)
-t.check(listing() == before, "interrupted: nothing is left", listing())
+t.check(listing() == sorted(before + ["i.json", "i.xml"]), "interrupted: the files are there, and nothing beside them", listing())
+cut = t.load_json("i.json")
+check_schema(cut)
+t.check(cut["outcome"] == "interrupted" and cut["exit_status"] == 130, "the summary says so", cut["outcome"], cut["exit_status"])
+t.check(all(c["held"] for c in cut["checks"]), "every check held on the way to rest", cut["checks"])
+t.check(xml.parse("i.xml").getroot().get("skipped") == "1", "JUnit has no word on what did not come")
 
 # Parameters are saved only when asked for.
 t.write("p.var", "5161\t0\n31\t2\n")
