@@ -221,19 +221,6 @@ void drives_stop_on_path(struct drives *d, enum takt_error reason)
     leave_operation(d, reason);
 }
 
-void drives_switch_on_at_rest(struct drives *d)
-{
-    d->switches_on = true;
-}
-
-bool drives_are_off(const struct drives *d)
-{
-    for (unsigned i = 0; i < d->count; i++)
-        if (d->axis[i].started && cia402_is_enabled(d->axis[i].statusword))
-            return false;
-    return true;
-}
-
 void drives_get_statuswords(const struct drives *d, uint16_t statusword[AXIS_COUNT])
 {
     memset(statusword, 0, AXIS_COUNT * sizeof statusword[0]);

@@ -128,10 +128,11 @@ static inline void drives_await_rest(struct drives *d)
 {
     d->rest_cycles = 0;
 }
-/* In DRIVES_FAULTED drives become "switched on", where there is no torque, instead of staying "switch on disabled". */
-void drives_switch_on_at_rest(struct drives *d);
-/* True: each drive shows that it is not enabled, or has never been started. */
-bool drives_are_off(const struct drives *d);
+/*
+ * In DRIVES_FAULTED, between two cycles: drives become "switched on", where there is no torque, instead of staying "switch
+ * on disabled". One drive a call; there is one.
+ */
+void drives_switch_on_at_rest(struct drives *d, const struct can_port *port);
 
 /* What went wrong; meaningful from DRIVES_STOPPING on. */
 const struct diagnostic *drives_get_fault(const struct drives *d);

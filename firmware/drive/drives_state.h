@@ -86,7 +86,6 @@ struct drives {
 
     struct diagnostic fault;
     unsigned fault_axis;  /* index into axis of what the fault is about */
-    bool switches_on;     /* in DRIVES_FAULTED: drives become "switched on" */
     uint32_t stop_cycles; /* spent in DRIVES_STOPPING or DRIVES_BRAKING */
     uint32_t rest_cycles; /* setpoints have not changed for */
 };

@@ -87,7 +87,7 @@ class Client:
 
     def read_words(self, function, address, count):
         reply = self.ask(struct.pack(">BHH", function, address, count))
-        if function == 1:
+        if function in (1, 2):
             return [reply[2 + i // 8] >> i % 8 & 1 for i in range(count)]
         return list(struct.unpack(f">{count}H", reply[2:]))
 
