@@ -249,7 +249,7 @@ enum panel_form {
     PANEL_AXIS_ROWS(ROW, DRIVE_STATUS, MODBUS_INPUTS, 96, PANEL_U16, 1, "", 0, 0, PANEL_U16_MOST, PANEL_NEVER, \
         "statusword of its drive (CiA 402, 6041)") \
     PANEL_SHOW32(ROW, MODES, 102, "", 0, \
-        "of the line read last: bits 0-1 plane (0 G17, 1 G18, 2 G19), 2 G91, 3 G20, 4-5 path (0 G61, 1 G61.1, 2 G64), 6-7 cutter (0 G40, 1 G41, 2 G42), 8 G93, 9 G95, 10 G99, 11 G96, 12 G7; 16-31 motion: 10 is G1, 382 G38.2, 800 none") \
+        "of the line read last: bits 0-1 plane (0 G17, 1 G18, 2 G19), 2 G91, 3 G20, 4-5 path (0 G61, 1 G61.1, 2 G64), 6-7 cutter (0 G40, 1 G41, 2 G42), 8 G93, 9 G95, 10 G98, 11 G96, 12 G7; 16-31 motion: 10 is G1, 382 G38.2, 800 none") \
     PANEL_SHOW_AXES(ROW, WORK_POSITION, 104, "mm", "setpoint in work coordinates: offsets, rotation and tool taken off") \
     PANEL_SHOW_AXES(ROW, DISTANCE_TO_GO, 116, "mm", "from the setpoint to the end of the motion being executed") \
     PANEL_SHOW_AXES(ROW, AXIS_FEED, 128, "mm/min", "velocity of the setpoint") \

@@ -33,6 +33,28 @@ static void keep_modes(struct service *s)
     s->has_modes = true;
 }
 
+struct tool *service_find_tool(const struct service *s, uint32_t number)
+{
+    for (size_t i = 0; i < s->config.tools_count; i++) {
+        if (s->config.tools[i].number == number)
+            return &s->config.tools[i];
+    }
+    return NULL;
+}
+
+/* What a program or line has made of tools (G10 L1) lasts, as what it has made of parameters does. */
+static void keep_tools(const struct service *s)
+{
+    const struct program_tools *changed = &s->controller.reader->program.tools;
+
+    for (unsigned i = 0; i < changed->count; i++) {
+        struct tool *tool = service_find_tool(s, changed->tool[i].number);
+
+        if (tool != NULL)
+            *tool = changed->tool[i];
+    }
+}
+
 void service_end_job(struct service *s, enum panel_outcome outcome)
 {
     if (s->job == SERVICE_MDI && outcome == PANEL_OUTCOME_COMPLETED)
@@ -42,6 +64,7 @@ void service_end_job(struct service *s, enum panel_outcome outcome)
         s->cut_line = outcome == PANEL_OUTCOME_COMPLETED ? 0 : s->controller.record.line;
     }
     if (s->job != SERVICE_NOTHING) {
+        keep_tools(s);
         s->outcome = outcome;
         s->runs++;
     }

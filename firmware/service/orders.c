@@ -23,11 +23,7 @@ static bool is_between(enum panel_id id, enum panel_id first, enum panel_id last
 
 static struct tool *selected_tool(const struct service *s)
 {
-    for (size_t i = 0; i < s->config.tools_count; i++) {
-        if (s->config.tools[i].number == s->settings.tool_select)
-            return &s->config.tools[i];
-    }
-    return NULL;
+    return service_find_tool(s, s->settings.tool_select);
 }
 
 /* What stopped it must have been seen, and be gone. */
