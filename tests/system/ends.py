@@ -68,8 +68,13 @@ class Proxy:
         self.emergencies = [0] * AXES
         self.reports = [0] * AXES
         self.controller = None
-        threading.Thread(target=self.serve_controllers, daemon=True).start()
-        threading.Thread(target=self.pump, args=(self.drives, self.from_drive, self.to_controller), daemon=True).start()
+        self.sockets = [self.listener, self.drives]
+        self.threads = [
+            threading.Thread(target=self.serve_controllers, daemon=True),
+            threading.Thread(target=self.pump, args=(self.drives, self.from_drive, self.to_controller), daemon=True),
+        ]
+        for thread in self.threads:
+            thread.start()
 
     def serve_controllers(self):
         while self.is_open:
@@ -77,6 +82,7 @@ class Proxy:
                 self.controller, _ = self.listener.accept()
             except OSError:
                 return
+            self.sockets.append(self.controller)
             self.controller.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
             self.is_gone = False
             self.pump(self.controller, self.from_controller, self.drives.sendall)
@@ -85,9 +91,10 @@ class Proxy:
                 self.changed.notify_all()
 
     def to_controller(self, data):
+        controller = self.controller
         try:
-            if self.controller is not None:
-                self.controller.sendall(data)
+            if controller is not None:
+                controller.sendall(data)
         except OSError:
             pass
 
@@ -108,7 +115,10 @@ class Proxy:
                     if frame:
                         look(int(frame.group(1), 16), bytes.fromhex(frame.group(3).decode()))
                 self.changed.notify_all()
-            forward(data)
+            try:
+                forward(data)
+            except OSError:
+                return
 
     def from_controller(self, number, data):
         if number == 0x080:
@@ -173,13 +183,19 @@ class Proxy:
         controller, self.controller = self.controller, None
         self.emergencies = [0] * AXES
         controller.shutdown(socket.SHUT_RDWR)
-        controller.close()
 
     def close(self):
+        """Sockets are closed when nobody uses them any more: their numbers are for others then."""
         self.is_open = False
-        for one in (self.listener, self.drives, self.controller):
-            if one is not None:
-                one.close()
+        for one in self.sockets:
+            try:
+                one.shutdown(socket.SHUT_RDWR)
+            except OSError:
+                pass
+        for thread in self.threads:
+            thread.join()
+        for one in self.sockets:
+            one.close()
 
 
 class Alone:
@@ -350,6 +366,8 @@ class Moment:
         """The panel stays, tells of it, and after RESET the drives are enabled again."""
         proxy = self.field.proxy
         self.client.wait_for("STATE", p.ALARM)
+        if "has sent no position" in self.client.text("ALARM_TEXT"):
+            raise Disturbed
         self.check("bus" in self.client.text("ALARM_TEXT"), "the alarm is about the bus", self.client.text("ALARM_TEXT"))
         proxy.wait(lambda: proxy.controller is not None, "the service looks for the bus")
         proxy.wait(proxy.none_enabled, "the drives stay off until RESET")

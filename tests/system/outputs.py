@@ -140,6 +140,19 @@ t.check(cut["outcome"] == "interrupted" and cut["exit_status"] == 130, "the summ
 t.check(all(c["held"] for c in cut["checks"]), "every check held on the way to rest", cut["checks"])
 t.check(xml.parse("i.xml").getroot().get("skipped") == "1", "JUnit has no word on what did not come")
 
+# Whatever drives an axis, it comes to rest on the path: the last setpoints are the same.
+for options in ([], ["--drive-type", "X=step"], ["--drive-type", "step"]):
+    process = subprocess.Popen([t.TAKT, "run", long_program, "--quiet", "--realtime", "--trace", "-", *options], stdout=subprocess.PIPE, text=True)
+    for _ in range(300):
+        process.stdout.readline()
+    process.send_signal(signal.SIGTERM)
+    rows = process.stdout.read().splitlines()
+    t.check(process.wait() == 143, "SIGTERM: status 143", process.returncode, options)
+    x = [float(row.split(",")[8]) for row in rows]
+    v = [b - a for a, b in zip(x, x[1:])]
+    a = [abs(q - p) / 1e-6 for p, q in zip(v, v[1:])]
+    t.check(abs(v[-1]) < 1e-4 and max(a) <= 1000 * 1.0001, "the axis comes to rest within its limits", options, v[-3:], max(a))
+
 # Parameters are saved only when asked for.
 t.write("p.var", "5161\t0\n31\t2\n")
 t.write("set.ngc", "#31 = 5\n#5163 = 4.5\n#100 = 1\nG0 X1\nM2\n")
