@@ -304,6 +304,10 @@ static void follow_events(struct controller *c)
             path_read_move(&c->path, i, &move);
             outputs_apply(&c->outputs, &c->surface, &move);
             spindle_watch_pass(&c->spindle, &move);
+            if (move.kind == MOVE_WEAR) {
+                correction_set_wear(&c->correction, move.tool, move.wear_length_mm,
+                                    move.wear_time_s);
+            }
         }
     }
     outputs_follow(&c->outputs, &c->surface, &c->record.cmd);

@@ -25,11 +25,11 @@ PANEL_REGISTERS(PANEL_CHECK)
 const struct panel_register panel_registers[REGISTER_COUNT] = {PANEL_REGISTERS(PANEL_ROW)};
 const struct panel_text panel_texts[REGISTER_COUNT] = {PANEL_REGISTERS(PANEL_TEXTS)};
 
-int64_t panel_least(const struct panel_register *row)
+int32_t panel_least(const struct panel_register *row)
 {
     if (row->least == PANEL_FROM_MINUS_MOST)
-        return -(int64_t)panel_most(row);
-    return row->least == PANEL_FROM_500 ? FROM_500 : (int64_t)row->least;
+        return -(int32_t)panel_most(row);
+    return row->least == PANEL_FROM_500 ? FROM_500 : (int32_t)row->least;
 }
 
 /* Table and address as one rising number. */

@@ -341,7 +341,7 @@ static inline uint32_t panel_most(const struct panel_register *row)
     return (uint32_t)row->range << row->range_bits;
 }
 
-int64_t panel_least(const struct panel_register *row);
+int32_t panel_least(const struct panel_register *row);
 
 /* What only those ask who show the table: an image that does not is without it. */
 struct panel_text {

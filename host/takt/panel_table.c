@@ -125,7 +125,7 @@ static void write_csv_row(FILE *stream, const struct panel_register *row)
         stream, "%s,%u,%u,%s,%s,%s,%.*g,%" PRId64 ",%" PRId64 ",", table_names[row->table],
         (unsigned)row->address, (unsigned)row->words, panel_text(row)->name,
         row->form == PANEL_S32 ? "32 bits signed" : form_names[row->form], panel_text(row)->unit, 6,
-        in_units(row, 1), panel_least(row), is_number(row) ? (int64_t)panel_most(row) : 0);
+        in_units(row, 1), (int64_t)panel_least(row), is_number(row) ? (int64_t)panel_most(row) : 0);
     write_states(stream, row->states, ";");
     (void)fputc(',', stream);
     write_quoted(stream, panel_text(row)->meaning);

@@ -162,7 +162,7 @@ static void test_a_lost_bus_is_an_alarm_and_a_reset_enables_the_drives_again(voi
     service_lose_bus(&service);
     TEST_ASSERT_EQUAL_INT(PANEL_ALARM, service_get_state(&service));
     TEST_ASSERT_EQUAL_INT(TAKT_ERROR_BUS_LOST, service.alarm_text.code);
-    TEST_ASSERT_EQUAL_STRING("the bus of the drives is gone", alarm_text());
+    TEST_ASSERT_EQUAL_STRING("the bus is gone", alarm_text());
     for (unsigned i = 0; i < END_CYCLES_MAX && order(REGISTER_RESET, 1) != PANEL_DONE; i++)
         cycle();
     wait_for(PANEL_IDLE);

@@ -122,6 +122,54 @@ static void test_wear_of_a_tool_is_set_shown_and_reset(void)
     TEST_ASSERT_EQUAL_INT(PANEL_WRONG_VALUE, order(REGISTER_TOOL_WEAR_LENGTH, 1));
 }
 
+static void test_a_line_sets_the_wear_of_a_tool(void)
+{
+    must(REGISTER_TOOL_SELECT, 3);
+    run_line("G10 L12 P3 I1000 J20");
+    TEST_ASSERT_EQUAL_INT64(1000, shown(REGISTER_TOOL_WEAR_LENGTH));
+    TEST_ASSERT_EQUAL_INT64(20, shown(REGISTER_TOOL_WEAR_TIME));
+    run_line("G10 L12 P3"); /* a new one */
+    TEST_ASSERT_EQUAL_INT64(0, shown(REGISTER_TOOL_WEAR_LENGTH));
+    TEST_ASSERT_EQUAL_INT64(0, shown(REGISTER_TOOL_WEAR_TIME));
+}
+
+/* When it is its turn, not when it is read. */
+static void test_a_program_sets_wear_where_it_stands(void)
+{
+    load("G21 G90 G61 F600\nG1 X5\nG10 L12 P3 I7\nG1 X10\nM2\n");
+    must(REGISTER_TOOL_SELECT, 3);
+    must(REGISTER_CYCLE_START, 1);
+    for (unsigned i = 0; i < BENCH_CYCLES_MAX && service_get_state(&service) != PANEL_IDLE; i++) {
+        cycle();
+        TEST_ASSERT_EQUAL_INT64(
+            shown(REGISTER_POSITION_X) > 5000 ? 7 : 0,
+            shown(REGISTER_POSITION_X) == 5000 ? 0 : shown(REGISTER_TOOL_WEAR_LENGTH));
+    }
+    TEST_ASSERT_EQUAL_INT64(7, shown(REGISTER_TOOL_WEAR_LENGTH));
+}
+
+static void test_wear_that_makes_no_sense_is_refused(void)
+{
+    static const struct {
+        const char *line;
+        enum takt_error error;
+    } wrong[] = {
+        {"G10 L12 P4 I1", TAKT_ERROR_TOOL_ABSENT},
+        {"G10 L12 P3 J1.5", TAKT_ERROR_WORD_NOT_WHOLE},
+        {"G10 L12 P3 I-1", TAKT_ERROR_WORD_OUT_OF_RANGE},
+        {"G10 L12 P3 I1 Z2", TAKT_ERROR_WORD_UNUSED},
+        {"G10 L12 P3 I1 R2", TAKT_ERROR_WORD_UNUSED},
+    };
+
+    for (unsigned i = 0; i < sizeof wrong / sizeof wrong[0]; i++) {
+        start_line(wrong[i].line);
+        wait_for(PANEL_ALARM);
+        TEST_ASSERT_EQUAL_INT_MESSAGE(wrong[i].error, service.alarm_text.code, wrong[i].line);
+        must(REGISTER_RESET, 1);
+        wait_for(PANEL_IDLE);
+    }
+}
+
 static void test_what_a_line_makes_of_a_tool_lasts(void)
 {
     run_line("G10 L1 P3 Z12.5 R2");
@@ -159,6 +207,9 @@ int main(void)
     RUN_TEST(test_axes_that_are_homed_are_told);
     RUN_TEST(test_axes_that_look_for_their_homes_do_not_know_them);
     RUN_TEST(test_wear_of_a_tool_is_set_shown_and_reset);
+    RUN_TEST(test_a_line_sets_the_wear_of_a_tool);
+    RUN_TEST(test_a_program_sets_wear_where_it_stands);
+    RUN_TEST(test_wear_that_makes_no_sense_is_refused);
     RUN_TEST(test_what_a_line_makes_of_a_tool_lasts);
     RUN_TEST(test_the_next_program_starts_at_the_line_that_is_set_and_only_that_one);
     return UNITY_END();
