@@ -22,7 +22,7 @@ import takt_test as t
 NUMBER = int(sys.argv[1]) if len(sys.argv) > 1 else 18
 FIRST = int(sys.argv[2]) if len(sys.argv) > 2 else 1
 AT_A_TIME = 3
-TURNS = 10
+TURNS = 30
 
 AXES = 3
 INC_PER_MM = 100000
@@ -182,7 +182,10 @@ class Proxy:
         """The bus between controller and drives goes down, for the controller to see."""
         controller, self.controller = self.controller, None
         self.emergencies = [0] * AXES
-        controller.shutdown(socket.SHUT_RDWR)
+        try:
+            controller.shutdown(socket.SHUT_RDWR)
+        except OSError as error:
+            raise Disturbed from error
 
     def close(self):
         """Sockets are closed when nobody uses them any more: their numbers are for others then."""
@@ -255,7 +258,8 @@ class Outside:
         """At rest in time, nobody enabled, the limits held on the way."""
         check, proxy = self.moment.check, self.proxy
         check(proxy.none_enabled(), "no drive is enabled after an ordered end", [hex(s) for s in proxy.status])
-        check(proxy.syncs - self.began < END_CYCLES, "the end comes in time", proxy.syncs - self.began)
+        took = proxy.syncs - self.began if self.moment.way != "DISK" else 0 # nobody knows when it was full
+        check(took < END_CYCLES, "the end comes in time", took)
         for axis in range(AXES if self.moment.command == "run" else 0):
             mm = [inc / INC_PER_MM for inc in proxy.targets[axis]]
             v = [b - a for a, b in zip(mm, mm[1:])]
@@ -331,7 +335,7 @@ class Moment:
     def limit(self):
         """A disk that is full at a random place of the bus log; Python ignores SIGXFSZ, and so takt does here."""
         if self.way == "DISK":
-            full = 300000 + 200 * self.at
+            full = 800000 + 200 * self.at
             resource.setrlimit(resource.RLIMIT_FSIZE, (full, full))
 
     def strike(self):
