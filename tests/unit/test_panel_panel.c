@@ -246,22 +246,6 @@ static void test_addresses_that_are_not_there_are_exception_2(void)
     TEST_ASSERT_EQUAL_INT64(PANEL_REFUSAL_NONE, value_of(&other, REGISTER_REFUSAL));
 }
 
-/* Panels that merge what they read do not know of gaps. */
-static void test_gaps_between_registers_read_as_0(void)
-{
-    const struct modbus_map map = panel_client_map(&one);
-
-    shown.value[REGISTER_HOMED] = 7;
-    shown.value[REGISTER_POSITION_X] = 12345;
-    memset(data, 0xFF, sizeof data);
-    TEST_ASSERT_EQUAL_INT(MODBUS_GOOD, map.read(map.context, MODBUS_INPUTS, 58, 4, data));
-    TEST_ASSERT_EQUAL_UINT16(7, modbus_read16(data));
-    TEST_ASSERT_EQUAL_UINT16(0, modbus_read16(data + 2));
-    TEST_ASSERT_EQUAL_UINT16(12345, modbus_read16(data + 6));
-    TEST_ASSERT_EQUAL_INT(MODBUS_GOOD, map.read(map.context, MODBUS_COILS, 13, 3, data));
-    TEST_ASSERT_EQUAL_UINT8(0, data[0]);
-}
-
 static bool is_order(enum panel_id id)
 {
     return id != REGISTER_PASSWORD && !(id >= REGISTER_UPLOAD_SIZE && id <= REGISTER_MDI_TEXT);
@@ -367,34 +351,6 @@ static void test_the_password_unlocks_one_client(void)
     TEST_ASSERT_EQUAL_INT(MODBUS_GOOD, write_row(&one, REGISTER_MODE, 1));
     TEST_ASSERT_EQUAL_INT(MODBUS_STATE, write_row(&other, REGISTER_MODE, 2));
     TEST_ASSERT_EQUAL_INT64(0, value_of(&one, REGISTER_PASSWORD));
-}
-
-/* The cycle in which the next password is looked at, from the last one on. */
-static unsigned cycles_of_silence(void)
-{
-    const uint32_t first = shown.value[REGISTER_CYCLES];
-
-    while (write_row(&other, REGISTER_PASSWORD, 1) == MODBUS_BUSY)
-        shown.value[REGISTER_CYCLES] += 10;
-    return shown.value[REGISTER_CYCLES] - first;
-}
-
-static void test_wrong_passwords_make_all_clients_wait_longer_and_longer(void)
-{
-    start_with(4711);
-    shown.value[REGISTER_CYCLES] = UINT32_MAX - 500; /* wraps on the way */
-    TEST_ASSERT_EQUAL_UINT(0, cycles_of_silence());
-    TEST_ASSERT_EQUAL_UINT(1000, cycles_of_silence());
-    TEST_ASSERT_EQUAL_UINT(2000, cycles_of_silence());
-    TEST_ASSERT_EQUAL_UINT(4000, cycles_of_silence());
-    TEST_ASSERT_EQUAL_UINT(8000, cycles_of_silence());
-    TEST_ASSERT_EQUAL_UINT(16000, cycles_of_silence());
-    TEST_ASSERT_EQUAL_UINT(16000, cycles_of_silence());
-    TEST_ASSERT_EQUAL_INT(MODBUS_BUSY, write_row(&one, REGISTER_PASSWORD, 4711));
-    shown.value[REGISTER_CYCLES] += 16000;
-    TEST_ASSERT_EQUAL_INT(MODBUS_GOOD, write_row(&one, REGISTER_PASSWORD, 4711));
-    TEST_ASSERT_EQUAL_UINT(0, cycles_of_silence());
-    TEST_ASSERT_EQUAL_UINT(1000, cycles_of_silence());
 }
 
 static void test_anybody_may_hold_the_feed_and_stop(void)
@@ -593,14 +549,12 @@ int main(void)
     RUN_TEST(test_every_value_of_the_snapshot_is_read_back);
     RUN_TEST(test_the_text_of_an_alarm_is_read_two_characters_a_word);
     RUN_TEST(test_addresses_that_are_not_there_are_exception_2);
-    RUN_TEST(test_gaps_between_registers_read_as_0);
     RUN_TEST(test_every_number_is_ordered_within_its_range_and_refused_outside);
     RUN_TEST(test_the_table_says_in_which_states_a_register_is_written);
     RUN_TEST(test_a_request_is_ordered_as_a_whole_or_not_at_all);
     RUN_TEST(test_half_a_number_is_not_written);
     RUN_TEST(test_what_the_controller_refuses_is_the_exception);
     RUN_TEST(test_the_password_unlocks_one_client);
-    RUN_TEST(test_wrong_passwords_make_all_clients_wait_longer_and_longer);
     RUN_TEST(test_anybody_may_hold_the_feed_and_stop);
     RUN_TEST(test_whoever_claims_control_is_the_only_one_to_write);
     RUN_TEST(test_each_request_of_the_panel_in_control_is_a_sign_of_life);
