@@ -306,6 +306,10 @@ static void follow_events(struct controller *c)
             path_read_move(&c->path, i, &move);
             outputs_apply(&c->outputs, &c->surface, &move);
             spindle_watch_pass(&c->spindle, &move);
+            if (move.kind == MOVE_WEAR) {
+                correction_set_wear(&c->correction, move.tool, move.wear_length_mm,
+                                    move.wear_time_s);
+            }
         }
     }
     outputs_follow(&c->outputs, &c->surface, &c->record.cmd);
@@ -479,6 +483,9 @@ void controller_cycle(struct controller *c, const struct inputs *inputs)
         stand(c);
     }
     controller_lock_command(c);
+    if (c->state == CONTROLLER_RUNNING && !motion_rests(&c->motion)) {
+        drives_await_rest(&c->drives);
+    }
     drives_send(&c->drives, &c->can, &c->record.set);
     if (steps_are_there(&c->steps)) {
         controller_steps_cycle(c);

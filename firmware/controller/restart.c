@@ -69,6 +69,20 @@ void controller_stop_at_once(struct controller *c, enum takt_error reason)
     c->fault = *drives_get_fault(&c->drives);
 }
 
+void controller_end(struct controller *c, bool at_once)
+{
+    if (at_once) {
+        controller_stop_at_once(c, TAKT_ERROR_ENDED);
+    } else {
+        drives_stop_on_path(&c->drives, TAKT_ERROR_ENDED);
+    }
+}
+
+bool controller_has_ended(const struct controller *c)
+{
+    return drives_get_state(&c->drives) == DRIVES_FAULTED;
+}
+
 void controller_recover(struct controller *c, const struct controller_config *config, bool home)
 {
     struct drives_config drives;

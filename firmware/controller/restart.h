@@ -22,6 +22,13 @@ void controller_drop_program(struct controller *c);
 void controller_stop_at_once(struct controller *c, enum takt_error reason);
 
 /*
+ * The end of everything: the axes come to rest on their path, then every drive brakes and is off; or, at once, without the
+ * path. Cycles go on until controller_has_ended. The second one of these may follow the first.
+ */
+void controller_end(struct controller *c, bool at_once);
+bool controller_has_ended(const struct controller *c);
+
+/*
  * After CONTROLLER_FAULTED, or at rest between programs: resets and enables the drives again where they stand.
  * CONTROLLER_STARTING, then CONTROLLER_COMPLETED after an empty program: config->source is empty. home: axes that are
  * homed at start are homed again, else only if they have not been. Correction fades in anew.

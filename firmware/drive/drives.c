@@ -217,6 +217,14 @@ uint32_t drives_get_given_up(const struct drives *d, enum axis axis)
     return 0;
 }
 
+void drives_stop_on_path(struct drives *d, enum takt_error reason)
+{
+    if (d->state > DRIVES_ENABLED)
+        return;
+    diagnostic_set(&d->fault, reason, 0, 0, "", 0, 0);
+    leave_operation(d, reason);
+}
+
 void drives_get_statuswords(const struct drives *d, uint16_t statusword[AXIS_COUNT])
 {
     memset(statusword, 0, AXIS_COUNT * sizeof statusword[0]);

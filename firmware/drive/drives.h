@@ -153,6 +153,22 @@ void drives_stop_at_once(struct drives *d, enum takt_error reason);
 /* The same for a fault that is not of these drives. */
 void drives_stop_for(struct drives *d, const struct diagnostic *fault);
 
+/*
+ * The caller brings the setpoint to rest on the path, DRIVES_STOPPING, and then every drive brakes; with this error, unless
+ * there has been one before. Drives that do not follow setpoints yet brake at once.
+ */
+void drives_stop_on_path(struct drives *d, enum takt_error reason);
+/* An axis that has no drive of these is still on its way: in DRIVES_STOPPING, before drives_send. */
+static inline void drives_await_rest(struct drives *d)
+{
+    d->rest_cycles = 0;
+}
+/*
+ * In DRIVES_FAULTED, between two cycles: drives become "switched on", where there is no torque, instead of staying "switch
+ * on disabled". One drive a call; there is one.
+ */
+void drives_switch_on_at_rest(struct drives *d, const struct can_port *port);
+
 /* What went wrong; meaningful from DRIVES_STOPPING on. */
 const struct diagnostic *drives_get_fault(const struct drives *d);
 

@@ -245,3 +245,14 @@ void drives_send(struct drives *d, const struct can_port *port, const struct poi
         send_quick_stop(d, port);
     d->cycle++;
 }
+
+/*
+ * One drive a call, in turn: the steps to "operation enabled" without the last one. Bit 7, fault reset, and bit 3, enable
+ * operation, stay 0. What the drives have been told to stop by is not forgotten.
+ */
+void drives_switch_on_at_rest(struct drives *d, const struct can_port *port)
+{
+    struct drives_axis turn = d->axis[d->cycle % d->count];
+    const uint16_t step = cia402_step_to_enabled(cia402_state(turn.statusword));
+    send_controlword(&turn, port, step & CIA402_SWITCH_ON);
+}

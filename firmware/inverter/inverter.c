@@ -186,6 +186,17 @@ struct spindle_feedback inverter_cycle(struct inverter *v, const struct register
     return v->feedback;
 }
 
+void inverter_stop(struct inverter *inverter)
+{
+    inverter->ramp_rpm = 0.0;
+}
+
+bool inverter_is_stopped(const struct inverter *inverter)
+{
+    return inverter->feedback.silent ||
+           (inverter->is_written && inverter->command[0] == INVERTER_STOP);
+}
+
 void inverter_reset(struct inverter *inverter)
 {
     inverter->wants_reset = true;

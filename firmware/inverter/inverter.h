@@ -83,6 +83,11 @@ void inverter_init(struct inverter *inverter, const struct inverter_config *conf
 struct spindle_feedback inverter_cycle(struct inverter *inverter, const struct registers_port *port,
                                        double commanded_rpm);
 
+/* Stops without the ramp of the commands, by the converter's own: STOP is the next that is written. */
+void inverter_stop(struct inverter *inverter);
+/* It has been written, or the converter does not answer. */
+bool inverter_is_stopped(const struct inverter *inverter);
+
 /* Acknowledges a trip: the converter is reset once. */
 void inverter_reset(struct inverter *inverter);
 

@@ -4,6 +4,7 @@
 
 enum function {
     READ_COILS = 1,
+    READ_DISCRETES = 2, /* inputs of one bit: the coils, which some panels read so */
     READ_HOLDINGS = 3,
     READ_INPUTS = 4,
     WRITE_COIL = 5,
@@ -169,6 +170,7 @@ size_t modbus_answer(const struct modbus_map *map, const uint8_t *request, size_
     x.reply = reply;
     switch (request[0]) {
     case READ_COILS:
+    case READ_DISCRETES:
         return answer_read(&x, MODBUS_COILS, MODBUS_READ_BITS_MAX);
     case READ_HOLDINGS:
         return answer_read(&x, MODBUS_HOLDINGS, MODBUS_READ_WORDS_MAX);
@@ -195,6 +197,7 @@ size_t modbus_request_length(const uint8_t *request, size_t length)
         return 0;
     switch (request[0]) {
     case READ_COILS:
+    case READ_DISCRETES:
     case READ_HOLDINGS:
     case READ_INPUTS:
     case WRITE_COIL:

@@ -62,7 +62,7 @@ static void add_own(struct panel_client *client, struct panel_snapshot *snapshot
 {
     const struct panel *panel = client->panel;
     const struct panel_mailbox *mailbox = &panel->mailbox;
-    int64_t *value = snapshot->value;
+    uint32_t *value = snapshot->value;
 
     value[REGISTER_VERSION] = PANEL_TABLE_VERSION;
     value[REGISTER_REFUSAL] = client->refusal;
@@ -101,7 +101,7 @@ static uint16_t word_of_row(const struct panel *panel, const struct panel_snapsh
                             enum panel_id id, unsigned index)
 {
     const struct panel_register *row = &panel_registers[id];
-    const uint32_t bits = (uint32_t)(uint64_t)snapshot->value[id];
+    const uint32_t bits = snapshot->value[id];
 
     if (row->form == PANEL_TEXT || row->form == PANEL_BYTES)
         return word_of_bytes(panel, snapshot, id, index);
@@ -138,11 +138,13 @@ enum modbus_exception panel_read(void *context, enum modbus_table table, uint16_
     for (unsigned i = 0; i < count; i++) {
         const uint16_t here = (uint16_t)(address + i);
         const enum panel_id id = panel_find(table, here);
+        uint16_t word = 0;
 
-        if (id == REGISTER_COUNT)
+        if (id != REGISTER_COUNT)
+            word = word_of_row(client->panel, &snapshot, id, here - panel_registers[id].address);
+        else if (!panel_is_gap(table, here))
             return MODBUS_ADDRESS;
-        put_value(data, table, i,
-                  word_of_row(client->panel, &snapshot, id, here - panel_registers[id].address));
+        put_value(data, table, i, word);
     }
     return MODBUS_GOOD;
 }

@@ -37,6 +37,8 @@ struct panel {
     struct panel_upload upload;
     enum panel_upload_kind kind;            /* of that upload */
     char upload_text[PANEL_ALARM_TEXT_MAX]; /* why the last one was refused; ends with a zero */
+    unsigned wrong;                         /* passwords in a row */
+    uint32_t wrong_cycles;                  /* register CYCLES at the last of them */
     const struct panel_client *owner;       /* has claimed control; NULL: nobody */
 };
 

@@ -32,6 +32,7 @@ void panel_look(struct panel *panel, struct panel_snapshot *snapshot);
 struct panel_request {
     struct panel_client *client;
     enum panel_state state;
+    uint32_t cycles;
     bool has_owner;               /* the watchdog watches a panel */
     struct panel_mailbox mailbox; /* as it will be */
     struct panel_order order;     /* to the controller */

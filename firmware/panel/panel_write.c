@@ -91,7 +91,7 @@ static enum modbus_exception take_row(struct panel_request *r, const struct writ
         const int64_t value = words == row->words ? decode(row, w->data, *at) : -1;
 
         /* Half a number is none. */
-        if (words != row->words || value < row->least || value > row->most)
+        if (words != row->words || value < panel_least(row) || value > panel_most(row))
             return MODBUS_VALUE;
         take_number(r, id, value);
     }
@@ -135,12 +135,41 @@ static bool is_for_everybody(const struct panel_request *r)
     return r->order.count > 0;
 }
 
+/*
+ * After n wrong passwords in a row, whoever gave them, none is looked at for 500 2^n control cycles: of 1 ms, from 1 s to
+ * 16 s. Guesses over all connections are then some thousand a day.
+ */
+#define WRONG_CYCLES 500U
+#define WRONG_MOST   5U
+
+static bool is_too_soon(const struct panel_request *r)
+{
+    const struct panel *panel = r->client->panel;
+
+    return panel->wrong > 0 && r->cycles - panel->wrong_cycles < WRONG_CYCLES << panel->wrong;
+}
+
+static enum panel_refusal try_password(const struct panel_request *r)
+{
+    struct panel *panel = r->client->panel;
+
+    if (is_too_soon(r))
+        return PANEL_REFUSAL_BUSY;
+    if (r->password == panel->config.password) {
+        panel->wrong = 0;
+        return PANEL_REFUSAL_NONE;
+    }
+    panel->wrong_cycles = r->cycles;
+    panel->wrong += panel->wrong < WRONG_MOST;
+    return PANEL_REFUSAL_VALUE;
+}
+
 static enum panel_refusal check_password(const struct panel_request *r)
 {
     const uint32_t password = r->client->panel->config.password;
 
     if (r->has_password)
-        return r->password == password ? PANEL_REFUSAL_NONE : PANEL_REFUSAL_VALUE;
+        return try_password(r);
     return password == 0 || r->client->unlocked ? PANEL_REFUSAL_NONE : PANEL_REFUSAL_LOCKED;
 }
 
@@ -361,6 +390,7 @@ static __attribute__((noinline)) void look_at_state(struct panel_request *r)
 
     panel_look(r->client->panel, &snapshot);
     r->state = (enum panel_state)snapshot.value[REGISTER_STATE];
+    r->cycles = snapshot.value[REGISTER_CYCLES];
     r->has_owner = snapshot.value[REGISTER_WATCHDOG] != 0;
 }
 

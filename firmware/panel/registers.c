@@ -1,25 +1,46 @@
 #include "panel/registers.h"
 
+#include <assert.h>
+
+#define FROM_500 500
+
 /* clang-format off */
+#define RANGE_BITS(most) ((most) <= UINT16_MAX ? 0 : (most) % 512 == 0 ? 9 : 6)
+#define RANGE(most)      ((most) >= INT32_MAX ? 0 : (most) >> RANGE_BITS(most))
+#define FROM(least)      ((least) < 0 ? PANEL_FROM_MINUS_MOST : (least) == FROM_500 ? PANEL_FROM_500 : (least))
 #define PANEL_ROW(id, table, address, form, words, unit, decimals, least, most, states, meaning) \
-    [REGISTER_##id] = {least, most, address, words, states, table, form, decimals},
+    [REGISTER_##id] = {address, RANGE(most), RANGE_BITS(most), FROM(least), states, words, table, form, decimals},
 #define PANEL_TEXTS(id, table, address, form, words, unit, decimals, least, most, states, meaning) \
     [REGISTER_##id] = {#id, unit, meaning},
+#define PANEL_CHECK(id, table, address, form, words, unit, decimals, least, most, states, meaning) \
+    static_assert((int64_t)(least) == -(int64_t)(most) || (least) == FROM_500 || (least) == 0 || (least) == 1, #id); \
+    static_assert((most) >= INT32_MAX ? (most) == ((form) == PANEL_S32 ? INT32_MAX : UINT32_MAX) \
+                                      : RANGE(most) << RANGE_BITS(most) == (most) && RANGE(most) <= UINT16_MAX, #id);
 /* clang-format on */
+
+static_assert(sizeof(struct panel_register) == 8, "a row of the table is small");
+
+PANEL_REGISTERS(PANEL_CHECK)
 
 const struct panel_register panel_registers[REGISTER_COUNT] = {PANEL_REGISTERS(PANEL_ROW)};
 const struct panel_text panel_texts[REGISTER_COUNT] = {PANEL_REGISTERS(PANEL_TEXTS)};
 
+int32_t panel_least(const struct panel_register *row)
+{
+    if (row->least == PANEL_FROM_MINUS_MOST)
+        return -(int32_t)panel_most(row);
+    return row->least == PANEL_FROM_500 ? FROM_500 : (int32_t)row->least;
+}
+
 /* Table and address as one rising number. */
-static uint32_t place_of(enum modbus_table table, uint16_t address)
+static uint32_t place_of(unsigned table, uint16_t address)
 {
     return (uint32_t)table << 16 | address;
 }
 
-/* The first row of the upper half may be the one: it begins at or before the place. */
-enum panel_id panel_find(enum modbus_table table, uint16_t address)
+/* The last row that begins at or before a place, the first one if none does. */
+static unsigned row_before(uint32_t place)
 {
-    const uint32_t place = place_of(table, address);
     unsigned low = 0, high = REGISTER_COUNT;
 
     while (high - low > 1) {
@@ -31,11 +52,25 @@ enum panel_id panel_find(enum modbus_table table, uint16_t address)
         else
             high = middle;
     }
-    const struct panel_register *row = &panel_registers[low];
+    return low;
+}
 
-    if (row->table != table || address < row->address || address - row->address >= row->words)
+enum panel_id panel_find(enum modbus_table table, uint16_t address)
+{
+    const unsigned id = row_before(place_of(table, address));
+    const struct panel_register *row = &panel_registers[id];
+
+    if (row->table != (unsigned)table || address < row->address ||
+        address - row->address >= row->words)
         return REGISTER_COUNT;
-    return (enum panel_id)low;
+    return (enum panel_id)id;
+}
+
+bool panel_is_gap(enum modbus_table table, uint16_t address)
+{
+    const unsigned next = row_before(place_of(table, address)) + 1;
+
+    return next < REGISTER_COUNT && panel_registers[next].table == (unsigned)table;
 }
 
 /* Bit 5 is all that parts the cases of a letter. */

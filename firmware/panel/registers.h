@@ -238,15 +238,23 @@ enum panel_form {
     PANEL_SHOW16(ROW, RUNS, 47, "", 0, "programs and lines ended so far; wraps") \
     PANEL_SHOW32(ROW, DIGITAL_OUTPUTS, 48, "", 0, "bit i: output i") \
     PANEL_SHOW16(ROW, CONTROL, 50, "", 0, "0 no panel has claimed it, 1 this client has, 2 another") \
+    PANEL_SHOW16(ROW, SYSTEM, 51, "", 0, "coordinate system of the line read last: 1 G54 ... 9 G59.3") \
     PANEL_SHOW32(ROW, DIGEST_HIGH, 52, "", 0, "FNV-1a 64 of all setpoints of the program so far: upper half") \
     PANEL_SHOW32(ROW, DIGEST_LOW, 54, "", 0, "lower half") \
     PANEL_SHOW32(ROW, UPLOAD_ROOM, 56, "byte", 0, "that can be handed in now") \
-    PANEL_SHOW32(ROW, DRIVES_GIVEN_UP, 58, "", 0, "bit i: what a drive does not have and is driven without, enum drives_given_up (firmware/drive)") \
+    PANEL_SHOW16(ROW, HOMED, 58, "", 0, "bit i: axis i knows its home, or needs none") \
     PANEL_SHOW_AXES(ROW, POSITION, 60, "mm", "setpoint, machine coordinates, without correction") \
     PANEL_SHOW_AXES(ROW, ACTUAL, 72, "mm", "position its drive reports") \
     PANEL_SHOW_AXES(ROW, FOLLOWING, 84, "mm", "setpoint minus the position reported for it") \
     PANEL_AXIS_ROWS(ROW, DRIVE_STATUS, MODBUS_INPUTS, 96, PANEL_U16, 1, "", 0, 0, PANEL_U16_MOST, PANEL_NEVER, \
         "statusword of its drive (CiA 402, 6041)") \
+    PANEL_SHOW32(ROW, MODES, 102, "", 0, \
+        "of the line read last: bits 0-1 plane (0 G17, 1 G18, 2 G19), 2 G91, 3 G20, 4-5 path (0 G61, 1 G61.1, 2 G64), 6-7 cutter (0 G40, 1 G41, 2 G42), 8 G93, 9 G95, 10 G98, 11 G96, 12 G7; 16-31 motion: 10 is G1, 382 G38.2, 800 none") \
+    PANEL_SHOW_AXES(ROW, WORK_POSITION, 104, "mm", "setpoint in work coordinates: offsets, rotation and tool taken off") \
+    PANEL_SHOW_AXES(ROW, DISTANCE_TO_GO, 116, "mm", "from the setpoint to the end of the motion being executed") \
+    PANEL_SHOW_AXES(ROW, AXIS_FEED, 128, "mm/min", "velocity of the setpoint") \
+    PANEL_SHOW32(ROW, CUT_LINE, 140, "", 0, "line of the program that runs, or at which the last one was cut short, by a power cut too; 0: it came to its end") \
+    PANEL_SHOW32(ROW, DRIVES_GIVEN_UP, 142, "", 0, "bit i: what a drive does not have and is driven without, enum drives_given_up (firmware/drive)") \
     ROW(ALARM_TEXT, MODBUS_INPUTS, 200, PANEL_TEXT, PANEL_ALARM_TEXT_MAX / 2, "", 0, 0, 0, PANEL_NEVER, \
         "what is wrong, as text") \
     ROW(UPLOAD_TEXT, MODBUS_INPUTS, 300, PANEL_TEXT, PANEL_ALARM_TEXT_MAX / 2, "", 0, 0, 0, PANEL_NEVER, \
@@ -272,6 +280,12 @@ enum panel_form {
         "not 0: this client claims control and must send a request at least this often, else the feed is held. 0: gives it up") \
     ROW(PASSWORD, MODBUS_HOLDINGS, 37, PANEL_U32, 2, "", 0, 0, PANEL_U32_MOST, PANEL_ANY, \
         "the right one lets this client write. Reads 0") \
+    ROW(START_LINE, MODBUS_HOLDINGS, 40, PANEL_U32, 2, "", 0, 0, PANEL_U32_MOST, PANEL_WHEN_IDLE, \
+        "the next CYCLE_START starts the program at this line, by a safe way; 0, and after it: at its beginning") \
+    ROW(TOOL_WEAR_LENGTH, MODBUS_HOLDINGS, 42, PANEL_U32, 2, "mm", 0, 0, PANEL_U32_MOST, PANEL_WHEN_IDLE, \
+        "that the tool selected by TOOL_SELECT has cut since it was new; 0 resets it") \
+    ROW(TOOL_WEAR_TIME, MODBUS_HOLDINGS, 44, PANEL_U32, 2, "s", 0, 0, PANEL_U32_MOST, PANEL_WHEN_IDLE, \
+        "likewise, how long") \
     ROW(UPLOAD_SIZE, MODBUS_HOLDINGS, 50, PANEL_U32, 2, "byte", 0, 1, PANEL_PROGRAM_BYTES_MAX, PANEL_ANY, \
         "of the program to come") \
     ROW(UPLOAD_CRC, MODBUS_HOLDINGS, 52, PANEL_U32, 2, "", 0, 0, PANEL_U32_MOST, PANEL_ANY, \
@@ -304,16 +318,31 @@ enum panel_form {
 enum panel_id { PANEL_REGISTERS(PANEL_ID) REGISTER_COUNT };
 #undef PANEL_ID
 
+/* Eight bytes, since an image keeps the whole table. */
 struct panel_register {
-    int32_t least;
-    uint32_t most;
     uint16_t address; /* on the wire, from 0 */
-    uint16_t words;   /* how many registers it takes */
-    uint16_t states;
-    enum modbus_table table;
-    enum panel_form form;
-    uint8_t decimals;
+    uint16_t range;   /* see panel_most */
+    unsigned range_bits : 4;
+    unsigned least : 2; /* enum panel_from */
+    unsigned states : 10;
+    unsigned words : 7; /* how many registers it takes */
+    unsigned table : 2; /* enum modbus_table */
+    unsigned form : 3;  /* enum panel_form */
+    unsigned decimals : 3;
 };
+
+/* Where a range begins. */
+enum panel_from { PANEL_FROM_0, PANEL_FROM_1, PANEL_FROM_500, PANEL_FROM_MINUS_MOST };
+
+/* range 2^range_bits; range 0: as much as the form holds. */
+static inline uint32_t panel_most(const struct panel_register *row)
+{
+    if (row->range == 0)
+        return row->form == PANEL_S32 ? INT32_MAX : UINT32_MAX;
+    return (uint32_t)row->range << row->range_bits;
+}
+
+int32_t panel_least(const struct panel_register *row);
 
 /* What only those ask who show the table: an image that does not is without it. */
 struct panel_text {
@@ -332,6 +361,9 @@ static inline const struct panel_text *panel_text(const struct panel_register *r
 
 /* The row that has this register among its own; REGISTER_COUNT: none. */
 enum panel_id panel_find(enum modbus_table table, uint16_t address);
+
+/* No row has this register, but one behind it has: it reads as 0, so that rows around it may be read at once. */
+bool panel_is_gap(enum modbus_table table, uint16_t address);
 
 /* The row of that name, upper or lower case; REGISTER_COUNT: none. */
 enum panel_id panel_find_name(const char *name);

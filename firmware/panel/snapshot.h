@@ -7,13 +7,21 @@
 #include "panel/registers.h"
 
 /*
- * The value of every register at one moment, in counts of its row. Registers that belong to the mailbox or to one client
+ * The value of every register at one moment, in counts of its row; below 0 in two's complement, as on the wire. Registers that belong to the mailbox or to one client
  * (UPLOAD_..., MDI_TEXT, PASSWORD, REFUSAL, CONTROL, VERSION, PROGRAM_MAX) are not used.
  */
 struct panel_snapshot {
-    int64_t value[REGISTER_COUNT];
+    uint32_t value[REGISTER_COUNT];
     char alarm_text[PANEL_ALARM_TEXT_MAX]; /* ends with a zero, or its last character */
 };
+
+/* With its sign. */
+static inline int64_t panel_value(const struct panel_snapshot *snapshot, enum panel_id id)
+{
+    const uint32_t bits = snapshot->value[id];
+
+    return panel_registers[id].form == PANEL_S32 ? (int32_t)bits : (int64_t)bits;
+}
 
 /* More than one request can write: registers of a table that are an order, by the test of the room. */
 #define PANEL_ORDER_MAX 48

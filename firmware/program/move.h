@@ -32,6 +32,7 @@ enum move_kind {
     MOVE_TOOL,
     MOVE_OUTPUT, /* a digital or analogue output changes: M62 to M65, M67, M68 */
     MOVE_INPUT,  /* waits for an input, or only reads it: M66 */
+    MOVE_WEAR,   /* what a tool has cut since it was new is set: G10 L12 */
     MOVE_STOP,
     MOVE_END
 };
@@ -99,13 +100,16 @@ struct move {
             double orient_rad; /* MOVE_ORIENT */
             double timeout_s;  /* MOVE_ORIENT, MOVE_INPUT: 0: none given */
         };
+        struct {
+            double wear_length_mm, wear_time_s; /* MOVE_WEAR */
+        };
         double output; /* MOVE_OUTPUT: 0 or 1; any value of an analogue one */
     };
     union {
         uint32_t turns;   /* arcs: 1 = less than or exactly one turn */
         uint32_t channel; /* MOVE_OUTPUT, MOVE_INPUT: number of the output or input */
     };
-    uint32_t tool;          /* MOVE_TOOL: number; motion: of the tool in the spindle */
+    uint32_t tool;          /* MOVE_TOOL, MOVE_WEAR: number; motion: of the tool in the spindle */
     unsigned overrides;     /* motion: OVERRIDE_... */
     uint8_t correction_off; /* bit i set: the program has switched layer i off */
     uint8_t contour_side;   /* enum cutter_side the contour was programmed with */

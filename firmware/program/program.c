@@ -193,6 +193,7 @@ static bool takes_time(const struct move *m, const struct point *from)
     case MOVE_COOLANT:
     case MOVE_TOOL:
     case MOVE_OUTPUT:
+    case MOVE_WEAR:
         return false;
     case MOVE_ARC_CW:
     case MOVE_ARC_CCW:

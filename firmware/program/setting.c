@@ -1,6 +1,7 @@
 #include "program/setting.h"
 
 #include "program/coordinates.h"
+#include "program/emit.h"
 #include "program/report.h"
 #include "program/tool_values.h"
 #include "program/words.h"
@@ -8,18 +9,28 @@
 /* The coordinate system of L11: G59.3. */
 #define FIXTURE_SYSTEM 9
 
+/* mm, s: of a tool. */
+#define WEAR_MAX 1e9
+
 enum what {
     TOOLS_AGAIN = 0, /* the table is read again: it is what it was */
     TOOL = 1,
     SYSTEM = 2,
     TOOL_BY_POSITION = 10,
     TOOL_BY_FIXTURE = 11,
+    WEAR = 12, /* takt's own */
     SYSTEM_BY_POSITION = 20
 };
 
-static bool refuse_word(struct program *p, char letter)
+/* letters: bit 0 is A. */
+static bool refuse_words(struct program *p, uint32_t letters)
 {
-    return !words_has(p, letter) || report_error_letter(p, TAKT_ERROR_WORD_UNUSED, letter, 0.0);
+    for (char letter = 'a'; letter <= 'z'; letter++) {
+        if ((letters & LETTER_BIT(letter)) != 0 && words_has(p, letter)) {
+            return report_error_letter(p, TAKT_ERROR_WORD_UNUSED, letter, 0.0);
+        }
+    }
+    return true;
 }
 
 /*
@@ -74,7 +85,7 @@ static bool set_system_by_position(struct program *p, enum step step, unsigned s
     struct program_turn turn;
     double value;
 
-    if (!refuse_word(p, 'r')) {
+    if (!refuse_words(p, LETTER_BIT('r'))) {
         return false;
     }
     coordinates_set_turn(&turn, coordinates_system_degrees(p, system));
@@ -103,7 +114,7 @@ static bool run_system(struct program *p, const struct program_code *code, bool 
 {
     uint32_t system;
 
-    if (!refuse_word(p, 'i') || !refuse_word(p, 'j') || !refuse_word(p, 'q') ||
+    if (!refuse_words(p, LETTER_BIT('i') | LETTER_BIT('j') | LETTER_BIT('q')) ||
         !words_whole(p, 'p', 0.0, COORDINATES_SYSTEMS, &system)) {
         return false;
     }
@@ -197,6 +208,28 @@ static bool run_tool(struct program *p, const struct program_code *code, enum wh
     return true;
 }
 
+/* What a tool has cut since it was new, for the wear of the position correction: I whole mm, J whole s, else 0. */
+static bool run_wear(struct program *p, const struct program_code *code)
+{
+    uint32_t number, length_mm = 0, time_s = 0;
+
+    if (!refuse_words(p, LETTERS_AXES | LETTER_BIT('q') | LETTER_BIT('r')) ||
+        !words_whole(p, 'p', 1.0, PROGRAM_TOOL_MAX, &number) ||
+        (words_has(p, 'i') && !words_whole(p, 'i', 0.0, WEAR_MAX, &length_mm)) ||
+        (words_has(p, 'j') && !words_whole(p, 'j', 0.0, WEAR_MAX, &time_s))) {
+        return false;
+    }
+    if (tool_values_find(p, number) == NULL) {
+        return report_error_code(p, TAKT_ERROR_TOOL_ABSENT, code->step, number);
+    }
+    struct move *m = emit_event(p, MOVE_WEAR);
+
+    m->tool = number;
+    m->wear_length_mm = length_mm;
+    m->wear_time_s = time_s;
+    return true;
+}
+
 bool setting_run(struct program *p, const struct program_code *code)
 {
     uint32_t what;
@@ -220,6 +253,8 @@ bool setting_run(struct program *p, const struct program_code *code)
     case TOOL_BY_POSITION:
     case TOOL_BY_FIXTURE:
         return run_tool(p, code, (enum what)what);
+    case WEAR:
+        return run_wear(p, code);
     default:
         return report_error_letter(p, TAKT_ERROR_WORD_OUT_OF_RANGE, 'l', what);
     }

@@ -33,13 +33,38 @@ static void keep_modes(struct service *s)
     s->has_modes = true;
 }
 
+struct tool *service_find_tool(const struct service *s, uint32_t number)
+{
+    for (size_t i = 0; i < s->config.tools_count; i++) {
+        if (s->config.tools[i].number == number)
+            return &s->config.tools[i];
+    }
+    return NULL;
+}
+
+/* What a program or line has made of tools (G10 L1) lasts, as what it has made of parameters does. */
+static void keep_tools(const struct service *s)
+{
+    const struct program_tools *changed = &s->controller.reader->program.tools;
+
+    for (unsigned i = 0; i < changed->count; i++) {
+        struct tool *tool = service_find_tool(s, changed->tool[i].number);
+
+        if (tool != NULL)
+            *tool = changed->tool[i];
+    }
+}
+
 void service_end_job(struct service *s, enum panel_outcome outcome)
 {
     if (s->job == SERVICE_MDI && outcome == PANEL_OUTCOME_COMPLETED)
         keep_modes(s);
-    if (s->job == SERVICE_PROGRAM)
+    if (s->job == SERVICE_PROGRAM) {
         service_forget_plan(s);
+        s->cut_line = outcome == PANEL_OUTCOME_COMPLETED ? 0 : s->controller.record.line;
+    }
     if (s->job != SERVICE_NOTHING) {
+        keep_tools(s);
         s->outcome = outcome;
         s->runs++;
     }
@@ -80,6 +105,9 @@ bool service_start_program(struct service *s)
         config.compiled = &plan;
     if (s->program_size == 0 || !programs->open(programs->context, &config.source))
         return false;
+    config.from_line = s->settings.start_line;
+    s->settings.start_line = 0;
+    s->controller.record.line = 0;
     controller_start_program(&s->controller, &config, &s->at);
     s->has_modes = false;
     begin_job(s, SERVICE_PROGRAM);

@@ -2,6 +2,7 @@
  * Everything a panel can read, in counts of its register.
  */
 #include "base/maths.h"
+#include "program/coordinates.h"
 #include "program/parameters.h"
 #include "service/service_private.h"
 
@@ -15,12 +16,13 @@
 #define LIMITER_COUNTS  10000.0
 
 /* Rounded, and kept within what a register can say. */
-static int64_t counts(double value, double per_unit, enum panel_id id)
+static uint32_t counts(double value, double per_unit, enum panel_id id)
 {
     const struct panel_register *row = &panel_registers[id];
     const double rounded = maths_round(value * per_unit);
 
-    return (int64_t)maths_clamp(rounded, (double)row->least, (double)row->most);
+    return (uint32_t)(int64_t)maths_clamp(rounded, (double)panel_least(row),
+                                          (double)panel_most(row));
 }
 
 static double shown_units(unsigned axis, double mm)
@@ -28,7 +30,7 @@ static double shown_units(unsigned axis, double mm)
     return axis >= AXIS_LINEAR_COUNT ? mm * DEGREES_PER_RAD : mm;
 }
 
-static void set_axes(int64_t *value, enum panel_id first, const struct point *at)
+static void set_axes(uint32_t *value, enum panel_id first, const struct point *at)
 {
     for (unsigned i = 0; i < AXIS_COUNT; i++)
         value[first + i] =
@@ -36,7 +38,7 @@ static void set_axes(int64_t *value, enum panel_id first, const struct point *at
 }
 
 /* The report of a position belongs to a setpoint of some cycles ago. */
-static void look_at_axes(const struct service *s, int64_t *value)
+static void look_at_axes(const struct service *s, uint32_t *value)
 {
     uint16_t statusword[AXIS_COUNT];
     struct point actual, following;
@@ -58,6 +60,73 @@ static void look_at_axes(const struct service *s, int64_t *value)
     value[REGISTER_AXES] = machine_axes(&s->controller.machine);
 }
 
+/* The line read last may be ahead of the one being executed: linear offsets are those of the latter. */
+static void look_at_work(const struct service *s, const struct block *block, struct point *work)
+{
+    const struct program *p = &s->controller.reader->program;
+    struct point zero, ahead;
+
+    coordinates_work_of(p, &s->at, work);
+    if (block == NULL || !move_is_motion(&block->move))
+        return;
+    zero = s->at;
+    for (unsigned i = 0; i < AXIS_LINEAR_COUNT; i++)
+        zero.at[i] = (double)block->move.work_mm[i] + (double)block->move.overhang_mm[i];
+    coordinates_work_of(p, &zero, &ahead);
+    for (unsigned i = 0; i < AXIS_LINEAR_COUNT; i++)
+        work->at[i] -= ahead.at[i];
+}
+
+/* Where the setpoint is on its way. */
+static void look_at_way(const struct service *s, uint32_t *value)
+{
+    const struct block *block = controller_get_block(&s->controller);
+    const double per_min = MM_MIN_PER_MM_S / (1e-6 * (double)s->controller.machine.cycle_us);
+    struct point work, left = {{0}}, feed;
+
+    look_at_work(s, block, &work);
+    for (unsigned i = 0; i < AXIS_COUNT; i++) {
+        feed.at[i] = (s->sent[0].at[i] - s->sent[1].at[i]) * per_min;
+        if (block != NULL && move_is_motion(&block->move))
+            left.at[i] = block->move.end.at[i] - s->at.at[i];
+    }
+    set_axes(value, REGISTER_WORK_POSITION_X, &work);
+    set_axes(value, REGISTER_DISTANCE_TO_GO_X, &left);
+    set_axes(value, REGISTER_AXIS_FEED_X, &feed);
+}
+
+/* Number of the code times ten; G80 leaves none. */
+#define NO_MOTION 800U
+
+static uint32_t motion_of(const struct program_modes *m)
+{
+    return m->motion != NULL ? m->motion->number_x10 : NO_MOTION;
+}
+
+static void look_at_modes(const struct service *s, uint32_t *value)
+{
+    const struct program_modes *m = program_get_modes(&s->controller.reader->program);
+
+    value[REGISTER_SYSTEM] = m->system;
+    value[REGISTER_MODES] =
+        (unsigned)m->plane | (unsigned)m->incremental << 2 | (unsigned)(m->unit_mm != 1.0) << 3 |
+        (unsigned)m->path << 4 | (unsigned)m->cutter_side << 6 | (unsigned)m->inverse_time << 8 |
+        (unsigned)m->per_revolution << 9 | (unsigned)!m->retract_to_r << 10 |
+        (unsigned)m->surface_speed << 11 | (unsigned)m->diameter << 12 | motion_of(m) << 16;
+}
+
+static unsigned homed_axes(const struct service *s)
+{
+    unsigned axes = machine_axes(&s->controller.machine);
+
+    for (unsigned i = 0; i < AXIS_COUNT; i++) {
+        if (s->controller.machine.axis[i].home_order != 0 &&
+            !drives_are_homed(&s->controller.drives))
+            axes &= ~(1U << i);
+    }
+    return axes;
+}
+
 static enum panel_override_reason override_reason(const struct service *s,
                                                   const struct block *block)
 {
@@ -70,14 +139,14 @@ static enum panel_override_reason override_reason(const struct service *s,
 }
 
 /* What the program does now; between programs, nothing. */
-static void look_at_motion(const struct service *s, int64_t *value)
+static void look_at_motion(const struct service *s, uint32_t *value)
 {
     const struct cycle_record *record = controller_get_record(&s->controller);
     const struct block *block = controller_get_block(&s->controller);
     const bool moves = record != NULL;
 
-    value[REGISTER_ACTIVE_LINE] = moves ? (int64_t)record->line : 0;
-    value[REGISTER_BLOCK] = moves ? (int64_t)record->block : 0;
+    value[REGISTER_ACTIVE_LINE] = moves ? record->line : 0;
+    value[REGISTER_BLOCK] = moves ? record->block : 0;
     value[REGISTER_FEED] =
         moves ? counts(record->feed_mm_s, MM_MIN_PER_MM_S * TENTHS, REGISTER_FEED) : 0;
     value[REGISTER_OVERRIDE_EFFECTIVE] =
@@ -86,11 +155,11 @@ static void look_at_motion(const struct service *s, int64_t *value)
     value[REGISTER_OVERRIDE_REASON] = override_reason(s, block);
     value[REGISTER_LIMITER] =
         counts(moves ? record->limiter : 1.0, LIMITER_COUNTS, REGISTER_LIMITER);
-    value[REGISTER_DIGEST_HIGH] = (int64_t)(s->digest >> 32);
-    value[REGISTER_DIGEST_LOW] = (int64_t)(s->digest & UINT32_MAX);
+    value[REGISTER_DIGEST_HIGH] = (uint32_t)(s->digest >> 32);
+    value[REGISTER_DIGEST_LOW] = (uint32_t)s->digest;
 }
 
-static void look_at_outputs(const struct service *s, int64_t *value)
+static void look_at_outputs(const struct service *s, uint32_t *value)
 {
     const struct outputs outputs = service_get_outputs(s);
     const struct spindle_feedback *spindle = &s->inputs.spindle;
@@ -106,7 +175,7 @@ static void look_at_outputs(const struct service *s, int64_t *value)
     value[REGISTER_DIGITAL_OUTPUTS] = outputs.digital;
 }
 
-static void look_at_health(const struct service *s, int64_t *value)
+static void look_at_health(const struct service *s, uint32_t *value)
 {
     value[REGISTER_BUS_LOAD] = counts(s->health.bus_load_percent, TENTHS, REGISTER_BUS_LOAD);
     value[REGISTER_CYCLE_MIN] = s->health.cycle_min_ns;
@@ -116,7 +185,7 @@ static void look_at_health(const struct service *s, int64_t *value)
     value[REGISTER_OVERRUNS] = s->health.overruns;
 }
 
-static void look_at_state(const struct service *s, int64_t *value)
+static void look_at_state(const struct service *s, uint32_t *value)
 {
     const enum panel_state state = service_get_state(s);
 
@@ -128,6 +197,8 @@ static void look_at_state(const struct service *s, int64_t *value)
     value[REGISTER_RUNS] = s->runs;
     value[REGISTER_PROGRAM_SIZE] = s->program_size;
     value[REGISTER_PROGRAM_CRC] = s->program_crc;
+    value[REGISTER_CUT_LINE] = service_get_cut_line(s);
+    value[REGISTER_HOMED] = homed_axes(s);
     value[REGISTER_CYCLE_START] = s->job == SERVICE_PROGRAM;
     value[REGISTER_FEED_HOLD] = s->hold != PANEL_HOLD_NONE;
     value[REGISTER_EMERGENCY_STOP] = s->emergency;
@@ -137,7 +208,7 @@ static void look_at_state(const struct service *s, int64_t *value)
     value[REGISTER_HOME] = s->job == SERVICE_HOME;
 }
 
-static void look_at_settings(const struct service *s, int64_t *value)
+static void look_at_settings(const struct service *s, uint32_t *value)
 {
     const struct service_settings *settings = &s->settings;
 
@@ -152,16 +223,17 @@ static void look_at_settings(const struct service *s, int64_t *value)
     value[REGISTER_MODE] = settings->mode;
     value[REGISTER_JOG_AXIS] = settings->jog_axis;
     value[REGISTER_JOG_FEED] = settings->jog_feed_mm_min;
-    value[REGISTER_JOG_DISTANCE] = settings->jog_distance;
+    value[REGISTER_JOG_DISTANCE] = (uint32_t)settings->jog_distance;
     value[REGISTER_WORK_SYSTEM] = settings->work_system;
     value[REGISTER_TOOL_SELECT] = settings->tool_select;
     value[REGISTER_WATCHDOG] = settings->watchdog_ms;
+    value[REGISTER_START_LINE] = settings->start_line;
     for (unsigned i = 0; i < AXIS_COUNT; i++)
-        value[REGISTER_RISE_X + i] = settings->rise[i];
+        value[REGISTER_RISE_X + i] = (uint32_t)settings->rise[i];
 }
 
 /* Parameters hold mm and degrees already. */
-static void look_at_work_offset(const struct service *s, int64_t *value)
+static void look_at_work_offset(const struct service *s, uint32_t *value)
 {
     const unsigned first =
         PARAMETER_SYSTEM_OFFSET + (s->settings.work_system - 1) * PARAMETER_SYSTEM_STRIDE;
@@ -172,11 +244,15 @@ static void look_at_work_offset(const struct service *s, int64_t *value)
 }
 
 /* A tool that is not in the table has offsets 0. */
-static void look_at_tool(const struct service *s, int64_t *value)
+static void look_at_tool(const struct service *s, uint32_t *value)
 {
     const struct tool *tool = tool_table_find(&s->tools, s->settings.tool_select);
     const struct point none = {{0}};
+    double length_mm, time_s;
 
+    correction_get_wear(&s->controller.correction, s->settings.tool_select, &length_mm, &time_s);
+    value[REGISTER_TOOL_WEAR_LENGTH] = counts(length_mm, 1.0, REGISTER_TOOL_WEAR_LENGTH);
+    value[REGISTER_TOOL_WEAR_TIME] = counts(time_s, 1.0, REGISTER_TOOL_WEAR_TIME);
     set_axes(value, REGISTER_TOOL_OFFSET_X, tool != NULL ? &tool->offset : &none);
     value[REGISTER_TOOL_DIAMETER] =
         tool != NULL ? counts(tool->diameter_mm, COUNTS_PER_UNIT, REGISTER_TOOL_DIAMETER) : 0;
@@ -188,6 +264,8 @@ void service_look(const struct service *s, struct panel_snapshot *snapshot)
     look_at_state(s, snapshot->value);
     look_at_axes(s, snapshot->value);
     look_at_motion(s, snapshot->value);
+    look_at_way(s, snapshot->value);
+    look_at_modes(s, snapshot->value);
     look_at_outputs(s, snapshot->value);
     look_at_health(s, snapshot->value);
     look_at_settings(s, snapshot->value);

@@ -2,6 +2,7 @@
  * What a panel may order. Each order is checked as a whole first, then done: so nothing has changed when it is refused.
  */
 #include "base/maths.h"
+#include "program/coordinates.h"
 #include "program/parameters.h"
 #include "service/service_private.h"
 
@@ -22,11 +23,7 @@ static bool is_between(enum panel_id id, enum panel_id first, enum panel_id last
 
 static struct tool *selected_tool(const struct service *s)
 {
-    for (size_t i = 0; i < s->config.tools_count; i++) {
-        if (s->config.tools[i].number == s->settings.tool_select)
-            return &s->config.tools[i];
-    }
-    return NULL;
+    return service_find_tool(s, s->settings.tool_select);
 }
 
 /* What stopped it must have been seen, and be gone. */
@@ -110,7 +107,8 @@ static enum panel_verdict check_holding(const struct service *s, enum panel_id i
 {
     if (id == REGISTER_JOG_AXIS)
         return s->controller.machine.axis[value].present ? PANEL_DONE : PANEL_WRONG_VALUE;
-    if (is_between(id, REGISTER_TOOL_OFFSET_X, REGISTER_TOOL_DIAMETER))
+    if (is_between(id, REGISTER_TOOL_OFFSET_X, REGISTER_TOOL_DIAMETER) ||
+        is_between(id, REGISTER_TOOL_WEAR_LENGTH, REGISTER_TOOL_WEAR_TIME))
         return selected_tool(s) != NULL ? PANEL_DONE : PANEL_WRONG_VALUE;
     if (id == REGISTER_UPLOAD_COMMAND)
         return verdict_on(s->job == SERVICE_NOTHING);
@@ -234,12 +232,38 @@ static bool push_button(struct service *s, enum panel_id id, const char *mdi)
     return true;
 }
 
+/* Lines that go on with the modes of the line before, and the position shown, go by the new offset at once. */
+static void load_system(struct service *s)
+{
+    struct program *p = &s->controller.reader->program;
+
+    if (p->modes.system != s->settings.work_system)
+        return;
+    coordinates_load_system(p, p->modes.system);
+    s->modes.system_offset = p->modes.system_offset;
+}
+
 static bool set_work_offset(struct service *s, unsigned axis, int64_t value)
 {
     const unsigned number =
         PARAMETER_SYSTEM_OFFSET + (s->settings.work_system - 1) * PARAMETER_SYSTEM_STRIDE + axis;
+    const bool good = parameters_set(s->config.parameters, number, (double)value * UNITS_PER_COUNT);
 
-    return parameters_set(s->config.parameters, number, (double)value * UNITS_PER_COUNT);
+    load_system(s);
+    return good;
+}
+
+static void set_wear(struct service *s, enum panel_id id, int64_t value)
+{
+    struct correction *correction = controller_get_correction(&s->controller);
+    double length_mm, time_s;
+
+    correction_get_wear(correction, s->settings.tool_select, &length_mm, &time_s);
+    if (id == REGISTER_TOOL_WEAR_LENGTH)
+        length_mm = (double)value;
+    else
+        time_s = (double)value;
+    correction_set_wear(correction, s->settings.tool_select, length_mm, time_s);
 }
 
 static void set_tool_offset(struct service *s, unsigned axis, int64_t value)
@@ -271,6 +295,8 @@ static bool set_setting(struct service_settings *settings, enum panel_id id, int
         settings->work_system = (unsigned)value;
     else if (id == REGISTER_TOOL_SELECT)
         settings->tool_select = (uint32_t)value;
+    else if (id == REGISTER_START_LINE)
+        settings->start_line = (uint32_t)value;
     else if (id == REGISTER_WATCHDOG)
         settings->watchdog_ms = (uint32_t)value;
     else
@@ -289,6 +315,7 @@ static void set_rise(struct service *s, unsigned axis, int64_t value)
 static void adopt_program(struct service *s)
 {
     service_forget_plan(s);
+    s->cut_line = 0;
     s->config.programs.adopt(s->config.programs.context);
 }
 
@@ -301,6 +328,8 @@ static bool set_holding(struct service *s, enum panel_id id, int64_t value)
         set_tool_offset(s, id - REGISTER_TOOL_OFFSET_X, value);
     else if (is_between(id, REGISTER_RISE_X, REGISTER_RISE_C))
         set_rise(s, id - REGISTER_RISE_X, value);
+    else if (is_between(id, REGISTER_TOOL_WEAR_LENGTH, REGISTER_TOOL_WEAR_TIME))
+        set_wear(s, id, value);
     else if (id == REGISTER_TOOL_DIAMETER)
         selected_tool(s)->diameter_mm = (double)value * UNITS_PER_COUNT;
     else if (id == REGISTER_UPLOAD_SIZE)

@@ -65,6 +65,16 @@ void service_set_program(struct service *s, uint32_t size, uint32_t crc)
     s->program_crc = crc;
 }
 
+void service_set_start_line(struct service *s, uint32_t line)
+{
+    s->settings.start_line = line;
+}
+
+uint32_t service_get_cut_line(const struct service *s)
+{
+    return s->job == SERVICE_PROGRAM ? s->controller.record.line : s->cut_line;
+}
+
 /* The first alarm stays until it is acknowledged: it is the cause of the others. */
 void service_raise(struct service *s, enum panel_alarm alarm, const struct diagnostic *text)
 {
@@ -202,6 +212,12 @@ static void take_fault(struct service *s)
     service_raise(s, drives ? PANEL_ALARM_DRIVE : PANEL_ALARM_PROGRAM, fault);
     service_end_job(s, PANEL_OUTCOME_FAILED);
     controller_quieten(&s->controller);
+}
+
+void service_lose_bus(struct service *s)
+{
+    controller_stop_at_once(&s->controller, TAKT_ERROR_BUS_LOST);
+    take_fault(s);
 }
 
 static void follow_controller(struct service *s)

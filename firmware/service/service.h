@@ -75,6 +75,11 @@ void service_init(struct service *s, const struct service_config *config);
 /* The program that is there at power-on, for the panel to show. */
 void service_set_program(struct service *s, uint32_t size, uint32_t crc);
 
+/* Where the next program starts; 0: at its beginning. */
+void service_set_start_line(struct service *s, uint32_t line);
+/* The line at which the program that runs is, or the last one was cut short; 0: it has come to its end. */
+uint32_t service_get_cut_line(const struct service *s);
+
 /* Between two cycles. Nothing has changed unless PANEL_DONE. */
 enum panel_verdict service_order(struct service *s, const struct panel_order *order);
 
@@ -91,6 +96,9 @@ struct outputs service_get_outputs(const struct service *s);
 
 /* True once after a trip of the spindle has been acknowledged: its drive is to be reset. */
 bool service_take_spindle_reset(struct service *s);
+
+/* The bus of the drives is gone, and they stop by themselves: an alarm. Every cycle as long as it is. */
+void service_lose_bus(struct service *s);
 
 enum panel_state service_get_state(const struct service *s);
 

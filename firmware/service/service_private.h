@@ -19,6 +19,8 @@ void service_end_job(struct service *s, enum panel_outcome outcome);
 /* The plan that has come, if any; and what comes of it is dropped. */
 enum service_plan service_open_plan(const struct service *s, struct replay_source *source);
 void service_forget_plan(struct service *s);
+/* In the table; NULL: it is not there. */
+struct tool *service_find_tool(const struct service *s, uint32_t number);
 /* What runs comes to rest and is dropped. */
 void service_give_up(struct service *s);
 

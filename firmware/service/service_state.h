@@ -21,6 +21,7 @@ struct service_settings {
     unsigned work_system;     /* 1 ... 9 */
     uint32_t tool_select;
     uint32_t watchdog_ms; /* 0: no panel is in control */
+    uint32_t start_line;  /* of the next program; 0: its beginning */
     bool single_block, optional_stop, block_delete;
     unsigned corrections;     /* bit i: layer i of the position correction is on */
     int32_t rise[AXIS_COUNT]; /* 0.001 K, of each axis since calibration */
@@ -61,6 +62,7 @@ struct service {
     uint16_t runs;
     uint32_t cycles;
     uint32_t program_size, program_crc; /* size 0: none */
+    uint32_t cut_line; /* where the last program was cut short; 0: it came to its end */
 
     char text[SERVICE_TEXT_MAX]; /* of a program the service has written */
     size_t text_length;

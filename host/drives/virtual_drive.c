@@ -399,6 +399,17 @@ uint32_t virtual_drive_get_sync_period_us(const struct virtual_drive *drive)
     return drive->nmt == NMT_OPERATIONAL ? (uint32_t)(drive->interpolation_ns / MICROSECOND_NS) : 0;
 }
 
+uint32_t virtual_drive_get_watched_ms(const struct virtual_drive *drive)
+{
+    uint32_t shortest_ms = 0;
+    for (unsigned i = 0; i < DRIVE_CONSUMERS; i++) {
+        uint32_t watched_ms = drive->objects.communication.consumer_heartbeat[i] & 0xFFFF;
+        if (watched_ms != 0 && (shortest_ms == 0 || watched_ms < shortest_ms))
+            shortest_ms = watched_ms;
+    }
+    return shortest_ms;
+}
+
 bool virtual_drive_is_sync(const struct virtual_drive *drive, const struct can_frame *frame)
 {
     return frame->id == drive->objects.communication.sync_cob_id && frame->length <= 1;

@@ -75,6 +75,9 @@ double virtual_drive_get_position_mm(const struct virtual_drive *drive);
 /* What the controller says of the time between two SYNCs, object 1006, else 60C2; 0: nothing. */
 uint32_t virtual_drive_get_sync_period_us(const struct virtual_drive *drive);
 
+/* Object 1016: the shortest heartbeat time that it watches, ms; 0: it watches none. */
+uint32_t virtual_drive_get_watched_ms(const struct virtual_drive *drive);
+
 /* The frame is SYNC to this drive (object 1005). */
 bool virtual_drive_is_sync(const struct virtual_drive *drive, const struct can_frame *frame);
 

@@ -158,10 +158,47 @@ bool virtual_drives_follow_sync(const struct virtual_drives *set)
     return sync_period_us(set) != 0;
 }
 
+/* Without a heartbeat to watch: that of the built-in machine, 100 ms, three times. */
+#define HEARTBEAT_TIME_MS 300
+
+#define MILLISECOND_NS 1000000u
+
+static uint32_t shortest_heartbeat_ms(const struct virtual_drives *set)
+{
+    uint32_t shortest_ms = 0;
+    for (unsigned i = 0; i < set->count; i++) {
+        uint32_t watched_ms = virtual_drive_get_watched_ms(&set->drive[i]);
+        if (watched_ms != 0 && (shortest_ms == 0 || watched_ms < shortest_ms))
+            shortest_ms = watched_ms;
+    }
+    return shortest_ms != 0 ? shortest_ms : HEARTBEAT_TIME_MS;
+}
+
+static bool any_enabled(const struct virtual_drives *set)
+{
+    for (unsigned i = 0; i < set->count; i++)
+        if (virtual_drive_get_state(&set->drive[i]) == CIA402_ENABLED)
+            return true;
+    return false;
+}
+
+void virtual_drives_wait(struct virtual_drives *set, uint32_t waited_ns)
+{
+    uint32_t period_us = sync_period_us(set);
+    uint64_t patience_ns = (uint64_t)shortest_heartbeat_ms(set) * MILLISECOND_NS * 2 / 3;
+    if (period_us == 0 || (set->silent_ns < patience_ns && !any_enabled(set)))
+        return;
+    set->silent_ns += waited_ns;
+    for (; set->silent_ns >= patience_ns + set->alone_ns; set->alone_ns += period_us * 1000)
+        virtual_drives_step(set, period_us * 1000);
+}
+
 bool virtual_drives_take_by_sync(struct virtual_drives *set, const struct can_frame *frame)
 {
     uint32_t period_us = sync_period_us(set);
     bool is_sync = virtual_drive_is_sync(&set->drive[0], frame);
+    if (is_sync)
+        set->silent_ns = set->alone_ns = 0;
     if (is_sync && period_us != 0 && set->has_sync)
         virtual_drives_step(set, period_us * 1000);
     virtual_drives_take(set, frame);

@@ -37,7 +37,9 @@ struct virtual_drives {
 
     /* Not on the embedded bus: the drives hear each other, too. */
     struct can_port port;
-    bool has_sync; /* one has come since SYNC is the clock */
+    bool has_sync;      /* one has come since SYNC is the clock */
+    uint64_t silent_ns; /* real time since the last one */
+    uint64_t alone_ns;  /* that the drives' time has gone on without it */
     struct virtual_drives_port way[VIRTUAL_DRIVES_MAX];
     unsigned own_count;
     struct virtual_drives_own {
@@ -83,6 +85,14 @@ void virtual_drives_take(struct virtual_drives *set, const struct can_frame *fra
 bool virtual_drives_take_by_sync(struct virtual_drives *set, const struct can_frame *frame);
 
 void virtual_drives_step(struct virtual_drives *set, uint32_t cycle_ns);
+
+/*
+ * Real time has gone by for drives that take SYNC for their clock. Their time stands still meanwhile, since a controller
+ * may take as long over a cycle as it likes; but not longer than a dead one is to be noticed: when enabled drives have had
+ * no SYNC for two thirds of the shortest heartbeat time they watch (object 1016), time goes on by itself until the next
+ * SYNC. The last third is for their supervision and for braking.
+ */
+void virtual_drives_wait(struct virtual_drives *set, uint32_t waited_ns);
 
 /* Time since power-on, and since when all drives are enabled (INJECT_ALWAYS: they have not been). */
 const struct inject_clock *virtual_drives_get_clock(const struct virtual_drives *set);

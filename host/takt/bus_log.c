@@ -1,9 +1,13 @@
+#define _POSIX_C_SOURCE 200809L
+
 #include "takt/bus_log.h"
 
 #include "takt/message.h"
 
 #include <errno.h>
 #include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
 #define FLUSH_NS 1000000000u
 
@@ -54,6 +58,34 @@ void bus_log_keep(struct bus_log *log)
     log->flushed_ns = now_ns;
 }
 
+bool bus_log_has_failed(const struct bus_log *log)
+{
+    return log->file != NULL && log->dump.failed;
+}
+
+/* Longer than any line. */
+#define TAIL_MAX 512
+
+/* Cuts what stands behind the last line end. */
+static void cut_torn_line(const char *path)
+{
+    char tail[TAIL_MAX];
+    struct stat status;
+    FILE *file = stat(path, &status) == 0 && S_ISREG(status.st_mode) ? fopen(path, "r+") : NULL;
+    const long size = file != NULL ? (long)status.st_size : 0;
+    const long from = size > TAIL_MAX ? size - TAIL_MAX : 0;
+    size_t length = 0;
+
+    if (file == NULL)
+        return;
+    if (fseek(file, from, SEEK_SET) == 0)
+        length = fread(tail, 1, sizeof tail, file);
+    while (length > 0 && tail[length - 1] != '\n')
+        length--;
+    (void)!ftruncate(fileno(file), (off_t)from + (off_t)length);
+    (void)fclose(file);
+}
+
 bool bus_log_close(struct bus_log *log)
 {
     bool good;
@@ -62,8 +94,11 @@ bool bus_log_close(struct bus_log *log)
         return true;
     frame_buffer_write(&log->frames);
     good = candump_flush(&log->dump);
-    if (log->file != stdout)
+    if (log->file != stdout) {
         good = fclose(log->file) == 0 && good;
+        if (!good)
+            cut_torn_line(log->path);
+    }
     log->file = NULL;
     if (!good)
         message_command_error("--bus-log %s: not everything could be written", log->path);

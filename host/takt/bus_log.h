@@ -33,7 +33,10 @@ void bus_log_observe_field(struct bus_log *log, struct field *field);
 /* Once a cycle or a round. */
 void bus_log_keep(struct bus_log *log);
 
-/* False after a message: not everything could be written. */
+/* A write has failed: the disk is full, or the reader gone. */
+bool bus_log_has_failed(const struct bus_log *log);
+
+/* False after a message: not everything could be written; a file then ends with the last line that is whole. */
 bool bus_log_close(struct bus_log *log);
 
 #endif

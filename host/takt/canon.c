@@ -155,6 +155,14 @@ static const char *coolant_name(const struct move *move)
     return move->flood ? "coolant_flood_on" : "coolant_off";
 }
 
+static void add_wear(struct line *l, const struct move *move)
+{
+    add_text(l, "tool_wear");
+    add_whole(l, " T", move->tool);
+    add_word(l, 'I', move->wear_length_mm);
+    add_word(l, 'J', move->wear_time_s);
+}
+
 static void add_event(struct line *l, const struct move *move)
 {
     if (move->kind == MOVE_DWELL) {
@@ -172,6 +180,8 @@ static void add_event(struct line *l, const struct move *move)
         add_output(l, move);
     } else if (move->kind == MOVE_INPUT) {
         add_input(l, move);
+    } else if (move->kind == MOVE_WEAR) {
+        add_wear(l, move);
     } else if (move->kind == MOVE_STOP) {
         add_text(l, move->optional ? "optional_stop" : "stop");
     } else {

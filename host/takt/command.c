@@ -92,6 +92,12 @@ static enum command_status run_command(const struct command *command, int argc, 
     return command->run(&options);
 }
 
+/* Which signal it was. */
+static enum command_status tell_signal(enum command_status status)
+{
+    return status == STATUS_INTERRUPTED ? (enum command_status)interrupt_status() : status;
+}
+
 /*
  * What was printed must have arrived: a full disk behind a redirection is an error like any other. A reader who has
  * seen enough (`takt plan | head`) needs no message.
@@ -123,5 +129,6 @@ enum command_status command_main(int argc, char **argv)
         strcmp(argv[1], "-h") == 0)
         return flush_stdout(help(argc, argv));
     command = find_command(argv[1]);
-    return command != NULL ? flush_stdout(run_command(command, argc - 1, argv + 1)) : STATUS_INPUT;
+    return command != NULL ? flush_stdout(tell_signal(run_command(command, argc - 1, argv + 1)))
+                           : STATUS_INPUT;
 }

@@ -15,7 +15,7 @@ enum command_status {
     STATUS_INPUT = 2,        /* the user's input is wrong; a message says what */
     STATUS_ENVIRONMENT = 3,  /* the machine takt runs on refused something */
     STATUS_STOPPED = 4,      /* every check held, but --until came before the program's end */
-    STATUS_INTERRUPTED = 130 /* by Ctrl-C */
+    STATUS_INTERRUPTED = 130 /* by a signal; the process ends with interrupt_status() */
 };
 
 struct command {

@@ -6,6 +6,7 @@
 
 #include "base/maths.h"
 
+#include <assert.h>
 #include <cjson/cJSON.h>
 #include <stdlib.h>
 
@@ -42,8 +43,9 @@ static const char *kind_name(enum move_kind kind)
     static const char *const names[] = {
         "rapid", "feed",    "arc_cw", "arc_ccw", "involute_cw", "involute_ccw", "thread",
         "tap",   "tap_out", "probe",  "dwell",   "spindle",     "orient",       "coolant",
-        "tool",  "output",  "input",  "stop",    "end"};
+        "tool",  "output",  "input",  "wear",    "stop",        "end"};
 
+    static_assert(sizeof names / sizeof names[0] == MOVE_END + 1, "a name for every kind");
     return names[kind];
 }
 

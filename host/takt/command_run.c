@@ -1,6 +1,7 @@
 #include "takt/command.h"
 #include "takt/compiled.h"
 #include "takt/compiled_judge.h"
+#include "takt/ending.h"
 #include "takt/error_map.h"
 #include "takt/interrupt.h"
 #include "takt/judge.h"
@@ -16,7 +17,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Cycles between two looks at Ctrl-C, failed writes and the progress bar. */
+/* Cycles between two looks at failed writes and the progress bar. */
 #define RUN_LOOK_CYCLES 1024
 
 struct run {
@@ -29,7 +30,10 @@ struct run {
     struct simulation *simulation;
     struct run_outputs outputs;
     struct progress progress;
-    uint64_t until_cycles; /* program cycles after which to stop; UINT64_MAX: the program's end */
+    struct ending ending;
+    struct diagnostic fault; /* before its end */
+    enum command_status cut; /* not STATUS_DONE: the run ends before its time, with this status */
+    uint64_t until_cycles;   /* program cycles after which to stop; UINT64_MAX: the program's end */
     uint64_t wall_ns;
 };
 
@@ -96,19 +100,24 @@ static void show_progress(struct run *run)
                   (double)figures->cycles * 1e-6 * (double)run->session.setup.machine.cycle_us);
 }
 
-/* Runs to the program's end, a fault or --until. False: interrupted, or a file cannot be written. */
+static bool is_bus_lost(const struct run *run)
+{
+    return field_get_problem(&run->simulation->field) != NULL;
+}
+
+/* Runs to the program's end, a fault, --until or a signal. False: a file cannot be written, or the bus is gone. */
 static bool run_loop(struct run *run)
 {
     const struct controller *controller = &run->simulation->controller;
     uint64_t start_ns = stopwatch_now_ns();
     bool good = true;
 
-    while (controller_get_state(controller) < CONTROLLER_COMPLETED && good) {
+    while (controller_get_state(controller) < CONTROLLER_COMPLETED && good && !interrupt_asked()) {
         good = run_cycle(run);
         if (run->judge.figures.cycles >= run->until_cycles)
             break;
         if (run->simulation->cycles % RUN_LOOK_CYCLES == 0) {
-            good = good && !interrupt_asked() && !run_outputs_failed(&run->outputs);
+            good = good && !run_outputs_failed(&run->outputs);
             show_progress(run);
         }
     }
@@ -117,10 +126,39 @@ static bool run_loop(struct run *run)
     return good;
 }
 
+/* The way to rest of a run that is cut short is part of it: trace and judge see it. */
+static void end_cycle(struct run *run)
+{
+    if (run->cut != STATUS_DONE) {
+        (void)run_cycle(run);
+        return;
+    }
+    (void)simulation_step(run->simulation);
+    if (run->outputs.each_cycle)
+        run_outputs_add(&run->outputs, NULL, NULL);
+}
+
+/* Drives of a target are the target's: they end with its process. */
+static void end_drives(struct run *run)
+{
+    struct controller *controller = &run->simulation->controller;
+
+    if (run->simulation->has_target)
+        return;
+    run->ending.stays_on = run->session.setup.drives_stay_on != 0;
+    ending_ask(&run->ending, controller, ENDING_ON_PATH);
+    while (!is_bus_lost(run) && !ending_is_over(&run->ending, controller)) {
+        end_cycle(run);
+        ending_ask(&run->ending, controller, ending_by_signals());
+    }
+}
+
 static enum summary_outcome outcome_of(const struct run *run)
 {
     enum controller_state state = controller_get_state(&run->simulation->controller);
 
+    if (run->cut != STATUS_DONE)
+        return OUTCOME_INTERRUPTED;
     if (state == CONTROLLER_FAULTED)
         return OUTCOME_FAULTED;
     return state == CONTROLLER_COMPLETED ? OUTCOME_COMPLETED : OUTCOME_STOPPED;
@@ -129,31 +167,43 @@ static enum summary_outcome outcome_of(const struct run *run)
 /* A fault is about a line of the program, or about the machine. */
 static void report_fault(const struct run *run, const char *text)
 {
-    const struct diagnostic *fault = controller_get_fault(&run->simulation->controller);
-
-    if (fault->line > 0)
-        message_program_error(&run->session.program, fault);
+    if (run->fault.line > 0)
+        message_program_error(&run->session.program, &run->fault);
     else
         message_command_error("%s", text);
 }
 
-static enum command_status finish(struct run *run)
+/* A run that is cut short comes to rest first, so that the summary counts the way there. */
+static void sum_up(struct run *run, struct summary *summary)
 {
-    static struct summary summary;
     struct summary_source source = {
         .session = &run->session,
         .totals = &run->totals,
         .simulation = run->simulation,
         .judge = &run->judge,
         .outcome = outcome_of(run),
+        .interrupted = run->cut,
         .wall_time_s = 1e-9 * (double)run->wall_ns,
     };
+
+    run->fault = *controller_get_fault(&run->simulation->controller);
+    if (run->cut != STATUS_DONE)
+        end_drives(run);
+    judge_finish(&run->judge, source.outcome == OUTCOME_COMPLETED);
+    summary_set(summary, &source);
+    if (run->cut == STATUS_DONE)
+        end_drives(run);
+    summary->bus_frames = field_get_frames(&run->simulation->field);
+}
+
+static enum command_status finish(struct run *run)
+{
+    static struct summary summary;
     FILE *stream = run_outputs_use_stdout(&run->outputs) ? stderr : stdout;
 
-    judge_finish(&run->judge, source.outcome == OUTCOME_COMPLETED);
-    summary_set(&summary, &source);
+    sum_up(run, &summary);
     run->session.parameters.values = run->simulation->parameters;
-    if (source.outcome != OUTCOME_COMPLETED)
+    if (summary.outcome != OUTCOME_COMPLETED)
         run_outputs_drop(&run->outputs,
                          RUN_PARAMETERS); /* the program is read ahead of what has been done */
     if (run->session.options->report != NULL)
@@ -164,13 +214,35 @@ static enum command_status finish(struct run *run)
     if (!announcer_finish(&run->simulation->announcer) ||
         !run_outputs_commit(&run->outputs, &summary, &run->session.parameters))
         return STATUS_ENVIRONMENT;
-    if (source.outcome == OUTCOME_FAULTED)
+    if (summary.outcome == OUTCOME_FAULTED)
         report_fault(run, summary.fault);
+    if (is_bus_lost(run))
+        message_command_error("%s", field_get_problem(&run->simulation->field));
     if (!run->session.options->quiet) {
         summary_write_text(stream, &summary);
         run_outputs_list(&run->outputs, stream);
     }
     return summary_status(&summary);
+}
+
+/* What nothing can be kept for. */
+static enum command_status tell_why(const struct run *run)
+{
+    if (run->judge.tube.path.failed)
+        message_command_error("out of memory");
+    else if (run->simulation->target.problem[0] != '\0')
+        message_command_error("--target: %s", run->simulation->target.problem);
+    else
+        message_command_error("the output files cannot be written");
+    return STATUS_ENVIRONMENT;
+}
+
+static enum command_status cut_by_signal(const struct run *run)
+{
+    if (!interrupt_asked() ||
+        controller_get_state(&run->simulation->controller) >= CONTROLLER_COMPLETED)
+        return STATUS_DONE;
+    return (enum command_status)interrupt_status();
 }
 
 static enum command_status simulate(struct run *run)
@@ -184,19 +256,11 @@ static enum command_status simulate(struct run *run)
     prepare_judge(run);
     set_until(run);
     progress_start(&run->progress, !run->session.options->quiet);
-    if (run_loop(run))
+    run->cut = run_loop(run) ? cut_by_signal(run) : STATUS_ENVIRONMENT;
+    if (run->cut != STATUS_ENVIRONMENT || is_bus_lost(run))
         return finish(run);
-    if (interrupt_asked())
-        return STATUS_INTERRUPTED;
-    if (run->judge.tube.path.failed)
-        message_command_error("out of memory");
-    else if (run->simulation->target.problem[0] != '\0')
-        message_command_error("--target: %s", run->simulation->target.problem);
-    else if (field_get_problem(&run->simulation->field) != NULL)
-        message_command_error("%s", field_get_problem(&run->simulation->field));
-    else
-        message_command_error("the output files cannot be written");
-    return STATUS_ENVIRONMENT;
+    end_drives(run);
+    return tell_why(run);
 }
 
 /* Who plans: the controller as it runs, or takt before it. */
@@ -309,22 +373,29 @@ const struct command command_run = {
     .name = "run",
     .usage = "PROGRAM [options]",
     .summary = "run the firmware on a part program against the virtual machine",
-    .help = "PROGRAM and every FILE may be - for standard input or output. The whole program is "
-            "checked before anything\n"
-            "moves. Output files appear at the end, complete, or not at all.\n"
-            "\n"
-            "Exit status: 0 every check held; 1 a check failed or a drive faulted; 2 error in the "
-            "program, a file or an\n"
-            "option; 3 a file cannot be written; 4 every check held, but --until was reached "
-            "before the\n"
-            "program's end; 130 interrupted.\n"
-            "\n"
-            "Examples:\n"
-            "  takt run part.ngc --report part.html\n"
-            "  takt run part.ngc --machine mill3.ini --trace part.csv --json -\n"
-            "  takt run part.ngc --plan part.plan          (of takt compile; with --target as "
-            "well)\n"
-            "  takt run part.ngc --set axis.X.max_jerk_mm_s3=20000 --until 2.5\n",
+    .help =
+        "PROGRAM and every FILE may be - for standard input or output. The whole program is "
+        "checked before anything\n"
+        "moves. Output files appear at the end, complete, or not at all.\n"
+        "\n"
+        "Whatever ends a run ends it in order: the axes come to rest on the path, then the "
+        "drives brake and go off\n"
+        "(drives_stay_on of [bus]: stay switched on). So does Ctrl-C; the files then show the "
+        "run up to that rest.\n"
+        "A second Ctrl-C leaves the path and brakes at once.\n"
+        "\n"
+        "Exit status: 0 every check held; 1 a check failed or a drive faulted; 2 error in the "
+        "program, a file or an\n"
+        "option; 3 a file cannot be written, or the bus is lost; 4 every check held, but --until "
+        "was reached before\n"
+        "the program's end; 130 interrupted by Ctrl-C, 143 by SIGTERM, 129 by SIGHUP.\n"
+        "\n"
+        "Examples:\n"
+        "  takt run part.ngc --report part.html\n"
+        "  takt run part.ngc --machine mill3.ini --trace part.csv --json -\n"
+        "  takt run part.ngc --plan part.plan          (of takt compile; with --target as "
+        "well)\n"
+        "  takt run part.ngc --set axis.X.max_jerk_mm_s3=20000 --until 2.5\n",
     .options = rows,
     .operands_min = 1,
     .operands_max = 1,

@@ -87,6 +87,12 @@ static const struct option_row rows[] = {
      "load this program; CYCLE_START starts it"},
     {"store", OPTION_TEXT, offsetof(struct options, panel.store), "FILE",
      "keep uploaded programs there, and load the last one at start"},
+    {"state", OPTION_TEXT, offsetof(struct options, panel.state), "DIR|none",
+     "keep offsets, parameters, tools and wear, program and line there (default: see below)"},
+    {"from-line", OPTION_LINE, offsetof(struct options, from_line), "N",
+     "the first CYCLE_START starts the program in the middle, as takt run does"},
+    {"insecure", OPTION_FLAG, offsetof(struct options, panel.insecure), NULL,
+     "listen beyond this computer though neither panel.allow nor panel.password is set"},
     {"spindle", OPTION_TEXT, offsetof(struct options, panel.spindle), "WHERE",
      "spindle drive on Modbus: HOST:PORT, or PATH[,BAUD[,PARITY]] (default: virtual, inside)"},
     {"bus", OPTION_TEXT, offsetof(struct options, bus), "BUS",
@@ -114,6 +120,20 @@ const struct command command_serve = {
             "spindle, and the panel on 127.0.0.1:1502 for any number of clients. `takt panel list` "
             "lists its registers.\n"
             "The section [panel] of the machine file says who may connect, and sets a password.\n"
+            "\n"
+            "Its state is kept in $XDG_STATE_HOME/takt/MACHINE, by default "
+            "~/.local/state/takt/MACHINE: never older than a\n"
+            "second, and whole after a power cut. Tools and parameters of a file count again when "
+            "the file has changed.\n"
+            "\n"
+            "SIGTERM, SIGHUP and Ctrl-C end it in order: the axes come to rest on their path, the "
+            "drives brake and go off\n"
+            "(drives_stay_on of [bus]: stay switched on), spindle and coolant stop. That is status "
+            "0. A second one brakes at\n"
+            "once: status 130 (Ctrl-C), 143 (SIGTERM), 129 (SIGHUP). A bus log that cannot be "
+            "written ends it, too: status 3.\n"
+            "A bus that is lost is an alarm; it is looked for, and RESET enables the drives "
+            "again.\n"
             "\n"
             "At its end it prints how late control cycles began.\n"
             "\n"

@@ -127,7 +127,9 @@ static void keep_time(struct drive_service *service)
     if (now_ns > service->next_ns + CYCLES_BEHIND_MAX * service->cycle_ns)
         service->next_ns = now_ns;
     for (; service->next_ns <= now_ns; service->next_ns += service->cycle_ns) {
-        if (!by_sync)
+        if (by_sync)
+            virtual_drives_wait(&service->set, (uint32_t)service->cycle_ns);
+        else
             virtual_drives_step(&service->set, (uint32_t)service->cycle_ns);
     }
 }

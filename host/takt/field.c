@@ -150,6 +150,7 @@ static enum command_status open_outside(struct field *field, const struct machin
     }
     frame_bits_init(&field->traffic.tables);
     link_observe(field->link, &(struct wire_listener){count_frame, &field->traffic});
+    bus_return_init(&field->way_back, bus, &config);
     lockstep_init(&field->lockstep, field->link, field->cycle_ns, nodes, count);
     field->port = lockstep_get_port(&field->lockstep);
     return STATUS_DONE;
@@ -182,6 +183,7 @@ enum command_status field_open(struct field *field, const struct machine_setup *
     field->cycle_ns = (uint64_t)setup->machine.cycle_us * 1000;
     field->bit_ns = 1000000000u / setup->machine.can_bitrate;
     field->script = options->script;
+    field->returns = options->returns;
     start_steppers(field, setup);
     if (is_outside(options))
         status = open_outside(field, setup, options->bus);
@@ -196,6 +198,7 @@ enum command_status field_open(struct field *field, const struct machine_setup *
 
 void field_close(struct field *field)
 {
+    bus_return_stop(&field->way_back);
     link_close(field->link);
     field->link = NULL;
     for (unsigned i = 0; i < AXIS_COUNT; i++)
@@ -225,6 +228,29 @@ static void end_inside(struct field *field)
         add_enabled_faults(field);
 }
 
+/* The controller's port stays the same; what comes over it is new. */
+static void take_back(struct field *field, struct link *link)
+{
+    link_close(field->link);
+    field->link = link;
+    field->is_lost = false;
+    link_observe(link, &(struct wire_listener){count_frame, &field->traffic});
+    lockstep_set_link(&field->lockstep, link);
+    message_command_warning("the bus is back: %s", field->way_back.spec);
+}
+
+static void look_for_bus(struct field *field)
+{
+    struct link *link;
+
+    if (!field->is_lost)
+        message_command_warning("%s; it is looked for", link_get_problem(field->link));
+    field->is_lost = true;
+    link = bus_return_look(&field->way_back, link_clock_ns());
+    if (link != NULL)
+        take_back(field, link);
+}
+
 static bool end_paced(struct field *field)
 {
     bool good = true;
@@ -234,9 +260,11 @@ static bool end_paced(struct field *field)
     uint64_t next_ns = pace_end_work(&field->pace);
     if (field->link != NULL)
         good = lockstep_end_cycle_at(&field->lockstep, next_ns);
-    good = good && pace_sleep(&field->pace);
+    pace_sleep(&field->pace);
     pace_begin_cycle(&field->pace);
-    return good;
+    if (!good && field->returns)
+        look_for_bus(field);
+    return good || field->returns;
 }
 
 static void tell_warning(struct field *field)
@@ -264,11 +292,14 @@ bool field_end_cycle(struct field *field)
     return good;
 }
 
+bool field_is_lost(const struct field *field)
+{
+    return field->link != NULL && link_get_problem(field->link)[0] != '\0';
+}
+
 const char *field_get_problem(const struct field *field)
 {
-    if (field->link == NULL || link_get_problem(field->link)[0] == '\0')
-        return NULL;
-    return link_get_problem(field->link);
+    return field_is_lost(field) ? link_get_problem(field->link) : NULL;
 }
 
 void field_observe_outside(struct field *field, const struct wire_listener *listener)

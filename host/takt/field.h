@@ -12,6 +12,7 @@
 #include "bus/link.h"
 #include "drives/virtual_drives.h"
 #include "stepper/virtual_steppers.h"
+#include "takt/bus_return.h"
 #include "takt/command.h"
 #include "takt/lockstep.h"
 #include "takt/machine_setup.h"
@@ -37,6 +38,9 @@ struct field {
     const struct inject *script;         /* of faults; NULL: none */
     bool has_enabled_faults; /* those that count from the drives' being enabled are on the bus */
     struct link *link;       /* NULL: bus and drives are inside */
+    bool returns;            /* a link that is lost is opened again */
+    bool is_lost;            /* it has not been yet */
+    struct bus_return way_back;
     struct lockstep lockstep;
     struct field_traffic traffic;
     struct can_port port;
@@ -55,6 +59,7 @@ struct field_options {
     const char *bus;    /* bus/link.h */
     const char *drives; /* internal, external */
     bool is_paced;
+    bool returns;    /* an outside bus that is lost is opened again; with is_paced */
     bool has_script; /* --inject is given */
     const struct inject
         *script; /* faults of the embedded bus and its drives; NULL: none. It must stay */
@@ -77,10 +82,13 @@ struct can_port field_get_port(struct field *field);
 struct step_port field_get_step_port(struct field *field);
 
 /*
- * The controller has done its part of a cycle: frames travel, drives move. False: a signal, or
- * field_get_problem.
+ * The controller has done its part of a cycle: frames travel, drives move. False: an outside bus is gone, see
+ * field_get_problem; if it returns, cycles go on meanwhile.
  */
 bool field_end_cycle(struct field *field);
+
+/* The outside bus is gone, and not back yet. */
+bool field_is_lost(const struct field *field);
 
 /* What an outside bus died of; NULL: it has not. */
 const char *field_get_problem(const struct field *field);

@@ -1,5 +1,5 @@
 /*
- * Ctrl-C and SIGTERM: long work asks now and then and ends in good order, without partial output files.
+ * Ctrl-C, SIGTERM and SIGHUP: long work asks now and then and ends in good order, without partial output files.
  */
 #ifndef TAKT_HOST_INTERRUPT_H
 #define TAKT_HOST_INTERRUPT_H
@@ -11,5 +11,9 @@
 void interrupt_catch(void);
 
 bool interrupt_asked(void);
+/* How often: who asks once more does not want to wait for the good order. */
+unsigned interrupt_times(void);
+/* The exit status of a command that the first signal has ended: 128 and its number, as shells count. */
+int interrupt_status(void);
 
 #endif

@@ -24,6 +24,15 @@ void lockstep_init(struct lockstep *lockstep, struct link *link, uint64_t cycle_
         lockstep->drive[i].node = nodes[i];
 }
 
+void lockstep_set_link(struct lockstep *lockstep, struct link *link)
+{
+    lockstep->link = link;
+    lockstep->link_port = link_get_port(link);
+    lockstep->read = lockstep->written;
+    for (unsigned i = 0; i < lockstep->count; i++)
+        lockstep->drive[i].is_in_step = false;
+}
+
 static bool port_send(void *context, const struct can_frame *frame)
 {
     struct lockstep *lockstep = context;
@@ -154,9 +163,7 @@ static bool wait_for_answers(struct lockstep *lockstep)
         if (result == LINK_BROKEN)
             return false;
         (void)take_frames(lockstep);
-        if (result == LINK_TIMEOUT && link_clock_ns() < until_ns)
-            return false; /* a signal */
-        if (result == LINK_TIMEOUT)
+        if (result == LINK_TIMEOUT && link_clock_ns() >= until_ns)
             give_up(lockstep);
     }
     return true;
@@ -172,8 +179,8 @@ static bool wait_for_quiet(struct lockstep *lockstep)
 
         if (result == LINK_BROKEN)
             return false;
-        if (result == LINK_TIMEOUT)
-            return link_clock_ns() >= until_ns;
+        if (result == LINK_TIMEOUT && link_clock_ns() >= until_ns)
+            return true;
         if (take_frames(lockstep) > 0)
             until_ns = link_clock_ns() + LOCKSTEP_QUIET_NS;
     }
@@ -184,9 +191,11 @@ static bool wait_until(struct lockstep *lockstep, uint64_t time_ns)
     enum link_wait_result result;
 
     (void)take_frames(lockstep);
-    while ((result = link_wait(lockstep->link, time_ns)) == LINK_READY)
+    do {
+        result = link_wait(lockstep->link, time_ns);
         (void)take_frames(lockstep);
-    return result == LINK_TIMEOUT && link_clock_ns() >= time_ns;
+    } while (result == LINK_READY || (result == LINK_TIMEOUT && link_clock_ns() < time_ns));
+    return result == LINK_TIMEOUT;
 }
 
 static bool end_while_starting(struct lockstep *lockstep)

@@ -61,12 +61,14 @@ struct lockstep {
 void lockstep_init(struct lockstep *lockstep, struct link *link, uint64_t cycle_ns,
                    const uint8_t nodes[], unsigned count);
 
+/* Another link in the place of one that is gone; drives are in step anew. */
+void lockstep_set_link(struct lockstep *lockstep, struct link *link);
+
 /* The controller's bus: sends at once, receives what came until the last lockstep_end_cycle. */
 struct can_port lockstep_get_port(struct lockstep *lockstep);
 
 /*
- * Waits for the end of the cycle. False: the bus is gone, link_get_problem says why, or a signal
- * came.
+ * Waits for the end of the cycle, through signals. False: the bus is gone, link_get_problem says why.
  */
 bool lockstep_end_cycle(struct lockstep *lockstep);
 

@@ -188,6 +188,8 @@ const struct machine_key machine_keys[] = {
           "longest time a drive takes to answer a request while it is started"),
     COUNT(SECTION_BUS, "controller_node", KEY_UINT8, IN_SETUP(machine.controller_node), 1, 127,
           "CANopen node id of the controller"),
+    COUNT(SECTION_BUS, "drives_stay_on", KEY_UINT32, IN_SETUP(drives_stay_on), 0, 1,
+          "at the end of a run or a service drives are left: 1 switched on, without torque; 0 off"),
 
     TEXT(SECTION_PANEL, "listen", IN_SETUP(panel.listen), MACHINE_SETUP_PATH_MAX + 1,
          "HOST:PORT of the panel on Modbus TCP (`takt serve`); empty: not on TCP"),

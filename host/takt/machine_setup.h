@@ -42,6 +42,7 @@ struct machine_setup {
     struct virtual_spindle_config spindle;             /* see machine_setup_get_spindle */
     struct panel_setup panel;
     struct dialect_codes codes; /* what becomes of codes that takt does not know */
+    uint32_t drives_stay_on; /* 1: an ordered end leaves drives "switched on", else they are off */
 };
 
 /* The built-in machine. Axes it does not have hold what they get when a file or --set adds them. */

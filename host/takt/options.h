@@ -34,12 +34,14 @@ struct option_panel {
     const char *serial;           /* PATH, or PATH,BAUD,PARITY */
     const char *program;
     const char *store;
+    const char *state;   /* a folder, or none; NULL: the user's */
     const char *spindle; /* where its drive is; see `takt help serve` */
     double unit;         /* on the serial line; 0: 1 */
     double interval_s;   /* of `takt panel watch`; 0: its default */
     double count;        /* of `takt panel watch`; 0: without end */
     double timeout_s;
     double password;
+    bool insecure;
     bool starts; /* of `takt panel stream` */
 };
 

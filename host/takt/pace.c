@@ -38,12 +38,13 @@ uint64_t pace_end_work(struct pace *pace)
     return pace->next_ns;
 }
 
-bool pace_sleep(const struct pace *pace)
+void pace_sleep(const struct pace *pace)
 {
     struct timespec until = {.tv_sec = (time_t)(pace->next_ns / SECOND_NS),
                              .tv_nsec = (long)(pace->next_ns % SECOND_NS)};
 
-    return clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &until, NULL) != EINTR;
+    while (clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &until, NULL) == EINTR) {
+    }
 }
 
 void pace_begin_cycle(struct pace *pace)

@@ -34,8 +34,8 @@ void pace_start(struct pace *pace, uint64_t cycle_ns);
 /* The work of a cycle is done: returns when the next is to begin. */
 uint64_t pace_end_work(struct pace *pace);
 
-/* Sleeps until then. False: a signal came. */
-bool pace_sleep(const struct pace *pace);
+/* Sleeps until then, through signals: a cycle is never cut short. */
+void pace_sleep(const struct pace *pace);
 
 /* A cycle begins: counts how late. */
 void pace_begin_cycle(struct pace *pace);

@@ -236,12 +236,12 @@ enum command_status panel_line_write(struct panel_line *line, enum panel_id id, 
     if (row->form == PANEL_TEXT)
         return write_text(line, id, text);
     value = strtod(text, &end) * counts_per_unit;
-    if (end == text || *end != '\0' || !(value >= (double)row->least - 0.5) ||
-        !(value <= (double)row->most + 0.5)) {
+    if (end == text || *end != '\0' || !(value >= (double)panel_least(row) - 0.5) ||
+        !(value <= (double)panel_most(row) + 0.5)) {
         message_command_error("%s %s: a number from %.*f to %.*f is expected",
                               panel_text(row)->name, text, (int)row->decimals,
-                              (double)row->least / counts_per_unit, (int)row->decimals,
-                              (double)row->most / counts_per_unit);
+                              (double)panel_least(row) / counts_per_unit, (int)row->decimals,
+                              (double)panel_most(row) / counts_per_unit);
         return STATUS_INPUT;
     }
     return panel_line_set(line, id, (int64_t)maths_round(value)) ? STATUS_DONE : STATUS_INPUT;

@@ -51,8 +51,8 @@ static double in_units(const struct panel_register *row, int64_t counts)
 static void write_range(FILE *stream, const struct panel_register *row)
 {
     if (is_number(row) && row->states != PANEL_NEVER && row->form != PANEL_BIT)
-        (void)fprintf(stream, "%.*f ... %.*f", (int)row->decimals, in_units(row, row->least),
-                      (int)row->decimals, in_units(row, row->most));
+        (void)fprintf(stream, "%.*f ... %.*f", (int)row->decimals, in_units(row, panel_least(row)),
+                      (int)row->decimals, in_units(row, panel_most(row)));
 }
 
 static void write_address(FILE *stream, const struct panel_register *row)
@@ -125,7 +125,7 @@ static void write_csv_row(FILE *stream, const struct panel_register *row)
         stream, "%s,%u,%u,%s,%s,%s,%.*g,%" PRId64 ",%" PRId64 ",", table_names[row->table],
         (unsigned)row->address, (unsigned)row->words, panel_text(row)->name,
         row->form == PANEL_S32 ? "32 bits signed" : form_names[row->form], panel_text(row)->unit, 6,
-        in_units(row, 1), (int64_t)row->least, (int64_t)row->most);
+        in_units(row, 1), (int64_t)panel_least(row), is_number(row) ? (int64_t)panel_most(row) : 0);
     write_states(stream, row->states, ";");
     (void)fputc(',', stream);
     write_quoted(stream, panel_text(row)->meaning);

@@ -5,7 +5,6 @@
 #include "base/crc32.h"
 #include "takt/cutting_feed.h"
 #include "takt/drives_table.h"
-#include "takt/interrupt.h"
 #include "takt/message.h"
 #include "takt/stopwatch.h"
 #include "takt/text.h"
@@ -39,13 +38,15 @@ static enum command_status open_store(struct serving *s)
 {
     const struct option_panel *options = &s->session.options->panel;
     const char *path = options->program;
+    const char *store =
+        options->store != NULL ? options->store : serving_state_get_program(&s->state);
 
-    if (!program_store_open(&s->store, options->store)) {
+    if (!program_store_open(&s->store, store)) {
         message_command_error("--store: the path is too long");
         return STATUS_INPUT;
     }
-    if (path == NULL && options->store != NULL && access(options->store, F_OK) == 0)
-        path = options->store;
+    if (path == NULL && store != NULL && access(store, F_OK) == 0)
+        path = store;
     return path == NULL || load_program(s, path) ? STATUS_DONE : STATUS_INPUT;
 }
 
@@ -72,13 +73,16 @@ static void open_service(struct serving *s)
     if (s->store.program != NULL)
         service_set_program(&s->service, (uint32_t)s->store.size,
                             crc32_add(CRC32_START, s->store.program, s->store.size));
+    service_set_start_line(&s->service, s->session.options->from_line);
+    serving_state_restore(&s->state, &s->service);
+    s->has_service = true;
 }
 
 static enum command_status open_field(struct serving *s)
 {
     const struct options *options = s->session.options;
     const struct field_options field = {
-        .bus = options->bus, .drives = options->drives, .is_paced = true};
+        .bus = options->bus, .drives = options->drives, .is_paced = true, .returns = true};
     enum command_status status = field_check_options(&field)
                                      ? field_open(&s->field, &s->session.setup, &field)
                                      : STATUS_INPUT;
@@ -131,6 +135,8 @@ enum command_status serving_open(struct serving *s, const struct options *option
     enum command_status status = session_open_machine(&s->session, options);
 
     if (status == STATUS_DONE)
+        status = serving_state_open(&s->state, &s->session);
+    if (status == STATUS_DONE)
         status = open_store(s);
     if (status == STATUS_DONE)
         status = open_field(s);
@@ -140,7 +146,8 @@ enum command_status serving_open(struct serving *s, const struct options *option
         return status;
     cycle_cost_init(&s->cost);
     open_service(s);
-    return open_server(s);
+    status = open_server(s);
+    return status == STATUS_DONE ? serving_state_start(&s->state) : status;
 }
 
 void serving_close(struct serving *s)
@@ -149,6 +156,7 @@ void serving_close(struct serving *s)
         server_close(&s->server);
     if (s->has_exchange)
         exchange_close(&s->exchange);
+    (void)serving_state_close(&s->state, s->has_service ? &s->service : NULL);
     serving_spindle_close(&s->spindle);
     (void)bus_log_close(&s->bus_log);
     if (s->has_field)
@@ -204,6 +212,12 @@ static void tell_drives(struct serving *s)
         drives_table_write_text(stderr, &table);
 }
 
+/* Once it ends nothing is begun any more. */
+static enum panel_verdict give_order(struct serving *s, const struct panel_order *order)
+{
+    return s->ending.way == ENDING_NOT ? service_order(&s->service, order) : PANEL_WRONG_STATE;
+}
+
 /* An order is answered when a snapshot shows what came of it. */
 static void serve_cycle(struct serving *s)
 {
@@ -211,7 +225,7 @@ static void serve_cycle(struct serving *s)
     enum panel_verdict verdict = PANEL_DONE;
 
     if (order != NULL)
-        verdict = service_order(&s->service, order);
+        verdict = give_order(s, order);
     if (exchange_take_alive(&s->exchange))
         service_alive(&s->service);
     service_background(&s->service);
@@ -224,21 +238,49 @@ static void serve_cycle(struct serving *s)
         exchange_answer(&s->exchange, verdict);
 }
 
+/* A log that has been asked for and cannot be kept ends the service, in order. */
+static void look_for_end(struct serving *s)
+{
+    struct controller *controller = &s->service.controller;
+
+    if (bus_log_has_failed(&s->bus_log))
+        ending_ask(&s->ending, controller, ENDING_ON_PATH);
+    ending_ask(&s->ending, controller, ending_by_signals());
+}
+
+/* Drives on a bus that is gone cannot be told anything; they have stopped by themselves. */
+static bool has_ended(struct serving *s)
+{
+    if (s->ending.way == ENDING_NOT ||
+        !(field_is_lost(&s->field) || ending_is_over(&s->ending, &s->service.controller)))
+        return false;
+    return serving_spindle_stop(&s->spindle);
+}
+
+static enum command_status how_it_ended(struct serving *s)
+{
+    const bool is_kept = serving_state_close(&s->state, &s->service);
+
+    if (!bus_log_close(&s->bus_log) || !is_kept)
+        return STATUS_ENVIRONMENT;
+    return s->ending.way == ENDING_AT_ONCE ? STATUS_INTERRUPTED : STATUS_DONE;
+}
+
 enum command_status serving_run(struct serving *s)
 {
-    bool good = true;
-
     if (!server_start(&s->server)) {
         message_command_error("no thread for the panel");
         return STATUS_ENVIRONMENT;
     }
-    while (good && !interrupt_asked()) {
+    s->ending.stays_on = s->session.setup.drives_stay_on != 0;
+    while (!has_ended(s)) {
         serve_cycle(s);
         bus_log_keep(&s->bus_log);
-        good = field_end_cycle(&s->field);
+        serving_state_keep(&s->state, &s->service, link_clock_ns());
+        (void)field_end_cycle(&s->field);
+        if (field_is_lost(&s->field))
+            service_lose_bus(&s->service);
+        look_for_end(s);
     }
-    if (field_get_problem(&s->field) == NULL)
-        return bus_log_close(&s->bus_log) ? STATUS_DONE : STATUS_ENVIRONMENT;
-    message_command_error("%s", field_get_problem(&s->field));
-    return STATUS_ENVIRONMENT;
+    return how_it_ended(s);
 }

@@ -17,9 +17,11 @@
 #include "takt/bus_log.h"
 #include "takt/command.h"
 #include "takt/cycle_cost.h"
+#include "takt/ending.h"
 #include "takt/field.h"
 #include "takt/serving_options.h"
 #include "takt/serving_spindle.h"
+#include "takt/serving_state.h"
 #include "takt/session.h"
 
 #include <stdbool.h>
@@ -41,16 +43,21 @@ struct serving {
     struct server server;
     struct cycle_cost cost;
     struct bus_log bus_log;
+    struct ending ending;
+    struct serving_state state;
     uint64_t cycles;
     bool has_told_drives; /* what they do without */
-    bool has_field, has_exchange, has_server; /* are open */
+    bool has_field, has_service, has_exchange, has_server; /* are open */
 };
 
 /* Opens everything the options name, starts nothing. STATUS_DONE, else after messages; serving_close is due. */
 enum command_status serving_open(struct serving *serving, const struct options *options);
 void serving_close(struct serving *serving);
 
-/* Serves until a signal comes: STATUS_DONE. Else after a message. */
+/*
+ * Serves until a signal comes, or the bus log cannot be written, and comes to rest in order. STATUS_DONE;
+ * STATUS_INTERRUPTED: a second signal has cut that short; else after a message.
+ */
 enum command_status serving_run(struct serving *serving);
 
 #endif

@@ -1,9 +1,14 @@
+#define _POSIX_C_SOURCE 200809L
+
 #include "takt/serving_options.h"
 
 #include "base/maths.h"
 #include "takt/message.h"
 
+#include <arpa/inet.h>
 #include <errno.h>
+#include <netdb.h>
+#include <netinet/in.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -76,6 +81,49 @@ static bool read_address(struct serving_options *options, const struct session *
     return false;
 }
 
+/* 127.0.0.0/8, ::1, and the former written as the latter. */
+static bool is_loopback(const struct sockaddr *address)
+{
+    const struct sockaddr_in *v4 = (const void *)address;
+    const struct sockaddr_in6 *v6 = (const void *)address;
+
+    if (address->sa_family == AF_INET)
+        return ntohl(v4->sin_addr.s_addr) >> 24 == 127;
+    return IN6_IS_ADDR_LOOPBACK(&v6->sin6_addr) ||
+           (IN6_IS_ADDR_V4MAPPED(&v6->sin6_addr) && v6->sin6_addr.s6_addr[12] == 127);
+}
+
+/* Only this computer reaches it. What cannot be found cannot be listened on, which is told later. */
+static bool is_private(const char *host)
+{
+    const struct addrinfo wanted = {.ai_socktype = SOCK_STREAM, .ai_flags = AI_PASSIVE};
+    struct addrinfo *found = NULL;
+    bool private = true;
+
+    if (getaddrinfo(host, NULL, &wanted, &found) != 0)
+        return true;
+    for (const struct addrinfo *one = found; one != NULL; one = one->ai_next)
+    private = private && is_loopback(one->ai_addr);
+    freeaddrinfo(found);
+    return private;
+}
+
+/* Whoever reaches the panel moves the machine: beyond this computer somebody has to say that this is meant. */
+static bool check_access(const struct session *session, const struct server_config *config)
+{
+    static const char open[] = "anybody who reaches %s can move the machine: set panel.allow or "
+                               "panel.password%s";
+
+    if (config->address == NULL || config->allowed.count > 0 ||
+        session->setup.panel.password != 0 || is_private(config->address))
+        return true;
+    if (session->options->panel.insecure)
+        message_command_warning(open, config->address, "");
+    else
+        message_command_error(open, config->address, ", or say --insecure");
+    return session->options->panel.insecure;
+}
+
 static bool open_serial(struct serving_options *options, const char *given,
                         struct server_config *config)
 {
@@ -101,7 +149,8 @@ bool serving_options_read(struct serving_options *options, const struct session 
 
     if (!read_address(options, session, config) ||
         !serving_options_unit(panel->unit, &config->unit) ||
-        !read_allowed(&config->allowed, session->setup.panel.allow))
+        !read_allowed(&config->allowed, session->setup.panel.allow) ||
+        !check_access(session, config))
         return false;
     return open_serial(options, panel->serial, config);
 }

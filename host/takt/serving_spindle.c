@@ -89,6 +89,14 @@ struct spindle_feedback serving_spindle_cycle(struct serving_spindle *s, double 
                                 virtual_spindle_cut_nm(&s->inside, cut_mm_s));
 }
 
+bool serving_spindle_stop(struct serving_spindle *s)
+{
+    if (!s->is_outside)
+        return true;
+    inverter_stop(&s->inverter);
+    return inverter_is_stopped(&s->inverter);
+}
+
 void serving_spindle_reset(struct serving_spindle *s)
 {
     if (s->is_outside)

@@ -34,6 +34,9 @@ void serving_spindle_close(struct serving_spindle *spindle);
 struct spindle_feedback serving_spindle_cycle(struct serving_spindle *spindle, double commanded_rpm,
                                               double cut_mm_s);
 
+/* The end: it is told to stop, without a ramp of commands. True: it has been, or cannot be reached. */
+bool serving_spindle_stop(struct serving_spindle *spindle);
+
 /* The operator has acknowledged a trip. */
 void serving_spindle_reset(struct serving_spindle *spindle);
 

@@ -8,7 +8,7 @@
 
 const char *summary_outcome_name(enum summary_outcome outcome)
 {
-    static const char *const names[] = {"completed", "stopped", "faulted"};
+    static const char *const names[] = {"completed", "stopped", "faulted", "interrupted"};
 
     return names[outcome];
 }
@@ -34,6 +34,8 @@ bool summary_held(const struct summary *summary)
 
 enum command_status summary_status(const struct summary *summary)
 {
+    if (summary->outcome == OUTCOME_INTERRUPTED)
+        return summary->interrupted;
     if (!summary_held(summary))
         return STATUS_FAILED;
     return summary->outcome == OUTCOME_STOPPED ? STATUS_STOPPED : STATUS_DONE;
@@ -175,6 +177,7 @@ void summary_set(struct summary *summary, const struct summary_source *source)
         .program = source->session->program.name,
         .machine = machine,
         .outcome = source->outcome,
+        .interrupted = source->interrupted,
         .cycle_s = 1e-6 * (double)machine->cycle_us,
         .wall_time_s = source->wall_time_s,
         .figures = source->judge->figures,

@@ -14,7 +14,12 @@
 #include <stdbool.h>
 #include <stdio.h>
 
-enum summary_outcome { OUTCOME_COMPLETED, OUTCOME_STOPPED, OUTCOME_FAULTED };
+enum summary_outcome {
+    OUTCOME_COMPLETED,
+    OUTCOME_STOPPED,    /* by --until */
+    OUTCOME_FAULTED,    /* by a drive or the program */
+    OUTCOME_INTERRUPTED /* by a signal, or the loss of the bus */
+};
 
 #define SUMMARY_CHECK_NAME_MAX 31
 #define SUMMARY_CHECKS_MAX     (5 * AXIS_COUNT + 8)
@@ -33,6 +38,7 @@ struct summary {
     const char *program;
     const struct machine *machine;
     enum summary_outcome outcome;
+    enum command_status interrupted; /* OUTCOME_INTERRUPTED: the status it ends with */
     char fault[SUMMARY_FAULT_MAX]; /* OUTCOME_FAULTED */
     double cycle_s;
     double wall_time_s;
@@ -65,6 +71,7 @@ struct summary_source {
     const struct simulation *simulation;
     const struct judge *judge; /* finished */
     enum summary_outcome outcome;
+    enum command_status interrupted; /* OUTCOME_INTERRUPTED: the status it ends with */
     double wall_time_s;
 };
 

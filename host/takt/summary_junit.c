@@ -55,14 +55,18 @@ static void write_end(FILE *stream, const struct summary *summary)
 {
     (void)fputs("  <testcase classname=\"", stream);
     write_escaped(stream, summary->program);
-    (void)fputs("\" name=\"end\" time=\"0\">\n    <skipped message=\"--until came before the "
-                "program's end\"/>\n  </testcase>\n",
-                stream);
+    (void)fprintf(
+        stream,
+        "\" name=\"end\" time=\"0\">\n    <skipped message=\"%s came before the program's "
+        "end\"/>\n  </testcase>\n",
+        summary->outcome == OUTCOME_STOPPED ? "--until" : "an interruption");
 }
 
 void summary_write_junit(FILE *stream, const struct summary *summary)
 {
-    const unsigned stopped = summary->outcome == OUTCOME_STOPPED ? 1 : 0;
+    const bool early =
+        summary->outcome == OUTCOME_STOPPED || summary->outcome == OUTCOME_INTERRUPTED;
+    const unsigned stopped = early ? 1 : 0;
 
     (void)fputs("<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuite name=\"takt run ", stream);
     write_escaped(stream, summary->program);

@@ -49,8 +49,8 @@ static enum panel_verdict order(void *context, const struct panel_order *wanted)
         const struct panel_register *row = &panel_registers[item->id];
 
         require(row->states != PANEL_NEVER);
-        require(item->value >= row->least && item->value <= row->most);
-        shown.value[item->id] = item->value;
+        require(item->value >= panel_least(row) && item->value <= panel_most(row));
+        shown.value[item->id] = (uint32_t)item->value;
     }
     if (shown.value[REGISTER_FEED_OVERRIDE] == 0)
         return PANEL_WRONG_STATE;

@@ -124,7 +124,8 @@ if os.path.exists("/dev/full"):
     status, _, err = t.run("run", PROGRAM, "--json", "/dev/full", "--trace", "full.csv", "--quiet")
     t.check(status == 3 and "full" in err and not os.path.exists("full.csv"), "a full disk", status, err)
 
-# Interrupted: no partial file, status 130. The signal is sent when the files are open aside, seen by their names.
+# Interrupted: the axes come to rest, and the files show the run up to there. The signal is sent when the files are open
+# aside, seen by their names.
 long_program = t.write("long.ngc", "G21 G90 F100\n" + "".join(f"G1 X{i % 2 * 400}\n" for i in range(1, 3000)))
 before = listing()
 process = subprocess.Popen([t.TAKT, "run", long_program, "--junit", "i.xml", "--json", "i.json"], stderr=subprocess.DEVNULL, stdout=subprocess.DEVNULL)
@@ -132,7 +133,25 @@ while process.poll() is None and not any(".part-" in name for name in listing())
     pass
 process.send_signal(signal.SIGINT)
 t.check(process.wait() == 130, "interrupted: status 130", process.returncode)
-t.check(listing() == before, "interrupted: nothing is left", listing())
+t.check(listing() == sorted(before + ["i.json", "i.xml"]), "interrupted: the files are there, and nothing beside them", listing())
+cut = t.load_json("i.json")
+check_schema(cut)
+t.check(cut["outcome"] == "interrupted" and cut["exit_status"] == 130, "the summary says so", cut["outcome"], cut["exit_status"])
+t.check(all(c["held"] for c in cut["checks"]), "every check held on the way to rest", cut["checks"])
+t.check(xml.parse("i.xml").getroot().get("skipped") == "1", "JUnit has no word on what did not come")
+
+# Whatever drives an axis, it comes to rest on the path: the last setpoints are the same.
+for options in ([], ["--drive-type", "X=step"], ["--drive-type", "step"]):
+    process = subprocess.Popen([t.TAKT, "run", long_program, "--quiet", "--realtime", "--trace", "-", *options], stdout=subprocess.PIPE, text=True)
+    for _ in range(300):
+        process.stdout.readline()
+    process.send_signal(signal.SIGTERM)
+    rows = process.stdout.read().splitlines()
+    t.check(process.wait() == 143, "SIGTERM: status 143", process.returncode, options)
+    x = [float(row.split(",")[8]) for row in rows]
+    v = [b - a for a, b in zip(x, x[1:])]
+    a = [abs(q - p) / 1e-6 for p, q in zip(v, v[1:])]
+    t.check(abs(v[-1]) < 1e-4 and max(a) <= 1000 * 1.0001, "the axis comes to rest within its limits", options, v[-3:], max(a))
 
 # Parameters are saved only when asked for.
 t.write("p.var", "5161\t0\n31\t2\n")

@@ -24,11 +24,13 @@ def check_registers():
         t.check(len(words) == count, f"{name} is read")
         if row["form"] in ("16 bits", "bit") and row["written_in"] != "never" and name not in ("UPLOAD_LENGTH", "UPLOAD_COMMAND"):
             t.check(int(row["least_counts"]) <= words[0] <= int(row["most_counts"]), f"{name} is within its range", words)
+    t.check(client.read_words(2, 0, 13) == client.read_words(1, 0, 13), "function 02 reads what 01 does")
+    t.check(client.read_words(4, 56, 6)[3] == 0 and client.read_words(3, 36, 20)[3] == 0, "gaps read as 0")
     block = client.read_words(4, 0, 51)
     t.check(block[0] == 1 and block[1] == p.IDLE and block[15] == 7, "a block of input registers", block)
     for function, address, count, code in (
-        (1, 13, 1, 2), (3, 39, 1, 2), (4, 51, 1, 2), (4, 0, 52, 2), (3, 65535, 2, 2),
-        (3, 0, 0, 3), (3, 0, 126, 3), (1, 0, 2001, 3), (4, 0, 65535, 3), (2, 0, 1, 1), (22, 0, 1, 1), (43, 0, 1, 1),
+        (1, 22, 1, 2), (3, 420, 1, 2), (4, 400, 1, 2), (4, 390, 52, 2), (3, 65535, 2, 2),
+        (3, 0, 0, 3), (3, 0, 126, 3), (1, 0, 2001, 3), (4, 0, 65535, 3), (22, 0, 1, 1), (43, 0, 1, 1),
     ):
         try:
             client.read_words(function, address, count)
@@ -42,7 +44,7 @@ def check_registers():
 
 def check_writes(client):
     """Each writable number takes its least and its most, where that starts nothing, and refuses what is beyond."""
-    own = ("UPLOAD_COMMAND", "UPLOAD_CHECK", "PASSWORD", "JOG_AXIS", "WATCHDOG", "TOOL_DIAMETER")
+    own = ("UPLOAD_COMMAND", "UPLOAD_CHECK", "PASSWORD", "JOG_AXIS", "WATCHDOG", "TOOL_DIAMETER", "TOOL_WEAR_LENGTH", "TOOL_WEAR_TIME")
     for name, row in p.REGISTERS.items():
         if row["table"] != "holding" or row["form"] in ("text", "bytes") or name in own or name.startswith("TOOL_OFFSET"):
             continue
@@ -234,7 +236,8 @@ def check_rights():
     two = service.client()
     t.check(one.refusal("MODE", 1) == (4, 2), "without the password nothing is written")
     t.check(one.refusal("PASSWORD", 1) == (3, 4), "a wrong one is refused")
-    one.put("PASSWORD", 4711)
+    t.check(one.refusal("PASSWORD", 4711) == (6, 6), "after it none is looked at for a while")
+    p.until(lambda: one.refusal("PASSWORD", 4711)[0] == 0, lambda: "the password stays refused")
     one.put("MODE", 1)
     t.check(two.refusal("MODE", 0) == (4, 2), "it counts for one client")
     two.put("FEED_HOLD", 1)

@@ -13,6 +13,9 @@ SOURCE = os.environ["TAKT_SOURCE"]
 OWN_PROGRAMS = os.path.join(SOURCE, "tests", "programs")
 EXAMPLES = os.path.join(SOURCE, "host", "examples")
 
+# What `takt serve` keeps by default is the test's own.
+os.environ["XDG_STATE_HOME"] = os.path.abspath("state-home")
+
 failures = []
 
 

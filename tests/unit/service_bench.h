@@ -120,7 +120,7 @@ static int64_t shown(enum panel_id id)
     static struct panel_snapshot snapshot;
 
     service_look(&service, &snapshot);
-    return snapshot.value[id];
+    return panel_value(&snapshot, id);
 }
 
 static inline const char *alarm_text(void)

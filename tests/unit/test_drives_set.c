@@ -270,11 +270,77 @@ static void test_after_homing_the_controller_knows_where_the_axes_are(void)
     }
 }
 
+/* Drives outside that take SYNC for their clock, driven to 100 mm/s on X, and then left alone. */
+static void leave_alone_in_motion(void)
+{
+    struct point setpoint = {{0}};
+    start_embedded();
+    start_master();
+    for (unsigned k = 0; k < CYCLES; k++) {
+        const double t_s = 0.001 * k;
+        setpoint.at[AXIS_X] = t_s < 0.2 ? 250 * t_s * t_s : 10 + 100 * (t_s - 0.2);
+        cycle(&setpoint);
+    }
+    start_outside();
+    for (unsigned i = 0; i < told_count; i++)
+        (void)virtual_drives_take_by_sync(&outside, &told[i]);
+}
+
+#define HEARTBEAT_MS 100
+
+static void test_time_of_drives_waits_for_a_slow_controller(void)
+{
+    leave_alone_in_motion();
+    const uint64_t before_ns = virtual_drives_get_clock(&outside)->now_ns;
+    for (unsigned ms = 0; ms < 2 * HEARTBEAT_MS - 1; ms++)
+        virtual_drives_wait(&outside, CYCLE_NS);
+    TEST_ASSERT_TRUE(virtual_drives_get_clock(&outside)->now_ns == before_ns);
+    (void)take(0x080, 0, 0, 0);
+    TEST_ASSERT_TRUE(virtual_drives_get_clock(&outside)->now_ns == before_ns + CYCLE_NS);
+    for (unsigned ms = 0; ms < 2 * HEARTBEAT_MS - 1; ms++)
+        virtual_drives_wait(&outside, CYCLE_NS);
+    TEST_ASSERT_TRUE(virtual_drives_get_clock(&outside)->now_ns == before_ns + CYCLE_NS);
+    TEST_ASSERT_EQUAL_INT(CIA402_ENABLED, virtual_drive_get_state(&outside.drive[0]));
+}
+
+/* Whatever takes SYNC for its clock: the clock goes on when there is nobody any more. */
+static void test_axes_of_a_dead_controller_rest_within_three_heartbeats(void)
+{
+    double before_mm, after_mm;
+    leave_alone_in_motion();
+    for (unsigned ms = 0; ms < 3 * HEARTBEAT_MS; ms++)
+        virtual_drives_wait(&outside, CYCLE_NS);
+    before_mm = virtual_drive_get_position_mm(&outside.drive[0]);
+    for (unsigned i = 0; i < DRIVES; i++)
+        TEST_ASSERT_EQUAL_INT(CIA402_SWITCH_ON_DISABLED,
+                              virtual_drive_get_state(&outside.drive[i]));
+    for (unsigned ms = 0; ms < HEARTBEAT_MS; ms++)
+        virtual_drives_wait(&outside, CYCLE_NS);
+    after_mm = virtual_drive_get_position_mm(&outside.drive[0]);
+    TEST_ASSERT_TRUE(before_mm > 45);
+    TEST_ASSERT_TRUE(fabs(after_mm - before_mm) < 0.01); /* below 0.1 mm/s */
+}
+
+/* Nobody enabled, nothing to stop: a controller that boots drives may take its time. */
+static void test_time_of_drives_without_torque_waits_as_long_as_it_takes(void)
+{
+    start_outside();
+    for (unsigned node = 1; node <= DRIVES; node++)
+        write_object(node, SDO_OBJECT(0x1006, 0), 4, 1000);
+    (void)take(0x080, 0, 0, 0);
+    for (unsigned ms = 0; ms < 10 * HEARTBEAT_MS; ms++)
+        virtual_drives_wait(&outside, CYCLE_NS);
+    TEST_ASSERT_TRUE(virtual_drives_get_clock(&outside)->now_ns == 0);
+}
+
 int main(void)
 {
     UNITY_BEGIN();
     RUN_TEST(test_drives_behind_a_port_answer_every_sync_as_on_the_embedded_bus);
     RUN_TEST(test_sync_is_the_clock_when_all_drives_have_been_told_its_period);
+    RUN_TEST(test_time_of_drives_waits_for_a_slow_controller);
+    RUN_TEST(test_axes_of_a_dead_controller_rest_within_three_heartbeats);
+    RUN_TEST(test_time_of_drives_without_torque_waits_as_long_as_it_takes);
     RUN_TEST(test_drives_of_one_process_hear_each_other);
     RUN_TEST(test_the_clock_knows_when_all_drives_are_enabled_first);
     RUN_TEST(test_after_homing_the_controller_knows_where_the_axes_are);

@@ -187,7 +187,7 @@ static void show(int64_t value)
     struct panel_snapshot *snapshot = exchange_next_snapshot(&exchange);
 
     for (unsigned id = 0; id < REGISTER_COUNT; id++)
-        snapshot->value[id] = value;
+        snapshot->value[id] = (uint32_t)value;
     exchange_publish(&exchange);
 }
 
