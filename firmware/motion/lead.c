@@ -107,12 +107,15 @@ static void run_landing(struct lead *l)
     run->over = !run->active;
 }
 
-static void slow_down(struct lead *l, const struct lead_brake *b)
+static void slow_down(struct lead *l, const struct lead_brake *b, double low)
 {
+    const double change = maths_min(lead_change(l, low), l->here.early_a);
+    const double ahead = maths_max(b->feed, l->feed - b->a);
+
     if (b->rest) {
         come_to_rest(l, b->rest_at);
     } else if (l->since_plus >= l->window) {
-        go(l, maths_max(b->feed, l->feed - b->a));
+        go(l, maths_min(ahead, maths_max(b->ordered, l->feed - change)));
     } else {
         go(l, l->feed);
     }
@@ -125,10 +128,9 @@ static void run_on(struct lead *l, uint64_t setpoint, bool hold)
     struct lead_brake b;
 
     lead_brake_ahead(l, &b);
-    l->rest_a = maths_max(l->rest_a, (double)lead_piece(l, l->here.piece)->acceleration);
 
     if (hold) {
-        b.feed = 0.0;
+        b.feed = b.ordered = 0.0;
     }
     if (l->halt.found) {
         lead_brake_to_halt(l, &b);
@@ -142,7 +144,7 @@ static void run_on(struct lead *l, uint64_t setpoint, bool hold)
     const bool stops = b.feed == 0.0 && l->feed > 0.0; /* however little is left of the feed */
 
     if (b.rest || stops || b.feed < l->feed - lead_change_min(b.a, l->feed)) {
-        slow_down(l, &b);
+        slow_down(l, &b, low);
     } else {
         go(l, hold || l->here.late ? l->feed : lead_speed_up(l, b.at_mm, low));
     }
@@ -168,7 +170,6 @@ static void enter_span(struct lead *l, uint32_t k, uint64_t from, struct lead_st
     const uint32_t window = law_window_cycles(l->law, l->cycles);
 
     l->window = (double)window;
-    l->rest_a = l->feed > 0.0 ? MATHS_INFINITY : 0.0;
     l->before = from;
     l->at = from + start->step * (window - 1) / 2;
     l->feed = (double)start->step / PATH_UNITS_PER_MM;

@@ -30,6 +30,16 @@
 /* Rounding of positions as doubles, path units. */
 #define END_UNITS 64.0
 
+double lead_change(const struct lead *l, double low)
+{
+    const struct ceiling *c = l->here.ceiling;
+    const struct ceiling_piece *p = lead_piece(l, l->here.piece);
+    const double a = (double)p->acceleration;
+    const double more = ceiling_still(c, l->here.piece) - a;
+
+    return more > 0.0 && l->feed < low ? a + more * (1.0 - lead_square(l->feed / low)) : a;
+}
+
 /* -- braking -- */
 
 /* Feed at the end of a piece: 0 at a joint that is only come to rest at, whatever follows. */
@@ -170,7 +180,8 @@ void lead_brake_ahead(const struct lead *l, struct lead_brake *b)
     const double s = path_mm(l->here.ceiling->origin, l->at);
 
     b->at_mm = s;
-    b->feed = maths_min(l->feed, lead_feed(l, here->feed_mm_s));
+    b->ordered = lead_feed(l, here->feed_mm_s);
+    b->feed = maths_min(l->feed, b->ordered);
     b->a = (double)here->acceleration;
     b->rest = false;
     if (l->here.late) {
@@ -419,7 +430,7 @@ static double feed_to_keep(const struct lead *l, double s, double top, double lo
 
 double lead_speed_up(const struct lead *l, double at_mm, double low)
 {
-    const double a = (double)lead_piece(l, l->here.piece)->acceleration;
+    const double a = lead_change(l, low);
 
     if (!lead_has_rested(l) || low <= l->feed * (1.0 + 1e-12)) {
         return l->feed;

@@ -20,6 +20,7 @@
 struct lead_brake {
     double at_mm; /* the lead point, from the ceiling's origin */
     double feed;
+    double ordered; /* of that, what the operator asks for: as quickly as the axes can */
     double a;
     bool rest;
     uint64_t rest_at;
@@ -49,6 +50,13 @@ static inline double lead_feed(const struct lead *l, float feed_mm_s)
 {
     return ceiling_feed(l->here.ceiling, feed_mm_s);
 }
+
+/*
+ * How much the feed may change in a cycle in the piece that the lead point is in, mm/cycle2. Of a smoothed curve, whose
+ * rate r is the feed's part of the lowest ceiling w, by a r^2 + a_still (1 - r^2): at lower rates the curve needs less.
+ * A concave function of the feed: averages of both keep it as well.
+ */
+double lead_change(const struct lead *l, double low);
 
 /* Where piece k ends, mm from the origin. */
 static inline double lead_end_mm(const struct lead *l, uint32_t k)

@@ -11,7 +11,6 @@
 #include "base/maths.h"
 #include "plan/path.h"
 #include "plan/path_unit.h"
-#include "plan/rest.h"
 #include "plan/span.h"
 #include "smooth/single.h"
 
@@ -50,7 +49,6 @@ struct builder {
     double fastest;      /* the highest of those laid so far */
     double gentlest;     /* and the lowest acceleration */
     uint32_t start;      /* block that begins what is being laid */
-    struct rest_span rest;
     unsigned heads;
     struct head head[HEADS_MAX]; /* both rising */
 };
@@ -138,7 +136,6 @@ static void begin_span(struct builder *s, uint32_t index)
                 CEILING_MARGIN_CYCLES;
     s->begin_mm = path_mm(s->c->origin, start);
     s->heads = 0;
-    rest_begin(&s->rest, s->path, s->request, index, s->cycles);
 }
 
 /* Blocks from the first on, as pieces count them. */
@@ -271,13 +268,12 @@ static bool continues(const struct builder *s, const struct path_block *b, float
 static void lay_block(struct builder *s, uint32_t index)
 {
     const struct path_block *b = path_at(s->path, index);
-    const struct rest_feeds feeds = rest_block_feeds(&s->rest, index);
-    const float feed_mm_s = maths_float_below(feeds.now);
+    const float feed_mm_s = maths_float_below(ceiling_block_feed(s->path, index, s->request));
     const double a = ceiling_block_acceleration(s->path, index, s->cycles);
     const double start_mm = path_mm(s->c->origin, b->start);
     const double end_mm = path_mm(s->c->origin, path_end(s->path, index));
 
-    s->feed_max_mm_s = maths_float_below(feeds.highest);
+    s->feed_max_mm_s = maths_float_below(path_block_top(b));
     const double feed_max = ceiling_feed(s->c, s->feed_max_mm_s);
     const double reach_mm = end_mm + feed_max * s->behind;
 
@@ -554,4 +550,13 @@ unsigned ceiling_overrides(const struct ceiling *c, uint32_t k)
 uint32_t ceiling_cycles(const struct ceiling *c, uint32_t k)
 {
     return path_at(c->path, kept_block(c, c->piece[k].start))->cycles;
+}
+
+double ceiling_still(const struct ceiling *c, uint32_t k)
+{
+    const struct path *path = c->path;
+
+    return path_at(path, kept_block(c, c->piece[k].start))->smooth
+               ? path->smooth.change.still * path->unit_mm * (c->cycle_s * c->cycle_s)
+               : 0.0;
 }

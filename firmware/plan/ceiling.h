@@ -79,11 +79,10 @@ static inline double ceiling_feed(const struct ceiling *c, float feed_mm_s)
 
 /* What a ceiling is made for. */
 struct ceiling_request {
-    uint32_t first;  /* block to begin with */
-    uint64_t lead;   /* where the lead point is */
-    uint64_t span;   /* where the span starts that it has begun last */
-    uint32_t cycles; /* of the first averaging box in that span */
-    double rest_a;   /* mm/cycle2: highest in it so far if it began at rest; infinite: it did not */
+    uint32_t first;       /* block to begin with */
+    uint64_t lead;        /* where the lead point is */
+    uint64_t span;        /* where the span starts that it has begun last */
+    uint32_t cycles;      /* of the first averaging box in that span */
     double feed_ratio;    /* override of programmed feeds, 0 < ratio <= BLOCK_OVERRIDE_MAX */
     double rapid_ratio;   /* likewise of rapids, <= 1 */
     double spindle_rev_s; /* > 0: as measured, for feeds per revolution; 0: as commanded */
@@ -105,6 +104,9 @@ uint64_t ceiling_leave(const struct ceiling *c, uint32_t k);
 
 /* Control cycle: what the operator may do in a piece, CEILING_...: as in the last block that it is made of. */
 unsigned ceiling_overrides(const struct ceiling *c, uint32_t k);
+
+/* Control cycle: how fast the feed may change in a piece of a smoothed curve at rest, mm/cycle2; 0: of nothing else. */
+double ceiling_still(const struct ceiling *c, uint32_t k);
 
 /* Cycles of the first averaging box in the span that begins with a piece. */
 uint32_t ceiling_cycles(const struct ceiling *c, uint32_t k);

@@ -26,6 +26,9 @@
 /* A rate does not change faster than this times what it may change by on every piece. */
 #define CHANGE_MOST 64.0f
 
+/* Rates at which what is left for changes of it is looked at. */
+#define STILL_RATES 8
+
 /* Places looked at in a piece. */
 #define PLACES 4
 
@@ -84,6 +87,32 @@ void judge_need(const struct window *w, const struct route *r, unsigned piece,
 }
 
 /*
+ * The most that leaves every axis its limits at any rate, whatever the curve needs of them at the full one:
+ *     V still                                                                      <= A
+ *     still (1 - r^2) (V/R + 3 A r) + by r^2 (1 - r) (V/R + 3 A) + J r^3           <= J
+ */
+static double still_of(const struct smooth_limits *limits, const struct judge_change *change)
+{
+    double still = MATHS_INFINITY;
+
+    for (int i = 0; i < AXIS_COUNT; i++) {
+        const double v = limits->velocity_mm_s[i];
+        const double a = limits->acceleration_mm_s2[i];
+
+        for (int k = 0; (limits->axes >> i & 1U) != 0 && k < STILL_RATES; k++) {
+            const double r = (double)k / STILL_RATES;
+            const double rounding = v / change->rounding_s;
+            const double left = limits->jerk_mm_s3[i] * (1.0 - r * r * r) -
+                                change->by * r * r * (1.0 - r) * (rounding + 3.0 * a);
+
+            still = maths_min(still, maths_min((double)LIMIT * a / v,
+                                               left / ((1.0 - r * r) * (rounding + 3.0 * a * r))));
+        }
+    }
+    return maths_max(still, change->by);
+}
+
+/*
  * Rounded over what the axes need from no acceleration to all of it, A/J; where that is too long, a change is so much
  * slower that no axis needs more than its part of the jerk for it.
  */
@@ -103,6 +132,7 @@ void judge_change(const struct smooth_limits *limits, struct judge_change *chang
     change->rounding_s = maths_min(rounding_s, ROUNDING_CYCLES_MAX * limits->cycle_s);
     change->by *= maths_min(1.0, ROUNDING_PART / CHANGE_PART * change->rounding_s / rounding_s);
     change->rounded = change->by / change->rounding_s;
+    change->still = still_of(limits, change);
 }
 
 /*
@@ -123,7 +153,8 @@ static float most_of_axis(const struct judge_need *need, const struct route_slot
     if (first * most > slots->velocity_mm_s[i]) {
         most = slots->velocity_mm_s[i] / first;
     }
-    const float a = single_max(0.0f, LIMIT * slots->acceleration_mm_s2[i] - first * by);
+    const float a = single_max(0.0f, single_min(LIMIT * slots->acceleration_mm_s2[i],
+                                                LIMIT * slots->whole_mm_s2[i] - first * by));
 
     if (second * most * most > a) {
         most = single_sqrt(a / second);
@@ -150,29 +181,43 @@ void judge_rate(const struct judge_need *need, const struct route *r, uint32_t e
         need->feed_mm_s > 0.0f ? route_programmed(r, element) / need->feed_mm_s : SINGLE_INFINITY;
 }
 
-/* What is left at a rate for r' and r'' = r'/R, R the rounding: see most_of_axis(). */
-static float change_of_axis(const struct judge_need *need, const struct route_slots *slots,
-                            float rounding_s, unsigned i, float rate, float by)
+/* What jerk leaves of an axis at a rate for r' and r'' = r'/R, R the rounding: see most_of_axis(). */
+static float change_by_jerk(const struct judge_need *need, const struct route_slots *slots,
+                            float rounding_s, unsigned i, float rate, float most)
 {
-    const float first = need->first[i];
-    const float second = need->second[i];
-    const float a = LIMIT * slots->acceleration_mm_s2[i] - second * rate * rate;
     const float j = LIMIT * slots->jerk_mm_s3[i] - need->third[i] * rate * rate * rate;
-    const float per_by = first / rounding_s + 3.0f * second * rate;
+    const float per_by = need->first[i] / rounding_s + 3.0f * need->second[i] * rate;
 
-    by = first * by > a ? a / first : by;
-    return per_by * by > j ? j / per_by : by;
+    return per_by * most > j ? j / per_by : most;
+}
+
+/*
+ * What is left of an axis at a rate r. At the part p of it a change of by p^2 + still (1 - p^2) must be left: of
+ * acceleration always is; of jerk it is looked at where by counts most, p^2 (1 - p).
+ */
+static float change_of_axis(const struct judge_need *need, const struct route_slots *slots,
+                            const struct judge_change *change, unsigned i, float rate, float by)
+{
+    static const float part = 2.0f / 3.0f;
+    const float rounding_s = (float)change->rounding_s;
+    const float still = (float)change->still * (1.0f - part * part);
+    const float a = LIMIT * slots->whole_mm_s2[i] - need->second[i] * rate * rate;
+
+    by = need->first[i] * by > a ? a / need->first[i] : by;
+    by = change_by_jerk(need, slots, rounding_s, i, rate, by);
+    return (change_by_jerk(need, slots, rounding_s, i, part * rate, part * part * by + still) -
+            still) /
+           (part * part);
 }
 
 float judge_change_on(const struct judge_need *need, const struct route *r,
                       const struct judge_change *change, float rate)
 {
-    const float rounding_s = (float)change->rounding_s;
     float by = (float)change->by;
     float most = CHANGE_MOST * by;
 
     for (unsigned i = 0; i < r->slots.count; i++) {
-        most = change_of_axis(need, &r->slots, rounding_s, i, rate, most);
+        most = change_of_axis(need, &r->slots, change, i, rate, most);
     }
     while (2.0f * by <= most) {
         by *= 2.0f;

@@ -20,10 +20,14 @@ struct judge_rate {
     float programmed; /* at the programmed feed; infinite for a rapid */
 };
 
-/* How fast the rate of nominal time may change, on every piece of a chain where the axes move: 1/s, 1/s2. */
+/*
+ * How fast the rate r of nominal time may change on every piece, 1/s: by at its full rate, still where it stands, and
+ * by r^2 + still (1 - r^2) between, since a curve needs x" r^2 of the acceleration.
+ */
 struct judge_change {
     double by;
-    double rounded;
+    double still;
+    double rounded;    /* by: 1/s2 */
     double rounding_s; /* over which it is rounded */
 };
 

@@ -26,6 +26,7 @@ static void set_slots(struct route_slots *s, const struct smooth_limits *limits)
             s->weight[i] = (float)smooth_weight(axis);
             s->velocity_mm_s[i] = (float)limits->velocity_mm_s[axis];
             s->acceleration_mm_s2[i] = (float)limits->acceleration_mm_s2[axis];
+            s->whole_mm_s2[i] = (float)limits->whole_mm_s2[axis];
             s->jerk_mm_s3[i] = (float)limits->jerk_mm_s3[axis];
             s->count++;
         }

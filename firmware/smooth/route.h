@@ -23,7 +23,9 @@ struct route_slots {
     unsigned char axis[AXIS_COUNT];
     float weight[SMOOTH_SLOTS_MAX];
     float velocity_mm_s[SMOOTH_SLOTS_MAX];
-    float acceleration_mm_s2[SMOOTH_SLOTS_MAX];
+    float acceleration_mm_s2
+        [SMOOTH_SLOTS_MAX]; /* of the curve: less than the machine's where chords are long */
+    float whole_mm_s2[SMOOTH_SLOTS_MAX]; /* the machine's */
     float jerk_mm_s3[SMOOTH_SLOTS_MAX];
 };
 

@@ -48,6 +48,7 @@ _Static_assert(sizeof(struct smooth) + sizeof(union smooth_scratch) <= 27UL * 10
 void smooth_init(struct smooth *s, const struct smooth_limits *limits)
 {
     s->limits = *limits;
+    judge_change(limits, &s->change);
     smooth_reset(s);
 }
 
@@ -117,6 +118,7 @@ static void limit_chord(struct smooth_limits *limits, double tolerance_mm)
     for (int i = 0; i < AXIS_COUNT; i++) {
         const double weight = smooth_weight(i);
 
+        limits->whole_mm_s2[i] = limits->acceleration_mm_s2[i];
         limits->acceleration_mm_s2[i] =
             maths_min(limits->acceleration_mm_s2[i], CHORD_PART * tolerance_mm / (weight * t));
         if ((limits->axes >> i & 1U) != 0) {
@@ -147,7 +149,6 @@ static void begin(struct smooth *s, const struct move *move)
     s->tried = 0;
     s->mark_mm = 0.0;
     s->idle = 0;
-    judge_change(&limits, &s->change);
     s->merge.open = false;
     window_init(&s->window, &s->route, interval_of(&limits, move->tolerance_mm));
 }
