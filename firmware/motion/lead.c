@@ -107,15 +107,12 @@ static void run_landing(struct lead *l)
     run->over = !run->active;
 }
 
-static void slow_down(struct lead *l, const struct lead_brake *b, double low)
+static void slow_down(struct lead *l, const struct lead_brake *b)
 {
-    const double change = maths_min(lead_change(l, low), l->here.early_a);
-    const double ahead = maths_max(b->feed, l->feed - b->a);
-
     if (b->rest) {
         come_to_rest(l, b->rest_at);
     } else if (l->since_plus >= l->window) {
-        go(l, maths_min(ahead, maths_max(b->ordered, l->feed - change)));
+        go(l, maths_max(b->feed, l->feed - b->a));
     } else {
         go(l, l->feed);
     }
@@ -130,7 +127,7 @@ static void run_on(struct lead *l, uint64_t setpoint, bool hold)
     lead_brake_ahead(l, &b);
 
     if (hold) {
-        b.feed = b.ordered = 0.0;
+        b.feed = 0.0;
     }
     if (l->halt.found) {
         lead_brake_to_halt(l, &b);
@@ -144,7 +141,7 @@ static void run_on(struct lead *l, uint64_t setpoint, bool hold)
     const bool stops = b.feed == 0.0 && l->feed > 0.0; /* however little is left of the feed */
 
     if (b.rest || stops || b.feed < l->feed - lead_change_min(b.a, l->feed)) {
-        slow_down(l, &b, low);
+        slow_down(l, &b);
     } else {
         go(l, hold || l->here.late ? l->feed : lead_speed_up(l, b.at_mm, low));
     }

@@ -20,7 +20,6 @@
 struct lead_brake {
     double at_mm; /* the lead point, from the ceiling's origin */
     double feed;
-    double ordered; /* of that, what the operator asks for: as quickly as the axes can */
     double a;
     bool rest;
     uint64_t rest_at;
@@ -51,13 +50,16 @@ static inline double lead_feed(const struct lead *l, float feed_mm_s)
     return ceiling_feed(l->here.ceiling, feed_mm_s);
 }
 
-/*
- * How much the feed may change in a cycle in the piece that the lead point is in, mm/cycle2. Of a smoothed curve, whose
- * rate r is the feed's part of the lowest ceiling w, by a r^2 + a_still (1 - r^2): at lower rates the curve needs less.
- * A concave function of the feed: averages of both keep it as well.
- */
-double lead_change(const struct lead *l, double low);
-
+/* How much its feed may change in a cycle in piece k, and by how much it brakes there over a gap to a feed. */
+static inline double lead_change(const struct lead *l, uint32_t k)
+{
+    return ceiling_change(l->here.ceiling, k, l->feed);
+}
+/* Likewise slowing down: in the middle of the cycle. */
+static inline double lead_slowing(const struct lead *l, uint32_t k)
+{
+    return ceiling_change(l->here.ceiling, k, l->feed - 0.5 * lead_change(l, k));
+}
 /* Where piece k ends, mm from the origin. */
 static inline double lead_end_mm(const struct lead *l, uint32_t k)
 {
@@ -73,6 +75,11 @@ static inline uint64_t lead_leave_of(const struct lead *l, uint32_t k)
 static inline double lead_square(double x)
 {
     return x * x;
+}
+
+static inline double lead_braking(const struct lead *l, uint32_t k, double gap_mm, double feed)
+{
+    return ceiling_braking(l->here.ceiling, k, gap_mm, lead_square(feed));
 }
 
 /* Path position at or beyond another. */

@@ -190,7 +190,7 @@ static bool feels_end(const struct smooth *s, double at_mm, uint32_t element, do
     const struct route_element *e = route_element(&s->route, element);
     const float ahead = (float)(known_mm - at_mm);
 
-    return e->feed_mm_s * e->feed_mm_s > 2.0f * e->along_mm_s2 * ahead;
+    return braking_way(&e->along, e->feed_mm_s, 0.0f, 0.0f) > ahead;
 }
 
 static bool last_feels_end(const struct smooth *s, double known_mm)
@@ -434,7 +434,7 @@ static void set_piece(struct smooth *s, struct smooth_piece *piece)
     }
     judge_need(w, &s->route, i, &need);
     judge_rate(&need, &s->route, element, &s->change, &rate);
-    piece->rate.most = maths_min((double)rate.most, 1.0);
+    piece->rate.most = (double)judge_most(&need, &s->route, &s->change);
     piece->rate.programmed = (double)rate.programmed;
     piece->change.by =
         (double)judge_change_on(&need, &s->route, &s->change, (float)piece->rate.most);
