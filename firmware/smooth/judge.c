@@ -36,6 +36,9 @@
 /* Of a piece's highest rate, the parts at which what it leaves is looked at: closer where more of it is used. */
 static const float parts[] = {1.0f, 0.97f, 0.9f, 0.8f, 0.65f};
 
+/* Part of its acceleration that an axis has for a change of rate at rest: rounding must not take it away. */
+#define STILL_PART 0.98
+
 /* Rates at which what is left for changes of it is looked at. */
 #define STILL_RATES 8
 
@@ -122,11 +125,11 @@ static double still_of(const struct smooth_limits *limits, const struct judge_ch
             const double left = limits->jerk_mm_s3[i] * (1.0 - r * r * r) -
                                 change->by * r * r * (1.0 - r) * (rounding + 3.0 * a);
 
-            still = maths_min(still, maths_min((double)LIMIT * a / v,
+            still = maths_min(still, maths_min(STILL_PART * a / v,
                                                left / ((1.0 - r * r) * (rounding + 3.0 * a * r))));
         }
     }
-    return maths_max(still, change->by);
+    return maths_max(STILL_PART * still, change->by);
 }
 
 /*

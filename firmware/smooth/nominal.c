@@ -6,7 +6,7 @@
 #define ALONG 0.95f
 
 /* Likewise of their jerk: at a corner one axis slows down while another speeds up, and the path does both at once. */
-#define ALONG_JERK 1.9f
+#define ALONG_JERK 1.7f
 
 /* Part of the axes' limits for the curvature of arcs. */
 #define BENT 0.9f
