@@ -273,7 +273,7 @@ static void miss(struct drives *d, const struct drives_answer *answer)
 static void check_period(struct drives *d)
 {
     double period_us = (uint8_t)d->read[0];
-    int exponent = (int8_t)(uint8_t)d->read[1];
+    int exponent = (int)(d->read[1] & 0x7F) - (int)(d->read[1] & 0x80); /* of an int8 */
     for (; exponent < -6; exponent++)
         period_us /= 10;
     for (; exponent > -6; exponent--)

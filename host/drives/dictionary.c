@@ -50,9 +50,7 @@ void dictionary_set_initial(const struct dictionary *dictionary, enum dictionary
 
 void dictionary_free(struct dictionary *dictionary)
 {
-    if (dictionary->names == NULL)
-        return;
+    free(dictionary->memory);
     free(dictionary->names);
-    free((void *)(uintptr_t)dictionary->row);
     *dictionary = (struct dictionary){0};
 }

@@ -14,8 +14,9 @@
 struct dictionary {
     const struct object_row *row; /* by rising index and sub-index */
     unsigned count;
-    uint8_t dummies; /* bit n: RPDOs may skip a place of data type n */
-    char *names;     /* owned; NULL: takt's own dictionary */
+    uint8_t dummies;           /* bit n: RPDOs may skip a place of data type n */
+    struct object_row *memory; /* of dictionary_read: the rows and, like them, owned: */
+    char *names;
 };
 
 extern const struct dictionary dictionary_own;

@@ -583,8 +583,8 @@ bool dictionary_read(struct dictionary *dictionary, const char *text, size_t len
            build(&b, wrong);
     free(r.section);
     free(r.value);
-    *dictionary =
-        (struct dictionary){.row = b.row, .count = b.count, .dummies = r.dummies, .names = b.names};
+    *dictionary = (struct dictionary){
+        .row = b.row, .memory = b.row, .count = b.count, .dummies = r.dummies, .names = b.names};
     if (!good) {
         free(b.row);
         free(b.names);
