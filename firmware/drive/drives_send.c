@@ -254,5 +254,5 @@ void drives_switch_on_at_rest(struct drives *d, const struct can_port *port)
 {
     struct drives_axis turn = d->axis[d->cycle % d->count];
     const uint16_t step = cia402_step_to_enabled(cia402_state(turn.statusword));
-    send_controlword(&turn, port, step & CIA402_SWITCH_ON);
+    send_controlword(&turn, port, step & CIA402_SWITCH_ON, true);
 }
