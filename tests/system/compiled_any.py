@@ -13,6 +13,7 @@ PROGRAMS = int(sys.argv[1]) if len(sys.argv) > 1 else 12
 FIRST = int(sys.argv[2]) if len(sys.argv) > 2 else 0
 WIDE = len(sys.argv) > 3 and sys.argv[3] == "wide"
 RADIUS_MM = 0.01  # of arcs, at least
+JERK_MM = 1e-9  # in a cycle, at least: less is refused
 PATH_MM = 0.002  # tolerance, at least: two increments
 SECONDS = 3  # of a move at its feed, at most
 KNOTS = 4  # that rest at both ends of a section may take
@@ -43,6 +44,8 @@ def wide_machine(r):
     for axis in "XYZ":
         for key, value in (("max_velocity_mm_s", velocity), ("max_acceleration_mm_s2", acceleration), ("max_jerk_mm_s3", jerk)):
             own = value * log_uniform(r, 0.1, 10)
+            if key == "max_jerk_mm_s3":
+                own = max(own, JERK_MM / (1e-6 * cycle_us) ** 3)
             slowest = min(slowest, own) if key == "max_velocity_mm_s" else slowest
             options += ["--set", f"axis.{axis}.{key}={own:.6g}"]
         for setting in ("drive_type=step", "steps_per_mm=1", "step_rate_max_hz=1e7", "following_error_max_mm=0"):
