@@ -20,7 +20,7 @@ struct look {
 static void show(char shown[32], const char *text, int length)
 {
     for (int i = 0; i < length; i++)
-        shown[i] = text[i] >= ' ' && text[i] <= '~' ? text[i] : '.';
+        shown[i] = (char)(text[i] >= ' ' && text[i] <= '~' ? text[i] : '.');
     shown[length] = '\0';
 }
 
@@ -171,7 +171,7 @@ static bool has_exponent(const struct line *l, const struct line_word *w)
 /* The exponent itself, which looks like a word. */
 static bool is_exponent(const struct line *l, const struct line_word *w)
 {
-    const char before = w->begin > 0 ? l->text[w->begin - 1] : ' ';
+    const char before = (char)(w->begin > 0 ? l->text[w->begin - 1] : ' ');
 
     return w->letter == 'e' && ((before >= '0' && before <= '9') || before == '.') &&
            strchr("+-", l->text[w->begin + 1]) != NULL;

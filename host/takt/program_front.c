@@ -476,3 +476,22 @@ bool program_front_prepare(const struct program_front *front, struct program_tex
     free_joint(&j);
     return good;
 }
+
+bool program_front_read(const struct program_front *front, const char *path, struct text *text)
+{
+    struct program_text program;
+    bool good = program_text_open(&program, path);
+
+    if (!good)
+        return false;
+    good = program_front_prepare(front, &program);
+    if (good && program.is_file) {
+        good = text_read(text, path);
+    } else if (good) {
+        *text = program.whole;
+        text->name = path;
+        program.whole = (struct text){0};
+    }
+    program_text_close(&program);
+    return good;
+}
