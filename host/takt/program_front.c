@@ -142,7 +142,7 @@ static bool read_label(const struct line *l, char name[64], const char **behind)
         return false;
     for (at++; length < 63 && *at != '\0'; at++) {
         const char c = line_lower(*at);
-        const bool named = name[0] == '<' && length > 0;
+        const bool named = length > 0 && name[0] == '<';
 
         if (!named && c != '<' && c != ' ' && !(c >= '0' && c <= '9'))
             break;
