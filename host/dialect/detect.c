@@ -247,7 +247,7 @@ static bool is_text(const char *bytes, size_t length)
     for (size_t i = 0; i < length; i++) {
         const unsigned char c = (unsigned char)bytes[i];
 
-        if ((c < ' ' && c != '\t' && c != '\r') || c == 0x7f)
+        if ((c < ' ' && c != '\t' && c != '\r' && c != DIALECT_TEXT_END) || c == 0x7f)
             return false;
     }
     return true;
@@ -266,6 +266,7 @@ void dialect_guess_line(struct dialect_detector *d, const char *bytes, size_t le
         length -= 3;
     }
     d->linuxcnc = d->linuxcnc || !is_text(bytes, length);
+    d->translates = d->translates || memchr(bytes, DIALECT_TEXT_END, length) != NULL;
     if (!line_read(&k.line, bytes, length))
         return;
     d->translates = d->translates || contains(k.line.text, k.line.length, "#<_ini[") ||
