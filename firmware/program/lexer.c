@@ -114,7 +114,7 @@ static void scan_comment(struct program_lexer *l, struct scan *s, char c)
 
 char lexer_comment(const struct program_lexer *l, unsigned at)
 {
-    return at < l->comment_length ? l->text[PROGRAM_LINE_MAX - at] : '\0';
+    return (char)(at < l->comment_length ? l->text[PROGRAM_LINE_MAX - at] : '\0');
 }
 
 static void scan_character(struct program_lexer *l, struct scan *s, struct diagnostic *error,

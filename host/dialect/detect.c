@@ -6,7 +6,6 @@
 #include "dialect/difference.h"
 #include "dialect/line.h"
 
-#include <stdio.h>
 #include <string.h>
 
 #define BIT(dialect) (1U << (dialect))
@@ -17,6 +16,14 @@ struct look {
     struct line line;
 };
 
+/* What a terminal would not print as it stands becomes a dot. */
+static void show(char shown[32], const char *text, int length)
+{
+    for (int i = 0; i < length; i++)
+        shown[i] = (char)(text[i] >= ' ' && text[i] <= '~' ? text[i] : '.');
+    shown[length] = '\0';
+}
+
 static void note(struct look *k, unsigned dialects, const struct line_word *w)
 {
     const int length = w != NULL ? w->end - w->begin : (int)strcspn(k->line.text, "\r");
@@ -25,8 +32,7 @@ static void note(struct look *k, unsigned dialects, const struct line_word *w)
     for (unsigned i = 0; i < DIALECT_COUNT; i++) {
         if ((dialects & BIT(i)) != 0 && k->d->found_line[i] == 0) {
             k->d->found_line[i] = k->d->line;
-            (void)snprintf(k->d->found[i], sizeof k->d->found[i], "%.*s", length < 24 ? length : 24,
-                           text);
+            show(k->d->found[i], text, length < 24 ? length : 24);
         }
     }
 }
@@ -165,7 +171,7 @@ static bool has_exponent(const struct line *l, const struct line_word *w)
 /* The exponent itself, which looks like a word. */
 static bool is_exponent(const struct line *l, const struct line_word *w)
 {
-    const char before = w->begin > 0 ? l->text[w->begin - 1] : ' ';
+    const char before = (char)(w->begin > 0 ? l->text[w->begin - 1] : ' ');
 
     return w->letter == 'e' && ((before >= '0' && before <= '9') || before == '.') &&
            strchr("+-", l->text[w->begin + 1]) != NULL;
@@ -235,6 +241,18 @@ static void look_at_words(struct look *k, const struct dialect_codes *codes)
     look_at_centre(k);
 }
 
+/* Bytes that no text has: nothing can be guessed of what is none. */
+static bool is_text(const char *bytes, size_t length)
+{
+    for (size_t i = 0; i < length; i++) {
+        const unsigned char c = (unsigned char)bytes[i];
+
+        if ((c < ' ' && c != '\t' && c != '\r' && c != DIALECT_TEXT_END) || c == 0x7f)
+            return false;
+    }
+    return true;
+}
+
 void dialect_guess_line(struct dialect_detector *d, const char *bytes, size_t length,
                         const struct dialect_codes *codes)
 {
@@ -247,6 +265,8 @@ void dialect_guess_line(struct dialect_detector *d, const char *bytes, size_t le
         bytes += 3;
         length -= 3;
     }
+    d->linuxcnc = d->linuxcnc || !is_text(bytes, length);
+    d->translates = d->translates || memchr(bytes, DIALECT_TEXT_END, length) != NULL;
     if (!line_read(&k.line, bytes, length))
         return;
     d->translates = d->translates || contains(k.line.text, k.line.length, "#<_ini[") ||

@@ -129,6 +129,9 @@ struct dialect_result {
 bool dialect_translate(enum dialect dialect, const struct dialect_codes *codes, const char *bytes,
                        size_t length, struct dialect_result *result);
 
+/* What ends a text under DOS: nothing of its line counts from there on. */
+#define DIALECT_TEXT_END '\x1a'
+
 /* As in firmware/program/lexer.h. */
 #define DIALECT_GOES_ON '\x1f'
 

@@ -31,9 +31,12 @@ unsigned dialect_find(const char *name)
 static bool read_name(struct dialect_code *code, const char *name)
 {
     char *end;
-    const double number = name[0] != '\0' ? strtod(name + 1, &end) : -1.0;
 
     code->letter = line_lower(name[0]);
+    if (code->letter == '\0')
+        return false;
+    const double number = strtod(name + 1, &end);
+
     if ((code->letter != 'g' && code->letter != 'm') || end == name + 1 || *end != '\0' ||
         !(number >= 0.0 && number < 6500.0))
         return false;

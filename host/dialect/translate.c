@@ -443,7 +443,10 @@ static void translate_line(struct translator *t, const char *bytes, size_t lengt
 {
     const unsigned jumps = t->jumps;
 
+    const char *end = memchr(bytes, DIALECT_TEXT_END, length);
+
     t->number++;
+    length = end != NULL ? (size_t)(end - bytes) : length;
     if (length > 0 && bytes[length - 1] == '\r')
         length--;
     if (!line_read(&t->line, bytes, length)) {

@@ -113,7 +113,7 @@ static void message_show_line(const struct program_text *program, uint32_t line,
 
 static char message_lower(char c)
 {
-    return c >= 'A' && c <= 'Z' ? (char)(c - 'A' + 'a') : c;
+    return (char)(c >= 'A' && c <= 'Z' ? c - 'A' + 'a' : c);
 }
 
 /* Does a line go on with a word, whatever spaces and case? */

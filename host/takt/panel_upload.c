@@ -8,6 +8,7 @@
 #include "replay/format.h"
 #include "takt/interrupt.h"
 #include "takt/message.h"
+#include "takt/program_front.h"
 #include "takt/text.h"
 
 #include <inttypes.h>
@@ -76,10 +77,12 @@ static enum command_status bring(struct panel_line *line, const struct text *tex
 
 enum command_status panel_upload_file(struct panel_line *line, const char *path, bool quiet)
 {
+    static const struct dialect_codes none;
+    const struct program_front front = {.dialect = DIALECT_AUTO, .codes = &none, .quiet = quiet};
     struct text text;
     enum command_status status = STATUS_INPUT;
 
-    if (!text_read(&text, path))
+    if (!program_front_read(&front, path, &text))
         return STATUS_INPUT;
     if (text.length == 0 || text.length > PANEL_PROGRAM_BYTES_MAX)
         message_error(path, 0, 0, "a program of 1 to %d bytes is expected; it has %zu",

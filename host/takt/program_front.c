@@ -142,7 +142,7 @@ static bool read_label(const struct line *l, char name[64], const char **behind)
         return false;
     for (at++; length < 63 && *at != '\0'; at++) {
         const char c = line_lower(*at);
-        const bool named = name[0] == '<' && length > 0;
+        const bool named = length > 0 && name[0] == '<';
 
         if (!named && c != '<' && c != ' ' && !(c >= '0' && c <= '9'))
             break;
@@ -474,5 +474,24 @@ bool program_front_prepare(const struct program_front *front, struct program_tex
     else if (good)
         forget_pieces(text);
     free_joint(&j);
+    return good;
+}
+
+bool program_front_read(const struct program_front *front, const char *path, struct text *text)
+{
+    struct program_text program;
+    bool good = program_text_open(&program, path);
+
+    if (!good)
+        return false;
+    good = program_front_prepare(front, &program);
+    if (good && program.is_file) {
+        good = text_read(text, path);
+    } else if (good) {
+        *text = program.whole;
+        text->name = path;
+        program.whole = (struct text){0};
+    }
+    program_text_close(&program);
     return good;
 }

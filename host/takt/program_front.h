@@ -23,4 +23,7 @@ struct program_front {
 /* Makes of an opened text what is to be read. False after a message. */
 bool program_front_prepare(const struct program_front *front, struct program_text *text);
 
+/* A program and what belongs to it as one text, for those who keep it whole. False after a message. */
+bool program_front_read(const struct program_front *front, const char *path, struct text *text);
+
 #endif

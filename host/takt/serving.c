@@ -6,6 +6,7 @@
 #include "takt/cutting_feed.h"
 #include "takt/drives_table.h"
 #include "takt/message.h"
+#include "takt/program_front.h"
 #include "takt/stopwatch.h"
 #include "takt/text.h"
 
@@ -17,10 +18,11 @@
 
 static bool load_program(struct serving *s, const char *path)
 {
+    const struct program_front front = {.dialect = DIALECT_AUTO, .codes = &s->session.setup.codes};
     struct text text;
     bool good;
 
-    if (!text_read(&text, path))
+    if (!program_front_read(&front, path, &text))
         return false;
     good = text.length <= PANEL_PROGRAM_BYTES_MAX;
     if (!good) {

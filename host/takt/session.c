@@ -151,12 +151,12 @@ static bool check_move(const struct session *s, struct session_reading *reading,
 /* What a program ends itself with, if that is more than its error has room for. */
 static void say_abort(void *listener, const struct program *p)
 {
-    const struct session *s = listener;
+    const struct program_text *program = *(const struct program_text **)listener;
     char text[COMMENT_TEXT_MAX];
     const bool abort = comment_read(p, text) == COMMENT_ABORT;
 
     if (abort && (strlen(text) >= DIAGNOSTIC_WORD_MAX || strchr(text, '.') != NULL))
-        message_from_program(&s->program, p->lexer.line, text);
+        message_from_program(program, p->lexer.line, text);
 }
 
 enum command_status session_check(const struct session *s, unsigned errors_max,
@@ -166,11 +166,12 @@ enum command_status session_check(const struct session *s, unsigned errors_max,
     struct program_config config;
     struct source source;
     struct point at;
+    const struct program_text *program = &s->program;
     unsigned moves = 0;
 
     session_begin_reading(s, &reading, &config, &source);
     config.say = say_abort;
-    config.listener = (void *)(uintptr_t)s;
+    config.listener = &program;
     program_open(&reading.program, &config, &source);
     offset_open(&reading.offset, &config);
     at = config.start;

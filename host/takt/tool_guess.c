@@ -48,14 +48,14 @@ static void read_comment(struct guess *g, const char *text, size_t length)
 
     for (const char *c = text; c + 1 < end; c++) {
         const bool word = c == text || c[-1] == ' ' || c[-1] == '(' || c[-1] == ';';
-        const char letter = word ? line_lower(*c) : ' ';
+        const char letter = (char)(word ? line_lower(*c) : ' ');
         const bool equals = c[1] == '=';
         const char *digits = c + (equals ? 2 : 1);
-        char *behind;
+        char *behind = NULL;
         const double value =
             letter == 't' || (letter == 'd' && equals) ? strtod(digits, &behind) : 0.0;
 
-        if (value > 0.0 && behind > digits && behind <= end && letter == 't')
+        if (value > 0.0 && behind != NULL && behind <= end && letter == 't')
             number = value;
         struct tool *tool = value > 0.0 && letter == 'd' ? tool_of(g, number) : NULL;
 

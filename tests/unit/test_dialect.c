@@ -250,6 +250,13 @@ static void test_a_byte_order_mark_is_no_part_of_the_program(void)
     expect(DIALECT_LINUXCNC, "\xef\xbb\xbfG0 X1\r\n", "G0 X1\n");
 }
 
+static void test_a_text_may_end_as_under_dos(void)
+{
+    TEST_ASSERT_TRUE(guess("M30\n\x1a").translates);
+    TEST_ASSERT_EQUAL_INT(DIALECT_FANUC, guess(":0100\nM30\n\x1a").dialect);
+    expect(DIALECT_LINUXCNC, "M30\r\n\x1a\x1a", "M30\n\n");
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -270,6 +277,7 @@ int main(void)
     RUN_TEST(test_printers_leave_their_way);
     RUN_TEST(test_declared_codes_do_what_the_machine_file_says);
     RUN_TEST(test_declarations_that_make_no_sense_are_told);
+    RUN_TEST(test_a_text_may_end_as_under_dos);
     RUN_TEST(test_polar_words_become_x_and_y);
     RUN_TEST(test_values_of_the_machine_file_are_numbers);
     RUN_TEST(test_a_byte_order_mark_is_no_part_of_the_program);
