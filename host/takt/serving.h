@@ -42,7 +42,7 @@ struct serving {
     struct cycle_cost cost;
     struct bus_log bus_log;
     uint64_t cycles;
-    bool has_told_drives; /* what they do without */
+    bool has_told_drives;                     /* what they do without */
     bool has_field, has_exchange, has_server; /* are open */
 };
 
