@@ -236,7 +236,7 @@ static void test_addresses_that_are_not_there_are_exception_2(void)
     const struct modbus_map map = panel_client_map(&one);
 
     TEST_ASSERT_EQUAL_INT(MODBUS_ADDRESS, map.read(map.context, MODBUS_COILS, 13, 1, data));
-    TEST_ASSERT_EQUAL_INT(MODBUS_ADDRESS, map.read(map.context, MODBUS_INPUTS, 58, 2, data));
+    TEST_ASSERT_EQUAL_INT(MODBUS_ADDRESS, map.read(map.context, MODBUS_INPUTS, 110, 2, data));
     TEST_ASSERT_EQUAL_INT(MODBUS_ADDRESS, map.write(map.context, MODBUS_HOLDINGS, 39, 1, data));
     TEST_ASSERT_EQUAL_INT(MODBUS_ADDRESS, map.write(map.context, MODBUS_INPUTS, 0, 1, data));
     TEST_ASSERT_EQUAL_INT64(PANEL_REFUSAL_ADDRESS, value_of(&one, REGISTER_REFUSAL));
