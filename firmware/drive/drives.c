@@ -225,6 +225,14 @@ void drives_stop_on_path(struct drives *d, enum takt_error reason)
     leave_operation(d, reason);
 }
 
+uint32_t drives_get_all_given_up(const struct drives *d)
+{
+    uint32_t given_up = 0;
+    for (unsigned i = 0; i < d->count; i++)
+        given_up |= d->axis[i].given_up;
+    return given_up;
+}
+
 void drives_get_statuswords(const struct drives *d, uint16_t statusword[AXIS_COUNT])
 {
     memset(statusword, 0, AXIS_COUNT * sizeof statusword[0]);

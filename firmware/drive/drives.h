@@ -141,6 +141,8 @@ bool drives_are_homed(const struct drives *d);
 
 /* Bits 1 << enum drives_given_up of an axis; 0 too for axes without a drive. Complete once the drives are enabled. */
 uint32_t drives_get_given_up(const struct drives *d, enum axis axis);
+/* Of any axis. */
+uint32_t drives_get_all_given_up(const struct drives *d);
 
 /* Last statusword (object 6041) of every axis; 0 for axes without a drive, or before it has reported. */
 void drives_get_statuswords(const struct drives *d, uint16_t statusword[AXIS_COUNT]);

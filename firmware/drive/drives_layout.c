@@ -21,7 +21,7 @@ void drives_forget_pdos(struct drives_axis *axis)
 {
     axis->control_frame.length = axis->target_frame.length = 0;
     axis->control_frame.mode = axis->target_frame.mode = DRIVES_NOWHERE;
-    axis->status_id = axis->position_id = axis->error_id = NO_TPDO;
+    axis->report_id = axis->status_id = axis->position_id = axis->error_id = NO_TPDO;
     axis->bits = 0;
 }
 

@@ -486,12 +486,20 @@ static bool shares_frame(const struct drives *d)
            frame->target == drives_byte_of(&pdo, CIA402_TARGET_POSITION);
 }
 
+/* The plain form, see drives_receive.c; without a heartbeat more is to be done. */
+static void set_report(struct drives_axis *axis)
+{
+    axis->beats_by_status = drives_has_given_up(axis, DRIVES_NO_HEARTBEAT);
+    if (axis->status_id == axis->position_id && axis->status_end == 2 &&
+        axis->position_end == DRIVES_STATUS_LENGTH && !axis->beats_by_status)
+        axis->report_id = axis->status_id;
+}
+
 /* Nothing is left to be mapped: what goes by SDO, and whether the rest suffices. True: there is more to map after all. */
 static bool finish(struct drives *d)
 {
     struct drives_axis *axis = &d->axis[d->at_axis];
     axis->mode = axis->follow_mode;
-    axis->beats_by_status = drives_has_given_up(axis, DRIVES_NO_HEARTBEAT);
     if (axis->is_paired && !shares_frame(d)) {
         part_pair(d);
         return false;
@@ -512,8 +520,12 @@ static bool finish(struct drives *d)
         drives_give_up(d, d->at_axis, DRIVES_NO_MODE_PDO);
     if (axis->error_id == NO_TPDO)
         drives_give_up(d, d->at_axis, DRIVES_NO_ERROR_PDO);
-    if (!axis->is_paired || d->at_axis & 1)
+    axis->sends = axis->target_frame.is_mixed ? DRIVES_SENDS_MIXED : DRIVES_SENDS;
+    if (axis->is_paired && !(d->at_axis & 1))
+        axis->sends = DRIVES_WAITS;
+    else
         drives_count_bits(axis, axis->target_frame.length);
+    set_report(axis);
     return false;
 }
 

@@ -8,33 +8,39 @@
 /* Frames taken in one cycle at most, so that a babbling bus cannot hold the control cycle. */
 #define FRAMES_PER_CYCLE_MAX 256
 
-static void take_statusword(struct drives *d, struct drives_axis *axis,
-                            const struct can_frame *frame)
+static inline void set_position(struct drives *d, struct drives_axis *axis, uint32_t raw)
 {
-    if (frame->length < axis->status_end || !axis->started)
-        return;
-    axis->statusword = little_endian_read16(frame->data + axis->status_end - 2);
-    axis->heard = true;
-    if (axis->beats_by_status)
-        axis->beaten = d->cycle;
-}
-
-static void take_position(struct drives *d, struct drives_axis *axis, const struct can_frame *frame)
-{
-    if (frame->length < axis->position_end || !axis->started)
-        return;
-    axis->actual_inc = (int32_t)little_endian_read32(frame->data + axis->position_end - 4);
+    axis->actual_inc = (int32_t)raw;
     axis->actual_mm = axis->actual_inc / axis->config.increments_per_mm;
     axis->reported = d->cycle;
     d->actual.at[axis->config.axis] = axis->actual_mm;
 }
 
-/* Statusword and position, mostly in one frame; of a frame that is too short for it the position counts for nothing. */
+/* The plain form, which nearly all reports have: the statusword, then the position, and nothing else to be done. */
+static inline void take_status(struct drives *d, struct drives_axis *axis,
+                               const struct can_frame *frame)
+{
+    if (frame->length < DRIVES_STATUS_LENGTH || !axis->started)
+        return;
+    axis->statusword = little_endian_read16(frame->data);
+    axis->heard = true;
+    set_position(d, axis, little_endian_read32(frame->data + 2));
+}
+
+/* Of any form, of one of them or of both; a frame that is too short for its position counts for nothing. */
 static void take_report(struct drives *d, struct drives_axis *axis, const struct can_frame *frame)
 {
-    if (axis->status_id == axis->position_id && frame->length >= axis->position_end)
-        take_statusword(d, axis, frame);
-    take_position(d, axis, frame);
+    bool has_position = frame->id == axis->position_id;
+    if (!axis->started || (has_position && frame->length < axis->position_end))
+        return;
+    if (frame->id == axis->status_id && frame->length >= axis->status_end) {
+        axis->statusword = little_endian_read16(frame->data + axis->status_end - 2);
+        axis->heard = true;
+        if (axis->beats_by_status)
+            axis->beaten = d->cycle;
+    }
+    if (has_position)
+        set_position(d, axis, little_endian_read32(frame->data + axis->position_end - 4));
 }
 
 /* "All errors are gone" may come in the same cycle as the error, which counts nevertheless. */
@@ -93,6 +99,8 @@ static void take_seldom(struct drives *d, unsigned index, const struct can_frame
     default:
         if (frame->id == d->axis[index].error_id)
             take_error_code(d, index, frame);
+        else if (frame->id == d->axis[index].status_id || frame->id == d->axis[index].position_id)
+            take_report(d, &d->axis[index], frame);
         break;
     }
 }
@@ -103,10 +111,8 @@ static void take_frame(struct drives *d, const struct can_frame *frame)
     if (index == AXIS_COUNT)
         return;
     struct drives_axis *axis = &d->axis[index];
-    if (frame->id == axis->position_id)
-        take_report(d, axis, frame);
-    else if (frame->id == axis->status_id)
-        take_statusword(d, axis, frame);
+    if (frame->id == axis->report_id)
+        take_status(d, axis, frame);
     else
         take_seldom(d, index, frame);
 }

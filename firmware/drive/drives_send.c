@@ -84,12 +84,11 @@ static void send_targets(struct drives *d, const struct can_port *port)
     for (unsigned i = 0; i < d->count; i++) {
         const struct drives_axis *axis = &d->axis[i];
         const struct drives_frame *as = &axis->target_frame;
-        if (as->is_mixed)
-            fill(&frame, as, axis, axis->controlword);
-        else
-            little_endian_write32(frame.data + as->target, (uint32_t)axis->target_inc);
-        if (axis->is_paired && !(i & 1))
+        little_endian_write32(frame.data + as->target, (uint32_t)axis->target_inc);
+        if (axis->sends == DRIVES_WAITS)
             continue;
+        if (axis->sends == DRIVES_SENDS_MIXED)
+            fill(&frame, as, axis, axis->controlword);
         frame.id = as->cob_id;
         frame.length = as->length;
         if (!send_frame(port, &frame) && d->state != DRIVES_STARTING)

@@ -48,22 +48,18 @@ struct drives_mapping {
     struct pdo pdo; /* as it is told, then as the drive has it */
 };
 
+/* What is done with the frame of a target once it has been written. */
+enum drives_sends {
+    DRIVES_SENDS,      /* it is sent */
+    DRIVES_WAITS,      /* its other half is that of the next drive */
+    DRIVES_SENDS_MIXED /* there is more in it */
+};
+
 struct drives_axis {
     struct drives_config_axis config;
-    struct drives_frame control_frame; /* with the controlword */
-    struct drives_frame target_frame;  /* with the target */
-    uint16_t status_id,
-        position_id;   /* TPDOs with statusword and position; NODE_FUNCTION_MASK: none yet */
-    uint16_t error_id; /* TPDO that begins with the error code; likewise */
-    uint8_t status_end, position_end; /* byte behind them */
-    bool beats_by_status;             /* it has no heartbeat: its status counts for one */
-    bool is_paired;                   /* its target shares a frame with that of its neighbour */
-    uint8_t follow_mode;              /* in which it follows targets */
-    uint8_t modes;                    /* object 6502, of the modes 1 ... 8 */
-    uint8_t told_mode;                /* by SDO */
-    uint16_t bits;                    /* of its frames in a cycle, at worst */
-    uint32_t given_up;                /* bits: enum drives_given_up */
-
+    uint16_t
+        report_id; /* TPDO with statusword and position in the plain form, drives_receive.c; as status_id */
+    uint8_t sends; /* enum drives_sends */
     bool reset_pending;
     bool booted;       /* its boot-up message has come */
     bool started;      /* NMT start has been sent */
@@ -85,6 +81,21 @@ struct drives_axis {
     bool homing_seen;    /* the statusword has shown that homing is under way */
     int32_t braking_inc; /* where it was when its rest was looked at last */
     uint32_t rest_cycles;
+
+    /* What the start has found. */
+    struct drives_frame control_frame; /* with the controlword */
+    struct drives_frame target_frame;  /* with the target */
+    uint16_t status_id,
+        position_id;   /* TPDOs with statusword and position; NODE_FUNCTION_MASK: none yet */
+    uint16_t error_id; /* TPDO that begins with the error code; likewise */
+    uint8_t status_end, position_end; /* byte behind them */
+    bool beats_by_status;             /* it has no heartbeat: its status counts for one */
+    bool is_paired;                   /* its target shares a frame with that of its neighbour */
+    uint8_t follow_mode;              /* in which it follows targets */
+    uint8_t modes;                    /* object 6502, of the modes 1 ... 8 */
+    uint8_t told_mode;                /* by SDO */
+    uint16_t bits;                    /* of its frames in a cycle, at worst */
+    uint32_t given_up;                /* bits: enum drives_given_up */
 };
 
 struct drives {

@@ -42,7 +42,6 @@ static void look_at_axes(const struct service *s, uint32_t *value)
 {
     uint16_t statusword[AXIS_COUNT];
     struct point actual, following;
-    uint32_t given_up = 0;
 
     drives_get_actual(&s->controller.drives, &actual);
     drives_get_statuswords(&s->controller.drives, statusword);
@@ -51,9 +50,8 @@ static void look_at_axes(const struct service *s, uint32_t *value)
 
         following.at[i] = set->at[i] - actual.at[i];
         value[REGISTER_DRIVE_STATUS_X + i] = statusword[i];
-        given_up |= drives_get_given_up(&s->controller.drives, (enum axis)i);
     }
-    value[REGISTER_DRIVES_GIVEN_UP] = given_up;
+    value[REGISTER_DRIVES_GIVEN_UP] = drives_get_all_given_up(&s->controller.drives);
     set_axes(value, REGISTER_POSITION_X, &s->at);
     set_axes(value, REGISTER_ACTUAL_X, &actual);
     set_axes(value, REGISTER_FOLLOWING_X, &following);

@@ -12,11 +12,13 @@
 #include "takt/output_file.h"
 #include "takt/serving_options.h"
 #include "takt/spindle_service.h"
+#include "takt/text.h"
 
 #include <poll.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 #define NODE_MAX_ID 127
 
@@ -200,6 +202,24 @@ static bool is_folder(const char *path)
     return stat(path, &status) == 0 && S_ISDIR(status.st_mode);
 }
 
+/* A data sheet of somebody else is not written over. False after a message. */
+static bool may_write(const char *path)
+{
+    struct text text;
+    bool is_own;
+
+    if (strcmp(path, "-") == 0 || access(path, F_OK) != 0 || !text_read(&text, path))
+        return true;
+    is_own = strstr(text.bytes, "CreatedBy=takt") != NULL;
+    text_free(&text);
+    if (!is_own)
+        message_command_error(
+            "--eds %s: it is not takt's own, and would be written over; with --bus "
+            "the drives are those of this file",
+            path);
+    return is_own;
+}
+
 /* Into a folder: a file for every drive. As a file: of the first drive. */
 static enum command_status write_data_sheets(const struct drives_command *command)
 {
@@ -207,6 +227,8 @@ static enum command_status write_data_sheets(const struct drives_command *comman
     enum command_status status = STATUS_DONE;
     char name[OUTPUT_PATH_MAX];
 
+    if (!is_folder(path) && !may_write(path))
+        return STATUS_INPUT;
     if (!is_folder(path))
         return write_eds(&command->drives.drive[0], path);
     for (unsigned i = 0; i < command->drives.count && status == STATUS_DONE; i++) {

@@ -44,6 +44,8 @@ for text, said in (
 
 # ---- Data sheets ----
 
+refused(["--eds", t.write("foreign.eds", "[FileInfo]\nCreatedBy=somebody\n")], "would be written over")
+
 
 def sections(path):
     with open(path, newline="", encoding="ascii") as file:
