@@ -226,6 +226,11 @@ bool link_has_peer(const struct link *link)
     return link->ops->has_peer(link);
 }
 
+bool link_hears_departures(const struct link *link)
+{
+    return link->hears_departures;
+}
+
 const char *link_get_problem(const struct link *link)
 {
     return link->problem;

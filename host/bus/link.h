@@ -64,6 +64,7 @@ struct link_counts {
     uint64_t receive_lost; /* frames that a full queue could not hold */
     uint64_t garbled;      /* lines or messages that could not be read */
     uint64_t error_frames; /* error messages of the interface */
+    uint64_t departures;   /* peers that have gone; an interface does not know of any */
 };
 
 enum link_wait_result {
@@ -116,6 +117,9 @@ const char *link_get_address(const struct link *link);
 
 /* A peer is there to hear us: false before somebody has opened the channel of a pty or a server. */
 bool link_has_peer(const struct link *link);
+
+/* Peers that go are counted. */
+bool link_hears_departures(const struct link *link);
 
 /* What has gone wrong, for a message; empty: nothing. Stays after LINK_BROKEN. */
 const char *link_get_problem(const struct link *link);

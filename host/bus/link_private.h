@@ -36,6 +36,7 @@ struct link {
     struct link_counts counts;
     struct wire_listener observer;
     bool broken;
+    bool hears_departures; /* peers that go are counted */
     uint64_t wake_ns; /* link_wait looks again at this time, though nothing comes; 0: no need */
     char address[LINK_NAME_MAX + 1];
     char problem[LINK_ERROR_MAX + 1];

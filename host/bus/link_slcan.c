@@ -141,6 +141,7 @@ static void lose_peer(struct link *link)
 {
     struct slcan_link *s = link->state;
     stream_close(&s->peer);
+    link->counts.departures++;
     if (s->listener >= 0)
         s->channel_open = false;
     else
@@ -317,6 +318,7 @@ static bool open_listener(struct link *link, const struct link_spec *spec, struc
     if (s->listener < 0)
         return link_refuse(error, "bus %s: the port cannot be opened: %s", link->address, problem);
     s->is_adapter = true;
+    link->hears_departures = true;
     (void)snprintf(link->address, sizeof link->address, "%s", address);
     return true;
 }

@@ -36,6 +36,7 @@ struct server {
     int listener;
     char bus[LINK_NAME_MAX + 1];
     struct client client[CLIENTS_MAX];
+    unsigned known; /* of them, when departures were counted last */
 };
 
 static void drop(struct client *client)
@@ -217,13 +218,26 @@ static void serve_client(struct link *link, struct client *client, short events)
         drop(client);
 }
 
+static void count_departures(struct link *link)
+{
+    struct server *server = link->state;
+    unsigned present = 0;
+    for (unsigned i = 0; i < CLIENTS_MAX; i++)
+        present += server->client[i].stream.fd >= 0;
+    if (present < server->known)
+        link->counts.departures += server->known - present;
+    server->known = present;
+}
+
 static void server_serve(struct link *link, const struct pollfd *fds, unsigned count)
 {
     struct server *server = link->state;
     (void)count;
+    count_departures(link);
     for (unsigned i = 0; i < CLIENTS_MAX; i++)
         if (fds[i].revents != 0 && server->client[i].stream.fd >= 0)
             serve_client(link, &server->client[i], fds[i].revents);
+    count_departures(link);
     if (fds[CLIENTS_MAX].revents != 0)
         accept_client(server);
     if (link->wake_ns != 0)
@@ -285,6 +299,7 @@ bool link_serve_socketcand(struct link *link, const struct link_spec *spec,
     (void)snprintf(server->bus, sizeof server->bus, "%s", spec->name);
     (void)snprintf(link->address, sizeof link->address, "%s", address);
     link->ops = &ops;
+    link->hears_departures = true;
     link->state = server;
     return true;
 }

@@ -182,23 +182,31 @@ static bool any_enabled(const struct virtual_drives *set)
     return false;
 }
 
-void virtual_drives_wait(struct virtual_drives *set, uint32_t waited_ns)
+void virtual_drives_wait(struct virtual_drives *set, uint32_t waited_ns, uint64_t patience_ns)
 {
     uint32_t period_us = sync_period_us(set);
-    uint64_t patience_ns = (uint64_t)shortest_heartbeat_ms(set) * MILLISECOND_NS * 2 / 3;
-    if (period_us == 0 || (set->silent_ns < patience_ns && !any_enabled(set)))
+    if (set->is_left)
+        patience_ns = (uint64_t)shortest_heartbeat_ms(set) * MILLISECOND_NS * 2 / 3;
+    if (period_us == 0 || (set->alone_ns == 0 && !any_enabled(set)))
         return;
     set->silent_ns += waited_ns;
     for (; set->silent_ns >= patience_ns + set->alone_ns; set->alone_ns += period_us * 1000)
         virtual_drives_step(set, period_us * 1000);
 }
 
+void virtual_drives_leave(struct virtual_drives *set)
+{
+    set->is_left = true;
+}
+
 bool virtual_drives_take_by_sync(struct virtual_drives *set, const struct can_frame *frame)
 {
     uint32_t period_us = sync_period_us(set);
     bool is_sync = virtual_drive_is_sync(&set->drive[0], frame);
-    if (is_sync)
+    if (is_sync) {
+        set->is_left = false;
         set->silent_ns = set->alone_ns = 0;
+    }
     if (is_sync && period_us != 0 && set->has_sync)
         virtual_drives_step(set, period_us * 1000);
     virtual_drives_take(set, frame);

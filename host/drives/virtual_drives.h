@@ -38,6 +38,7 @@ struct virtual_drives {
     /* Not on the embedded bus: the drives hear each other, too. */
     struct can_port port;
     bool has_sync;      /* one has come since SYNC is the clock */
+    bool is_left;       /* since then somebody has left */
     uint64_t silent_ns; /* real time since the last one */
     uint64_t alone_ns;  /* that the drives' time has gone on without it */
     struct virtual_drives_port way[VIRTUAL_DRIVES_MAX];
@@ -88,11 +89,13 @@ void virtual_drives_step(struct virtual_drives *set, uint32_t cycle_ns);
 
 /*
  * Real time has gone by for drives that take SYNC for their clock. Their time stands still meanwhile, since a controller
- * may take as long over a cycle as it likes; but not longer than a dead one is to be noticed: when enabled drives have had
- * no SYNC for two thirds of the shortest heartbeat time they watch (object 1016), time goes on by itself until the next
- * SYNC. The last third is for their supervision and for braking.
+ * may take as long over a cycle as it likes; but a dead one must be noticed. When enabled drives have had no SYNC for
+ * patience_ns, or since the controller has left for two thirds of the shortest heartbeat time they watch (object 1016),
+ * time goes on by itself until the next SYNC. The last third is for their supervision and for braking.
  */
-void virtual_drives_wait(struct virtual_drives *set, uint32_t waited_ns);
+void virtual_drives_wait(struct virtual_drives *set, uint32_t waited_ns, uint64_t patience_ns);
+/* The controller, or another one on the bus, has left; or nobody can hear it if it does: then before every wait. */
+void virtual_drives_leave(struct virtual_drives *set);
 
 /* Time since power-on, and since when all drives are enabled (INJECT_ALWAYS: they have not been). */
 const struct inject_clock *virtual_drives_get_clock(const struct virtual_drives *set);

@@ -15,6 +15,9 @@
 /* Cycles a drive makes up for when it has been kept from running; what is more is lost time. */
 #define CYCLES_BEHIND_MAX 100
 
+/* A controller that says nothing for so long is given up, as drives are by it (takt/lockstep.h). */
+#define PATIENCE_NS UINT64_C(5000000000)
+
 struct eds_text {
     char *bytes;
     size_t length;
@@ -25,7 +28,8 @@ struct drive_service {
     struct link *link;
     struct can_port port;
     uint64_t cycle_ns;
-    uint64_t next_ns; /* end of the cycle under way, by link_clock_ns */
+    uint64_t next_ns;    /* end of the cycle under way, by link_clock_ns */
+    uint64_t departures; /* of others, seen so far */
     struct bus_log bus_log;
     struct eds_text eds[VIRTUAL_DRIVES_MAX];
     struct virtual_drives set;
@@ -118,6 +122,15 @@ static void take_frames(struct drive_service *service)
     }
 }
 
+static void look_who_left(struct drive_service *service)
+{
+    const uint64_t departures = link_get_counts(service->link)->departures;
+
+    if (departures != service->departures || !link_hears_departures(service->link))
+        virtual_drives_leave(&service->set);
+    service->departures = departures;
+}
+
 /* The cycles that have gone by on the wall clock. */
 static void keep_time(struct drive_service *service)
 {
@@ -128,7 +141,7 @@ static void keep_time(struct drive_service *service)
         service->next_ns = now_ns;
     for (; service->next_ns <= now_ns; service->next_ns += service->cycle_ns) {
         if (by_sync)
-            virtual_drives_wait(&service->set, (uint32_t)service->cycle_ns);
+            virtual_drives_wait(&service->set, (uint32_t)service->cycle_ns, PATIENCE_NS);
         else
             virtual_drives_step(&service->set, (uint32_t)service->cycle_ns);
     }
@@ -142,6 +155,7 @@ static enum command_status run(struct drive_service *service)
             return STATUS_ENVIRONMENT;
         }
         take_frames(service);
+        look_who_left(service);
         keep_time(service);
         bus_log_keep(&service->bus_log);
     }

@@ -52,7 +52,7 @@ class Proxy:
 
     def __init__(self, drives_address):
         host, port = drives_address.rsplit(":", 1)
-        self.drives = socket.create_connection((host, int(port)))
+        self.place = host, int(port)
         self.listener = socket.create_server(("127.0.0.1", 0))
         self.address = "127.0.0.1:%d" % self.listener.getsockname()[1]
         self.changed = threading.Condition()
@@ -65,16 +65,28 @@ class Proxy:
         self.status = [0] * AXES
         self.actual = [None] * AXES
         self.beats = [0] * AXES
-        self.emergencies = [0] * AXES
         self.reports = [0] * AXES
         self.controller = None
-        self.sockets = [self.listener, self.drives]
-        self.threads = [
-            threading.Thread(target=self.serve_controllers, daemon=True),
-            threading.Thread(target=self.pump, args=(self.drives, self.from_drive, self.to_controller), daemon=True),
-        ]
-        for thread in self.threads:
-            thread.start()
+        self.sockets = [self.listener]
+        self.threads = []
+        self.meet_drives()
+        self.begin(self.serve_controllers)
+
+    def begin(self, *work):
+        self.threads.append(threading.Thread(target=work[0], args=work[1:], daemon=True))
+        self.threads[-1].start()
+
+    def meet_drives(self):
+        self.drives = socket.create_connection(self.place)
+        self.sockets.append(self.drives)
+        self.begin(self.pump, self.drives, self.from_drive, self.to_controller)
+
+    def meet_drives_again(self):
+        """A controller that goes is gone for the drives as well; but we stay to watch them."""
+        self.drives.shutdown(socket.SHUT_RDWR)
+        self.beats = [0] * AXES
+        self.meet_drives()
+        self.drives.sendall(b"O\r")
 
     def serve_controllers(self):
         while self.is_open:
@@ -86,6 +98,10 @@ class Proxy:
             self.controller.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
             self.is_gone = False
             self.pump(self.controller, self.from_controller, self.drives.sendall)
+            try:
+                self.meet_drives_again()
+            except OSError:
+                return
             with self.changed:
                 self.is_gone = True
                 self.changed.notify_all()
@@ -145,8 +161,6 @@ class Proxy:
             self.reports[axis] += 1
         elif number & 0x780 == 0x700:
             self.beats[axis] += 1
-        elif number & 0x780 == 0x080 and data[:2] != b"\0\0":
-            self.emergencies[axis] += 1
 
     def all_enabled(self):
         return all(status & 0x6F == 0x27 for status in self.status)
@@ -171,8 +185,8 @@ class Proxy:
         return [actual / INC_PER_MM for actual in self.actual]
 
     def wait_for_beats(self, count):
-        goal = [beats + count for beats in self.beats]
-        self.wait(lambda: all(beats >= wanted for beats, wanted in zip(self.beats, goal)), "the drives' heartbeats go on")
+        """So many of every drive, since the controller has gone."""
+        self.wait(lambda: self.is_gone and min(self.beats) >= count, "the drives' time goes on")
 
     def pass_time(self):
         """A heartbeat of time, if the drives still take SYNC for their clock; else more, which does no harm."""
@@ -181,7 +195,6 @@ class Proxy:
     def cut(self):
         """The bus between controller and drives goes down, for the controller to see."""
         controller, self.controller = self.controller, None
-        self.emergencies = [0] * AXES
         try:
             controller.shutdown(socket.SHUT_RDWR)
         except OSError as error:
@@ -196,7 +209,7 @@ class Proxy:
             except OSError:
                 pass
         for thread in self.threads:
-            thread.join()
+            thread.join(p.PATIENCE_S)
         for one in self.sockets:
             one.close()
 
@@ -277,17 +290,13 @@ class Outside:
 
     def judge_drives_alone(self):
         """The controller is gone: the drives rest by themselves. Their heartbeats are the clock."""
-        self.proxy.wait(lambda: all(self.proxy.emergencies) or self.proxy.none_enabled(), "every drive finds the controller lost")
-        if all(self.proxy.emergencies):
-            self.proxy.wait_for_beats(2)
-        else: # they had been stopped before, and may still brake
-            self.proxy.pass_time()
-            self.proxy.ask_positions()
-        self.judge_standstill(self.proxy.pass_time)
+        self.proxy.wait_for_beats(2)
+        self.judge_standstill(lambda: self.proxy.wait_for_beats(3))
 
     def close(self):
+        self.drives.process.kill() # what the proxy still says to them ends with them
+        self.drives.process.wait()
         self.proxy.close()
-        self.drives.process.kill()
 
 
 class Moment:

@@ -287,19 +287,31 @@ static void leave_alone_in_motion(void)
 }
 
 #define HEARTBEAT_MS 100
+#define PATIENCE_NS  UINT64_C(5000000000)
+
+static void wait_ms(unsigned count)
+{
+    for (unsigned ms = 0; ms < count; ms++)
+        virtual_drives_wait(&outside, CYCLE_NS, PATIENCE_NS);
+}
+
+static void expect_time_stands_for(unsigned ms)
+{
+    const uint64_t before_ns = virtual_drives_get_clock(&outside)->now_ns;
+    wait_ms(ms - 1);
+    TEST_ASSERT_TRUE(virtual_drives_get_clock(&outside)->now_ns == before_ns);
+    (void)take(0x080, 0, 0, 0);
+    TEST_ASSERT_TRUE(virtual_drives_get_clock(&outside)->now_ns == before_ns + CYCLE_NS);
+}
 
 static void test_time_of_drives_waits_for_a_slow_controller(void)
 {
     leave_alone_in_motion();
-    const uint64_t before_ns = virtual_drives_get_clock(&outside)->now_ns;
-    for (unsigned ms = 0; ms < 2 * HEARTBEAT_MS - 1; ms++)
-        virtual_drives_wait(&outside, CYCLE_NS);
-    TEST_ASSERT_TRUE(virtual_drives_get_clock(&outside)->now_ns == before_ns);
-    (void)take(0x080, 0, 0, 0);
-    TEST_ASSERT_TRUE(virtual_drives_get_clock(&outside)->now_ns == before_ns + CYCLE_NS);
-    for (unsigned ms = 0; ms < 2 * HEARTBEAT_MS - 1; ms++)
-        virtual_drives_wait(&outside, CYCLE_NS);
-    TEST_ASSERT_TRUE(virtual_drives_get_clock(&outside)->now_ns == before_ns + CYCLE_NS);
+    expect_time_stands_for(5000);
+    expect_time_stands_for(5000);
+    virtual_drives_leave(&outside); /* somebody else, it turns out */
+    expect_time_stands_for(2 * HEARTBEAT_MS);
+    expect_time_stands_for(5000);
     TEST_ASSERT_EQUAL_INT(CIA402_ENABLED, virtual_drive_get_state(&outside.drive[0]));
 }
 
@@ -308,17 +320,23 @@ static void test_axes_of_a_dead_controller_rest_within_three_heartbeats(void)
 {
     double before_mm, after_mm;
     leave_alone_in_motion();
-    for (unsigned ms = 0; ms < 3 * HEARTBEAT_MS; ms++)
-        virtual_drives_wait(&outside, CYCLE_NS);
+    virtual_drives_leave(&outside);
+    wait_ms(3 * HEARTBEAT_MS);
     before_mm = virtual_drive_get_position_mm(&outside.drive[0]);
     for (unsigned i = 0; i < DRIVES; i++)
         TEST_ASSERT_EQUAL_INT(CIA402_SWITCH_ON_DISABLED,
                               virtual_drive_get_state(&outside.drive[i]));
-    for (unsigned ms = 0; ms < HEARTBEAT_MS; ms++)
-        virtual_drives_wait(&outside, CYCLE_NS);
+    wait_ms(HEARTBEAT_MS);
     after_mm = virtual_drive_get_position_mm(&outside.drive[0]);
     TEST_ASSERT_TRUE(before_mm > 45);
     TEST_ASSERT_TRUE(fabs(after_mm - before_mm) < 0.01); /* below 0.1 mm/s */
+}
+
+static void test_axes_of_a_controller_that_hangs_rest_after_its_patience(void)
+{
+    leave_alone_in_motion();
+    wait_ms(5000 + HEARTBEAT_MS);
+    TEST_ASSERT_EQUAL_INT(CIA402_SWITCH_ON_DISABLED, virtual_drive_get_state(&outside.drive[0]));
 }
 
 /* Nobody enabled, nothing to stop: a controller that boots drives may take its time. */
@@ -328,8 +346,8 @@ static void test_time_of_drives_without_torque_waits_as_long_as_it_takes(void)
     for (unsigned node = 1; node <= DRIVES; node++)
         write_object(node, SDO_OBJECT(0x1006, 0), 4, 1000);
     (void)take(0x080, 0, 0, 0);
-    for (unsigned ms = 0; ms < 10 * HEARTBEAT_MS; ms++)
-        virtual_drives_wait(&outside, CYCLE_NS);
+    virtual_drives_leave(&outside);
+    wait_ms(10 * HEARTBEAT_MS);
     TEST_ASSERT_TRUE(virtual_drives_get_clock(&outside)->now_ns == 0);
 }
 
@@ -340,6 +358,7 @@ int main(void)
     RUN_TEST(test_sync_is_the_clock_when_all_drives_have_been_told_its_period);
     RUN_TEST(test_time_of_drives_waits_for_a_slow_controller);
     RUN_TEST(test_axes_of_a_dead_controller_rest_within_three_heartbeats);
+    RUN_TEST(test_axes_of_a_controller_that_hangs_rest_after_its_patience);
     RUN_TEST(test_time_of_drives_without_torque_waits_as_long_as_it_takes);
     RUN_TEST(test_drives_of_one_process_hear_each_other);
     RUN_TEST(test_the_clock_knows_when_all_drives_are_enabled_first);
