@@ -246,7 +246,7 @@ static void move(struct product *p, struct motion *m, const struct motion_operat
 
     point_at(p, m, landed, &at);
     limit_axes(p, m, &at);
-    handover_add_cycle(m, &at, way_mm / p->config.cycle_s, landed, record);
+    handover_add_cycle(m, &at, way_mm / p->config.cycle_s * first_block(m)->scale, landed, record);
     record->override_percent = 100.0 * p->override.now;
     record->limiter = limiter;
     p->landed = landed && !rests;

@@ -355,6 +355,15 @@ static void follow_handed_over(struct controller *c, const struct motion_operato
     c->has_record = true;
 }
 
+/* A fault of the planner; the axes stand. */
+static void fail_stalled(struct controller *c)
+{
+    struct diagnostic stalled;
+
+    diagnostic_set(&stalled, TAKT_ERROR_STALLED, motion_stalled_line(&c->motion), 0, "", 0, 0.0);
+    controller_fail(c, &stalled);
+}
+
 static void follow_path(struct controller *c, const struct inputs *in)
 {
     const struct motion_operator asked = operator_of(c, in);
@@ -373,6 +382,9 @@ static void follow_path(struct controller *c, const struct inputs *in)
         break;
     case MOTION_EMPTY:
         controller_end_in_error(c);
+        break;
+    case MOTION_STALLED:
+        fail_stalled(c);
         break;
     }
 }

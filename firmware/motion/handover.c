@@ -30,7 +30,7 @@ void handover_add_cycle(struct motion *m, const struct point *at, double feed_mm
     record->cycle = m->cycles;
     record->block = b->number;
     record->line = b->move.line;
-    record->feed_mm_s = feed_mm_s * b->scale;
+    record->feed_mm_s = feed_mm_s;
     record->override_percent = 100.0;
     record->limiter = 1.0;
     record->cmd = *at;

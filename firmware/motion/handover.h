@@ -18,7 +18,7 @@ void handover_allow_all(struct motion *m);
 /* The same, but blocks in which rotary axes move stay motion's. Before anything is pushed onto its path. */
 void handover_allow_linear(struct motion *m);
 
-/* A cycle was made in the path's oldest block. feed: along the path. Fills the record as motion_cycle. */
+/* A cycle was made in the path's oldest block. feed: of the setpoint, as it is programmed. Fills the record as motion_cycle. */
 void handover_add_cycle(struct motion *m, const struct point *at, double feed_mm_s, bool landed,
                         struct cycle_record *record);
 

@@ -241,7 +241,7 @@ bool lead_step(struct lead *l, uint64_t setpoint, bool hold, struct lead_start *
     if (l->standing) {
         return false;
     }
-    const bool too_fast = lead_seek_halt(l);
+    const bool too_fast = l->halt.on && lead_seek_halt(l);
 
     l->before = l->at;
     follow_landing(l);

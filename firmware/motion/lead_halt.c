@@ -155,7 +155,7 @@ bool lead_seek_halt(struct lead *l)
     const uint64_t end = h->end;
 
     h->found = false;
-    if (!h->on || l->run.active || !find_end(l, l->here.ceiling)) {
+    if (l->run.active || !find_end(l, l->here.ceiling)) {
         return false;
     }
     h->found = can_rest(l, found && h->end == end);

@@ -156,7 +156,7 @@ static bool is_as_planned(const struct lead *l, const struct ceiling *c, uint32_
 
     return path_mm(c->origin, l->before) < c->end_mm[k] &&
            l->feed * l->feed <= energy * (1.0 + LEAD_ENERGY_SLACK) &&
-           can_meet(c, k + 1, path_mm(c->origin, l->at), energy_of(l), false);
+           can_meet(c, k + 1, brake_position(l, c), energy_of(l), false);
 }
 
 /* From piece k to the next, past its end. */
@@ -172,7 +172,7 @@ static bool may_enter(const struct lead *l, const struct ceiling *c, uint32_t k)
         !lead_can_halt(l, (double)p->acceleration)) {
         return false;
     }
-    if (is_as_planned(l, c, k) || is_no_lower(l, c, k + 1)) {
+    if (is_no_lower(l, c, k + 1) || is_as_planned(l, c, k)) {
         return true;
     }
     return l->feed * lead_entry_cycles(l) <= path_mm(l->at, start) &&

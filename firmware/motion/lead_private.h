@@ -113,7 +113,7 @@ static inline void lead_approach_landing(struct lead *l, bool hold, struct lead_
         lead_consider_landing(l, hold, b);
     }
 }
-/* lead_halt.c: looks for the end to halt at (halt.found). True: it is too fast for the next one. */
+/* lead_halt.c: with halt.on: looks for the end to halt at (halt.found). True: it is too fast for the next one. */
 bool lead_seek_halt(struct lead *l);
 /* lead_halt.c: how hard it brakes for it, mm/cycle2; and could it come to rest there if it braked by a? */
 double lead_halt_acceleration(const struct lead *l);

@@ -4,11 +4,12 @@
 #include "base/maths.h"
 #include "plan/path_unit.h"
 #include "plan/span.h"
+#include "smooth/single.h"
 
 #include <assert.h>
 #include <string.h>
 
-/* A setpoint this close to the end of a landed block is on it: rounding of the lead point's positions, path units. */
+/* A setpoint this close to a joint that it lands on in motion is on it: rounding of the lead point's positions, path units. */
 #define LANDED_UNITS 8.0
 
 /* A ceiling that had no room for all blocks is made anew when the lead point has gone this part of its length. */
@@ -299,6 +300,12 @@ static bool ends_at_rest(const struct motion *m)
     return span_stops(m->path, m->path->first);
 }
 
+/* Does the setpoint fall on the joint behind the oldest block in motion, but for rounding? At rest it is there exactly. */
+static bool lands(const struct motion *m)
+{
+    return span_lands(m->path, m->path->first);
+}
+
 /*
  * The setpoint's distance from the start of its block and that one's length, path units, after passing the blocks that it
  * has left from b on: those are not read.
@@ -310,8 +317,9 @@ static double find_block(struct motion *m, const struct block *b, double *length
     double local = (double)(int64_t)(m->lead.at - start) - m->lag;
 
     *length = (double)b->length;
-    for (unsigned passed = 0; local > *length + LANDED_UNITS; passed++) {
-        if (passed == PASS_MAX || ends_at_rest(m)) {
+    for (unsigned passed = 0; local > *length; passed++) {
+        if (passed == PASS_MAX || ends_at_rest(m) ||
+            (local <= *length + LANDED_UNITS && lands(m))) {
             break;
         }
         path_pass(m->path);
@@ -337,7 +345,7 @@ static void place(struct motion *m, const struct block *b, double local, double 
     if (local == 0.0) {
         return;
     }
-    if (maths_abs(local - length) <= LANDED_UNITS) {
+    if (maths_abs(local - length) <= LANDED_UNITS && (local == length || lands(m))) {
         m->done = ends_at_rest(m) && m->lead.standing && m->lag == 0.0;
         m->rested = 0;
         record->landed =
@@ -348,6 +356,21 @@ static void place(struct motion *m, const struct block *b, double local, double 
     const double s_mm = local / PATH_UNITS_PER_MM * b->scale;
 
     curve_point(&b->curve, maths_clamp(s_mm, 0.0, b->curve.length_mm), &m->at);
+}
+
+/* Of the way from one setpoint to the next, of A, B, C where they are alone. */
+static double feed_between(const struct motion *m, const struct block *b, const struct point *from)
+{
+    const int first = b->rotary ? AXIS_LINEAR_COUNT : 0;
+    const int end = b->rotary ? AXIS_COUNT : AXIS_LINEAR_COUNT;
+    float square = 0.0F;
+
+    for (int i = first; i < end; i++) {
+        const float way = (float)(m->at.at[i] - from->at[i]);
+
+        square += way * way;
+    }
+    return (double)(single_sqrt(square) / (float)m->cycle_s);
 }
 
 /* The lead point moves and its average with it. */
@@ -380,6 +403,7 @@ static bool may_leave(const struct motion *m, const struct motion_operator *want
 static const struct block *move_on(struct motion *m, const struct motion_operator *wanted,
                                    const struct block *b, struct cycle_record *record)
 {
+    struct point before;
     double length;
 
     if (may_leave(m, wanted)) {
@@ -388,7 +412,9 @@ static const struct block *move_on(struct motion *m, const struct motion_operato
     if (is_halted(m)) {
         lead_leave_halt(&m->lead);
     }
-    lead_end_blocks(&m->lead, wanted->single_block);
+    if (m->lead.halt.on != wanted->single_block) {
+        lead_end_blocks(&m->lead, wanted->single_block);
+    }
     m->rested++;
     move_lead(m, is_held(m, wanted));
 
@@ -397,26 +423,51 @@ static const struct block *move_on(struct motion *m, const struct motion_operato
     if (m->current != m->passed_first) {
         b = first_block(m);
     }
+    const bool smooth = b->curve.kind == CURVE_SPLINE; /* its path is nominal time */
+
+    if (smooth) {
+        before = m->at;
+    }
     place(m, b, local, length, record);
+    record->feed_mm_s = smooth ? feed_between(m, b, &before) : m->feed / m->cycle_s * b->scale;
     return b;
 }
 
 /* The axis velocity limiter: what an override above 100 % is cut down to. */
 static double limiter_of(const struct motion *m, const struct block *b)
 {
-    const double wanted = b->feed_program_mm_s * m->request.feed_ratio;
-
     if (b->move.kind == MOVE_RAPID || m->request.feed_ratio <= 1.0) {
         return 1.0;
     }
-    return maths_min(1.0, b->feed_cap_mm_s / wanted);
+    return maths_min(1.0, b->feed_cap_mm_s / (b->feed_program_mm_s * m->request.feed_ratio));
 }
 
-/* At rest: what is left of the path is dropped. */
-static void end_path(struct motion *m)
+/* In a cycle that has little else to do. Where it has stalled the axes come to rest, and that is the end. */
+static void watch(struct motion *m, const struct motion_operator *wanted, const struct block *b)
+{
+    if (m->busy || m->cycles % WATCH_EVERY_CYCLES != WATCH_EVERY_CYCLES - 1) {
+        return;
+    }
+    m->busy = true;
+    if (!watch_look(m, !is_held(m, wanted) && !wanted->wait)) {
+        m->watch.line = b->move.line;
+        m->ending = true;
+    }
+}
+
+uint32_t motion_stalled_line(const struct motion *m)
+{
+    return m->watch.line;
+}
+
+/* At rest: what is left of the path is dropped; false: it has stalled, and nothing follows. */
+static bool end_path(struct motion *m)
 {
     if (m->lead.feed > 0.0 || m->lag != 0.0) {
-        return;
+        return true;
+    }
+    if (m->watch.line != 0) {
+        return m->feed != 0.0;
     }
     path_restart(m->path, &m->at, m->lead.at);
     lead_init(&m->lead, m->path->limits.law, m->lead.at);
@@ -425,6 +476,7 @@ static void end_path(struct motion *m)
     m->done = false;
     m->ending = false;
     m->restarts++;
+    return true;
 }
 
 void motion_end_here(struct motion *m)
@@ -447,7 +499,6 @@ static void fill_record(struct motion *m, const struct block *b, struct cycle_re
     record->cycle = m->cycles;
     record->block = b->number;
     record->line = b->move.line;
-    record->feed_mm_s = m->feed / m->cycle_s * b->scale;
     record->override_percent = 100.0 * m->request.feed_ratio;
     record->limiter = block_is_motion(b) ? limiter_of(m, b) : 1.0;
     record->cmd = m->at;
@@ -481,10 +532,16 @@ enum motion_result motion_cycle(struct motion *m, const struct motion_operator *
         return result;
     }
     record->landed = false;
+    record->feed_mm_s = 0.0;
     m->feed = 0.0;
-    b = b != NULL ? move_on(m, wanted, b, record) : motion_block(m);
-    if (m->ending) {
-        end_path(m);
+    if (b != NULL) {
+        b = move_on(m, wanted, b, record);
+        watch(m, wanted, b);
+    } else {
+        b = motion_block(m);
+    }
+    if (m->ending && !end_path(m)) {
+        return MOTION_STALLED;
     }
     read_ahead(m);
     fill_record(m, b, record);

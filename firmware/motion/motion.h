@@ -12,6 +12,7 @@
 #include "motion/average.h"
 #include "motion/cycle_record.h"
 #include "motion/lead.h"
+#include "motion/watch.h"
 #include "plan/ceiling.h"
 #include "plan/path.h"
 
@@ -25,6 +26,7 @@ enum motion_result {
     MOTION_DONE,    /* the end of the program has been reached: no cycle was made */
     MOTION_NOT_YET, /* nothing has been planned yet: no cycle was made */
     MOTION_EMPTY,   /* everything has been done, but no end of program came: no cycle was made */
+    MOTION_STALLED, /* the path is not gone on along, for no reason (watch.h): no cycle was made */
     MOTION_HANDED_OVER /* the axes stand where a block begins that follows the spindle (handover.h): no cycle was made */
 };
 
@@ -79,6 +81,7 @@ struct motion {
     bool hands_over;     /* blocks that follow the spindle are executed by others: handover.h */
     bool hands_over_all; /* and so are all others but probing moves */
     bool keeps_rotary;   /* but motions of rotary axes */
+    struct watch watch;
 };
 
 /* start: where the machine stands. The path is read here, and passed; it must outlive m. */
@@ -106,6 +109,9 @@ void motion_end_here(struct motion *m);
 
 /* Did the setpoint stand at the end of the last cycle? */
 bool motion_rests(const struct motion *m);
+
+/* Where the path is not gone on along: line of the program. After MOTION_STALLED. */
+uint32_t motion_stalled_line(const struct motion *m);
 
 /* Has everything on the path been done? */
 bool motion_is_idle(const struct motion *m);

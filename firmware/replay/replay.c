@@ -341,14 +341,14 @@ static double distance(const struct point *a, const struct point *b)
     return maths_sqrt(sum);
 }
 
-/* All blocks have been passed but the last one, and it ends where the curve does. */
+/* All blocks have been passed but the last one, and it ends where the curve does, but for half a quantum of each axis. */
 static bool ends_well(const struct replay *r, const struct motion *m)
 {
     struct point at = m->at;
 
     point_at(r, &at);
     return r->blocks + 1 == r->section.blocks &&
-           distance(&at, &path_first(m->path)->curve.end) <= START_MAX_MM;
+           distance(&at, &path_first(m->path)->curve.end) <= START_MAX_MM + r->quantum_mm;
 }
 
 static void end_section(struct replay *r, struct motion *m, struct point *at)

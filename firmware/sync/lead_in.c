@@ -2,21 +2,25 @@
 
 #include "base/maths.h"
 
-/* Room for a spindle that goes faster than when the cam was made. */
-#define ROOM 1.05
-
 /* Peaks of the first and second derivative of s(u) = 10 u^3 - 15 u^4 + 6 u^5. */
 #define PEAK_FIRST  1.875
 #define PEAK_SECOND 5.7736
 
+/*
+ * Its jerk is that of the middle of each cycle. Over fewer than three of them their sum depends on where they fall, and
+ * takes the axes back: by 12 times the way over one cycle.
+ */
+#define CYCLES_MIN 4.0
+
 /* Velocity follows s(t/T) up to v = pitch speed: T = max(PEAK_FIRST v/A, sqrt(PEAK_SECOND v/J)), way = speed T. */
-double lead_in_way(double pitch_mm, double speed_rev_s, const struct brake_limits *limits)
+double lead_in_way(double pitch_mm, double speed_rev_s, const struct brake_limits *limits,
+                   double cycle_s)
 {
-    const double v = ROOM * pitch_mm * speed_rev_s;
+    const double v = LEAD_IN_ROOM * pitch_mm * speed_rev_s;
     const double time_s = maths_max(PEAK_FIRST * v / limits->acceleration_mm_s2,
                                     maths_sqrt(PEAK_SECOND * v / limits->jerk_mm_s3));
 
-    return ROOM * speed_rev_s * time_s;
+    return LEAD_IN_ROOM * speed_rev_s * maths_max(time_s, CYCLES_MIN * cycle_s);
 }
 
 bool lead_in_is_over(const struct lead_in *l, double rev)

@@ -18,6 +18,9 @@
 
 #include <stdbool.h>
 
+/* For a spindle that goes faster than when the cam was made. */
+#define LEAD_IN_ROOM 1.05
+
 struct lead_in {
     double pitch_mm;
     double zero_rev;
@@ -31,7 +34,8 @@ struct lead_in_place {
 };
 
 /* The way that a spindle of so many rev/s > 0 needs: the axes then keep their acceleration and jerk. */
-double lead_in_way(double pitch_mm, double speed_rev_s, const struct brake_limits *limits);
+double lead_in_way(double pitch_mm, double speed_rev_s, const struct brake_limits *limits,
+                   double cycle_s);
 
 /* For an angle up to the end of the cam, and on the thread behind it. */
 struct lead_in_place lead_in_at(const struct lead_in *l, double rev);

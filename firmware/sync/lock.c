@@ -196,13 +196,22 @@ static double zero_angle(const struct lock *l, double rev)
     return base + maths_ceil(rev + 0.5 * l->lead_in.way_rev - base);
 }
 
+/* That the lead-in is made for: one that is below the command now, by more than its room, may come up to it. */
+static double lead_in_speed(const struct lock *l, double now_rev_s)
+{
+    const double commanded = maths_abs(l->before_rpm) / SECONDS_PER_MINUTE;
+
+    return LEAD_IN_ROOM * now_rev_s < commanded ? commanded : now_rev_s;
+}
+
 static void start(struct lock *l)
 {
     const struct lock_view now = view(l, l->config.ahead_cycles);
 
     chain_extend(&l->chain);
     l->lead_in.pitch_mm = l->at.pitch_mm;
-    l->lead_in.way_rev = lead_in_way(l->at.pitch_mm, now.speed, &l->chain.limits);
+    l->lead_in.way_rev = lead_in_way(l->at.pitch_mm, lead_in_speed(l, now.speed), &l->chain.limits,
+                                     l->config.cycle_s);
     if (l->taps) {
         set_tap(l);
     }
@@ -433,14 +442,14 @@ static void set_point(const struct lock *l, struct point *at)
 static void report(struct lock *l, struct motion *m, double before_mm, struct cycle_record *record)
 {
     const bool landed = has_landed(l);
-    const double feed = maths_abs(l->follower.at.x_mm - before_mm) / l->config.cycle_s;
+    const double way_mm = maths_abs(l->follower.at.x_mm - before_mm) * path_first(m->path)->scale;
     struct point at;
 
     at = landed ? path_first(m->path)->curve.end : m->at;
     if (l->phase == LOCK_FOLLOWS && !landed) {
         set_point(l, &at);
     }
-    handover_add_cycle(m, &at, feed, landed, record);
+    handover_add_cycle(m, &at, way_mm / l->config.cycle_s, landed, record);
     if (landed) {
         finish(l, m);
     }

@@ -68,6 +68,54 @@ static double braking_cycles(const struct compile_config *config)
     return maths_ceil(rate_brake_cycles(&rate) / REPLAY_BRAKE_INTERVALS_MAX);
 }
 
+/* Third differences of an axis's control points: J h^3 at most, 2 A h^2 and 4 V h. */
+static double largest_third(const struct plan_limits *of, int axis, double step_s)
+{
+    const double by_jerk = of->jerk_mm_s3[axis] * step_s * step_s * step_s;
+    const double by_acceleration = 2 * of->acceleration_mm_s2[axis] * step_s * step_s;
+    const double by_velocity = 4 * of->velocity_mm_s[axis] * step_s;
+
+    return maths_min(by_jerk, maths_min(by_acceleration, by_velocity));
+}
+
+/* Bits of the quantum with knots so far apart: for the axis whose third differences are largest. */
+static uint32_t quantum_bits(const struct plan_limits *of, double step_s)
+{
+    double third_mm = 0;
+
+    for (int i = 0; i < AXIS_LINEAR_COUNT; i++) {
+        if ((of->axes & (1U << i)) != 0)
+            third_mm = maths_max(third_mm, largest_third(of, i, step_s));
+    }
+    return encoder_quantum_bits(third_mm);
+}
+
+static double quantum_mm(const struct plan_limits *of, double step_s)
+{
+    return 1 / (double)(UINT64_C(1) << quantum_bits(of, step_s));
+}
+
+/* J tau^3 of the axis that has the least. */
+static double least_jerk_mm(const struct plan_limits *of)
+{
+    double least = MATHS_INFINITY;
+
+    for (int i = 0; i < AXIS_LINEAR_COUNT; i++) {
+        if ((of->axes & (1U << i)) != 0)
+            least = maths_min(least, of->jerk_mm_s3[i]);
+    }
+    return least * of->cycle_s * of->cycle_s * of->cycle_s;
+}
+
+/* At the ends of sections setpoints go from whole quanta to where blocks end: no axis may see that as jerk. */
+static uint32_t fine_cycles(const struct plan_limits *of, uint32_t cycles)
+{
+    while (cycles > 1 &&
+           quantum_mm(of, cycles * of->cycle_s) > COMPILE_QUANTUM_PART * least_jerk_mm(of))
+        cycles--;
+    return cycles;
+}
+
 static uint32_t step_cycles(const struct compile_config *config)
 {
     const double cycle_s = 1e-6 * config->cycle_us;
@@ -75,7 +123,22 @@ static uint32_t step_cycles(const struct compile_config *config)
     const double wanted =
         (double)(uint32_t)(maths_min(crossing_s(config), 1) / (COMPILE_CROSSING_KNOTS * cycle_s));
 
-    return (uint32_t)maths_clamp(maths_max(wanted, braking_cycles(config)), 1, most);
+    return fine_cycles(&config->limits,
+                       (uint32_t)maths_clamp(maths_max(wanted, braking_cycles(config)), 1, most));
+}
+
+/*
+ * Rounding of control points to quanta changes third differences by four of them at most. The reserve but for what is kept
+ * for the rate is for that; what it takes more is left out of the jerk, of which half remains.
+ */
+static double usable_jerk(const struct compile *c, double jerk_mm_s3)
+{
+    const double step_s = c->limits.step_s;
+    const double rounding = 4 * quantum_mm(&c->config.limits, step_s) / (step_s * step_s * step_s);
+    const double least = maths_min((1 - COMPILE_RESERVE) * jerk_mm_s3,
+                                   (1 - COMPILE_RESERVE_KEPT) * jerk_mm_s3 - rounding);
+
+    return maths_max(least, 0.5 * jerk_mm_s3);
 }
 
 /* What the optimiser may use of the machine. */
@@ -91,7 +154,7 @@ static void set_limits(struct compile *c)
     for (int i = 0; i < AXIS_LINEAR_COUNT; i++) {
         c->limits.velocity_mm_s[i] = COMPILE_SPEED_PART * of->velocity_mm_s[i];
         c->limits.acceleration_mm_s2[i] = (1 - COMPILE_RESERVE) * of->acceleration_mm_s2[i];
-        c->limits.jerk_mm_s3[i] = (1 - COMPILE_RESERVE) * of->jerk_mm_s3[i];
+        c->limits.jerk_mm_s3[i] = usable_jerk(c, of->jerk_mm_s3[i]);
         c->exact.velocity_mm_s[i] = c->limits.velocity_mm_s[i];
         c->exact.acceleration_mm_s2[i] = c->limits.acceleration_mm_s2[i];
         c->exact.jerk_mm_s3[i] = c->limits.jerk_mm_s3[i];
@@ -101,16 +164,6 @@ static void set_limits(struct compile *c)
             c->limits.jerk_mm_s3[i] = 1;
         }
     }
-}
-
-/* Third differences of an axis's control points: J h^3 at most, 2 A h^2 and 4 V h. */
-static double largest_third(const struct plan_limits *of, int axis, double step_s)
-{
-    const double by_jerk = of->jerk_mm_s3[axis] * step_s * step_s * step_s;
-    const double by_acceleration = 2 * of->acceleration_mm_s2[axis] * step_s * step_s;
-    const double by_velocity = 4 * of->velocity_mm_s[axis] * step_s;
-
-    return maths_min(by_jerk, maths_min(by_acceleration, by_velocity));
 }
 
 static struct replay_header header_of(const struct compile *c)
@@ -124,8 +177,6 @@ static struct replay_header header_of(const struct compile *c)
         .text_crc = c->config.text_crc,
         .kept = 1 - COMPILE_RESERVE_KEPT,
     };
-    const double step_s = c->limits.step_s;
-    double third_mm = 0;
 
     for (int i = 0; i < AXIS_LINEAR_COUNT; i++) {
         if ((of->axes & (1U << i)) == 0)
@@ -133,9 +184,8 @@ static struct replay_header header_of(const struct compile *c)
         h.velocity_mm_s[i] = of->velocity_mm_s[i];
         h.acceleration_mm_s2[i] = of->acceleration_mm_s2[i];
         h.jerk_mm_s3[i] = of->jerk_mm_s3[i];
-        third_mm = maths_max(third_mm, largest_third(of, i, step_s));
     }
-    h.quantum_bits = encoder_quantum_bits(third_mm);
+    h.quantum_bits = quantum_bits(of, c->limits.step_s);
     return h;
 }
 
@@ -234,14 +284,20 @@ static bool is_worth_it(const struct compile *c, const struct trail *exact)
 }
 
 /* The section on its exact path, within every limit. */
-static bool drive_exactly(const struct compile *c, struct trail *trail)
+static bool drive_exactly(struct compile *c, struct trail *trail)
 {
-    if (!exact_trail(&c->path, &c->exact, false, trail))
+    if (!exact_trail(&c->path, &c->exact, c->config.stops, trail, &c->wrong.line))
         return false;
-    if (exact_is_legal(trail, &c->exact))
+    if (c->config.stops || exact_is_legal(trail, &c->exact))
         return true;
     trail_free(trail);
-    return exact_trail(&c->path, &c->exact, true, trail);
+    return exact_trail(&c->path, &c->exact, true, trail, &c->wrong.line);
+}
+
+static enum compile_result not_driven(struct compile *c)
+{
+    c->wrong.why = "the axes do not go on here, and nothing explains it: a fault of the planner";
+    return c->wrong.line != 0 ? COMPILE_UNFIT : COMPILE_MEMORY;
 }
 
 /* Plans and writes what has been collected. */
@@ -253,7 +309,7 @@ static enum compile_result end_section(struct compile *c)
     if (c->path.count == 0)
         return COMPILE_DONE;
     if (!drive_exactly(c, &trail))
-        return COMPILE_MEMORY;
+        return not_driven(c);
     result =
         c->config.tolerance_part > 0 && is_worth_it(c, &trail) ? optimise(c, &trail) : COMPILE_DONE;
     if (result == COMPILE_DONE) {

@@ -26,6 +26,9 @@
 #define COMPILE_RESERVE_KEPT 0.004
 #define COMPILE_SPEED_PART   0.9995
 
+/* A quantum is no more than this part of the least J tau^3, if there are so few cycles between knots. */
+#define COMPILE_QUANTUM_PART 0.05
+
 enum compile_result {
     COMPILE_DONE,
     COMPILE_STOPPED, /* as asked */
@@ -42,6 +45,7 @@ struct compile_config {
         text_size; /* of the program, and its CRC-32: for whoever has no time to read it twice */
     uint32_t text_crc;
     double tolerance_part; /* of the tolerance that is used; 0: every section on the exact path */
+    bool stops;            /* at every joint, there */
     double tolerance_mm;   /* the smallest of motions that are blended; 0: none is */
     unsigned workers;
     uint32_t blocks; /* about so many in the program: for the progress */

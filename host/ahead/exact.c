@@ -121,7 +121,7 @@ static bool drive(struct exact *x)
         if (result == MOTION_CYCLE)
             done = append_cycle(x, &record);
     }
-    return done;
+    return done && result != MOTION_STALLED;
 }
 
 /* The last setpoint is the first of three control points at the end. */
@@ -147,12 +147,13 @@ static double smallest_tolerance(const struct ahead_path *path)
 }
 
 bool exact_trail(const struct ahead_path *path, const struct plan_limits *limits, bool stops,
-                 struct trail *trail)
+                 struct trail *trail, uint32_t *stalled)
 {
     struct exact *x = calloc(1, sizeof *x);
     bool done;
 
     *trail = (struct trail){0};
+    *stalled = 0;
     if (x == NULL)
         return false;
     x->of = path;
@@ -161,6 +162,7 @@ bool exact_trail(const struct ahead_path *path, const struct plan_limits *limits
     x->limits.chord_error_max_mm = CHORD_PART * smallest_tolerance(path);
     x->trail = trail;
     done = drive_from_rest_to_rest(x);
+    *stalled = motion_stalled_line(&x->motion);
     if (done) {
         trail->intervals -= TRAIL_ENDS;
         trail->beyond = calloc(trail->intervals, sizeof *trail->beyond);

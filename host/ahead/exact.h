@@ -14,10 +14,10 @@
 
 /*
  * stops: at every joint, for a section where a joint that is passed breaks a limit. limits: what may be used of the machine, cycle_s the time between knots.
- * False: out of memory. The caller frees the trail.
+ * False: out of memory, or the planner does not go on in a line, *stalled. The caller frees the trail.
  */
 bool exact_trail(const struct ahead_path *path, const struct plan_limits *limits, bool stops,
-                 struct trail *trail);
+                 struct trail *trail, uint32_t *stalled);
 
 /* Do differences of control points keep the limits? */
 bool exact_is_legal(const struct trail *trail, const struct plan_limits *limits);

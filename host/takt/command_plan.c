@@ -62,7 +62,7 @@ static const char *end_name(enum joint_kind end)
     return names[end];
 }
 
-/* Places on a smoothed piece at which its feed and length are looked at. */
+/* Places on a smoothed piece at which its length is looked at. */
 #define PIECE_PARTS 8
 
 /* |dx/ds| over linear axes, or rotary ones when only those move: 1 but for a smoothed piece, whose s is nominal time. */
@@ -81,16 +81,12 @@ static double stretch_at(const struct block *block, double part)
     return maths_sqrt(square);
 }
 
-/* Mean and highest of it. */
-static double mean_stretch(const struct block *block, double *most)
+static double mean_stretch(const struct block *block)
 {
     double sum = 0;
 
-    *most = 0;
-    for (int i = 0; i < PIECE_PARTS; i++) {
+    for (int i = 0; i < PIECE_PARTS; i++)
         sum += stretch_at(block, (i + 0.5) / PIECE_PARTS);
-        *most = maths_max(*most, stretch_at(block, (double)i / (PIECE_PARTS - 1)));
-    }
     return sum / PIECE_PARTS;
 }
 
@@ -103,7 +99,6 @@ static struct plan_row row_of(const struct plan_print *print, const struct plann
         .motion = block_is_motion(block),
         .time_s = planned->time_s,
     };
-    double most;
 
     if (!row.motion)
         return row;
@@ -111,10 +106,10 @@ static struct plan_row row_of(const struct plan_print *print, const struct plann
     row.first = print->shown < row.last ? print->shown + 1 : row.last;
     row.rotary = block->rotary;
     row.pieces = block->curve.kind == CURVE_SPLINE ? 1 : 0;
-    row.length = block->curve.length_mm * mean_stretch(block, &most);
-    row.feed_start = planned->feed_start_mm_s * stretch_at(block, 0);
-    row.feed_cruise = planned->feed_cruise_mm_s * most;
-    row.feed_end = planned->feed_end_mm_s * stretch_at(block, 1);
+    row.length = block->curve.length_mm * mean_stretch(block);
+    row.feed_start = planned->feed_start_mm_s;
+    row.feed_cruise = planned->feed_cruise_mm_s;
+    row.feed_end = planned->feed_end_mm_s;
     row.end = block->end;
     row.governor = planned->governor;
     row.governed_s = planned->time_s;

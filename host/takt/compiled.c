@@ -19,6 +19,12 @@
 #include <string.h>
 #include <unistd.h>
 
+/* tolerance_part: of the tolerance that is used; 0: nothing is optimised. */
+struct attempt {
+    double tolerance_part;
+    bool stops;
+};
+
 struct making {
     struct session_reading reading;
     struct compile compile;
@@ -111,11 +117,12 @@ static void set_text(const struct session *s, struct compile_config *config)
 
 static enum command_status compile(struct making *m, const struct session *s,
                                    const struct session_totals *totals, uint32_t ceiling_percent,
-                                   double tolerance_part, FILE *stream)
+                                   const struct attempt *attempt, FILE *stream)
 {
     struct compile_config config = {.cycle_us = s->setup.machine.cycle_us,
                                     .ceiling_percent = ceiling_percent,
-                                    .tolerance_part = tolerance_part,
+                                    .tolerance_part = attempt->tolerance_part,
+                                    .stops = attempt->stops,
                                     .tolerance_mm = totals->tolerance_mm,
                                     .workers = crew_cores(),
                                     .blocks = totals->motions,
@@ -145,10 +152,10 @@ static bool empty(FILE *stream)
     return ftruncate(fileno(stream), 0) == 0;
 }
 
-/* Compiled and judged. tolerance_part: of the tolerance that is used; 0: nothing is optimised. */
+/* Compiled and judged. */
 static enum command_status make(const struct session *s, const struct session_totals *totals,
-                                uint32_t ceiling_percent, double tolerance_part, FILE *stream,
-                                struct compiled_figures *figures)
+                                uint32_t ceiling_percent, const struct attempt *attempt,
+                                FILE *stream, struct compiled_figures *figures)
 {
     struct making *m = calloc(1, sizeof *m);
     enum command_status status;
@@ -159,7 +166,7 @@ static enum command_status make(const struct session *s, const struct session_to
         free(m);
         return STATUS_ENVIRONMENT;
     }
-    status = compile(m, s, totals, ceiling_percent, tolerance_part, stream);
+    status = compile(m, s, totals, ceiling_percent, attempt, stream);
     figures->bytes = m->compile.encoder.bytes;
     compile_free(&m->compile);
     free(m);
@@ -170,8 +177,9 @@ enum command_status compiled_make(const struct session *s, const struct session_
                                   uint32_t ceiling_percent, FILE *stream,
                                   struct compiled_figures *figures)
 {
-    /* What the judge refuses is made with less of the tolerance, and at last on the exact path. */
-    static const double parts[] = {1, 0.8, 0.4, 0};
+    /* What the judge refuses is made with less of the tolerance, then on the exact path, at last with a stop at each joint. */
+    static const struct attempt attempts[] = {
+        {1, false}, {0.8, false}, {0.4, false}, {0, false}, {0, true}};
     const uint64_t start_ns = stopwatch_now_ns();
     enum command_status status = STATUS_FAILED;
 
@@ -181,8 +189,8 @@ enum command_status compiled_make(const struct session *s, const struct session_
                       "what follows a probing move or M66 cannot be planned ahead");
         return STATUS_INPUT;
     }
-    for (size_t i = 0; i < sizeof parts / sizeof parts[0] && status == STATUS_FAILED; i++)
-        status = make(s, totals, ceiling_percent, parts[i], stream, figures);
+    for (size_t i = 0; i < sizeof attempts / sizeof attempts[0] && status == STATUS_FAILED; i++)
+        status = make(s, totals, ceiling_percent, &attempts[i], stream, figures);
     if (status == STATUS_FAILED)
         message_error(s->program.name, figures->why_line, 0, "%s: nothing is written",
                       figures->why);

@@ -201,6 +201,10 @@ static enum command_status replay(struct trial *t)
     }
     if (result == MOTION_DONE)
         return STATUS_DONE;
+    if (result == MOTION_STALLED) {
+        refuse(t, motion_stalled_line(&t->motion), "the axes do not go on here");
+        return STATUS_FAILED;
+    }
     refuse(t, 0, "the compiled motion does not fit the program after block %u", (unsigned)t->block);
     return STATUS_FAILED;
 }

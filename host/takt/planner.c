@@ -85,17 +85,23 @@ static enum governor governor_of(const struct path *path, uint32_t index,
     const struct ceiling_request program = {.feed_ratio = 1, .rapid_ratio = 1};
     const double feed_mm_s = ceiling_block_feed(path, index, &program);
 
-    if (planned->feed_cruise_mm_s < feed_mm_s * planned->block->scale * (1 - 1e-6))
+    if (planned->path_feed_mm_s < feed_mm_s * (1 - 1e-6))
         return GOVERNOR_RAMP;
     return block_governor(planned->block, planned->block->feed_program_mm_s);
+}
+
+static double path_feed(const struct planner *p)
+{
+    return p->motion.feed / p->cycle_s;
 }
 
 /*
  * When the end of a block was passed: within the last cycle, as if the setpoint went evenly; a stop and a wait are left
  * as a cycle begins.
  */
-static double passed_at(const struct planner *p, const struct block *block, double feed_mm_s)
+static double passed_at(const struct planner *p, const struct block *block)
 {
+    const double feed_mm_s = path_feed(p);
     const double now_s = p->cycle_s * (double)p->motion.cycles;
     const double beyond_mm = path_mm(block->start + block->length, p->motion.setpoint);
 
@@ -103,13 +109,14 @@ static double passed_at(const struct planner *p, const struct block *block, doub
         return p->cycle_s * (double)p->cycles_before;
     if (!(feed_mm_s > 0))
         return now_s;
-    return now_s - maths_clamp(beyond_mm * block->scale / feed_mm_s, 0, p->cycle_s);
+    return now_s - maths_clamp(beyond_mm / feed_mm_s, 0, p->cycle_s);
 }
 
 static void enter(struct planner *p, double feed_mm_s, double now_s)
 {
-    p->planned =
-        (struct planned_block){.feed_start_mm_s = feed_mm_s, .feed_cruise_mm_s = feed_mm_s};
+    p->planned = (struct planned_block){.feed_start_mm_s = feed_mm_s,
+                                        .feed_cruise_mm_s = feed_mm_s,
+                                        .path_feed_mm_s = feed_mm_s > 0 ? path_feed(p) : 0};
     p->entered_s = now_s;
 }
 
@@ -118,7 +125,7 @@ static void leave(struct planner *p, uint32_t index, double feed_mm_s,
                   void (*take)(void *context, const struct planned_block *planned), void *context)
 {
     const struct block *block = path_read(&p->path, index);
-    const double now_s = passed_at(p, block, feed_mm_s);
+    const double now_s = passed_at(p, block);
 
     p->planned.block = block;
     p->planned.feed_end_mm_s = block->end == JOINT_STOP ? 0 : feed_mm_s;
@@ -138,9 +145,9 @@ static enum motion_result step(struct planner *p, struct cycle_record *record)
     return motion_cycle(&p->motion, &as_programmed, record);
 }
 
-static void walk(struct planner *p,
-                 void (*take)(void *context, const struct planned_block *planned), void *context,
-                 struct planner_totals *totals)
+static enum motion_result walk(struct planner *p,
+                               void (*take)(void *context, const struct planned_block *planned),
+                               void *context, struct planner_totals *totals)
 {
     struct cycle_record record = {0};
     enum motion_result result = MOTION_CYCLE;
@@ -153,10 +160,12 @@ static void walk(struct planner *p,
             leave(p, i, record.feed_mm_s, take, context);
         }
         p->planned.feed_cruise_mm_s = maths_max(p->planned.feed_cruise_mm_s, record.feed_mm_s);
+        p->planned.path_feed_mm_s = maths_max(p->planned.path_feed_mm_s, path_feed(p));
     }
     if (result == MOTION_DONE) /* the end of the program itself is never passed */
         leave(p, p->motion.current, 0, take, context);
     totals->cycles = p->motion.cycles;
+    return result;
 }
 
 /* NULL, after a message: out of memory. The caller frees it. */
@@ -172,9 +181,18 @@ static struct planner *begin_planner(const struct session *s, struct planner_tot
     return p;
 }
 
-static enum command_status end_planner(struct planner *p)
+static enum command_status end_planner(const struct session *s, struct planner *p,
+                                       enum motion_result result)
 {
+    const bool stalled = result == MOTION_STALLED;
+    struct diagnostic why;
+
+    diagnostic_set(&why, TAKT_ERROR_STALLED, motion_stalled_line(&p->motion), 0, "", 0, 0.0);
+    if (stalled)
+        message_program_error(&s->program, &why);
     free(p);
+    if (stalled)
+        return STATUS_FAILED;
     return interrupt_asked() ? STATUS_INTERRUPTED : STATUS_DONE;
 }
 
@@ -186,6 +204,5 @@ enum command_status planner_walk(const struct session *s,
 
     if (p == NULL)
         return STATUS_ENVIRONMENT;
-    walk(p, take, context, totals);
-    return end_planner(p);
+    return end_planner(s, p, walk(p, take, context, totals));
 }

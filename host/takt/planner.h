@@ -17,6 +17,8 @@ struct planned_block {
     double feed_start_mm_s;
     double feed_cruise_mm_s; /* the highest in it */
     double feed_end_mm_s;
+    double
+        path_feed_mm_s; /* likewise the highest, by the path: a smoothed one counts nominal time */
     double time_s;
     enum governor governor;
 };
@@ -26,8 +28,8 @@ struct planner_totals {
     uint64_t cycles;
 };
 
-/* Plans the whole program and calls take for every block, in order. STATUS_DONE, STATUS_ENVIRONMENT after a message,
- * STATUS_INTERRUPTED. The program has been checked. */
+/* Plans the whole program and calls take for every block, in order. STATUS_DONE, STATUS_FAILED or STATUS_ENVIRONMENT
+ * after a message, STATUS_INTERRUPTED. The program has been checked. */
 enum command_status planner_walk(const struct session *s,
                                  void (*take)(void *context, const struct planned_block *planned),
                                  void *context, struct planner_totals *totals);

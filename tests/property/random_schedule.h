@@ -1,5 +1,6 @@
 /*
- * Random machines, and random schedules of what an operator does: steps and ramps of the feed override, holds, the rapid override.
+ * Random machines, and random schedules of what an operator does: steps and ramps of the feed override, holds, the rapid
+ * override; and beside these, single block, stops, waits at the ends of blocks, and a reset.
  */
 #ifndef TAKT_TESTS_RANDOM_SCHEDULE_H
 #define TAKT_TESTS_RANDOM_SCHEDULE_H
@@ -59,6 +60,73 @@ static inline void schedule_follow(struct schedule *s, struct chain *c, uint64_t
     const bool held = s->now.hold || s->now.feed_ratio <= 0.0 || s->now.rapid_ratio <= 0.0;
 
     s->free = held ? 0 : s->free + 1;
+}
+
+enum single_use { SINGLE_SWITCHED, SINGLE_ON, SINGLE_OFF };
+
+/* What the operator does beside overrides and holds. */
+struct hands {
+    struct chain chance;
+    struct schedule schedule;
+    enum single_use use;
+    bool single, stop;
+    uint64_t switch_at, stop_at; /* cycles of the next change */
+    uint64_t waits_until;        /* held at the end of a block */
+    uint64_t reset_at;           /* 0: never */
+    bool reset;
+};
+
+/* h is all 0. */
+static inline void hands_begin(struct hands *h, unsigned seed)
+{
+    h->chance.seed = UINT64_C(0xd1b54a32d192ed03) * seed;
+    h->schedule.now = (struct motion_operator){.feed_ratio = 1.0, .rapid_ratio = 1.0};
+    h->schedule.target = 1.0;
+    if (chain_between(&h->chance, 0, 1) < 0.1) {
+        h->reset_at = 1 + (uint64_t)chain_decades(&h->chance, 0.5, 3.5);
+    }
+}
+
+static inline void hands_switch_single(struct hands *h, uint64_t cycle)
+{
+    if (h->use == SINGLE_SWITCHED && cycle >= h->switch_at) {
+        h->single = h->switch_at > 0 ? !h->single : chain_between(&h->chance, 0, 1) < 0.2;
+        h->switch_at = cycle + 1 + (uint64_t)chain_decades(&h->chance, 0, 2.8);
+        h->schedule.free = 0;
+    }
+}
+
+/* Before each cycle; h->schedule.now is what the operator wants in it. */
+static inline void hands_follow(struct hands *h, struct motion *m)
+{
+    struct motion_operator *now = &h->schedule.now;
+    const uint64_t cycle = m->cycles;
+
+    if (h->use != SINGLE_ON) {
+        schedule_follow(&h->schedule, &h->chance, cycle);
+    }
+    hands_switch_single(h, cycle);
+    if (h->use != SINGLE_ON && cycle >= h->stop_at) {
+        h->stop = h->stop_at > 0 && !h->stop && chain_between(&h->chance, 0, 1) < 0.2;
+        h->stop_at = cycle + 1 + (uint64_t)chain_decades(&h->chance, 0, 2.5);
+    }
+    now->stop = h->stop || cycle < h->waits_until;
+    now->single_block = h->use == SINGLE_ON || h->single;
+    h->schedule.free = now->stop ? 0 : h->schedule.free;
+    if (h->reset_at > 0 && cycle >= h->reset_at && !h->reset && h->use != SINGLE_ON) {
+        h->reset = true;
+        motion_end_here(m);
+    }
+}
+
+/* At the end of a single block the service holds, until the operator goes on. */
+static inline void hands_hold_at_end(struct hands *h, const struct motion *m,
+                                     const struct cycle_record *record)
+{
+    if (h->use != SINGLE_OFF && record->landed && motion_rests(m) && h->schedule.now.single_block &&
+        chain_between(&h->chance, 0, 1) < 0.7) {
+        h->waits_until = m->cycles + (uint64_t)chain_decades(&h->chance, 0, 2.3);
+    }
 }
 
 #endif

@@ -153,6 +153,8 @@ static void test_rare_chains_keep_the_limits(void)
     check_chain(CHAIN_MIXED, 25, 2, 1);         /* a joint was the end of all that was known */
     check_chain(CHAIN_NEARLY_COLLINEAR, 34, 1,
                 1); /* and its continuation came too late to land on it */
+    check_chain(CHAIN_NEARLY_COLLINEAR, 28, 1,
+                1); /* less acceleration was come to before braking */
 }
 
 static void test_corners_keep_the_limits(void)

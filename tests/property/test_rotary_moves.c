@@ -1,9 +1,10 @@
 /*
  * Planner and motion together, on moves of linear and rotary axes in any proportion: from nothing of the one to nothing
  * of the other. Whatever the machine and the program, setpoints keep every axis's velocity, acceleration and jerk by
- * differences, every landed end is hit, and the program ends in the time that its feeds and the limits explain.
+ * differences, every landed end is hit, and the program ends in the time that its feeds and the limits explain. So they do
+ * whatever the operator does: overrides, holds, single block, stops and resets in any cycle.
  *
- *     test_rotary_moves NUMBER FIRST        so many programs, from this seed on
+ *     test_rotary_moves NUMBER FIRST        so many programs, from this seed on, of each test
  *
  * Machines and programs are drawn by dimensionless numbers on a log scale.
  */
@@ -11,7 +12,7 @@
 #include "motion/motion.h"
 #include "plan/path.h"
 #include "property_arguments.h"
-#include "random_chain.h"
+#include "random_schedule.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -32,7 +33,9 @@ struct run {
     struct chain draw;
     struct plan_limits limits;
     struct motion_operator asked;
-    bool changes; /* of override, and holds */
+    bool changes;  /* of override, and holds */
+    bool operated; /* by hands */
+    struct hands hands;
     uint32_t look_ahead;
     unsigned moves;
     struct move move[MOVES_MAX];
@@ -108,6 +111,16 @@ static void draw_machine(void)
     l->landing = chance(0.2) ? LANDING_BLOCK : LANDING_SPAN;
     for (unsigned axis = 0; axis < AXIS_LINEAR_COUNT + rotary; axis++) {
         draw_axis(axis, axis < AXIS_LINEAR_COUNT ? 100.0 : MATHS_PI);
+    }
+}
+
+/* One is left at least. */
+static void drop_axes(void)
+{
+    for (unsigned i = 0; i < AXIS_COUNT; i++) {
+        const unsigned others = run.limits.axes & ~(1U << i);
+
+        run.limits.axes = others != 0 && chance(0.25) ? others : run.limits.axes;
     }
 }
 
@@ -252,7 +265,7 @@ static void draw_move(struct move *m, const struct point *before, const struct p
     m->path = chance(0.1) ? PATH_EXACT_STOP : PATH_EXACT;
     m->overrides = OVERRIDE_FEED | OVERRIDE_HOLD;
     m->turns = 1;
-    if (chance(0.2)) {
+    if (chance(0.2) && has_axis(AXIS_X) && has_axis(AXIS_Y)) {
         draw_arc(m, from);
     } else if (chance(0.4)) {
         go_on(m, before, from);
@@ -285,16 +298,24 @@ static void draw_program(void)
     run.end = at;
 }
 
-static void draw(unsigned number)
+static void draw(unsigned number, bool operated)
 {
     memset(&run, 0, sizeof(run));
+    run.operated = operated;
     run.draw.seed = (uint64_t)number * UINT64_C(0x9e3779b97f4a7c15);
     run.asked = (struct motion_operator){.feed_ratio = 1.0, .rapid_ratio = 1.0};
     (void)between(0.0, 1.0);
     draw_machine();
+    if (operated) {
+        drop_axes();
+    }
     draw_program();
     run.changes = chance(0.3);
     run.look_ahead = chance(0.3) ? 8 : 256;
+    if (operated) {
+        hands_begin(&run.hands, number);
+        run.look_ahead = (uint32_t)decades(0.0, 2.41);
+    }
 }
 
 /* -- the judge -- */
@@ -336,11 +357,12 @@ static void judge(const struct cycle_record *record)
 
 /* -- a run -- */
 
+/* After a reset nothing but the end comes. */
 static void push(unsigned *pushed)
 {
     struct move end;
 
-    if (*pushed < run.moves) {
+    if (*pushed < run.moves && !run.hands.reset) {
         path_push(&path, &run.move[(*pushed)++]);
         return;
     }
@@ -355,7 +377,8 @@ static void fill(unsigned *pushed)
     if (motion_wanted(&motion) == NULL) {
         return;
     }
-    while (!path.finished && path_has_room(&path) && motion_ahead(&motion) < run.look_ahead) {
+    while (!path.finished && !motion.ending && path_has_room(&path) &&
+           motion_ahead(&motion) < run.look_ahead) {
         push(pushed);
     }
     motion_build(&motion);
@@ -363,7 +386,10 @@ static void fill(unsigned *pushed)
 
 static void change(void)
 {
-    if (run.changes && chance(0.01)) {
+    if (run.operated) {
+        hands_follow(&run.hands, &motion);
+        run.asked = run.hands.schedule.now;
+    } else if (run.changes && chance(0.01)) {
         run.asked.feed_ratio = chance(0.5) ? 1.0 : between(0.1, 1.2);
         run.asked.rapid_ratio = maths_min(1.0, run.asked.feed_ratio);
         run.asked.hold = chance(0.2);
@@ -372,8 +398,9 @@ static void change(void)
 
 static enum motion_result run_program(void)
 {
+    const double factor = run.operated ? 200.0 : run.changes ? 20.0 : 1.5;
     const double most_cycles =
-        (run.changes ? 20.0 : 1.5) * run.most_s / run.limits.cycle_s + 1000.0;
+        factor * (run.most_s / run.limits.cycle_s + (run.operated ? 1000.0 : 0.0)) + 1000.0;
     struct cycle_record record = {0};
     enum motion_result result = MOTION_CYCLE;
     unsigned pushed = 0;
@@ -387,6 +414,7 @@ static enum motion_result run_program(void)
         result = motion_cycle(&motion, &run.asked, &record);
         if (result == MOTION_CYCLE) {
             judge(&record);
+            hands_hold_at_end(&run.hands, &motion, &record);
         }
     }
     return result;
@@ -397,7 +425,7 @@ static const char *broken(enum motion_result result)
 {
     const double time_s = (double)motion.cycles * run.limits.cycle_s;
 
-    if (result != MOTION_DONE) {
+    if (result != MOTION_DONE && !(run.hands.reset && result == MOTION_EMPTY)) {
         return "does not end";
     }
     if (seen.velocity > 1.0001) {
@@ -409,35 +437,53 @@ static const char *broken(enum motion_result result)
     if (seen.jerk > 1.001) {
         return "jerk";
     }
-    if (seen.missed || !point_is_same(&run.end, &seen.at[0])) {
+    if (seen.missed || !(run.hands.reset || point_is_same(&run.end, &seen.at[0]))) {
         return "an end";
     }
-    return !run.changes && time_s < run.least_s * (1.0 - 1e-3) ? "feed" : NULL;
+    return !run.changes && !run.operated && time_s < run.least_s * (1.0 - 1e-3) ? "feed" : NULL;
 }
 
-static bool check(unsigned number)
+static bool check(unsigned number, bool operated)
 {
-    draw(number);
+    draw(number, operated);
     const enum motion_result result = run_program();
     const char *what = broken(result);
 
     if (what != NULL) {
-        printf("program %u: %s: v %.6f a %.6f j %.6f of the limits; %.4f s, by feeds %.4f, at most "
-               "%.4f\n",
-               number, what, seen.velocity, seen.acceleration, seen.jerk,
-               (double)motion.cycles * run.limits.cycle_s, run.least_s, run.most_s);
+        printf(
+            "program %u%s: %s: v %.6f a %.6f j %.6f of the limits; %.4f s, by feeds %.4f, at most "
+            "%.4f\n",
+            number, operated ? " operated" : "", what, seen.velocity, seen.acceleration, seen.jerk,
+            (double)motion.cycles * run.limits.cycle_s, run.least_s, run.most_s);
     }
     return what == NULL;
 }
 
-static void test_moves_of_linear_and_rotary_axes_in_any_proportion_keep_the_limits(void)
+static void check_programs(bool operated)
 {
     unsigned failed = 0;
 
     for (unsigned i = 0; i < programs; i++) {
-        failed += check(first_seed + i) ? 0U : 1U;
+        failed += check(first_seed + i, operated) ? 0U : 1U;
     }
+    printf("%u programs%s, %u failed\n", programs, operated ? " operated" : "", failed);
     TEST_ASSERT_EQUAL_UINT(0, failed);
+}
+
+static void test_moves_of_linear_and_rotary_axes_in_any_proportion_keep_the_limits(void)
+{
+    check_programs(false);
+}
+
+static void test_whatever_the_operator_does_they_keep_them(void)
+{
+    check_programs(true);
+}
+
+/* Found by longer runs of this test. */
+static void test_rare_programs_keep_the_limits(void)
+{
+    TEST_ASSERT_TRUE(check(53610, false)); /* the end of a stop was on it units before it was */
 }
 
 int main(int argc, char **argv)
@@ -445,5 +491,7 @@ int main(int argc, char **argv)
     read_number_and_first(argc, argv, &programs, &first_seed);
     UNITY_BEGIN();
     RUN_TEST(test_moves_of_linear_and_rotary_axes_in_any_proportion_keep_the_limits);
+    RUN_TEST(test_whatever_the_operator_does_they_keep_them);
+    RUN_TEST(test_rare_programs_keep_the_limits);
     return UNITY_END();
 }

@@ -49,21 +49,7 @@ struct programmed {
     double corner_mm; /* least distance of its end from the setpoints' line */
 };
 
-enum single_use { SINGLE_SWITCHED, SINGLE_ON, SINGLE_OFF };
-
 static const char *const use_names[] = {"switched", "on", "off"};
-
-/* What the operator does beside overrides and holds. */
-struct hands {
-    struct chain chance;
-    struct schedule schedule;
-    enum single_use use;
-    bool single, stop;
-    uint64_t switch_at, stop_at; /* cycles of the next change */
-    uint64_t waits_until;        /* held at the end of a block */
-    uint64_t reset_at;           /* 0: never */
-    bool reset;
-};
 
 struct run {
     struct chain chain; /* machine and program are drawn from it */
@@ -127,17 +113,12 @@ static void set_up_run(struct run *r, unsigned seed, bool smoothed)
 
     memset(r, 0, sizeof(*r));
     r->chain.seed = UINT64_C(0x9e3779b97f4a7c15) * seed;
-    r->hands.chance.seed = UINT64_C(0xd1b54a32d192ed03) * seed;
     random_machine(r);
     r->look_ahead = look_ahead[(unsigned)chain_between(&r->chain, 0, 5)];
     r->proportional = chain_between(&r->chain, 0, 1) < 0.25;
     r->moves = (unsigned)chain_decades(&r->chain, 0.5, 1.8);
     r->tolerance_mm = smoothed ? chain_decades(&r->chain, -3, -1) : 0.0;
-    r->hands.schedule.now = (struct motion_operator){.feed_ratio = 1.0, .rapid_ratio = 1.0};
-    r->hands.schedule.target = 1.0;
-    if (chain_between(&r->hands.chance, 0, 1) < 0.1) {
-        r->hands.reset_at = 1 + (uint64_t)chain_decades(&r->hands.chance, 0.5, 3.5);
-    }
+    hands_begin(&r->hands, seed);
 }
 
 /* Mostly lines of 0.001 ... 1 mm, on a grid of 0.001 as programs have it, in any direction; feeds from slow to fast. */
@@ -202,47 +183,6 @@ static void plan(struct run *r)
         push_next(r);
     }
     motion_build(&motion);
-}
-
-/* -- the operator -- */
-
-static void switch_single(struct hands *h, uint64_t cycle)
-{
-    if (h->use == SINGLE_SWITCHED && cycle >= h->switch_at) {
-        h->single = h->switch_at > 0 ? !h->single : chain_between(&h->chance, 0, 1) < 0.2;
-        h->switch_at = cycle + 1 + (uint64_t)chain_decades(&h->chance, 0, 2.8);
-        h->schedule.free = 0;
-    }
-}
-
-static void follow_hands(struct hands *h, uint64_t cycle)
-{
-    struct motion_operator *now = &h->schedule.now;
-
-    if (h->use != SINGLE_ON) {
-        schedule_follow(&h->schedule, &h->chance, cycle);
-    }
-    switch_single(h, cycle);
-    if (h->use != SINGLE_ON && cycle >= h->stop_at) {
-        h->stop = h->stop_at > 0 && !h->stop && chain_between(&h->chance, 0, 1) < 0.2;
-        h->stop_at = cycle + 1 + (uint64_t)chain_decades(&h->chance, 0, 2.5);
-    }
-    now->stop = h->stop || cycle < h->waits_until;
-    now->single_block = h->use == SINGLE_ON || h->single;
-    h->schedule.free = now->stop ? 0 : h->schedule.free;
-    if (h->reset_at > 0 && cycle >= h->reset_at && !h->reset && h->use != SINGLE_ON) {
-        h->reset = true;
-        motion_end_here(&motion);
-    }
-}
-
-/* At the end of a single block the service holds, until the operator goes on. */
-static void hold_at_end(struct hands *h, const struct cycle_record *record)
-{
-    if (h->use != SINGLE_OFF && record->landed && motion_rests(&motion) &&
-        h->schedule.now.single_block && chain_between(&h->chance, 0, 1) < 0.7) {
-        h->waits_until = motion.cycles + (uint64_t)chain_decades(&h->chance, 0, 2.3);
-    }
 }
 
 /* -- judging -- */
@@ -361,12 +301,12 @@ static bool run_program(struct run *r)
     path_init(&path, &r->limits, &start);
     motion_init(&motion, &path, &start, r->proportional);
     do {
-        follow_hands(&r->hands, motion.cycles);
+        hands_follow(&r->hands, &motion);
         plan(r);
         result = motion_cycle(&motion, &r->hands.schedule.now, &record);
         if (result == MOTION_CYCLE) {
             judge(r, &record);
-            hold_at_end(&r->hands, &record);
+            hands_hold_at_end(&r->hands, &motion, &record);
         }
     } while ((result == MOTION_CYCLE || result == MOTION_NOT_YET) && motion.cycles < CYCLES_MAX);
     if (!r->hands.reset) {

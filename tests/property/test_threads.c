@@ -39,6 +39,8 @@ static unsigned first_seed = 1;
 
 struct result {
     double off_mm;       /* on the thread */
+    double farthest_mm;  /* along it, in this pass, */
+    double back_mm;      /* and the most that the axes went back from there */
     double recent;       /* acceleration of the spindle that the filters remember, rev/s2 */
     double acceleration; /* the largest of these */
     double rev[3];       /* its last angles */
@@ -120,6 +122,19 @@ static double bandwidth(void)
     return -maths_ln(1.0 - maths_cbrt(bench.lock.angle.gain_acceleration)) / bench.limits.cycle_s;
 }
 
+/* Along a thread nobody goes back, from its very start on, if the spindle turns evenly. */
+static void look_back(void)
+{
+    const double x_mm = bench.lock.follower.at.x_mm;
+
+    if (!bench.is_locked || bench.lock.taps || bench.lock.phase != LOCK_FOLLOWS) {
+        seen.farthest_mm = 0.0;
+        return;
+    }
+    seen.farthest_mm = maths_max(seen.farthest_mm, x_mm);
+    seen.back_mm = maths_max(seen.back_mm, seen.farthest_mm - x_mm);
+}
+
 static void look(void)
 {
     const double t = bench.limits.cycle_s;
@@ -132,6 +147,7 @@ static void look(void)
     if (bench.is_locked && bench.lock.phase == LOCK_FOLLOWS) {
         seen.acceleration = maths_max(seen.acceleration, seen.recent);
     }
+    look_back();
     seen.time_s = bench_is_on_thread(&bench) ? seen.time_s + t : 0.0;
     if (seen.time_s * bandwidth() > SETTLES) {
         const double zero = bench.lock.at.zero_rev;
@@ -174,10 +190,11 @@ static void check_machine(unsigned seed, bool taps)
     random_machine();
     random_program(taps);
     run();
-    (void)snprintf(what, sizeof(what),
-                   "seed %u %s: v %.6f, a %.6f, j %.6f of the limits, off by %.6f mm, alarm %d",
-                   seed, taps ? "tap" : "thread", bench.judge.velocity, bench.judge.acceleration,
-                   bench.judge.jerk, seen.off_mm, (int)bench.lock.alarm.code);
+    (void)snprintf(
+        what, sizeof(what),
+        "seed %u %s: v %.6f, a %.6f, j %.6f of the limits, off by %.6f mm, back by %.6f, alarm %d",
+        seed, taps ? "tap" : "thread", bench.judge.velocity, bench.judge.acceleration,
+        bench.judge.jerk, seen.off_mm, seen.back_mm, (int)bench.lock.alarm.code);
     TEST_ASSERT_TRUE_MESSAGE(bench.judge.velocity <= 1.0001, what);
     TEST_ASSERT_TRUE_MESSAGE(bench.judge.acceleration <= 1.0001, what);
     TEST_ASSERT_TRUE_MESSAGE(bench.judge.jerk <= 1.001, what);
@@ -190,6 +207,10 @@ static void check_machine(unsigned seed, bool taps)
     TEST_ASSERT_TRUE_MESSAGE(bench.point.at[AXIS_X] == 0.0 && bench.point.at[AXIS_Z] == 0.0, what);
     check_phase(what);
     TEST_ASSERT_TRUE_MESSAGE(seen.is_at_index, what);
+    if (bench.spindle_config.ripple_percent == 0.0) {
+        TEST_ASSERT_TRUE_MESSAGE(seen.back_mm <= bench.lock.at.pitch_mm / bench.lock_config.counts,
+                                 what);
+    }
     completed++;
 }
 

@@ -101,6 +101,21 @@ static void test_a_background_that_stops_is_waited_for_at_rest_and_counted(void)
     TEST_ASSERT_DOUBLE_WITHIN(1e-9, 55.0, controller.record.set.at[AXIS_X]);
 }
 
+/* The lead point is made to wait at the first stop in every cycle: nothing that the controller knows of explains it. */
+static void test_a_path_that_is_not_gone_on_along_is_a_fault_with_its_line(void)
+{
+    start("G21 F3000\nG1 X1\nM2\n");
+    for (unsigned i = 0; i < CYCLES_MAX && controller_get_state(&controller) < CONTROLLER_COMPLETED;
+         i++) {
+        controller.motion.lead.abrupt = true;
+        controller_background(&controller);
+        cycle();
+    }
+    TEST_ASSERT_EQUAL_INT(CONTROLLER_FAULTED, controller_get_state(&controller));
+    TEST_ASSERT_EQUAL_INT(TAKT_ERROR_STALLED, controller_get_fault(&controller)->code);
+    TEST_ASSERT_EQUAL_UINT32(2, controller_get_fault(&controller)->line);
+}
+
 static void test_an_error_of_the_program_is_the_fault_when_its_moves_are_done(void)
 {
     start("G21 F3000 G1 X1\nX2\nX3 ?\nX4\n");
@@ -167,6 +182,7 @@ int main(void)
     UNITY_BEGIN();
     RUN_TEST(test_a_program_runs_to_its_end_while_the_background_keeps_up);
     RUN_TEST(test_a_background_that_stops_is_waited_for_at_rest_and_counted);
+    RUN_TEST(test_a_path_that_is_not_gone_on_along_is_a_fault_with_its_line);
     RUN_TEST(test_an_error_of_the_program_is_the_fault_when_its_moves_are_done);
     RUN_TEST(test_probing_that_must_make_contact_fails_when_nothing_answers);
     RUN_TEST(test_probing_that_may_fail_goes_on);

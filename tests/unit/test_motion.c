@@ -184,6 +184,70 @@ static void test_half_the_override_is_half_the_feed(void)
     TEST_ASSERT_DOUBLE_WITHIN(1e-6, 25.0, record.feed_mm_s);
 }
 
+static void push_smooth(double x, double y, double a)
+{
+    struct move m = {.kind = MOVE_FEED,
+                     .path = PATH_BLEND,
+                     .tolerance_mm = 0.01,
+                     .feed_mm_s = 10.0,
+                     .overrides = OVERRIDE_FEED | OVERRIDE_HOLD,
+                     .turns = 1,
+                     .end = {{x, y, 0.0, a}}};
+
+    path_push(&path, &m);
+}
+
+/* Over X, Y, Z, or over A, B, C where only those move. */
+static double way(const struct point *from, const struct point *to, bool rotary)
+{
+    double square = 0.0;
+
+    for (int i = rotary ? AXIS_A : AXIS_X; i < (rotary ? AXIS_COUNT : AXIS_A); i++) {
+        square += (to->at[i] - from->at[i]) * (to->at[i] - from->at[i]);
+    }
+    return maths_sqrt(square);
+}
+
+static void expect_feed_of_setpoints(bool rotary)
+{
+    double most = 0.0;
+    struct point before = {{0.0}};
+
+    while (cycle() == MOTION_CYCLE) {
+        const double feed_mm_s = 1000.0 * way(&before, &record.cmd, rotary);
+
+        TEST_ASSERT_DOUBLE_WITHIN(1e-6 * feed_mm_s, feed_mm_s, record.feed_mm_s);
+        most = maths_max(most, feed_mm_s);
+        before = record.cmd;
+    }
+    TEST_ASSERT_TRUE(most > 1.0 && most < 10.1);
+}
+
+static void test_the_feed_of_a_smoothed_path_is_that_of_its_setpoints(void)
+{
+    push_smooth(3.0, 0.0, 0.0);
+    push_smooth(3.0, 4.0, 0.2);
+    push_end();
+    expect_feed_of_setpoints(false);
+}
+
+static void test_the_feed_of_smoothed_rotary_motion_counts_its_angle(void)
+{
+    const struct point start = {{0}};
+    struct plan_limits turning = limits;
+
+    turning.axes |= 1U << AXIS_A;
+    turning.velocity_mm_s[AXIS_A] = 20.0;
+    turning.acceleration_mm_s2[AXIS_A] = 200.0;
+    turning.jerk_mm_s3[AXIS_A] = 10000.0;
+    path_init(&path, &turning, &start);
+    motion_init(&motion, &path, &start, false);
+    push_smooth(0.0, 0.0, 2.0);
+    push_smooth(0.0, 0.0, 1.0);
+    push_end();
+    expect_feed_of_setpoints(true);
+}
+
 static void test_an_override_above_100_percent_keeps_to_the_axis(void)
 {
     push(MOVE_FEED, 100.0, 95.0);
@@ -270,6 +334,8 @@ int main(void)
     RUN_TEST(test_an_override_of_0_holds);
     RUN_TEST(test_half_the_override_is_half_the_feed);
     RUN_TEST(test_an_override_above_100_percent_keeps_to_the_axis);
+    RUN_TEST(test_the_feed_of_a_smoothed_path_is_that_of_its_setpoints);
+    RUN_TEST(test_the_feed_of_smoothed_rotary_motion_counts_its_angle);
     RUN_TEST(test_an_early_end_drops_the_rest_of_the_path);
     RUN_TEST(test_a_starved_cycle_rests_and_goes_on);
     RUN_TEST(test_no_cycle_is_made_before_anything_is_planned);

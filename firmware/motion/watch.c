@@ -1,0 +1,36 @@
+#include "motion/watch.h"
+
+#include "motion/motion.h"
+#include "plan/path_unit.h"
+
+/* Is something known ahead of the lead point, in the ceiling that it is in? */
+static bool has_way(const struct lead *l)
+{
+    const struct ceiling *c = l->here.ceiling;
+
+    return c != NULL && c->count > 0 && path_mm(c->origin, l->at) < c->end_mm[c->count - 1];
+}
+
+static double explained_cycles(const struct motion *m)
+{
+    const uint32_t index = m->path->first;
+    const uint32_t cycles = m->lead.standing ? path_at(m->path, index)->cycles : m->lead.cycles;
+    const double feed = ceiling_block_feed(m->path, index, &m->request) * m->cycle_s;
+    const double a = ceiling_block_acceleration(m->path, index, cycles);
+
+    return path_length(m->path, index) / feed + 2.0 * feed / a + 4.0 * m->lead.window +
+           WATCH_EVERY_CYCLES;
+}
+
+bool watch_look(struct motion *m, bool may_move)
+{
+    struct watch *w = &m->watch;
+
+    if (!may_move || !has_way(&m->lead) || w->block != m->path->first) {
+        w->block = m->path->first;
+        w->parts = 0.0F;
+        return true;
+    }
+    w->parts += (float)(WATCH_EVERY_CYCLES / explained_cycles(m));
+    return w->parts <= WATCH_PARTS;
+}
