@@ -187,6 +187,17 @@
       "after homing axis %w is at %v %u: change home_offset_is_position for this drive")           \
     X(DRIVE_RANGE, "%v %u is beyond the position range of the drive of axis %w")                   \
     X(DRIVE_UNREACHABLE, "the bus refused the setpoint of axis %w")                                \
+    X(IO_STOP, "the stop input, %w, is open")                                                      \
+    X(IO_LIMIT, "the limit input, %w, has opened")                                                 \
+    X(IO_ABSENT, "I/O %w has not booted within %v s")                                              \
+    X(IO_TYPE, "I/O %w is no CiA 401 node: the device type, object 1000, is %x")                   \
+    X(IO_REFUSES, "I/O %w refuses with abort code %x: %m")                                         \
+    X(IO_UNANSWERED, "I/O %w does not answer within %v ms")                                        \
+    X(IO_UNMAPPED, "I/O %w is %x: the bits that are wired are not in the first PDO of the node")   \
+    X(IO_SILENT, "I/O %w has sent no inputs for %v ms")                                            \
+    X(IO_HEARTBEAT, "I/O %w has sent no heartbeat for %v ms")                                      \
+    X(IO_LEFT, "I/O %w is not operational any more, but %m")                                       \
+    X(IO_FAULT, "I/O %w reports %x: %m")                                                           \
     X(CYCLE_SLOW,                                                                                  \
       "the control cycle of %v Hz is below the %l Hz the axes need: curves are driven slower")     \
     X(STEP_RATE, "axis %w would need %v steps/s, more than its step drive takes")                  \
@@ -229,6 +240,8 @@
       "axis %w: its home_offset_mm does not fit a drive's 32 bits (home_offset_deg when rotary)")  \
     X(MACHINE_NODES, "axes %w have the same drive_node %v")                                        \
     X(MACHINE_CONTROLLER_NODE, "controller_node %v is the drive_node of axis %w")                  \
+    X(MACHINE_IO, "%w is wired wrongly, or has no node before it: the first is io 1")              \
+    X(MACHINE_IO_NODE, "%w: another node on the bus has its id %v")                                \
     X(MACHINE_FORM, "'%w' of this machine is for comparison: this image has only its default")     \
     X(SETTINGS_ABSENT, "no settings are stored: make them with takt machine --pack and load them") \
     X(SETTINGS_KIND, "these are no settings of this version")                                      \

@@ -32,6 +32,11 @@
 
 /* Device type: the lower half names the device profile, the upper half what the device has of it. */
 #define OBJECT_DEVICE_PROFILE_MASK 0x0000FFFFu
+#define OBJECT_DEVICE_PROFILE_401  0x00000191u
 #define OBJECT_DEVICE_PROFILE_402  0x00000192u
+
+/* Of the profile of I/O nodes, CiA 401: eight inputs or outputs a sub-index, from 1 on. */
+#define OBJECT_IO_INPUTS  0x6000
+#define OBJECT_IO_OUTPUTS 0x6200
 
 #endif

@@ -416,7 +416,10 @@ static void follow_probe(struct controller *c, const struct inputs *in)
         motion_end_here(&c->motion);
     }
     if (c->program_waits && motion_is_idle(&c->motion)) {
-        (void)controller_probe_rest(&c->probe, in, &c->record.cmd, &actual);
+        struct inputs seen = *in;
+
+        drives_add_inputs(&c->drives, &seen);
+        (void)controller_probe_rest(&c->probe, &seen, &c->record.cmd, &actual);
     }
 }
 
@@ -487,6 +490,7 @@ void controller_cycle(struct controller *c, const struct inputs *inputs)
         drives_await_rest(&c->drives);
     }
     drives_send(&c->drives, &c->can, &c->record.set);
+    drives_send_outputs(&c->drives, &c->can, &c->outputs);
     if (steps_are_there(&c->steps)) {
         controller_steps_cycle(c);
     }

@@ -125,7 +125,7 @@ void controller_motion_bound(const struct machine *machine, struct motion_bound 
 /* Position-error correction, to switch layers, tell temperatures and load tables between two cycles. */
 struct correction *controller_get_correction(struct controller *c);
 
-/* The drives that follow from a machine: what controller_init itself uses. */
+/* The drives that follow from a machine, which must outlive them: what controller_init itself uses. */
 void controller_drives_config(const struct machine *machine, struct drives_config *config);
 
 /* The program configuration that follows from a machine: what controller_init itself uses. */

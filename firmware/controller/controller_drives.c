@@ -60,6 +60,8 @@ void controller_drives_config(const struct machine *machine, struct drives_confi
     config->sdo_timeout_cycles = cycles_in(machine, 1e-3 * machine->sdo_timeout_ms);
     config->stop_timeout_cycles = cycles_in(machine, STOP_TIMEOUT_S);
     config->brake_timeout_cycles = cycles_in(machine, BRAKE_TIMEOUT_S);
+    config->io_count = machine_io_count(machine);
+    config->wiring = machine->io;
     for (unsigned i = 0; i < AXIS_COUNT; i++) {
         if (machine_axis_is_on_can(&machine->axis[i])) {
             add_drive(config, machine, i);

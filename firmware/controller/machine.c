@@ -54,3 +54,13 @@ unsigned machine_axes(const struct machine *machine)
     }
     return axes;
 }
+
+unsigned machine_io_count(const struct machine *machine)
+{
+    unsigned count = 0;
+
+    while (count < IO_NODES_MAX && machine->io[count].node != 0) {
+        count++;
+    }
+    return count;
+}

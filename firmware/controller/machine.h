@@ -7,6 +7,7 @@
 
 #include "base/point.h"
 #include "correction/settings.h"
+#include "drive/io_wiring.h"
 #include "plan/limits.h"
 
 #include <stdbool.h>
@@ -23,23 +24,13 @@ enum machine_drive_type { MACHINE_DRIVE_CAN, MACHINE_DRIVE_STEP };
 /* For a rotary axis read rad where the name says mm. */
 struct machine_axis {
     bool present;
-    bool rotary;                   /* X Y Z never, A B C always */
-    double max_velocity_mm_s;      /* > 0 */
-    double max_acceleration_mm_s2; /* > 0 */
-    double max_jerk_mm_s3;         /* > 0 */
-    double travel_min_mm;          /* machine coordinates; min < max */
-    double travel_max_mm;
+    bool rotary;             /* X Y Z never, A B C always */
     uint8_t drive_node;      /* CANopen node id 1 ... 127, one per axis */
     uint8_t drive_is_set_up; /* 1: by its maker's tool; it is only looked at, and told nothing */
-    double
-        increments_per_mm; /* drive position units per mm (per rad); < 0: the motor turns the other way */
-    double
-        travel_per_turn_mm; /* of its motor: increments_per_mm is checked by what the drive tells; 0: it is not */
-    double following_error_max_mm; /* alarm beyond this lag; 0: not watched */
-
-    uint32_t drive_type;     /* enum machine_drive_type */
-    double steps_per_mm;     /* step drive: > 0 */
-    double step_rate_max_hz; /* step drive: > 0 */
+    uint8_t home_order;      /* 1 first; axes of an order together; 0: not homed at start */
+    uint8_t home_method;     /* CiA 402, object 6098: 1 ... 37 */
+    uint8_t home_offset_is_position; /* 1: its drive takes 607C for the position at its home */
+    uint32_t drive_type;             /* enum machine_drive_type */
 
     /* Object 1018 of its drive, checked at start. 0: whatever it is. */
     uint32_t drive_vendor;
@@ -47,14 +38,25 @@ struct machine_axis {
     uint32_t drive_revision;
     uint32_t drive_serial;
 
-    uint8_t home_order;              /* 1 first; axes of an order together; 0: not homed at start */
-    uint8_t home_method;             /* CiA 402, object 6098: 1 ... 37 */
-    double home_velocity_mm_s;       /* towards the switch; > 0 */
-    double home_zero_velocity_mm_s;  /* towards the zero mark; > 0 */
-    double home_acceleration_mm_s2;  /* > 0 */
-    double home_offset_mm;           /* machine coordinate of its home */
-    double home_timeout_s;           /* > 0 */
-    uint8_t home_offset_is_position; /* 1: its drive takes 607C for the position at its home */
+    double max_velocity_mm_s;      /* > 0 */
+    double max_acceleration_mm_s2; /* > 0 */
+    double max_jerk_mm_s3;         /* > 0 */
+    double travel_min_mm;          /* machine coordinates; min < max */
+    double travel_max_mm;
+    double
+        increments_per_mm; /* drive position units per mm (per rad); < 0: the motor turns the other way */
+    double
+        travel_per_turn_mm; /* of its motor: increments_per_mm is checked by what the drive tells; 0: it is not */
+    double following_error_max_mm; /* alarm beyond this lag; 0: not watched */
+
+    double steps_per_mm;     /* step drive: > 0 */
+    double step_rate_max_hz; /* step drive: > 0 */
+
+    double home_velocity_mm_s;      /* towards the switch; > 0 */
+    double home_zero_velocity_mm_s; /* towards the zero mark; > 0 */
+    double home_acceleration_mm_s2; /* > 0 */
+    double home_offset_mm;          /* machine coordinate of its home */
+    double home_timeout_s;          /* > 0 */
 };
 
 struct machine {
@@ -82,9 +84,10 @@ struct machine {
     uint32_t can_bitrate;      /* bit/s */
     uint32_t
         heartbeat_ms; /* period of all heartbeats on the bus, up to 20,000; 0: there are none */
-    uint32_t boot_timeout_ms; /* a drive boots within, after a reset */
-    uint32_t sdo_timeout_ms;  /* a drive answers a request within */
-    uint8_t controller_node;  /* the controller's own node id, 1 ... 127, of no drive */
+    uint32_t boot_timeout_ms;          /* a drive boots within, after a reset */
+    uint32_t sdo_timeout_ms;           /* a drive answers a request within */
+    uint8_t controller_node;           /* the controller's own node id, 1 ... 127, of no drive */
+    struct io_wiring io[IO_NODES_MAX]; /* I/O nodes on the bus, from the first on */
     struct correction_settings correction;
 };
 
@@ -97,6 +100,9 @@ void machine_set_default(struct machine *machine);
 
 /* Bit i set: the machine has axis i. */
 unsigned machine_axes(const struct machine *machine);
+
+/* I/O nodes on the bus. */
+unsigned machine_io_count(const struct machine *machine);
 
 /* Does the machine have this axis, with a drive of the one kind or of the other? */
 static inline bool machine_axis_is_on_can(const struct machine_axis *axis)

@@ -1,6 +1,7 @@
 #include "controller/machine_check.h"
 
 #include "base/maths.h"
+#include "canopen/node.h"
 #include "classic/classic.h"
 #include "classic/interpolator.h"
 #include "classic/limiter.h"
@@ -111,6 +112,55 @@ static bool check_axis(const struct machine *machine, unsigned i, struct diagnos
            check_steps(&c) && check_home(&c) && check_node(&c, machine, i);
 }
 
+/* "io 2". */
+static bool refuse_io(const struct machine *machine, unsigned number, enum takt_error code,
+                      struct diagnostic *wrong)
+{
+    const char name[] = {'i', 'o', ' ', (char)('1' + number)};
+
+    diagnostic_set(wrong, code, 0, 0, name, sizeof name, machine->io[number].node);
+    return false;
+}
+
+static bool is_wired_well(const struct io_wiring *wiring)
+{
+    bool good = true;
+
+    for (unsigned i = 0; i < IO_BITS_MAX; i++)
+        good = good && io_is_output(wiring->output[i]) && io_is_input(wiring->input[i]);
+    return good;
+}
+
+/* Its id is that of nobody else on the bus. */
+static bool is_alone(const struct machine *machine, unsigned number)
+{
+    const uint8_t node = machine->io[number].node;
+    bool alone = node != machine->controller_node;
+
+    for (unsigned i = 0; i < AXIS_COUNT; i++)
+        alone = alone && !(machine->axis[i].present && machine->axis[i].drive_node == node);
+    for (unsigned i = 0; i < number; i++)
+        alone = alone && machine->io[i].node != node;
+    return alone;
+}
+
+/* One after the other from the first on, each id once. */
+static bool check_io(const struct machine *machine, struct diagnostic *wrong)
+{
+    const unsigned count = machine_io_count(machine);
+
+    for (unsigned i = 0; i < IO_NODES_MAX; i++) {
+        const bool is_there = machine->io[i].node != 0;
+
+        if (!is_wired_well(&machine->io[i]) || machine->io[i].node > NODE_MAX ||
+            is_there != (i < count))
+            return refuse_io(machine, i, TAKT_ERROR_MACHINE_IO, wrong);
+        if (is_there && !is_alone(machine, i))
+            return refuse_io(machine, i, TAKT_ERROR_MACHINE_IO_NODE, wrong);
+    }
+    return true;
+}
+
 static bool check_bus(const struct machine *machine, struct diagnostic *wrong)
 {
     struct drives_load load;
@@ -118,7 +168,8 @@ static bool check_bus(const struct machine *machine, struct diagnostic *wrong)
 
     for (unsigned i = 0; i < AXIS_COUNT; i++)
         drives += machine_axis_is_on_can(&machine->axis[i]);
-    if (drives_predict_load(drives, machine->can_bitrate, machine->cycle_us, &load))
+    if (drives_predict_whole_load(drives, machine->io, machine_io_count(machine),
+                                  machine->can_bitrate, machine->cycle_us, &load))
         return true;
     drives_set_overload(&load, wrong);
     return false;
@@ -154,5 +205,5 @@ bool machine_check(const struct machine *machine, struct diagnostic *wrong)
         if (machine->axis[i].present && !check_axis(machine, i, wrong))
             return false;
     }
-    return check_forms(machine, wrong) && check_bus(machine, wrong);
+    return check_forms(machine, wrong) && check_io(machine, wrong) && check_bus(machine, wrong);
 }

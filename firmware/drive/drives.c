@@ -42,7 +42,8 @@ static void take_times(struct drives *d, const struct drives_config *config)
 static void check_load(struct drives *d, const struct drives_config *config)
 {
     struct drives_load load;
-    if (drives_predict_load(config->count, config->bitrate, config->cycle_us, &load))
+    if (drives_predict_whole_load(config->count, config->wiring, config->io_count, config->bitrate,
+                                  config->cycle_us, &load))
         return;
     d->state = DRIVES_FAULTED;
     drives_set_overload(&load, &d->fault);
@@ -58,6 +59,7 @@ void drives_init(struct drives *d, const struct drives_config *config)
     d->bitrate = config->bitrate;
     d->homed = config->homed;
     take_times(d, config);
+    drives_io_init(d, config);
     for (unsigned i = 0; i < d->count; i++) {
         assert(config->axis[i].node >= NODE_MIN && config->axis[i].node <= NODE_MAX);
         d->axis[i].config = config->axis[i];
@@ -67,15 +69,19 @@ void drives_init(struct drives *d, const struct drives_config *config)
     }
     for (unsigned i = 0; i < d->count; i++)
         init_axis(d, i);
-    if (d->count == 0)
+    if (d->count == 0 && d->io_count == 0)
         d->state = DRIVES_ENABLED;
     check_load(d, config);
 }
 
-/* Setpoints that do not get through any more, or are none, cannot be followed to rest. */
+/*
+ * Setpoints that do not get through any more, or are none, cannot be followed to rest; and where a switch says stop, rest
+ * comes before the path.
+ */
 static bool cuts_off(enum takt_error error)
 {
-    return error == TAKT_ERROR_DRIVE_RANGE || error == TAKT_ERROR_DRIVE_UNREACHABLE;
+    return error == TAKT_ERROR_DRIVE_RANGE || error == TAKT_ERROR_DRIVE_UNREACHABLE ||
+           error == TAKT_ERROR_IO_STOP || error == TAKT_ERROR_IO_LIMIT;
 }
 
 void drives_brake(struct drives *d)
@@ -136,6 +142,12 @@ void drives_raise(struct drives *d, unsigned index, enum takt_error error, doubl
     d->axis[index].lost = d->axis[index].lost || !can_follow(&d->axis[index], error);
     name_axis(d, index, &word);
     raise(d, index, &word, error, value, meaning);
+}
+
+void drives_raise_named(struct drives *d, const struct word *name, enum takt_error error,
+                        double value, const char *meaning)
+{
+    raise(d, AXIS_COUNT, name, error, value, meaning);
 }
 
 /* "Y (node 2), object 1600:01,". */

@@ -15,7 +15,10 @@
 
 #include "base/error.h"
 #include "base/point.h"
+#include "drive/io_wiring.h"
 #include "hal/can.h"
+#include "hal/inputs.h"
+#include "hal/outputs.h"
 
 #include <stdbool.h>
 #include <stdint.h>
@@ -59,6 +62,8 @@ struct drives_config_axis {
 struct drives_config {
     unsigned count; /* drives, 0 ... AXIS_COUNT; none: enabled at once */
     struct drives_config_axis axis[AXIS_COUNT];
+    unsigned io_count;              /* I/O nodes beside them, 0 ... IO_NODES_MAX */
+    const struct io_wiring *wiring; /* of these. Must outlive the drives */
     bool homed; /* all axes have been homed since power-on: they are not homed again */
     uint32_t cycle_us;
     uint32_t bitrate;             /* of the bus, bit/s */
@@ -126,6 +131,12 @@ void drives_sync(struct drives *d, const struct can_port *port);
  * lets it come to rest, on the path and within the limits; once it has rested the drives are switched off.
  */
 void drives_send(struct drives *d, const struct can_port *port, const struct point *setpoint);
+
+/* After drives_send: the outputs of the I/O nodes, when they have changed, and now and then. */
+void drives_send_outputs(struct drives *d, const struct can_port *port,
+                         const struct outputs *outputs);
+/* Sets the inputs that I/O nodes are wired to, as they were reported last. The others stay. */
+void drives_add_inputs(const struct drives *d, struct inputs *inputs);
 
 static inline enum drives_state drives_get_state(const struct drives *d)
 {
@@ -213,6 +224,10 @@ void drives_get_load(const struct drives *d, struct drives_load *load);
 /* True: the bus carries the cycle, two targets in a frame. count: drives. */
 bool drives_predict_load(unsigned count, uint32_t bitrate, uint32_t cycle_us,
                          struct drives_load *load);
+
+/* And of I/O nodes beside them, with as many inputs and outputs as are wired. */
+bool drives_predict_whole_load(unsigned count, const struct io_wiring *wiring, unsigned io_count,
+                               uint32_t bitrate, uint32_t cycle_us, struct drives_load *load);
 
 /* BUS_OVERLOAD, with the figures, in words for *fault. */
 void drives_set_overload(const struct drives_load *load, struct diagnostic *fault);

@@ -1,6 +1,8 @@
 #include "drive/drives_private.h"
 #include "drive/word.h"
 
+#include <stddef.h>
+
 #define HEARTBEAT_LENGTH 1
 
 unsigned drives_cycle_frames(unsigned count, uint8_t length[DRIVES_CYCLE_FRAMES_MAX])
@@ -38,21 +40,27 @@ static bool set_share(struct drives_load *load, uint32_t bitrate, uint32_t cycle
     return load->percent <= 100.0;
 }
 
-bool drives_predict_load(unsigned count, uint32_t bitrate, uint32_t cycle_us,
-                         struct drives_load *load)
+bool drives_predict_whole_load(unsigned count, const struct io_wiring *wiring, unsigned io_count,
+                               uint32_t bitrate, uint32_t cycle_us, struct drives_load *load)
 {
     uint8_t length[DRIVES_CYCLE_FRAMES_MAX];
     unsigned frames = drives_cycle_frames(count, length);
-    load->bits = 0;
+    load->bits = drives_io_wired_bits(wiring, io_count);
     for (unsigned i = 0; i < frames; i++)
         load->bits += drives_frame_bits(length[i]);
     return set_share(load, bitrate, cycle_us);
 }
 
+bool drives_predict_load(unsigned count, uint32_t bitrate, uint32_t cycle_us,
+                         struct drives_load *load)
+{
+    return drives_predict_whole_load(count, NULL, 0, bitrate, cycle_us, load);
+}
+
 void drives_get_load(const struct drives *d, struct drives_load *load)
 {
     bool has_error = false;
-    load->bits = drives_frame_bits(0) + drives_frame_bits(HEARTBEAT_LENGTH);
+    load->bits = drives_frame_bits(0) + drives_frame_bits(HEARTBEAT_LENGTH) + drives_io_bits(d);
     for (unsigned i = 0; i < d->count; i++) {
         load->bits += d->axis[i].bits;
         has_error = has_error || !drives_has_given_up(&d->axis[i], DRIVES_NO_ERROR_PDO);

@@ -5,7 +5,9 @@
 #define TAKT_DRIVE_DRIVES_PRIVATE_H
 
 #include "canopen/cia402.h"
+#include "canopen/nmt.h"
 #include "drive/drives.h"
+#include "drive/word.h"
 
 /* Statusword and actual position in one TPDO. That of error code and following error is of the same length. */
 #define DRIVES_STATUS_LENGTH 6
@@ -59,6 +61,10 @@ static inline uint32_t drives_heartless_cycles(const struct drives *d,
     return d->cycle - axis->beaten;
 }
 
+/* A fault that is not of a drive: name says of whom. The same otherwise as drives_raise. */
+void drives_raise_named(struct drives *d, const struct word *name, enum takt_error error,
+                        double value, const char *meaning);
+
 /* A cycle of DRIVES_STARTING after its frames have been received. */
 void drives_start(struct drives *d);
 /* A drive has booted while the drives are being started. */
@@ -104,6 +110,33 @@ static inline bool drives_has_given_up(const struct drives_axis *axis, enum driv
 bool drives_tells_mode(const struct drives_axis *axis);
 /* The controlword that brings a drive on its way. */
 uint16_t drives_controlword(const struct drives_axis *axis);
+
+/*
+ * I/O nodes, drives_io.c: before anything else; a frame of one of them; what is watched in every cycle. boot: true when
+ * all have booted.
+ */
+void drives_io_init(struct drives *d, const struct drives_config *config);
+void drives_io_take(struct drives *d, unsigned index, const struct can_frame *frame);
+void drives_io_check(struct drives *d);
+bool drives_io_boot(struct drives *d);
+/* A cycle of DRIVES_IO, and what it sends. */
+void drives_io_start(struct drives *d);
+void drives_io_send_start(struct drives *d, const struct can_port *port);
+void drives_io_send_resets(struct drives *d, const struct can_port *port);
+/* Of its frames in a cycle, at worst. */
+uint32_t drives_io_bits(const struct drives *d);
+/* The same of nodes that have no more than what is wired. */
+uint32_t drives_io_wired_bits(const struct io_wiring *wiring, unsigned count);
+bool drives_send_nmt(const struct can_port *port, enum nmt_command command, uint8_t node);
+/* One request, of the client that all nodes share. */
+void drives_ask(struct drives *d, uint8_t node, const struct drives_step *step);
+
+static inline const char *drives_nmt_text(enum nmt_state state)
+{
+    if (state == NMT_BOOTED)
+        return "restarted";
+    return state == NMT_STOPPED ? "stopped" : "pre-operational";
+}
 
 /* Bits of a frame with n bytes at worst. */
 uint32_t drives_frame_bits(uint32_t n);

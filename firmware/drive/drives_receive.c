@@ -62,11 +62,6 @@ static void take_error_code(struct drives *d, unsigned index, const struct can_f
         drives_complete_fault(d, index, little_endian_read16(frame->data));
 }
 
-static const char *nmt_text(enum nmt_state state)
-{
-    return state == NMT_STOPPED ? "stopped" : "pre-operational";
-}
-
 static void take_heartbeat(struct drives *d, unsigned index, const struct can_frame *frame)
 {
     struct drives_axis *axis = &d->axis[index];
@@ -80,7 +75,7 @@ static void take_heartbeat(struct drives *d, unsigned index, const struct can_fr
     else if (state == NMT_BOOTED)
         drives_raise(d, index, TAKT_ERROR_DRIVE_REBOOTED, 0, NULL);
     else if (state != NMT_OPERATIONAL && drives_are_watched(d))
-        drives_raise(d, index, TAKT_ERROR_DRIVE_NMT, state, nmt_text(state));
+        drives_raise(d, index, TAKT_ERROR_DRIVE_NMT, state, drives_nmt_text(state));
 }
 
 /* Whatever does not come in every cycle. */
@@ -108,8 +103,10 @@ static void take_seldom(struct drives *d, unsigned index, const struct can_frame
 static void take_frame(struct drives *d, const struct can_frame *frame)
 {
     unsigned index = d->axis_of_node[node_id(frame->id)];
-    if (index == AXIS_COUNT)
+    if (index >= AXIS_COUNT) {
+        drives_io_take(d, index, frame);
         return;
+    }
     struct drives_axis *axis = &d->axis[index];
     if (frame->id == axis->report_id)
         take_status(d, axis, frame);
@@ -127,6 +124,7 @@ static void take_frames(struct drives *d, const struct can_port *port)
 void drives_receive(struct drives *d, const struct can_port *port)
 {
     take_frames(d, port);
+    drives_io_check(d);
     switch (d->state) {
     case DRIVES_STARTING:
         drives_start(d);

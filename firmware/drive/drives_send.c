@@ -23,7 +23,7 @@ void drives_sync(struct drives *d, const struct can_port *port)
     (void)send_frame(port, &frame);
 }
 
-static bool send_nmt(const struct can_port *port, enum nmt_command command, uint8_t node)
+bool drives_send_nmt(const struct can_port *port, enum nmt_command command, uint8_t node)
 {
     struct can_frame frame;
     nmt_write_command(&frame, command, node);
@@ -99,7 +99,7 @@ static void send_targets(struct drives *d, const struct can_port *port)
 static void send_resets(struct drives *d, const struct can_port *port)
 {
     for (unsigned i = 0; i < d->count; i++)
-        if (d->axis[i].reset_pending && send_nmt(port, NMT_RESET_COMMUNICATION, d->node[i]))
+        if (d->axis[i].reset_pending && drives_send_nmt(port, NMT_RESET_COMMUNICATION, d->node[i]))
             d->axis[i].reset_pending = false;
 }
 
@@ -132,7 +132,7 @@ static void send_start(struct drives *d, const struct can_port *port)
     struct drives_axis *axis = next_to_start(d);
     if (axis == NULL)
         return;
-    axis->started = send_nmt(port, NMT_START, axis->config.node);
+    axis->started = drives_send_nmt(port, NMT_START, axis->config.node);
     axis->heard = false;
     axis->reported = d->cycle;
     axis->beaten = d->cycle;
@@ -145,6 +145,8 @@ static void send_start(struct drives *d, const struct can_port *port)
  */
 static void send_enabling(struct drives *d, const struct can_port *port)
 {
+    if (d->count == 0)
+        return;
     struct drives_axis *turn = &d->axis[d->cycle % d->count];
     if (turn->heard)
         send_controlword(turn, port, drives_controlword(turn), false);
@@ -159,9 +161,14 @@ static void send_starting(struct drives *d, const struct can_port *port)
     switch (d->phase) {
     case DRIVES_BOOT:
         send_resets(d, port);
+        drives_io_send_resets(d, port);
         break;
     case DRIVES_CONFIGURE:
         send_request(d, port);
+        break;
+    case DRIVES_IO:
+        send_request(d, port);
+        drives_io_send_start(d, port);
         break;
     case DRIVES_START:
         send_start(d, port);

@@ -1,7 +1,7 @@
 /*
  * From power-on to the first setpoint: boot, configure, start, enable, home.
  *
- *     BOOT --all booted--> CONFIGURE --all told--> START --all started--> ENABLE --all enabled--> SELECT
+ *     BOOT --all booted--> CONFIGURE --all told--> IO --they work--> START --all started--> ENABLE --all enabled--> SELECT
  *       SELECT --modes shown, axes left to home--> HOME --they are--> SELECT ... --none left--> FOLLOW --> DRIVES_ENABLED
  *
  * A drive that boots before the end of ENABLE has forgotten what it was told: CONFIGURE begins again.
@@ -51,8 +51,7 @@ void drives_enter_phase(struct drives *d, enum drives_phase phase)
 /* A request to another drive is waited for: its answer would be taken for that to the next one. */
 static void begin_again(struct drives *d, uint8_t booted)
 {
-    bool is_stale =
-        d->phase == DRIVES_CONFIGURE && sdo_client_is_busy(&d->sdo) && d->sdo.node != booted;
+    bool is_stale = d->phase <= DRIVES_IO && sdo_client_is_busy(&d->sdo) && d->sdo.node != booted;
     drives_enter_phase(d, DRIVES_CONFIGURE);
     d->is_stale = is_stale;
     if (is_stale)
@@ -78,7 +77,7 @@ void drives_start_again(struct drives *d, unsigned index)
 /* Reset once, and once more when that has taken too long: the order may have been lost, or the answer. */
 static void boot(struct drives *d)
 {
-    bool all = true;
+    bool all = drives_io_boot(d);
     for (unsigned i = 0; i < d->count; i++) {
         all = all && d->axis[i].booted;
         if (d->axis[i].booted)
@@ -93,13 +92,18 @@ static void boot(struct drives *d)
         drives_enter_phase(d, DRIVES_CONFIGURE);
 }
 
-static void ask(struct drives *d, const struct drives_step *step)
+void drives_ask(struct drives *d, uint8_t node, const struct drives_step *step)
 {
     if (step->length > 0)
-        sdo_client_download_number(&d->sdo, d->node[d->at_axis], step->object, step->value,
-                                   step->length, d->sdo_timeout_cycles);
+        sdo_client_download_number(&d->sdo, node, step->object, step->value, step->length,
+                                   d->sdo_timeout_cycles);
     else
-        sdo_client_upload(&d->sdo, d->node[d->at_axis], step->object, d->sdo_timeout_cycles);
+        sdo_client_upload(&d->sdo, node, step->object, d->sdo_timeout_cycles);
+}
+
+static void ask(struct drives *d, const struct drives_step *step)
+{
+    drives_ask(d, d->node[d->at_axis], step);
 }
 
 static bool next_of_part(struct drives *d, struct drives_step *step)
@@ -148,7 +152,7 @@ static void next_step(struct drives *d)
     if (d->state == DRIVES_STARTING)
         check_load(d);
     if (d->state == DRIVES_STARTING)
-        drives_enter_phase(d, DRIVES_START);
+        drives_enter_phase(d, d->io_count > 0 ? DRIVES_IO : DRIVES_START);
 }
 
 static void take_answer(struct drives *d)
@@ -181,12 +185,18 @@ static void miss_answer(struct drives *d)
                             drives_cycles_ms(d, d->sdo_timeout_cycles), NULL);
 }
 
-static void configure(struct drives *d)
+/* A request of a configuration that has been begun again has come to its end. */
+static void settle_request(struct drives *d)
 {
     if (d->is_stale && !sdo_client_is_busy(&d->sdo)) {
         d->is_stale = false;
         d->sdo.result = SDO_IDLE;
     }
+}
+
+static void configure(struct drives *d)
+{
+    settle_request(d);
     switch (d->sdo.result) {
     case SDO_BUSY:
         return;
@@ -330,6 +340,11 @@ static void run_phase(struct drives *d)
         break;
     case DRIVES_CONFIGURE:
         configure(d);
+        break;
+    case DRIVES_IO:
+        settle_request(d);
+        if (!d->is_stale)
+            drives_io_start(d);
         break;
     case DRIVES_START:
         if (all_are_started(d))

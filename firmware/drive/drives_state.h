@@ -7,6 +7,7 @@
 #include "canopen/node.h"
 #include "canopen/pdo.h"
 #include "canopen/sdo_client.h"
+#include "drive/io_wiring.h"
 
 /*
  * Setpoints remembered until the position they led to is reported; a power of two above
@@ -18,6 +19,7 @@
 enum drives_phase {
     DRIVES_BOOT,      /* nodes are reset; each says that it has booted */
     DRIVES_CONFIGURE, /* each is checked and configured over SDO */
+    DRIVES_IO,        /* so are the I/O nodes; then they are started, and their inputs come */
     DRIVES_START,     /* nodes become operational, one a cycle: that staggers their event timers */
     DRIVES_ENABLE,    /* statuswords lead to "operation enabled" */
     DRIVES_SELECT, /* each shows the mode it is to be in: homing, or that in which targets are followed */
@@ -98,6 +100,23 @@ struct drives_axis {
     uint32_t given_up;                /* bits: enum drives_given_up */
 };
 
+/* An I/O node, as the start has found it and as it is. */
+struct drives_io {
+    uint32_t reported;                        /* cycle of its last inputs */
+    uint32_t beaten;                          /* and of its last heartbeat */
+    uint16_t inverted, stop_bits, limit_bits; /* of its inputs */
+    uint16_t levels;                          /* of its inputs, inverted ones as they are meant */
+    uint16_t low_limits; /* limit inputs that were low when they were looked at last */
+    uint16_t sent;       /* levels of its outputs on the wire */
+    uint8_t input_bytes; /* of its TPDO1; 0: none of them is wired */
+    uint8_t output_bytes;
+    bool reset_pending;
+    bool booted;
+    bool started;
+    bool heard;   /* its inputs have come since it was started */
+    bool by_sync; /* they come in every cycle */
+};
+
 struct drives {
     unsigned count;
     uint8_t node[AXIS_COUNT];
@@ -115,7 +134,12 @@ struct drives {
     struct drives_axis axis[AXIS_COUNT];
     struct point actual; /* the actual_mm of all axes; 0 for axes without a drive */
     double sent_mm[DRIVES_HISTORY][AXIS_COUNT]; /* setpoints of cycle k at [k % DRIVES_HISTORY] */
-    uint8_t axis_of_node[NODE_MAX + 1];         /* index into axis; AXIS_COUNT: not ours */
+    uint8_t
+        axis_of_node[NODE_MAX + 1]; /* index into axis; AXIS_COUNT: not ours; above: I/O nodes */
+    unsigned io_count;
+    const struct io_wiring *wiring; /* of the I/O nodes */
+    struct drives_io io[IO_NODES_MAX];
+    uint32_t io_cycles; /* since all outputs were sent */
 
     enum drives_state state;
     uint32_t cycle;       /* counts drives_send; wraps */

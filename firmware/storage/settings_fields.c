@@ -59,6 +59,7 @@ const struct settings_field settings_fields[] = {
     ROW(32, false, SETTINGS_U8, offsetof(struct machine, controller_node), 1, 1, 127, false, "controller_node"),
     COUNT(33, boot_timeout_ms, 1, 600000),
     COUNT(34, sdo_timeout_ms, 1, 600000),
+    ROW(35, false, SETTINGS_BYTES, offsetof(struct machine, io), sizeof(struct io_wiring) * IO_NODES_MAX, 0, 0, false, "io"),
 
     VECTOR(40, machine, CORRECTION_COORDINATES * CORRECTION_COORDINATES, CORRECTION_MOST),
     VECTOR(41, workpiece, CORRECTION_COORDINATES * CORRECTION_COORDINATES, CORRECTION_MOST),
@@ -117,9 +118,14 @@ static uint32_t number_bytes(const struct settings_field *field)
     return field->type == SETTINGS_DOUBLE ? 8 : 4;
 }
 
+static bool is_plain(const struct settings_field *field)
+{
+    return field->type == SETTINGS_TEXT || field->type == SETTINGS_BYTES;
+}
+
 uint32_t settings_field_bytes(const struct settings_field *field)
 {
-    return field->type == SETTINGS_TEXT ? field->count : field->count * number_bytes(field);
+    return is_plain(field) ? field->count : field->count * number_bytes(field);
 }
 
 static const uint8_t *place_of(const struct settings_field *field, const void *base)
@@ -147,7 +153,7 @@ void settings_field_get(const struct settings_field *field, const void *base, ui
 {
     const uint8_t *at = place_of(field, base);
 
-    if (field->type == SETTINGS_TEXT) {
+    if (is_plain(field)) {
         memcpy(bytes, at, field->count);
         return;
     }
@@ -180,7 +186,7 @@ void settings_field_set(const struct settings_field *field, void *base, const ui
 {
     uint8_t *at = (uint8_t *)base + field->offset;
 
-    if (field->type == SETTINGS_TEXT) {
+    if (is_plain(field)) {
         memcpy(at, bytes, field->count);
         return;
     }
@@ -226,6 +232,8 @@ bool settings_field_check(const struct settings_field *field, const void *base, 
     *value = field->count;
     if (field->type == SETTINGS_TEXT)
         return text_ends(at, field->count);
+    if (field->type == SETTINGS_BYTES)
+        return true; /* machine_check knows what they may be */
     for (uint32_t i = 0; i < field->count; i++) {
         *value = value_at(field, at + (size_t)8 * i);
         if (!is_in_range(field, *value))

@@ -8,14 +8,22 @@
 #include <stddef.h>
 #include <stdint.h>
 
-enum settings_type { SETTINGS_TEXT, SETTINGS_FLAG, SETTINGS_U8, SETTINGS_U32, SETTINGS_DOUBLE };
+/* Bytes are as they stand in memory; machine_check knows which may be. */
+enum settings_type {
+    SETTINGS_TEXT,
+    SETTINGS_BYTES,
+    SETTINGS_FLAG,
+    SETTINGS_U8,
+    SETTINGS_U32,
+    SETTINGS_DOUBLE
+};
 
 struct settings_field {
     double least, most; /* in the units of the struct */
     const char *name;   /* as in a machine file */
     uint16_t number;
     uint16_t offset; /* in struct machine_axis with of_axis, else in struct machine */
-    uint16_t count;  /* numbers; of a text: its bytes with the zero */
+    uint16_t count;  /* numbers; of a text: its bytes with the zero; of bytes: these */
     enum settings_type type;
     bool of_axis;
     bool above; /* least itself is not allowed */

@@ -23,6 +23,7 @@
 #define COM(field)      offsetof(struct drive_objects, communication.field)
 #define SET(field)      offsetof(struct drive_objects, settings.field)
 #define IDENTITY(field) offsetof(struct drive_objects, identity.field)
+#define EXTRA(byte)     (offsetof(struct drive_objects, extra) + (byte))
 
 #define COM_BEGIN offsetof(struct drive_objects, communication)
 
@@ -227,6 +228,38 @@ const struct dictionary dictionary_own = {
     .count = sizeof object_table / sizeof object_table[0],
     .dummies = 0xFC /* all whole numbers */
 };
+
+/* clang-format off */
+static const struct object_row io_table[] = {
+    CONST(0x1000, U32, 0x00030191, "Device type"),
+    VAR(0x1001, U8, RO, TPDO, PROCESS(error_register), 0, "Error register"),
+    VAR(0x1005, U32, RW, 0, COM(sync_cob_id), 0x80, "COB-ID SYNC message"),
+    TEXT(0x1008, "takt virtual I/O node", "Manufacturer device name"),
+    VAR(0x1014, U32, RW, NODE, COM(emcy_cob_id), 0x80, "COB-ID EMCY"),
+    HEAD(0x1016, OBJECT_ARRAY, DRIVE_CONSUMERS, "Consumer heartbeat time"),
+    SUB(0x1016, 1, U32, RW, 0, COM(consumer_heartbeat[0]), 0, "Node and time"),
+    SUB(0x1016, 2, U32, RW, 0, COM(consumer_heartbeat[1]), 0, "Node and time"),
+    VAR(0x1017, U16, RW, 0, COM(producer_heartbeat_ms), 0, "Producer heartbeat time"),
+    HEAD(0x1018, OBJECT_RECORD, 4, "Identity object"),
+    SUBC(0x1018, 1, 0, "Vendor-ID"),
+    SUBC(0x1018, 2, 0x401, "Product code"),
+    SUBC(0x1018, 3, 0x10000, "Revision number"),
+    SUB(0x1018, 4, U32, RO, OWN, IDENTITY(serial), 0, "Serial number"),
+    RPDO_PARAMETERS(0, 0x200, 255),
+    RPDO_MAPPING(0, DICTIONARY_IO_BYTES, 0x62000108, 0x62000208),
+    TPDO_PARAMETERS(0, NO_RTR | 0x180, 255, 0),
+    TPDO_MAPPING(0, DICTIONARY_IO_BYTES, 0x60000108, 0x60000208),
+    HEAD(0x6000, OBJECT_ARRAY, DICTIONARY_IO_BYTES, "Read input 8-bit"),
+    SUB(0x6000, 1, U8, RO, TPDO, EXTRA(DICTIONARY_IO_BYTES), 0, "Inputs 1 to 8"),
+    SUB(0x6000, 2, U8, RO, TPDO, EXTRA(DICTIONARY_IO_BYTES + 1), 0, "Inputs 9 to 16"),
+    HEAD(0x6200, OBJECT_ARRAY, DICTIONARY_IO_BYTES, "Write output 8-bit"),
+    SUB(0x6200, 1, U8, RW, RPDO, EXTRA(0), 0, "Outputs 1 to 8"),
+    SUB(0x6200, 2, U8, RW, RPDO, EXTRA(1), 0, "Outputs 9 to 16"),
+};
+/* clang-format on */
+
+const struct dictionary dictionary_io = {.row = io_table,
+                                         .count = sizeof io_table / sizeof io_table[0]};
 
 const struct object_row *object_table_find(uint16_t index, uint8_t sub, bool *has_index)
 {

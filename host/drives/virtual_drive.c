@@ -85,7 +85,9 @@ void virtual_drive_init(struct virtual_drive *drive, const struct virtual_drive_
     memset(drive, 0, sizeof *drive);
     drive->config = *config;
     drive->port = *port;
-    drive->dictionary = config->dictionary != NULL ? config->dictionary : &dictionary_own;
+    drive->dictionary = config->is_io ? &dictionary_io : &dictionary_own;
+    if (config->dictionary != NULL)
+        drive->dictionary = config->dictionary;
     drive->nmt = NMT_BOOTED;
     drive_plant_init(&drive->plant, &config->plant);
     sdo_server_init(&drive->sdo, config->node, &owner);
@@ -374,7 +376,10 @@ void virtual_drive_step(struct virtual_drive *drive, uint32_t cycle_ns)
 {
     if (drive->faults.script)
         virtual_drive_run_faults(drive);
-    virtual_drive_move(drive, cycle_ns);
+    if (drive->config.is_io)
+        virtual_drive_run_io(drive);
+    else
+        virtual_drive_move(drive, cycle_ns);
     drive->now_ns += cycle_ns;
     if (may_have_event(drive))
         virtual_drive_note_events(drive);

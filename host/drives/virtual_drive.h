@@ -33,6 +33,9 @@ struct virtual_drive_config {
     uint32_t sdo_us;   /* from a request to its answer */
     const struct dictionary *dictionary; /* must stay; NULL: takt's own */
     struct drive_plant_config plant;
+    bool
+        is_io; /* no drive but an I/O node (CiA 401), of dictionary_io: nothing of the motor counts */
+    uint16_t closed; /* its inputs that are high for good; the others are those of its outputs */
 };
 
 #include "drives/virtual_drive_state.h"

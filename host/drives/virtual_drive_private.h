@@ -112,6 +112,10 @@ void virtual_drive_lose_connection(struct virtual_drive *drive);
 /* Back to the state after power-on; the motor runs out without torque. */
 void virtual_drive_reset_profile(struct virtual_drive *drive);
 
+/* ---- virtual_drive_io.c ---- */
+
+void virtual_drive_run_io(struct virtual_drive *drive); /* a cycle of an I/O node */
+
 /* ---- virtual_drive_modes.c: motion of the command while enabled ---- */
 
 /* Position as the drive reports it: rounded to increments, held at the ends of the int32 range. */

@@ -117,6 +117,7 @@ struct virtual_drive {
     uint16_t seen_error_code;
     int8_t seen_mode;
     uint32_t seen_inputs;
+    uint32_t seen_io; /* of an I/O node: its inputs, and above them its NMT state */
 
     /* Times at which something happens; UINT64_MAX: never. */
     uint64_t heartbeat_ns;

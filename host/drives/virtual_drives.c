@@ -24,6 +24,8 @@ static void start(struct virtual_drives *set, const struct virtual_drives_config
     assert(config->count <= VIRTUAL_DRIVES_MAX);
     memset(set, 0, sizeof *set);
     set->count = config->count;
+    while (set->motors < set->count && !config->drive[set->motors].is_io)
+        set->motors++;
     set->clock.enabled_ns = INJECT_ALWAYS;
 }
 
@@ -43,9 +45,10 @@ void virtual_drives_init(struct virtual_drives *set, struct bus *bus,
     for (unsigned i = 0; i < set->count; i++) {
         struct virtual_drive *drive = &set->drive[i];
         struct pdo target;
-        target_pdo_set(&target, node, set->count, i);
+        if (i < set->motors)
+            target_pdo_set(&target, node, set->motors, i);
         struct can_port port = bus_attach(bus, &(struct bus_listener){on_frame, drive});
-        virtual_drive_init(drive, &config->drive[i], &target, &port);
+        virtual_drive_init(drive, &config->drive[i], i < set->motors ? &target : NULL, &port);
         virtual_drive_boot(drive);
     }
 }
@@ -112,16 +115,19 @@ void virtual_drives_inject(struct virtual_drives *set, const struct inject *scri
         virtual_drive_inject(&set->drive[i], script, &set->clock);
 }
 
+/* I/O nodes first: when the last drive has answered a SYNC, everybody has. */
 void virtual_drives_take(struct virtual_drives *set, const struct can_frame *frame)
 {
-    for (unsigned i = 0; i < set->count; i++)
+    for (unsigned i = set->motors; i < set->count; i++)
+        virtual_drive_on_frame(&set->drive[i], frame);
+    for (unsigned i = 0; i < set->motors; i++)
         virtual_drive_on_frame(&set->drive[i], frame);
     hand_round(set);
 }
 
 static bool all_enabled(const struct virtual_drives *set)
 {
-    for (unsigned i = 0; i < set->count; i++)
+    for (unsigned i = 0; i < set->motors; i++)
         if (virtual_drive_get_state(&set->drive[i]) != CIA402_ENABLED)
             return false;
     return true;
@@ -146,8 +152,8 @@ const struct inject_clock *virtual_drives_get_clock(const struct virtual_drives 
 /* The period of SYNC; 0: not all drives have been told the same. */
 static uint32_t sync_period_us(const struct virtual_drives *set)
 {
-    uint32_t period_us = virtual_drive_get_sync_period_us(&set->drive[0]);
-    for (unsigned i = 1; i < set->count; i++)
+    uint32_t period_us = set->motors > 0 ? virtual_drive_get_sync_period_us(&set->drive[0]) : 0;
+    for (unsigned i = 1; i < set->motors; i++)
         if (virtual_drive_get_sync_period_us(&set->drive[i]) != period_us)
             return 0;
     return period_us <= SYNC_PERIOD_MAX_US ? period_us : 0;
@@ -176,7 +182,7 @@ static uint32_t shortest_heartbeat_ms(const struct virtual_drives *set)
 
 static bool any_enabled(const struct virtual_drives *set)
 {
-    for (unsigned i = 0; i < set->count; i++)
+    for (unsigned i = 0; i < set->motors; i++)
         if (virtual_drive_get_state(&set->drive[i]) == CIA402_ENABLED)
             return true;
     return false;

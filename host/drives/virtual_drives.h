@@ -20,8 +20,8 @@
 
 struct virtual_drives_config {
     unsigned count; /* 0 ... VIRTUAL_DRIVES_MAX */
-    struct virtual_drive_config
-        drive[VIRTUAL_DRIVES_MAX]; /* in the machine's order: it makes the pairs */
+    struct virtual_drive_config drive
+        [VIRTUAL_DRIVES_MAX]; /* in the machine's order: it makes the pairs; I/O nodes come last */
 };
 
 /* One drive's way to a bus that is not embedded. */
@@ -32,6 +32,7 @@ struct virtual_drives_port {
 
 struct virtual_drives {
     unsigned count;
+    unsigned motors; /* of these; the others are I/O nodes */
     struct inject_clock clock;
     struct virtual_drive drive[VIRTUAL_DRIVES_MAX];
 

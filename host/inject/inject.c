@@ -81,7 +81,7 @@ static bool read_when(struct reader *reader, const struct word *word, struct inj
                   word->text);
 }
 
-/* "bus", or "drive" and its node. */
+/* "bus", or "drive" or "io" and its node. */
 static bool read_where(struct reader *reader, const struct word *word, struct inject_fault *fault,
                        bool *of_bus)
 {
@@ -89,7 +89,7 @@ static bool read_where(struct reader *reader, const struct word *word, struct in
     *of_bus = strcmp(word->text, "bus") == 0;
     if (*of_bus)
         return true;
-    if (strcmp(word->text, "drive") != 0)
+    if (strcmp(word->text, "drive") != 0 && strcmp(word->text, "io") != 0)
         return refuse(reader, word->column, "'%s' cannot fail; bus or drive NODE is expected",
                       word->text);
     if (!next_word(reader, &node))

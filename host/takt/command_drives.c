@@ -135,6 +135,9 @@ static bool set_drives(struct drives_command *command)
     for (unsigned i = 0; i < command->drives.count; i++)
         if (!use_axis(command, &command->drives.drive[i]))
             return false;
+    for (unsigned i = 0; i < machine_io_count(&command->setup.machine) && nodes == NULL; i++)
+        data_sheet_set_io(&command->drives.drive[command->drives.count++],
+                          &command->setup.machine.io[i]);
     return true;
 }
 

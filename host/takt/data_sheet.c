@@ -18,6 +18,17 @@ bool data_sheet_load(struct dictionary *dictionary, const char *path)
     return good;
 }
 
+void data_sheet_set_io(struct virtual_drive_config *drive, const struct io_wiring *wiring)
+{
+    *drive =
+        (struct virtual_drive_config){.node = wiring->node, .increments_per_mm = 1, .is_io = true};
+    drive_plant_set_default(&drive->plant);
+    for (unsigned i = 0; i < IO_BITS_MAX; i++) {
+        if (wiring->input[i] == IO_STOP || wiring->input[i] == IO_LIMIT)
+            drive->closed |= (uint16_t)(1U << i);
+    }
+}
+
 bool data_sheet_set_drive(struct virtual_drive_config *drive, const struct machine_drive *config,
                           struct dictionary *sheet)
 {

@@ -14,4 +14,7 @@ bool data_sheet_load(struct dictionary *dictionary, const char *path);
 bool data_sheet_set_drive(struct virtual_drive_config *drive, const struct machine_drive *config,
                           struct dictionary *sheet);
 
+/* The virtual I/O node of a machine: circuits that stop the axes are closed, every other input is that of its output. */
+void data_sheet_set_io(struct virtual_drive_config *drive, const struct io_wiring *wiring);
+
 #endif

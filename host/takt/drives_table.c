@@ -147,6 +147,14 @@ const char *drives_table_remedy(const struct diagnostic *fault)
     case TAKT_ERROR_DRIVE_SCALING:
         return "correct increments_per_mm or travel_per_turn_mm, or objects 608F, 6091 and 6092 "
                "with the maker's tool";
+    case TAKT_ERROR_IO_ABSENT:
+    case TAKT_ERROR_IO_TYPE:
+    case TAKT_ERROR_IO_UNANSWERED:
+        return "look at its power, bit rate and termination, and at node in its section [io N]";
+    case TAKT_ERROR_IO_REFUSES:
+    case TAKT_ERROR_IO_UNMAPPED:
+        return "give the node the defaults of its maker (object 1011), or wire fewer bits in its "
+               "section [io N]";
     case TAKT_ERROR_BUS_OVERLOAD:
         return "make cycle_us in [machine] longer, or bitrate in [bus] higher";
     default:

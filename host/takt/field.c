@@ -75,6 +75,8 @@ static bool set_drives(struct field *field, struct virtual_drives_config *config
             return false;
         config->count++;
     }
+    for (unsigned i = 0; i < machine_io_count(&setup->machine); i++)
+        data_sheet_set_io(&config->drive[config->count++], &setup->machine.io[i]);
     return true;
 }
 

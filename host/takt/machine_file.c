@@ -443,6 +443,14 @@ static void write_codes(FILE *file, const struct dialect_codes *codes)
         (void)fprintf(file, "%s = %.9g\n", codes->value[i].name, codes->value[i].value);
 }
 
+static void write_io_nodes(FILE *file, const struct machine_setup *setup)
+{
+    for (unsigned i = 0; i < machine_io_count(&setup->machine); i++) {
+        (void)fprintf(file, "\n[io %u]\n", i + 1);
+        write_section(file, setup, (struct machine_place){SECTION_IO, i});
+    }
+}
+
 void machine_file_write(FILE *file, const struct machine_setup *setup)
 {
     static const enum machine_section single[] = {SECTION_MACHINE,    SECTION_SPINDLE,
@@ -459,5 +467,6 @@ void machine_file_write(FILE *file, const struct machine_setup *setup)
     write_places_of_axes(file, setup, SECTION_AXIS);
     write_places_of_axes(file, setup, SECTION_DRIVE);
     write_places_of_axes(file, setup, SECTION_STEPPER);
+    write_io_nodes(file, setup);
     write_codes(file, &setup->codes);
 }

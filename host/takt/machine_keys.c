@@ -5,6 +5,7 @@
 #define IN_SETUP(field)   offsetof(struct machine_setup, field)
 #define IN_AXIS(field)    offsetof(struct machine_axis, field)
 #define IN_DRIVE(field)   offsetof(struct machine_drive, plant.field)
+#define IN_IO(field)      offsetof(struct io_wiring, field)
 #define IN_STEPPER(field) offsetof(struct virtual_stepper_config, field)
 
 /* Rows of the table by what they hold. Ranges: from (above: without) the first number to the second. */
@@ -52,7 +53,8 @@
         OF_GEOMETRY("ec" letter, axis[number][5], DEVIATION_CURVE_NUMBERS, "about Z")
 
 const char *const machine_section_names[SECTION_COUNT] = {
-    "machine", "axis", "spindle", "bus", "panel", "correction", "geometry", "drive", "stepper"};
+    "machine",    "axis",     "spindle", "bus",     "panel",
+    "correction", "geometry", "drive",   "stepper", "io"};
 
 /* clang-format off */
 const struct machine_key machine_keys[] = {
@@ -265,6 +267,13 @@ const struct machine_key machine_keys[] = {
           "steps that come faster are missed by the motor"),
     COUNT(SECTION_STEPPER, "encoder", KEY_UINT32, IN_STEPPER(has_encoder), 0, 1,
           "1: the motor has one, so that the controller sees missed steps; 0: it has none"),
+
+    COUNT(SECTION_IO, "node", KEY_UINT8, IN_IO(node), 1, 127,
+          "CANopen node id of an I/O node (CiA 401) on the drives' bus; [io 1] is the first"),
+    CHOICE(SECTION_IO, "outputs", KEY_OUTPUTS, IN_IO(output),
+           "its outputs from bit 0 on: P0 ... P31 (M62 to M65), flood, mist, spindle, ccw (it turns counter-clockwise), - (free); with ! inverted"),
+    CHOICE(SECTION_IO, "inputs", KEY_INPUTS, IN_IO(input),
+           "its inputs from bit 0 on: P0 ... P31 (M66), stop and limit (closed circuits that stop the axes when they open), - (free); with ! inverted"),
 
     TEXT(SECTION_CORRECTION, "volume_table", IN_SETUP(volume_table), MACHINE_SETUP_PATH_MAX + 1,
          "CSV table over X Y Z and the turning axis; relative to this file's folder; empty: none"),

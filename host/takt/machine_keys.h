@@ -19,6 +19,7 @@ enum machine_section {
     SECTION_GEOMETRY,
     SECTION_DRIVE,
     SECTION_STEPPER,
+    SECTION_IO,
     SECTION_COUNT
 };
 
@@ -30,6 +31,8 @@ enum machine_key_type {
     KEY_VECTOR /* size numbers */,
     KEY_AXIS,
     KEY_LAYERS,
+    KEY_OUTPUTS,
+    KEY_INPUTS, /* what the bits of an I/O node are */
     KEY_AXIS_TYPE,
     KEY_DRIVE_TYPE,
     KEY_STEP_FORM,
@@ -57,7 +60,7 @@ struct machine_key {
     enum machine_key_type type;
     enum machine_key_scale scale;
     size_t
-        offset; /* SECTION_AXIS: in struct machine_axis; SECTION_DRIVE: in the drive; SECTION_STEPPER: in the stepper; else in the setup */
+        offset; /* SECTION_AXIS: in struct machine_axis; SECTION_DRIVE: in the drive; SECTION_STEPPER: in the stepper; SECTION_IO: in the I/O node; else in the setup */
     size_t size;     /* of a text, with its zero */
     double min, max; /* in the unit of the file */
     bool above_min;  /* min itself is not allowed */
@@ -73,7 +76,7 @@ extern const struct machine_key machine_keys[];
 extern const size_t machine_keys_count;
 extern const char *const machine_section_names[SECTION_COUNT];
 
-/* A section in use. index: the axis, also of a drive or stepper; 0 for sections there is one of. */
+/* A section in use. index: the axis, also of a drive or stepper; of an I/O node its number from 0; 0 for sections there is one of. */
 struct machine_place {
     enum machine_section section;
     unsigned index;

@@ -98,7 +98,8 @@ static const char *check_bus(const struct machine *machine)
     struct drives_load load;
     unsigned drives = count_drives(machine);
 
-    if (drives_predict_load(drives, machine->can_bitrate, machine->cycle_us, &load))
+    if (drives_predict_whole_load(drives, machine->io, machine_io_count(machine),
+                                  machine->can_bitrate, machine->cycle_us, &load))
         return NULL;
     return problem(
         "the bus cannot carry a cycle: %u drives take %u of %u bits at worst, load %.1f %%, at %u "
@@ -136,8 +137,8 @@ double machine_setup_predict_load_percent(const struct machine *machine)
 {
     struct drives_load load;
 
-    (void)drives_predict_load(count_drives(machine), machine->can_bitrate, machine->cycle_us,
-                              &load);
+    (void)drives_predict_whole_load(count_drives(machine), machine->io, machine_io_count(machine),
+                                    machine->can_bitrate, machine->cycle_us, &load);
     return load.percent;
 }
 

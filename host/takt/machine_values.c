@@ -76,6 +76,15 @@ static bool find_stepper(const struct machine_setup *setup, const char *instance
     return false;
 }
 
+static bool find_io(const char *instance, unsigned *index, struct machine_problem *wrong)
+{
+    *index = strlen(instance) == 1 ? (unsigned)(instance[0] - '1') : IO_NODES_MAX;
+    if (*index < IO_NODES_MAX)
+        return true;
+    say(wrong, "there is no I/O node '%.40s': they are io 1 to io %d", instance, IO_NODES_MAX);
+    return false;
+}
+
 static bool find_word(const char *word, enum machine_section *section,
                       struct machine_problem *wrong)
 {
@@ -102,6 +111,8 @@ bool machine_section_find(struct machine_setup *setup, const char *word, const c
         return find_stepper(setup, instance, &place->index, wrong);
     if (place->section == SECTION_DRIVE)
         return find_drive(setup, instance, &place->index, wrong);
+    if (place->section == SECTION_IO)
+        return find_io(instance, &place->index, wrong);
     if (instance[0] == '\0')
         return true;
     say(wrong, "there is only one section '%s': '%.40s' is too much", word, instance);
@@ -180,6 +191,8 @@ static const void *field_of(const struct machine_setup *setup, struct machine_pl
         base = &setup->drive[place.index];
     else if (place.section == SECTION_STEPPER)
         base = &setup->stepper[place.index];
+    else if (place.section == SECTION_IO)
+        base = &setup->machine.io[place.index];
     return (const char *)base + key->offset;
 }
 
@@ -362,6 +375,69 @@ static bool read_text(const struct machine_key *key, const char *value, char *fi
     return true;
 }
 
+/* The bits of an I/O node that are no lines of the program, by enum io_bit. */
+static const struct {
+    const char *name;
+    uint8_t bit;
+} io_names[] = {{"-", IO_FREE},          {"flood", IO_FLOOD},     {"mist", IO_MIST},
+                {"spindle", IO_SPINDLE}, {"ccw", IO_SPINDLE_CCW}, {"stop", IO_STOP},
+                {"limit", IO_LIMIT}};
+
+#define IO_WORD_MAX 15
+
+/* False: there is no such bit. */
+static bool read_io_bit(const char *word, uint8_t *bit)
+{
+    const bool is_inverted = word[0] == '!';
+    const char *name = word + is_inverted;
+    char *end;
+    unsigned long line = name[0] == 'P' ? strtoul(name + 1, &end, 10) : IO_BIT_COUNT;
+
+    if (name[0] == 'P' && isdigit((unsigned char)name[1]) && *end == '\0' &&
+        line < IO_FLOOD - IO_PROGRAM) {
+        *bit = (uint8_t)(IO_PROGRAM + line + (is_inverted ? IO_INVERTED : 0));
+        return true;
+    }
+    for (size_t i = 0; i < sizeof io_names / sizeof io_names[0]; i++) {
+        if (strcmp(name, io_names[i].name) == 0) {
+            *bit = (uint8_t)(io_names[i].bit + (is_inverted ? IO_INVERTED : 0));
+            return true;
+        }
+    }
+    return false;
+}
+
+static bool read_io_bits(const struct machine_key *key, const char *value, uint8_t *field,
+                         struct machine_problem *wrong)
+{
+    uint8_t bits[IO_BITS_MAX] = {IO_FREE};
+    size_t count = 0;
+
+    while (*(value += strspn(value, " \t,")) != '\0') {
+        const size_t length = strcspn(value, " \t,");
+        char word[IO_WORD_MAX + 1];
+        uint8_t bit;
+
+        (void)snprintf(word, sizeof word, "%.*s",
+                       (int)(length < IO_WORD_MAX ? length : IO_WORD_MAX), value);
+        if (!read_io_bit(word, &bit) ||
+            !(key->type == KEY_OUTPUTS ? io_is_output(bit) : io_is_input(bit))) {
+            say(wrong, "%s: '%s' is none of %s", key->name, word,
+                key->type == KEY_OUTPUTS ? "P0 ... P31, flood, mist, spindle, ccw and -"
+                                         : "P0 ... P31, stop, limit and -");
+            return false;
+        }
+        if (count == IO_BITS_MAX) {
+            say(wrong, "%s: more than %d bits", key->name, IO_BITS_MAX);
+            return false;
+        }
+        bits[count++] = bit;
+        value += length;
+    }
+    memcpy(field, bits, sizeof bits);
+    return true;
+}
+
 bool machine_key_set(struct machine_setup *setup, struct machine_place place,
                      const struct machine_key *key, const char *value,
                      struct machine_problem *wrong)
@@ -393,6 +469,9 @@ bool machine_key_set(struct machine_setup *setup, struct machine_place place,
         return read_axis(key, value, field, wrong);
     case KEY_LAYERS:
         return read_layers(key, value, field, wrong);
+    case KEY_OUTPUTS:
+    case KEY_INPUTS:
+        return read_io_bits(key, value, field, wrong);
     case KEY_UINT32:
         if (!read_count(key, value, &number, wrong))
             return false;
@@ -455,6 +534,35 @@ static void write_axis_letter(uint32_t axis, char *text, size_t size)
         (void)snprintf(text, size, "none");
 }
 
+static const char *io_name(unsigned kind)
+{
+    for (size_t i = 0; i < sizeof io_names / sizeof io_names[0]; i++) {
+        if (io_names[i].bit == kind)
+            return io_names[i].name;
+    }
+    return "-";
+}
+
+static void write_io_bits(const uint8_t *bits, char *text, size_t size)
+{
+    const unsigned count = io_wired_bits(bits);
+    size_t used = 0;
+
+    text[0] = '\0';
+    for (unsigned i = 0; i < count && used < size; i++) {
+        const unsigned kind = io_kind(bits[i]);
+        const char *mark = bits[i] & IO_INVERTED ? "!" : "";
+        const char *space = i > 0 ? " " : "";
+
+        if (kind >= IO_PROGRAM && kind < IO_FLOOD)
+            used += (size_t)snprintf(text + used, size - used, "%s%sP%u", space, mark,
+                                     kind - IO_PROGRAM);
+        else
+            used +=
+                (size_t)snprintf(text + used, size - used, "%s%s%s", space, mark, io_name(kind));
+    }
+}
+
 void machine_key_get(const struct machine_setup *setup, struct machine_place place,
                      const struct machine_key *key, char *text, size_t size)
 {
@@ -487,6 +595,10 @@ void machine_key_get(const struct machine_setup *setup, struct machine_place pla
         break;
     case KEY_LAYERS:
         write_layers(*(const uint32_t *)field, text, size);
+        break;
+    case KEY_OUTPUTS:
+    case KEY_INPUTS:
+        write_io_bits(field, text, size);
         break;
     case KEY_UINT32:
         (void)snprintf(text, size, "%u", (unsigned)*(const uint32_t *)field);

@@ -80,13 +80,15 @@ static enum command_status start_controllers(struct simulation *s, const struct 
 static enum command_status load_faults(struct simulation *s, const struct session *session)
 {
     const char *path = session->options->inject;
-    uint8_t nodes[AXIS_COUNT];
+    uint8_t nodes[AXIS_COUNT + IO_NODES_MAX];
     unsigned count = 0;
 
     for (unsigned i = 0; i < AXIS_COUNT; i++) {
         if (machine_axis_is_on_can(&session->setup.machine.axis[i]))
             nodes[count++] = session->setup.machine.axis[i].drive_node;
     }
+    for (unsigned i = 0; i < machine_io_count(&session->setup.machine); i++)
+        nodes[count++] = session->setup.machine.io[i].node;
     if (path == NULL || (inject_file_load(&s->script, path) &&
                          inject_file_check_nodes(&s->script, path, nodes, count)))
         return STATUS_DONE;

@@ -6,15 +6,29 @@
 /* Rows: the program goes on; it is stopped; nothing has moved yet. */
 #define GOES_ON(name, script, off_max_mm)                                                          \
     {                                                                                              \
-        name, script, false, TAKT_OK, "", 0, off_max_mm                                            \
+        name, script, FAULT_PLAIN, TAKT_OK, "", 0, off_max_mm                                      \
     }
 #define STOPS(name, script, alarm, text, stop_max_ms, off_max_mm)                                  \
     {                                                                                              \
-        name, script, false, TAKT_ERROR_##alarm, text, stop_max_ms, off_max_mm                     \
+        name, script, FAULT_PLAIN, TAKT_ERROR_##alarm, text, stop_max_ms, off_max_mm               \
     }
 #define REFUSED(name, script, alarm, text)                                                         \
     {                                                                                              \
-        name, script, false, TAKT_ERROR_##alarm, text, 0, 0.0001                                   \
+        name, script, FAULT_PLAIN, TAKT_ERROR_##alarm, text, 0, 0.0001                             \
+    }
+
+/* The same with an I/O node. */
+#define IO_GOES_ON(name, script, off_max_mm)                                                       \
+    {                                                                                              \
+        name, script, FAULT_WITH_IO, TAKT_OK, "", 0, off_max_mm                                    \
+    }
+#define IO_STOPS(name, script, alarm, text, stop_max_ms, off_max_mm)                               \
+    {                                                                                              \
+        name, script, FAULT_WITH_IO, TAKT_ERROR_##alarm, text, stop_max_ms, off_max_mm             \
+    }
+#define IO_REFUSED(name, script, alarm, text)                                                      \
+    {                                                                                              \
+        name, script, FAULT_WITH_IO, TAKT_ERROR_##alarm, text, 0, 0.0001                           \
     }
 
 /* clang-format off */
@@ -93,7 +107,36 @@ const struct fault_case fault_cases[] = {
     STOPS("the encoder of X jumps by 5 mm", "enabled+0.5s drive 1 encoder_jump by_mm=5", DRIVE_FAULT,
           "the drive of axis X (node 1) reports 8611: following error", 150, 1),
 
+    /* inputs and outputs */
+    IO_STOPS("the stop input opens", "enabled+0.5s io 4 report object=6000:01 value=02", IO_STOP,
+             "the stop input, bit 0 of I/O node 4, is open", 150, 1),
+    IO_STOPS("the limit input opens", "enabled+0.5s io 4 report object=6000:01 value=01", IO_LIMIT,
+             "the limit input, bit 1 of I/O node 4, has opened", 150, 1),
+    IO_GOES_ON("10 reports of the inputs are lost", "enabled+0.5s bus drop id=184 frames=10", 0.001),
+    IO_STOPS("the I/O node sends no more inputs", "enabled+0.5s io 4 mute what=tpdo", IO_SILENT,
+             "I/O node 4 has sent no inputs for 21 ms", 250, 0.01),
+    IO_STOPS("the I/O node hangs", "enabled+0.5s io 4 hang", IO_SILENT, "I/O node 4 has sent no inputs for 21 ms", 250, 0.01),
+    IO_STOPS("the cable to the I/O node is cut", "enabled+0.5s bus cut node=4", IO_SILENT,
+             "I/O node 4 has sent no inputs for 21 ms", 250, 0.01),
+    IO_STOPS("the heartbeat of the I/O node stops", "enabled+0.2s io 4 mute what=heartbeat", IO_HEARTBEAT,
+             "I/O node 4 has sent no heartbeat for 301 ms", 500, 0.01),
+    IO_STOPS("the I/O node starts anew", "enabled+0.5s io 4 reboot", IO_LEFT,
+             "I/O node 4 is not operational any more, but restarted", 250, 0.01),
+    IO_STOPS("the I/O node reports a short circuit", "enabled+0.5s io 4 warn code=2320", IO_FAULT,
+             "I/O node 4 reports 2320: ", 250, 0.01),
+
     /* at start */
+    IO_REFUSED("the stop input is open at start", "power io 4 report object=6000:01 value=02", IO_STOP,
+               "the stop input, bit 0 of I/O node 4, is open"),
+    IO_GOES_ON("the limit input is open at start: it can be driven off", "power io 4 report object=6000:01 value=01", 0.001),
+    IO_GOES_ON("the I/O node sends its inputs only when they change", "power io 4 sdo_abort object=1800:02 code=06010002", 0.001),
+    IO_REFUSED("the I/O node is absent", "power bus cut node=4", IO_ABSENT, "I/O node 4 has not booted within 6 s"),
+    IO_REFUSED("the I/O node is none", "power io 4 report object=1000 value=20192", IO_TYPE,
+               "I/O node 4 is no CiA 401 node: the device type, object 1000, is 00020192"),
+    IO_REFUSED("the I/O node answers no request", "power io 4 mute what=sdo", IO_UNANSWERED,
+               "I/O node 4, object 1000:00, does not answer within 2000 ms"),
+    IO_REFUSED("the I/O node has its inputs elsewhere", "power io 4 report object=1A00:01 value=60010108", IO_UNMAPPED,
+               "I/O node 4, object 1A00:01, is 60010108: "),
     REFUSED("the drive of Y is absent", "power bus cut node=2", DRIVE_ABSENT,
             "the drive of axis Y (node 2) has not booted within 6 s"),
     REFUSED("the drive of Z is another one", "power drive 3 report object=1018:02 value=403", DRIVE_IDENTITY,
@@ -110,7 +153,7 @@ const struct fault_case fault_cases[] = {
             "the drive of axis Z (node 3) reports 0000: a fault without a code"),
     REFUSED("the drive of Y does not take its mode", "power drive 2 report object=6061 value=1", DRIVE_MODE,
             "the drive of axis Y (node 2) does not take the mode 8"),
-    {"the axis X jams while it is homed", "power drive 1 jam", true, TAKT_ERROR_DRIVE_FAULT,
+    {"the axis X jams while it is homed", "power drive 1 jam", FAULT_HOMED, TAKT_ERROR_DRIVE_FAULT,
      "the drive of axis X (node 1) reports 8611: following error", 500, 0.0001},
 };
 /* clang-format on */

@@ -17,6 +17,7 @@
 #define HOME_TIMEOUT_S 3
 
 #define DRIVES     3U
+#define IO_NODE    4U /* attached to the bus behind the drives */
 #define CYCLE_NS   1000000U
 #define CYCLES_MAX 12000U
 
@@ -95,6 +96,17 @@ static void tell_bus(struct world *w, const struct inject_fault *fault, uint64_t
                         });
 }
 
+static void add_io_node(struct machine *machine, struct virtual_drives_config *virtual)
+{
+    machine->io[0] = (struct io_wiring){
+        .node = IO_NODE, .output = {IO_FLOOD}, .input = {IO_STOP, IO_LIMIT, IO_PROGRAM}};
+    virtual->drive[virtual->count] = virtual->drive[0];
+    virtual->drive[virtual->count].node = IO_NODE;
+    virtual->drive[virtual->count].is_io = true;
+    virtual->drive[virtual->count].closed = 3;
+    virtual->count++;
+}
+
 /* Beginnings of faults become known with the moment the drives are enabled. */
 static void place_faults(struct world *w)
 {
@@ -123,15 +135,17 @@ static void open_world(struct world *w, const struct fault_case *fault)
     machine_set_default(&machine);
     for (unsigned i = 0; i < DRIVES; i++)
         machine.axis[i].drive_product = VIRTUAL_DRIVE_PRODUCT;
-    if (fault->is_homed) {
+    if (fault->machine == FAULT_HOMED) {
         machine.axis[AXIS_X].home_order = 1;
         machine.axis[AXIS_X].home_method = HOME_METHOD;
         machine.axis[AXIS_X].home_timeout_s = HOME_TIMEOUT_S;
     }
+    if (fault->machine == FAULT_WITH_IO)
+        add_io_node(&machine, &virtual);
     (void)bus_init(&w->bus, machine.can_bitrate);
     config.can = bus_attach(&w->bus, NULL);
     virtual_drives_init(&w->drives, &w->bus, &virtual);
-    for (unsigned i = 0; i < DRIVES; i++)
+    for (unsigned i = 0; i < w->drives.count; i++)
         virtual_drive_inject(&w->drives.drive[i], &w->script, &w->clock);
     parameters_clear(&w->parameters);
     source_open_text(&config.source, &w->text, program, sizeof program - 1);

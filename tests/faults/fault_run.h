@@ -9,10 +9,17 @@
 
 #include <stdbool.h>
 
+/* Three drives, and what is special. */
+enum fault_machine {
+    FAULT_PLAIN,
+    FAULT_HOMED,  /* X looks for its limit switch at start */
+    FAULT_WITH_IO /* there is an I/O node, 4: its inputs are stop, limit and P0 */
+};
+
 struct fault_case {
     const char *name;
     const char *script; /* as `takt help inject` says; drives are nodes 1, 2, 3 of X, Y, Z */
-    bool is_homed;      /* X looks for its limit switch at start */
+    enum fault_machine machine;
 
     /* What is to come of it. */
     enum takt_error alarm; /* TAKT_OK: the program is run to its end */

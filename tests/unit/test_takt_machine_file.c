@@ -180,9 +180,52 @@ static void test_the_predicted_load_of_three_axes_is_81_percent(void)
     TEST_ASSERT_EQUAL_DOUBLE(81.0, machine_setup_predict_load_percent(&setup.machine));
 }
 
+static const char *check_io(const char *text)
+{
+    setUp();
+    return read_text(text) ? machine_setup_check(&setup) : "unreadable";
+}
+
+static void test_the_bits_of_an_io_node_are_read_by_their_names(void)
+{
+    static const uint8_t outputs[IO_BITS_MAX] = {IO_FLOOD, IO_FREE, IO_PROGRAM + 31,
+                                                 IO_SPINDLE_CCW | IO_INVERTED};
+    static const uint8_t inputs[IO_BITS_MAX] = {IO_STOP, IO_LIMIT | IO_INVERTED, IO_PROGRAM};
+
+    TEST_ASSERT_NULL(check_io("[io 1]\nnode = 20\noutputs = flood - P31 !ccw\n"
+                              "inputs = stop, !limit, P0\n"));
+    TEST_ASSERT_EQUAL_UINT(1, machine_io_count(&setup.machine));
+    TEST_ASSERT_EQUAL_UINT8_ARRAY(outputs, setup.machine.io[0].output, IO_BITS_MAX);
+    TEST_ASSERT_EQUAL_UINT8_ARRAY(inputs, setup.machine.io[0].input, IO_BITS_MAX);
+}
+
+static void test_io_nodes_that_cannot_be_are_refused(void)
+{
+    static const char *const unreadable[] = {
+        "[io 3]\nnode = 20\n",
+        "[io 1]\nnode = 0\n",
+        "[io 1]\noutputs = stop\n",
+        "[io 1]\ninputs = flood\n",
+        "[io 1]\ninputs = P32\n",
+        "[io 1]\ninputs = P\n",
+        "[io 1]\ninputs = P1x\n",
+        "[io 1]\ninputs = P0 P1 P2 P3 P4 P5 P6 P7 P8 P9 P10 P11 P12 P13 P14 P15 P16\n"};
+
+    for (size_t i = 0; i < sizeof unreadable / sizeof unreadable[0]; i++)
+        TEST_ASSERT_EQUAL_STRING_MESSAGE("unreadable", check_io(unreadable[i]), unreadable[i]);
+    TEST_ASSERT_EQUAL_STRING("io 2 is wired wrongly, or has no node before it: the first is io 1",
+                             check_io("[io 2]\nnode = 20\n"));
+    TEST_ASSERT_EQUAL_STRING("io 1: another node on the bus has its id 2",
+                             check_io("[io 1]\nnode = 2\n"));
+    TEST_ASSERT_EQUAL_STRING("io 2: another node on the bus has its id 20",
+                             check_io("[io 1]\nnode = 20\n[io 2]\nnode = 20\n"));
+}
+
 int main(void)
 {
     UNITY_BEGIN();
+    RUN_TEST(test_the_bits_of_an_io_node_are_read_by_their_names);
+    RUN_TEST(test_io_nodes_that_cannot_be_are_refused);
     RUN_TEST(test_a_machine_that_is_written_reads_as_the_same_machine);
     RUN_TEST(test_the_default_machine_is_that_of_the_controller);
     RUN_TEST(test_a_file_that_names_axes_has_no_others);

@@ -17,23 +17,33 @@ void tearDown(void)
 {
 }
 
+/* In the setup. Keys of an I/O node: of the first. */
+static size_t offset_of(const struct machine_key *key)
+{
+    return key->offset +
+           (key->section == SECTION_IO ? offsetof(struct machine_setup, machine.io) : 0);
+}
+
 /* Keys of the machine itself; others are of virtual drives and of this computer. */
 static bool is_of_machine(const struct machine_key *key)
 {
     if (key->section == SECTION_AXIS)
         return key->type != KEY_AXIS_TYPE;
     return key->section != SECTION_DRIVE && key->section != SECTION_STEPPER &&
-           key->offset - offsetof(struct machine_setup, machine) < sizeof(struct machine);
+           offset_of(key) - offsetof(struct machine_setup, machine) < sizeof(struct machine);
 }
 
 static const struct settings_field *field_of(const struct machine_key *key)
 {
     const bool of_axis = key->section == SECTION_AXIS;
-    const size_t at = of_axis ? key->offset : key->offset - offsetof(struct machine_setup, machine);
+    const size_t at =
+        of_axis ? key->offset : offset_of(key) - offsetof(struct machine_setup, machine);
 
     for (size_t i = 0; i < settings_fields_count; i++) {
         const struct settings_field *field = &settings_fields[i];
-        const size_t size = field->type == SETTINGS_DOUBLE ? 8 * (size_t)field->count : 1;
+        const size_t size = field->type == SETTINGS_DOUBLE  ? 8 * (size_t)field->count
+                            : field->type == SETTINGS_BYTES ? field->count
+                                                            : 1;
 
         if (field->of_axis == of_axis && at >= field->offset && at < field->offset + size)
             return field;

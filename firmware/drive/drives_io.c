@@ -1,0 +1,493 @@
+/*
+ * The I/O nodes beside the drives (CiA 401): outputs to valves and contactors, inputs back, of which some stop the axes.
+ *
+ * A node is used as CiA 401 says it is at power-on: its first RPDO has the outputs (6200), its first TPDO the inputs
+ * (6000), eight a byte. That is checked and not changed; the inputs are asked for in every SYNC, so that one lost frame
+ * costs a cycle, and a node that sends nothing is known within answer_timeout_cycles. A node that cannot do so sends them
+ * when they change.
+ *
+ *     BOOT, with the drives; DRIVES_IO: asked and told, one node after the other; started, one a cycle; inputs have come
+ */
+#include "canopen/emcy.h"
+#include "canopen/little_endian.h"
+#include "canopen/objects.h"
+#include "drive/drives_private.h"
+
+#include <assert.h>
+#include <string.h>
+
+#define BITS_PER_BYTE 8
+#define IO_KINDS      (IO_INVERTED - 1)
+
+/* Index of node k in axis_of_node. */
+#define INDEX_OF_IO(k) (AXIS_COUNT + 1U + (k))
+
+static unsigned bytes_of(const uint8_t bit[IO_BITS_MAX])
+{
+    return (io_wired_bits(bit) + BITS_PER_BYTE - 1) / BITS_PER_BYTE;
+}
+
+/* The inputs whose byte is this under a mask. */
+static uint16_t find_inputs(const struct io_wiring *wiring, unsigned mask, unsigned byte)
+{
+    unsigned found = 0;
+    for (unsigned i = 0; i < IO_BITS_MAX; i++)
+        if ((wiring->input[i] & mask) == byte)
+            found |= 1u << i;
+    return (uint16_t)found;
+}
+
+void drives_io_init(struct drives *d, const struct drives_config *config)
+{
+    assert(config->io_count <= IO_NODES_MAX);
+    d->io_count = config->io_count;
+    d->wiring = config->wiring;
+    for (unsigned i = 0; i < d->io_count; i++) {
+        const struct io_wiring *wiring = &d->wiring[i];
+        struct drives_io *io = &d->io[i];
+        io->inverted = find_inputs(wiring, IO_INVERTED, IO_INVERTED);
+        io->stop_bits = find_inputs(wiring, IO_KINDS, IO_STOP);
+        io->limit_bits = find_inputs(wiring, IO_KINDS, IO_LIMIT);
+        io->reset_pending = true;
+        d->axis_of_node[wiring->node] = (uint8_t)INDEX_OF_IO(i);
+    }
+}
+
+/* "node 20". */
+static struct word name_of(const struct drives *d, unsigned i)
+{
+    struct word word = {.length = 0};
+    word_add_text(&word, "node ");
+    word_add_number(&word, d->wiring[i].node);
+    return word;
+}
+
+static void raise(struct drives *d, unsigned i, enum takt_error error, double value,
+                  const char *meaning)
+{
+    const struct word word = name_of(d, i);
+    drives_raise_named(d, &word, error, value, meaning);
+}
+
+/* "node 20, object 1017:00,". */
+static void raise_object(struct drives *d, unsigned i, enum takt_error error, double value,
+                         const char *meaning)
+{
+    struct word word = name_of(d, i);
+    word_add_text(&word, ", object ");
+    word_add_hex(&word, sdo_index(d->sdo.object), 4);
+    word_add_text(&word, ":");
+    word_add_hex(&word, sdo_sub(d->sdo.object), 2);
+    word_add_text(&word, ",");
+    drives_raise_named(d, &word, error, value, meaning);
+}
+
+/* "bit 4 of I/O node 20", of the first of these bits. */
+static void raise_bit(struct drives *d, unsigned i, enum takt_error error, unsigned bits)
+{
+    struct word word = {.length = 0};
+    unsigned bit = 0;
+    while (!(bits >> bit & 1))
+        bit++;
+    word_add_text(&word, "bit ");
+    word_add_number(&word, bit);
+    word_add_text(&word, " of I/O node ");
+    word_add_number(&word, d->wiring[i].node);
+    drives_raise_named(d, &word, error, bit, NULL);
+}
+
+/* ---- The start ---- */
+
+void drives_io_send_resets(struct drives *d, const struct can_port *port)
+{
+    for (unsigned i = 0; i < d->io_count; i++)
+        if (d->io[i].reset_pending &&
+            drives_send_nmt(port, NMT_RESET_COMMUNICATION, d->wiring[i].node))
+            d->io[i].reset_pending = false;
+}
+
+bool drives_io_boot(struct drives *d)
+{
+    bool all = true;
+    for (unsigned i = 0; i < d->io_count; i++) {
+        all = all && d->io[i].booted;
+        if (d->io[i].booted)
+            continue;
+        if (d->phase_cycles == d->boot_timeout_cycles)
+            d->io[i].reset_pending = true;
+        else if (d->phase_cycles > 2 * d->boot_timeout_cycles)
+            raise(d, i, TAKT_ERROR_IO_ABSENT, 2e-3 * drives_cycles_ms(d, d->boot_timeout_cycles),
+                  NULL);
+    }
+    return all;
+}
+
+/* What a node is asked, and told where there is a length. */
+enum step {
+    STEP_TYPE,
+    STEP_HEARTBEAT,
+    STEP_WATCH,
+    STEP_OUTPUT_BYTES,
+    STEP_OUTPUTS,
+    STEP_INPUT_BYTES,
+    STEP_INPUTS,
+    STEP_BY_SYNC,
+    STEP_COUNT
+};
+static const struct {
+    uint32_t object;
+    uint8_t length;
+} steps[STEP_COUNT] = {
+    {SDO_OBJECT(OBJECT_DEVICE_TYPE, 0), 0},        {SDO_OBJECT(OBJECT_PRODUCER_HEARTBEAT, 0), 2},
+    {SDO_OBJECT(OBJECT_CONSUMER_HEARTBEAT, 1), 4}, {SDO_OBJECT(OBJECT_RPDO_MAPPING, 0), 0},
+    {SDO_OBJECT(OBJECT_RPDO_MAPPING, 1), 0},       {SDO_OBJECT(OBJECT_TPDO_MAPPING, 0), 0},
+    {SDO_OBJECT(OBJECT_TPDO_MAPPING, 1), 0},       {SDO_OBJECT(OBJECT_TPDO, OBJECT_PDO_TYPE), 1},
+};
+
+static uint32_t value_of(const struct drives *d)
+{
+    const uint32_t lost_ms = (uint32_t)d->heartbeat_ms * DRIVES_HEARTBEATS_LOST;
+    switch (d->at_step) {
+    case STEP_HEARTBEAT:
+        return d->heartbeat_ms;
+    case STEP_WATCH:
+        return (uint32_t)d->controller_node << 16 | lost_ms;
+    default:
+        return PDO_EVERY_SYNC;
+    }
+}
+
+/* Nothing is asked of outputs or inputs that nobody wants. */
+static bool is_wanted(const struct io_wiring *wiring, unsigned step)
+{
+    if (step == STEP_OUTPUT_BYTES || step == STEP_OUTPUTS)
+        return bytes_of(wiring->output) > 0;
+    return step < STEP_INPUT_BYTES || bytes_of(wiring->input) > 0;
+}
+
+/* False: all nodes have been asked. */
+static bool ask_next(struct drives *d)
+{
+    while (d->at_axis < d->io_count) {
+        const struct io_wiring *wiring = &d->wiring[d->at_axis];
+        while (d->at_step < STEP_COUNT && !is_wanted(wiring, d->at_step))
+            d->at_step++;
+        if (d->at_step < STEP_COUNT) {
+            const struct drives_step step = {steps[d->at_step].object, steps[d->at_step].length,
+                                             value_of(d)};
+            drives_ask(d, wiring->node, &step);
+            return true;
+        }
+        d->at_axis++;
+        d->at_step = 0;
+    }
+    return false;
+}
+
+/* Without a heartbeat nobody would know of a node that has failed; all else that it refuses makes up for itself. */
+static void take_refusal(struct drives *d, unsigned i)
+{
+    if (d->at_step != STEP_WATCH && d->at_step != STEP_BY_SYNC)
+        raise_object(d, i, TAKT_ERROR_IO_REFUSES, d->sdo.abort_code,
+                     sdo_abort_text(d->sdo.abort_code));
+}
+
+static void require(struct drives *d, unsigned i, bool is_so, uint32_t value)
+{
+    if (!is_so)
+        raise_object(d, i, TAKT_ERROR_IO_UNMAPPED, value, NULL);
+}
+
+static void take_value(struct drives *d, unsigned i, uint32_t value)
+{
+    const struct io_wiring *wiring = &d->wiring[i];
+    struct drives_io *io = &d->io[i];
+    switch ((enum step)d->at_step) {
+    case STEP_TYPE:
+        if ((value & OBJECT_DEVICE_PROFILE_MASK) != OBJECT_DEVICE_PROFILE_401)
+            raise(d, i, TAKT_ERROR_IO_TYPE, value, NULL);
+        break;
+    case STEP_OUTPUT_BYTES:
+        io->output_bytes = (uint8_t)value;
+        require(d, i, value >= bytes_of(wiring->output) && value <= CAN_DATA_MAX, value);
+        break;
+    case STEP_OUTPUTS:
+        require(d, i, value == PDO_MAPPED(OBJECT_IO_OUTPUTS, 1, BITS_PER_BYTE), value);
+        break;
+    case STEP_INPUT_BYTES:
+        io->input_bytes = (uint8_t)value;
+        require(d, i, value >= bytes_of(wiring->input) && value <= CAN_DATA_MAX, value);
+        break;
+    case STEP_INPUTS:
+        require(d, i, value == PDO_MAPPED(OBJECT_IO_INPUTS, 1, BITS_PER_BYTE), value);
+        break;
+    case STEP_BY_SYNC:
+        io->by_sync = true;
+        break;
+    case STEP_HEARTBEAT:
+    case STEP_WATCH:
+    case STEP_COUNT:
+        break;
+    }
+}
+
+/* What has come of the last request; false: nothing yet, or not the end of it. */
+static bool take_answer(struct drives *d)
+{
+    const unsigned i = d->at_axis;
+    switch (d->sdo.result) {
+    case SDO_BUSY:
+        return false;
+    case SDO_UNANSWERED:
+        if (d->repeats++ >= DRIVES_SDO_REPEATS)
+            raise_object(d, i, TAKT_ERROR_IO_UNANSWERED, drives_cycles_ms(d, d->sdo_timeout_cycles),
+                         NULL);
+        return true;
+    case SDO_DONE:
+        take_value(d, i, sdo_client_number(&d->sdo));
+        break;
+    case SDO_ABORTED:
+        take_refusal(d, i);
+        break;
+    case SDO_IDLE:
+        return true;
+    }
+    d->repeats = 0;
+    d->at_step++;
+    return true;
+}
+
+static bool all_work(const struct drives *d)
+{
+    bool all = true;
+    for (unsigned i = 0; i < d->io_count; i++)
+        all = all && d->io[i].started && (d->io[i].heard || d->io[i].input_bytes == 0);
+    return all;
+}
+
+static void raise_silent(struct drives *d)
+{
+    for (unsigned i = 0; i < d->io_count; i++)
+        if (!d->io[i].heard && d->io[i].input_bytes > 0)
+            raise(d, i, TAKT_ERROR_IO_SILENT, drives_cycles_ms(d, d->start_timeout_cycles), NULL);
+}
+
+void drives_io_start(struct drives *d)
+{
+    if (d->at_axis < d->io_count) {
+        if (take_answer(d) && d->state == DRIVES_STARTING && !ask_next(d))
+            d->phase_cycles = 0;
+    } else if (all_work(d)) {
+        d->io_cycles = UINT32_MAX - 1; /* they are due */
+        drives_enter_phase(d, DRIVES_START);
+    } else if (d->phase_cycles > d->start_timeout_cycles) {
+        raise_silent(d);
+    }
+}
+
+/* One node a cycle, once all have been asked; what one has sent before is history. */
+void drives_io_send_start(struct drives *d, const struct can_port *port)
+{
+    for (unsigned i = 0; i < d->io_count && d->at_axis == d->io_count; i++) {
+        struct drives_io *io = &d->io[i];
+        if (io->started)
+            continue;
+        io->started = drives_send_nmt(port, NMT_START, d->wiring[i].node);
+        io->heard = false;
+        io->reported = io->beaten = d->cycle;
+        return;
+    }
+}
+
+/* ---- Every cycle ---- */
+
+static bool are_watched(const struct drives *d)
+{
+    return d->state == DRIVES_STARTING ? d->phase > DRIVES_IO : d->state <= DRIVES_STOPPING;
+}
+
+static void take_inputs(struct drives *d, struct drives_io *io, const struct can_frame *frame)
+{
+    if (!io->started || io->input_bytes == 0 || frame->length < io->input_bytes)
+        return;
+    const unsigned high = io->input_bytes > 1 ? frame->data[1] : 0;
+    io->levels = (uint16_t)((frame->data[0] | high << BITS_PER_BYTE) ^ io->inverted);
+    io->reported = d->cycle;
+    if (!io->heard)
+        io->low_limits = io->limit_bits & (uint16_t)~io->levels;
+    io->heard = true;
+}
+
+/* A node that boots while the drives are started has forgotten what it was told. */
+static void take_heartbeat(struct drives *d, unsigned i, const struct can_frame *frame)
+{
+    struct drives_io *io = &d->io[i];
+    enum nmt_state state;
+    uint8_t node;
+    if (!nmt_read_heartbeat(frame, &node, &state))
+        return;
+    io->beaten = d->cycle;
+    if (state == NMT_BOOTED && d->state == DRIVES_STARTING && d->phase < DRIVES_IO)
+        io->booted = !io->reset_pending;
+    else if (state == NMT_BOOTED || (state != NMT_OPERATIONAL && are_watched(d)))
+        raise(d, i, TAKT_ERROR_IO_LEFT, state, drives_nmt_text(state));
+}
+
+static void take_emergency(struct drives *d, unsigned i, const struct can_frame *frame)
+{
+    struct emcy emcy;
+    if (emcy_read(frame, &emcy) && emcy.code != EMCY_NONE && are_watched(d))
+        raise(d, i, TAKT_ERROR_IO_FAULT, emcy.code, emcy_text(emcy.code));
+}
+
+void drives_io_take(struct drives *d, unsigned index, const struct can_frame *frame)
+{
+    if (index == AXIS_COUNT)
+        return;
+    const unsigned i = index - INDEX_OF_IO(0);
+    switch (node_function(frame->id)) {
+    case PDO_TPDO1_FUNCTION:
+        take_inputs(d, &d->io[i], frame);
+        break;
+    case SDO_RESPONSE_FUNCTION:
+        sdo_client_take(&d->sdo, frame);
+        break;
+    case NMT_HEARTBEAT_FUNCTION:
+        take_heartbeat(d, i, frame);
+        break;
+    case EMCY_FUNCTION:
+        take_emergency(d, i, frame);
+        break;
+    default:
+        break;
+    }
+}
+
+static void check_silence(struct drives *d, unsigned i)
+{
+    const struct drives_io *io = &d->io[i];
+    const uint32_t silent = d->cycle - io->reported, heartless = d->cycle - io->beaten;
+    if (io->by_sync && silent > d->answer_timeout_cycles)
+        raise(d, i, TAKT_ERROR_IO_SILENT, drives_cycles_ms(d, silent), NULL);
+    if (heartless > d->heartless_most_cycles)
+        raise(d, i, TAKT_ERROR_IO_HEARTBEAT, drives_cycles_ms(d, heartless), NULL);
+}
+
+/* Limit inputs stop when they become low, so that an axis can be driven off; and not while drives look for home there. */
+static void check_inputs(struct drives *d, unsigned i)
+{
+    struct drives_io *io = &d->io[i];
+    const unsigned low = ~(unsigned)io->levels;
+    const unsigned opened = low & io->limit_bits & ~(unsigned)io->low_limits;
+    io->low_limits = (uint16_t)(low & io->limit_bits);
+    if (low & io->stop_bits)
+        raise_bit(d, i, TAKT_ERROR_IO_STOP, low & io->stop_bits);
+    else if (opened != 0 && d->state != DRIVES_STARTING)
+        raise_bit(d, i, TAKT_ERROR_IO_LIMIT, opened);
+}
+
+void drives_io_check(struct drives *d)
+{
+    for (unsigned i = 0; i < d->io_count && are_watched(d); i++) {
+        check_silence(d, i);
+        check_inputs(d, i);
+    }
+}
+
+void drives_add_inputs(const struct drives *d, struct inputs *inputs)
+{
+    for (unsigned i = 0; i < d->io_count; i++) {
+        for (unsigned k = 0; k < IO_BITS_MAX; k++) {
+            const unsigned kind = io_kind(d->wiring[i].input[k]);
+            if (kind < IO_PROGRAM || kind >= IO_FLOOD)
+                continue;
+            const uint32_t line = UINT32_C(1) << (kind - IO_PROGRAM);
+            inputs->digital &= ~line;
+            if (d->io[i].levels >> k & 1)
+                inputs->digital |= line;
+        }
+    }
+}
+
+/* ---- Outputs ---- */
+
+static bool level_of(const struct outputs *outputs, unsigned kind)
+{
+    switch (kind) {
+    case IO_FREE:
+        return false;
+    case IO_FLOOD:
+        return outputs->flood;
+    case IO_MIST:
+        return outputs->mist;
+    case IO_SPINDLE:
+        return outputs->spindle_speed_rpm > 0 || outputs->spindle_speed_rpm < 0 ||
+               outputs->spindle_orient;
+    case IO_SPINDLE_CCW:
+        return outputs->spindle_speed_rpm < 0;
+    default:
+        return outputs->digital >> (kind - IO_PROGRAM) & 1;
+    }
+}
+
+static unsigned levels_of(const struct io_wiring *wiring, const struct outputs *outputs)
+{
+    unsigned levels = 0;
+    for (unsigned k = 0; k < IO_BITS_MAX; k++) {
+        const bool is_inverted = wiring->output[k] & IO_INVERTED;
+        if (level_of(outputs, io_kind(wiring->output[k])) != is_inverted)
+            levels |= 1u << k;
+    }
+    return levels;
+}
+
+static void send_levels(struct drives *d, unsigned i, const struct can_port *port, unsigned levels)
+{
+    struct can_frame frame = {.id = (uint16_t)(PDO_RPDO1_FUNCTION + d->wiring[i].node),
+                              .length = d->io[i].output_bytes};
+    little_endian_write16(frame.data, (uint16_t)levels);
+    if (port->send(port->context, &frame))
+        d->io[i].sent = (uint16_t)levels;
+}
+
+/* When they change, and all again as often as drives tell their errors: a frame may get lost. */
+void drives_send_outputs(struct drives *d, const struct can_port *port,
+                         const struct outputs *outputs)
+{
+    const bool is_due = ++d->io_cycles >= DRIVES_EVENT_MS * 1000U / d->cycle_us;
+    for (unsigned i = 0; i < d->io_count; i++) {
+        const unsigned levels = levels_of(&d->wiring[i], outputs);
+        if (d->io[i].started && d->io[i].output_bytes > 0 && (is_due || levels != d->io[i].sent))
+            send_levels(d, i, port, levels);
+    }
+    if (is_due)
+        d->io_cycles = 0;
+}
+
+/* Inputs of every node, and the longest outputs, since they do not change in every cycle. */
+struct io_load {
+    uint32_t input_bits, output_bits;
+};
+
+static void add_load(struct io_load *load, unsigned input_bytes, unsigned output_bytes)
+{
+    const uint32_t output_bits = output_bytes > 0 ? drives_frame_bits(output_bytes) : 0;
+    load->input_bits += input_bytes > 0 ? drives_frame_bits(input_bytes) : 0;
+    load->output_bits = output_bits > load->output_bits ? output_bits : load->output_bits;
+}
+
+uint32_t drives_io_bits(const struct drives *d)
+{
+    struct io_load load = {0};
+    for (unsigned i = 0; i < d->io_count; i++)
+        add_load(&load, d->io[i].input_bytes, d->io[i].output_bytes);
+    return load.input_bits + load.output_bits;
+}
+
+uint32_t drives_io_wired_bits(const struct io_wiring *wiring, unsigned count)
+{
+    struct io_load load = {0};
+    for (unsigned i = 0; i < count; i++)
+        add_load(&load, bytes_of(wiring[i].input), bytes_of(wiring[i].output));
+    return load.input_bits + load.output_bits;
+}

@@ -1,0 +1,38 @@
+/*
+ * An I/O node (CiA 401) instead of a drive: the same node on the bus, with outputs and inputs in place of a motor. Every
+ * input is looped back from the output of its number, or is high for good: a closed circuit.
+ */
+#include "canopen/objects.h"
+#include "drives/virtual_drive_private.h"
+
+/* In object_table.c: objects 6200 and 6000. */
+#define OUTPUTS (drive->objects.extra)
+#define INPUTS  (drive->objects.extra + DICTIONARY_IO_BYTES)
+
+/* A TPDO that is sent when an input changes is also sent when the node becomes operational. */
+static void note_change(struct virtual_drive *drive)
+{
+    uint32_t seen = (uint32_t)drive->nmt << 16;
+    for (unsigned i = 0; i < DICTIONARY_IO_BYTES; i++) {
+        uint32_t byte = 0;
+        (void)virtual_drive_read_object(drive, PDO_MAPPED(OBJECT_IO_INPUTS, i + 1, 8), &byte);
+        seen |= byte << 8 * i;
+    }
+    if (seen == drive->seen_io)
+        return;
+    drive->seen_io = seen;
+    drive->tpdo[0].is_due = true;
+    virtual_drive_look_soon(drive);
+}
+
+/* Without a controller all outputs are low: CiA 401, objects 6206 and 6207 by default. */
+void virtual_drive_run_io(struct virtual_drive *drive)
+{
+    bool is_controlled = drive->nmt == NMT_OPERATIONAL && drive->communication_error == EMCY_NONE;
+    for (unsigned i = 0; i < DICTIONARY_IO_BYTES; i++) {
+        if (!is_controlled)
+            OUTPUTS[i] = 0;
+        INPUTS[i] = (uint8_t)(OUTPUTS[i] | drive->config.closed >> 8 * i);
+    }
+    note_change(drive);
+}

@@ -1,0 +1,100 @@
+"""I/O nodes: outputs of programs reach the bus, inputs come back, those that stop do so within two cycles."""
+
+import re
+
+import bus_pair
+import takt_test as t
+
+MACHINE = t.write("io.ini", "[io 1]\nnode = 20\noutputs = flood mist spindle ccw P0 P1 !P2\ninputs = - - - - P0 stop P2 limit\n")
+LOOP = t.write("loop.ngc", """G21 G90 F3000
+M3 S1000
+M8
+M64 P0
+M66 P0 L3 Q1
+(print, P0 #5399)
+G1 X20 Y10
+M65 P0
+M66 P0 L4 Q1
+(print, P0 #5399)
+M66 P0 L3 Q0.2
+(print, late #5399)
+M4 S500
+M9
+M7
+G1 X0 Y0
+M2
+""")
+LONG = t.write("long.ngc", "G21 G90 F6000\nG1 X100 Y60\nX0 Y0\nM2\n")
+
+
+def frames(path, identifier):
+    """Times in ms and data of the frames with this identifier."""
+    found = []
+    with open(path) as file:
+        for line in file:
+            time, _, frame = line.split()
+            if frame.startswith(identifier + "#"):
+                found.append((1000 * float(time.strip("()")), frame.split("#")[1]))
+    return found
+
+
+def check_outputs():
+    status, out, err = t.run("run", LOOP, "--machine", MACHINE, "--bus-log", "loop.log")
+    t.check(status == 0, "a program with outputs and inputs runs", err)
+    said = re.findall(r"(P0|late) (-?[\d.]+)", out + err)
+    t.check([(word, float(value)) for word, value in said] == [("P0", 1), ("P0", 0), ("late", -1)], "M66 sees what M64 and M65 do", said)
+    levels = [data for _, data in frames("loop.log", "214")]
+    steps = [data for i, data in enumerate(levels) if i == 0 or data != levels[i - 1]]
+    t.check(steps == ["4000", "5500", "4500", "4E00", "4000"], "every output is on the bus", steps)
+    times = [time for time, _ in frames("loop.log", "214")]
+    t.check(max(b - a for a, b in zip(times, times[1:])) < 101.5, "and is repeated every 100 ms")
+
+
+def stop(script, name):
+    t.write(name + ".inject", script)
+    status, _, err = t.run("run", LONG, "--machine", MACHINE, "--inject", name + ".inject", "--bus-log", name + ".log", "--json", name + ".json")
+    return status, err
+
+
+def check_stops():
+    for bit, word in ((5, "stop"), (7, "limit")):
+        value = 0xE0 ^ 1 << bit
+        status, err = stop(f"enabled+0.3s io 20 report object=6000:01 value={value:02X}\n", word)
+        t.check(status != 0 and f"the {word} input, bit {bit} of I/O node 20" in err, f"the {word} input is a fault", status, err)
+        opened = next(time for time, data in frames(word + ".log", "194") if not int(data[:2], 16) >> bit & 1)
+        braked = [next(time for time, data in frames(word + ".log", f"20{node}") if data.startswith("0200")) for node in (1, 2, 3)]
+        # The report lies within the cycle after the switch; the quick stop in the cycle after the report.
+        t.check(max(braked) - opened < 1.5, f"the {word} input brakes all drives in the next cycle", opened, braked)
+        t.check(frames(word + ".log", "301")[-1][0] - opened < 1, "no target is sent in a later cycle")
+    status, err = stop("enabled+0.3s io 20 mute what=heartbeat\n", "silent")
+    t.check(status != 0 and "I/O node 20 has sent no heartbeat for 301 ms" in err, "a silent I/O node is a fault", status, err)
+    status, err = stop("power bus cut node=20\n", "absent")
+    t.check(status != 0 and "I/O node 20 has not booted" in err, "an absent I/O node is a fault", status, err)
+    status, err = stop("power io 21 hang\n", "nobody")
+    t.check(status == 2 and "there is no drive with node 21" in err, "a script names nodes there are", status, err)
+
+
+def check_digest():
+    """Outputs on the bus change no setpoint."""
+    plain = t.run("run", LONG, "--json", "plain.json")
+    with_io = t.run("run", LONG, "--machine", MACHINE, "--json", "with.json")
+    same = t.load_json("plain.json")["setpoint_digest"] == t.load_json("with.json")["setpoint_digest"]
+    t.check(plain[0] == with_io[0] == 0 and same, "an I/O node changes no setpoint")
+
+
+def check_outside():
+    """The same in two processes: the trace is that of the embedded bus."""
+    status, embedded, err = bus_pair.run_controller("embedded", "--machine", MACHINE, program=LOOP)
+    t.check(status == 0, "the embedded bus runs the program", err)
+    drives = bus_pair.Drives("slcan:pty", "--machine", MACHINE)
+    status, summary, err = bus_pair.run_controller("outside", "--machine", MACHINE, "--bus", "slcan:" + drives.address, program=LOOP)
+    drives.stop()
+    if t.check(status == 0, "takt drives has I/O nodes, too", err) and summary:
+        bus_pair.compare("outside", embedded, summary)
+
+
+check_outputs()
+check_stops()
+check_digest()
+check_outside()
+t.finish()

@@ -1,0 +1,200 @@
+/*
+ * I/O nodes beside the drives: what they are told, what their bits are, what they stop.
+ */
+#include "starting_master.h"
+
+#include "canopen/objects.h"
+
+#define IO_NODE 20
+
+static struct io_wiring wiring;
+static uint8_t levels;        /* its inputs, sent after every SYNC while it is started */
+static unsigned frames_of_io; /* with outputs */
+static uint8_t shown_outputs;
+static struct outputs outputs;
+
+static bool io_send(void *context, const struct can_frame *frame)
+{
+    if (frame->id == PDO_RPDO1_FUNCTION + IO_NODE) {
+        frames_of_io++;
+        shown_outputs = frame->data[0];
+        TEST_ASSERT_EQUAL_UINT8(1, frame->length);
+        return true;
+    }
+    return port.send(context, frame);
+}
+
+static const struct can_port io_port = {.send = io_send, .receive = port_receive};
+
+static void put_inputs(void)
+{
+    if (nodes.starts[IO_NODE] == 0)
+        return;
+    *fake_nodes_add(&nodes) =
+        (struct can_frame){.id = PDO_TPDO1_FUNCTION + IO_NODE, .length = 1, .data = {levels}};
+    if (cycles_run % 100 == 0)
+        nmt_write_heartbeat(fake_nodes_add(&nodes), IO_NODE, NMT_OPERATIONAL);
+}
+
+static void run(unsigned cycles)
+{
+    static const struct point nowhere;
+    for (unsigned k = 0; k < cycles; k++) {
+        put_statuses();
+        put_inputs();
+        drives_receive(&drives, &io_port);
+        drives_sync(&drives, &io_port);
+        drives_send(&drives, &io_port, &nowhere);
+        drives_send_outputs(&drives, &io_port, &outputs);
+        cycles_run++;
+    }
+}
+
+/* Enabled, with this wiring. */
+static void enable(const struct io_wiring *wired)
+{
+    set_rule(
+        (struct fake_rule){.node = IO_NODE, .object = SDO_OBJECT(0x1000, 0), .value = 0x30191});
+    set_rule((struct fake_rule){.node = IO_NODE, .object = SDO_OBJECT(0x1600, 0), .value = 1});
+    set_rule(
+        (struct fake_rule){.node = IO_NODE, .object = SDO_OBJECT(0x1600, 1), .value = 0x62000108});
+    set_rule((struct fake_rule){.node = IO_NODE, .object = SDO_OBJECT(0x1A00, 0), .value = 1});
+    set_rule(
+        (struct fake_rule){.node = IO_NODE, .object = SDO_OBJECT(0x1A00, 1), .value = 0x60000108});
+    wiring = *wired;
+    wiring.node = IO_NODE;
+    config.io_count = 1;
+    config.wiring = &wiring;
+    frames_of_io = 0;
+    outputs = (struct outputs){0};
+    drives_init(&drives, &config);
+    while (drives_get_state(&drives) == DRIVES_STARTING && cycles_run < 2 * START_CYCLES)
+        run(1);
+}
+
+static void test_a_node_is_told_of_heartbeats_and_to_send_in_every_sync(void)
+{
+    enable(&(const struct io_wiring){.output = {IO_FLOOD}, .input = {IO_PROGRAM}});
+    TEST_ASSERT_EQUAL_INT(DRIVES_ENABLED, drives_get_state(&drives));
+    assert_told(IO_NODE, SDO_OBJECT(0x1017, 0), 100);
+    assert_told(IO_NODE, SDO_OBJECT(0x1016, 1), 0x7F012C);
+    assert_told(IO_NODE, SDO_OBJECT(0x1800, 2), 1);
+    TEST_ASSERT_EQUAL_UINT(1, nodes.resets[IO_NODE]);
+}
+
+static void test_drives_get_no_torque_before_the_inputs_are_known(void)
+{
+    levels = 0;
+    enable(&(const struct io_wiring){.input = {IO_STOP}});
+    TEST_ASSERT_EQUAL_INT(TAKT_ERROR_IO_STOP, drives_get_fault(&drives)->code);
+    assert_text("the stop input, bit 0 of I/O node 20, is open");
+    for (unsigned node = 1; node <= DRIVES; node++)
+        TEST_ASSERT_NOT_EQUAL(CIA402_ENABLE_OPERATION, control[node]);
+}
+
+static void test_outputs_are_sent_when_they_change_and_every_100_ms(void)
+{
+    enable(
+        &(const struct io_wiring){.output = {IO_FLOOD, IO_MIST, IO_SPINDLE, IO_SPINDLE_CCW,
+                                             IO_PROGRAM + 5, IO_FREE, IO_PROGRAM | IO_INVERTED}});
+    TEST_ASSERT_EQUAL_HEX8(0x40, shown_outputs);
+    run(100);
+    frames_of_io = 0;
+    run(1000);
+    TEST_ASSERT_EQUAL_UINT(10, frames_of_io);
+    outputs = (struct outputs){.flood = true, .spindle_speed_rpm = 100, .digital = 0x20};
+    run(1);
+    TEST_ASSERT_EQUAL_HEX8(0x55, shown_outputs);
+    outputs = (struct outputs){.mist = true, .spindle_speed_rpm = -100, .digital = 1};
+    run(1);
+    TEST_ASSERT_EQUAL_HEX8(0x0E, shown_outputs);
+    outputs = (struct outputs){.spindle_orient = true, .digital = 1};
+    run(1);
+    TEST_ASSERT_EQUAL_HEX8(0x04, shown_outputs);
+}
+
+static void test_inputs_are_the_lines_they_are_wired_to_and_others_stay(void)
+{
+    struct inputs inputs = inputs_idle();
+    levels = 0x01;
+    enable(&(const struct io_wiring){
+        .input = {IO_PROGRAM + 31, IO_FREE, IO_PROGRAM + 2, IO_INVERTED | (IO_PROGRAM + 1)}});
+    inputs.digital = 0x0F;
+    run(1);
+    drives_add_inputs(&drives, &inputs);
+    TEST_ASSERT_EQUAL_HEX32(0x8000000B, inputs.digital);
+    levels = 0x0C;
+    run(1);
+    drives_add_inputs(&drives, &inputs);
+    TEST_ASSERT_EQUAL_HEX32(0x0000000D, inputs.digital);
+}
+
+/* Cycles from the one in which the level has been reported to the drives' being told to stop. */
+static void check_stop(uint8_t bit, uint8_t high, uint8_t low, enum takt_error error)
+{
+    setUp();
+    levels = high;
+    enable(&(const struct io_wiring){.input = {IO_FREE, bit}});
+    TEST_ASSERT_EQUAL_INT(DRIVES_ENABLED, drives_get_state(&drives));
+    run(50);
+    TEST_ASSERT_EQUAL_INT(DRIVES_ENABLED, drives_get_state(&drives));
+    levels = low;
+    run(1);
+    TEST_ASSERT_EQUAL_INT(error, drives_get_fault(&drives)->code);
+    TEST_ASSERT_EQUAL_INT(DRIVES_BRAKING, drives_get_state(&drives));
+    for (unsigned node = 1; node <= DRIVES; node++)
+        TEST_ASSERT_EQUAL_HEX16(CIA402_QUICK_STOP_NOW, control[node]);
+}
+
+static void test_stop_and_limit_inputs_brake_all_drives_in_the_cycle_that_hears_of_them(void)
+{
+    check_stop(IO_STOP, 2, 0, TAKT_ERROR_IO_STOP);
+    check_stop(IO_STOP | IO_INVERTED, 0, 2, TAKT_ERROR_IO_STOP);
+    check_stop(IO_LIMIT, 2, 0, TAKT_ERROR_IO_LIMIT);
+}
+
+static void test_an_axis_can_be_driven_off_a_limit_switch(void)
+{
+    levels = 0;
+    enable(&(const struct io_wiring){.input = {IO_LIMIT}});
+    run(50);
+    TEST_ASSERT_EQUAL_INT(DRIVES_ENABLED, drives_get_state(&drives));
+    levels = 1;
+    run(5);
+    levels = 0;
+    run(1);
+    TEST_ASSERT_EQUAL_INT(TAKT_ERROR_IO_LIMIT, drives_get_fault(&drives)->code);
+}
+
+static void test_a_node_alone_is_started_too(void)
+{
+    levels = 1;
+    config.count = 0;
+    enable(&(const struct io_wiring){.input = {IO_STOP}});
+    TEST_ASSERT_EQUAL_INT(DRIVES_ENABLED, drives_get_state(&drives));
+    levels = 0;
+    run(2);
+    TEST_ASSERT_EQUAL_INT(DRIVES_FAULTED, drives_get_state(&drives));
+}
+
+static void test_more_bits_than_the_node_has_are_refused(void)
+{
+    enable(&(const struct io_wiring){.output = {0, 0, 0, 0, 0, 0, 0, 0, IO_FLOOD}});
+    assert_text(
+        "I/O node 20, object 1600:00, is 0001: the bits that are wired are not in the first "
+        "PDO of the node");
+}
+
+int main(void)
+{
+    UNITY_BEGIN();
+    RUN_TEST(test_a_node_is_told_of_heartbeats_and_to_send_in_every_sync);
+    RUN_TEST(test_drives_get_no_torque_before_the_inputs_are_known);
+    RUN_TEST(test_outputs_are_sent_when_they_change_and_every_100_ms);
+    RUN_TEST(test_inputs_are_the_lines_they_are_wired_to_and_others_stay);
+    RUN_TEST(test_stop_and_limit_inputs_brake_all_drives_in_the_cycle_that_hears_of_them);
+    RUN_TEST(test_an_axis_can_be_driven_off_a_limit_switch);
+    RUN_TEST(test_a_node_alone_is_started_too);
+    RUN_TEST(test_more_bits_than_the_node_has_are_refused);
+    return UNITY_END();
+}
