@@ -181,6 +181,7 @@
     X(DRIVE_SCALING, "the drive of axis %w counts %v units in a turn of its motor; by "            \
                      "increments_per_mm it is %l")                                                 \
     X(DRIVE_FOLLOWING, "axis %w lags %v %u behind its setpoint")                                   \
+    X(DRIVE_SKEW, "axis %w is %v mm off the other drive of its gantry")                            \
     X(DRIVE_HOMING, "the drive of axis %w reports an error while homing: statusword %x")           \
     X(DRIVE_HOMING_SLOW, "homing of axis %w has not ended within %v s")                            \
     X(DRIVE_HOME_OFFSET,                                                                           \
@@ -242,6 +243,8 @@
     X(MACHINE_CONTROLLER_NODE, "controller_node %v is the drive_node of axis %w")                  \
     X(MACHINE_IO, "%w is wired wrongly, or has no node before it: the first is io 1")              \
     X(MACHINE_IO_NODE, "%w: another node on the bus has its id %v")                                \
+    X(MACHINE_GANTRY, "the gantry needs an axis X, Y or Z with a CAN drive, a node of its own, a " \
+                      "skew_max_mm, and with it at most %v drives")                                \
     X(MACHINE_FORM, "'%w' of this machine is for comparison: this image has only its default")     \
     X(SETTINGS_ABSENT, "no settings are stored: make them with takt machine --pack and load them") \
     X(SETTINGS_KIND, "these are no settings of this version")                                      \

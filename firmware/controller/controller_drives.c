@@ -47,6 +47,40 @@ static void add_drive(struct drives_config *config, const struct machine *machin
     set_homing(&drive->homing, machine, axis);
 }
 
+/*
+ * The homing method that looks on the same side of the axis with a motor that turns the other way (CiA 402-2, object
+ * 6098): limit switches, 1 and 2, change places, so do home switches of either end, 3 4 and 5 6, and the directions of
+ * a search about a switch between them, 7 ... 10 and 11 ... 14. From 17 on the same without index pulse; 33 and 34 are
+ * index pulses alone, what comes behind has no direction.
+ */
+static uint8_t mirror_method(uint8_t method)
+{
+    const unsigned way = (method - 1U) % 16U + 1U;
+    const unsigned apart = way <= 2 ? 1 : way <= 6 ? 2 : 4;
+    const unsigned first = way <= 2 ? 1 : way <= 6 ? 3 : 7;
+
+    if (method > 34 || way > 14) {
+        return method;
+    }
+    return (uint8_t)(way - first < apart ? method + apart : method - apart);
+}
+
+/* Of its own is no more than what its place on the gantry asks for. */
+static void add_second(struct drives_config *config, const struct machine *machine)
+{
+    const struct machine_gantry *gantry = &machine->gantry;
+    struct drives_config_axis *drive = &config->axis[config->count];
+
+    add_drive(config, machine, gantry->axis);
+    drive->node = gantry->drive_node;
+    drive->identity.serial = 0;
+    drive->homing.offset_mm = gantry->home_offset_mm;
+    if (gantry->is_reversed != 0) {
+        drive->increments_per_mm = -drive->increments_per_mm;
+        drive->homing.method = mirror_method(drive->homing.method);
+    }
+}
+
 void controller_drives_config(const struct machine *machine, struct drives_config *config)
 {
     memset(config, 0, sizeof(*config));
@@ -60,11 +94,15 @@ void controller_drives_config(const struct machine *machine, struct drives_confi
     config->sdo_timeout_cycles = cycles_in(machine, 1e-3 * machine->sdo_timeout_ms);
     config->stop_timeout_cycles = cycles_in(machine, STOP_TIMEOUT_S);
     config->brake_timeout_cycles = cycles_in(machine, BRAKE_TIMEOUT_S);
+    config->skew_max_mm = machine_has_gantry(machine) ? machine->gantry.skew_max_mm : 0.0;
     config->io_count = machine_io_count(machine);
     config->wiring = machine->io;
     for (unsigned i = 0; i < AXIS_COUNT; i++) {
         if (machine_axis_is_on_can(&machine->axis[i])) {
             add_drive(config, machine, i);
         }
+    }
+    if (machine_has_gantry(machine)) {
+        add_second(config, machine);
     }
 }

@@ -1,5 +1,7 @@
 #include "controller/machine.h"
 
+#include "canopen/node.h"
+
 #include <string.h>
 
 void machine_set_default(struct machine *machine)
@@ -20,6 +22,8 @@ void machine_set_default(struct machine *machine)
     machine->boot_timeout_ms = 3000;
     machine->sdo_timeout_ms = 2000;
     machine->controller_node = 127;
+    machine->gantry.axis = AXIS_COUNT;
+    machine->gantry.drive_node = NODE_MAX - 1;
     correction_settings_set_default(&machine->correction);
     for (int i = 0; i < AXIS_LINEAR_COUNT; i++) {
         machine->axis[i] = (struct machine_axis){
@@ -61,6 +65,26 @@ unsigned machine_io_count(const struct machine *machine)
 
     while (count < IO_NODES_MAX && machine->io[count].node != 0) {
         count++;
+    }
+    return count;
+}
+
+bool machine_has_gantry(const struct machine *machine)
+{
+    return machine->gantry.axis < AXIS_COUNT;
+}
+
+unsigned machine_drive_nodes(const struct machine *machine, uint8_t node[AXIS_COUNT + 1])
+{
+    unsigned count = 0;
+
+    for (unsigned i = 0; i < AXIS_COUNT; i++) {
+        if (machine_axis_is_on_can(&machine->axis[i])) {
+            node[count++] = machine->axis[i].drive_node;
+        }
+    }
+    if (machine_has_gantry(machine)) {
+        node[count++] = machine->gantry.drive_node;
     }
     return count;
 }

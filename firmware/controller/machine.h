@@ -59,9 +59,19 @@ struct machine_axis {
     double home_timeout_s;          /* > 0 */
 };
 
+/* An axis with two drives. */
+struct machine_gantry {
+    uint32_t axis;         /* AXIS_COUNT: there is none */
+    uint8_t drive_node;    /* of the second drive; everything else is as of the first, but for: */
+    uint8_t is_reversed;   /* 1: its motor turns the other way than that of the first */
+    double home_offset_mm; /* machine coordinate of its own home */
+    double skew_max_mm;    /* alarm when the two are farther apart; > 0 */
+};
+
 struct machine {
     char name[MACHINE_NAME_MAX + 1];
-    uint32_t cycle_us; /* control cycle, 100 ... 10000 */
+    uint32_t cycle_us;               /* control cycle, 100 ... 10000 */
+    uint32_t spindle_encoder_counts; /* in a revolution; 0: its angle is not measured */
     double
         resolution_per_mm; /* position increments of the controller per mm: chord error and reports */
     double path_tolerance_mm; /* G64 without P; 0: exact path */
@@ -76,17 +86,17 @@ struct machine {
     uint32_t step_form;         /* enum steps_form, step/steps.h */
     struct machine_axis axis[AXIS_COUNT];
     double spindle_max_rpm;
-    double spindle_ramp_rpm_s;       /* by which its drive changes the speed; > 0 */
-    uint32_t spindle_encoder_counts; /* in a revolution; 0: its angle is not measured */
-    double thread_tolerance_mm;      /* a thread farther off the spindle's angle is an alarm; > 0 */
+    double spindle_ramp_rpm_s;  /* by which its drive changes the speed; > 0 */
+    double thread_tolerance_mm; /* a thread farther off the spindle's angle is an alarm; > 0 */
     double spindle_load_limit_percent; /* beyond it the feed is lowered; 0: never */
     double spindle_at_speed_s; /* longest wait for a commanded speed; 0: motion does not wait */
     uint32_t can_bitrate;      /* bit/s */
     uint32_t
         heartbeat_ms; /* period of all heartbeats on the bus, up to 20,000; 0: there are none */
-    uint32_t boot_timeout_ms;          /* a drive boots within, after a reset */
-    uint32_t sdo_timeout_ms;           /* a drive answers a request within */
-    uint8_t controller_node;           /* the controller's own node id, 1 ... 127, of no drive */
+    uint32_t boot_timeout_ms; /* a drive boots within, after a reset */
+    uint32_t sdo_timeout_ms;  /* a drive answers a request within */
+    uint8_t controller_node;  /* the controller's own node id, 1 ... 127, of no drive */
+    struct machine_gantry gantry;
     struct io_wiring io[IO_NODES_MAX]; /* I/O nodes on the bus, from the first on */
     struct correction_settings correction;
 };
@@ -100,6 +110,13 @@ void machine_set_default(struct machine *machine);
 
 /* Bit i set: the machine has axis i. */
 unsigned machine_axes(const struct machine *machine);
+
+/* The second drive of a gantry is there. */
+bool machine_has_gantry(const struct machine *machine);
+
+/* Nodes of all drives on the bus, in their order: those of the axes, then the second one of a gantry. Their number. */
+#define MACHINE_DRIVES_MAX AXIS_COUNT
+unsigned machine_drive_nodes(const struct machine *machine, uint8_t node[AXIS_COUNT + 1]);
 
 /* I/O nodes on the bus. */
 unsigned machine_io_count(const struct machine *machine);

@@ -139,6 +139,8 @@ static bool is_alone(const struct machine *machine, unsigned number)
 
     for (unsigned i = 0; i < AXIS_COUNT; i++)
         alone = alone && !(machine->axis[i].present && machine->axis[i].drive_node == node);
+    if (machine_has_gantry(machine))
+        alone = alone && machine->gantry.drive_node != node;
     for (unsigned i = 0; i < number; i++)
         alone = alone && machine->io[i].node != node;
     return alone;
@@ -161,13 +163,37 @@ static bool check_io(const struct machine *machine, struct diagnostic *wrong)
     return true;
 }
 
+/* Its axis is one of the linear ones, on CAN; its node nobody else's but perhaps an I/O node's, which check_io sees. */
+static bool gantry_is_well(const struct machine *machine)
+{
+    const struct machine_gantry *gantry = &machine->gantry;
+    uint8_t node[AXIS_COUNT + 1];
+    bool good = gantry->axis < AXIS_LINEAR_COUNT &&
+                machine_axis_is_on_can(&machine->axis[gantry->axis]) && gantry->skew_max_mm > 0 &&
+                machine_drive_nodes(machine, node) <= MACHINE_DRIVES_MAX &&
+                gantry->drive_node != machine->controller_node;
+
+    for (unsigned i = 0; i < AXIS_COUNT; i++)
+        good = good &&
+               !(machine->axis[i].present && machine->axis[i].drive_node == gantry->drive_node);
+    return good && maths_abs(gantry->home_offset_mm *
+                             machine->axis[gantry->axis].increments_per_mm) <= RANGE;
+}
+
+static bool check_gantry(const struct machine *machine, struct diagnostic *wrong)
+{
+    if (!machine_has_gantry(machine) || gantry_is_well(machine))
+        return true;
+    diagnostic_set(wrong, TAKT_ERROR_MACHINE_GANTRY, 0, 0, "", 0, MACHINE_DRIVES_MAX);
+    return false;
+}
+
 static bool check_bus(const struct machine *machine, struct diagnostic *wrong)
 {
     struct drives_load load;
-    unsigned drives = 0;
+    uint8_t node[AXIS_COUNT + 1];
+    const unsigned drives = machine_drive_nodes(machine, node);
 
-    for (unsigned i = 0; i < AXIS_COUNT; i++)
-        drives += machine_axis_is_on_can(&machine->axis[i]);
     if (drives_predict_whole_load(drives, machine->io, machine_io_count(machine),
                                   machine->can_bitrate, machine->cycle_us, &load))
         return true;
@@ -205,5 +231,6 @@ bool machine_check(const struct machine *machine, struct diagnostic *wrong)
         if (machine->axis[i].present && !check_axis(machine, i, wrong))
             return false;
     }
-    return check_forms(machine, wrong) && check_io(machine, wrong) && check_bus(machine, wrong);
+    return check_forms(machine, wrong) && check_gantry(machine, wrong) &&
+           check_io(machine, wrong) && check_bus(machine, wrong);
 }

@@ -60,6 +60,7 @@ void drives_init(struct drives *d, const struct drives_config *config)
     d->homed = config->homed;
     take_times(d, config);
     drives_io_init(d, config);
+    drives_gantry_init(d, config);
     for (unsigned i = 0; i < d->count; i++) {
         assert(config->axis[i].node >= NODE_MIN && config->axis[i].node <= NODE_MAX);
         d->axis[i].config = config->axis[i];
@@ -75,13 +76,14 @@ void drives_init(struct drives *d, const struct drives_config *config)
 }
 
 /*
- * Setpoints that do not get through any more, or are none, cannot be followed to rest; and where a switch says stop, rest
- * comes before the path.
+ * Setpoints that do not get through any more, or are none, cannot be followed to rest; and where a switch says stop, or a
+ * gantry is about to rack, rest comes before the path.
  */
 static bool cuts_off(enum takt_error error)
 {
     return error == TAKT_ERROR_DRIVE_RANGE || error == TAKT_ERROR_DRIVE_UNREACHABLE ||
-           error == TAKT_ERROR_IO_STOP || error == TAKT_ERROR_IO_LIMIT;
+           error == TAKT_ERROR_DRIVE_SKEW || error == TAKT_ERROR_IO_STOP ||
+           error == TAKT_ERROR_IO_LIMIT;
 }
 
 void drives_brake(struct drives *d)
@@ -116,10 +118,12 @@ static void raise(struct drives *d, unsigned index, const struct word *word, enu
     leave_operation(d, error);
 }
 
-/* "Y (node 2)". */
+/* "Y (node 2)", "Y2 (node 4)". */
 static void name_axis(const struct drives *d, unsigned index, struct word *word)
 {
-    char letter[2] = {AXIS_LETTERS[d->axis[index].config.axis], '\0'};
+    char letter[3] = {AXIS_LETTERS[d->axis[index].config.axis], '\0', '\0'};
+    if (drives_is_second(d, index))
+        letter[1] = '2';
     word->length = 0;
     word_add_text(word, letter);
     word_add_text(word, " (node ");
@@ -223,10 +227,11 @@ void drives_stop_for(struct drives *d, const struct diagnostic *fault)
 
 uint32_t drives_get_given_up(const struct drives *d, enum axis axis)
 {
+    uint32_t given_up = 0;
     for (unsigned i = 0; i < d->count; i++)
         if (d->axis[i].config.axis == axis)
-            return d->axis[i].given_up;
-    return 0;
+            given_up |= d->axis[i].given_up;
+    return given_up;
 }
 
 void drives_stop_on_path(struct drives *d, enum takt_error reason)
@@ -249,5 +254,6 @@ void drives_get_statuswords(const struct drives *d, uint16_t statusword[AXIS_COU
 {
     memset(statusword, 0, AXIS_COUNT * sizeof statusword[0]);
     for (unsigned i = 0; i < d->count; i++)
-        statusword[d->axis[i].config.axis] = d->axis[i].statusword;
+        if (!drives_is_second(d, i))
+            statusword[d->axis[i].config.axis] = d->axis[i].statusword;
 }

@@ -62,7 +62,8 @@ struct drives_config_axis {
 struct drives_config {
     unsigned count; /* drives, 0 ... AXIS_COUNT; none: enabled at once */
     struct drives_config_axis axis[AXIS_COUNT];
-    unsigned io_count;              /* I/O nodes beside them, 0 ... IO_NODES_MAX */
+    double skew_max_mm; /* > 0: the last drive is the second of its axis, a gantry; alarm beyond */
+    unsigned io_count;  /* I/O nodes beside them, 0 ... IO_NODES_MAX */
     const struct io_wiring *wiring; /* of these. Must outlive the drives */
     bool homed; /* all axes have been homed since power-on: they are not homed again */
     uint32_t cycle_us;

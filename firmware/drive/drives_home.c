@@ -48,7 +48,7 @@ void drives_home_next(struct drives *d)
     drives_enter_phase(d, DRIVES_SELECT);
 }
 
-static void check_links(struct drives *d)
+void drives_check_all_links(struct drives *d)
 {
     for (unsigned i = 0; i < d->count; i++)
         if (!drives_is_linked(d, &d->axis[i]))
@@ -60,7 +60,7 @@ static bool is_late(const struct drives *d)
     return drives_cycles_ms(d, d->phase_cycles) > MODE_TIMEOUT_MS;
 }
 
-static void enter_enabled(struct drives *d)
+void drives_enter_enabled(struct drives *d)
 {
     d->state = DRIVES_ENABLED;
     for (unsigned i = 0; i < d->count; i++)
@@ -81,7 +81,7 @@ static bool follows(struct drives_axis *axis)
 void drives_follow(struct drives *d)
 {
     bool all = true;
-    check_links(d);
+    drives_check_all_links(d);
     for (unsigned i = 0; i < d->count && d->state == DRIVES_STARTING; i++) {
         bool is_following = follows(&d->axis[i]);
         if (!is_following && is_late(d))
@@ -89,7 +89,7 @@ void drives_follow(struct drives *d)
         all = all && is_following;
     }
     if (all && d->state == DRIVES_STARTING)
-        enter_enabled(d);
+        drives_begin_square(d);
 }
 
 /* All show their modes: those that are to be homed begin; without any the drives are ready. */
@@ -124,7 +124,7 @@ static bool shows_mode(struct drives *d)
 void drives_select(struct drives *d)
 {
     const uint32_t object = SDO_OBJECT(CIA402_MODE_DISPLAY >> 16, 0);
-    check_links(d);
+    drives_check_all_links(d);
     if (d->state != DRIVES_STARTING)
         return;
     if (d->is_telling || sdo_client_is_busy(&d->sdo)) {
@@ -195,7 +195,7 @@ static void follow_homing(struct drives *d, unsigned index)
 void drives_home(struct drives *d)
 {
     bool all = true;
-    check_links(d);
+    drives_check_all_links(d);
     for (unsigned i = 0; i < d->count && d->state == DRIVES_STARTING; i++) {
         if (d->axis[i].mode != CIA402_MODE_HOMING)
             continue;

@@ -40,7 +40,7 @@ static uint16_t find_inputs(const struct io_wiring *wiring, unsigned mask, unsig
 void drives_io_init(struct drives *d, const struct drives_config *config)
 {
     assert(config->io_count <= IO_NODES_MAX);
-    d->io_count = config->io_count;
+    d->io_count = (uint8_t)config->io_count;
     d->wiring = config->wiring;
     for (unsigned i = 0; i < d->io_count; i++) {
         const struct io_wiring *wiring = &d->wiring[i];

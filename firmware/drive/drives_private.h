@@ -33,6 +33,11 @@ void drives_raise_reported(struct drives *d, unsigned index, uint16_t code);
 /* Drives are enabled and watched: in operation, and while axes are homed. */
 bool drives_are_watched(const struct drives *d);
 
+static inline bool drives_is_second(const struct drives *d, unsigned index)
+{
+    return d->second != 0 && index == d->second;
+}
+
 /* Setpoints cannot be followed any more: DRIVES_BRAKING. */
 void drives_brake(struct drives *d);
 /* A cycle of DRIVES_STOPPING, with its setpoints, and one of DRIVES_BRAKING. */
@@ -147,6 +152,14 @@ void drives_home(struct drives *d);
 void drives_follow(struct drives *d);
 /* The next order of axes that are homed; none: all drives are ready. */
 void drives_home_next(struct drives *d);
+
+/* A gantry: drives_square.c. A cycle of DRIVES_SQUARE; what is watched in operation. */
+void drives_gantry_init(struct drives *d, const struct drives_config *config);
+void drives_begin_square(struct drives *d);
+void drives_square(struct drives *d);
+void drives_check_skew(struct drives *d);
+void drives_enter_enabled(struct drives *d);
+void drives_check_all_links(struct drives *d);
 
 /* Enabled, and neither reports nor heartbeats have ceased. */
 static inline bool drives_is_linked(const struct drives *d, const struct drives_axis *axis)

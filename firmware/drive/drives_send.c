@@ -177,6 +177,7 @@ static void send_starting(struct drives *d, const struct can_port *port)
     case DRIVES_SELECT:
     case DRIVES_HOME:
     case DRIVES_FOLLOW:
+    case DRIVES_SQUARE:
         send_request(d, port);
         send_enabling(d, port);
         break;

@@ -2,7 +2,7 @@
  * From power-on to the first setpoint: boot, configure, start, enable, home.
  *
  *     BOOT --all booted--> CONFIGURE --all told--> IO --they work--> START --all started--> ENABLE --all enabled--> SELECT
- *       SELECT --modes shown, axes left to home--> HOME --they are--> SELECT ... --none left--> FOLLOW --> DRIVES_ENABLED
+ *       SELECT --modes shown, axes left to home--> HOME --they are--> SELECT ... --none left--> FOLLOW --> SQUARE --> DRIVES_ENABLED
  *
  * A drive that boots before the end of ENABLE has forgotten what it was told: CONFIGURE begins again.
  */
@@ -361,6 +361,9 @@ static void run_phase(struct drives *d)
         break;
     case DRIVES_FOLLOW:
         drives_follow(d);
+        break;
+    case DRIVES_SQUARE:
+        drives_square(d);
         break;
     }
 }

@@ -23,8 +23,9 @@ enum drives_phase {
     DRIVES_START,     /* nodes become operational, one a cycle: that staggers their event timers */
     DRIVES_ENABLE,    /* statuswords lead to "operation enabled" */
     DRIVES_SELECT, /* each shows the mode it is to be in: homing, or that in which targets are followed */
-    DRIVES_HOME,  /* the axes of one order look for their home */
-    DRIVES_FOLLOW /* drives in interpolated position mode begin to follow */
+    DRIVES_HOME,   /* the axes of one order look for their home */
+    DRIVES_FOLLOW, /* drives in interpolated position mode begin to follow */
+    DRIVES_SQUARE  /* the second drive of a gantry comes to where the first one is */
 };
 
 /* What a drive is configured by, in this order; then the next drive. */
@@ -81,7 +82,7 @@ struct drives_axis {
     bool lost;     /* after a fault: its setpoints lead nowhere */
     bool homed;
     bool homing_seen;    /* the statusword has shown that homing is under way */
-    int32_t braking_inc; /* where it was when its rest was looked at last */
+    int32_t braking_inc; /* where it was when its rest was looked at last, or squaring began */
     uint32_t rest_cycles;
 
     /* What the start has found. */
@@ -136,7 +137,9 @@ struct drives {
     double sent_mm[DRIVES_HISTORY][AXIS_COUNT]; /* setpoints of cycle k at [k % DRIVES_HISTORY] */
     uint8_t
         axis_of_node[NODE_MAX + 1]; /* index into axis; AXIS_COUNT: not ours; above: I/O nodes */
-    unsigned io_count;
+    uint8_t io_count;
+    uint8_t first, second; /* drives of the gantry: indices into axis; second 0: there is none */
+    double skew_max_mm;
     const struct io_wiring *wiring; /* of the I/O nodes */
     struct drives_io io[IO_NODES_MAX];
     uint32_t io_cycles; /* since all outputs were sent */

@@ -59,6 +59,11 @@ const struct settings_field settings_fields[] = {
     ROW(32, false, SETTINGS_U8, offsetof(struct machine, controller_node), 1, 1, 127, false, "controller_node"),
     COUNT(33, boot_timeout_ms, 1, 600000),
     COUNT(34, sdo_timeout_ms, 1, 600000),
+    COUNT(36, gantry.axis, 0, AXIS_COUNT),
+    ROW(37, false, SETTINGS_U8, offsetof(struct machine, gantry.drive_node), 1, 1, 127, false, "gantry.drive_node"),
+    ROW(38, false, SETTINGS_U8, offsetof(struct machine, gantry.is_reversed), 1, 0, 1, false, "gantry.is_reversed"),
+    FROM(39, gantry.home_offset_mm, -1e6, 1e6),
+    FROM(60, gantry.skew_max_mm, 0, 1e3),
     ROW(35, false, SETTINGS_BYTES, offsetof(struct machine, io), sizeof(struct io_wiring) * IO_NODES_MAX, 0, 0, false, "io"),
 
     VECTOR(40, machine, CORRECTION_COORDINATES * CORRECTION_COORDINATES, CORRECTION_MOST),

@@ -33,8 +33,8 @@ struct drives_command {
     const struct options *options;
     struct machine_setup setup;
     struct virtual_drives_config drives;
-    struct dictionary sheet[AXIS_COUNT]; /* of the machine's drives that have one */
-    struct dictionary given;             /* --eds with --bus: of all drives */
+    struct dictionary sheet[DATA_SHEETS_MAX]; /* of the machine's drives that have one */
+    struct dictionary given;                  /* --eds with --bus: of all drives */
     struct inject script;
 };
 
@@ -73,8 +73,6 @@ static bool use_axis(struct drives_command *command, struct virtual_drive_config
         if (!data_sheet_set_drive(drive, &command->setup.drive[i], &command->sheet[i]))
             return false;
     }
-    if (command->given.count > 0)
-        drive->dictionary = &command->given;
     return true;
 }
 
@@ -120,25 +118,29 @@ static bool read_nodes(struct drives_command *command, const char *nodes)
     }
 }
 
-static bool set_drives(struct drives_command *command)
+/* Drives without a machine, but for those whose nodes it has. */
+static bool set_nodes(struct drives_command *command)
 {
-    const char *nodes = command->options->nodes;
-
-    if (nodes != NULL && !read_nodes(command, nodes))
+    if (!read_nodes(command, command->options->nodes))
         return false;
-    for (unsigned i = 0; i < AXIS_COUNT && nodes == NULL; i++) {
-        const struct machine_axis *axis = &command->setup.machine.axis[i];
-
-        if (machine_axis_is_on_can(axis) && !add_drive(command, axis->drive_node))
-            return false;
-    }
     for (unsigned i = 0; i < command->drives.count; i++)
         if (!use_axis(command, &command->drives.drive[i]))
             return false;
-    for (unsigned i = 0; i < machine_io_count(&command->setup.machine) && nodes == NULL; i++)
-        data_sheet_set_io(&command->drives.drive[command->drives.count++],
-                          &command->setup.machine.io[i]);
     return true;
+}
+
+static bool set_drives(struct drives_command *command)
+{
+    struct virtual_drives_config *drives = &command->drives;
+    const bool good = command->options->nodes != NULL
+                          ? set_nodes(command)
+                          : data_sheet_set_machine(drives, &command->setup, command->sheet);
+
+    for (unsigned i = 0; i < drives->count && command->given.count > 0; i++) {
+        if (!drives->drive[i].is_io)
+            drives->drive[i].dictionary = &command->given;
+    }
+    return good;
 }
 
 static bool load_script(struct drives_command *command)

@@ -29,6 +29,40 @@ void data_sheet_set_io(struct virtual_drive_config *drive, const struct io_wirin
     }
 }
 
+static bool add_drive(struct virtual_drives_config *config, const struct machine_setup *setup,
+                      unsigned index, struct dictionary *sheet)
+{
+    const bool is_second = index == MACHINE_SECOND_DRIVE;
+    const struct machine *machine = &setup->machine;
+    const struct machine_axis *axis = &machine->axis[is_second ? machine->gantry.axis : index];
+    struct virtual_drive_config *drive = &config->drive[config->count++];
+
+    *drive = (struct virtual_drive_config){
+        .node = is_second ? machine->gantry.drive_node : axis->drive_node,
+        .increments_per_mm = is_second && machine->gantry.is_reversed ? -axis->increments_per_mm
+                                                                      : axis->increments_per_mm,
+        .cycle_us = machine->cycle_us,
+    };
+    return data_sheet_set_drive(drive, &setup->drive[index], sheet);
+}
+
+bool data_sheet_set_machine(struct virtual_drives_config *config, const struct machine_setup *setup,
+                            struct dictionary sheet[DATA_SHEETS_MAX])
+{
+    config->count = 0;
+    for (unsigned i = 0; i < AXIS_COUNT; i++) {
+        if (machine_axis_is_on_can(&setup->machine.axis[i]) &&
+            !add_drive(config, setup, i, &sheet[i]))
+            return false;
+    }
+    if (machine_has_gantry(&setup->machine) &&
+        !add_drive(config, setup, MACHINE_SECOND_DRIVE, &sheet[MACHINE_SECOND_DRIVE]))
+        return false;
+    for (unsigned i = 0; i < machine_io_count(&setup->machine); i++)
+        data_sheet_set_io(&config->drive[config->count++], &setup->machine.io[i]);
+    return true;
+}
+
 bool data_sheet_set_drive(struct virtual_drive_config *drive, const struct machine_drive *config,
                           struct dictionary *sheet)
 {

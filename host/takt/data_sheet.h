@@ -10,7 +10,15 @@
 /* False after a message. */
 bool data_sheet_load(struct dictionary *dictionary, const char *path);
 
-/* The drive of an axis; sheet: memory for its dictionary, where it has one. False after a message. */
+/*
+ * All virtual drives of a machine: those of its axes on CAN, the second one of a gantry, I/O nodes; sheet: memory for
+ * their dictionaries. False after a message.
+ */
+#define DATA_SHEETS_MAX (AXIS_COUNT + 1)
+bool data_sheet_set_machine(struct virtual_drives_config *config, const struct machine_setup *setup,
+                            struct dictionary sheet[DATA_SHEETS_MAX]);
+
+/* The drive at this index of the setup; sheet: memory for its dictionary, where it has one. False after a message. */
 bool data_sheet_set_drive(struct virtual_drive_config *drive, const struct machine_drive *config,
                           struct dictionary *sheet);
 

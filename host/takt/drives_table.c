@@ -147,6 +147,9 @@ const char *drives_table_remedy(const struct diagnostic *fault)
     case TAKT_ERROR_DRIVE_SCALING:
         return "correct increments_per_mm or travel_per_turn_mm, or objects 608F, 6091 and 6092 "
                "with the maker's tool";
+    case TAKT_ERROR_DRIVE_SKEW:
+        return "look at the switches of both drives, and at home_offset_mm and skew_max_mm in "
+               "[gantry]";
     case TAKT_ERROR_IO_ABSENT:
     case TAKT_ERROR_IO_TYPE:
     case TAKT_ERROR_IO_UNANSWERED:

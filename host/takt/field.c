@@ -56,30 +56,6 @@ bool field_check_options(const struct field_options *options)
     return true;
 }
 
-static bool set_drives(struct field *field, struct virtual_drives_config *config,
-                       const struct machine_setup *setup)
-{
-    config->count = 0;
-    for (unsigned i = 0; i < AXIS_COUNT; i++) {
-        const struct machine_axis *axis = &setup->machine.axis[i];
-        struct virtual_drive_config *drive = &config->drive[config->count];
-
-        if (!machine_axis_is_on_can(axis))
-            continue;
-        *drive = (struct virtual_drive_config){
-            .node = axis->drive_node,
-            .increments_per_mm = axis->increments_per_mm,
-            .cycle_us = setup->machine.cycle_us,
-        };
-        if (!data_sheet_set_drive(drive, &setup->drive[i], &field->sheet[i]))
-            return false;
-        config->count++;
-    }
-    for (unsigned i = 0; i < machine_io_count(&setup->machine); i++)
-        data_sheet_set_io(&config->drive[config->count++], &setup->machine.io[i]);
-    return true;
-}
-
 /* Faults of the bus whose time counts from this anchor. */
 static bool add_faults(struct field *field, enum inject_anchor anchor, uint64_t anchor_ns)
 {
@@ -115,7 +91,7 @@ static bool open_inside(struct field *field, const struct machine_setup *setup)
 
     (void)bus_init(&field->bus, setup->machine.can_bitrate); /* checked with the machine */
     field->port = bus_attach(&field->bus, NULL);
-    if (!set_drives(field, &drives, setup))
+    if (!data_sheet_set_machine(&drives, setup, field->sheet))
         return false;
     virtual_drives_init(&field->drives, &field->bus, &drives);
     return start_faults(field);
@@ -138,17 +114,13 @@ static enum command_status open_outside(struct field *field, const struct machin
 {
     struct link_config config = {.bitrate = setup->machine.can_bitrate};
     struct link_error error;
-    uint8_t nodes[AXIS_COUNT];
-    unsigned count = 0;
+    uint8_t nodes[AXIS_COUNT + 1];
+    const unsigned count = machine_drive_nodes(&setup->machine, nodes);
 
     field->link = link_open(bus, &config, &error);
     if (field->link == NULL) {
         message_command_error("--bus: %s", error.text);
         return error.is_environment ? STATUS_ENVIRONMENT : STATUS_INPUT;
-    }
-    for (unsigned i = 0; i < AXIS_COUNT; i++) {
-        if (machine_axis_is_on_can(&setup->machine.axis[i]))
-            nodes[count++] = setup->machine.axis[i].drive_node;
     }
     frame_bits_init(&field->traffic.tables);
     link_observe(field->link, &(struct wire_listener){count_frame, &field->traffic});
@@ -203,7 +175,7 @@ void field_close(struct field *field)
     bus_return_stop(&field->way_back);
     link_close(field->link);
     field->link = NULL;
-    for (unsigned i = 0; i < AXIS_COUNT; i++)
+    for (unsigned i = 0; i < DATA_SHEETS_MAX; i++)
         dictionary_free(&field->sheet[i]);
 }
 

@@ -29,7 +29,7 @@ struct machine_reader {
     bool in_values;   /* or [values] */
     bool place_known; /* it is another one that is known */
     struct machine_place place;
-    uint32_t set_in_line[MACHINE_KEYS_MAX][AXIS_COUNT]; /* 0: not yet */
+    uint32_t set_in_line[MACHINE_KEYS_MAX][MACHINE_SECOND_DRIVE + 1]; /* 0: not yet */
 };
 
 /* Column of the first character from offset on that is no space. */
@@ -224,8 +224,9 @@ static bool resolve_files(struct machine_setup *setup, const char *machine_file)
     bool fits = resolve_path(setup->volume_table, machine_file);
 
     for (unsigned i = 0; i < AXIS_COUNT; i++)
-        fits = resolve_path(setup->axis_table[i], machine_file) &&
-               resolve_path(setup->drive[i].eds, machine_file) && fits;
+        fits = resolve_path(setup->axis_table[i], machine_file) && fits;
+    for (unsigned i = 0; i <= MACHINE_SECOND_DRIVE; i++)
+        fits = resolve_path(setup->drive[i].eds, machine_file) && fits;
     return fits;
 }
 
@@ -451,6 +452,16 @@ static void write_io_nodes(FILE *file, const struct machine_setup *setup)
     }
 }
 
+static void write_gantry(FILE *file, const struct machine_setup *setup)
+{
+    if (!machine_has_gantry(&setup->machine))
+        return;
+    (void)fprintf(file, "\n[%s]\n", machine_section_names[SECTION_GANTRY]);
+    write_section(file, setup, (struct machine_place){SECTION_GANTRY, 0});
+    (void)fprintf(file, "\n[drive %u]\n", (unsigned)setup->machine.gantry.drive_node);
+    write_section(file, setup, (struct machine_place){SECTION_DRIVE, MACHINE_SECOND_DRIVE});
+}
+
 void machine_file_write(FILE *file, const struct machine_setup *setup)
 {
     static const enum machine_section single[] = {SECTION_MACHINE,    SECTION_SPINDLE,
@@ -467,6 +478,7 @@ void machine_file_write(FILE *file, const struct machine_setup *setup)
     write_places_of_axes(file, setup, SECTION_AXIS);
     write_places_of_axes(file, setup, SECTION_DRIVE);
     write_places_of_axes(file, setup, SECTION_STEPPER);
+    write_gantry(file, setup);
     write_io_nodes(file, setup);
     write_codes(file, &setup->codes);
 }

@@ -53,8 +53,8 @@
         OF_GEOMETRY("ec" letter, axis[number][5], DEVIATION_CURVE_NUMBERS, "about Z")
 
 const char *const machine_section_names[SECTION_COUNT] = {
-    "machine",    "axis",     "spindle", "bus",     "panel",
-    "correction", "geometry", "drive",   "stepper", "io"};
+    "machine",  "axis",  "spindle", "bus", "panel", "correction",
+    "geometry", "drive", "stepper", "io",  "gantry"};
 
 /* clang-format off */
 const struct machine_key machine_keys[] = {
@@ -267,6 +267,17 @@ const struct machine_key machine_keys[] = {
           "steps that come faster are missed by the motor"),
     COUNT(SECTION_STEPPER, "encoder", KEY_UINT32, IN_STEPPER(has_encoder), 0, 1,
           "1: the motor has one, so that the controller sees missed steps; 0: it has none"),
+
+    CHOICE(SECTION_GANTRY, "axis", KEY_LINEAR_AXIS, IN_SETUP(machine.gantry.axis),
+           "axis X, Y or Z that has two drives; none"),
+    COUNT(SECTION_GANTRY, "drive_node", KEY_UINT8, IN_SETUP(machine.gantry.drive_node), 1, 127,
+          "CANopen node id of its second drive; its other keys are those of the axis"),
+    COUNT(SECTION_GANTRY, "is_reversed", KEY_UINT8, IN_SETUP(machine.gantry.is_reversed), 0, 1,
+          "1: the second motor turns the other way than the first; it looks for its home on the same side"),
+    FROM(SECTION_GANTRY, "home_offset_mm", SCALE_NONE, IN_SETUP(machine.gantry.home_offset_mm), -1e6, 1e6,
+         "machine coordinate of the home of the second drive: its difference to that of the axis squares the gantry"),
+    FROM(SECTION_GANTRY, "skew_max_mm", SCALE_NONE, IN_SETUP(machine.gantry.skew_max_mm), 0, 1e3,
+         "alarm when the two drives are farther apart"),
 
     COUNT(SECTION_IO, "node", KEY_UINT8, IN_IO(node), 1, 127,
           "CANopen node id of an I/O node (CiA 401) on the drives' bus; [io 1] is the first"),

@@ -20,6 +20,7 @@ enum machine_section {
     SECTION_DRIVE,
     SECTION_STEPPER,
     SECTION_IO,
+    SECTION_GANTRY,
     SECTION_COUNT
 };
 
@@ -30,6 +31,7 @@ enum machine_key_type {
     KEY_DOUBLE,
     KEY_VECTOR /* size numbers */,
     KEY_AXIS,
+    KEY_LINEAR_AXIS,
     KEY_LAYERS,
     KEY_OUTPUTS,
     KEY_INPUTS, /* what the bits of an I/O node are */

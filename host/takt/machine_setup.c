@@ -51,6 +51,7 @@ void machine_setup_set_default(struct machine_setup *setup)
     machine_set_default(&setup->machine);
     virtual_spindle_set_default(&setup->spindle);
     setup->geometry.table_axis = AXIS_COUNT;
+    drive_plant_set_default(&setup->drive[MACHINE_SECOND_DRIVE].plant);
     (void)snprintf(setup->panel.listen, sizeof setup->panel.listen, "127.0.0.1:1502");
     for (unsigned i = 0; i < AXIS_COUNT; i++) {
         drive_plant_set_default(&setup->drive[i].plant);
@@ -78,19 +79,18 @@ static const char *check_drive(const struct machine_setup *setup, unsigned axis)
 
     if (field == NULL)
         return NULL;
+    if (axis == MACHINE_SECOND_DRIVE)
+        return problem("drive %u: %s is out of range", (unsigned)setup->machine.gantry.drive_node,
+                       field);
     return problem("drive %u: %s is out of range", (unsigned)setup->machine.axis[axis].drive_node,
                    field);
 }
 
 static unsigned count_drives(const struct machine *machine)
 {
-    unsigned drives = 0;
+    uint8_t node[AXIS_COUNT + 1];
 
-    for (unsigned i = 0; i < AXIS_COUNT; i++) {
-        if (machine_axis_is_on_can(&machine->axis[i]))
-            drives++;
-    }
-    return drives;
+    return machine_drive_nodes(machine, node);
 }
 
 static const char *check_bus(const struct machine *machine)
@@ -130,6 +130,8 @@ const char *machine_setup_check(const struct machine_setup *setup)
         if (setup->machine.axis[i].present)
             wrong = check_drive(setup, i);
     }
+    if (machine_has_gantry(&setup->machine) && wrong == NULL)
+        wrong = check_drive(setup, MACHINE_SECOND_DRIVE);
     return wrong;
 }
 

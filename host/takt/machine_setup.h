@@ -30,14 +30,16 @@ struct machine_drive {
     uint32_t sdo_ms;
 };
 
+#define MACHINE_SECOND_DRIVE AXIS_COUNT
+
 struct machine_setup {
     struct machine machine;
     char tool_table[MACHINE_SETUP_PATH_MAX + 1];     /* empty: none */
     char parameter_file[MACHINE_SETUP_PATH_MAX + 1]; /* empty: none */
     char volume_table[MACHINE_SETUP_PATH_MAX + 1];   /* correction tables; empty: none */
     char axis_table[AXIS_COUNT][MACHINE_SETUP_PATH_MAX + 1];
-    struct deviation_config geometry;       /* how the virtual machine differs from a perfect one */
-    struct machine_drive drive[AXIS_COUNT]; /* of each axis */
+    struct deviation_config geometry; /* how the virtual machine differs from a perfect one */
+    struct machine_drive drive[AXIS_COUNT + 1]; /* of each axis, and the second one of a gantry */
     struct virtual_stepper_config stepper[AXIS_COUNT]; /* of each axis, if it has a step drive */
     struct virtual_spindle_config spindle;             /* see machine_setup_get_spindle */
     struct panel_setup panel;

@@ -3,6 +3,7 @@
 
 #include "base/maths.h"
 #include "correction/correction.h"
+#include "takt/machine_io.h"
 #include "takt/message.h"
 #include "takt/suggest.h"
 
@@ -58,6 +59,11 @@ static bool find_drive(const struct machine_setup *setup, const char *instance, 
             *index = i;
             return true;
         }
+    }
+    if (end != instance && *end == '\0' && machine_has_gantry(&setup->machine) &&
+        setup->machine.gantry.drive_node == node) {
+        *index = MACHINE_SECOND_DRIVE;
+        return true;
     }
     say(wrong, "no axis has drive_node '%.40s'; a drive's section comes after its axis", instance);
     return false;
@@ -122,7 +128,7 @@ bool machine_section_find(struct machine_setup *setup, const char *word, const c
 static bool is_rotary(const struct machine_setup *setup, struct machine_place place)
 {
     return (place.section == SECTION_AXIS || place.section == SECTION_DRIVE) &&
-           setup->machine.axis[place.index].rotary;
+           place.index < AXIS_COUNT && setup->machine.axis[place.index].rotary;
 }
 
 void machine_key_name(const struct machine_setup *setup, struct machine_place place,
@@ -318,7 +324,7 @@ static bool read_vector(const struct machine_key *key, const char *value, double
     return true;
 }
 
-/* A rotary axis, or none. */
+/* A rotary axis, or a linear one, or none. */
 static bool read_axis(const struct machine_key *key, const char *value, uint32_t *field,
                       struct machine_problem *wrong)
 {
@@ -329,8 +335,12 @@ static bool read_axis(const struct machine_key *key, const char *value, uint32_t
         *field = AXIS_COUNT;
         return true;
     }
-    if (letter == NULL || letter - AXIS_LETTERS < AXIS_LINEAR_COUNT) {
-        say(wrong, "%s: A, B, C or none is expected, not '%.40s'", key->name, value);
+    const bool is_linear = key->type == KEY_LINEAR_AXIS;
+
+    if (letter == NULL || *letter == '\0' ||
+        (letter - AXIS_LETTERS < AXIS_LINEAR_COUNT) != is_linear) {
+        say(wrong, "%s: %s or none is expected, not '%.40s'", key->name,
+            is_linear ? "X, Y, Z" : "A, B, C", value);
         return false;
     }
     *field = (uint32_t)(letter - AXIS_LETTERS);
@@ -375,69 +385,6 @@ static bool read_text(const struct machine_key *key, const char *value, char *fi
     return true;
 }
 
-/* The bits of an I/O node that are no lines of the program, by enum io_bit. */
-static const struct {
-    const char *name;
-    uint8_t bit;
-} io_names[] = {{"-", IO_FREE},          {"flood", IO_FLOOD},     {"mist", IO_MIST},
-                {"spindle", IO_SPINDLE}, {"ccw", IO_SPINDLE_CCW}, {"stop", IO_STOP},
-                {"limit", IO_LIMIT}};
-
-#define IO_WORD_MAX 15
-
-/* False: there is no such bit. */
-static bool read_io_bit(const char *word, uint8_t *bit)
-{
-    const bool is_inverted = word[0] == '!';
-    const char *name = word + is_inverted;
-    char *end;
-    unsigned long line = name[0] == 'P' ? strtoul(name + 1, &end, 10) : IO_BIT_COUNT;
-
-    if (name[0] == 'P' && isdigit((unsigned char)name[1]) && *end == '\0' &&
-        line < IO_FLOOD - IO_PROGRAM) {
-        *bit = (uint8_t)(IO_PROGRAM + line + (is_inverted ? IO_INVERTED : 0));
-        return true;
-    }
-    for (size_t i = 0; i < sizeof io_names / sizeof io_names[0]; i++) {
-        if (strcmp(name, io_names[i].name) == 0) {
-            *bit = (uint8_t)(io_names[i].bit + (is_inverted ? IO_INVERTED : 0));
-            return true;
-        }
-    }
-    return false;
-}
-
-static bool read_io_bits(const struct machine_key *key, const char *value, uint8_t *field,
-                         struct machine_problem *wrong)
-{
-    uint8_t bits[IO_BITS_MAX] = {IO_FREE};
-    size_t count = 0;
-
-    while (*(value += strspn(value, " \t,")) != '\0') {
-        const size_t length = strcspn(value, " \t,");
-        char word[IO_WORD_MAX + 1];
-        uint8_t bit;
-
-        (void)snprintf(word, sizeof word, "%.*s",
-                       (int)(length < IO_WORD_MAX ? length : IO_WORD_MAX), value);
-        if (!read_io_bit(word, &bit) ||
-            !(key->type == KEY_OUTPUTS ? io_is_output(bit) : io_is_input(bit))) {
-            say(wrong, "%s: '%s' is none of %s", key->name, word,
-                key->type == KEY_OUTPUTS ? "P0 ... P31, flood, mist, spindle, ccw and -"
-                                         : "P0 ... P31, stop, limit and -");
-            return false;
-        }
-        if (count == IO_BITS_MAX) {
-            say(wrong, "%s: more than %d bits", key->name, IO_BITS_MAX);
-            return false;
-        }
-        bits[count++] = bit;
-        value += length;
-    }
-    memcpy(field, bits, sizeof bits);
-    return true;
-}
-
 bool machine_key_set(struct machine_setup *setup, struct machine_place place,
                      const struct machine_key *key, const char *value,
                      struct machine_problem *wrong)
@@ -466,12 +413,13 @@ bool machine_key_set(struct machine_setup *setup, struct machine_place place,
     case KEY_VECTOR:
         return read_vector(key, value, scale_of(setup, place, key), field, wrong);
     case KEY_AXIS:
+    case KEY_LINEAR_AXIS:
         return read_axis(key, value, field, wrong);
     case KEY_LAYERS:
         return read_layers(key, value, field, wrong);
     case KEY_OUTPUTS:
     case KEY_INPUTS:
-        return read_io_bits(key, value, field, wrong);
+        return machine_io_read(field, value, key->type == KEY_OUTPUTS, key->name, wrong);
     case KEY_UINT32:
         if (!read_count(key, value, &number, wrong))
             return false;
@@ -534,35 +482,6 @@ static void write_axis_letter(uint32_t axis, char *text, size_t size)
         (void)snprintf(text, size, "none");
 }
 
-static const char *io_name(unsigned kind)
-{
-    for (size_t i = 0; i < sizeof io_names / sizeof io_names[0]; i++) {
-        if (io_names[i].bit == kind)
-            return io_names[i].name;
-    }
-    return "-";
-}
-
-static void write_io_bits(const uint8_t *bits, char *text, size_t size)
-{
-    const unsigned count = io_wired_bits(bits);
-    size_t used = 0;
-
-    text[0] = '\0';
-    for (unsigned i = 0; i < count && used < size; i++) {
-        const unsigned kind = io_kind(bits[i]);
-        const char *mark = bits[i] & IO_INVERTED ? "!" : "";
-        const char *space = i > 0 ? " " : "";
-
-        if (kind >= IO_PROGRAM && kind < IO_FLOOD)
-            used += (size_t)snprintf(text + used, size - used, "%s%sP%u", space, mark,
-                                     kind - IO_PROGRAM);
-        else
-            used +=
-                (size_t)snprintf(text + used, size - used, "%s%s%s", space, mark, io_name(kind));
-    }
-}
-
 void machine_key_get(const struct machine_setup *setup, struct machine_place place,
                      const struct machine_key *key, char *text, size_t size)
 {
@@ -591,6 +510,7 @@ void machine_key_get(const struct machine_setup *setup, struct machine_place pla
         write_vector(field, key->size, scale_of(setup, place, key), text, size);
         break;
     case KEY_AXIS:
+    case KEY_LINEAR_AXIS:
         write_axis_letter(*(const uint32_t *)field, text, size);
         break;
     case KEY_LAYERS:
@@ -598,7 +518,7 @@ void machine_key_get(const struct machine_setup *setup, struct machine_place pla
         break;
     case KEY_OUTPUTS:
     case KEY_INPUTS:
-        write_io_bits(field, text, size);
+        machine_io_write(field, text, size);
         break;
     case KEY_UINT32:
         (void)snprintf(text, size, "%u", (unsigned)*(const uint32_t *)field);

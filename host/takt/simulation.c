@@ -80,13 +80,9 @@ static enum command_status start_controllers(struct simulation *s, const struct 
 static enum command_status load_faults(struct simulation *s, const struct session *session)
 {
     const char *path = session->options->inject;
-    uint8_t nodes[AXIS_COUNT + IO_NODES_MAX];
-    unsigned count = 0;
+    uint8_t nodes[AXIS_COUNT + 1 + IO_NODES_MAX];
+    unsigned count = machine_drive_nodes(&session->setup.machine, nodes);
 
-    for (unsigned i = 0; i < AXIS_COUNT; i++) {
-        if (machine_axis_is_on_can(&session->setup.machine.axis[i]))
-            nodes[count++] = session->setup.machine.axis[i].drive_node;
-    }
     for (unsigned i = 0; i < machine_io_count(&session->setup.machine); i++)
         nodes[count++] = session->setup.machine.io[i].node;
     if (path == NULL || (inject_file_load(&s->script, path) &&

@@ -31,6 +31,12 @@
         name, script, FAULT_WITH_IO, TAKT_ERROR_##alarm, text, 0, 0.0001                           \
     }
 
+/* The same with two drives of Y. */
+#define GANTRY_STOPS(name, script, alarm, text, stop_max_ms, off_max_mm)                           \
+    {                                                                                              \
+        name, script, FAULT_GANTRY, TAKT_ERROR_##alarm, text, stop_max_ms, off_max_mm              \
+    }
+
 /* clang-format off */
 const struct fault_case fault_cases[] = {
     /* frames lost */
@@ -124,6 +130,17 @@ const struct fault_case fault_cases[] = {
              "I/O node 4 is not operational any more, but restarted", 250, 0.01),
     IO_STOPS("the I/O node reports a short circuit", "enabled+0.5s io 4 warn code=2320", IO_FAULT,
              "I/O node 4 reports 2320: ", 250, 0.01),
+
+    /* two drives of Y */
+    GANTRY_STOPS("the second drive of Y jams", "enabled+0.5s drive 4 jam", DRIVE_SKEW, "axis Y2 (node 4) is ", 150, 1),
+    GANTRY_STOPS("the second motor of Y has 2 % of its torque", "enabled+0.02s drive 4 weak ratio=0.02", DRIVE_SKEW,
+                 "axis Y2 (node 4) is ", 400, 2),
+    GANTRY_STOPS("the position of the second drive of Y is stuck", "enabled+0.5s drive 4 freeze object=6064", DRIVE_SKEW,
+                 "axis Y2 (node 4) is ", 200, 1),
+    GANTRY_STOPS("the second drive of Y hangs", "enabled+0.5s drive 4 hang", DRIVE_SILENT,
+                 "the drive of axis Y2 (node 4) has sent no position for 21 ms", 200, 3),
+    GANTRY_STOPS("the second drive of Y gets too hot", "enabled+0.5s drive 4 emcy code=4310", DRIVE_FAULT,
+                 "the drive of axis Y2 (node 4) reports 4310: drive too hot", 150, 1),
 
     /* at start */
     IO_REFUSED("the stop input is open at start", "power io 4 report object=6000:01 value=02", IO_STOP,

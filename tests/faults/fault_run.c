@@ -16,10 +16,13 @@
 #define HOME_METHOD    17
 #define HOME_TIMEOUT_S 3
 
-#define DRIVES     3U
-#define IO_NODE    4U /* attached to the bus behind the drives */
-#define CYCLE_NS   1000000U
-#define CYCLES_MAX 12000U
+#define DRIVES 3U
+#define FOURTH 4U /* node attached to the bus behind the drives: I/O, or second drive of Y */
+
+/* Less than the following error that is allowed. */
+#define SKEW_MAX_MM 0.5
+#define CYCLE_NS    1000000U
+#define CYCLES_MAX  12000U
 
 /* Cycles after the end of everything in which an axis that has not been stopped would be seen. */
 #define AFTER_CYCLES 1000U
@@ -45,7 +48,7 @@ struct world {
     struct inject_clock clock;
     bool is_on_bus[INJECT_FAULTS_MAX]; /* the bus has been told of this fault */
     uint64_t fault_ns; /* when the first fault begins; INJECT_ALWAYS: not known yet */
-    double at_mm[DRIVES];
+    double at_mm[DRIVES + 1];
 };
 
 /* Ports of the bus in the order they are attached: the controller, then the drives. */
@@ -99,12 +102,21 @@ static void tell_bus(struct world *w, const struct inject_fault *fault, uint64_t
 static void add_io_node(struct machine *machine, struct virtual_drives_config *virtual)
 {
     machine->io[0] = (struct io_wiring){
-        .node = IO_NODE, .output = {IO_FLOOD}, .input = {IO_STOP, IO_LIMIT, IO_PROGRAM}};
+        .node = FOURTH, .output = {IO_FLOOD}, .input = {IO_STOP, IO_LIMIT, IO_PROGRAM}};
     virtual->drive[virtual->count] = virtual->drive[0];
-    virtual->drive[virtual->count].node = IO_NODE;
+    virtual->drive[virtual->count].node = FOURTH;
     virtual->drive[virtual->count].is_io = true;
     virtual->drive[virtual->count].closed = 3;
     virtual->count++;
+}
+
+static void add_second_drive(struct machine *machine, struct virtual_drives_config *virtual)
+{
+    machine->gantry.axis = AXIS_Y;
+    machine->gantry.drive_node = FOURTH;
+    machine->gantry.skew_max_mm = SKEW_MAX_MM;
+    virtual->drive[virtual->count] = virtual->drive[AXIS_Y];
+    virtual->drive[virtual->count++].node = FOURTH;
 }
 
 /* Beginnings of faults become known with the moment the drives are enabled. */
@@ -142,6 +154,8 @@ static void open_world(struct world *w, const struct fault_case *fault)
     }
     if (fault->machine == FAULT_WITH_IO)
         add_io_node(&machine, &virtual);
+    if (fault->machine == FAULT_GANTRY)
+        add_second_drive(&machine, &virtual);
     (void)bus_init(&w->bus, machine.can_bitrate);
     config.can = bus_attach(&w->bus, NULL);
     virtual_drives_init(&w->drives, &w->bus, &virtual);
@@ -187,7 +201,7 @@ static double distance_mm(const double at_mm[DRIVES])
 static double observe(struct world *w, struct fault_result *result)
 {
     double fastest_mm = 0;
-    for (unsigned i = 0; i < DRIVES; i++) {
+    for (unsigned i = 0; i < w->drives.motors; i++) {
         double now_mm = virtual_drive_get_position_mm(&w->drives.drive[i]);
         fastest_mm = fmax(fastest_mm, fabs(now_mm - w->at_mm[i]));
         w->at_mm[i] = now_mm;

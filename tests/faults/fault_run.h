@@ -12,8 +12,9 @@
 /* Three drives, and what is special. */
 enum fault_machine {
     FAULT_PLAIN,
-    FAULT_HOMED,  /* X looks for its limit switch at start */
-    FAULT_WITH_IO /* there is an I/O node, 4: its inputs are stop, limit and P0 */
+    FAULT_HOMED,   /* X looks for its limit switch at start */
+    FAULT_WITH_IO, /* there is an I/O node, 4: its inputs are stop, limit and P0 */
+    FAULT_GANTRY   /* Y has a second drive, node 4 */
 };
 
 struct fault_case {

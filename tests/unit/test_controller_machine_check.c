@@ -97,9 +97,55 @@ static void test_a_machine_has_an_axis(void)
     expect(TAKT_ERROR_MACHINE_NO_AXIS, "the machine has no axis");
 }
 
+static void test_io_nodes_follow_each_other_and_have_ids_of_their_own(void)
+{
+    machine.io[1].node = 20;
+    expect(TAKT_ERROR_MACHINE_IO,
+           "io 2 is wired wrongly, or has no node before it: the first is io 1");
+    machine.io[0] = (struct io_wiring){.node = 20, .output = {IO_STOP}};
+    expect(TAKT_ERROR_MACHINE_IO,
+           "io 1 is wired wrongly, or has no node before it: the first is io 1");
+    machine.io[0] = (struct io_wiring){.node = 128};
+    expect(TAKT_ERROR_MACHINE_IO,
+           "io 1 is wired wrongly, or has no node before it: the first is io 1");
+    machine.io[0].node = machine.controller_node;
+    expect(TAKT_ERROR_MACHINE_IO_NODE, "io 1: another node on the bus has its id 127");
+}
+
+static void expect_gantry_refused(void)
+{
+    expect(TAKT_ERROR_MACHINE_GANTRY,
+           "the gantry needs an axis X, Y or Z with a CAN drive, a node of its own, a skew_max_mm, "
+           "and with it at most 6 drives");
+}
+
+static void test_a_gantry_has_a_second_drive_on_can_and_an_alarm(void)
+{
+    const struct machine_gantry good = {.axis = AXIS_Y, .drive_node = 9, .skew_max_mm = 1};
+
+    machine.gantry = good;
+    TEST_ASSERT_TRUE(machine_check(&machine, &wrong));
+    machine.gantry.skew_max_mm = 0;
+    expect_gantry_refused();
+    machine.gantry = good;
+    machine.gantry.drive_node = 2;
+    expect_gantry_refused();
+    machine.gantry = good;
+    machine.axis[AXIS_Y].drive_type = MACHINE_DRIVE_STEP;
+    expect_gantry_refused();
+    machine.gantry = good;
+    machine.gantry.axis = AXIS_A;
+    expect_gantry_refused();
+    machine.gantry = good;
+    machine.io[0].node = 9;
+    expect(TAKT_ERROR_MACHINE_IO_NODE, "io 1: another node on the bus has its id 9");
+}
+
 int main(void)
 {
     UNITY_BEGIN();
+    RUN_TEST(test_io_nodes_follow_each_other_and_have_ids_of_their_own);
+    RUN_TEST(test_a_gantry_has_a_second_drive_on_can_and_an_alarm);
     RUN_TEST(test_a_travel_has_two_ends_and_zero_between_them);
     RUN_TEST(test_positions_fit_the_drives_32_bits);
     RUN_TEST(test_limits_stand_above_the_rounding_of_setpoints);

@@ -3,6 +3,7 @@
  */
 #include "starting_master.h"
 
+#include "canopen/emcy.h"
 #include "canopen/objects.h"
 
 #define IO_NODE 20
@@ -185,6 +186,92 @@ static void test_more_bits_than_the_node_has_are_refused(void)
         "PDO of the node");
 }
 
+/* What the node answers to one request leads to. */
+static void check_answer(struct fake_rule rule, enum takt_error error, const char *text)
+{
+    setUp();
+    levels = 1;
+    rule.node = IO_NODE;
+    set_rule(rule);
+    enable(&(const struct io_wiring){.output = {IO_FLOOD}, .input = {IO_STOP}});
+    TEST_ASSERT_EQUAL_INT(error, drives_get_fault(&drives)->code);
+    assert_text(text);
+}
+
+static void test_a_node_of_no_use_is_refused_with_the_reason(void)
+{
+    check_answer((struct fake_rule){.object = SDO_OBJECT(0x1000, 0), .value = 0x20192},
+                 TAKT_ERROR_IO_TYPE,
+                 "I/O node 20 is no CiA 401 node: the device type, object 1000, is 00020192");
+    check_answer(
+        (struct fake_rule){.object = SDO_OBJECT(0x1017, 0), .abort_code = SDO_ABORT_READ_ONLY},
+        TAKT_ERROR_IO_REFUSES,
+        "I/O node 20, object 1017:00, refuses with abort code 06010002: object can only be read");
+    check_answer((struct fake_rule){.object = SDO_OBJECT(0x1600, 1), .silent = 3},
+                 TAKT_ERROR_IO_UNANSWERED,
+                 "I/O node 20, object 1600:01, does not answer within 10 ms");
+    check_answer((struct fake_rule){.object = SDO_OBJECT(0x1A00, 0), .value = 9},
+                 TAKT_ERROR_IO_UNMAPPED,
+                 "I/O node 20, object 1A00:00, is 0009: the bits that are wired are not in the "
+                 "first PDO of the node");
+}
+
+static void test_a_node_that_is_not_there_is_named(void)
+{
+    nodes.mute = IO_NODE;
+    enable(&(const struct io_wiring){.input = {IO_STOP}});
+    TEST_ASSERT_EQUAL_INT(TAKT_ERROR_IO_ABSENT, drives_get_fault(&drives)->code);
+    assert_text("I/O node 20 has not booted within 1 s");
+}
+
+static void test_what_a_node_may_refuse_costs_nothing_but_that(void)
+{
+    levels = 1;
+    set_rule((struct fake_rule){
+        .node = IO_NODE, .object = SDO_OBJECT(0x1016, 1), .abort_code = SDO_ABORT_NO_OBJECT});
+    set_rule((struct fake_rule){
+        .node = IO_NODE, .object = SDO_OBJECT(0x1800, 2), .abort_code = SDO_ABORT_READ_ONLY});
+    enable(&(const struct io_wiring){.output = {IO_FLOOD}, .input = {IO_STOP}});
+    TEST_ASSERT_EQUAL_INT(DRIVES_ENABLED, drives_get_state(&drives));
+}
+
+static void enable_with_stop(void)
+{
+    setUp();
+    levels = 1;
+    enable(&(const struct io_wiring){.output = {IO_FLOOD}, .input = {IO_STOP}});
+    TEST_ASSERT_EQUAL_INT(DRIVES_ENABLED, drives_get_state(&drives));
+}
+
+static void test_a_node_that_fails_in_operation_is_a_fault(void)
+{
+    const struct emcy emcy = {.node = IO_NODE, .code = 0x2320};
+    enable_with_stop();
+    emcy_write(fake_nodes_add(&nodes), &emcy);
+    run(1);
+    TEST_ASSERT_EQUAL_INT(TAKT_ERROR_IO_FAULT, drives_get_fault(&drives)->code);
+    enable_with_stop();
+    nmt_write_heartbeat(fake_nodes_add(&nodes), IO_NODE, NMT_STOPPED);
+    run(1);
+    TEST_ASSERT_EQUAL_INT(TAKT_ERROR_IO_LEFT, drives_get_fault(&drives)->code);
+    assert_text("I/O node 20 is not operational any more, but stopped");
+    enable_with_stop();
+    nodes.starts[IO_NODE] = 0; /* neither inputs nor heartbeats come any more */
+    run(22);
+    TEST_ASSERT_EQUAL_INT(TAKT_ERROR_IO_SILENT, drives_get_fault(&drives)->code);
+    assert_text("I/O node 20 has sent no inputs for 21 ms");
+}
+
+/* Outputs alone: nothing but its heartbeat is heard of it. */
+static void test_a_node_without_inputs_is_watched_by_its_heartbeat(void)
+{
+    enable(&(const struct io_wiring){.output = {IO_FLOOD}});
+    TEST_ASSERT_EQUAL_INT(DRIVES_ENABLED, drives_get_state(&drives));
+    nodes.starts[IO_NODE] = 0;
+    run(401);
+    TEST_ASSERT_EQUAL_INT(TAKT_ERROR_IO_HEARTBEAT, drives_get_fault(&drives)->code);
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -195,6 +282,11 @@ int main(void)
     RUN_TEST(test_stop_and_limit_inputs_brake_all_drives_in_the_cycle_that_hears_of_them);
     RUN_TEST(test_an_axis_can_be_driven_off_a_limit_switch);
     RUN_TEST(test_a_node_alone_is_started_too);
+    RUN_TEST(test_a_node_of_no_use_is_refused_with_the_reason);
+    RUN_TEST(test_a_node_that_is_not_there_is_named);
+    RUN_TEST(test_what_a_node_may_refuse_costs_nothing_but_that);
+    RUN_TEST(test_a_node_that_fails_in_operation_is_a_fault);
+    RUN_TEST(test_a_node_without_inputs_is_watched_by_its_heartbeat);
     RUN_TEST(test_more_bits_than_the_node_has_are_refused);
     return UNITY_END();
 }

@@ -199,6 +199,28 @@ static void test_the_bits_of_an_io_node_are_read_by_their_names(void)
     TEST_ASSERT_EQUAL_UINT8_ARRAY(inputs, setup.machine.io[0].input, IO_BITS_MAX);
 }
 
+static void test_a_gantry_and_io_nodes_that_are_written_read_as_the_same(void)
+{
+    FILE *file = fopen(path, "wb");
+
+    TEST_ASSERT_NOT_NULL(file);
+    setup.machine.gantry = (struct machine_gantry){AXIS_Y, 9, 1, -99.4, 0.8};
+    setup.drive[MACHINE_SECOND_DRIVE].plant.inertia_kg_m2 = 0.125;
+    setup.machine.io[0] = (struct io_wiring){20, {IO_FLOOD, IO_FREE, IO_MIST | IO_INVERTED}, {0}};
+    setup.machine.io[1] = (struct io_wiring){21, {0}, {IO_STOP, IO_PROGRAM + 31}};
+    machine_file_write(file, &setup);
+    (void)fclose(file);
+    machine_setup_set_default(&again);
+    TEST_ASSERT_TRUE(machine_file_read(&again, path));
+    TEST_ASSERT_EQUAL_MEMORY(setup.machine.io, again.machine.io, sizeof again.machine.io);
+    TEST_ASSERT_EQUAL_UINT(AXIS_Y, again.machine.gantry.axis);
+    TEST_ASSERT_EQUAL_UINT(9, again.machine.gantry.drive_node);
+    TEST_ASSERT_EQUAL_UINT(1, again.machine.gantry.is_reversed);
+    TEST_ASSERT_EQUAL_DOUBLE(-99.4, again.machine.gantry.home_offset_mm);
+    TEST_ASSERT_EQUAL_DOUBLE(0.8, again.machine.gantry.skew_max_mm);
+    TEST_ASSERT_EQUAL_DOUBLE(0.125, again.drive[MACHINE_SECOND_DRIVE].plant.inertia_kg_m2);
+}
+
 static void test_io_nodes_that_cannot_be_are_refused(void)
 {
     static const char *const unreadable[] = {
@@ -225,6 +247,7 @@ int main(void)
 {
     UNITY_BEGIN();
     RUN_TEST(test_the_bits_of_an_io_node_are_read_by_their_names);
+    RUN_TEST(test_a_gantry_and_io_nodes_that_are_written_read_as_the_same);
     RUN_TEST(test_io_nodes_that_cannot_be_are_refused);
     RUN_TEST(test_a_machine_that_is_written_reads_as_the_same_machine);
     RUN_TEST(test_the_default_machine_is_that_of_the_controller);

@@ -1,0 +1,98 @@
+#include "takt/machine_io.h"
+
+#include <ctype.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* The bits of an I/O node that are no lines of the program, by enum io_bit. */
+static const struct {
+    const char *name;
+    uint8_t bit;
+} io_names[] = {{"-", IO_FREE},          {"flood", IO_FLOOD},     {"mist", IO_MIST},
+                {"spindle", IO_SPINDLE}, {"ccw", IO_SPINDLE_CCW}, {"stop", IO_STOP},
+                {"limit", IO_LIMIT}};
+
+#define IO_WORD_MAX 15
+
+/* False: there is no such bit. */
+static bool read_io_bit(const char *word, uint8_t *bit)
+{
+    const bool is_inverted = word[0] == '!';
+    const char *name = word + is_inverted;
+    char *end;
+    unsigned long line = name[0] == 'P' ? strtoul(name + 1, &end, 10) : IO_BIT_COUNT;
+
+    if (name[0] == 'P' && isdigit((unsigned char)name[1]) && *end == '\0' &&
+        line < IO_FLOOD - IO_PROGRAM) {
+        *bit = (uint8_t)(IO_PROGRAM + line + (is_inverted ? IO_INVERTED : 0));
+        return true;
+    }
+    for (size_t i = 0; i < sizeof io_names / sizeof io_names[0]; i++) {
+        if (strcmp(name, io_names[i].name) == 0) {
+            *bit = (uint8_t)(io_names[i].bit + (is_inverted ? IO_INVERTED : 0));
+            return true;
+        }
+    }
+    return false;
+}
+
+bool machine_io_read(uint8_t field[IO_BITS_MAX], const char *value, bool is_output,
+                     const char *name, struct machine_problem *wrong)
+{
+    uint8_t bits[IO_BITS_MAX] = {IO_FREE};
+    size_t count = 0;
+
+    while (*(value += strspn(value, " \t,")) != '\0') {
+        const size_t length = strcspn(value, " \t,");
+        char word[IO_WORD_MAX + 1];
+        uint8_t bit;
+
+        (void)snprintf(word, sizeof word, "%.*s",
+                       (int)(length < IO_WORD_MAX ? length : IO_WORD_MAX), value);
+        if (!read_io_bit(word, &bit) || !(is_output ? io_is_output(bit) : io_is_input(bit))) {
+            (void)snprintf(wrong->text, sizeof wrong->text, "%s: '%s' is none of %s", name, word,
+                           is_output ? "P0 ... P31, flood, mist, spindle, ccw and -"
+                                     : "P0 ... P31, stop, limit and -");
+            return false;
+        }
+        if (count == IO_BITS_MAX) {
+            (void)snprintf(wrong->text, sizeof wrong->text, "%s: more than %d bits", name,
+                           IO_BITS_MAX);
+            return false;
+        }
+        bits[count++] = bit;
+        value += length;
+    }
+    memcpy(field, bits, sizeof bits);
+    return true;
+}
+
+static const char *io_name(unsigned kind)
+{
+    for (size_t i = 0; i < sizeof io_names / sizeof io_names[0]; i++) {
+        if (io_names[i].bit == kind)
+            return io_names[i].name;
+    }
+    return "-";
+}
+
+void machine_io_write(const uint8_t bits[IO_BITS_MAX], char *text, size_t size)
+{
+    const unsigned count = io_wired_bits(bits);
+    size_t used = 0;
+
+    text[0] = '\0';
+    for (unsigned i = 0; i < count && used < size; i++) {
+        const unsigned kind = io_kind(bits[i]);
+        const char *mark = bits[i] & IO_INVERTED ? "!" : "";
+        const char *space = i > 0 ? " " : "";
+
+        if (kind >= IO_PROGRAM && kind < IO_FLOOD)
+            used += (size_t)snprintf(text + used, size - used, "%s%sP%u", space, mark,
+                                     kind - IO_PROGRAM);
+        else
+            used +=
+                (size_t)snprintf(text + used, size - used, "%s%s%s", space, mark, io_name(kind));
+    }
+}

@@ -1,0 +1,69 @@
+/*
+ * The drives that follow from a machine: a gantry has two of them for an axis.
+ */
+#include "controller/controller.h"
+#include "unity.h"
+
+static struct machine machine;
+static struct drives_config config;
+
+void setUp(void)
+{
+    machine_set_default(&machine);
+    machine.gantry = (struct machine_gantry){
+        .axis = AXIS_Y, .drive_node = 9, .home_offset_mm = 2.5, .skew_max_mm = 0.5};
+    machine.axis[AXIS_Y].home_offset_mm = 2;
+    machine.axis[AXIS_Y].home_order = 1;
+}
+
+void tearDown(void)
+{
+}
+
+static void test_the_second_drive_of_a_gantry_is_the_last_and_like_the_first(void)
+{
+    controller_drives_config(&machine, &config);
+    TEST_ASSERT_EQUAL_UINT(4, config.count);
+    TEST_ASSERT_EQUAL_INT(AXIS_Y, config.axis[3].axis);
+    TEST_ASSERT_EQUAL_UINT(9, config.axis[3].node);
+    TEST_ASSERT_EQUAL_UINT(1, config.axis[3].homing.order);
+    TEST_ASSERT_EQUAL_DOUBLE(100000, config.axis[3].increments_per_mm);
+    TEST_ASSERT_EQUAL_DOUBLE(2, config.axis[AXIS_Y].homing.offset_mm);
+    TEST_ASSERT_EQUAL_DOUBLE(2.5, config.axis[3].homing.offset_mm);
+    TEST_ASSERT_EQUAL_DOUBLE(0.5, config.skew_max_mm);
+    machine.gantry.axis = AXIS_COUNT;
+    controller_drives_config(&machine, &config);
+    TEST_ASSERT_EQUAL_UINT(3, config.count);
+    TEST_ASSERT_EQUAL_DOUBLE(0, config.skew_max_mm);
+}
+
+static uint8_t second_method(uint8_t method)
+{
+    machine.axis[AXIS_Y].home_method = method;
+    controller_drives_config(&machine, &config);
+    TEST_ASSERT_EQUAL_UINT(method, config.axis[AXIS_Y].homing.method);
+    return config.axis[3].homing.method;
+}
+
+/* CiA 402-2, 6098: which method is the mirror image of which. */
+static void test_a_reversed_second_drive_looks_for_its_home_on_the_same_side(void)
+{
+    static const uint8_t mirrored[] = {0,  2,  1,  5,  6,  3,  4,  11, 12, 13, 14, 7,  8,
+                                       9,  10, 15, 16, 18, 17, 21, 22, 19, 20, 27, 28, 29,
+                                       30, 23, 24, 25, 26, 31, 32, 34, 33, 35, 36, 37};
+
+    for (uint8_t method = 1; method <= 37; method++)
+        TEST_ASSERT_EQUAL_UINT(method, second_method(method));
+    machine.gantry.is_reversed = 1;
+    for (uint8_t method = 1; method <= 37; method++)
+        TEST_ASSERT_EQUAL_UINT(mirrored[method], second_method(method));
+    TEST_ASSERT_EQUAL_DOUBLE(-100000, config.axis[3].increments_per_mm);
+}
+
+int main(void)
+{
+    UNITY_BEGIN();
+    RUN_TEST(test_the_second_drive_of_a_gantry_is_the_last_and_like_the_first);
+    RUN_TEST(test_a_reversed_second_drive_looks_for_its_home_on_the_same_side);
+    return UNITY_END();
+}
