@@ -64,6 +64,7 @@ struct reader {
     unsigned values, value_capacity;
     uint8_t dummies;
     bool in_dummies;
+    bool is_configuration; /* a DCF: a drive as its maker's tool has set it up */
     bool has_section;
     struct dictionary_problem *wrong;
 };
@@ -184,6 +185,9 @@ static bool begin_section(struct reader *r, struct text_part name, unsigned line
 {
     struct section section = {.line = line};
     r->in_dummies = is_word(name, "dummyusage");
+    /* CiA 306 spells it with one m. */
+    r->is_configuration = r->is_configuration || is_word(name, "devicecomissioning") ||
+                          is_word(name, "devicecommissioning");
     r->has_section = read_section_name(name, &section);
     if (!r->has_section)
         return true;
@@ -553,6 +557,16 @@ static bool build(struct builder *b, struct dictionary_problem *wrong)
     return true;
 }
 
+/* In a configuration the values that have been set count; what has not been set is as it comes from the maker. */
+static void prefer_values(struct reader *r)
+{
+    for (unsigned i = 0; i < r->count; i++) {
+        struct text_part *key = r->section[i].key;
+        if (key[KEY_VALUE].length > 0)
+            key[KEY_DEFAULT] = key[KEY_VALUE];
+    }
+}
+
 /* Names and texts take no more than the file; each compact entry has one of its own. */
 static size_t names_most(const struct reader *r, size_t length)
 {
@@ -573,6 +587,8 @@ bool dictionary_read(struct dictionary *dictionary, const char *text, size_t len
     struct reader r = {.wrong = wrong};
     struct builder b = {.reader = &r};
     bool good = read_lines(&r, text, length) || fail(wrong, "out of memory");
+    if (good && r.is_configuration)
+        prefer_values(&r);
     if (good && r.count > 0) {
         qsort(r.section, r.count, sizeof *r.section, compare_sections);
         b.names = malloc(names_most(&r, length));

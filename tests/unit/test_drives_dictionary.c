@@ -80,6 +80,15 @@ static void test_a_default_counts_before_the_value_of_a_configuration(void)
     TEST_ASSERT_EQUAL_INT(-6, row_of(0x2200, 0)->initial);
 }
 
+static void test_what_a_configuration_has_set_counts_before_a_default(void)
+{
+    read_sheet(DRIVE "[DeviceComissioning]\nNodeID=3\n"
+                     "[2200]\nDataType=3\nDefaultValue=5\nParameterValue=-6\n"
+                     "[2201]\nDataType=3\nDefaultValue=5\nParameterValue=\n");
+    TEST_ASSERT_EQUAL_INT(-6, row_of(0x2200, 0)->initial);
+    TEST_ASSERT_EQUAL_INT(5, row_of(0x2201, 0)->initial);
+}
+
 static void test_limits_of_one_side_and_hexadecimal_ones_of_signed_objects(void)
 {
     read_sheet(DRIVE "[2200]\nDataType=4\nLowLimit=0x80000000\nHighLimit=0x7FFFFFFF\n"
@@ -232,6 +241,7 @@ int main(void)
     RUN_TEST(test_identifiers_count_from_the_node_id_on_either_side);
     RUN_TEST(test_a_compact_array_has_all_its_entries);
     RUN_TEST(test_a_default_counts_before_the_value_of_a_configuration);
+    RUN_TEST(test_what_a_configuration_has_set_counts_before_a_default);
     RUN_TEST(test_limits_of_one_side_and_hexadecimal_ones_of_signed_objects);
     RUN_TEST(test_dummies_are_those_of_the_sheet);
     RUN_TEST(test_a_mapping_has_no_more_entries_than_the_sheet_and_a_frame);
