@@ -7,7 +7,7 @@
 /* clang-format off */
 #define RANGE_BITS(most) ((most) <= UINT16_MAX ? 0 : (most) % 512 == 0 ? 9 : 6)
 #define RANGE(most)      ((most) >= INT32_MAX ? 0 : (uint16_t)((most) >> RANGE_BITS(most)))
-#define FROM(least)      ((least) < 0 ? PANEL_FROM_MINUS_MOST : (least) == FROM_500 ? PANEL_FROM_500 : (least))
+#define FROM(least)      ((least) < 0 ? PANEL_FROM_MINUS_MOST : (least) == FROM_500 ? PANEL_FROM_500 : (uint8_t)(least))
 #define PANEL_ROW(id, table, address, form, words, unit, decimals, least, most, states, meaning) \
     [REGISTER_##id] = {address, RANGE(most), RANGE_BITS(most), FROM(least), states, words, table, form, decimals},
 #define PANEL_TEXTS(id, table, address, form, words, unit, decimals, least, most, states, meaning) \

@@ -142,8 +142,9 @@ static void read_text(struct reading *r, bool has_values)
 
 enum comment_kind comment_read(const struct program *p, char text[COMMENT_TEXT_MAX])
 {
-    struct reading r = {.p = p, .places = PLACES, .text = text};
+    struct reading r = {.p = p, .places = PLACES};
 
+    r.text = text;
     for (unsigned i = 0; i < sizeof(keywords) / sizeof(keywords[0]); i++) {
         r.at = comment_match(&p->lexer, keywords[i].word);
         if (r.at > 0) {

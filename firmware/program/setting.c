@@ -25,7 +25,9 @@ enum what {
 /* letters: bit 0 is A. */
 static bool refuse_words(struct program *p, uint32_t letters)
 {
-    for (char letter = 'a'; letter <= 'z'; letter++) {
+    for (unsigned i = 0; i <= 'z' - 'a'; i++) {
+        const char letter = (char)('a' + i);
+
         if ((letters & LETTER_BIT(letter)) != 0 && words_has(p, letter)) {
             return report_error_letter(p, TAKT_ERROR_WORD_UNUSED, letter, 0.0);
         }

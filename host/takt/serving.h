@@ -46,7 +46,7 @@ struct serving {
     struct ending ending;
     struct serving_state state;
     uint64_t cycles;
-    bool has_told_drives; /* what they do without */
+    bool has_told_drives;                                  /* what they do without */
     bool has_field, has_service, has_exchange, has_server; /* are open */
 };
 

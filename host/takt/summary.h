@@ -39,7 +39,7 @@ struct summary {
     const struct machine *machine;
     enum summary_outcome outcome;
     enum command_status interrupted; /* OUTCOME_INTERRUPTED: the status it ends with */
-    char fault[SUMMARY_FAULT_MAX]; /* OUTCOME_FAULTED */
+    char fault[SUMMARY_FAULT_MAX];   /* OUTCOME_FAULTED */
     double cycle_s;
     double wall_time_s;
     struct judge_figures figures;

@@ -52,10 +52,9 @@ static size_t make_text(char *text)
 
     for (unsigned i = draw(200); i > 0; i--) {
         const char *piece = pieces[draw(sizeof pieces / sizeof pieces[0])];
-        const size_t size = strlen(piece);
 
-        memcpy(text + length, piece, size);
-        length += size;
+        while (*piece != '\0')
+            text[length++] = *piece++;
         if (draw(40) == 0)
             text[length++] = (char)draw(256);
     }
