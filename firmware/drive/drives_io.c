@@ -386,10 +386,12 @@ static void check_inputs(struct drives *d, unsigned i)
         raise_bit(d, i, TAKT_ERROR_IO_LIMIT, opened);
 }
 
+/* Silence counts from when that of drives does: nothing has torque before. */
 void drives_io_check(struct drives *d)
 {
     for (unsigned i = 0; i < d->io_count && are_watched(d); i++) {
-        check_silence(d, i);
+        if (d->state != DRIVES_STARTING || drives_are_watched(d))
+            check_silence(d, i);
         check_inputs(d, i);
     }
 }

@@ -2,6 +2,7 @@
 
 import re
 
+import bus_pair
 import takt_test as t
 
 MACHINE = """[axis X]
@@ -88,6 +89,17 @@ def check_racking():
     t.check(status != 0 and re.search(r"axis Y2 \(node 3\) is 0\.6\d* mm off the other drive", err), "switches too far apart are a fault", status, err)
 
 
+def check_outside():
+    """The same in two processes: the trace is that of the embedded bus."""
+    status, embedded, err = bus_pair.run_controller("embedded", "--machine", FILE, program=PROGRAM)
+    t.check(status == 0, "the embedded bus runs the program", err)
+    drives = bus_pair.Drives("slcan:pty", "--machine", FILE)
+    status, summary, err = bus_pair.run_controller("outside", "--machine", FILE, "--bus", "slcan:" + drives.address, program=PROGRAM)
+    drives.stop()
+    if t.check(status == 0, "takt drives has both drives of the gantry", err) and summary:
+        bus_pair.compare("outside", embedded, summary)
+
+
 def check_refusals():
     for option, said in (
         ("gantry.drive_node=2", "the gantry needs"),
@@ -103,5 +115,6 @@ def check_refusals():
 
 check_squaring()
 check_racking()
+check_outside()
 check_refusals()
 t.finish()

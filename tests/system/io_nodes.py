@@ -3,6 +3,7 @@
 import re
 
 import bus_pair
+import panel_client as p
 import takt_test as t
 
 MACHINE = t.write("io.ini", "[io 1]\nnode = 20\noutputs = flood mist spindle ccw P0 P1 !P2\ninputs = - - - - P0 stop P2 limit\n")
@@ -93,8 +94,35 @@ def check_outside():
         bus_pair.compare("outside", embedded, summary)
 
 
+def check_service():
+    """A stop input that opens is an alarm of the service, which turns coolant off; so it closes, and RESET helps."""
+    loop = t.write("flood.ini", "[io 1]\nnode = 20\noutputs = flood P0\ninputs = !stop\n")
+    service = p.serve("--machine", loop)
+    client = service.client()
+    client.wait_for("STATE", p.IDLE)
+    client.put("MODE", 1)
+    t.check(line(client, "M64 P0") == p.COMPLETED, "a line sets an output", client.text("ALARM_TEXT"))
+    client.put_text("MDI_TEXT", "M8")
+    client.put("MDI_START", 1)
+    client.wait_for("STATE", p.ALARM)
+    t.check("the stop input, bit 0 of I/O node 20, is open" in client.text("ALARM_TEXT"), "the stop input is an alarm", client.text("ALARM_TEXT"))
+    client.put("RESET", 1)
+    client.wait_for("STATE", p.IDLE)
+    t.check(line(client, "G0 X5") == p.COMPLETED and client.get("POSITION_X") == 5, "after a reset the axes move", client.text("ALARM_TEXT"))
+    service.stop()
+
+
+def line(client, text):
+    runs = client.counts("RUNS")
+    client.put_text("MDI_TEXT", text)
+    client.put("MDI_START", 1)
+    client.wait_while("RUNS", runs)
+    return client.counts("OUTCOME")
+
+
 check_outputs()
 check_stops()
 check_digest()
 check_outside()
+check_service()
 t.finish()
