@@ -90,14 +90,14 @@ def check_racking():
 
 
 def check_outside():
-    """The same in two processes: the trace is that of the embedded bus."""
+    """The same in two processes; when the drives have come to rest after homing depends on when the start heard of them."""
     status, embedded, err = bus_pair.run_controller("embedded", "--machine", FILE, program=PROGRAM)
     t.check(status == 0, "the embedded bus runs the program", err)
     drives = bus_pair.Drives("slcan:pty", "--machine", FILE)
     status, summary, err = bus_pair.run_controller("outside", "--machine", FILE, "--bus", "slcan:" + drives.address, program=PROGRAM)
     drives.stop()
     if t.check(status == 0, "takt drives has both drives of the gantry", err) and summary:
-        bus_pair.compare("outside", embedded, summary)
+        t.check(summary["setpoint_digest"] == embedded["setpoint_digest"], "with the same setpoints")
 
 
 def check_refusals():
