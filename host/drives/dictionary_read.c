@@ -3,9 +3,8 @@
  * hexadecimal, $NODEID before or behind a sum, arrays in full or compact (CiA 306, 4.6).
  */
 #include "drives/dictionary.h"
+#include "drives/dictionary_words.h"
 
-#include <ctype.h>
-#include <limits.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -18,11 +17,6 @@
 /* Types of CiA 301 beside those of object_table.h. */
 #define TYPE_BOOLEAN 1
 #define TYPE_REAL32  8
-
-struct text_part {
-    const char *start;
-    size_t length;
-};
 
 enum key {
     KEY_NAME,
@@ -69,26 +63,6 @@ struct reader {
     struct dictionary_problem *wrong;
 };
 
-static struct text_part trim(const char *start, size_t length)
-{
-    while (length > 0 && isspace((unsigned char)*start)) {
-        start++;
-        length--;
-    }
-    while (length > 0 && isspace((unsigned char)start[length - 1]))
-        length--;
-    return (struct text_part){start, length};
-}
-
-static bool is_word(struct text_part part, const char *word)
-{
-    size_t i = 0;
-    for (; i < part.length && word[i] != '\0'; i++)
-        if (tolower((unsigned char)part.start[i]) != word[i])
-            return false;
-    return i == part.length && word[i] == '\0';
-}
-
 /* The same memory with room for one more, perhaps elsewhere; NULL: there is none, and the old stays. */
 static void *grow(void *memory, unsigned count, unsigned *capacity, size_t size)
 {
@@ -101,82 +75,27 @@ static void *grow(void *memory, unsigned count, unsigned *capacity, size_t size)
     return grown;
 }
 
-/* ---- Numbers ---- */
-
-/* Without $NODEID and its sign, *has_node then. False: no number. */
-static bool parse_number(struct text_part part, int64_t *number, bool *has_node)
-{
-    char digits[40];
-    size_t length = 0;
-    char *end;
-    *has_node = false;
-    for (size_t i = 0; i < part.length && length + 1 < sizeof digits; i++) {
-        const struct text_part rest = {part.start + i, part.length - i < 7 ? part.length - i : 7};
-        char c = part.start[i];
-        if (is_word(rest, "$nodeid")) {
-            *has_node = true;
-            i += 6;
-        } else if (c != '+' && !isspace((unsigned char)c)) {
-            digits[length++] = c;
-        }
-    }
-    digits[length] = '\0';
-    if (length == 0) {
-        *number = 0;
-        return *has_node;
-    }
-    *number = digits[0] == '-' ? strtoll(digits, &end, 0) : (int64_t)strtoull(digits, &end, 0);
-    return *end == '\0';
-}
-
-static long plain_number(struct text_part part, long otherwise)
-{
-    int64_t number;
-    bool has_node;
-    if (!parse_number(part, &number, &has_node) || number < 0 || number > INT_MAX)
-        return otherwise;
-    return (long)number;
-}
-
 /* ---- Sections and keys ---- */
-
-static int hex_digit(char c)
-{
-    if (c >= '0' && c <= '9')
-        return c - '0';
-    c = (char)tolower((unsigned char)c);
-    return c >= 'a' && c <= 'f' ? c - 'a' + 10 : -1;
-}
-
-/* Digits from the start of a part; how many. */
-static size_t read_hex(struct text_part part, size_t most, unsigned *number)
-{
-    size_t i = 0;
-    *number = 0;
-    for (; i < part.length && i < most && hex_digit(part.start[i]) >= 0; i++)
-        *number = *number << 4 | (unsigned)hex_digit(part.start[i]);
-    return i;
-}
 
 /* "6040", "6099sub1", "1600Value". */
 static bool read_section_name(struct text_part name, struct section *section)
 {
     unsigned index, sub;
-    size_t at = read_hex(name, 4, &index);
+    size_t at = words_read_hex(name, 4, &index);
     struct text_part rest = {name.start + at, name.length - at};
     const struct text_part word = {rest.start, rest.length < 3 ? rest.length : 3};
     if (at != 4)
         return false;
     section->index = (uint16_t)index;
     section->sub = WHOLE;
-    section->has_values = is_word(rest, "value");
+    section->has_values = words_are(rest, "value");
     if (rest.length == 0 || section->has_values)
         return true;
-    if (!is_word(word, "sub"))
+    if (!words_are(word, "sub"))
         return false;
     rest.start += 3;
     rest.length -= 3;
-    at = read_hex(rest, 2, &sub);
+    at = words_read_hex(rest, 2, &sub);
     section->sub = (int)sub;
     return at > 0 && at == rest.length;
 }
@@ -184,10 +103,10 @@ static bool read_section_name(struct text_part name, struct section *section)
 static bool begin_section(struct reader *r, struct text_part name, unsigned line)
 {
     struct section section = {.line = line};
-    r->in_dummies = is_word(name, "dummyusage");
+    r->in_dummies = words_are(name, "dummyusage");
     /* CiA 306 spells it with one m. */
-    r->is_configuration = r->is_configuration || is_word(name, "devicecomissioning") ||
-                          is_word(name, "devicecommissioning");
+    r->is_configuration = r->is_configuration || words_are(name, "devicecomissioning") ||
+                          words_are(name, "devicecommissioning");
     r->has_section = read_section_name(name, &section);
     if (!r->has_section)
         return true;
@@ -202,7 +121,7 @@ static bool begin_section(struct reader *r, struct text_part name, unsigned line
 static bool take_compact_value(struct reader *r, const struct section *section,
                                struct text_part key, struct text_part value)
 {
-    long sub = plain_number(key, 0);
+    long sub = words_plain_number(key, 0);
     if (sub < 1 || sub > COMPACT_MAX)
         return true;
     struct compact_value *grown = grow(r->value, r->values, &r->value_capacity, sizeof *grown);
@@ -219,9 +138,9 @@ static void take_dummy(struct reader *r, struct text_part key, struct text_part 
 {
     const struct text_part word = {key.start, key.length < 5 ? key.length : 5};
     unsigned type;
-    if (!is_word(word, "dummy") || plain_number(value, 0) == 0)
+    if (!words_are(word, "dummy") || words_plain_number(value, 0) == 0)
         return;
-    if (read_hex((struct text_part){key.start + 5, key.length - 5}, 4, &type) > 0 && type < 8)
+    if (words_read_hex((struct text_part){key.start + 5, key.length - 5}, 4, &type) > 0 && type < 8)
         r->dummies |= (uint8_t)(1u << type);
 }
 
@@ -235,7 +154,7 @@ static bool take_pair(struct reader *r, struct text_part key, struct text_part v
     if (section->has_values)
         return take_compact_value(r, section, key, value);
     for (unsigned k = 0; k < KEY_COUNT; k++)
-        if (is_word(key, key_names[k]))
+        if (words_are(key, key_names[k]))
             section->key[k] = value;
     return true;
 }
@@ -246,11 +165,11 @@ static bool take_line(struct reader *r, struct text_part line, unsigned number)
     if (line.length == 0 || *line.start == ';' || *line.start == '#')
         return true;
     if (*line.start == '[' && line.start[line.length - 1] == ']')
-        return begin_section(r, trim(line.start + 1, line.length - 2), number);
+        return begin_section(r, words_trim(line.start + 1, line.length - 2), number);
     if (equals == NULL)
         return true;
-    return take_pair(r, trim(line.start, (size_t)(equals - line.start)),
-                     trim(equals + 1, line.length - (size_t)(equals - line.start) - 1));
+    return take_pair(r, words_trim(line.start, (size_t)(equals - line.start)),
+                     words_trim(equals + 1, line.length - (size_t)(equals - line.start) - 1));
 }
 
 static bool read_lines(struct reader *r, const char *text, size_t length)
@@ -259,7 +178,7 @@ static bool read_lines(struct reader *r, const char *text, size_t length)
     for (unsigned number = 1; at < length; number++) {
         const char *end = memchr(text + at, '\n', length - at);
         size_t line = end ? (size_t)(end - text) - at : length - at;
-        if (!take_line(r, trim(text + at, line), number))
+        if (!take_line(r, words_trim(text + at, line), number))
             return false;
         at += line + 1;
     }
@@ -297,7 +216,7 @@ static int compare_sections(const void *a, const void *b)
 /* Numbers of one, two or four bytes are such; all else is told as a text. */
 static uint8_t type_of(const struct section *section)
 {
-    long type = plain_number(section->key[KEY_TYPE], 0);
+    long type = words_plain_number(section->key[KEY_TYPE], 0);
     if (type == TYPE_BOOLEAN)
         return OBJECT_UNSIGNED8;
     if (type == TYPE_REAL32)
@@ -308,22 +227,22 @@ static uint8_t type_of(const struct section *section)
 static uint8_t access_of(const struct section *section)
 {
     const struct text_part access = section->key[KEY_ACCESS];
-    if (is_word(access, "const"))
+    if (words_are(access, "const"))
         return OBJECT_CONST;
-    if (is_word(access, "wo"))
+    if (words_are(access, "wo"))
         return OBJECT_WO;
-    return is_word(access, "ro") ? OBJECT_RO : OBJECT_RW;
+    return words_are(access, "ro") ? OBJECT_RO : OBJECT_RW;
 }
 
 /* CiA 306: rww goes into RPDOs, rwr into TPDOs, rw into both. */
 static uint8_t mapping_of(const struct section *section)
 {
     const struct text_part access = section->key[KEY_ACCESS];
-    if (plain_number(section->key[KEY_MAPPING], 0) == 0)
+    if (words_plain_number(section->key[KEY_MAPPING], 0) == 0)
         return 0;
-    if (is_word(access, "rww") || is_word(access, "wo"))
+    if (words_are(access, "rww") || words_are(access, "wo"))
         return OBJECT_TO_RPDO;
-    return is_word(access, "rw") ? OBJECT_TO_RPDO | OBJECT_TO_TPDO : OBJECT_TO_TPDO;
+    return words_are(access, "rw") ? OBJECT_TO_RPDO | OBJECT_TO_TPDO : OBJECT_TO_TPDO;
 }
 
 static struct text_part default_of(const struct section *section)
@@ -345,7 +264,7 @@ static void take_number(struct object_row *row, struct text_part part, int64_t *
 {
     bool has_node;
     int64_t value;
-    if (!parse_number(part, &value, &has_node))
+    if (!words_read_number(part, &value, &has_node))
         return;
     *number = object_type_value((enum object_type)row->type, (uint32_t)value);
 }
@@ -381,7 +300,7 @@ static bool take_default(struct object_row *row, struct text_part part)
 {
     bool has_node = false;
     int64_t value;
-    if (!parse_number(part, &value, &has_node))
+    if (!words_read_number(part, &value, &has_node))
         return false;
     row->initial = object_type_value((enum object_type)row->type, (uint32_t)value);
     row->flags = (uint8_t)((row->flags & ~OBJECT_NODE_ID) | (has_node ? OBJECT_NODE_ID : 0));
@@ -486,8 +405,8 @@ static bool add_compact(struct builder *b, const struct section *section, unsign
 static bool add_section(struct builder *b, const struct section *section)
 {
     bool is_next = section > b->reader->section && section[-1].index == section->index;
-    long kind = plain_number(section->key[KEY_KIND], OBJECT_VAR);
-    long subs = plain_number(section->key[KEY_COMPACT], 0);
+    long kind = words_plain_number(section->key[KEY_KIND], OBJECT_VAR);
+    long subs = words_plain_number(section->key[KEY_COMPACT], 0);
     bool has_entries = kind == OBJECT_ARRAY || kind == OBJECT_RECORD;
     if (section->has_values)
         return true;
@@ -498,7 +417,7 @@ static bool add_section(struct builder *b, const struct section *section)
     if (section->sub > 0)
         return add_row(b, section, (uint8_t)section->sub, OBJECT_SAME, default_of(section));
     if (is_next)
-        kind = plain_number(section[-1].key[KEY_KIND], OBJECT_RECORD);
+        kind = words_plain_number(section[-1].key[KEY_KIND], OBJECT_RECORD);
     if (!add_row(b, section, 0, kind == OBJECT_ARRAY ? OBJECT_ARRAY : OBJECT_RECORD,
                  default_of(section)))
         return false;
@@ -573,7 +492,7 @@ static size_t names_most(const struct reader *r, size_t length)
     size_t most = length + 4 * (size_t)r->count + 16;
     for (unsigned i = 0; i < r->count; i++) {
         const struct section *section = &r->section[i];
-        if (plain_number(section->key[KEY_COMPACT], 0) > 0)
+        if (words_plain_number(section->key[KEY_COMPACT], 0) > 0)
             most += (COMPACT_MAX + 2) *
                     (section->key[KEY_NAME].length + section->key[KEY_DEFAULT].length + 16);
         most += section->key[KEY_NAME].length;
