@@ -483,7 +483,8 @@ void controller_cycle(struct controller *c, const struct inputs *inputs)
         stand(c);
     }
     controller_lock_command(c);
-    if (c->state == CONTROLLER_RUNNING && !motion_rests(&c->motion)) {
+    if (drives_get_state(&c->drives) == DRIVES_STOPPING && c->state == CONTROLLER_RUNNING &&
+        !motion_rests(&c->motion)) {
         drives_await_rest(&c->drives);
     }
     drives_send(&c->drives, &c->can, &c->record.set);

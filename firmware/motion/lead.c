@@ -125,6 +125,7 @@ static void run_on(struct lead *l, uint64_t setpoint, bool hold)
     struct lead_brake b;
 
     lead_brake_ahead(l, &b);
+    l->rest_a = maths_max(l->rest_a, (double)lead_piece(l, l->here.piece)->acceleration);
 
     if (hold) {
         b.feed = 0.0;
@@ -167,6 +168,7 @@ static void enter_span(struct lead *l, uint32_t k, uint64_t from, struct lead_st
     const uint32_t window = law_window_cycles(l->law, l->cycles);
 
     l->window = (double)window;
+    l->rest_a = l->feed > 0.0 ? MATHS_INFINITY : 0.0;
     l->before = from;
     l->at = from + start->step * (window - 1) / 2;
     l->feed = (double)start->step / PATH_UNITS_PER_MM;

@@ -67,6 +67,7 @@ struct lead {
     bool abrupt;          /* came to rest where it was: waits for a cycle more before it moves on */
     bool released;        /* and may leave it */
     uint32_t cycles;      /* of the first averaging box, in this span */
+    double rest_a;        /* highest acceleration in it if it began at rest; infinite: it did not */
     double window;        /* cycles that the averages reach over */
     uint32_t since_plus;  /* cycles since it sped up */
     uint32_t since_minus; /* and since it slowed down */

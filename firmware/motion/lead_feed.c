@@ -69,6 +69,7 @@ static bool brake_for(const struct lead *l, const struct place *p, struct lead_b
 {
     const double feed = feed_to_meet(p, l->feed);
 
+    b->a = maths_max(b->a, p->a);
     b->feed = maths_min(b->feed, feed);
     return p->feed == 0.0 && feed < maths_max(LEAD_REST_PART * p->a, l->feed - p->a) &&
            l->feed < p->a * (1.0 + 2.0 * LEAD_REST_PART);
@@ -109,13 +110,13 @@ static uint64_t rest_position(const struct lead *l, uint32_t k)
 static void brake_for_piece(const struct lead *l, uint32_t k, double gap_mm, struct lead_brake *b)
 {
     const struct ceiling_piece *p = lead_piece(l, k);
-    const double feed = end_feed(l, p);
-    const struct place place = {gap_mm, lead_braking(l, k, gap_mm, feed), feed};
+    struct place place = {.gap_mm = gap_mm, .a = (double)p->acceleration};
 
-    b->a = maths_max(b->a, lead_slowing(l, k));
     if (is_far(&place, l->feed)) {
+        b->a = maths_max(b->a, place.a);
         return;
     }
+    place.feed = end_feed(l, p);
     if (brake_for(l, &place, b)) {
         rest_at(l, rest_position(l, k), b);
     }
@@ -153,9 +154,9 @@ static bool is_open(const struct lead *l)
 static double feed_to_wait(const struct lead *l, double top)
 {
     const struct ceiling *c = l->here.ceiling;
-    const double gap_mm = c->end_mm[c->count - 1] - path_mm(c->origin, l->at) - 0.5 * l->feed;
-    const double a = lead_braking(l, l->here.piece, gap_mm, 0.0);
+    const double a = (double)lead_piece(l, l->here.piece)->acceleration;
     const double m = a * (OPEN_CYCLES + 0.5);
+    const double gap_mm = c->end_mm[c->count - 1] - path_mm(c->origin, l->at) - 0.5 * l->feed;
 
     if (top * top <= 2.0 * (a * gap_mm - m * top)) {
         return top;
@@ -170,7 +171,7 @@ void lead_brake_ahead(const struct lead *l, struct lead_brake *b)
 
     b->at_mm = s;
     b->feed = maths_min(l->feed, lead_feed(l, here->feed_mm_s));
-    b->a = lead_slowing(l, l->here.piece);
+    b->a = (double)here->acceleration;
     b->rest = false;
     if (l->here.late) {
         brake_late(l, b);
@@ -382,12 +383,11 @@ static double feed_to_halt(const struct lead *l, double top)
 }
 
 /* Highest feed v with v^2 <= u + 2 a (x_end - x), x = s + (w + v)/2 + N v: what a piece's end asks for. */
-static double feed_in_piece(const struct lead *l, uint32_t k, double gap_mm)
+static double feed_in_piece(const struct lead *l, const struct ceiling_piece *p, double gap_mm)
 {
-    const double end = lead_feed(l, lead_piece(l, k)->end_feed_mm_s);
-    const double a = lead_braking(l, k, gap_mm, end);
+    const double a = (double)p->acceleration;
     const double m = a * (l->window + 0.5);
-    const double root = m * m + lead_square(end) + 2.0 * a * gap_mm;
+    const double root = m * m + lead_square(lead_feed(l, p->end_feed_mm_s)) + 2.0 * a * gap_mm;
 
     return root > 0.0 ? maths_sqrt(root) - m : 0.0;
 }
@@ -408,7 +408,7 @@ static double feed_to_keep(const struct lead *l, double s, double top, double lo
         top = maths_min(top, low);
         if (lead_is_last_of_span(p) || gap_mm >= top * way ||
             gap_mm > lead_feed(l, p->end_feed_mm_s) * way || k + 1 == l->here.ceiling->count) {
-            return maths_min(top, feed_in_piece(l, k, gap_mm));
+            return maths_min(top, feed_in_piece(l, p, gap_mm));
         }
         if (k - l->here.piece >= AHEAD_PIECES_MAX) {
             return gap_mm / way;
@@ -419,7 +419,7 @@ static double feed_to_keep(const struct lead *l, double s, double top, double lo
 
 double lead_speed_up(const struct lead *l, double at_mm, double low)
 {
-    const double a = lead_change(l, l->here.piece);
+    const double a = (double)lead_piece(l, l->here.piece)->acceleration;
 
     if (!lead_has_rested(l) || low <= l->feed * (1.0 + 1e-12)) {
         return l->feed;

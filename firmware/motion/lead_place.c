@@ -99,10 +99,7 @@ static bool can_meet(const struct ceiling *c, uint32_t k, double x, double energ
         const bool last = lead_is_last_of_span(p) || k + i + 1 == c->count;
 
         if (c->end_mm[k + i] >= x || last) {
-            const double gap_mm = c->end_mm[k + i] - x;
-
-            return energy <=
-                   end_energy + 2.0 * ceiling_braking(c, k + i, gap_mm, end_energy) * gap_mm;
+            return energy <= end_energy + 2.0 * (double)p->acceleration * (c->end_mm[k + i] - x);
         }
         if (energy > end_energy) {
             return false;
@@ -216,7 +213,7 @@ static bool must_enter(const struct lead *l, const struct ceiling *c, uint32_t k
     return ceiling_feed(c, p->feed_mm_s) < w && w <= ceiling_feed(c, p->feed_max_mm_s) &&
            w * (lead_entry_cycles(l) + 1.0) >= path_mm(l->at, ceiling_start(c, next)) &&
            w * w * (1.0 - LEAD_ENERGY_SLACK) >
-               end * end + 2.0 * ceiling_braking(c, k, gap_mm, end * end) * gap_mm &&
+               end * end + 2.0 * (double)c->piece[k].acceleration * gap_mm &&
            can_follow_early(l, c, k, next);
 }
 

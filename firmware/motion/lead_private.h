@@ -50,16 +50,6 @@ static inline double lead_feed(const struct lead *l, float feed_mm_s)
     return ceiling_feed(l->here.ceiling, feed_mm_s);
 }
 
-/* How much its feed may change in a cycle in piece k, and by how much it brakes there over a gap to a feed. */
-static inline double lead_change(const struct lead *l, uint32_t k)
-{
-    return ceiling_change(l->here.ceiling, k, l->feed);
-}
-/* Likewise slowing down: in the middle of the cycle. */
-static inline double lead_slowing(const struct lead *l, uint32_t k)
-{
-    return ceiling_change(l->here.ceiling, k, l->feed - 0.5 * lead_change(l, k));
-}
 /* Where piece k ends, mm from the origin. */
 static inline double lead_end_mm(const struct lead *l, uint32_t k)
 {
@@ -75,11 +65,6 @@ static inline uint64_t lead_leave_of(const struct lead *l, uint32_t k)
 static inline double lead_square(double x)
 {
     return x * x;
-}
-
-static inline double lead_braking(const struct lead *l, uint32_t k, double gap_mm, double feed)
-{
-    return ceiling_braking(l->here.ceiling, k, gap_mm, lead_square(feed));
 }
 
 /* Path position at or beyond another. */

@@ -184,6 +184,7 @@ static void ask(struct motion *m, const struct motion_operator *wanted)
     m->request.lead = m->lead.at;
     m->request.span = m->lead.span;
     m->request.cycles = m->lead.cycles;
+    m->request.rest_a = m->lead.rest_a;
     m->asked++;
     handoff_set_count(&m->path->kept, m->path->first);
     handoff_set_flag(&m->wanted, true);

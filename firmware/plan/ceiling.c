@@ -11,6 +11,7 @@
 #include "base/maths.h"
 #include "plan/path.h"
 #include "plan/path_unit.h"
+#include "plan/rest.h"
 #include "plan/span.h"
 #include "smooth/single.h"
 
@@ -32,9 +33,6 @@ static_assert(sizeof(struct ceiling_piece) == 24, "no padding");
 /* A joint feed that the lead point reaches from rest in this many cycles is not worth passing: it comes to rest. */
 #define PASS_WORTH 2.0
 
-/* Part of what the lead point may brake by that is planned with where it changes with the feed, which is kept for a cycle. */
-#define PLANNED 0.998
-
 struct head {
     double a;
     double end_mm;
@@ -52,6 +50,7 @@ struct builder {
     double fastest;      /* the highest of those laid so far */
     double gentlest;     /* and the lowest acceleration */
     uint32_t start;      /* block that begins what is being laid */
+    struct rest_span rest;
     unsigned heads;
     struct head head[HEADS_MAX]; /* both rising */
 };
@@ -139,6 +138,7 @@ static void begin_span(struct builder *s, uint32_t index)
                 CEILING_MARGIN_CYCLES;
     s->begin_mm = path_mm(s->c->origin, start);
     s->heads = 0;
+    rest_begin(&s->rest, s->path, s->request, index, s->cycles);
 }
 
 /* Blocks from the first on, as pieces count them. */
@@ -271,12 +271,13 @@ static bool continues(const struct builder *s, const struct path_block *b, float
 static void lay_block(struct builder *s, uint32_t index)
 {
     const struct path_block *b = path_at(s->path, index);
-    const float feed_mm_s = maths_float_below(ceiling_block_feed(s->path, index, s->request));
+    const struct rest_feeds feeds = rest_block_feeds(&s->rest, index);
+    const float feed_mm_s = maths_float_below(feeds.now);
     const double a = ceiling_block_acceleration(s->path, index, s->cycles);
     const double start_mm = path_mm(s->c->origin, b->start);
     const double end_mm = path_mm(s->c->origin, path_end(s->path, index));
 
-    s->feed_max_mm_s = maths_float_below(path_block_top(b));
+    s->feed_max_mm_s = maths_float_below(feeds.highest);
     const double feed_max = ceiling_feed(s->c, s->feed_max_mm_s);
     const double reach_mm = end_mm + feed_max * s->behind;
 
@@ -403,55 +404,12 @@ static double end_energy(const struct ceiling *c, uint32_t k, bool highest)
     return square(ceiling_feed(c, end_feed_of(&c->piece[k], highest)));
 }
 
-/* Those before the oldest that is kept may have been overwritten. */
-static uint32_t kept_block(const struct ceiling *c, unsigned block)
-{
-    const uint32_t kept = c->path->kept;
-    const uint32_t index = c->first + block;
-
-    return (int32_t)(index - kept) < 0 ? kept : index;
-}
-
-/* What a piece of a smoothed curve allows at rest beyond what it does at its full rate; 0 of anything else. */
-static double more_at_rest(const struct ceiling *c, uint32_t k)
-{
-    return path_at(c->path, kept_block(c, c->piece[k].start))->smooth
-               ? maths_max(0.0, c->still - (double)c->piece[k].acceleration)
-               : 0.0;
-}
-
-double ceiling_change(const struct ceiling *c, uint32_t k, double feed)
-{
-    const double a = (double)c->piece[k].acceleration;
-    const double more = more_at_rest(c, k);
-
-    return more > 0.0 ? a + more * maths_max(0.0, 1.0 - square(feed / c->full)) : a;
-}
-
-/*
- * du/dx = 2 (s - b u), b = (s - a) / full^2, gives s/b - u = (s/b - u_end) e^-z with z = 2 b x. In place of e^-z stands
- * 1 / (1 + z + z^2/2), which is never less and falls off no faster.
- */
-double ceiling_braking(const struct ceiling *c, uint32_t k, double gap_mm, double energy)
-{
-    const double more = more_at_rest(c, k);
-
-    if (!(more > 0.0)) {
-        return (double)c->piece[k].acceleration;
-    }
-    const double b = more / square(c->full);
-    const double half = b * maths_max(0.0, gap_mm);
-
-    return PLANNED * (c->still - b * energy) * (1.0 + half) / (1.0 + 2.0 * half * (1.0 + half));
-}
-
 /* Feed at the beginning of a piece from which its end can be met: u = min(c^2, u_end + 2 a L). */
 static float begin_feed(const struct ceiling *c, uint32_t k, bool highest)
 {
     const struct ceiling_piece *p = &c->piece[k];
     const double length_mm = c->end_mm[k] - (k == 0 ? 0.0 : c->end_mm[k - 1]);
-    const double end = end_energy(c, k, highest);
-    const double energy = end + 2.0 * ceiling_braking(c, k, length_mm, end) * length_mm;
+    const double energy = end_energy(c, k, highest) + 2.0 * (double)p->acceleration * length_mm;
     const float feed_mm_s = feed_of(p, highest);
 
     return energy < square(ceiling_feed(c, feed_mm_s)) ? feed_below(c, energy) : feed_mm_s;
@@ -562,13 +520,20 @@ void ceiling_build(struct ceiling *c, struct path *path, const struct ceiling_re
 
     c->path = path;
     c->cycle_s = t;
-    c->still = path->smooth.change.still * path->unit_mm * (t * t);
-    c->full = path->unit_mm * t;
     c->first = request->first;
     c->origin = path_start(path, request->first);
     c->count = 0;
     lay_blocks(&s);
     plan_backward(c, path->limits.law);
+}
+
+/* Those before the oldest that is kept may have been overwritten. */
+static uint32_t kept_block(const struct ceiling *c, unsigned block)
+{
+    const uint32_t kept = c->path->kept;
+    const uint32_t index = c->first + block;
+
+    return (int32_t)(index - kept) < 0 ? kept : index;
 }
 
 uint64_t ceiling_start(const struct ceiling *c, uint32_t k)

@@ -61,8 +61,6 @@ struct path;
 struct ceiling {
     const struct path *path;
     double cycle_s;
-    double still;    /* of smoothed curves: mm/cycle2, how fast the feed may change at rest, */
-    double full;     /* mm/cycle: and their full feed, which is their nominal one */
     uint32_t first;  /* block of the path */
     uint64_t origin; /* path position: its start */
     bool complete;   /* reaches to the end of all blocks that were known */
@@ -81,10 +79,11 @@ static inline double ceiling_feed(const struct ceiling *c, float feed_mm_s)
 
 /* What a ceiling is made for. */
 struct ceiling_request {
-    uint32_t first;       /* block to begin with */
-    uint64_t lead;        /* where the lead point is */
-    uint64_t span;        /* where the span starts that it has begun last */
-    uint32_t cycles;      /* of the first averaging box in that span */
+    uint32_t first;  /* block to begin with */
+    uint64_t lead;   /* where the lead point is */
+    uint64_t span;   /* where the span starts that it has begun last */
+    uint32_t cycles; /* of the first averaging box in that span */
+    double rest_a;   /* mm/cycle2: highest in it so far if it began at rest; infinite: it did not */
     double feed_ratio;    /* override of programmed feeds, 0 < ratio <= BLOCK_OVERRIDE_MAX */
     double rapid_ratio;   /* likewise of rapids, <= 1 */
     double spindle_rev_s; /* > 0: as measured, for feeds per revolution; 0: as commanded */
@@ -106,18 +105,6 @@ uint64_t ceiling_leave(const struct ceiling *c, uint32_t k);
 
 /* Control cycle: what the operator may do in a piece, CEILING_...: as in the last block that it is made of. */
 unsigned ceiling_overrides(const struct ceiling *c, uint32_t k);
-
-/*
- * How fast the lead point may change a feed w in a piece, mm/cycle2: a. On a smoothed curve, which needs less of the axes
- * at a lower rate r = w / full: a r^2 + still (1 - r^2), a concave function of w, so that it holds for averages too.
- */
-double ceiling_change(const struct ceiling *c, uint32_t k, double feed);
-
-/*
- * The mean of that while the lead point brakes over gap_mm in a piece, down to w^2 = energy: from energy + 2 a gap it can be
- * done.
- */
-double ceiling_braking(const struct ceiling *c, uint32_t k, double gap_mm, double energy);
 
 /* Cycles of the first averaging box in the span that begins with a piece. */
 uint32_t ceiling_cycles(const struct ceiling *c, uint32_t k);

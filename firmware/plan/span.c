@@ -342,22 +342,9 @@ static uint32_t best_box(const struct span *s)
     return best;
 }
 
-/* Of pieces of a smoothed curve, which are all rounded over the same time and fast at rest by that: R = a/j. */
-static uint32_t smooth_box(const struct path *path, uint32_t index)
-{
-    const struct path_block *b = path_at(path, index);
-    const double cycles = (double)b->a_mm_s2 / (double)b->j_mm_s3 / path->limits.cycle_s;
-
-    return (uint32_t)maths_clamp(maths_ceil(cycles * (1.0 - SINGLE) - 1e-9), 1.0,
-                                 law_cycles_max(path->limits.law));
-}
-
 struct span_window span_window(const struct path *path, const struct ceiling_request *request,
                                uint32_t index)
 {
-    if (path_at(path, index)->smooth) {
-        return (struct span_window){smooth_box(path, index), true};
-    }
     struct span s = {.cycle_s = path->limits.cycle_s, .law = path->limits.law};
 
     survey(&s, path, request, index);

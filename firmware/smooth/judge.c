@@ -10,9 +10,9 @@
 /* Part of its acceleration that an axis at its highest velocity is left for changes of rate (override, hold). */
 #define CHANGE_PART 0.06
 
-/* Part of its jerk that is left for that, and that changing the rate in a bend may need: the curve needs the rest. */
-#define CHANGE_JERK  0.12
-#define TURNING_PART 0.4f
+/* Parts of the jerk that beginning to change the rate may need, and changing it in a bend: the curve needs the rest. */
+#define ROUNDING_PART 0.3
+#define TURNING_PART  0.4f
 
 /* Where the axes nearly stand, nothing else bounds the rate. */
 #define RATE_MAX 4.0f
@@ -25,22 +25,6 @@
 
 /* A rate does not change faster than this times what it may change by on every piece. */
 #define CHANGE_MOST 64.0f
-
-/*
- * Part of by that a piece must leave at its highest rate: beside others that leave more a little is enough, and to pass it
- * more slowly costs more. Halvings in search of that rate.
- */
-#define CHANGE_LEAST 0.25f
-#define HALVINGS     9
-
-/* Of a piece's highest rate, the parts at which what it leaves is looked at: closer where more of it is used. */
-static const float parts[] = {1.0f, 0.97f, 0.9f, 0.8f, 0.65f};
-
-/* Part of its acceleration that an axis has for a change of rate at rest: rounding must not take it away. */
-#define STILL_PART 0.98
-
-/* Rates at which what is left for changes of it is looked at. */
-#define STILL_RATES 8
 
 /* Places looked at in a piece. */
 #define PLACES 4
@@ -99,67 +83,26 @@ void judge_need(const struct window *w, const struct route *r, unsigned piece,
     need->feed_mm_s = feed_of(r, need, route_element(r, w->element[piece + 1])->rotary);
 }
 
-/* Of its acceleration what an axis can use: on the way to its highest velocity, and in a circle at that, jerk allows no more. */
-static double usable(const struct smooth_limits *limits, int axis)
-{
-    return maths_min(limits->acceleration_mm_s2[axis],
-                     maths_sqrt(limits->velocity_mm_s[axis] * limits->jerk_mm_s3[axis]));
-}
-
 /*
- * The most that leaves every axis its limits at any rate, whatever the curve needs of them at the full one:
- *     V still                                                                      <= A
- *     still (1 - r^2) (V/R + A + 3 A r) + by r^2 (1 - r) (V/R + 4 A) + J r^3       <= J
- */
-static double still_of(const struct smooth_limits *limits, const struct judge_change *change)
-{
-    double still = MATHS_INFINITY;
-
-    for (int i = 0; i < AXIS_COUNT; i++) {
-        const double v = limits->velocity_mm_s[i];
-        const double a = usable(limits, i);
-
-        for (int k = 0; (limits->axes >> i & 1U) != 0 && k < STILL_RATES; k++) {
-            const double r = (double)k / STILL_RATES;
-            const double rounding = v / change->rounding_s + a;
-            const double left = limits->jerk_mm_s3[i] * (1.0 - r * r * r) -
-                                change->by * r * r * (1.0 - r) * (rounding + 3.0 * a);
-
-            still = maths_min(still, maths_min(STILL_PART * a / v,
-                                               left / ((1.0 - r * r) * (rounding + 3.0 * a * r))));
-        }
-    }
-    return maths_max(STILL_PART * still, change->by);
-}
-
-/*
- * Rounded over what the axes need from no acceleration to all of it, a/J, within a bound; and so slow that no axis at its
- * highest velocity needs more than a part of its limits for a change:
- *     V r' <= CHANGE_PART a,      V r'/R + 4 a r' <= CHANGE_JERK J
+ * Rounded over what the axes need from no acceleration to all of it, A/J; where that is too long, a change is so much
+ * slower that no axis needs more than its part of the jerk for it.
  */
 void judge_change(const struct smooth_limits *limits, struct judge_change *change)
 {
     double rounding_s = limits->cycle_s;
 
+    change->by = MATHS_INFINITY;
     for (int i = 0; i < AXIS_COUNT; i++) {
+        const double a = limits->acceleration_mm_s2[i];
+
         if ((limits->axes >> i & 1U) != 0) {
-            rounding_s = maths_max(rounding_s, usable(limits, i) / limits->jerk_mm_s3[i]);
+            change->by = maths_min(change->by, CHANGE_PART * a / limits->velocity_mm_s[i]);
+            rounding_s = maths_max(rounding_s, a / limits->jerk_mm_s3[i]);
         }
     }
     change->rounding_s = maths_min(rounding_s, ROUNDING_CYCLES_MAX * limits->cycle_s);
-    change->by = MATHS_INFINITY;
-    for (int i = 0; i < AXIS_COUNT; i++) {
-        const double v = limits->velocity_mm_s[i];
-        const double a = usable(limits, i);
-
-        if ((limits->axes >> i & 1U) != 0) {
-            change->by = maths_min(
-                change->by, maths_min(CHANGE_PART * a / v, CHANGE_JERK * limits->jerk_mm_s3[i] /
-                                                               (v / change->rounding_s + 4.0 * a)));
-        }
-    }
+    change->by *= maths_min(1.0, ROUNDING_PART / CHANGE_PART * change->rounding_s / rounding_s);
     change->rounded = change->by / change->rounding_s;
-    change->still = still_of(limits, change);
 }
 
 /*
@@ -180,8 +123,7 @@ static float most_of_axis(const struct judge_need *need, const struct route_slot
     if (first * most > slots->velocity_mm_s[i]) {
         most = slots->velocity_mm_s[i] / first;
     }
-    const float a = single_max(0.0f, single_min(LIMIT * slots->acceleration_mm_s2[i],
-                                                LIMIT * slots->whole_mm_s2[i] - first * by));
+    const float a = single_max(0.0f, LIMIT * slots->acceleration_mm_s2[i] - first * by);
 
     if (second * most * most > a) {
         most = single_sqrt(a / second);
@@ -208,91 +150,30 @@ void judge_rate(const struct judge_need *need, const struct route *r, uint32_t e
         need->feed_mm_s > 0.0f ? route_programmed(r, element) / need->feed_mm_s : SINGLE_INFINITY;
 }
 
-/*
- * What an axis leaves at a rate for r' and r'' = r' (1/R + still), R the rounding: see most_of_axis(). The lead point, that
- * slows down ahead of it, is at a lower rate by r' R/2, where it may slow down faster by still R r'.
- */
-static float left_of_axis(const struct judge_need *need, const struct route_slots *slots,
-                          float beginning, unsigned i, float rate, float most)
+/* What is left at a rate for r' and r'' = r'/R, R the rounding: see most_of_axis(). */
+static float change_of_axis(const struct judge_need *need, const struct route_slots *slots,
+                            float rounding_s, unsigned i, float rate, float by)
 {
     const float first = need->first[i];
     const float second = need->second[i];
-    const float a = LIMIT * slots->whole_mm_s2[i] - second * rate * rate;
+    const float a = LIMIT * slots->acceleration_mm_s2[i] - second * rate * rate;
     const float j = LIMIT * slots->jerk_mm_s3[i] - need->third[i] * rate * rate * rate;
-    const float per_by = first * beginning + 3.0f * second * rate;
+    const float per_by = first / rounding_s + 3.0f * second * rate;
 
-    most = first * most > a ? a / first : most;
-    return per_by * most > j ? j / per_by : most;
-}
-
-/* The highest change by, 1/s, for which every axis has by r^2 + still (1 - r^2) left at a rate r. */
-static float change_at(const struct judge_need *need, const struct route *r,
-                       const struct judge_change *change, float rate)
-{
-    const float square = single_min(1.0f, rate * rate);
-    const float still = (float)change->still * (1.0f - square);
-    const float beginning = (float)(1.0 / change->rounding_s + change->still);
-    float most = square * CHANGE_MOST * (float)change->by + still;
-
-    for (unsigned i = 0; i < r->slots.count; i++) {
-        most = left_of_axis(need, &r->slots, beginning, i, rate, most);
-    }
-    return (most - still) / square;
-}
-
-/* Likewise at every rate up to this one. */
-static float change_up_to(const struct judge_need *need, const struct route *r,
-                          const struct judge_change *change, float rate)
-{
-    float most = SINGLE_INFINITY;
-
-    for (unsigned i = 0; i < sizeof parts / sizeof parts[0]; i++) {
-        most = single_min(most, change_at(need, r, change, parts[i] * rate));
-    }
-    return most;
-}
-
-/* At which no axis is faster than it may be. */
-static float rate_of_velocity(const struct judge_need *need, const struct route_slots *slots)
-{
-    float rate = 1.0f;
-
-    for (unsigned i = 0; i < slots->count; i++) {
-        if (need->first[i] * rate > slots->velocity_mm_s[i]) {
-            rate = slots->velocity_mm_s[i] / need->first[i];
-        }
-    }
-    return rate;
-}
-
-float judge_most(const struct judge_need *need, const struct route *r,
-                 const struct judge_change *change)
-{
-    const float least = CHANGE_LEAST * (float)change->by;
-    float high = rate_of_velocity(need, &r->slots);
-    float low = 0.0f;
-
-    if (change_up_to(need, r, change, high) >= least) {
-        return high;
-    }
-    for (unsigned i = 0; i < HALVINGS; i++) {
-        const float middle = 0.5f * (low + high);
-
-        if (change_up_to(need, r, change, middle) >= least) {
-            low = middle;
-        } else {
-            high = middle;
-        }
-    }
-    return low;
+    by = first * by > a ? a / first : by;
+    return per_by * by > j ? j / per_by : by;
 }
 
 float judge_change_on(const struct judge_need *need, const struct route *r,
                       const struct judge_change *change, float rate)
 {
-    const float most = change_up_to(need, r, change, rate);
-    float by = CHANGE_LEAST * (float)change->by;
+    const float rounding_s = (float)change->rounding_s;
+    float by = (float)change->by;
+    float most = CHANGE_MOST * by;
 
+    for (unsigned i = 0; i < r->slots.count; i++) {
+        most = change_of_axis(need, &r->slots, rounding_s, i, rate, most);
+    }
     while (2.0f * by <= most) {
         by *= 2.0f;
     }

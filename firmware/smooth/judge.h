@@ -14,21 +14,16 @@ struct judge_need {
     float feed_mm_s; /* along the path: over X, Y, Z, or over A, B, C where only they move */
 };
 
-/* How fast nominal time should pass on a piece: what it is timed by. */
+/* How fast nominal time may pass on a piece. */
 struct judge_rate {
-    float
-        most; /* at which the axes have just all left that a change of the rate takes everywhere */
+    float most;       /* by the axes' limits: never exceeded */
     float programmed; /* at the programmed feed; infinite for a rapid */
 };
 
-/*
- * How fast the rate r of nominal time may change on every piece, 1/s: by at its full rate, still where it stands, and
- * by r^2 + still (1 - r^2) between, since a curve needs x" r^2 of the acceleration.
- */
+/* How fast the rate of nominal time may change, on every piece of a chain where the axes move: 1/s, 1/s2. */
 struct judge_change {
     double by;
-    double still;
-    double rounded;    /* by: 1/s2 */
+    double rounded;
     double rounding_s; /* over which it is rounded */
 };
 
@@ -36,12 +31,9 @@ struct judge_change {
 void judge_change(const struct smooth_limits *limits, struct judge_change *change);
 void judge_need(const struct window *w, const struct route *r, unsigned piece,
                 struct judge_need *need);
-/* The highest rate, 1 at most, at which a piece leaves every axis something for changes of it: never exceeded. */
-float judge_most(const struct judge_need *need, const struct route *r,
-                 const struct judge_change *change);
 /*
- * How fast the rate may change on a piece while it is not above a rate, 1/s: by a power of two times what it may on all, so
- * that neighbours mostly have the same.
+ * How fast the rate may change on a piece while it is not above a rate, 1/s: at least by change, and a power of two times
+ * that, so that neighbours mostly have the same.
  */
 float judge_change_on(const struct judge_need *need, const struct route *r,
                       const struct judge_change *change, float rate);

@@ -25,9 +25,7 @@
 struct smooth_limits {
     unsigned axes; /* bit i set: the machine has axis i */
     double velocity_mm_s[AXIS_COUNT];
-    double acceleration_mm_s2
-        [AXIS_COUNT]; /* of the curve: lowered by the smoother where chords are long */
-    double whole_mm_s2[AXIS_COUNT]; /* the machine's; set by the smoother */
+    double acceleration_mm_s2[AXIS_COUNT];
     double jerk_mm_s3[AXIS_COUNT];
     double cycle_s; /* control cycle */
     double

@@ -26,7 +26,6 @@ static void set_slots(struct route_slots *s, const struct smooth_limits *limits)
             s->weight[i] = (float)smooth_weight(axis);
             s->velocity_mm_s[i] = (float)limits->velocity_mm_s[axis];
             s->acceleration_mm_s2[i] = (float)limits->acceleration_mm_s2[axis];
-            s->whole_mm_s2[i] = (float)limits->whole_mm_s2[axis];
             s->jerk_mm_s3[i] = (float)limits->jerk_mm_s3[axis];
             s->count++;
         }
@@ -511,4 +510,14 @@ void route_foot(const struct route *r, const double x[], double from_mm, double 
     if (f->element == index) {
         walk(r, x, from_mm, to_mm, false, f);
     }
+}
+
+float route_feed(const struct route *r, double at_mm, uint32_t *hint)
+{
+    *hint = route_find(r, at_mm, *hint);
+    const struct route_element *e = route_element(r, *hint);
+    const float end_energy = *hint + 1 < r->count ? route_element(r, *hint + 1)->energy : 0.0f;
+    const float ahead = single_max(0.0f, (float)(route_end_of(r, *hint) - at_mm));
+
+    return single_min(e->feed_mm_s, single_sqrt(end_energy + 2.0f * e->along_mm_s2 * ahead));
 }

@@ -48,7 +48,6 @@ _Static_assert(sizeof(struct smooth) + sizeof(union smooth_scratch) <= 27UL * 10
 void smooth_init(struct smooth *s, const struct smooth_limits *limits)
 {
     s->limits = *limits;
-    judge_change(limits, &s->change);
     smooth_reset(s);
 }
 
@@ -118,7 +117,6 @@ static void limit_chord(struct smooth_limits *limits, double tolerance_mm)
     for (int i = 0; i < AXIS_COUNT; i++) {
         const double weight = smooth_weight(i);
 
-        limits->whole_mm_s2[i] = limits->acceleration_mm_s2[i];
         limits->acceleration_mm_s2[i] =
             maths_min(limits->acceleration_mm_s2[i], CHORD_PART * tolerance_mm / (weight * t));
         if ((limits->axes >> i & 1U) != 0) {
@@ -149,6 +147,7 @@ static void begin(struct smooth *s, const struct move *move)
     s->tried = 0;
     s->mark_mm = 0.0;
     s->idle = 0;
+    judge_change(&limits, &s->change);
     s->merge.open = false;
     window_init(&s->window, &s->route, interval_of(&limits, move->tolerance_mm));
 }
@@ -190,7 +189,7 @@ static bool feels_end(const struct smooth *s, double at_mm, uint32_t element, do
     const struct route_element *e = route_element(&s->route, element);
     const float ahead = (float)(known_mm - at_mm);
 
-    return braking_way(&e->along, e->feed_mm_s, 0.0f, 0.0f) > ahead;
+    return e->feed_mm_s * e->feed_mm_s > 2.0f * e->along_mm_s2 * ahead;
 }
 
 static bool last_feels_end(const struct smooth *s, double known_mm)
@@ -434,7 +433,7 @@ static void set_piece(struct smooth *s, struct smooth_piece *piece)
     }
     judge_need(w, &s->route, i, &need);
     judge_rate(&need, &s->route, element, &s->change, &rate);
-    piece->rate.most = (double)judge_most(&need, &s->route, &s->change);
+    piece->rate.most = maths_min((double)rate.most, 1.0);
     piece->rate.programmed = (double)rate.programmed;
     piece->change.by =
         (double)judge_change_on(&need, &s->route, &s->change, (float)piece->rate.most);

@@ -3,21 +3,12 @@
 #include "smooth/judge.h"
 #include "smooth/single.h"
 
-#include <string.h>
-
 /* The step from what is to what should be, and its bounds: the samples move after that, so it is taken with care. */
 #define RATE_LOW  0.5f
 #define RATE_HIGH 1.3f
 
 /* Pieces to both sides that share the lowest rate, and over which rates are averaged. */
 #define AROUND 1
-
-/* Part of an axis's acceleration that a change of rates from piece to piece may take. */
-#define CHANGE 0.5f
-
-/* Rates are averaged over this part of the time that acceleration takes to change, and so many pieces to both sides at most. */
-#define AROUND_PART 0.5f
-#define AROUND_MAX  12
 
 /* How much slower, and for how many pieces around, when a tolerance cannot be kept. */
 #define SLOWER        0.8f
@@ -42,56 +33,24 @@ static float wanted(const struct window *w, const struct route *r,
     return single_clamp(root * root * root, RATE_LOW, RATE_HIGH);
 }
 
-/* How much the rate may change from a piece to the next: x' r' <= a part of A over an interval. */
-static float change_of(const struct window *w, const struct route *r, unsigned piece)
+static void lowest_around(struct timing *t, unsigned pieces)
 {
-    struct judge_need need;
-    float most = SINGLE_INFINITY;
+    for (unsigned i = 0; i < pieces; i++) {
+        const unsigned from = i < AROUND ? 0 : i - AROUND;
+        const unsigned to = i + AROUND < pieces ? i + AROUND : pieces - 1;
 
-    judge_need(w, r, piece, &need);
-    for (unsigned k = 0; k < r->slots.count; k++) {
-        if (need.first[k] > 0.0f) {
-            most = single_min(most, r->slots.acceleration_mm_s2[k] / need.first[k]);
+        t->least[i] = t->rate[from];
+        for (unsigned k = from + 1; k <= to; k++) {
+            t->least[i] = single_min(t->least[i], t->rate[k]);
         }
     }
-    return CHANGE * (float)w->interval_s * most;
 }
 
-/* Lowers rates so that they change no faster than the axes can follow. */
-static void limit_changes(struct timing *t, const struct window *w, const struct route *r)
-{
-    const unsigned pieces = pieces_of(w);
-
-    for (unsigned i = 0; i < pieces; i++) {
-        t->least[i] = change_of(w, r, i);
-    }
-    for (unsigned i = 1; i < pieces; i++) {
-        t->rate[i] = single_min(t->rate[i], t->rate[i - 1] + t->least[i]);
-    }
-    for (unsigned i = pieces - 1; i-- > 0;) {
-        t->rate[i] = single_min(t->rate[i], t->rate[i + 1] + t->least[i]);
-    }
-    memcpy(t->least, t->rate, pieces * sizeof t->least[0]);
-}
-
-/* Over what it takes to change the acceleration. */
-static unsigned around_of(const struct window *w, const struct route *r)
-{
-    float ramp = 0.0f;
-
-    for (unsigned k = 0; k < r->slots.count; k++) {
-        ramp = single_max(ramp, r->slots.acceleration_mm_s2[k] / r->slots.jerk_mm_s3[k]);
-    }
-    const unsigned around = (unsigned)(AROUND_PART * ramp / (float)w->interval_s);
-
-    return around < AROUND ? AROUND : around > AROUND_MAX ? AROUND_MAX : around;
-}
-
-static void mean_around(struct timing *t, unsigned pieces, unsigned around)
+static void mean_around(struct timing *t, unsigned pieces)
 {
     for (unsigned i = 0; i < pieces; i++) {
-        const unsigned from = i < around ? 0 : i - around;
-        const unsigned to = i + around < pieces ? i + around : pieces - 1;
+        const unsigned from = i < AROUND ? 0 : i - AROUND;
+        const unsigned to = i + AROUND < pieces ? i + AROUND : pieces - 1;
         float sum = 0.0f;
 
         for (unsigned k = from; k <= to; k++) {
@@ -175,8 +134,8 @@ void timing_again(struct timing *t, struct window *w, const struct route *r,
     for (unsigned i = 0; i < pieces; i++) {
         t->rate[i] = wanted(w, r, change, i);
     }
-    limit_changes(t, w, r);
-    mean_around(t, pieces, around_of(w, r));
+    lowest_around(t, pieces);
+    mean_around(t, pieces);
     t->window = *w;
     resample(t, w, r);
 }
@@ -188,7 +147,7 @@ void timing_slow(struct timing *t, struct window *w, const struct route *r, unsi
     for (unsigned i = 0; i < pieces; i++) {
         t->least[i] = i + SLOWER_AROUND > piece && i < piece + SLOWER_AROUND ? SLOWER : 1.0f;
     }
-    mean_around(t, pieces, AROUND);
+    mean_around(t, pieces);
     t->window = *w;
     resample(t, w, r);
 }

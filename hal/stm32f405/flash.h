@@ -1,5 +1,5 @@
 /*
- * The chip's own flash behind hal/flash.h: sectors 6 and 7, 128 KiB each, which every STM32F405 has and the program does
+ * The chip's own flash behind hal/flash.h: sectors 10 and 11, 128 KiB each, the last of 1 MiB, which the program does
  * not reach. While a sector is erased or a word programmed the processor cannot fetch from flash and stands still: 1 to
  * 2 s for an erase, 16 us for a word. So settings are brought while the drives are off.
  */
@@ -9,8 +9,8 @@
 #include "hal/flash.h"
 
 #define FLASH_SECTOR_BYTES    0x20000U
-#define FLASH_SECTOR_ADDRESS  0x08040000U /* of the first; the other follows */
-#define FLASH_SECTOR_NUMBER   6U
+#define FLASH_SECTOR_ADDRESS  0x080C0000U /* of the first; the other follows */
+#define FLASH_SECTOR_NUMBER   10U
 #define FLASH_WATCHDOG_MS     8000U
 #define FLASH_WATCHDOG_MS_RUN 250U
 

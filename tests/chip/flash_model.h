@@ -1,4 +1,4 @@
-/* The flash controller, sectors 6 and 7, and the independent watchdog. */
+/* The flash controller, sectors 10 and 11, and the independent watchdog. */
 #ifndef TAKT_TESTS_FLASH_MODEL_H
 #define TAKT_TESTS_FLASH_MODEL_H
 

@@ -26,6 +26,7 @@ STORE = r"begin|begin_stream|bring|prepare|place|room|end|look|order|hear|settin
 CALLS = (
     (r"answer_.*|modbus_answer", r"panel_read|panel_write"),
     (r".*_layers?|exchange_tables|correction_.*", LAYER),
+    (r"comment_run", r"say"),  # nobody listens on a target
     (r"decimal_read", r"wide_.*"),
     (r"embedded_.*|hear|order|log_.*|serve_line|refuse|forward|lock|unlock", PORT),
     (r"expression_.*|read_.*", OPERATORS),

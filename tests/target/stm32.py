@@ -11,7 +11,7 @@ import serial_pair
 import takt_test as t
 
 MACHINE = "netduinoplus2"
-SETTINGS_ADDRESS = 0x08040000
+SETTINGS_ADDRESS = 0x080C0000
 
 
 def for_qemu(name):

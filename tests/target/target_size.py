@@ -15,7 +15,7 @@ import stm32
 import target
 import takt_test as t
 
-FLASH_MAX = 256 * 1024
+FLASH_MAX = 768 * 1024
 MEMORY_MAX = 128 * 1024
 
 FORBIDDEN = re.compile(

@@ -78,7 +78,7 @@ static void test_feed_squared_falls_linearly_towards_a_stop(void)
     push(MOVE_FEED, 50.0, 100.0);
     push(MOVE_FEED, 50.5, 99.0);
     build();
-    path.ring.block[1].a_mm_s2 = 900.0F; /* so that it is a piece for itself */
+    path.ring.block[1].a_mm_s2 = 900.0F; /* so that it is a piece for itself (rest.h) */
     ceiling_build(&ceiling, &path, &request);
     TEST_ASSERT_EQUAL(2, ceiling.count);
     TEST_ASSERT_TRUE(ceiling.piece[1].end_feed_mm_s == 0.0F);
