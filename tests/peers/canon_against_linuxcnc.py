@@ -126,7 +126,7 @@ class Piece:
     def __init__(self, start, move):
         self.axes = next(axes for axes, _, name in linuxcnc.PLANES.values() if name == move.plane)
         heading, curvature, self.length = move.turns[0:2], move.turns[2:4], move.turns[4]
-        self.terms = []
+        self.start, self.terms = start, []
         for i, axis in enumerate(self.axes):
             way = move.end[axis] - start[axis]
             angle = [math.radians(h) for h in heading]
@@ -137,8 +137,10 @@ class Piece:
                                6 * way - 3 * t[0] - 3 * t[1] - b[0] + b[1]))
 
     def off(self, point, u):
-        return math.dist([sum(c * u**n for n, c in enumerate(terms)) for terms in self.terms],
-                         [point[axis] for axis in self.axes])
+        at = list(self.start)
+        for axis, terms in zip(self.axes, self.terms):
+            at[axis] = sum(c * u**n for n, c in enumerate(terms))
+        return math.dist(at, point)
 
     def distance(self, point):
         low, high = 0.0, 1.0
