@@ -98,7 +98,14 @@
     X(CYCLE_UPSIDE_DOWN, "the bottom of '%w' is %v mm above its R")                                \
     X(CYCLE_TOO_LONG, "'%w' would repeat itself more than %v times")                               \
     X(THREAD_DEPTH, "the depth of the thread, '%w', must be above that of the first cut, J")       \
-    X(SPLINE_UNSUPPORTED, "'%w': splines are not supported")                                       \
+    X(SPLINE_OPEN, "'%w' comes before the spline is ended (by G5.3, or all knots of G6.2)")        \
+    X(SPLINE_ABSENT,                                                                               \
+      "'%w' ends a spline that has not begun: G5.2, or G6.2 with a point, comes first")            \
+    X(SPLINE_SHORT, "the spline ends with fewer control points than its order: %v")                \
+    X(SPLINE_START, "the spline's first control point is %v mm from where the tool is")            \
+    X(SPLINE_KNOT, "the knot '%w' (%v) is below the one before, or there too often")               \
+    X(SPLINE_PLANE, "'%w' works only in G17")                                                      \
+    X(SPLINE_CUSP, "the spline of '%w' is too sharp, or its knots are too near to each other")     \
     X(INVOLUTE_START, "the start is %v mm inside the involute's base circle")                      \
     X(INVOLUTE_END, "the end is %v mm off the involute")                                           \
     X(INVOLUTE_TURNS, "the base circle is too small: the involute would turn %v times")            \

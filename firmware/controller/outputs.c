@@ -119,6 +119,7 @@ void outputs_apply(struct outputs *o, struct outputs_surface *surface, const str
     case MOVE_ARC_CCW:
     case MOVE_INVOLUTE_CW:
     case MOVE_INVOLUTE_CCW:
+    case MOVE_SPLINE:
     case MOVE_THREAD:
     case MOVE_TAP:
     case MOVE_TAP_OUT:

@@ -4,6 +4,7 @@
 #include "geometry/arc.h"
 #include "geometry/involute.h"
 #include "geometry/line.h"
+#include "geometry/quintic.h"
 #include "geometry/spline.h"
 
 #include <string.h>
@@ -25,6 +26,9 @@ void curve_point(const struct curve *c, double s_mm, struct point *p)
     case CURVE_INVOLUTE:
         involute_point(c, s_mm, p);
         break;
+    case CURVE_QUINTIC:
+        quintic_point(c, s_mm, p);
+        break;
     case CURVE_SPLINE:
         spline_point(c, s_mm, p);
         break;
@@ -42,6 +46,9 @@ void curve_tangent(const struct curve *c, double s_mm, struct point *t)
         break;
     case CURVE_INVOLUTE:
         involute_tangent(c, s_mm, t);
+        break;
+    case CURVE_QUINTIC:
+        quintic_tangent(c, s_mm, t);
         break;
     case CURVE_SPLINE:
         spline_tangent(c, s_mm, t);
@@ -61,6 +68,9 @@ void curve_curvature(const struct curve *c, double s_mm, struct point *k)
     case CURVE_INVOLUTE:
         involute_curvature(c, s_mm, k);
         break;
+    case CURVE_QUINTIC:
+        quintic_curvature(c, s_mm, k);
+        break;
     case CURVE_SPLINE:
         spline_curvature(c, s_mm, k);
         break;
@@ -78,6 +88,9 @@ void curve_bound(const struct curve *c, struct curve_bounds *b)
         break;
     case CURVE_INVOLUTE:
         involute_bound(c, b);
+        break;
+    case CURVE_QUINTIC:
+        quintic_bound(c, b);
         break;
     case CURVE_SPLINE:
         spline_bound(c, b);
@@ -122,6 +135,10 @@ bool curve_plane(const struct curve *c, enum axis *first, enum axis *second)
     case CURVE_INVOLUTE:
         *first = (enum axis)c->involute.first;
         *second = (enum axis)c->involute.second;
+        return true;
+    case CURVE_QUINTIC:
+        *first = (enum axis)c->quintic.first;
+        *second = (enum axis)c->quintic.second;
         return true;
     }
     return false;

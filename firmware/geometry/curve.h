@@ -17,7 +17,7 @@
 /* An involute is unrolled by this at most, some 15,900 turns: up to there angles are exact (base/maths.h). */
 #define CURVE_UNROLLED_MAX_RAD 1e5
 
-enum curve_kind { CURVE_LINE, CURVE_ARC, CURVE_INVOLUTE, CURVE_SPLINE };
+enum curve_kind { CURVE_LINE, CURVE_ARC, CURVE_INVOLUTE, CURVE_QUINTIC, CURVE_SPLINE };
 
 /* The plane of a bent curve: its first and second axis in the sense of G17 (X, Y), G18 (Z, X), G19 (Y, Z). */
 enum plane { PLANE_XY, PLANE_ZX, PLANE_YZ };
@@ -56,6 +56,19 @@ struct curve_involute {
     double plane_ratio;         /* length in the plane / length, <= 1 */
 };
 
+/* The part of a piece of a spline that a line does not have (quintic.c). Only the axes of its plane move. */
+struct curve_quintic {
+    unsigned char first, second; /* axes of the plane */
+    double coefficient_mm[2][4]; /* c2 ... c5 of both */
+};
+
+/* How a piece of a spline runs between its ends: direction and curvature at both, counter-clockwise > 0. */
+struct curve_course {
+    double heading_rad[2];
+    double curvature_1_mm[2];
+    double length_mm;
+};
+
 /* The part of a cubic that a line does not have (spline.c). Its s is no arc length. */
 struct curve_spline {
     unsigned char moves; /* bit i set: axis i does */
@@ -73,6 +86,7 @@ struct curve {
     union {
         struct curve_arc arc;           /* kind CURVE_ARC alone */
         struct curve_involute involute; /* kind CURVE_INVOLUTE alone */
+        struct curve_quintic quintic;   /* kind CURVE_QUINTIC alone */
         struct curve_spline spline;     /* kind CURVE_SPLINE alone */
     };
 };
@@ -121,6 +135,13 @@ bool curve_end_arc(struct curve *c, bool clockwise, unsigned turns);
 bool curve_set_involute(struct curve *c, const struct point *start, const struct point *end,
                         enum plane plane, const double centre_mm[2], double base_radius_mm,
                         bool clockwise);
+
+/*
+ * Piece of a spline in a plane, short enough that its course tells it (nurbs.c). No other axis moves. False when it is
+ * shorter than CURVE_LENGTH_MIN_MM.
+ */
+bool curve_set_quintic(struct curve *c, const struct point *start, const struct point *end,
+                       enum plane plane, const struct curve_course *course);
 
 /*
  * Piece of a uniform cubic B-spline between the second and the third of four control points; s goes 0 ... length_mm > 0

@@ -154,7 +154,9 @@ static void push_piece(struct path *p, const struct curve *curve, double to_mm)
 /* Of the whole curve. At a cusp the axes stand. */
 static void push_pieces(struct path *p, const struct curve *whole)
 {
-    const uint32_t size = whole->kind == CURVE_INVOLUTE ? RECORD_MAX : RECORD_SHORT_MAX;
+    const uint32_t size = whole->kind == CURVE_INVOLUTE || whole->kind == CURVE_QUINTIC
+                              ? RECORD_MAX
+                              : RECORD_SHORT_MAX;
 
     while (is_splitting(p) && has_slot(p, size)) {
         const double to_mm = curve_piece_end(whole, p->split_mm);

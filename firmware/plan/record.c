@@ -182,14 +182,33 @@ static void take_event(const uint8_t **from, struct move *m)
 
 /* -- what kinds of motion have beside their ends -- */
 
-static bool is_bent(const struct move *m)
+/* Has it a centre? */
+static bool is_round(const struct move *m)
 {
     return move_is_arc(m) || move_is_involute(m);
 }
 
+static void put_course(uint8_t **to, const struct move *m)
+{
+    for (unsigned i = 0; i < 2; i++) {
+        bytes_put_double(to, m->heading_rad[i]);
+        bytes_put_double(to, m->curvature_1_mm[i]);
+    }
+    bytes_put_double(to, m->spline_mm);
+}
+
+static void take_course(const uint8_t **from, struct move *m)
+{
+    for (unsigned i = 0; i < 2; i++) {
+        m->heading_rad[i] = bytes_take_double(from);
+        m->curvature_1_mm[i] = bytes_take_double(from);
+    }
+    m->spline_mm = bytes_take_double(from);
+}
+
 static void put_shape(uint8_t **to, const struct move *m)
 {
-    if (is_bent(m)) {
+    if (is_round(m)) {
         bytes_put_double(to, m->centre_mm[0]);
         bytes_put_double(to, m->centre_mm[1]);
         if (m->turns != 1) {
@@ -199,6 +218,9 @@ static void put_shape(uint8_t **to, const struct move *m)
     if (move_is_involute(m)) {
         bytes_put_double(to, m->base_radius_mm);
     }
+    if (m->kind == MOVE_SPLINE) {
+        put_course(to, m);
+    }
     if (m->kind == MOVE_TAP_OUT) {
         bytes_put_double(to, m->speed_ratio);
     }
@@ -206,13 +228,16 @@ static void put_shape(uint8_t **to, const struct move *m)
 
 static void take_shape(const uint8_t **from, unsigned flags, struct move *m)
 {
-    if (is_bent(m)) {
+    if (is_round(m)) {
         m->centre_mm[0] = bytes_take_double(from);
         m->centre_mm[1] = bytes_take_double(from);
         m->turns = (flags & FLAG_TURNS) != 0 ? bytes_take_word(from) : 1;
     }
     if (move_is_involute(m)) {
         m->base_radius_mm = bytes_take_double(from);
+    }
+    if (m->kind == MOVE_SPLINE) {
+        take_course(from, m);
     }
     if (m->kind == MOVE_TAP_OUT) {
         m->speed_ratio = bytes_take_double(from);
@@ -278,7 +303,7 @@ static unsigned flags_of(const struct block *b, bool spline, const struct record
                            !(chain->has_end && is_same_point(&b->curve.start, &chain->end));
 
     return (has_start ? FLAG_START : 0U) | (m->feed_rev_mm != 0.0 ? FLAG_REVOLUTION : 0U) |
-           (is_bent(m) && m->turns != 1 ? FLAG_TURNS : 0U) |
+           (is_round(m) && m->turns != 1 ? FLAG_TURNS : 0U) |
            (m->probe_away ? FLAG_PROBE_AWAY : 0U) | (m->probe_optional ? FLAG_PROBE_OPTIONAL : 0U) |
            (spline ? FLAG_SPLINE : 0U);
 }

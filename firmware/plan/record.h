@@ -20,7 +20,7 @@
 /* Bytes of a record at most: an involute of six axes with start, end and a feed per revolution takes 314. */
 #define RECORD_MAX 320
 
-/* Of what is neither a piece of an involute nor of a smoothed curve: an arc of six axes with start, end and turns takes 133. */
+/* Of what is no piece of an involute, of a spline or of a smoothed curve: an arc of six axes with start, end and turns takes 133. */
 #define RECORD_SHORT_MAX 136
 
 /* Control points that a piece shares with those before it: so many records back must be kept. */

@@ -158,10 +158,8 @@ static bool centre_from_radius(struct program *p, struct circle *c, bool clockwi
     return true;
 }
 
-/* The machine has the axes of the plane. The centre's word of the axis across it has no meaning. */
-bool circular_check_plane(struct program *p, enum axis first, enum axis second)
+bool circular_check_axes(struct program *p, enum axis first, enum axis second)
 {
-    const enum axis other = (enum axis)(AXIS_X + AXIS_Y + AXIS_Z - first - second);
     const unsigned plane_axes = (1U << first) | (1U << second);
 
     if ((p->config.axes & plane_axes) != plane_axes) {
@@ -171,6 +169,17 @@ bool circular_check_plane(struct program *p, enum axis first, enum axis second)
     }
     if (p->modes.cutter_left) {
         return report_error_code(p, TAKT_ERROR_CUTTER_EXIT_ARC, STEP_MOTION, 0.0);
+    }
+    return true;
+}
+
+/* The centre's word of the axis across the plane has no meaning. */
+bool circular_check_plane(struct program *p, enum axis first, enum axis second)
+{
+    const enum axis other = (enum axis)(AXIS_X + AXIS_Y + AXIS_Z - first - second);
+
+    if (!circular_check_axes(p, first, second)) {
+        return false;
     }
     if (words_has(p, centre_letter(other))) {
         return report_error_letter(p, TAKT_ERROR_WORD_UNUSED, centre_letter(other), 0.0);

@@ -11,6 +11,7 @@
 #include "program/probe.h"
 #include "program/saved_modes.h"
 #include "program/setting.h"
+#include "program/spline.h"
 #include "program/straight.h"
 #include "program/threading.h"
 
@@ -19,9 +20,6 @@
 #define WORDS_ARC      (LETTERS_AXES | LETTERS_CENTRE | LETTER_BIT('r') | LETTER_BIT('p'))
 #define WORDS_INVOLUTE (LETTERS_AXES | LETTERS_CENTRE | LETTER_BIT('r'))
 
-#define WORDS_SPLINE                                                                               \
-    (LETTERS_AXES | LETTERS_CENTRE | LETTER_BIT('l') | LETTER_BIT('p') | LETTER_BIT('q') |         \
-     LETTER_BIT('r'))
 #define WORDS_SETTING                                                                              \
     (LETTERS_AXES | LETTER_BIT('i') | LETTER_BIT('j') | LETTER_BIT('l') | LETTER_BIT('p') |        \
      LETTER_BIT('q') | LETTER_BIT('r'))
@@ -29,9 +27,10 @@
     (WORDS_CYCLE | LETTERS_CENTRE | LETTER_BIT('e') | LETTER_BIT('h') | LETTER_BIT('p') |          \
      LETTER_BIT('q'))
 
-#define SPLINE(number_x10)                                                                         \
+/* With the words it takes beside those of its point. */
+#define SPLINE(number_x10, words, which)                                                           \
     {                                                                                              \
-        'g', number_x10, GROUP_MOTION, STEP_MOTION, 0, WORDS_SPLINE, modes_refuse_spline           \
+        'g', number_x10, GROUP_MOTION, STEP_MOTION, which, LETTERS_LINEAR | (words), spline_start  \
     }
 
 /* With the words it takes beside those that all cycles take. */
@@ -71,10 +70,11 @@ static const struct program_code codes[] = {
     {'g', 30, GROUP_MOTION, STEP_MOTION, MOVE_ARC_CCW, WORDS_ARC, circular_move},
     {'g', 32, GROUP_MOTION, STEP_MOTION, MOVE_INVOLUTE_CCW, WORDS_INVOLUTE, involute_move},
     {'g', 40, GROUP_NON_MODAL, STEP_DWELL, 0, LETTER_BIT('p'), events_dwell},
-    SPLINE(50),
-    SPLINE(51),
-    SPLINE(52),
-    SPLINE(53),
+    SPLINE(50, LETTER_BIT('i') | LETTER_BIT('j') | LETTER_BIT('p') | LETTER_BIT('q'), SPLINE_CUBIC),
+    SPLINE(51, LETTER_BIT('i') | LETTER_BIT('j'), SPLINE_QUADRATIC),
+    SPLINE(52, LETTER_BIT('l') | LETTER_BIT('p'), SPLINE_POINTS),
+    SPLINE(53, 0, SPLINE_END),
+    SPLINE(62, LETTER_BIT('k') | LETTER_BIT('p') | LETTER_BIT('q') | LETTER_BIT('r'), SPLINE_KNOTS),
     {'g', 70, GROUP_DIAMETER, STEP_DIAMETER, 1, 0, modes_set_diameter},
     {'g', 80, GROUP_DIAMETER, STEP_DIAMETER, 0, 0, modes_set_diameter},
     {'g', 100, GROUP_NON_MODAL, STEP_SETTING, 0, WORDS_SETTING, setting_run},

@@ -5,6 +5,7 @@
 #include "program/drilling.h"
 #include "program/emit.h"
 #include "program/report.h"
+#include "program/spline.h"
 #include "program/threading.h"
 #include "program/travel.h"
 #include "program/words.h"
@@ -17,6 +18,7 @@
 void cycles_open(struct program *p)
 {
     p->cycle.code = NULL;
+    p->cycle.spline_open = false;
 }
 
 void cycles_see(struct program *p, const struct program_code *code)
@@ -300,6 +302,9 @@ bool cycles_next(struct program *p, struct move *move)
 {
     if (p->cycle.code == NULL || p->cycle.before > 0) {
         return false;
+    }
+    if (p->cycle.code->run == spline_start) {
+        return spline_next(p, move);
     }
     return p->cycle.code->run == cycles_start ? drilling_next(p, move) : threading_next(p, move);
 }

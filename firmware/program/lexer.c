@@ -150,7 +150,7 @@ static void close_line(struct program_lexer *l, struct scan *s, struct diagnosti
         fail(l, s, error, TAKT_ERROR_COMMENT_UNCLOSED, s->comment_column, '(');
     }
     l->text[l->length] = '\0';
-    l->end_column = s->failed ? 0 : (uint16_t)(s->column + 1);
+    l->end_column = s->failed || s->column >= UINT16_MAX ? 0 : (uint16_t)(s->column + 1);
 }
 
 enum lexer_result lexer_next_line(struct program_lexer *l, struct diagnostic *error)
@@ -163,7 +163,7 @@ enum lexer_result lexer_next_line(struct program_lexer *l, struct diagnostic *er
     if (c == SOURCE_END) {
         return LEXER_END;
     }
-    if (c == LEXER_GOES_ON) {
+    if (c == LEXER_GOES_ON && l->line > 0) {
         c = next_byte(l);
     } else {
         l->line++;

@@ -6,7 +6,7 @@
 
 #include "program/program.h"
 
-/* A line that begins with it goes on with the one before, whose number it has: a translator makes several lines of one. */
+/* A line that begins with it goes on with the one before, whose number it has: a translator makes several lines of one. The first line has none to go on with: there it is unknown. */
 #define LEXER_GOES_ON 0x1f
 
 enum lexer_result { LEXER_LINE, LEXER_END, LEXER_ERROR, LEXER_UNREADABLE };

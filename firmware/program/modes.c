@@ -183,11 +183,6 @@ bool modes_set_correction(struct program *p, const struct program_code *code)
     return true;
 }
 
-bool modes_refuse_spline(struct program *p, const struct program_code *code)
-{
-    return report_error_code(p, TAKT_ERROR_SPLINE_UNSUPPORTED, code->step, 0.0);
-}
-
 bool modes_accept(struct program *p, const struct program_code *code)
 {
     (void)p;

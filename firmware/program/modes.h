@@ -34,8 +34,6 @@ bool modes_set_overrides(struct program *p, const struct program_code *code);
 bool modes_set_override(struct program *p, const struct program_code *code);
 /* M120 (argument 1: on), M121 (0: off): layers of position-error correction. */
 bool modes_set_correction(struct program *p, const struct program_code *code);
-/* G5 and its kind */
-bool modes_refuse_spline(struct program *p, const struct program_code *code);
 /* Codes that are understood and change nothing here: G40. */
 bool modes_accept(struct program *p, const struct program_code *code);
 

@@ -20,6 +20,7 @@ enum move_kind {
     MOVE_ARC_CCW,
     MOVE_INVOLUTE_CW,
     MOVE_INVOLUTE_CCW,
+    MOVE_SPLINE,  /* a piece of a spline, told by its course */
     MOVE_THREAD,  /* a line whose feed follows the spindle: G33, G76 */
     MOVE_TAP,     /* the same into the hole; the spindle turns back at its end: G33.1 */
     MOVE_TAP_OUT, /* and back out, the spindle turning the other way; then as before again */
@@ -76,9 +77,12 @@ struct move {
         feed_mm_s; /* along the path; 0 for a rapid: as fast as the axes allow. rad/s when only A B C move */
     double feed_rev_mm; /* not 0: the feed follows the spindle, so much (mm, or rad) per revolution;
                            feed_mm_s is what that comes to at the commanded speed */
-    double tolerance_mm;     /* PATH_BLEND: largest distance from the programmed path; 0: exact */
-    double merge_mm;         /* PATH_BLEND: within this, short moves may become one (G64 Q) */
-    double cutter_radius_mm; /* > 0 */
+    double tolerance_mm; /* PATH_BLEND: largest distance from the programmed path; 0: exact */
+    double merge_mm;     /* PATH_BLEND: within this, short moves may become one (G64 Q) */
+    union {
+        double cutter_radius_mm; /* > 0 */
+        double spline_mm;        /* splines, which are never compensated: length */
+    };
     /* what position-error correction goes by */
     float work_mm[AXIS_LINEAR_COUNT];     /* zero of the part, machine coordinates */
     float overhang_mm[AXIS_LINEAR_COUNT]; /* tool offset */
@@ -88,6 +92,9 @@ struct move {
             double centre_mm[2];   /* arcs, and the base circle of involutes: absolute, first and
                                     second axis of the plane */
             double base_radius_mm; /* involutes: of the base circle */
+        };
+        struct {
+            double heading_rad[2], curvature_1_mm[2]; /* splines: at both ends */
         };
         double speed_ratio; /* MOVE_TAP_OUT: speed of the spindle relative to the way in, >= 1 */
         double dwell_s;     /* MOVE_DWELL */
@@ -159,6 +166,12 @@ static inline bool move_is_arc(const struct move *m)
 static inline bool move_is_involute(const struct move *m)
 {
     return m->kind == MOVE_INVOLUTE_CW || m->kind == MOVE_INVOLUTE_CCW;
+}
+
+/* No line between its ends? */
+static inline bool move_is_bent(const struct move *m)
+{
+    return move_is_arc(m) || move_is_involute(m) || m->kind == MOVE_SPLINE;
 }
 
 /* Does its position follow the spindle's angle, and not only its feed the spindle's speed? */

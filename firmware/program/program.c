@@ -10,6 +10,7 @@
 #include "program/lexer.h"
 #include "program/modes.h"
 #include "program/probe.h"
+#include "program/spline.h"
 #include "program/tool_values.h"
 #include "program/words.h"
 
@@ -49,7 +50,8 @@ static bool run_step(struct program *p, const struct program_code *code,
                      const struct program_modes *before)
 {
     cycles_see(p, code);
-    return cutter_allows(p, code) && code->run(p, code) && cutter_allows_change(p, code, before);
+    return spline_allows(p, code) && cutter_allows(p, code) && code->run(p, code) &&
+           cutter_allows_change(p, code, before);
 }
 
 static bool run_steps(struct program *p, const struct program_modes *before)
@@ -84,7 +86,7 @@ static bool run_line(struct program *p)
 static bool end_text(struct program *p)
 {
     const bool searching = p->flow.skip == SKIP_TO_SUB;
-    const bool good = flow_end_of_text(p);
+    const bool good = spline_ends(p) && flow_end_of_text(p);
 
     if (good) {
         emit_event(p, MOVE_END);
@@ -199,6 +201,7 @@ static bool takes_time(const struct move *m, const struct point *from)
     case MOVE_ARC_CCW:
     case MOVE_INVOLUTE_CW:
     case MOVE_INVOLUTE_CCW:
+    case MOVE_SPLINE:
     case MOVE_PROBE:
     case MOVE_INPUT:
     case MOVE_STOP:

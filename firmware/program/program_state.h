@@ -4,6 +4,7 @@
 #ifndef TAKT_PROGRAM_STATE_H
 #define TAKT_PROGRAM_STATE_H
 
+#include "geometry/nurbs.h"
 #include "program/codes.h"
 #include "program/program_limits.h"
 
@@ -243,8 +244,17 @@ struct program_tools {
     unsigned count_before;
 };
 
+/* A spline under way, in the plane and machine coordinates. */
+struct program_spline {
+    struct nurbs nurbs;
+    double from_mm[2];
+    double tail_mm[2]; /* G5: from its end to the point before it */
+    double knot_end;
+    uint32_t closing; /* knots of the end still to be added */
+};
+
 /*
- * A drilling cycle or G76 under way: its moves are made one by one as they are fetched. The line it is on has been
+ * A drilling cycle, G76 or a spline under way: its moves are made one by one as they are fetched. The line it is on has been
  * checked and done; lengths are in mm, positions work coordinates.
  */
 struct program_cycle {
@@ -252,22 +262,28 @@ struct program_cycle {
     unsigned before;                 /* moves in the queue that come first */
     struct move feed;                /* its cutting moves, but for their ends */
     enum axis axis[3];               /* first and second of the plane, the one across */
-    double hole_mm[2], step_mm[2];   /* the current hole; from one to the next */
-    double start_mm, retract_mm, clear_mm, bottom_mm, middle_mm; /* across the plane */
-    double aside_mm[2], peck_mm, dwell_s;
-    double clearance_mm; /* above the last cut, between pecks */
-    double depth_mm;     /* the current peck's */
-    uint32_t repeats;
-    unsigned stage, substage;
-    bool first;
-    struct program_thread {
-        double start_mm[3], end_mm[3]; /* X, Y, Z */
-        double side, depth_mm, first_mm, cut_mm, last_mm, height_mm, degression;
-        double slope; /* of the cuts: Z per depth */
-        double taper_mm, pitch_mm, taper_pitch_mm, length_end_mm;
-        uint32_t pass, springs;
-        bool taper_in, taper_out;
-    } thread;
+    bool spline_open;                /* further control points are to come */
+    union {
+        struct program_spline spline; /* splines alone */
+        struct {
+            double hole_mm[2], step_mm[2]; /* the current hole; from one to the next */
+            double start_mm, retract_mm, clear_mm, bottom_mm, middle_mm; /* across the plane */
+            double aside_mm[2], peck_mm, dwell_s;
+            double clearance_mm; /* above the last cut, between pecks */
+            double depth_mm;     /* the current peck's */
+            uint32_t repeats;
+            unsigned stage, substage;
+            bool first;
+            struct program_thread {
+                double start_mm[3], end_mm[3]; /* X, Y, Z */
+                double side, depth_mm, first_mm, cut_mm, last_mm, height_mm, degression;
+                double slope; /* of the cuts: Z per depth */
+                double taper_mm, pitch_mm, taper_pitch_mm, length_end_mm;
+                uint32_t pass, springs;
+                bool taper_in, taper_out;
+            } thread;
+        };
+    };
 };
 
 /* What the last move that was fetched asks of the world. */

@@ -2,6 +2,7 @@
 
 #include "base/maths.h"
 #include "geometry/involute.h"
+#include "geometry/quintic.h"
 #include "program/coordinates.h"
 #include "program/lexer.h"
 #include "program/report.h"
@@ -75,12 +76,33 @@ static bool check_involute_quarter(const struct travel *t, const struct curve *c
     return check_axis(t, axis, p.at[axis]);
 }
 
+/* The outermost points of a piece of a spline. */
+static bool check_quintic(const struct travel *t, const struct curve *c)
+{
+    for (unsigned i = 0; i < 2; i++) {
+        const unsigned axis = i == 0 ? c->quintic.first : c->quintic.second;
+        struct point p;
+        double s_mm;
+
+        if (quintic_extreme(c, i, &s_mm)) {
+            curve_point(c, s_mm, &p);
+            if (!check_axis(t, axis, p.at[axis])) {
+                return false;
+            }
+        }
+    }
+    return true;
+}
+
 static bool check_bent(const struct travel *t, const struct point *start, const struct move *m)
 {
     struct curve c;
 
     if (!move_curve(m, start, &c)) {
         return true;
+    }
+    if (c.kind == CURVE_QUINTIC) {
+        return check_quintic(t, &c);
     }
     for (unsigned quarter = 0; quarter < 4; quarter++) {
         const bool holds = c.kind == CURVE_ARC ? check_quarter(t, &c.arc, quarter)
@@ -103,7 +125,7 @@ bool travel_holds(const struct program_config *config, const struct point *start
             return false;
         }
     }
-    return !(move_is_arc(m) || move_is_involute(m)) || check_bent(&t, start, m);
+    return !move_is_bent(m) || check_bent(&t, start, m);
 }
 
 void travel_report(struct diagnostic *d, uint32_t line, uint32_t column,

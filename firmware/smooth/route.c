@@ -164,8 +164,10 @@ static void keep_bent(struct route *r, const struct curve *curve, float per_mm)
     b->per_mm = per_mm;
     if (curve->kind == CURVE_ARC) {
         b->arc = curve->arc;
-    } else {
+    } else if (curve->kind == CURVE_INVOLUTE) {
         b->involute = curve->involute;
+    } else {
+        b->quintic = curve->quintic;
     }
     r->bent_count++;
 }
@@ -255,12 +257,17 @@ static void bent_curve(const struct route *r, uint32_t index, struct curve *c)
     }
     if (b->kind == CURVE_ARC) {
         c->arc = b->arc;
-        c->slope.at[b->arc.first] = 0.0;
-        c->slope.at[b->arc.second] = 0.0;
-    } else {
+    } else if (b->kind == CURVE_INVOLUTE) {
         c->involute = b->involute;
-        c->slope.at[b->involute.first] = 0.0;
-        c->slope.at[b->involute.second] = 0.0;
+    } else {
+        c->quintic = b->quintic;
+    }
+    enum axis first;
+    enum axis second;
+
+    if (curve_plane(c, &first, &second)) {
+        c->slope.at[first] = 0.0;
+        c->slope.at[second] = 0.0;
     }
 }
 

@@ -34,6 +34,7 @@ struct route_bent {
     union {
         struct curve_arc arc;
         struct curve_involute involute;
+        struct curve_quintic quintic;
     };
 };
 

@@ -57,9 +57,10 @@ static void add_axes(struct line *l, unsigned axes, const struct point *point)
     }
 }
 
+static const char *const planes[] = {" G17", " G18", " G19"};
+
 static void add_arc(struct line *l, const struct move *move, const struct point *at)
 {
-    static const char *const planes[] = {" G17", " G18", " G19"};
     struct point centre = *at;
     enum axis first;
     enum axis second;
@@ -75,6 +76,16 @@ static void add_arc(struct line *l, const struct move *move, const struct point 
     } else {
         add_word(l, 'R', move->base_radius_mm);
     }
+    add_text(l, planes[move->plane]);
+}
+
+static void add_course(struct line *l, const struct move *move)
+{
+    add_word(l, 'I', move->heading_rad[0] * DEGREES_PER_RAD);
+    add_word(l, 'J', move->heading_rad[1] * DEGREES_PER_RAD);
+    add_word(l, 'P', move->curvature_1_mm[0]);
+    add_word(l, 'Q', move->curvature_1_mm[1]);
+    add_word(l, 'R', move->spline_mm);
     add_text(l, planes[move->plane]);
 }
 
@@ -193,13 +204,16 @@ static void add_motion(struct line *l, const struct move *move, unsigned axes,
                        const struct point *at)
 {
     static const char *const kinds[] = {"rapid",       "feed",         "arc_cw", "arc_ccw",
-                                        "involute_cw", "involute_ccw", "thread", "tap",
-                                        "tap_out",     "probe"};
+                                        "involute_cw", "involute_ccw", "spline", "thread",
+                                        "tap",         "tap_out",      "probe"};
 
     add_text(l, kinds[move->kind]);
     add_axes(l, axes, &move->end);
     if (move_is_arc(move) || move_is_involute(move)) {
         add_arc(l, move, at);
+    }
+    if (move->kind == MOVE_SPLINE) {
+        add_course(l, move);
     }
     if (move->kind != MOVE_RAPID) {
         add_feed(l, move, at);

@@ -17,6 +17,9 @@
  *     involute_cw, involute_ccw
  *                 X Y Z A B C  I J K  R  PLANE  F
  *                                        I J K is the centre of the base circle, R its radius
+ *     spline      X Y Z A B C  I J  P Q  R  PLANE  F
+ *                                        a piece of G5, G5.1, G5.2 or G6.2 (geometry/nurbs.h): direction (degrees) and
+ *                                        curvature (1/mm, counter-clockwise > 0) at start and end, and length
  *     thread      X Y Z A B C  F         F is always per revolution
  *     tap         X Y Z A B C  F         into the hole
  *     tap_out     X Y Z A B C  F  S      out of it; S is the speed of the spindle relative to tap

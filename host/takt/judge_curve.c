@@ -93,6 +93,30 @@ static double involute_distance(const struct curve *c, const struct point *p, do
     return judge_distance(p, &on);
 }
 
+/* The nearest place by Newton's steps s += (p - x) t / t^2 from the fraction's place: a piece hardly bends. */
+#define NEAREST_STEPS 8
+
+static double quintic_distance(const struct curve *c, const struct point *p, double *fraction)
+{
+    double s = maths_clamp(*fraction, 0, 1) * c->length_mm;
+    struct point on, tangent;
+
+    for (unsigned k = 0; k < NEAREST_STEPS; k++) {
+        double dot = 0, square = 0;
+
+        curve_point(c, s, &on);
+        curve_tangent(c, s, &tangent);
+        for (int i = 0; i < AXIS_COUNT; i++) {
+            dot += (p->at[i] - on.at[i]) * tangent.at[i];
+            square += tangent.at[i] * tangent.at[i];
+        }
+        s = maths_clamp(s + dot / square, 0, c->length_mm);
+    }
+    *fraction = s / c->length_mm;
+    curve_point(c, s, &on);
+    return judge_distance(p, &on);
+}
+
 double judge_curve_distance(const struct curve *c, const struct point *p, double *fraction)
 {
     switch (c->kind) {
@@ -102,6 +126,8 @@ double judge_curve_distance(const struct curve *c, const struct point *p, double
         return arc_distance(c, p, fraction);
     case CURVE_INVOLUTE:
         return involute_distance(c, p, fraction);
+    case CURVE_QUINTIC:
+        return quintic_distance(c, p, fraction);
     case CURVE_SPLINE: /* no program has one */
         break;
     }
@@ -158,6 +184,29 @@ static double involute_chord_error(const struct curve *c, const struct point *fr
     return largest;
 }
 
+/* The largest of so many places between both. */
+#define CHORD_PLACES 16
+
+static double quintic_chord_error(const struct curve *c, const struct point *from,
+                                  const struct point *to)
+{
+    struct curve chord;
+    double begin = 0, end = 1, largest = 0;
+
+    if (!curve_set_line(&chord, from, to))
+        return 0;
+    (void)quintic_distance(c, from, &begin);
+    (void)quintic_distance(c, to, &end);
+    for (unsigned k = 1; k < CHORD_PLACES; k++) {
+        double fraction = 0;
+        struct point p;
+
+        curve_point(c, (begin + (end - begin) * k / CHORD_PLACES) * c->length_mm, &p);
+        largest = maths_max(largest, line_distance(&chord, &p, &fraction));
+    }
+    return largest;
+}
+
 double judge_curve_chord_error(const struct curve *c, const struct point *from,
                                const struct point *to)
 {
@@ -168,6 +217,8 @@ double judge_curve_chord_error(const struct curve *c, const struct point *from,
         return arc_chord_error(&c->arc, from, to);
     case CURVE_INVOLUTE:
         return involute_chord_error(c, from, to);
+    case CURVE_QUINTIC:
+        return quintic_chord_error(c, from, to);
     case CURVE_SPLINE:
         break;
     }

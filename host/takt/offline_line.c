@@ -305,6 +305,9 @@ static bool rewrite(struct offline_rewriter *r, const struct offline_line *line,
         return rewrite_reference(r, line, pieces, text);
     if (offline_is_cycle(line))
         return offline_rewrite_cycle(r, line, pieces, text);
+    if (line->moves > 0 && line->move[0].kind == MOVE_SPLINE)
+        return refuse(r, line,
+                      "a spline cannot be corrected in the program: correct it while it runs");
     if (is_single(line))
         return rewrite_motion(r, line, pieces, text);
     return refuse(r, line, "this motion cannot be corrected in the program, only while it runs");

@@ -6,7 +6,8 @@
     canon_against_linuxcnc.py --show PROGRAM...   what LinuxCNC makes of them, as NAME.linuxcnc has it
 
 What must agree: the order and kind of the moves, their ends and the centres of arcs to 1e-6 mm or degrees, plane,
-direction and turns of arcs, and feeds to 1e-6 of themselves. Moves without length are left out on both sides, since
+direction and turns of arcs, and feeds to 1e-6 of themselves. LinuxCNC makes lines of a spline, from point to point of it:
+each of those must lie on ours. Moves without length are left out on both sides, since
 the two need not agree on them.
 
 A golden is a NAME.canon, which must agree, or a NAME.error, which LinuxCNC must refuse on the same line. Where takt
@@ -17,6 +18,7 @@ the tables name anything else.
 Exit status: 0 all agree, 1 something differs, 77 LinuxCNC's module is not installed.
 """
 import glob
+import math
 import os
 import re
 import shutil
@@ -33,7 +35,9 @@ DIFFERENCES = [os.path.join(SOURCE, "firmware", room, "README.md") for room in (
 DIFFERENCES_TITLE = "## Where it differs from LinuxCNC"
 TOLERANCE_MM = 1e-6
 TOLERANCE_FEED = 1e-6
-MOTIONS = "rapid|feed|arc_cw|arc_ccw|thread|tap|probe"
+# The canon has six decimals.
+TOLERANCE_SPLINE_MM = 2e-6
+MOTIONS = "rapid|feed|spline|arc_cw|arc_ccw|thread|tap|probe"
 # What LinuxCNC's module makes of a thread is a feed, without saying that it follows the spindle.
 KINDS = {"thread": "feed"}
 
@@ -48,9 +52,11 @@ def takt_move(line, kind, words):
     feed = value.get("F", "rev")
     feed = None if feed.endswith("rev") or kind in ("thread", "tap", "probe") else float(feed)
     kind = KINDS.get(kind, kind)
-    if not kind.startswith("arc"):
+    if not kind.startswith("arc") and kind != "spline":
         return linuxcnc.Move(line, kind, end, feed)
     plane = next(word for word in words if word[0] == "G")
+    if kind == "spline":
+        return linuxcnc.Move(line, kind, end, feed, None, plane, [float(value[word]) for word in "IJPQR"])
     axes = next(axes for axes, _, name in linuxcnc.PLANES.values() if name == plane)
     centre = tuple(float(value["IJK"[axis]]) for axis in axes)
     return linuxcnc.Move(line, kind, end, feed, centre, plane, int(value["P"]))
@@ -114,9 +120,77 @@ def difference(ours, theirs, largest):
     return None
 
 
+class Piece:
+    """A piece of a spline: the polynomial of firmware/geometry/quintic.c, from its course."""
+
+    def __init__(self, start, move):
+        self.axes = next(axes for axes, _, name in linuxcnc.PLANES.values() if name == move.plane)
+        heading, curvature, self.length = move.turns[0:2], move.turns[2:4], move.turns[4]
+        self.start, self.terms = start, []
+        for i, axis in enumerate(self.axes):
+            way = move.end[axis] - start[axis]
+            angle = [math.radians(h) for h in heading]
+            t = [self.length * (math.cos(a), math.sin(a))[i] for a in angle]
+            b = [self.length**2 / 2 * k * (-math.sin(a), math.cos(a))[i] for a, k in zip(angle, curvature)]
+            self.terms.append((start[axis], t[0], b[0], 10 * way - 6 * t[0] - 4 * t[1] - 3 * b[0] + b[1],
+                               -15 * way + 8 * t[0] + 7 * t[1] + 3 * b[0] - 2 * b[1],
+                               6 * way - 3 * t[0] - 3 * t[1] - b[0] + b[1]))
+
+    def off(self, point, u):
+        at = list(self.start)
+        for axis, terms in zip(self.axes, self.terms):
+            at[axis] = sum(c * u**n for n, c in enumerate(terms))
+        return math.dist(at, point)
+
+    def distance(self, point):
+        low, high = 0.0, 1.0
+        for _ in range(60):
+            third = (high - low) / 3
+            if self.off(point, low + third) < self.off(point, high - third):
+                high -= third
+            else:
+                low += third
+        return min(self.off(point, u) for u in (0.0, (low + high) / 2, 1.0))
+
+
+def is_near(piece, point):
+    """Can the piece come so near? It is no farther from its start than its length."""
+    return piece.off(point, 0.0) <= piece.length + 1e-3
+
+
+def without_splines(ours, theirs):
+    """Both lists with a run of pieces, and their lines along it, as one feed to its end; or what is off the curve."""
+    mine, yours, at, k = [], [], (0.0,) * len(linuxcnc.AXES), 0
+    for i, move in enumerate(ours):
+        if move.kind != "spline":
+            mine.append(move)
+            yours += theirs[k:k + 1]
+            k += 1
+            at = move.end
+            continue
+        if i == 0 or ours[i - 1].kind != "spline":
+            pieces = []
+        pieces.append(Piece(at, move))
+        at = move.end
+        if i + 1 < len(ours) and ours[i + 1].kind == "spline":
+            continue
+        while k < len(theirs) and theirs[k].kind == "feed":
+            point = theirs[k].end
+            near = min((p.distance(point) for p in pieces if is_near(p, point)), default=math.inf)
+            if near > TOLERANCE_SPLINE_MM:
+                break
+            k += 1
+        if k == 0 or distance(theirs[k - 1].end, at) > TOLERANCE_SPLINE_MM:
+            return None, None, f"line {move.line}: LinuxCNC's spline leaves ours behind its line {k}"
+    return mine, yours + theirs[k:], None
+
+
 def compare_moves(program, ours, theirs):
     """The verdict on two lists of moves: None, or what differs; and the largest differences."""
     largest = Largest()
+    ours, theirs, off = without_splines(ours, theirs)
+    if off:
+        return f"{program}: {off}", largest
     for our, their in zip(ours, theirs):
         what = difference(our, their, largest)
         if what:

@@ -23,7 +23,7 @@ static const struct faulty table[] = {
     {"G0 X1\nG71 D1", TAKT_ERROR_WORD_UNKNOWN, 2, 1, "G71"},
     {"X1 G89.5 K1", TAKT_ERROR_WORD_UNKNOWN, 1, 4, "G89.5"},
     {"G0 X1 N5", TAKT_ERROR_WORD_UNKNOWN, 1, 7, "N5"},
-    {"G5 X1", TAKT_ERROR_SPLINE_UNSUPPORTED, 1, 1, "G5"},
+    {"F1 G5.1 X1", TAKT_ERROR_WORD_MISSING, 1, 4, "I"},
     {"G81 Z1", TAKT_ERROR_WORD_MISSING, 1, 1, "R"},
     {"M8 G10 L2", TAKT_ERROR_WORD_MISSING, 1, 4, "P"},
     {"G1.05", TAKT_ERROR_WORD_UNKNOWN, 1, 1, "G1.05"},

@@ -166,6 +166,32 @@ static void test_a_comment_may_be_longer_than_a_line(void)
     expect_line(2, "y2");
 }
 
+/* Rather none than a wrong one: columns are kept in 16 bits. */
+static void test_the_end_behind_a_comment_has_its_column_or_none(void)
+{
+    static char text[70000];
+
+    memset(text, 'c', sizeof(text));
+    memcpy(text, "x1 (", 4);
+    text[299] = ')';
+    open_bytes(text, 300);
+    TEST_ASSERT_EQUAL_INT(LEXER_LINE, lexer_next_line(&lexer, &diagnostic));
+    TEST_ASSERT_EQUAL_UINT(301, lexer_column(&lexer, 2));
+    text[299] = 'c';
+    text[sizeof(text) - 1] = ')';
+    open_bytes(text, sizeof(text));
+    TEST_ASSERT_EQUAL_INT(LEXER_LINE, lexer_next_line(&lexer, &diagnostic));
+    TEST_ASSERT_EQUAL_UINT(0, lexer_column(&lexer, 2));
+}
+
+static void test_the_first_line_goes_on_with_none(void)
+{
+    open_text("\037x1\nx2\n\037x3");
+    expect_error(TAKT_ERROR_CHARACTER_UNKNOWN, 1, 1);
+    expect_line(2, "x2");
+    expect_line(2, "x3");
+}
+
 static void test_a_line_of_the_largest_length_is_read(void)
 {
     char text[PROGRAM_LINE_MAX + 3];
@@ -330,6 +356,8 @@ int main(void)
     RUN_TEST(test_the_last_comment_of_a_line_is_kept_as_it_stands_there);
     RUN_TEST(test_text_and_comment_fill_a_line);
     RUN_TEST(test_a_comment_may_be_longer_than_a_line);
+    RUN_TEST(test_the_first_line_goes_on_with_none);
+    RUN_TEST(test_the_end_behind_a_comment_has_its_column_or_none);
     RUN_TEST(test_a_line_of_the_largest_length_is_read);
     RUN_TEST(test_one_character_more_is_too_long);
     RUN_TEST(test_a_line_of_a_megabyte_is_passed_over);

@@ -1,0 +1,312 @@
+/*
+ * A NURBS curve of degree d over the span of its knots t_l <= u <= t_l+1 is a rational polynomial: in homogeneous
+ * coordinates (w x, w y, w) one whose blossom b(u_1, ..., u_d), which is linear in each of its arguments and does not mind
+ * their order, has the control points as values at successive knots. Values at u0 (d - j times) and u1 (j times) are the
+ * Bezier points of the curve between u0 and u1:
+ *
+ *     step r: point_i = (1 - a) point_i-1 + a point_i,   a = (u_r - t_i) / (t_i+d+1-r - t_i)
+ *
+ * A piece takes place, direction and curvature from both ends and its length from Gauss-Legendre quadrature, and is
+ * halved until three places of it are as near to the curve as NURBS_ERROR_MM and its tangent there has length 1. Its error grows
+ * like L^6 and is largest in the middle; halving makes it 64 times less.
+ *
+ * Rejected: arcs (curvature steps, and 1e-9 mm takes thousands); following the parameter (feed goes up and down with the
+ * spacing of the control points); finding the parameter of a length while moving (iterations in the control cycle).
+ */
+#include "geometry/nurbs.h"
+
+#include "base/maths.h"
+
+#include <assert.h>
+#include <string.h>
+
+/* A span is halved so often at most: a curve that is not smooth even then has no direction there. */
+#define HALVINGS_MAX 40
+
+/* The tangent may be so much longer or shorter than 1. */
+#define UNEVEN_MAX 1e-6
+
+/* A piece turns by less than that, rad: some 30 degrees. */
+#define TURN_MAX 0.5
+
+/* What lies nearer to its chord is straight. */
+#define STRAIGHT_MM 1e-10
+
+#define NEWTON_STEPS 4
+
+/* The Bezier points of a part of a span, and its length by its own parameter v = 0 ... 1. */
+struct part {
+    unsigned degree;
+    double point[NURBS_ORDER_MAX][3];
+};
+
+/* Place and its derivatives by v. */
+struct place {
+    double at[2], first[2], second[2];
+};
+
+void nurbs_open(struct nurbs *n, unsigned order)
+{
+    assert(order >= NURBS_ORDER_MIN && order <= NURBS_ORDER_MAX);
+    memset(n, 0, sizeof(*n));
+    n->order = order;
+}
+
+void nurbs_add_point(struct nurbs *n, const double at_mm[2], double weight)
+{
+    double *p = n->point[n->points % NURBS_KEPT];
+
+    p[0] = weight * at_mm[0];
+    p[1] = weight * at_mm[1];
+    p[2] = weight;
+    n->points++;
+}
+
+/* The span that the newest knot decides begins at this one. */
+static uint32_t span_of(const struct nurbs *n)
+{
+    return n->knots - n->order;
+}
+
+static double knot_at(const struct nurbs *n, uint32_t index)
+{
+    return n->knot[index % NURBS_KEPT];
+}
+
+void nurbs_add_knot(struct nurbs *n, double knot)
+{
+    n->knot[n->knots % NURBS_KEPT] = knot;
+    n->knots++;
+    if (n->knots < 2 * n->order - 1) {
+        return;
+    }
+    n->at = knot_at(n, span_of(n));
+    n->within = n->at < knot_at(n, span_of(n) + 1);
+}
+
+/* The value at u1 so often, else u0. */
+static void blossom(const struct nurbs *n, const double u[2], unsigned often, double value[3])
+{
+    const unsigned degree = n->order - 1;
+    const uint32_t first = span_of(n) - degree;
+    double q[NURBS_ORDER_MAX][3];
+
+    for (unsigned j = 0; j <= degree; j++) {
+        memcpy(q[j], n->point[(first + j) % NURBS_KEPT], sizeof(q[j]));
+    }
+    for (unsigned r = 1; r <= degree; r++) {
+        for (unsigned j = degree; j >= r; j--) {
+            const double low = knot_at(n, first + j);
+            const double high = knot_at(n, first + j + degree + 1 - r);
+            const double a = (u[r <= often ? 1 : 0] - low) / (high - low);
+
+            for (unsigned i = 0; i < 3; i++) {
+                q[j][i] = (1.0 - a) * q[j - 1][i] + a * q[j][i];
+            }
+        }
+    }
+    memcpy(value, q[degree], sizeof(q[degree]));
+}
+
+static void cut(const struct nurbs *n, double from, double to, struct part *part)
+{
+    const double u[2] = {from, to};
+
+    part->degree = n->order - 1;
+    for (unsigned j = 0; j <= part->degree; j++) {
+        blossom(n, u, j, part->point[j]);
+    }
+}
+
+/* By de Casteljau: the last three rows are value and differences. Of x = X / W: x' = (X' - W' x) / W and so on. */
+static void look(const struct part *part, double v, struct place *p)
+{
+    const double degree = (double)part->degree;
+    double q[NURBS_ORDER_MAX][3];
+    double first[3];
+    double second[3] = {0.0, 0.0, 0.0};
+
+    memcpy(q, part->point, sizeof(q));
+    for (unsigned left = part->degree; left > 0; left--) {
+        for (unsigned i = 0; i < 3; i++) {
+            if (left == 2) {
+                second[i] = degree * (degree - 1.0) * ((q[2][i] - q[1][i]) - (q[1][i] - q[0][i]));
+            }
+            if (left == 1) {
+                first[i] = degree * (q[1][i] - q[0][i]);
+            }
+            for (unsigned j = 0; j < left; j++) {
+                q[j][i] += v * (q[j + 1][i] - q[j][i]);
+            }
+        }
+    }
+    for (unsigned i = 0; i < 2; i++) {
+        p->at[i] = q[0][i] / q[0][2];
+        p->first[i] = (first[i] - first[2] * p->at[i]) / q[0][2];
+        p->second[i] = (second[i] - 2.0 * first[2] * p->first[i] - second[2] * p->at[i]) / q[0][2];
+    }
+}
+
+static double speed(const struct place *p)
+{
+    return maths_sqrt(p->first[0] * p->first[0] + p->first[1] * p->first[1]);
+}
+
+/* Gauss-Legendre, five points, of |x'(v)|. */
+static double length_of(const struct part *part)
+{
+    static const double place[5] = {0.04691007703066800, 0.23076534494715845, 0.5,
+                                    0.76923465505284155, 0.95308992296933200};
+    static const double weight[5] = {0.11846344252809454, 0.23931433524968324, 0.28444444444444444,
+                                     0.23931433524968324, 0.11846344252809454};
+    double sum = 0.0;
+
+    for (unsigned i = 0; i < 5; i++) {
+        struct place p;
+
+        look(part, place[i], &p);
+        sum += weight[i] * speed(&p);
+    }
+    return sum;
+}
+
+/* Direction and curvature: x' x x'' / |x'|^3. False: it has none. */
+static bool set_end(const struct place *p, unsigned end, struct curve_course *course)
+{
+    const double v = speed(p);
+
+    if (!(v > 0.0)) {
+        return false;
+    }
+    course->heading_rad[end] = maths_atan2(p->first[1], p->first[0]);
+    course->curvature_1_mm[end] =
+        (p->first[0] * p->second[1] - p->first[1] * p->second[0]) / (v * v * v);
+    return maths_is_finite(course->curvature_1_mm[end]);
+}
+
+/* Do all Bezier points lie on the chord, one behind the other? Their weights only space the curve on it. */
+static bool is_straight(const struct part *part, const struct place *from, const struct place *to)
+{
+    const double way[2] = {to->at[0] - from->at[0], to->at[1] - from->at[1]};
+    const double length = maths_sqrt(way[0] * way[0] + way[1] * way[1]);
+    double last = 0.0;
+
+    for (unsigned j = 0; j <= part->degree; j++) {
+        const double x = part->point[j][0] / part->point[j][2] - from->at[0];
+        const double y = part->point[j][1] / part->point[j][2] - from->at[1];
+        const double along = x * way[0] + y * way[1];
+
+        if (maths_abs(x * way[1] - y * way[0]) > STRAIGHT_MM * length ||
+            along < last - STRAIGHT_MM * length ||
+            maths_sqrt(x * x + y * y) > length + STRAIGHT_MM) {
+            return false;
+        }
+        last = maths_max(last, along);
+    }
+    return true;
+}
+
+static void set_straight(const struct place *from, const struct place *to,
+                         struct curve_course *course)
+{
+    const double way[2] = {to->at[0] - from->at[0], to->at[1] - from->at[1]};
+
+    *course = (struct curve_course){.length_mm = maths_sqrt(way[0] * way[0] + way[1] * way[1])};
+    course->heading_rad[0] = course->heading_rad[1] = maths_atan2(way[1], way[0]);
+}
+
+/* Distance of a point from the part, near v: its foot by Newton's steps v += (x - p) p' / p'^2. */
+static double distance_mm(const struct part *part, double v, const struct point *x)
+{
+    struct place p;
+
+    look(part, v, &p);
+    for (unsigned i = 0; i < NEWTON_STEPS; i++) {
+        const double dot = (x->at[0] - p.at[0]) * p.first[0] + (x->at[1] - p.at[1]) * p.first[1];
+        const double square = p.first[0] * p.first[0] + p.first[1] * p.first[1];
+
+        v = maths_clamp(v + dot / square, 0.0, 1.0);
+        look(part, v, &p);
+    }
+    const double off[2] = {x->at[0] - p.at[0], x->at[1] - p.at[1]};
+
+    return maths_sqrt(off[0] * off[0] + off[1] * off[1]);
+}
+
+/* Does its quintic lie on the part, with a tangent of length 1? Numbers that are none do not. */
+static bool fits(const struct part *part, const struct place *from, const struct place *to,
+                 const struct curve_course *course)
+{
+    const struct point start = {{from->at[0], from->at[1]}};
+    const struct point end = {{to->at[0], to->at[1]}};
+    const double turn = course->heading_rad[1] - course->heading_rad[0];
+    struct curve c;
+
+    if (maths_abs(turn - MATHS_TWO_PI * maths_round(turn / MATHS_TWO_PI)) > TURN_MAX ||
+        !curve_set_quintic(&c, &start, &end, PLANE_XY, course)) {
+        return false;
+    }
+    for (unsigned quarter = 1; quarter < 4; quarter++) {
+        const double s_mm = 0.25 * quarter * c.length_mm;
+        struct point x;
+        struct point t;
+
+        curve_point(&c, s_mm, &x);
+        curve_tangent(&c, s_mm, &t);
+        const double uneven = t.at[0] * t.at[0] + t.at[1] * t.at[1] - 1.0;
+
+        if (!(maths_abs(uneven) <= 2.0 * UNEVEN_MAX &&
+              distance_mm(part, 0.25 * quarter, &x) <= NURBS_ERROR_MM)) {
+            return false;
+        }
+    }
+    return true;
+}
+
+/* From n->at to that parameter. False: it must be shorter. */
+static bool make_piece(const struct nurbs *n, double to, struct nurbs_piece *piece)
+{
+    struct part part;
+    struct place ends[2];
+
+    cut(n, n->at, to, &part);
+    look(&part, 0.0, &ends[0]);
+    look(&part, 1.0, &ends[1]);
+    memcpy(piece->end_mm, ends[1].at, sizeof(piece->end_mm));
+    if (is_straight(&part, &ends[0], &ends[1])) {
+        set_straight(&ends[0], &ends[1], &piece->course);
+        return true;
+    }
+    piece->course.length_mm = length_of(&part);
+    return set_end(&ends[0], 0, &piece->course) && set_end(&ends[1], 1, &piece->course) &&
+           fits(&part, &ends[0], &ends[1], &piece->course);
+}
+
+/* A part without length, of equal points, is none. */
+static bool take_piece(struct nurbs *n, double to, const struct nurbs_piece *piece)
+{
+    n->at = to;
+    n->within = to < knot_at(n, span_of(n) + 1);
+    return piece->course.length_mm >= CURVE_LENGTH_MIN_MM;
+}
+
+enum nurbs_result nurbs_next(struct nurbs *n, struct nurbs_piece *piece)
+{
+    while (n->within) {
+        const double end = knot_at(n, span_of(n) + 1);
+        double way = end - n->at;
+        unsigned halvings = 0;
+
+        while (!make_piece(n, halvings == 0 ? end : n->at + way, piece)) {
+            way *= 0.5;
+            if (++halvings > HALVINGS_MAX || !(n->at + way > n->at)) {
+                n->within = false;
+                return NURBS_CUSP;
+            }
+        }
+        if (take_piece(n, halvings == 0 ? end : n->at + way, piece)) {
+            return NURBS_PIECE;
+        }
+    }
+    return NURBS_NONE;
+}
