@@ -45,7 +45,7 @@
 #ifndef PROGRAM_NAMES_MAX
 #define PROGRAM_NAMES_MAX 96
 #endif
-#define PROGRAM_NAME_MAX 31
+#define PROGRAM_NAME_MAX 63
 
 /* Open IF, WHILE, DO and REPEAT blocks, in all calls together. */
 #define PROGRAM_BLOCKS_MAX 24
@@ -55,10 +55,9 @@
 #ifndef PROGRAM_SUBS_MAX
 #define PROGRAM_SUBS_MAX 48
 #endif
-/* Characters of all names in use, of parameters and O-words, each with one more. Here: as many and long as they can be. */
+/* Characters of all names in use, of parameters and O-words, each with one more. Here: as many as they can be, of 31 each. */
 #ifndef PROGRAM_TEXT_MAX
-#define PROGRAM_TEXT_MAX                                                                           \
-    ((PROGRAM_NAMES_MAX + PROGRAM_SUBS_MAX + PROGRAM_BLOCKS_MAX + 1) * (PROGRAM_NAME_MAX + 1))
+#define PROGRAM_TEXT_MAX ((PROGRAM_NAMES_MAX + PROGRAM_SUBS_MAX + PROGRAM_BLOCKS_MAX + 1) * 32)
 #endif
 /*
  * Numbers that calls keep for their ends: of #1 ... #30 those up to the last that is not 0, and what M70 and M73 save. Here: as

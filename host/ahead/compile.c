@@ -39,7 +39,11 @@ uint64_t compile_digest(uint64_t digest, const struct move *m)
     digest = add_number(digest, m->turns);
     digest = fnv_add_double(digest, m->centre_mm[0]);
     digest = fnv_add_double(digest, m->centre_mm[1]);
-    return fnv_add_double(digest, m->base_radius_mm);
+    digest = fnv_add_double(digest, m->base_radius_mm);
+    if (m->kind != MOVE_SPLINE)
+        return digest;
+    digest = fnv_add_double(digest, m->curvature_1_mm[1]);
+    return fnv_add_double(digest, m->spline_mm);
 }
 
 /* The time in which the axes cross the smallest tolerance; 0: nothing is blended. */
@@ -396,11 +400,13 @@ static void share_tolerance(struct compile *c, struct ahead_element *e)
 
 static struct ahead_shape shape_of(const struct move *move)
 {
-    return (struct ahead_shape){.kind = move->kind,
-                                .plane = move->plane,
-                                .turns = move->turns,
-                                .centre_mm = {move->centre_mm[0], move->centre_mm[1]},
-                                .base_radius_mm = move->base_radius_mm};
+    return (struct ahead_shape){
+        .kind = move->kind,
+        .plane = move->plane,
+        .turns = move->turns,
+        .heading_rad = {move->heading_rad[0], move->heading_rad[1]},
+        .curvature_1_mm = {move->curvature_1_mm[0], move->curvature_1_mm[1]},
+        .spline_mm = move->spline_mm};
 }
 
 static enum compile_result add_motion(struct compile *c, const struct move *move)

@@ -31,15 +31,17 @@ struct exact {
 static void push_next(struct exact *x)
 {
     const struct ahead_element *e = &x->of->element[x->pushed];
-    const struct move move = {.kind = e->shape.kind,
-                              .path = x->stops ? PATH_EXACT_STOP : PATH_EXACT,
-                              .plane = e->shape.plane,
-                              .line = e->line,
-                              .end = e->curve.end,
-                              .feed_mm_s = maths_is_finite(e->feed_mm_s) ? e->feed_mm_s : 0,
-                              .turns = e->shape.turns,
-                              .centre_mm = {e->shape.centre_mm[0], e->shape.centre_mm[1]},
-                              .base_radius_mm = e->shape.base_radius_mm};
+    const struct move move = {
+        .kind = e->shape.kind,
+        .path = x->stops ? PATH_EXACT_STOP : PATH_EXACT,
+        .plane = e->shape.plane,
+        .line = e->line,
+        .end = e->curve.end,
+        .feed_mm_s = maths_is_finite(e->feed_mm_s) ? e->feed_mm_s : 0,
+        .turns = e->shape.turns,
+        .heading_rad = {e->shape.heading_rad[0], e->shape.heading_rad[1]},
+        .curvature_1_mm = {e->shape.curvature_1_mm[0], e->shape.curvature_1_mm[1]},
+        .spline_mm = e->shape.spline_mm};
 
     path_push(&x->path, &move);
     if (++x->pushed == x->of->count)

@@ -23,8 +23,9 @@ struct ahead_shape {
     enum move_kind kind;
     enum plane plane;
     unsigned turns;
-    double centre_mm[2];
-    double base_radius_mm;
+    double heading_rad[2],
+        curvature_1_mm[2]; /* of splines; arcs and involutes have centre and radius there */
+    double spline_mm;
 };
 
 struct ahead_element {

@@ -38,7 +38,7 @@ enum dialect_use {
     DIALECT_SUBROUTINE /* O<name> call, behind the rest of its line, with P, Q and R as #1, #2 and #3 */
 };
 
-#define DIALECT_SUBROUTINE_MAX 31
+#define DIALECT_SUBROUTINE_MAX 63
 #define DIALECT_CODES_MAX      64
 
 struct dialect_code {

@@ -96,6 +96,8 @@ class Move:
         self.start = start
         values = {word[0]: word[1:] for word in words[2:]}
         self.end = tuple(float(values[axis]) for axis in "XYZ")
+        if self.kind == "spline":
+            self.set_spline(values)
         if self.is_arc() or self.is_involute():
             self.centre = tuple(float(values[axis]) for axis in "IJK")
             self.plane = {"G17": (0, 1, 2), "G18": (2, 0, 1), "G19": (1, 2, 0)}["G" + values["G"]]
@@ -139,6 +141,31 @@ class Move:
         along = self.start[third] + place * (self.end[third] - self.start[third])
         return math.hypot(off, point[third] - along), place
 
+    def set_spline(self, values):
+        """The polynomial of fifth degree with the place, direction and curvature of both ends (firmware/geometry)."""
+        first, second = {"G17": (0, 1), "G18": (2, 0), "G19": (1, 2)}["G" + values["G"]]
+        length = float(values["R"])
+        heading = [math.radians(float(values[word])) for word in "IJ"]
+        curve = [float(values[word]) * length**2 / 2 for word in "PQ"]
+        self.terms = [(s, 0, 0, 0, 0, 0) for s in self.start]
+        for axis, turn in ((first, 0.0), (second, math.pi / 2)):
+            way = self.end[axis] - self.start[axis]
+            a, b = (length * math.cos(h - turn) for h in heading)
+            c, d = (-k * math.sin(h - turn) for k, h in zip(curve, heading))
+            self.terms[axis] = (self.start[axis], a, c, 10 * way - 6 * a - 4 * b - 3 * c + d,
+                                -15 * way + 8 * a + 7 * b + 3 * c - 2 * d, 6 * way - 3 * a - 3 * b - c + d)
+
+    def spline_distance(self, point):
+        """By thirds: a piece hardly bends."""
+        def off(u):
+            return math.dist(point, [sum(k * u**n for n, k in enumerate(terms)) for terms in self.terms])
+
+        low, high = 0.0, 1.0
+        for _ in range(50):
+            third = (high - low) / 3
+            low, high = (low, high - third) if off(low + third) < off(high - third) else (low + third, high)
+        return min((off(u), u) for u in (0.0, (low + high) / 2, 1.0))
+
     def set_arc(self):
         first, second, _ = self.plane
         at = [self.start[first] - self.centre[first], self.start[second] - self.centre[second]]
@@ -156,6 +183,8 @@ class Move:
         """Distance of a point from the curve, and where on it (0 ... 1), near the place given."""
         if self.is_involute():
             return self.involute_distance(point)
+        if self.kind == "spline":
+            return self.spline_distance(point)
         return self.arc_distance(point, near) if self.is_arc() else self.line_distance(point)
 
     def line_distance(self, point):
@@ -185,7 +214,7 @@ def canon(program, *options):
     check(status == 0, "canon reads " + program, err)
     moves, at = [], (0.0, 0.0, 0.0)
     for line in out.splitlines():
-        if line.split()[1] in ("rapid", "feed", "arc_cw", "arc_ccw", "involute_cw", "involute_ccw"):
+        if line.split()[1] in ("rapid", "feed", "arc_cw", "arc_ccw", "involute_cw", "involute_ccw", "spline"):
             moves.append(Move(line, at))
             at = moves[-1].end
     return moves

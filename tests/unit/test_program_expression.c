@@ -206,7 +206,8 @@ static void test_parameters_that_cannot_be(void)
     check_error("#<none>", TAKT_ERROR_PARAMETER_UNDEFINED, 3, "NONE");
     check_error("#<>", TAKT_ERROR_PARAMETER_NAME, 2, "<");
     check_error("#<none", TAKT_ERROR_PARAMETER_NAME, 2, "<");
-    check_error("#<a2345678901234567890123456789012>", TAKT_ERROR_PARAMETER_NAME, 2, "<");
+    check_error("#<a234567890123456789012345678901234567890123456789012345678901234>",
+                TAKT_ERROR_PARAMETER_NAME, 2, "<");
     check("[0*EXISTS[#<a234567890123456789012345678901>]]", 0.0);
 }
 

@@ -270,7 +270,8 @@ static void test_words_that_cannot_be_read_are_refused(void)
     expect_refused("o<> call\n", TAKT_ERROR_OWORD_LABEL, 1);
     expect_refused("o<a call\n", TAKT_ERROR_OWORD_LABEL, 1);
     expect_refused("o<a234567890123456789012345678901> call\n", TAKT_ERROR_SUB_UNKNOWN, 1);
-    expect_refused("o<a2345678901234567890123456789012> call\n", TAKT_ERROR_OWORD_LABEL, 1);
+    expect_refused("o<a234567890123456789012345678901234567890123456789012345678901234> call\n",
+                   TAKT_ERROR_OWORD_LABEL, 1);
     expect_refused("o call\n", TAKT_ERROR_NUMBER_EXPECTED, 1);
     expect_refused("o1 if 1\n", TAKT_ERROR_BRACKET_EXPECTED, 1);
     expect_refused("o1 if [1] G0 X1\n", TAKT_ERROR_OWORD_ALONE, 1);
