@@ -491,7 +491,9 @@ void controller_cycle(struct controller *c, const struct inputs *inputs)
         drives_await_rest(&c->drives);
     }
     drives_send(&c->drives, &c->can, &c->record.set);
-    drives_send_outputs(&c->drives, &c->can, &c->outputs);
+    if (drives_have_io(&c->drives)) {
+        drives_send_outputs(&c->drives, &c->can, &c->outputs);
+    }
     if (steps_are_there(&c->steps)) {
         controller_steps_cycle(c);
     }

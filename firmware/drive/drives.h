@@ -133,6 +133,11 @@ void drives_sync(struct drives *d, const struct can_port *port);
  */
 void drives_send(struct drives *d, const struct can_port *port, const struct point *setpoint);
 
+/* There are I/O nodes. */
+static inline bool drives_have_io(const struct drives *d)
+{
+    return d->io_count > 0;
+}
 /* After drives_send: the outputs of the I/O nodes, when they have changed, and now and then. */
 void drives_send_outputs(struct drives *d, const struct can_port *port,
                          const struct outputs *outputs);

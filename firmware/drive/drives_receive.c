@@ -124,7 +124,8 @@ static void take_frames(struct drives *d, const struct can_port *port)
 void drives_receive(struct drives *d, const struct can_port *port)
 {
     take_frames(d, port);
-    drives_io_check(d);
+    if (d->io_count > 0)
+        drives_io_check(d);
     if (d->second != 0) /* the axis is where its first drive is */
         d->actual.at[d->axis[d->first].config.axis] = d->axis[d->first].actual_mm;
     switch (d->state) {
