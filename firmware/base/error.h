@@ -185,8 +185,8 @@
     X(DRIVE_UNANSWERED, "the drive of axis %w does not answer within %v ms")                       \
     X(DRIVE_UNMAPPED, "the drive of axis %w is in no PDO of every SYNC and refuses: %x, %m")       \
     X(DRIVE_PERIOD, "the drive of axis %w keeps 60C2, %v us between targets; cycle_us is %l")      \
-    X(DRIVE_SCALING, "the drive of axis %w counts %v units in a turn of its motor; by "            \
-                     "increments_per_mm it is %l")                                                 \
+    X(DRIVE_SCALING,                                                                               \
+      "the drive of axis %w counts %v units in a turn of its motor; increments_per_mm says %l")    \
     X(DRIVE_FOLLOWING, "axis %w lags %v %u behind its setpoint")                                   \
     X(DRIVE_SKEW, "axis %w is %v mm off the other drive of its gantry")                            \
     X(DRIVE_HOMING, "the drive of axis %w reports an error while homing: statusword %x")           \
@@ -250,8 +250,8 @@
     X(MACHINE_CONTROLLER_NODE, "controller_node %v is the drive_node of axis %w")                  \
     X(MACHINE_IO, "%w is wired wrongly, or has no node before it: the first is io 1")              \
     X(MACHINE_IO_NODE, "%w: another node on the bus has its id %v")                                \
-    X(MACHINE_GANTRY, "the gantry needs an axis X, Y or Z with a CAN drive, a node of its own, a " \
-                      "skew_max_mm, and with it at most %v drives")                                \
+    X(MACHINE_GANTRY,                                                                              \
+      "the gantry needs a CAN drive on X, Y or Z, a free node, skew_max_mm; %v drives at most")    \
     X(MACHINE_FORM, "'%w' of this machine is for comparison: this image has only its default")     \
     X(SETTINGS_ABSENT, "no settings are stored: make them with takt machine --pack and load them") \
     X(SETTINGS_KIND, "these are no settings of this version")                                      \

@@ -123,7 +123,7 @@ static void look(const struct part *part, double v, struct place *p)
 {
     const double degree = (double)part->degree;
     double q[NURBS_ORDER_MAX][3];
-    double first[3];
+    double first[3] = {0.0, 0.0, 0.0};
     double second[3] = {0.0, 0.0, 0.0};
 
     memcpy(q, part->point, sizeof(q));

@@ -2,9 +2,12 @@
 
 #include "program/lexer.h"
 
-static char lower(char c)
+char comment_lower(char c)
 {
-    return c >= 'A' && c <= 'Z' ? (char)(c - 'A' + 'a') : c;
+    if (c >= 'A' && c <= 'Z') {
+        return (char)(c - 'A' + 'a');
+    }
+    return c;
 }
 
 unsigned comment_match(const struct program_lexer *l, const char *word)
@@ -14,7 +17,7 @@ unsigned comment_match(const struct program_lexer *l, const char *word)
     while (lexer_comment(l, at) == ' ') {
         at++;
     }
-    while (*word != '\0' && lower(lexer_comment(l, at)) == *word) {
+    while (*word != '\0' && comment_lower(lexer_comment(l, at)) == *word) {
         word++;
         at++;
     }

@@ -6,6 +6,8 @@
 
 #include "program/program.h"
 
+/* Of a letter its small one; anything else as it is. */
+char comment_lower(char c);
 /* What begins the line's last comment, after spaces and whatever its case: how far it reaches, or 0. word: in lower case. */
 unsigned comment_match(const struct program_lexer *l, const char *word);
 

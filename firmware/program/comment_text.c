@@ -83,7 +83,7 @@ static bool read_named(struct reading *r, double *value)
         const char c = next(r, 0);
 
         if (c != ' ' && c != '\t') {
-            name[length++] = c >= 'A' && c <= 'Z' ? (char)(c - 'A' + 'a') : c;
+            name[length++] = comment_lower(c);
         }
     }
     r->at += next(r, 0) == '>' ? 1 : 0;

@@ -196,7 +196,8 @@ void virtual_drives_wait(struct virtual_drives *set, uint32_t waited_ns, uint64_
     if (period_us == 0 || (set->alone_ns == 0 && !any_enabled(set)))
         return;
     set->silent_ns += waited_ns;
-    for (; set->silent_ns >= patience_ns + set->alone_ns; set->alone_ns += period_us * 1000)
+    for (; set->silent_ns >= patience_ns + set->alone_ns;
+         set->alone_ns += (uint64_t)period_us * 1000)
         virtual_drives_step(set, period_us * 1000);
 }
 

@@ -103,7 +103,8 @@ static bool is_private(const char *host)
     if (getaddrinfo(host, NULL, &wanted, &found) != 0)
         return true;
     for (const struct addrinfo *one = found; one != NULL; one = one->ai_next)
-    private = private && is_loopback(one->ai_addr);
+        if (!is_loopback(one->ai_addr))
+    private = false;
     freeaddrinfo(found);
     return private;
 }

@@ -25,7 +25,7 @@ static void add_machine(char *path, size_t room, const char *name)
     size_t at = strlen(path);
 
     for (; *name != '\0' && at + 1 < room; name++)
-        path[at++] = strchr(allowed, *name) != NULL ? *name : '-';
+        path[at++] = (char)(strchr(allowed, *name) != NULL ? *name : '-');
     path[at] = '\0';
 }
 

@@ -115,8 +115,7 @@ static void test_io_nodes_follow_each_other_and_have_ids_of_their_own(void)
 static void expect_gantry_refused(void)
 {
     expect(TAKT_ERROR_MACHINE_GANTRY,
-           "the gantry needs an axis X, Y or Z with a CAN drive, a node of its own, a skew_max_mm, "
-           "and with it at most 6 drives");
+           "the gantry needs a CAN drive on X, Y or Z, a free node, skew_max_mm; 6 drives at most");
 }
 
 static void test_a_gantry_has_a_second_drive_on_can_and_an_alarm(void)

@@ -28,7 +28,8 @@ static void expect(enum dialect dialect, const char *from, const char *to)
     memcpy(found, result.text.bytes, result.text.length);
     found[result.text.length] = '\0';
     for (char *c = found; *c != '\0'; c++)
-        *c = *c == DIALECT_GOES_ON ? '|' : *c;
+        if (*c == DIALECT_GOES_ON)
+            *c = '|';
     TEST_ASSERT_EQUAL_STRING(to, found);
     dialect_text_free(&result.text);
 }

@@ -326,8 +326,8 @@ static void test_scaling_is_checked_by_the_travel_of_a_turn(void)
     set_rule((struct fake_rule){.object = SDO_OBJECT(0x608F, 1), .value = 4096});
     set_rule((struct fake_rule){.object = SDO_OBJECT(0x608F, 2), .value = 1});
     assert_refused(TAKT_ERROR_DRIVE_SCALING,
-                   "the drive of axis Y (node 2) counts 4096 units in a turn of its motor; by "
-                   "increments_per_mm it is 10000");
+                   "the drive of axis Y (node 2) counts 4096 units in a turn of its motor; "
+                   "increments_per_mm says 10000");
 }
 
 static void test_a_drive_that_boots_slowly_is_reset_once(void)

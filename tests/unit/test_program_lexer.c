@@ -154,12 +154,21 @@ static void test_text_and_comment_fill_a_line(void)
     TEST_ASSERT_EQUAL_INT('X', lexer_comment(&lexer, lexer.comment_length - 1U));
 }
 
+/* "x1 (" */
+static void begin_comment(char text[])
+{
+    text[0] = 'x';
+    text[1] = '1';
+    text[2] = ' ';
+    text[3] = '(';
+}
+
 static void test_a_comment_may_be_longer_than_a_line(void)
 {
     char text[2 * PROGRAM_LINE_MAX];
 
     memset(text, 'c', sizeof(text));
-    memcpy(text, "x1 (", 4);
+    begin_comment(text);
     memcpy(text + sizeof(text) - 5, ")\ny2", 5);
     open_text(text);
     expect_line(1, "x1");
@@ -172,7 +181,7 @@ static void test_the_end_behind_a_comment_has_its_column_or_none(void)
     static char text[70000];
 
     memset(text, 'c', sizeof(text));
-    memcpy(text, "x1 (", 4);
+    begin_comment(text);
     text[299] = ')';
     open_bytes(text, 300);
     TEST_ASSERT_EQUAL_INT(LEXER_LINE, lexer_next_line(&lexer, &diagnostic));
