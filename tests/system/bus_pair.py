@@ -36,6 +36,16 @@ def run_controller(name, *options, program=PROGRAM):
     return status, t.load_json(json) if os.path.exists(json) else None, err
 
 
+def run_both(machine, program, what):
+    """Summaries on the embedded bus and on one of two processes; None: what, a claim, does not hold."""
+    status, embedded, err = run_controller("embedded", "--machine", machine, program=program)
+    t.check(status == 0, "the embedded bus runs the program", err)
+    drives = Drives("slcan:pty", "--machine", machine)
+    status, outside, err = run_controller("outside", "--machine", machine, "--bus", "slcan:" + drives.address, program=program)
+    drives.stop()
+    return (embedded, outside) if t.check(status == 0, what, err) and outside else None
+
+
 def compare(name, embedded, summary):
     """Setpoints and everything the drives have reported are the same to the last digit."""
     t.check(summary["setpoint_digest"] == embedded["setpoint_digest"], name + ": same setpoints", summary["setpoint_digest"])

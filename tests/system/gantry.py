@@ -91,13 +91,9 @@ def check_racking():
 
 def check_outside():
     """The same in two processes; when the drives have come to rest after homing depends on when the start heard of them."""
-    status, embedded, err = bus_pair.run_controller("embedded", "--machine", FILE, program=PROGRAM)
-    t.check(status == 0, "the embedded bus runs the program", err)
-    drives = bus_pair.Drives("slcan:pty", "--machine", FILE)
-    status, summary, err = bus_pair.run_controller("outside", "--machine", FILE, "--bus", "slcan:" + drives.address, program=PROGRAM)
-    drives.stop()
-    if t.check(status == 0, "takt drives has both drives of the gantry", err) and summary:
-        t.check(summary["setpoint_digest"] == embedded["setpoint_digest"], "with the same setpoints")
+    both = bus_pair.run_both(FILE, PROGRAM, "takt drives has both drives of the gantry")
+    if both:
+        t.check(both[0]["setpoint_digest"] == both[1]["setpoint_digest"], "with the same setpoints")
 
 
 def check_refusals():

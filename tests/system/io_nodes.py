@@ -85,13 +85,9 @@ def check_digest():
 
 def check_outside():
     """The same in two processes: the trace is that of the embedded bus."""
-    status, embedded, err = bus_pair.run_controller("embedded", "--machine", MACHINE, program=LOOP)
-    t.check(status == 0, "the embedded bus runs the program", err)
-    drives = bus_pair.Drives("slcan:pty", "--machine", MACHINE)
-    status, summary, err = bus_pair.run_controller("outside", "--machine", MACHINE, "--bus", "slcan:" + drives.address, program=LOOP)
-    drives.stop()
-    if t.check(status == 0, "takt drives has I/O nodes, too", err) and summary:
-        bus_pair.compare("outside", embedded, summary)
+    both = bus_pair.run_both(MACHINE, LOOP, "takt drives has I/O nodes, too")
+    if both:
+        bus_pair.compare("outside", *both)
 
 
 def check_service():
@@ -101,23 +97,15 @@ def check_service():
     client = service.client()
     client.wait_for("STATE", p.IDLE)
     client.put("MODE", 1)
-    t.check(line(client, "M64 P0") == p.COMPLETED, "a line sets an output", client.text("ALARM_TEXT"))
+    t.check(client.run_line("M64 P0") == p.COMPLETED, "a line sets an output", client.text("ALARM_TEXT"))
     client.put_text("MDI_TEXT", "M8")
     client.put("MDI_START", 1)
     client.wait_for("STATE", p.ALARM)
     t.check("the stop input, bit 0 of I/O node 20, is open" in client.text("ALARM_TEXT"), "the stop input is an alarm", client.text("ALARM_TEXT"))
     client.put("RESET", 1)
     client.wait_for("STATE", p.IDLE)
-    t.check(line(client, "G0 X5") == p.COMPLETED and client.get("POSITION_X") == 5, "after a reset the axes move", client.text("ALARM_TEXT"))
+    t.check(client.run_line("G0 X5") == p.COMPLETED and client.get("POSITION_X") == 5, "after a reset the axes move", client.text("ALARM_TEXT"))
     service.stop()
-
-
-def line(client, text):
-    runs = client.counts("RUNS")
-    client.put_text("MDI_TEXT", text)
-    client.put("MDI_START", 1)
-    client.wait_while("RUNS", runs)
-    return client.counts("OUTCOME")
 
 
 check_outputs()

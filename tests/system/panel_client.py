@@ -176,6 +176,15 @@ class Client:
         self.wait_while("RUNS", runs)
         return self.counts("OUTCOME")
 
+    def run_line(self, text):
+        """By hand (MODE 1): how it ends."""
+        runs = self.counts("RUNS")
+        self.put("MODE", 1)
+        self.put_text("MDI_TEXT", text)
+        self.put("MDI_START", 1)
+        self.wait_while("RUNS", runs)
+        return self.counts("OUTCOME")
+
 
 def checked(request, reply):
     if reply[0] == request[0] | 0x80:

@@ -159,23 +159,15 @@ def check_errors_of_programs():
     service.stop()
 
 
-def run_line(client, text):
-    runs = client.counts("RUNS")
-    client.put_text("MDI_TEXT", text)
-    client.put("MDI_START", 1)
-    client.wait_while("RUNS", runs)
-    return client.counts("OUTCOME")
-
-
 def check_by_hand():
     service, client = ready()
     t.check(client.refusal("MDI_START", 1) == (4, 1), "MDI needs its mode")
     client.put("MODE", 1)
-    t.check(run_line(client, "G0 X5 Y-5") == p.COMPLETED, "a line runs", client.text("ALARM_TEXT"))
+    t.check(client.run_line("G0 X5 Y-5") == p.COMPLETED, "a line runs", client.text("ALARM_TEXT"))
     t.check((client.get("POSITION_X"), client.get("POSITION_Y")) == (5.0, -5.0), "to where it says")
-    t.check(run_line(client, "G91") == run_line(client, "X1") == p.COMPLETED and client.get("POSITION_X") == 6, "with the modes of the line before")
-    t.check(run_line(client, "G90 X5") == p.COMPLETED, "and back")
-    t.check(run_line(client, "G0 X9999") == p.FAILED and "travel" in client.text("ALARM_TEXT"), "not beyond the travel")
+    t.check(client.run_line("G91") == client.run_line("X1") == p.COMPLETED and client.get("POSITION_X") == 6, "with the modes of the line before")
+    t.check(client.run_line("G90 X5") == p.COMPLETED, "and back")
+    t.check(client.run_line("G0 X9999") == p.FAILED and "travel" in client.text("ALARM_TEXT"), "not beyond the travel")
     client.put("RESET", 1)
     client.wait_for("STATE", p.IDLE)
 
@@ -227,7 +219,7 @@ def check_emergency():
     at = client.get("POSITION_X")
     t.check(5 < at < 400 and abs(client.get("ACTUAL_X") - at) < 0.01, "the drives are where the setpoint is", at)
     client.put("MODE", 1)
-    t.check(run_line(client, "G0 X0") == p.COMPLETED and client.get("POSITION_X") == 0, "and move from there")
+    t.check(client.run_line("G0 X0") == p.COMPLETED and client.get("POSITION_X") == 0, "and move from there")
     service.stop()
 
 

@@ -17,15 +17,6 @@ def start(*options):
     return service, client
 
 
-def run_line(client, text):
-    runs = client.counts("RUNS")
-    client.put("MODE", 1)
-    client.put_text("MDI_TEXT", text)
-    client.put("MDI_START", 1)
-    client.wait_while("RUNS", runs)
-    return client.counts("OUTCOME")
-
-
 def kept():
     """The text of the later generation."""
     found = {}
@@ -54,8 +45,8 @@ def change_everything(client):
     client.put("TOOL_OFFSET_Z", 30.25)
     client.put("TOOL_WEAR_LENGTH", 1234)
     client.put("TOOL_WEAR_TIME", 56)
-    t.check(run_line(client, "#100 = 2.5") == p.COMPLETED, "a line sets a parameter", client.text("ALARM_TEXT"))
-    t.check(run_line(client, "G10 L1 P4 Z7.5 R2") == p.COMPLETED, "and a tool", client.text("ALARM_TEXT"))
+    t.check(client.run_line("#100 = 2.5") == p.COMPLETED, "a line sets a parameter", client.text("ALARM_TEXT"))
+    t.check(client.run_line("G10 L1 P4 Z7.5 R2") == p.COMPLETED, "and a tool", client.text("ALARM_TEXT"))
 
 
 def check_everything(client, when):
@@ -66,7 +57,7 @@ def check_everything(client, when):
     t.check((client.get("TOOL_WEAR_LENGTH"), client.get("TOOL_WEAR_TIME")) == (1234, 56), "with its wear " + when)
     client.put("TOOL_SELECT", 4)
     t.check(client.get("TOOL_OFFSET_Z") == 7.5 and client.get("TOOL_DIAMETER") == 4, "what a line has made of a tool is there " + when)
-    t.check(run_line(client, "G53 G0 X#100") == p.COMPLETED and client.get("POSITION_X") == 2.5, "the parameter is there " + when)
+    t.check(client.run_line("G53 G0 X#100") == p.COMPLETED and client.get("POSITION_X") == 2.5, "the parameter is there " + when)
 
 
 def check_kept():
