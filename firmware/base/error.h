@@ -98,6 +98,11 @@
     X(CYCLE_UPSIDE_DOWN, "the bottom of '%w' is %v mm above its R")                                \
     X(CYCLE_TOO_LONG, "'%w' would repeat itself more than %v times")                               \
     X(THREAD_DEPTH, "the depth of the thread, '%w', must be above that of the first cut, J")       \
+    X(PROFILE_PLANE, "'%w' works only in G18, without rotation of the coordinate system")          \
+    X(PROFILE_LONG, "the profile of '%w' has more than %v moves, fillets and chamfers")            \
+    X(PROFILE_BACK, "the profile of '%w' turns back: it may go only one way in Z, for G72 in X")   \
+    X(PROFILE_CORNER, "a fillet (A) or chamfer (C) in the profile of '%w' does not fit")           \
+    X(PROFILE_GONE, "nothing remains of the profile of '%w' at this distance (D, E)")              \
     X(SPLINE_OPEN, "'%w' comes before the spline is ended (by G5.3, or all knots of G6.2)")        \
     X(SPLINE_ABSENT,                                                                               \
       "'%w' ends a spline that has not begun: G5.2, or G6.2 with a point, comes first")            \

@@ -1,6 +1,7 @@
 #include "program/approach.h"
 
 #include "base/maths.h"
+#include "program/contour.h"
 #include "program/coordinates.h"
 #include "program/emit.h"
 #include "program/events.h"
@@ -153,7 +154,8 @@ static bool is_within_travel(struct program *p)
 
 bool approach_begins(struct program *p, bool *good)
 {
-    if (!p->approach.pending || p->lexer.line != p->config.from_line || flow_is_skipping(p)) {
+    if (!p->approach.pending || p->lexer.line != p->config.from_line || flow_is_skipping(p) ||
+        contour_is_open(p)) {
         return false;
     }
     p->approach.pending = false;

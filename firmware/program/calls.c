@@ -325,6 +325,18 @@ static void place_of_code(const struct program *p, const struct program_code *co
     o->column = lexer_column(&p->lexer, p->words.code_span[code->step].begin);
 }
 
+bool calls_call_number(struct program *p, const struct program_code *code, uint32_t number)
+{
+    struct oword o = {.kind = OWORD_CALL, .label.id = number};
+
+    place_of_code(p, code, &o);
+    if (!begin_call(p, &o, 1)) {
+        return false;
+    }
+    memset(p->config.parameters->local, 0, sizeof(p->config.parameters->local));
+    return true;
+}
+
 static bool call_program(struct program *p, const struct program_code *code)
 {
     struct oword o = {.kind = OWORD_M98};

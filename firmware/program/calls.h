@@ -18,6 +18,8 @@ bool calls_begin_program(struct program *p, const struct oword *o);
 bool calls_define(struct program *p, const struct oword *o);
 /* O... call */
 bool calls_call(struct program *p, const struct oword *o);
+/* The same without arguments, for a code of the line. */
+bool calls_call_number(struct program *p, const struct program_code *code, uint32_t number);
 /* O... return and O... endsub */
 bool calls_return(struct program *p, const struct oword *o);
 

@@ -212,23 +212,33 @@ static void set_circle(const struct program *p, const struct point *end, struct 
     c->end_mm[1] = end->at[c->second];
 }
 
-bool circular_move(struct program *p, const struct program_code *code)
+bool circular_find_centre(struct program *p, const struct program_code *code,
+                          const struct point *end, double centre_mm[2])
 {
     const bool clockwise = code->argument == MOVE_ARC_CW;
-    struct point end;
     struct circle c;
-    struct move m;
 
-    coordinates_end(p, &end);
-    set_circle(p, &end, &c);
+    set_circle(p, end, &c);
     if (!check_words(p, &c) ||
         !(words_has(p, 'r') ? centre_from_radius(p, &c, clockwise) : centre_from_offsets(p, &c))) {
         return false;
     }
+    centre_mm[0] = c.centre_mm[0];
+    centre_mm[1] = c.centre_mm[1];
+    return true;
+}
+
+bool circular_move(struct program *p, const struct program_code *code)
+{
+    struct point end;
+    struct move m;
+
+    coordinates_end(p, &end);
     emit_prepare(p, (enum move_kind)code->argument, &end, &m);
+    if (!circular_find_centre(p, code, &end, m.centre_mm)) {
+        return false;
+    }
     m.plane = p->modes.plane;
-    m.centre_mm[0] = c.centre_mm[0];
-    m.centre_mm[1] = c.centre_mm[1];
     m.turns = 1;
     if (words_has(p, 'p') && !words_whole(p, 'p', 1.0, PROGRAM_TURNS_MAX, &m.turns)) {
         return false;

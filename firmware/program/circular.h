@@ -18,6 +18,10 @@ bool circular_check_plane(struct program *p, enum axis first, enum axis second);
 bool circular_check_axes(struct program *p, enum axis first, enum axis second);
 
 /* G2, G3; argument: MOVE_ARC_CW or MOVE_ARC_CCW */
+/* The centre of the line's arc to end, in the axes of the plane. False: p->error is set. */
+bool circular_find_centre(struct program *p, const struct program_code *code,
+                          const struct point *end, double centre_mm[2]);
+
 bool circular_move(struct program *p, const struct program_code *code);
 
 #endif

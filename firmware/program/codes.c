@@ -2,6 +2,7 @@
 
 #include "program/calls.h"
 #include "program/circular.h"
+#include "program/contour.h"
 #include "program/coordinates.h"
 #include "program/cutter.h"
 #include "program/cycles.h"
@@ -26,6 +27,13 @@
 #define WORDS_THREADING                                                                            \
     (WORDS_CYCLE | LETTERS_CENTRE | LETTER_BIT('e') | LETTER_BIT('h') | LETTER_BIT('p') |          \
      LETTER_BIT('q'))
+
+#define WORDS_PROFILE (LETTER_BIT('x') | LETTER_BIT('z') | LETTER_BIT('d') | LETTER_BIT('q'))
+#define ROUGH(number_x10, kind)                                                                    \
+    {                                                                                              \
+        'g', number_x10, GROUP_MOTION, STEP_MOTION, kind,                                          \
+            WORDS_PROFILE | LETTER_BIT('i') | LETTER_BIT('r'), contour_start                       \
+    }
 
 /* With the words it takes beside those of its point. */
 #define SPLINE(number_x10, words, which)                                                           \
@@ -123,6 +131,14 @@ static const struct program_code codes[] = {
     {'g', 611, GROUP_PATH, STEP_PATH, PATH_EXACT_STOP, 0, modes_set_path},
     {'g', 640, GROUP_PATH, STEP_PATH, PATH_BLEND,
      LETTER_BIT('p') | LETTER_BIT('q') | LETTER_BIT('r'), modes_set_path},
+    {'g', 700, GROUP_MOTION, STEP_MOTION, TURNING_FINISH,
+     WORDS_PROFILE | LETTER_BIT('e') | LETTER_BIT('p'), contour_start},
+    ROUGH(710, TURNING_ROUGH),
+    ROUGH(711, TURNING_NO_POCKETS),
+    ROUGH(712, TURNING_POCKETS),
+    ROUGH(720, TURNING_ROUGH + CONTOUR_FACING),
+    ROUGH(721, TURNING_NO_POCKETS + CONTOUR_FACING),
+    ROUGH(722, TURNING_POCKETS + CONTOUR_FACING),
     CYCLE(730, LETTER_BIT('d') | LETTER_BIT('q'), CYCLE_CHIP_BREAK),
     CYCLE(740, LETTER_BIT('p'), CYCLE_TAP + CYCLE_LEFT),
     {'g', 760, GROUP_MOTION, STEP_MOTION, 0, WORDS_THREADING, threading_start},
@@ -198,6 +214,7 @@ static const struct program_code codes[] = {
 #undef CYCLE
 #undef OUTPUT
 #undef PROBE
+#undef ROUGH
 #undef SPLINE
 #undef SWITCH
 #undef SYSTEM

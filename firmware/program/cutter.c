@@ -96,7 +96,7 @@ bool cutter_use_diameter(struct program *p, const struct program_code *code)
 /* Among the motions G0 to G3, G2.2 and G3.2 can be compensated; G80 moves nothing. */
 static bool is_compensable(const struct program_code *code)
 {
-    static const uint16_t numbers_x10[] = {0, 10, 20, 22, 30, 32, 800};
+    static const uint16_t numbers_x10[] = {0, 10, 20, 22, 30, 32, 700, 800};
 
     for (unsigned i = 0; i < sizeof(numbers_x10) / sizeof(numbers_x10[0]); i++) {
         if (code->number_x10 == numbers_x10[i]) {

@@ -1,6 +1,7 @@
 #include "program/cycles.h"
 
 #include "base/maths.h"
+#include "program/contour.h"
 #include "program/coordinates.h"
 #include "program/drilling.h"
 #include "program/emit.h"
@@ -19,6 +20,7 @@ void cycles_open(struct program *p)
 {
     p->cycle.code = NULL;
     p->cycle.spline_open = false;
+    p->cycle.contour_open = false;
 }
 
 void cycles_see(struct program *p, const struct program_code *code)
@@ -305,6 +307,9 @@ bool cycles_next(struct program *p, struct move *move)
     }
     if (p->cycle.code->run == spline_start) {
         return spline_next(p, move);
+    }
+    if (p->cycle.code->run == contour_start) {
+        return contour_next(p, move);
     }
     return p->cycle.code->run == cycles_start ? drilling_next(p, move) : threading_next(p, move);
 }

@@ -2,6 +2,7 @@
 
 #include "program/approach.h"
 #include "program/comment.h"
+#include "program/contour.h"
 #include "program/coordinates.h"
 #include "program/cutter.h"
 #include "program/cycles.h"
@@ -126,7 +127,10 @@ static bool take_line(struct program *p)
         return true;
     }
     tool_values_begin_line(p);
-    return words_read(p) && comment_run(p) && run_line(p);
+    if (!words_read(p) || !comment_run(p)) {
+        return false;
+    }
+    return contour_is_open(p) ? contour_take_line(p) : run_line(p);
 }
 
 /* The line to start at waits until the way to it has been fetched. */
@@ -226,7 +230,7 @@ static bool has_progress(const struct program *p, const struct point *from)
 static bool advance(struct program *p)
 {
     const struct point from = p->modes.at;
-    const bool good = read_line(p);
+    const bool good = contour_follow(p, read_line(p));
 
     if (!good) {
         flow_fail(p);

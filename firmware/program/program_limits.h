@@ -5,7 +5,7 @@
 #ifndef TAKT_PROGRAM_LIMITS_H
 #define TAKT_PROGRAM_LIMITS_H
 
-#define PROGRAM_MEMORY_MAX 32768
+#define PROGRAM_MEMORY_MAX 49152
 
 /* Characters of a line, comments included, its end not (LinuxCNC's limit). */
 #define PROGRAM_LINE_MAX 256
@@ -21,6 +21,10 @@
 #endif
 /* L of a cycle, pecks of a hole, passes of a thread: what goes beyond is a mistake. */
 #define PROGRAM_REPEATS_MAX 10000
+/* Moves, fillets and chamfers of the profile of G70 to G72. */
+#ifndef PROGRAM_CONTOUR_MAX
+#define PROGRAM_CONTOUR_MAX 80
+#endif
 /* Highest number of a digital and of an analogue input or output. */
 #define PROGRAM_DIGITAL_MAX  31
 #define PROGRAM_ANALOGUE_MAX 3

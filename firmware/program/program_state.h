@@ -7,6 +7,7 @@
 #include "geometry/nurbs.h"
 #include "program/codes.h"
 #include "program/program_limits.h"
+#include "program/turning.h"
 
 #include <stddef.h>
 
@@ -253,8 +254,21 @@ struct program_spline {
     uint32_t closing; /* knots of the end still to be added */
 };
 
+/* G70 to G72 while the lines of the profile are read. */
+struct program_contour {
+    const struct program_code *code;
+    struct point start;      /* of the cycle, machine position */
+    struct profile_point at; /* the profile's end so far: work coordinates of Z and X */
+    struct turning_words words;
+    uint32_t line; /* of the code */
+    uint16_t column;
+    uint8_t calls; /* that are open behind the profile's end */
+    bool begun;    /* the profile has a line */
+    bool failed;   /* an error in the profile: nothing is cut */
+};
+
 /*
- * A drilling cycle, G76 or a spline under way: its moves are made one by one as they are fetched. The line it is on has been
+ * A drilling cycle, G76, a profile or a spline under way: its moves are made one by one as they are fetched. The line it is on has been
  * checked and done; lengths are in mm, positions work coordinates.
  */
 struct program_cycle {
@@ -263,8 +277,10 @@ struct program_cycle {
     struct move feed;                /* its cutting moves, but for their ends */
     enum axis axis[3];               /* first and second of the plane, the one across */
     bool spline_open;                /* further control points are to come */
+    bool contour_open;               /* the lines of a profile are being read */
     union {
-        struct program_spline spline; /* splines alone */
+        struct program_spline spline;   /* splines alone */
+        struct program_contour contour; /* G70 to G72 alone */
         struct {
             double hole_mm[2], step_mm[2]; /* the current hole; from one to the next */
             double start_mm, retract_mm, clear_mm, bottom_mm, middle_mm; /* across the plane */
@@ -301,7 +317,10 @@ struct program {
     struct program_approach approach;
     struct program_tools tools;
     struct program_cycle cycle;
-    struct move queue[PROGRAM_QUEUE_MAX]; /* made by the current line, not yet fetched */
+    union {
+        struct move queue[PROGRAM_QUEUE_MAX]; /* made by the current line, not yet fetched */
+        struct turning turning; /* from the first line of a profile to the last move along it */
+    };
     unsigned queue_first, queue_count;
     struct diagnostic error;
     struct diagnostic warning[PROGRAM_WARNINGS_MAX];

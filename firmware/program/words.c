@@ -2,6 +2,7 @@
 
 #include "base/maths.h"
 #include "program/circular.h"
+#include "program/contour.h"
 #include "program/expression.h"
 #include "program/lexer.h"
 #include "program/names.h"
@@ -20,6 +21,12 @@
 
 /* Largest difference of a code's number times ten from a whole number. */
 #define CODE_WHOLE_MAX 1e-3
+
+/* In a profile U and W are X and Z from where it has come to. */
+static uint32_t letters_known(const struct program *p)
+{
+    return contour_is_open(p) ? LETTERS_KNOWN | LETTERS_NO_AXIS : LETTERS_KNOWN;
+}
 
 static struct program_span span_from(const struct program *p, unsigned begin)
 {
@@ -113,10 +120,10 @@ static bool read_value(struct program *p, char letter, unsigned begin)
     struct program_words *w = &p->words;
     const unsigned i = LETTER_INDEX(letter);
 
-    if (is_missing_axis(p, letter)) {
+    if (!contour_is_open(p) && is_missing_axis(p, letter)) {
         return report_error_at(p, TAKT_ERROR_AXIS_MISSING, begin, 0.0);
     }
-    if ((LETTER_BIT(letter) & LETTERS_KNOWN) == 0) {
+    if ((LETTER_BIT(letter) & letters_known(p)) == 0) {
         return unknown_word(p, begin);
     }
     if (words_has(p, letter)) {
@@ -229,6 +236,9 @@ static uint32_t motion_letters(const struct program *p)
 {
     const struct program_code *motion = p->modes.motion;
 
+    if (contour_is_open(p)) {
+        return LETTERS_AXES | LETTERS_NO_AXIS;
+    }
     if (motion != NULL && motion->run == circular_move) {
         return LETTERS_AXES | LETTERS_CENTRE;
     }
@@ -260,6 +270,9 @@ static bool check_use(struct program *p)
     gather_used(&p->words, &used, &shared);
     if (!add_implied_motion(p, used)) {
         return false;
+    }
+    if (contour_is_open(p)) {
+        return true;
     }
     gather_used(&p->words, &used, &shared);
     if ((p->words.given & shared) != 0) {

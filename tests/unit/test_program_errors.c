@@ -20,7 +20,7 @@ struct faulty {
 
 /* One line of every kind of fault; those of expressions, arcs and events have tests of their own. */
 static const struct faulty table[] = {
-    {"G0 X1\nG71 D1", TAKT_ERROR_WORD_UNKNOWN, 2, 1, "G71"},
+    {"G0 X1\nG77 D1", TAKT_ERROR_WORD_UNKNOWN, 2, 1, "G77"},
     {"X1 G89.5 K1", TAKT_ERROR_WORD_UNKNOWN, 1, 4, "G89.5"},
     {"G0 X1 N5", TAKT_ERROR_WORD_UNKNOWN, 1, 7, "N5"},
     {"F1 G5.1 X1", TAKT_ERROR_WORD_MISSING, 1, 4, "I"},
@@ -168,7 +168,7 @@ static void test_a_program_can_be_opened_again(void)
 
 static void test_the_interpreter_fits_into_its_memory(void)
 {
-    TEST_ASSERT_TRUE(sizeof(struct program) + sizeof(struct parameters) <= 32768U);
+    TEST_ASSERT_TRUE(sizeof(struct program) + sizeof(struct parameters) <= PROGRAM_MEMORY_MAX);
 }
 
 int main(void)
