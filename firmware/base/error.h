@@ -140,6 +140,7 @@
     X(OFFSET_CROWDED, "more than %v commands between two moves of a compensated contour")          \
     X(DWELL_MISSING, "'%w' needs P, the seconds to wait")                                          \
     X(TOOL_MISSING, "'%w' needs a tool: no T has been given")                                      \
+    X(REPEATS, "the program goes back to its beginning for ever (M99); it was read for %v lines")  \
     X(TOOL_UNKNOWN, "tool %v is not in the tool table: its length counts as 0")                    \
     X(SPINDLE_LIMITED, "'%w' is above the spindle's maximum of %v rev/min, which is used instead") \
     /* correction tables */                                                                        \

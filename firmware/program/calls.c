@@ -366,6 +366,7 @@ static bool start_again(struct program *p, const struct oword *o)
     }
     p->phase = PROGRAM_AT_START;
     p->flow.blocks = 0;
+    p->flow.restarted = true;
     return flow_jump(p, &beginning, o);
 }
 

@@ -2,6 +2,7 @@
 
 #include "base/maths.h"
 #include "program/calls.h"
+#include "program/emit.h"
 #include "program/expression.h"
 #include "program/lexer.h"
 #include "program/report.h"
@@ -419,6 +420,15 @@ bool flow_take(struct program *p)
     return oword_read(p, &o) && oword_keep(p, &o) && actions[o.kind](p, &o);
 }
 
+/* A program that means to run for ever has been read for long enough. */
+static bool stop_reading(struct program *p)
+{
+    report_warning(p, TAKT_ERROR_REPEATS, (struct program_span){0, 0}, p->config.repeats_max);
+    p->phase = PROGRAM_ENDED;
+    emit_event(p, MOVE_END);
+    return true;
+}
+
 bool flow_count_line(struct program *p)
 {
     struct program_flow *f = &p->flow;
@@ -431,6 +441,9 @@ bool flow_count_line(struct program *p)
     }
     f->lines_repeated++;
     if (p->config.repeats_max > 0 && f->lines_repeated > p->config.repeats_max) {
+        if (f->restarted) {
+            return stop_reading(p);
+        }
         diagnostic_set(&p->error, TAKT_ERROR_ENDLESS, p->lexer.line, 0, "", 0,
                        p->config.repeats_max);
         return false;

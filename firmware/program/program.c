@@ -158,6 +158,9 @@ static bool read_line(struct program *p)
         p->phase = PROGRAM_ENDED;
         return false;
     }
+    if (p->phase == PROGRAM_ENDED) {
+        return true;
+    }
     switch (result) {
     case LEXER_LINE:
         return take_or_approach(p);

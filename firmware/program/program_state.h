@@ -218,6 +218,7 @@ struct program_flow {
     bool
         failed; /* there has been an error: nothing is repeated any more, so that it is told once */
     bool value_returned;
+    bool restarted; /* M99 of the main program has gone back to the beginning */
     double value;
     struct program_place furthest; /* everything before it has been read */
     uint32_t lines_again;          /* lines read again since the last move that takes time */

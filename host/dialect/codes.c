@@ -73,6 +73,8 @@ static void use_declared(struct translator *t, struct line_word *w, const struct
         translate_add(&t->behind, "M%u P%u", code->use == DIALECT_OUTPUT_ON ? 64U : 65U,
                       code->number);
         break;
+    case DIALECT_FEED:
+        return;
     case DIALECT_SUBROUTINE:
         call_subroutine(t, w, code);
         break;
@@ -99,10 +101,42 @@ static bool use_difference(struct translator *t, struct line_word *w, const stru
     return false;
 }
 
+static bool has_words(const struct line *l)
+{
+    for (unsigned i = 0; i < l->words; i++) {
+        if (l->word[i].kind != WORD_COMMENT)
+            return l->word[i].letter != '%';
+    }
+    return false;
+}
+
+/* F that the machine file declares: before the first words, and instead of F0. */
+static void translate_feed(struct translator *t)
+{
+    const struct dialect_code *feed = NULL;
+    struct line_word *f = line_find(&t->line, 'f', 0);
+
+    for (unsigned i = 0; i < t->codes->count; i++)
+        feed = t->codes->code[i].use == DIALECT_FEED ? &t->codes->code[i] : feed;
+    if (feed == NULL)
+        return;
+    if (!t->feed_given && has_words(&t->line)) {
+        t->feed_given = true;
+        translate_add(&t->before, "F%u", feed->number);
+    }
+    if (f != NULL && f->is_number && f->value == 0.0)
+        line_blank(&t->line, f);
+}
+
 void codes_translate(struct translator *t)
 {
     struct line *l = &t->line;
 
+    if (t->absolute && has_words(l)) {
+        t->absolute = false;
+        translate_add(&t->before, "G90.1");
+    }
+    translate_feed(t);
     for (unsigned i = 0; i < l->words; i++) {
         struct line_word *w = &l->word[i];
         const struct dialect_code *code = declared(t, w);

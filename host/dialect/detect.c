@@ -6,6 +6,7 @@
 #include "dialect/difference.h"
 #include "dialect/line.h"
 
+#include <math.h>
 #include <string.h>
 
 #define BIT(dialect) (1U << (dialect))
@@ -223,11 +224,126 @@ static bool is_declared(const struct line_word *w, const struct dialect_codes *c
 {
     const int number = line_code(w);
 
+    for (unsigned i = 0; i < codes->count; i++) {
+        if (codes->code[i].use == DIALECT_FEED)
+            return true;
+    }
     for (unsigned i = 0; i < codes->count && number >= 0; i++) {
         if (codes->code[i].letter == w->letter && codes->code[i].number_x10 == number)
             return true;
     }
     return false;
+}
+
+/* Axis words before the first motion: Grbl begins in G0. Without any motion behind it is a mistake. */
+static void look_at_motion(struct look *k)
+{
+    struct dialect_detector *d = k->d;
+    struct line *l = &k->line;
+    bool motion;
+    bool other;
+
+    line_look_for_motion(l, &motion, &other);
+    if (!motion && !other && !d->moves && d->bare_line == 0 && line_has_axis(l) &&
+        line_is_plain(l)) {
+        d->bare_line = d->line;
+        show(d->bare, l->text, l->length < 24 ? (int)l->length : 24);
+    }
+    d->moves = d->moves || motion;
+    if (d->moves && d->bare_line != 0 && d->found_line[DIALECT_GRBL] == 0) {
+        d->found_line[DIALECT_GRBL] = d->bare_line;
+        memcpy(d->found[DIALECT_GRBL], d->bare, sizeof d->bare);
+    }
+}
+
+/* #NAME */
+static void look_at_names(struct look *k)
+{
+    const char *text = k->line.text;
+
+    for (size_t at = 0; at < strcspn(text, "(;"); at++) {
+        if (text[at] == '#' && line_name_length(&k->line, at + 1) > 0)
+            note(k, BIT(DIALECT_GRBL), NULL);
+    }
+}
+
+/* Words that LinuxCNC refuses beside others, and other controllers pass over. */
+static void look_at_unused(struct look *k)
+{
+    static const uint16_t cycles[] = {730, 810, 830, 850};
+    struct line *l = &k->line;
+    struct line_word *p = line_find(l, 'p', 0);
+    struct line_word *s = line_find(l, 's', 0);
+
+    for (size_t i = 0; i < sizeof cycles / sizeof cycles[0]; i++) {
+        if (p != NULL && line_find_code(l, 'g', cycles[i]) != NULL)
+            note(k, INDUSTRY, p);
+    }
+    if (p != NULL && line_find_code(l, 'm', 60) != NULL && line_find_code(l, 'g', 40) == NULL)
+        note(k, BIT(DIALECT_GRBL), p);
+    if (s != NULL && line_find(l, 's', (unsigned)(s - l->word) + 1) != NULL)
+        note(k, BIT(DIALECT_GRBL), s);
+}
+
+/* Does an arc from the place to end fit a centre? To 1 % of its radius, at least 0.02. */
+static bool fits(const double from[2], const double end[2], const double centre[2])
+{
+    const double a = hypot(from[0] - centre[0], from[1] - centre[1]);
+    const double b = hypot(end[0] - centre[0], end[1] - centre[1]);
+
+    return fabs(a - b) < fmax(0.02, 0.01 * a);
+}
+
+static void look_at_arc(struct look *k, const double end[2])
+{
+    struct dialect_arcs *arcs = &k->d->arcs;
+    const struct line_word *i = line_find(&k->line, 'i', 0);
+    const struct line_word *j = line_find(&k->line, 'j', 0);
+
+    if (i == NULL || j == NULL || !i->is_number || !j->is_number || !arcs->known[0] ||
+        !arcs->known[1])
+        return;
+    const double absolute[2] = {i->value, j->value};
+    const double relative[2] = {arcs->at[0] + i->value, arcs->at[1] + j->value};
+    const bool is_absolute = fits(arcs->at, end, absolute);
+    const bool is_relative = fits(arcs->at, end, relative);
+
+    arcs->relative += is_relative && !is_absolute ? 1 : 0;
+    arcs->absolute += is_absolute && !is_relative ? 1 : 0;
+    if (arcs->absolute == 1 && arcs->line == 0)
+        arcs->line = k->d->line;
+}
+
+/* Follows X and Y through the text. */
+static void look_at_place(struct look *k)
+{
+    struct dialect_arcs *arcs = &k->d->arcs;
+    struct line *l = &k->line;
+    double end[2] = {arcs->at[0], arcs->at[1]};
+    bool moves = false;
+
+    arcs->incremental = (arcs->incremental || line_find_code(l, 'g', 910) != NULL) &&
+                        line_find_code(l, 'g', 900) == NULL;
+    arcs->said = arcs->said || line_find_code(l, 'g', 901) != NULL ||
+                 line_find_code(l, 'g', 911) != NULL || line_find_code(l, 'g', 180) != NULL ||
+                 line_find_code(l, 'g', 190) != NULL;
+    if (line_find_code(l, 'g', 0) != NULL || line_find_code(l, 'g', 10) != NULL)
+        arcs->turns = false;
+    if (line_find_code(l, 'g', 20) != NULL || line_find_code(l, 'g', 30) != NULL)
+        arcs->turns = true;
+    for (unsigned axis = 0; axis < 2; axis++) {
+        const struct line_word *w = line_find(l, (char)('x' + (char)axis), 0);
+
+        if (w == NULL)
+            continue;
+        moves = true;
+        end[axis] = w->value + (arcs->incremental ? arcs->at[axis] : 0.0);
+        arcs->known[axis] = w->is_number && (arcs->known[axis] || !arcs->incremental);
+    }
+    if (arcs->turns && moves)
+        look_at_arc(k, end);
+    arcs->at[0] = end[0];
+    arcs->at[1] = end[1];
 }
 
 static void look_at_words(struct look *k, const struct dialect_codes *codes)
@@ -239,6 +355,10 @@ static void look_at_words(struct look *k, const struct dialect_codes *codes)
     if (line_find_code(&k->line, 'g', 280) != NULL || line_find_code(&k->line, 'g', 300) != NULL)
         look_at_reference(k);
     look_at_centre(k);
+    look_at_motion(k);
+    look_at_place(k);
+    look_at_unused(k);
+    look_at_names(k);
 }
 
 /* Bytes that no text has: nothing can be guessed of what is none. */
@@ -285,7 +405,11 @@ struct dialect_guess dialect_guess_end(const struct dialect_detector *d)
 {
     static const enum dialect order[] = {DIALECT_MARLIN, DIALECT_HAAS, DIALECT_FANUC, DIALECT_MACH3,
                                          DIALECT_GRBL};
-    struct dialect_guess guess = {.translates = d->translates};
+    const struct dialect_arcs *arcs = &d->arcs;
+    struct dialect_guess guess = {
+        .absolute = arcs->absolute > 1 && arcs->relative == 0 && !arcs->said && !d->linuxcnc,
+        .translates = d->translates,
+    };
     unsigned found = 0;
 
     for (unsigned i = 0; i < DIALECT_COUNT && !d->linuxcnc; i++)
@@ -302,5 +426,11 @@ struct dialect_guess dialect_guess_end(const struct dialect_detector *d)
             memcpy(guess.evidence, d->found[order[i]], sizeof guess.evidence);
         }
     }
+    if (guess.absolute && guess.line == 0) {
+        guess.dialect = DIALECT_GRBL;
+        guess.line = arcs->line;
+        memcpy(guess.evidence, "absolute I J", sizeof "absolute I J");
+    }
+    guess.translates = guess.translates || guess.absolute;
     return guess;
 }

@@ -35,6 +35,7 @@ enum dialect_use {
     DIALECT_STOP,      /* M0 */
     DIALECT_OUTPUT_ON, /* M64 P number */
     DIALECT_OUTPUT_OFF,
+    DIALECT_FEED,      /* F: what it is before the program gives one, mm/min */
     DIALECT_SUBROUTINE /* O<name> call, behind the rest of its line, with P, Q and R as #1, #2 and #3 */
 };
 
@@ -42,16 +43,16 @@ enum dialect_use {
 #define DIALECT_CODES_MAX      64
 
 struct dialect_code {
-    char letter;         /* 'g' or 'm' */
+    char letter;         /* 'g', 'm' or 'f' */
     uint16_t number_x10; /* M31: 310 */
     enum dialect_use use;
-    unsigned number; /* of an output */
+    unsigned number; /* of an output; a feed */
     char subroutine[DIALECT_SUBROUTINE_MAX + 1];
 };
 
-/* What a program asks of LinuxCNC's configuration: #<_ini[SECTION]NAME>, #<_hal[PIN]>. */
+/* What a program asks of LinuxCNC's configuration: #<_ini[SECTION]NAME>, #<_hal[PIN]>; and what senders put for #NAME. */
 struct dialect_value {
-    char name[64]; /* "_ini[SECTION]NAME", "_hal[PIN]" */
+    char name[64]; /* "_ini[SECTION]NAME", "_hal[PIN]", "NAME" */
     double value;
 };
 
@@ -66,7 +67,7 @@ struct dialect_codes {
 /* Adds a value, or changes it. NULL: it is right; else what is wrong. */
 const char *dialect_value_set(struct dialect_codes *codes, const char *name, const char *value);
 
-/* "M31" and "ignore", "output 3 on", "output 3 off", "subroutine NAME", "stop". NULL: it is right; else what is wrong. */
+/* "M31" and "ignore", "output 3 on", "output 3 off", "subroutine NAME", "stop"; "F" and "600". NULL: it is right; else what is wrong. */
 const char *dialect_code_read(struct dialect_code *code, const char *name, const char *value);
 
 /* "M31 = ignore", as in a machine file. */
@@ -76,17 +77,32 @@ void dialect_code_write(const struct dialect_code *code, char text[DIALECT_CODE_
 /* What a program says of itself. */
 struct dialect_guess {
     enum dialect dialect;
+    bool absolute;     /* centres of arcs are absolute, though it does not say so */
     bool translates;   /* it has something that is not to be read as it stands */
     uint32_t line;     /* where it says so, from 1; 0: nowhere */
     char evidence[32]; /* the word there */
 };
 
+/* Where arcs of the plane XY have their centres, as far as plain numbers tell. */
+struct dialect_arcs {
+    double at[2];                /* X and Y */
+    bool known[2];               /* the program has given them */
+    bool incremental, turns;     /* G91; G2 or G3 is in effect */
+    bool said;                   /* it has G90.1 or G91.1 */
+    unsigned relative, absolute; /* arcs that only fit so */
+    uint32_t line;               /* the first that is absolute */
+};
+
 /* Looks at a program line by line; all zeros before the first. dialect_guess_end says what it has come to. */
 struct dialect_detector {
     uint32_t line;
-    bool calls;     /* it has a call, O... call or M98: perhaps of another file */
+    bool calls;         /* it has a call, O... call or M98: perhaps of another file */
+    bool moves;         /* it has a motion code */
+    uint32_t bare_line; /* axis words before that; 0: none */
+    char bare[32];
     bool linuxcnc;  /* it has what only LinuxCNC knows */
     unsigned named; /* bits: dialects its comments name */
+    struct dialect_arcs arcs;
     uint32_t found_line[DIALECT_COUNT]; /* 0: nothing */
     char found[DIALECT_COUNT][32];
     bool translates;

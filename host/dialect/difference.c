@@ -46,6 +46,8 @@ static const struct difference rows[] = {
     CODE(HAAS, 'm', 880, DIFFERENCE_REPLACE, "M7"),
     CODE(HAAS, 'm', 890, DIFFERENCE_REPLACE, "M9"),
     CODE(MARLIN, 'm', 6000, DIFFERENCE_REPLACE, "M0"),
+    TELLS(GRBL, 'g', 282, DIFFERENCE_LINE, "homing"),
+    TELLS(GRBL, 'g', 283, DIFFERENCE_LINE, "homing"),
     /* what this machine does not have */
     CODES(HAAS, 'm', 100, 130, DIFFERENCE_DROP, "brake of a rotary axis"),
     CODES(HAAS, 'm', 310, 330, DIFFERENCE_DROP, "chip conveyor"),

@@ -51,14 +51,27 @@ static bool is_subroutine(const char *name)
     return length > 0 && length <= DIALECT_SUBROUTINE_MAX && strpbrk(name, " \t<>[]()#;") == NULL;
 }
 
+static const char *read_feed(struct dialect_code *code, const char *value)
+{
+    char behind;
+
+    code->letter = 'f';
+    code->use = DIALECT_FEED;
+    return sscanf(value, "%u%c", &code->number, &behind) == 1 && code->number > 0
+               ? NULL
+               : "a feed in whole mm/min is expected";
+}
+
 const char *dialect_code_read(struct dialect_code *code, const char *name, const char *value)
 {
     char state[4];
     char behind;
 
     *code = (struct dialect_code){0};
+    if (line_lower(name[0]) == 'f' && name[1] == '\0')
+        return read_feed(code, value);
     if (!read_name(code, name))
-        return "a code is expected, such as M31 or G187";
+        return "a code is expected, such as M31 or G187, or F";
     if (strcmp(value, "ignore") == 0)
         return NULL;
     if (strcmp(value, "stop") == 0) {
@@ -80,7 +93,12 @@ const char *dialect_code_read(struct dialect_code *code, const char *name, const
 
 void dialect_code_write(const struct dialect_code *code, char text[DIALECT_CODE_TEXT_MAX])
 {
-    static const char *const uses[] = {"ignore", "stop", "output", "output", "subroutine"};
+    static const char *const uses[] = {"ignore", "stop", "output", "output", "", "subroutine"};
+
+    if (code->use == DIALECT_FEED) {
+        (void)snprintf(text, DIALECT_CODE_TEXT_MAX, "F = %u", code->number);
+        return;
+    }
     int length = snprintf(text, DIALECT_CODE_TEXT_MAX, "%c%u", code->letter - 'a' + 'A',
                           code->number_x10 / 10U);
 
@@ -97,16 +115,30 @@ void dialect_code_write(const struct dialect_code *code, char text[DIALECT_CODE_
                        code->subroutine);
 }
 
+/* The name of #NAME. */
+static bool is_plain(const char *name)
+{
+    static const char letters[] = "abcdefghijklmnopqrstuvwxyz";
+
+    if (name[0] == '\0' || strchr(letters, line_lower(name[0])) == NULL)
+        return false;
+    for (; *name != '\0'; name++) {
+        if (strchr(letters, line_lower(*name)) == NULL && strchr("_0123456789", *name) == NULL)
+            return false;
+    }
+    return true;
+}
+
 const char *dialect_value_set(struct dialect_codes *codes, const char *name, const char *value)
 {
     char *end;
     const double number = strtod(value, &end);
     unsigned i = 0;
 
-    if ((strncmp(name, "_ini[", 5) != 0 && strncmp(name, "_hal[", 5) != 0) ||
+    if ((strncmp(name, "_ini[", 5) != 0 && strncmp(name, "_hal[", 5) != 0 && !is_plain(name)) ||
         strlen(name) >= sizeof codes->value[0].name)
-        return "the name of a value is expected, such as _ini[TRAJ]MAX_LINEAR_VELOCITY or "
-               "_hal[PIN]";
+        return "the name of a value is expected, such as _ini[TRAJ]MAX_LINEAR_VELOCITY, _hal[PIN] "
+               "or that of #NAME";
     if (end == value || *end != '\0' || !isfinite(number))
         return "a number is expected";
     while (i < codes->values && strcmp(codes->value[i].name, name) != 0)

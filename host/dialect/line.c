@@ -15,6 +15,18 @@ static bool is_letter(char c)
     return c >= 'a' && c <= 'z';
 }
 
+size_t line_name_length(const struct line *l, size_t at)
+{
+    const size_t begin = at;
+
+    if (!is_letter(l->text[at]))
+        return 0;
+    while (is_letter(l->text[at]) || l->text[at] == '_' ||
+           (l->text[at] >= '0' && l->text[at] <= '9'))
+        at++;
+    return at - begin;
+}
+
 /* What words begin with: letters, and the signs of polar coordinates. */
 static bool is_word(char c)
 {
@@ -31,6 +43,11 @@ static size_t skip_spaces(const struct line *l, size_t at)
     while (is_space(l->text[at]))
         at++;
     return at;
+}
+
+bool line_is_assigned(const struct line *l, size_t at)
+{
+    return l->text[skip_spaces(l, at)] == '=';
 }
 
 /* Behind the bracket or parenthesis that closes the one at a place; the end of the line when none does. */
@@ -274,4 +291,56 @@ bool line_append(struct line *l, const char *text)
 bool line_is_blank(const struct line *l)
 {
     return skip_spaces(l, 0) == l->length;
+}
+
+bool line_is_calculation(const struct line *l, const struct line_word *w)
+{
+    const char c = l->text[skip_spaces(l, w->end)];
+
+    return w->kind == WORD_ASSIGNED && w->value_begin > 0 && w->end > w->value_begin &&
+           l->text[w->value_begin - 1] == '=' && c != '\0' && strchr("+-*/", c) != NULL;
+}
+
+bool line_has_axis(struct line *l)
+{
+    for (unsigned i = 0; i < l->words; i++) {
+        if (l->word[i].kind == WORD_VALUE && strchr(LINE_AXES, l->word[i].letter) != NULL)
+            return true;
+    }
+    return false;
+}
+
+void line_look_for_motion(struct line *l, bool *motion, bool *other)
+{
+    static const uint16_t others[] = {40, 100, 280, 281, 300, 301, 520, 530, 920, 431, 432};
+
+    *motion = *other = false;
+    for (unsigned i = 0; i < l->words; i++) {
+        const int number = l->word[i].letter == 'g' ? line_code(&l->word[i]) : -1;
+
+        *motion = *motion || (number >= 0 && number < 40) || (number >= 50 && number <= 62) ||
+                  number == 330 || number == 331 || (number >= 382 && number <= 385) ||
+                  (number >= 730 && number <= 890);
+        for (size_t k = 0; k < sizeof others / sizeof others[0]; k++)
+            *other = *other || number == others[k];
+    }
+}
+
+/* Planes, units, compensation off, length off, systems, path, distances, feed modes. */
+static bool is_mode(int number)
+{
+    return (number >= 170 && number <= 210) || number == 400 || number == 490 ||
+           (number >= 540 && number <= 640) || (number >= 900 && number <= 911) ||
+           (number >= 930 && number <= 990);
+}
+
+bool line_is_plain(const struct line *l)
+{
+    for (unsigned i = 0; i < l->words; i++) {
+        const struct line_word *w = &l->word[i];
+
+        if (w->letter == 'g' && w->kind == WORD_VALUE && !is_mode(line_code(w)))
+            return false;
+    }
+    return true;
 }

@@ -62,8 +62,26 @@ bool line_replace(struct line *l, struct line_word *w, const char *text);
 /* At the end, or in front of a comment that reaches to the end; with a space before it. */
 bool line_append(struct line *l, const char *text);
 
+/* #1 = value, and an operator behind it. */
+bool line_is_calculation(const struct line *l, const struct line_word *w);
+
+#define LINE_AXES "xyzabc"
+bool line_has_axis(struct line *l);
+
+/* Motions and cycles; and what uses axis words beside them. */
+void line_look_for_motion(struct line *l, bool *motion, bool *other);
+
+/* No G codes but modes: what its axis words are for is clear. */
+bool line_is_plain(const struct line *l);
+
 /* Nothing is left but spaces. */
 bool line_is_blank(const struct line *l);
+
+/* Of a name that begins there with a letter: letters, digits and _. */
+size_t line_name_length(const struct line *l, size_t at);
+
+/* Is the next character from there, but for spaces, '='? */
+bool line_is_assigned(const struct line *l, size_t at);
 
 char line_lower(char c);
 

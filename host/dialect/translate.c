@@ -7,7 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define AXES "xyzabc"
+#define AXES LINE_AXES
 /* A dwell written without a point is in milliseconds from here on: nobody waits for less than that, or for minutes. */
 #define DWELL_MS_MIN  100.0
 #define LINE_TEXT_MAX 2304
@@ -66,7 +66,8 @@ static bool is_no_line(const struct line *l)
 
     return (text[0] != '\0' && strchr("$?!~", text[0]) != NULL) || strncmp(text, "//", 2) == 0 ||
            (text[0] == '#' &&
-            (text[1] == ' ' || (line_lower(text[1]) >= 'a' && line_lower(text[1]) <= 'z')));
+            (text[1] == ' ' ||
+             (line_name_length(l, 1) > 0 && !line_is_assigned(l, 1 + line_name_length(l, 1)))));
 }
 
 /* A comment that is not closed ends with its line. */
@@ -150,6 +151,22 @@ static void translate_numbers(struct translator *t)
     }
 }
 
+/* #1 = #2 + 3 in brackets. */
+static void bracket_assignment(struct line *l)
+{
+    const struct line_word *w = l->words > 0 ? &l->word[0] : NULL;
+    char text[LINE_MAX_BYTES + 8];
+
+    if (w == NULL || !line_is_calculation(l, w))
+        return;
+    const size_t end = w->value_begin + strcspn(&l->text[w->value_begin], "(;");
+    const int length =
+        snprintf(text, sizeof text, "%.*s[%.*s]%s", (int)w->value_begin, l->text,
+                 (int)(end - w->value_begin), &l->text[w->value_begin], &l->text[end]);
+
+    (void)line_read(l, text, (size_t)length);
+}
+
 /* ---- modes that later words are understood by ---- */
 
 static void follow_modes(struct translator *t)
@@ -167,45 +184,55 @@ static void follow_modes(struct translator *t)
         t->incremental = true;
 }
 
-static bool has_axis(struct line *l)
-{
-    for (unsigned i = 0; i < l->words; i++) {
-        if (l->word[i].kind == WORD_VALUE && strchr(AXES, l->word[i].letter) != NULL)
-            return true;
-    }
-    return false;
-}
-
-/* Motions and cycles; and what uses axis words beside them. */
-static void look_for_motion(struct line *l, bool *motion, bool *other)
-{
-    static const uint16_t others[] = {40, 100, 280, 281, 300, 301, 520, 530, 920, 431, 432};
-
-    *motion = *other = false;
-    for (unsigned i = 0; i < l->words; i++) {
-        const int number = l->word[i].letter == 'g' ? line_code(&l->word[i]) : -1;
-
-        *motion = *motion || (number >= 0 && number < 40) || number == 330 || number == 331 ||
-                  (number >= 382 && number <= 385) || (number >= 730 && number <= 890);
-        for (size_t k = 0; k < sizeof others / sizeof others[0]; k++)
-            *other = *other || number == others[k];
-    }
-}
-
 /* G0 that is in effect at the start, or was given beside G28, which has the axis words of that line. */
 static void translate_motion(struct translator *t)
 {
     bool motion;
     bool other;
 
-    look_for_motion(&t->line, &motion, &other);
-    if (has_axis(&t->line) && !motion && !other &&
-        (t->motion_is_owed || (is(t, GRBL) && !t->has_motion))) {
+    line_look_for_motion(&t->line, &motion, &other);
+    if (line_has_axis(&t->line) && !motion && !other &&
+        (t->motion_is_owed || (is(t, GRBL) && !t->has_motion && line_is_plain(&t->line)))) {
         (void)line_append(&t->line, "G0");
         motion = true;
     }
     t->has_motion = t->has_motion || motion;
     t->motion_is_owed = t->motion_is_owed && !motion;
+}
+
+/* M6 of a program that never says which tool: somebody changes it. */
+static void translate_change(struct translator *t)
+{
+    struct line_word *change = line_find_code(&t->line, 'm', 60);
+
+    t->has_tool = t->has_tool || line_find(&t->line, 't', 0) != NULL;
+    if (change != NULL && !t->has_tool)
+        (void)line_replace(&t->line, change, "M0");
+}
+
+/* ---- words that mean nothing ---- */
+
+/* A cycle that does not wait has no use for P, nor has M6; of two S the last counts. */
+static void translate_unused(struct translator *t)
+{
+    static const uint16_t cycles[] = {730, 810, 830, 850};
+    struct line *l = &t->line;
+    struct line_word *p = line_find(l, 'p', 0);
+    struct line_word *s = line_find(l, 's', 0);
+
+    for (size_t i = 0; i < sizeof cycles / sizeof cycles[0] && p != NULL; i++) {
+        if (line_find_code(l, 'g', cycles[i]) != NULL && p->kind == WORD_VALUE) {
+            translate_note(t, p, "dwell of a cycle");
+            line_blank(l, p);
+        }
+    }
+    if (p != NULL && p->kind == WORD_VALUE && line_find_code(l, 'm', 60) != NULL &&
+        line_find_code(l, 'g', 40) == NULL)
+        line_blank(l, p);
+    while (s != NULL && line_find(l, 's', (unsigned)(s - l->word) + 1) != NULL) {
+        line_blank(l, s);
+        s = line_find(l, 's', 0);
+    }
 }
 
 static void translate_arc(struct translator *t)
@@ -262,7 +289,7 @@ static void drop_motion(struct translator *t)
     for (unsigned number = 0; number <= 10; number += 10) {
         struct line_word *w = line_find_code(&t->line, 'g', number);
 
-        if (w != NULL && has_axis(&t->line)) {
+        if (w != NULL && line_has_axis(&t->line)) {
             line_blank(&t->line, w);
             t->motion_is_owed = number == 0;
         }
@@ -393,7 +420,7 @@ static void translate_extruder(struct translator *t)
         if (w->letter == 'e' && (w->kind == WORD_VALUE || w->kind == WORD_BARE))
             line_blank(l, w);
     }
-    if (shift != NULL && !has_axis(l))
+    if (shift != NULL && !line_has_axis(l))
         line_blank(l, shift);
 }
 
@@ -403,9 +430,16 @@ static void translate_foreign(struct translator *t)
 {
     translate_start(t);
     translate_numbers(t);
-    if (is(t, MACROS))
+    names_translate(t);
+    if (is(t, MACROS)) {
+        bracket_assignment(&t->line);
+        if (t->survey.lathe)
+            turning_translate(t);
         flow_translate(t);
+    }
     codes_translate(t);
+    translate_unused(t);
+    translate_change(t);
     if (is(t, MARLIN))
         translate_extruder(t);
     if (is(t, MACROS | MARLIN))
@@ -495,6 +529,11 @@ static void survey_line(struct translator *t, const char *bytes, size_t length)
                       (line_find_code(l, 'g', 280) != NULL && line_find(l, 'u', 0) != NULL);
 }
 
+static void guess_line(struct translator *t, const char *bytes, size_t length)
+{
+    dialect_guess_line(&t->detector, bytes, length, t->codes);
+}
+
 bool dialect_translate(enum dialect dialect, const struct dialect_codes *codes, const char *bytes,
                        size_t length, struct dialect_result *result)
 {
@@ -506,7 +545,11 @@ bool dialect_translate(enum dialect dialect, const struct dialect_codes *codes, 
     t->dialect = dialect;
     t->codes = codes;
     t->result = result;
+    t->source = bytes;
+    t->source_length = length;
     t->across = 'k';
+    each_line(t, bytes, length, guess_line);
+    t->absolute = !is(t, NOT_FOREIGN) && dialect_guess_end(&t->detector).absolute;
     if (is(t, MACROS))
         each_line(t, bytes, length, survey_line);
     if (t->survey.lathe)

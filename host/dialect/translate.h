@@ -25,6 +25,12 @@ struct jump {
     unsigned depth;
 };
 
+/* Blocks of the program that are a profile, and the subroutine that it has become. */
+struct turned {
+    double from, to;
+    unsigned label, side; /* side: 41, 42 or 0 */
+};
+
 /* What has been seen of the whole text before. */
 struct survey {
     bool lathe;
@@ -37,21 +43,32 @@ struct survey {
 struct translator {
     enum dialect dialect;
     const struct dialect_codes *codes;
+    const char *source; /* the whole text */
+    size_t source_length;
     struct dialect_result *result;
     struct survey survey;
     struct line line;                   /* the current one */
     uint32_t number;                    /* of it */
     struct dialect_text before, behind; /* lines of their own, each with its end */
     /* what the words so far leave for the next */
-    char across;          /* centre word that arcs of the plane do not have: 'k' in G17 */
-    bool incremental;     /* G91 */
-    bool has_motion;      /* there has been a motion code */
-    bool motion_is_owed;  /* G0 stood beside G28: it holds from the next line on */
-    bool begun;           /* a line with words has passed */
+    char across;         /* centre word that arcs of the plane do not have: 'k' in G17 */
+    bool incremental;    /* G91 */
+    bool has_motion;     /* there has been a motion code */
+    bool motion_is_owed; /* G0 stood beside G28: it holds from the next line on */
+    bool has_tool;       /* there has been a T */
+    bool begun;          /* a line with words has passed */
+    struct dialect_detector detector;
+    bool absolute;        /* centres of arcs are, and G90.1 has to say so */
+    bool feed_given;      /* the F that the machine file declares has been put in */
     char speed_limit[24]; /* G50 S */
     uint32_t program;     /* number of O1000 lines so far */
     uint32_t macro;       /* the current program is called by G65; 0: it is not */
-    unsigned depth;       /* open loops */
+    struct turned profile[TRANSLATE_LINES_MAX];
+    unsigned profiles;
+    double skip_from, skip_to; /* blocks to be passed over; 0: none */
+    bool skipping;
+    char depth_of_cut[48], way_back[48]; /* G71 U R */
+    unsigned depth;                      /* open loops */
     unsigned labels, jumps;
     struct label *label;
     struct jump jump[TRANSLATE_JUMPS_MAX];
@@ -68,11 +85,17 @@ __attribute__((format(printf, 2, 3))) void translate_add(struct dialect_text *t,
 /* #<_ini[...]> and #<_hal[...]> as numbers. */
 void values_translate(struct translator *t);
 
+/* #name, which LinuxCNC does not know. */
+void names_translate(struct translator *t);
+
 /* @ and ^ as X and Y. */
 void polar_translate(struct translator *t);
 
 /* What becomes of the G and M words of the line. */
 void codes_translate(struct translator *t);
+
+/* G70, G71, G72, G75 and G76 of lathes. */
+void turning_translate(struct translator *t);
 
 /* WHILE, DO, END, IF, GOTO, G65 and what goes with them. */
 void flow_survey(struct survey *s, struct line *l);

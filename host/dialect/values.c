@@ -42,6 +42,33 @@ static bool replace_at(struct translator *t, size_t at)
     return false;
 }
 
+/* #name of senders and other languages is #<name>, or a number of the machine file. */
+static void name_translate(struct translator *t, size_t at)
+{
+    struct line *l = &t->line;
+    const size_t length = line_name_length(l, at + 1);
+    struct line_word whole = {.begin = (uint16_t)at, .end = (uint16_t)(at + 1 + length)};
+    char text[80];
+
+    (void)snprintf(text, sizeof text, "#<%.*s>", (int)length, &l->text[at + 1]);
+    for (unsigned i = 0; i < t->codes->values; i++) {
+        const struct dialect_value *v = &t->codes->value[i];
+
+        if (match(text + 2, v->name) > 0)
+            (void)snprintf(text, sizeof text, "[%.9f]", v->value);
+    }
+    if (length < 64)
+        (void)line_replace(l, &whole, text);
+}
+
+void names_translate(struct translator *t)
+{
+    for (size_t at = 0; at < t->line.length && strchr("(;", t->line.text[at]) == NULL; at++) {
+        if (t->line.text[at] == '#' && line_name_length(&t->line, at + 1) > 0)
+            name_translate(t, at);
+    }
+}
+
 void values_translate(struct translator *t)
 {
     for (size_t at = 0; t->codes->values > 0 && at + 2 < t->line.length; at++) {

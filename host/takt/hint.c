@@ -13,7 +13,8 @@ struct hint {
 static const struct hint hints[] = {
     {TAKT_ERROR_COMMENT_UNCLOSED, "a comment ends with ')' on its own line"},
     {TAKT_ERROR_FEED_MISSING,
-     "give it on this line or before: F600 is 600 mm/min, or inch/min after G20"},
+     "give it on this line or before: F600 is 600 mm/min, or inch/min after G20; or in [codes] of "
+     "the machine file, or as --set codes.F=600, for programs that never do"},
     {TAKT_ERROR_MOTION_MODE_MISSING,
      "begin with G0 (rapid) or G1 (cutting); G80 and cycles end them"},
     {TAKT_ERROR_ARC_ENDPOINT, "I J K count from the arc's start; if they are absolute, G90.1 comes "
@@ -164,13 +165,31 @@ static bool write_value(const struct diagnostic *d, char text[HINT_MAX])
     return asked;
 }
 
+/* #NAME, which the sender puts a number for. */
+static bool write_name(const struct diagnostic *d, const char *line, size_t length, size_t at,
+                       char text[HINT_MAX])
+{
+    const bool asked = d->code == TAKT_ERROR_PARAMETER_UNDEFINED && at > 0 && at < length &&
+                       line[at - 1] == '#' && line_lower(line[at]) == line_lower(d->word[0]);
+
+    if (asked)
+        (void)snprintf(
+            text, HINT_MAX,
+            "    the number that the program's sender puts here, to the machine file, or "
+            "as --set values.%s=0:\n"
+            "    [values]\n"
+            "    %s = 0\n",
+            d->word, d->word);
+    return asked;
+}
+
 void hint_write(const struct diagnostic *d, const char *line, size_t length, size_t at,
                 char text[HINT_MAX])
 {
     const char *hint = find(d->code);
 
     text[0] = '\0';
-    if (write_value(d, text))
+    if (write_value(d, text) || write_name(d, line, length, at, text))
         return;
     if (hint != NULL)
         write(text, hint);

@@ -139,3 +139,41 @@ t.write("same.nc", "G21 G90 F600\n$H\nG0 X1\nG1 Y2\nG4 P0.5\nG2 X2 I0.5 J0 K0\nM
 digests = [[line for line in t.run("run", name)[1].splitlines() if "digest" in line] for name in ("same.ngc", "same.nc")]
 t.check(digests[0] == digests[1] and digests[0], "the same setpoints", digests)
 t.finish()
+
+# Turning cycles of Fanuc: what roughing leaves, finishing takes; the blocks of the profile are passed over.
+t.write("turning.nc", """\
+%
+O1
+G50 S2000
+G21 G97 S500 M3
+G0 X20. Z2.
+G71 P10 Q20 U1. W0. D2. F0.2
+N10 G0 X6. Z2.
+G1 Z-10.
+N20 X20.
+G70 P10 Q20
+G0 X30.
+M30
+%
+""")
+status, found, err = moves("turning.nc", "--tools", "auto", "--set", "spindle.encoder_counts=1024")
+ways = [line.split()[0:4:3] + [line.split()[1]] for line in found if line.startswith(("feed", "rapid"))]
+cuts = [(way[2], way[1]) for way in ways if way[0] == "feed"]
+t.check(status == 0 and cuts[0] == ("X10.000000", "Z-9.500000") and ("X3.500000", "Z-9.500000") in cuts
+        and ("X3.000000", "Z-10.000000") in cuts and ways[-1][2] == "X15.000000", "Fanuc's G71 and G70", ways, err)
+
+# A feed, and a number for a name, that the machine file gives.
+t.write("bare.nc", "G1 X#far\n")
+status, found, err = moves("bare.nc")
+t.check(status == 2 and "--set values.FAR=0" in err, "the message names the value", err)
+status, found, err = moves("bare.nc", "--set", "values.FAR=4")
+t.check(status == 2 and "--set codes.F=600" in err, "the message names the feed", err)
+status, found, err = moves("bare.nc", "--set", "values.FAR=4", "--set", "codes.F=300")
+t.check(status == 0 and found[0].startswith("feed X4.000000") and found[0].endswith("F300.000000"), "both", found, err)
+
+# Without end by M99: read for long enough.
+t.write("ever.nc", "G0 X1\nX0\nM99\n")
+status, found, err = moves("ever.nc", "--lines-max", "30")
+t.check(status == 0 and "warning: the program goes back to its beginning for ever (M99); it was read for 30 lines" in err
+        and found[-1] == "end", "M99 for ever", found, err)
+

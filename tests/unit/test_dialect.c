@@ -239,10 +239,76 @@ static void test_values_of_the_machine_file_are_numbers(void)
     TEST_ASSERT_NULL(dialect_value_set(&codes, "_ini[traj]MAX_speed", "2.5"));
     TEST_ASSERT_NULL(dialect_value_set(&codes, "_hal[my.pin]", "-1"));
     TEST_ASSERT_NOT_NULL(dialect_value_set(&codes, "_hal[my.pin]", "1x"));
-    TEST_ASSERT_NOT_NULL(dialect_value_set(&codes, "pin", "1"));
+    TEST_ASSERT_NOT_NULL(dialect_value_set(&codes, "1pin", "1"));
     TEST_ASSERT_TRUE(guess("#1=#<_INI[a]b>").translates);
     expect(DIALECT_LINUXCNC, "G0 X#< _ini[TRAJ]max_speed> Y[1+#<_hal[my.pin]>] Z#<_ini[a]b>\n",
            "G0 X[2.500000000]           Y[1+[-1.000000000] ] Z#<_ini[a]b>\n");
+}
+
+static void test_a_feed_can_be_declared_for_programs_without_one(void)
+{
+    declare("F", "600");
+    TEST_ASSERT_TRUE(guess("G1 X1").translates);
+    expect(DIALECT_LINUXCNC, "%\n(A)\nG1 X1 F0\nF5\n", "%\n(A)\nF600\n|G1 X1   \nF5\n");
+    TEST_ASSERT_NOT_NULL(dialect_code_read(&codes.code[1], "F", "0"));
+    TEST_ASSERT_NOT_NULL(dialect_code_read(&codes.code[1], "F", "1x"));
+}
+
+static void test_names_without_brackets_are_parameters_or_values(void)
+{
+    TEST_ASSERT_NULL(dialect_value_set(&codes, "safe_z", "7"));
+    TEST_ASSERT_EQUAL(DIALECT_GRBL, guess("G0 Z#SAFE_Z").dialect);
+    expect(DIALECT_GRBL, "#a=2\nG0 Z#SAFE_Z X#a (#b)\n# remark\n",
+           "#<a>=2\nG0 Z[7.000000000] X#<a> (#b)\n\n");
+}
+
+static void test_centres_that_only_fit_as_absolute_are_absolute(void)
+{
+    static const char text[] = "G1 X-40 Y50 F1\nG3 X-30 Y40 I-40 J40\nG2 X-40 Y50 I-40 J40\n";
+
+    TEST_ASSERT_TRUE(guess(text).absolute);
+    expect(DIALECT_MACH3, text,
+           "G90.1\n|G1 X-40 Y50 F1\nG3 X-30 Y40 I-40 J40\nG2 X-40 Y50 I-40 J40\n");
+    TEST_ASSERT_FALSE(guess("G1 X-40 Y50\nG3 X-30 Y40 I-40 J40\n").absolute);
+    TEST_ASSERT_FALSE(guess("G1 X-40 Y50\nG3 X-30 Y40 I0 J-10\n").absolute);
+    TEST_ASSERT_FALSE(
+        guess("G91.1 G1 X-40 Y50\nG3 X-30 Y40 I-40 J40\nG2 X-40 Y50 I-40 J40\n").absolute);
+    TEST_ASSERT_FALSE(guess("G1 X0 Y0\nG3 X0 Y0 I5 J5\n").absolute);
+    TEST_ASSERT_FALSE(
+        guess("o1 if [1]\nG1 X-40 Y50\nG3 X-30 Y40 I-40 J40\nG2 X-40 Y50 I-40 J40\no1 endif")
+            .absolute);
+}
+
+static void test_axis_words_before_a_motion_move_at_rapid(void)
+{
+    TEST_ASSERT_EQUAL(DIALECT_GRBL, guess("G21 G91\nZ2\nG1 X1").dialect);
+    TEST_ASSERT_EQUAL(DIALECT_LINUXCNC, guess("G21 G91\nZ2\nM2").dialect);
+    TEST_ASSERT_EQUAL(DIALECT_LINUXCNC, guess("G92 X0\nG1 X1\nX2").dialect);
+    TEST_ASSERT_EQUAL(DIALECT_LINUXCNC, guess("G22 C1 B0\n").dialect);
+    expect(DIALECT_GRBL, "G21\nZ2\nG22 X1\n", "G21\nZ2 G0\nG22 X1\n");
+}
+
+static void test_words_that_mean_nothing_are_left_out(void)
+{
+    expect(DIALECT_FANUC, "G81 Z-1 R1 P5\n", "G81 Z-1 R1   \n");
+    expect(DIALECT_GRBL, "G0 S1 X1 S0\nM6 P1\nT2 M6\n", "G0    X1 S0\nM0   \nT2 M6\n");
+    expect(DIALECT_GRBL, "G28.2 X0 Y0\nG0 X1\n", "\nG0 X1\n");
+    expect(DIALECT_FANUC, "#1=[#2-#3]/2 (A)\n", "#1=[[#2-#3]/2 ](A)\n");
+}
+
+static void test_profiles_of_fanuc_become_subroutines(void)
+{
+    expect(DIALECT_FANUC,
+           "G50 S9\nG71 P10 Q20 U0.4 W0.1 D2. F0.2\nN10 G0 G42 X1. F3\nG1 Z-5.\nN20 G40 X9.\n"
+           "G70 P10 Q20\n",
+           "G18 G7\n"
+           "o93000010 sub\n|    G0     X1.   \n|G1 Z-5.\n|        X9.\n|o93000010 endsub\n"
+           "|#<_turning_x>=[2*#<_x>] #<_turning_z>=#<_z>\n"
+           "|                          F0.2\n"
+           "|G71 Q93000010 D[[ABS[0.4]/2+ABS[0.1]+ABS[ABS[0.4]/2-ABS[0.1]]]/2] I[2.] "
+           "R[0.5-0.48*#<_imperial>]\n|G0 X#<_turning_x>\n|Z#<_turning_z>\n\n\n\n"
+           "#<_turning_x>=[2*#<_x>] #<_turning_z>=#<_z>\n"
+           "|G42\n|G70 Q93000010\n|G40\n|G0 X#<_turning_x>\n|Z#<_turning_z>\n");
 }
 
 static void test_a_byte_order_mark_is_no_part_of_the_program(void)
@@ -281,6 +347,12 @@ int main(void)
     RUN_TEST(test_a_text_may_end_as_under_dos);
     RUN_TEST(test_polar_words_become_x_and_y);
     RUN_TEST(test_values_of_the_machine_file_are_numbers);
+    RUN_TEST(test_a_feed_can_be_declared_for_programs_without_one);
+    RUN_TEST(test_names_without_brackets_are_parameters_or_values);
+    RUN_TEST(test_centres_that_only_fit_as_absolute_are_absolute);
+    RUN_TEST(test_axis_words_before_a_motion_move_at_rapid);
+    RUN_TEST(test_words_that_mean_nothing_are_left_out);
+    RUN_TEST(test_profiles_of_fanuc_become_subroutines);
     RUN_TEST(test_a_byte_order_mark_is_no_part_of_the_program);
     return UNITY_END();
 }

@@ -444,6 +444,23 @@ static void test_lines_are_not_read_again_more_often_than_the_host_lets_them(voi
     TEST_ASSERT_EQUAL_INT(TAKT_ERROR_ENDLESS, reader.diagnostic.code);
 }
 
+/* One that means to run for ever is no mistake. */
+static void test_a_program_that_goes_back_to_its_beginning_is_read_for_long_enough(void)
+{
+    struct move move = {.kind = MOVE_RAPID};
+
+    reader_prepare(&reader);
+    reader.config.repeats_max = 100;
+    reader_text(&reader, "G0 X1\nG0 X0\nM99\n");
+    for (unsigned i = 0; i < 100 && move.kind != MOVE_END; i++) {
+        TEST_ASSERT_EQUAL_INT(PROGRAM_MOVE,
+                              program_next(&reader.program, &move, &reader.diagnostic));
+    }
+    TEST_ASSERT_EQUAL_INT(PROGRAM_END, program_next(&reader.program, &move, &reader.diagnostic));
+    TEST_ASSERT_TRUE(program_warning(&reader.program, &reader.diagnostic));
+    TEST_ASSERT_EQUAL_INT(TAKT_ERROR_REPEATS, reader.diagnostic.code);
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -476,6 +493,7 @@ int main(void)
     RUN_TEST(test_a_stream_passes_over_text_but_never_goes_back);
     RUN_TEST(test_after_an_error_each_line_is_read_once_more_at_most);
     RUN_TEST(test_a_search_in_vain_goes_on_behind_its_call);
+    RUN_TEST(test_a_program_that_goes_back_to_its_beginning_is_read_for_long_enough);
     RUN_TEST(test_lines_are_not_read_again_more_often_than_the_host_lets_them);
     return UNITY_END();
 }

@@ -1,0 +1,259 @@
+/*
+ * Turning cycles of Fanuc and Haas in those of LinuxCNC. The profile is blocks N10 to N20 of the program, behind G71; it becomes a
+ * subroutine in front of the cycle, and the blocks themselves are passed over:
+ *
+ *     G71 P10 Q20 U0.4 W0.1 D2. F0.2      o93000010 sub / ... / o93000010 endsub
+ *                                         G71 Q93000010 D0.2 I2. R0.5, and back to where it began
+ *     G70 P10 Q20                         G42 / G70 Q93000010 / G40, if the profile has G42
+ *     G75 X0. I1.                         steps of 1 down to X0, a little back after each
+ *     G76 X8. Z-20. K1.2 D0.4 F1.5        G76 P1.5 Z-20 I... J0.8 K2.4 R2
+ *
+ * The two-line forms (G71 U2. R0.5 before) are read too.
+ */
+#include "dialect/translate.h"
+
+#include <stdio.h>
+#include <string.h>
+
+#define PROFILE_LABEL 93000000U
+#define PECK_LABEL    94000000U
+
+/* The text of a word's value, as an expression; otherwise without it. */
+static void expression(struct line *l, char letter, const char *otherwise, char *text, size_t size)
+{
+    const struct line_word *w = line_find(l, letter, 0);
+
+    if (w != NULL)
+        (void)snprintf(text, size, "%.*s", (int)(w->end - w->value_begin),
+                       &l->text[w->value_begin]);
+    else
+        (void)snprintf(text, size, "%s", otherwise);
+}
+
+/* F and S of the line stay. */
+static void leave_feed(struct translator *t)
+{
+    struct line *l = &t->line;
+
+    for (unsigned i = 0; i < l->words; i++) {
+        struct line_word *w = &l->word[i];
+
+        if (w->kind != WORD_COMMENT && (w->kind != WORD_VALUE || strchr("fsn", w->letter) == NULL))
+            line_blank(l, w);
+    }
+}
+
+/* ---- profiles ---- */
+
+static const char *next_line(const struct translator *t, const char *at, struct line *l)
+{
+    const char *end = t->source + t->source_length;
+    const char *stop = memchr(at, '\n', (size_t)(end - at));
+
+    stop = stop != NULL ? stop : end;
+    if (!line_read(l, at, (size_t)(stop - at)))
+        (void)line_read(l, "", 0);
+    return stop < end ? stop + 1 : end;
+}
+
+static bool has_number(const struct line *l, double number)
+{
+    return l->words > 0 && l->word[0].letter == 'n' && l->word[0].is_number &&
+           l->word[0].value == number;
+}
+
+/* Side of the profile's compensation: 41, 42 or 0. */
+static unsigned copy_profile(struct translator *t, double from, double to, unsigned label)
+{
+    static struct line l;
+    const char *at = t->source;
+    unsigned side = 0;
+    bool inside = false;
+
+    translate_add(&t->before, "o%u sub", label);
+    while (at < t->source + t->source_length) {
+        at = next_line(t, at, &l);
+        inside = inside || has_number(&l, from);
+        if (!inside)
+            continue;
+        side = line_find_code(&l, 'g', 410) != NULL ? 41 : side;
+        side = line_find_code(&l, 'g', 420) != NULL ? 42 : side;
+        const bool last = has_number(&l, to);
+
+        /* A last block at rapid leaves the part: it is no piece of it. */
+        if (last && line_find_code(&l, 'g', 0) != NULL && line_find(&l, 'z', 0) != NULL)
+            break;
+        for (unsigned i = 0; i < l.words; i++) {
+            struct line_word *w = &l.word[i];
+
+            if (w->kind != WORD_VALUE || strchr("xzuwirkac", w->letter) == NULL) {
+                const int code = w->letter == 'g' ? line_code(w) : -1;
+
+                if (code < 0 || code > 30)
+                    line_blank(&l, w);
+            }
+        }
+        if (!line_is_blank(&l))
+            translate_add(&t->before, "%s", l.text);
+        if (last)
+            break;
+    }
+    translate_add(&t->before, "o%u endsub", label);
+    return side;
+}
+
+static const struct turned *find_profile(struct translator *t, double from, double to)
+{
+    for (unsigned i = 0; i < t->profiles; i++) {
+        if (t->profile[i].from == from && t->profile[i].to == to)
+            return &t->profile[i];
+    }
+    if (t->profiles == TRANSLATE_LINES_MAX)
+        return NULL;
+    struct turned *p = &t->profile[t->profiles];
+
+    *p = (struct turned){from, to, PROFILE_LABEL + (unsigned)from, 0};
+    p->label += 10000U * t->profiles++;
+    p->side = copy_profile(t, from, to, p->label);
+    return p;
+}
+
+/* ---- cycles ---- */
+
+static void begin_at(struct translator *t)
+{
+    translate_add(&t->before, "#<_turning_x>=[2*#<_x>] #<_turning_z>=#<_z>");
+}
+
+static void go_back(struct translator *t)
+{
+    translate_add(&t->behind, "G0 X#<_turning_x>");
+    translate_add(&t->behind, "Z#<_turning_z>");
+}
+
+/* G71 U2. R0.5: the depth and the way back of the next one. */
+static void take_depths(struct translator *t)
+{
+    expression(&t->line, 'u', "", t->depth_of_cut, sizeof t->depth_of_cut);
+    expression(&t->line, 'r', "", t->way_back, sizeof t->way_back);
+    leave_feed(t);
+}
+
+static void take_rough(struct translator *t, unsigned code, double from, double to)
+{
+    const struct turned *p = find_profile(t, from, to);
+    char depth[48];
+    char u[48];
+    char w[48];
+
+    if (p == NULL)
+        return;
+    expression(&t->line, 'd', t->depth_of_cut[0] != '\0' ? t->depth_of_cut : "1", depth,
+               sizeof depth);
+    expression(&t->line, 'u', "0", u, sizeof u);
+    expression(&t->line, 'w', "0", w, sizeof w);
+    leave_feed(t);
+    begin_at(t);
+    /* the larger of U/2 and W remains everywhere */
+    translate_add(&t->behind, "G%u Q%u D[[ABS[%s]/2+ABS[%s]+ABS[ABS[%s]/2-ABS[%s]]]/2] I[%s] R[%s]",
+                  code / 10, p->label, u, w, u, w, depth,
+                  t->way_back[0] != '\0' ? t->way_back : "0.5-0.48*#<_imperial>");
+    go_back(t);
+    t->skip_from = from;
+    t->skip_to = to;
+}
+
+static void take_finish(struct translator *t, double from, double to)
+{
+    const struct turned *p = find_profile(t, from, to);
+
+    if (p == NULL)
+        return;
+    leave_feed(t);
+    begin_at(t);
+    if (p->side != 0)
+        translate_add(&t->behind, "G%u", p->side);
+    translate_add(&t->behind, "G70 Q%u", p->label);
+    if (p->side != 0)
+        translate_add(&t->behind, "G40");
+    go_back(t);
+}
+
+/* Down to X in steps of I, each a tenth of a step back. */
+static void take_groove(struct translator *t)
+{
+    const unsigned label = PECK_LABEL + t->number % 1000000U;
+    char x[48];
+    char step[48];
+
+    expression(&t->line, 'x', "", x, sizeof x);
+    expression(&t->line, 'i', "", step, sizeof step);
+    if (x[0] == '\0' || step[0] == '\0' || line_find(&t->line, 'z', 0) != NULL)
+        return;
+    leave_feed(t);
+    begin_at(t);
+    translate_add(&t->behind, "#<_turning_at>=#<_turning_x>");
+    translate_add(&t->behind, "o%u repeat [FUP[[#<_turning_at>-[%s]]/2/[%s]]]", label, x, step);
+    translate_add(&t->behind, "#<_turning_at>=[#<_turning_at>-2*[%s]]", step);
+    translate_add(&t->behind, "o%u if [#<_turning_at> LT [%s]]", label + 1000000U, x);
+    translate_add(&t->behind, "#<_turning_at>=[%s]", x);
+    translate_add(&t->behind, "o%u endif", label + 1000000U);
+    translate_add(&t->behind, "G1 X#<_turning_at>");
+    translate_add(&t->behind, "G0 X[#<_turning_at>+0.2*[%s]]", step);
+    translate_add(&t->behind, "o%u endrepeat", label);
+    go_back(t);
+}
+
+/* K is the height of the thread, D the first cut, both of the radius; X the diameter at its ground. */
+static void take_thread(struct translator *t)
+{
+    static const char letters[] = "xzkdfa";
+    char text[6][48];
+
+    for (unsigned i = 0; i < 6; i++)
+        expression(&t->line, letters[i], i == 5 ? "0" : "", text[i], sizeof text[i]);
+    for (unsigned i = 0; i < 5; i++) {
+        if (text[i][0] == '\0')
+            return;
+    }
+    (void)line_read(&t->line, "", 0);
+    translate_add(&t->behind,
+                  "G76 P[%s] Z[%s] I[[%s]+2*[%s]-2*#<_x>] J[2*[%s]] K[2*[%s]] R2 Q[[%s]/2]",
+                  text[4], text[1], text[0], text[2], text[3], text[2], text[5]);
+}
+
+static bool is_passed_over(struct translator *t)
+{
+    if (t->skip_to == 0.0 || (!t->skipping && !has_number(&t->line, t->skip_from)))
+        return false;
+    t->skipping = !has_number(&t->line, t->skip_to);
+    t->skip_to = t->skipping ? t->skip_to : 0.0;
+    (void)line_read(&t->line, "", 0);
+    return true;
+}
+
+void turning_translate(struct translator *t)
+{
+    struct line *l = &t->line;
+    const struct line_word *p = line_find(l, 'p', 0);
+    const struct line_word *q = line_find(l, 'q', 0);
+    const bool profile = p != NULL && q != NULL && p->is_number && q->is_number;
+
+    if (is_passed_over(t))
+        return;
+    for (unsigned code = 710; code <= 720; code += 10) {
+        if (line_find_code(l, 'g', code) == NULL)
+            continue;
+        if (profile)
+            take_rough(t, code, p->value, q->value);
+        else
+            take_depths(t);
+        return;
+    }
+    if (line_find_code(l, 'g', 700) != NULL && profile)
+        take_finish(t, p->value, q->value);
+    else if (line_find_code(l, 'g', 750) != NULL)
+        take_groove(t);
+    else if (line_find_code(l, 'g', 760) != NULL && p == NULL)
+        take_thread(t);
+}
