@@ -41,7 +41,7 @@ bool comment_run(struct program *p)
 {
     const unsigned abort = comment_match(&p->lexer, "abort,");
 
-    if (p->config.say != NULL && p->lexer.comment_length > 0) {
+    if (p->config.say != NULL) {
         p->config.say(p->config.listener, p);
     }
     return abort == 0 || end_program(p, abort);

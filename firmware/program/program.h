@@ -39,8 +39,8 @@ struct program_config {
     bool waits;                 /* PROGRAM_WAIT until program_answer; else no contact, input 0 */
     bool sharp_corners;         /* for the room offset: outer corners are not rounded */
     /*
-     * NULL, or hears of every line that is executed and has a comment, before anything else of it: the comment is that of
-     * p->lexer. It changes nothing of p.
+     * NULL, or hears of every line that is executed but O-words, before anything else of it: its comment, if it has one, is that
+     * of p->lexer. It changes nothing of p.
      */
     void (*say)(void *listener, const struct program *p);
     void *listener;

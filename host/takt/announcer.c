@@ -47,7 +47,7 @@ void announcer_say(void *announcer, const struct program *p)
     struct announcer *a = announcer;
     char text[COMMENT_TEXT_MAX];
 
-    if (p->approach.pending)
+    if (p->approach.pending || p->lexer.comment_length == 0)
         return;
     switch (comment_read(p, text)) {
     case COMMENT_MESSAGE:

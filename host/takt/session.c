@@ -153,7 +153,7 @@ static void say_abort(void *listener, const struct program *p)
 {
     const struct program_text *program = *(const struct program_text **)listener;
     char text[COMMENT_TEXT_MAX];
-    const bool abort = comment_read(p, text) == COMMENT_ABORT;
+    const bool abort = p->lexer.comment_length > 0 && comment_read(p, text) == COMMENT_ABORT;
 
     if (abort && (strlen(text) >= DIAGNOSTIC_WORD_MAX || strchr(text, '.') != NULL))
         message_from_program(program, p->lexer.line, text);
