@@ -35,6 +35,8 @@ struct drive_pdo_mapping {
 struct drive_communication {
     uint32_t sync_cob_id;                         /* 1005 */
     uint32_t sync_period_us;                      /* 1006 */
+    uint32_t sync_window_us;                      /* 1007: targets that come later are none */
+    uint32_t time_cob_id;                         /* 1012; bit 31: it is listened to */
     uint32_t emcy_cob_id;                         /* 1014 */
     uint16_t emcy_inhibit_100us;                  /* 1015 */
     uint32_t consumer_heartbeat[DRIVE_CONSUMERS]; /* 1016: node << 16 | ms */
@@ -101,6 +103,10 @@ struct drive_process {
     uint32_t digital_inputs;             /* 60FD */
     uint32_t digital_outputs;            /* 60FE:1 */
     uint8_t error_register;              /* 1001 */
+    uint32_t manufacturer_status;        /* 1002 */
+    uint32_t high_resolution_us;         /* 1013 */
+    uint32_t time_ms;                    /* 2002:1 */
+    uint16_t time_days;                  /* 2002:2 */
     uint8_t history_count;               /* 1003:0 */
     uint32_t history[DRIVE_HISTORY_MAX]; /* 1003, the newest first */
     uint32_t store, restore;             /* 1010:1, 1011:1: read as 1, "can be done by command" */

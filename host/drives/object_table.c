@@ -55,13 +55,13 @@
 #define SUBC(index, sub, value, name)                                                              \
     ROW(index, sub, OBJECT_SAME, U32, RO, OBJECT_FIXED, 0, value, 0, 0, name, NULL)
 
-#define RPDO_PARAMETERS(n, id, when)                                                               \
-    HEAD(0x1400 + (n), OBJECT_RECORD, 2, "RPDO communication parameter"),                          \
+#define RPDO_PARAMETERS(n, number, id, when)                                                       \
+    HEAD(0x1400 + (n), OBJECT_RECORD, 2, "RPDO communication parameter " number),                  \
         SUB(0x1400 + (n), 1, U32, RW, NODE, COM(rpdo[n].cob_id), id, "COB-ID"),                    \
         SUB(0x1400 + (n), 2, U8, RW, 0, COM(rpdo[n].transmission), when, "Transmission type")
 
-#define TPDO_PARAMETERS(n, id, when, milliseconds)                                                 \
-    HEAD(0x1800 + (n), OBJECT_RECORD, 6, "TPDO communication parameter"),                          \
+#define TPDO_PARAMETERS(n, number, id, when, milliseconds)                                         \
+    HEAD(0x1800 + (n), OBJECT_RECORD, 6, "TPDO communication parameter " number),                  \
         SUB(0x1800 + (n), 1, U32, RW, NODE, COM(tpdo[n].cob_id), id, "COB-ID"),                    \
         SUB(0x1800 + (n), 2, U8, RW, 0, COM(tpdo[n].transmission), when, "Transmission type"),     \
         SUB(0x1800 + (n), 3, U16, RW, 0, COM(tpdo[n].inhibit_100us), 0, "Inhibit time"),           \
@@ -74,23 +74,26 @@
      (n) * sizeof(struct drive_pdo_mapping) + COM_BEGIN)
 #define ENTRY(i) (offsetof(struct drive_pdo_mapping, entry) + (i) * sizeof(uint32_t))
 
-#define MAPPED(index, i, mapping, value)                                                           \
-    SUB(index, (i) + 1, U32, RW, 0, (mapping) + ENTRY(i), value, "Mapped object")
+#define MAPPED(index, number, mapping, value)                                                      \
+    SUB(index, number, U32, RW, 0, (mapping) + ENTRY((number)-1), value, "Mapped object " #number)
 
 #define MAPPING(index, mapping, title, used, first, second)                                        \
     ROW(index, 0, OBJECT_RECORD, U8, RW, OBJECT_LIMITED,                                           \
         (mapping) + offsetof(struct drive_pdo_mapping, count), used, 0, DRIVE_PDO_MAPPED_MAX,      \
         "Number of mapped objects", title),                                                        \
-        MAPPED(index, 0, mapping, first), MAPPED(index, 1, mapping, second),                       \
-        MAPPED(index, 2, mapping, 0), MAPPED(index, 3, mapping, 0), MAPPED(index, 4, mapping, 0),  \
-        MAPPED(index, 5, mapping, 0), MAPPED(index, 6, mapping, 0), MAPPED(index, 7, mapping, 0)
+        MAPPED(index, 1, mapping, first), MAPPED(index, 2, mapping, second),                       \
+        MAPPED(index, 3, mapping, 0), MAPPED(index, 4, mapping, 0), MAPPED(index, 5, mapping, 0),  \
+        MAPPED(index, 6, mapping, 0), MAPPED(index, 7, mapping, 0), MAPPED(index, 8, mapping, 0)
 
-#define RPDO_MAPPING(n, used, first, second)                                                       \
-    MAPPING(0x1600 + (n), MAPPING_OF(rpdo, n), "RPDO mapping parameter", used, first, second)
-#define TPDO_MAPPING(n, used, first, second)                                                       \
-    MAPPING(0x1A00 + (n), MAPPING_OF(tpdo, n), "TPDO mapping parameter", used, first, second)
+#define RPDO_MAPPING(n, number, used, first, second)                                               \
+    MAPPING(0x1600 + (n), MAPPING_OF(rpdo, n), "RPDO mapping parameter " number, used, first,      \
+            second)
+#define TPDO_MAPPING(n, number, used, first, second)                                               \
+    MAPPING(0x1A00 + (n), MAPPING_OF(tpdo, n), "TPDO mapping parameter " number, used, first,      \
+            second)
 
-#define HISTORY(i) SUB(0x1003, (i) + 1, U32, RO, 0, PROCESS(history[i]), 0, "Error")
+#define HISTORY(number)                                                                            \
+    SUB(0x1003, number, U32, RO, 0, PROCESS(history[(number)-1]), 0, "Error " #number)
 
 #define NOT_VALID 0x80000000
 #define NO_RTR    0x40000000
@@ -99,10 +102,12 @@
 const struct object_row object_table[] = {
     CONST(0x1000, U32, 0x00020192, "Device type"),
     VAR(0x1001, U8, RO, TPDO, PROCESS(error_register), 0, "Error register"),
+    VAR(0x1002, U32, RO, TPDO, PROCESS(manufacturer_status), 0, "Manufacturer status register"),
     ROW(0x1003, 0, OBJECT_ARRAY, U8, RW, OBJECT_LIMITED, PROCESS(history_count), 0, 0, 0, "Number of errors", "Pre-defined error field"),
-    HISTORY(0), HISTORY(1), HISTORY(2), HISTORY(3), HISTORY(4), HISTORY(5), HISTORY(6), HISTORY(7),
+    HISTORY(1), HISTORY(2), HISTORY(3), HISTORY(4), HISTORY(5), HISTORY(6), HISTORY(7), HISTORY(8),
     VAR(0x1005, U32, RW, 0, COM(sync_cob_id), 0x80, "COB-ID SYNC message"),
     VAR(0x1006, U32, RW, 0, COM(sync_period_us), 0, "Communication cycle period"),
+    VAR(0x1007, U32, RW, 0, COM(sync_window_us), 0, "Synchronous window length"),
     TEXT(0x1008, "takt virtual drive", "Manufacturer device name"),
     TEXT(0x1009, "1", "Manufacturer hardware version"),
     TEXT(0x100A, "1.0", "Manufacturer software version"),
@@ -110,11 +115,13 @@ const struct object_row object_table[] = {
     SUB(0x1010, 1, U32, RW, 0, PROCESS(store), 1, "Save all parameters"),
     HEAD(0x1011, OBJECT_ARRAY, 1, "Restore default parameters"),
     SUB(0x1011, 1, U32, RW, 0, PROCESS(restore), 1, "Restore all default parameters"),
+    VAR(0x1012, U32, RW, 0, COM(time_cob_id), 0x100, "COB-ID time stamp object"),
+    VAR(0x1013, U32, RW, TPDO | RPDO, PROCESS(high_resolution_us), 0, "High resolution time stamp"),
     VAR(0x1014, U32, RW, NODE, COM(emcy_cob_id), 0x80, "COB-ID EMCY"),
     VAR(0x1015, U16, RW, 0, COM(emcy_inhibit_100us), 0, "Inhibit time EMCY"),
     HEAD(0x1016, OBJECT_ARRAY, DRIVE_CONSUMERS, "Consumer heartbeat time"),
-    SUB(0x1016, 1, U32, RW, 0, COM(consumer_heartbeat[0]), 0, "Node and time"),
-    SUB(0x1016, 2, U32, RW, 0, COM(consumer_heartbeat[1]), 0, "Node and time"),
+    SUB(0x1016, 1, U32, RW, 0, COM(consumer_heartbeat[0]), 0, "Node and time 1"),
+    SUB(0x1016, 2, U32, RW, 0, COM(consumer_heartbeat[1]), 0, "Node and time 2"),
     VAR(0x1017, U16, RW, 0, COM(producer_heartbeat_ms), 0, "Producer heartbeat time"),
     HEAD(0x1018, OBJECT_RECORD, 4, "Identity object"),
     SUBC(0x1018, 1, 0, "Vendor-ID"),
@@ -130,25 +137,28 @@ const struct object_row object_table[] = {
     SUB(0x1200, 1, U32, RO, NODE, IDENTITY(sdo_cob_id[0]), 0x600, "COB-ID client to server"),
     SUB(0x1200, 2, U32, RO, NODE, IDENTITY(sdo_cob_id[1]), 0x580, "COB-ID server to client"),
 
-    RPDO_PARAMETERS(0, 0x200, 255),
-    RPDO_PARAMETERS(1, 0x300, 1),
-    RPDO_PARAMETERS(2, NOT_VALID | 0x400, 255),
-    RPDO_PARAMETERS(3, NOT_VALID | 0x500, 1),
-    RPDO_MAPPING(0, 2, 0x60400010, 0x60600008),
-    RPDO_MAPPING(1, 1, 0x607A0020, 0),
-    RPDO_MAPPING(2, 2, 0x60400010, 0x607A0020),
-    RPDO_MAPPING(3, 1, 0x60C10120, 0),
-    TPDO_PARAMETERS(0, NO_RTR | 0x180, 1, 0),
-    TPDO_PARAMETERS(1, NO_RTR | 0x280, 255, 100),
-    TPDO_PARAMETERS(2, NOT_VALID | NO_RTR | 0x380, 255, 0),
-    TPDO_PARAMETERS(3, NOT_VALID | NO_RTR | 0x480, 1, 0),
-    TPDO_MAPPING(0, 2, 0x60410010, 0x60640020),
-    TPDO_MAPPING(1, 2, 0x603F0010, 0x60F40020),
-    TPDO_MAPPING(2, 2, 0x60410010, 0x60610008),
-    TPDO_MAPPING(3, 2, 0x606C0020, 0x60770010),
+    RPDO_PARAMETERS(0, "1", 0x200, 255),
+    RPDO_PARAMETERS(1, "2", 0x300, 1),
+    RPDO_PARAMETERS(2, "3", NOT_VALID | 0x400, 255),
+    RPDO_PARAMETERS(3, "4", NOT_VALID | 0x500, 1),
+    RPDO_MAPPING(0, "1", 2, 0x60400010, 0x60600008),
+    RPDO_MAPPING(1, "2", 1, 0x607A0020, 0),
+    RPDO_MAPPING(2, "3", 2, 0x60400010, 0x607A0020),
+    RPDO_MAPPING(3, "4", 1, 0x60C10120, 0),
+    TPDO_PARAMETERS(0, "1", NO_RTR | 0x180, 1, 0),
+    TPDO_PARAMETERS(1, "2", NO_RTR | 0x280, 255, 100),
+    TPDO_PARAMETERS(2, "3", NOT_VALID | NO_RTR | 0x380, 255, 0),
+    TPDO_PARAMETERS(3, "4", NOT_VALID | NO_RTR | 0x480, 1, 0),
+    TPDO_MAPPING(0, "1", 2, 0x60410010, 0x60640020),
+    TPDO_MAPPING(1, "2", 2, 0x603F0010, 0x60F40020),
+    TPDO_MAPPING(2, "3", 2, 0x60410010, 0x60610008),
+    TPDO_MAPPING(3, "4", 2, 0x606C0020, 0x60770010),
 
     VAR(0x2000, OBJECT_STRING, RW, 0, SET(label), 0, "Name of the axis"),
     VAR(0x2001, OBJECT_DOMAIN, RW, 0, PROCESS(notes), 0, "Notes"),
+    HEAD(0x2002, OBJECT_RECORD, 2, "Time of day"),
+    SUB(0x2002, 1, U32, RO, TPDO, PROCESS(time_ms), 0, "Milliseconds since midnight"),
+    SUB(0x2002, 2, U16, RO, TPDO, PROCESS(time_days), 0, "Days since 1984"),
 
     VARL(0x6007, I16, RW, 0, SET(abort_connection_option), 3, 0, 3, "Abort connection option code"),
     VAR(0x603F, U16, RO, TPDO | EVENT, PROCESS(error_code), 0, "Error code"),
@@ -237,18 +247,18 @@ static const struct object_row io_table[] = {
     TEXT(0x1008, "takt virtual I/O node", "Manufacturer device name"),
     VAR(0x1014, U32, RW, NODE, COM(emcy_cob_id), 0x80, "COB-ID EMCY"),
     HEAD(0x1016, OBJECT_ARRAY, DRIVE_CONSUMERS, "Consumer heartbeat time"),
-    SUB(0x1016, 1, U32, RW, 0, COM(consumer_heartbeat[0]), 0, "Node and time"),
-    SUB(0x1016, 2, U32, RW, 0, COM(consumer_heartbeat[1]), 0, "Node and time"),
+    SUB(0x1016, 1, U32, RW, 0, COM(consumer_heartbeat[0]), 0, "Node and time 1"),
+    SUB(0x1016, 2, U32, RW, 0, COM(consumer_heartbeat[1]), 0, "Node and time 2"),
     VAR(0x1017, U16, RW, 0, COM(producer_heartbeat_ms), 0, "Producer heartbeat time"),
     HEAD(0x1018, OBJECT_RECORD, 4, "Identity object"),
     SUBC(0x1018, 1, 0, "Vendor-ID"),
     SUBC(0x1018, 2, 0x401, "Product code"),
     SUBC(0x1018, 3, 0x10000, "Revision number"),
     SUB(0x1018, 4, U32, RO, OWN, IDENTITY(serial), 0, "Serial number"),
-    RPDO_PARAMETERS(0, 0x200, 255),
-    RPDO_MAPPING(0, DICTIONARY_IO_BYTES, 0x62000108, 0x62000208),
-    TPDO_PARAMETERS(0, NO_RTR | 0x180, 255, 0),
-    TPDO_MAPPING(0, DICTIONARY_IO_BYTES, 0x60000108, 0x60000208),
+    RPDO_PARAMETERS(0, "1", 0x200, 255),
+    RPDO_MAPPING(0, "1", DICTIONARY_IO_BYTES, 0x62000108, 0x62000208),
+    TPDO_PARAMETERS(0, "1", NO_RTR | 0x180, 255, 0),
+    TPDO_MAPPING(0, "1", DICTIONARY_IO_BYTES, 0x60000108, 0x60000208),
     HEAD(0x6000, OBJECT_ARRAY, DICTIONARY_IO_BYTES, "Read input 8-bit"),
     SUB(0x6000, 1, U8, RO, TPDO, EXTRA(DICTIONARY_IO_BYTES), 0, "Inputs 1 to 8"),
     SUB(0x6000, 2, U8, RO, TPDO, EXTRA(DICTIONARY_IO_BYTES + 1), 0, "Inputs 9 to 16"),

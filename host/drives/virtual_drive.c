@@ -11,6 +11,10 @@
 
 #define LAST_COMMUNICATION 0x1FFF
 
+/* Object 1012. */
+#define TIME_CONSUMED 0x80000000u
+#define COB_ID_MASK   0x7FFu
+
 /* SYNC counts as lost after this many of its periods (object 1006). */
 #define SYNC_LOST_PERIODS 3
 
@@ -55,6 +59,8 @@ void virtual_drive_set_filter(struct virtual_drive *drive)
     memset(drive->accepts, 0, sizeof drive->accepts);
     accept(drive, NMT_COMMAND_COB_ID);
     accept(drive, c->sync_cob_id);
+    if (c->time_cob_id & TIME_CONSUMED)
+        accept(drive, c->time_cob_id & COB_ID_MASK);
     accept(drive, SDO_REQUEST_FUNCTION + drive->config.node);
     for (unsigned i = 0; i < DRIVE_CONSUMERS; i++)
         if (c->consumer_heartbeat[i])
@@ -248,6 +254,7 @@ static void take_sync(struct virtual_drive *drive, const struct can_frame *frame
     uint64_t period_ns = (uint64_t)drive->objects.communication.sync_period_us * MICROSECOND_NS;
     if (frame->length > 1)
         return;
+    drive->sync_ns = drive->heard_ns;
     if (drive->communication_error == EMCY_SYNC)
         virtual_drive_set_communication_error(drive, EMCY_NONE);
     if (period_ns != 0) {
@@ -288,6 +295,41 @@ static void answer_request(struct virtual_drive *drive)
     r->due_ns = drive->now_ns + drive->config.sdo_us * (uint64_t)MICROSECOND_NS;
 }
 
+/* ---- Clocks ---- */
+
+static void take_time(struct virtual_drive *drive, const struct can_frame *frame)
+{
+    struct time_stamp time;
+    if (drive->nmt == NMT_STOPPED || !time_stamp_read(frame, &time))
+        return;
+    drive->time = time;
+    drive->time_ns = drive->now_ns;
+    virtual_drive_tell(drive, DRIVE_EVENT_TIME, time.ms, time.days);
+}
+
+struct time_stamp virtual_drive_time_of_day(const struct virtual_drive *drive)
+{
+    return time_stamp_add(drive->time, (drive->now_ns - drive->time_ns) / MILLISECOND_NS);
+}
+
+uint32_t virtual_drive_high_resolution_us(const struct virtual_drive *drive)
+{
+    return (uint32_t)(drive->now_ns / MICROSECOND_NS) + drive->clock_us;
+}
+
+void virtual_drive_set_high_resolution_us(struct virtual_drive *drive, uint32_t now_us)
+{
+    drive->clock_us = now_us - (uint32_t)(drive->now_ns / MICROSECOND_NS);
+}
+
+/* ---- Frames ---- */
+
+static bool is_time(const struct virtual_drive *drive, const struct can_frame *frame)
+{
+    uint32_t id = drive->objects.communication.time_cob_id;
+    return id & TIME_CONSUMED && frame->id == (id & COB_ID_MASK);
+}
+
 static void take_other(struct virtual_drive *drive, const struct can_frame *frame)
 {
     if (frame->id == NMT_COMMAND_COB_ID)
@@ -309,11 +351,20 @@ void virtual_drive_on_frame(struct virtual_drive *drive, const struct can_frame 
         return;
     if (frame->id == drive->objects.communication.sync_cob_id)
         take_sync(drive, frame);
+    else if (is_time(drive, frame))
+        take_time(drive, frame);
     else if (node_function(frame->id) == SDO_REQUEST_FUNCTION || frame->id == NMT_COMMAND_COB_ID ||
              node_function(frame->id) == NMT_HEARTBEAT_FUNCTION)
         take_other(drive, frame);
     else if (drive->nmt == NMT_OPERATIONAL)
         virtual_drive_take_rpdo(drive, frame);
+}
+
+void virtual_drive_on_frame_at(struct virtual_drive *drive, const struct can_frame *frame,
+                               uint64_t time_ns)
+{
+    drive->heard_ns = time_ns;
+    virtual_drive_on_frame(drive, frame);
 }
 
 static uint64_t earlier(uint64_t a, uint64_t b)

@@ -11,6 +11,7 @@
 #include "canopen/emcy.h"
 #include "canopen/nmt.h"
 #include "canopen/pdo.h"
+#include "canopen/time_stamp.h"
 #include "drives/dictionary.h"
 #include "drives/drive_event.h"
 #include "drives/drive_objects.h"
@@ -64,6 +65,9 @@ void virtual_drive_boot(struct virtual_drive *drive);
 
 /* A frame has come; the drive may send answers. */
 void virtual_drive_on_frame(struct virtual_drive *drive, const struct can_frame *frame);
+/* The same where the time on the bus is known: targets behind the window of object 1007 are none. */
+void virtual_drive_on_frame_at(struct virtual_drive *drive, const struct can_frame *frame,
+                               uint64_t time_ns);
 
 /*
  * Time goes on by one cycle (> 0), which follows the SYNC just received: motor, supervision,

@@ -142,14 +142,19 @@ static struct ramps profile_ramps(const struct virtual_drive *drive)
                           s->profile_acceleration / per_mm, s->profile_deceleration / per_mm};
 }
 
-static int64_t limited(const struct virtual_drive *drive, int64_t position_inc)
+/* Object 607D; limits that leave no room are none. */
+static double limited(const struct virtual_drive *drive, double position_inc)
 {
     const int32_t *limit = drive->objects.settings.position_limit;
-    if (limit[0] >= limit[1])
-        return position_inc; /* no limits */
-    if (position_inc < limit[0])
-        return limit[0];
-    return position_inc > limit[1] ? limit[1] : position_inc;
+    return limit[0] < limit[1] ? maths_clamp(position_inc, limit[0], limit[1]) : position_inc;
+}
+
+/* Where the encoder is to be for a target, as far as the limits let it. */
+static double take_target(struct virtual_drive *drive, double target_inc)
+{
+    double limited_inc = limited(drive, target_inc);
+    drive->is_limited = limited_inc != target_inc;
+    return limited_inc / drive->increments_per_mm + drive->origin_mm;
 }
 
 static void activate(struct virtual_drive *drive, int64_t target_inc)
@@ -170,8 +175,7 @@ static void take_setpoint(struct virtual_drive *drive, uint16_t controlword)
     if (s->is_acknowledged)
         return;
     if (controlword & CONTROL_RELATIVE)
-        target_inc += s->active_inc;
-    target_inc = limited(drive, target_inc);
+        target_inc += (int64_t)limited(drive, (double)s->active_inc);
     s->is_acknowledged = true;
     if (controlword & CONTROL_IMMEDIATE || s->is_reached) {
         activate(drive, target_inc);
@@ -208,7 +212,7 @@ static void run_position(struct virtual_drive *drive, uint32_t cycle_ns)
     if (s->has_next && s->is_reached)
         activate(drive, s->next_inc);
     release_setpoint(drive);
-    double target_mm = (double)s->active_inc / drive->increments_per_mm + drive->origin_mm;
+    double target_mm = take_target(drive, (double)s->active_inc);
     run_profile(drive, target_mm, &ramps, cycle_ns);
     check_reached(drive, target_mm, cycle_ns);
 }
@@ -226,10 +230,7 @@ static uint32_t period_cycles(const struct virtual_drive *drive, uint32_t cycle_
 /* The command goes to the target in a straight line, within the period after it has changed. */
 static void run_interpolated(struct virtual_drive *drive, double target_inc, uint32_t cycle_ns)
 {
-    const int32_t *limit = drive->objects.settings.position_limit;
-    double limited_inc =
-        limit[0] < limit[1] ? maths_clamp(target_inc, limit[0], limit[1]) : target_inc;
-    double goal_mm = limited_inc / drive->increments_per_mm + drive->origin_mm;
+    double goal_mm = take_target(drive, target_inc);
     double command_mm = goal_mm;
     if (goal_mm != drive->goal_mm) {
         drive->goal_mm = goal_mm;

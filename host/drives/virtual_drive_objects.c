@@ -13,6 +13,8 @@
 
 #define PDO_NOT_VALID 0x80000000u
 
+#define TIME_CONSUMED 0x80000000u /* object 1012 */
+
 #define NOT_WATCHED UINT32_MAX /* windows of position and following error */
 
 /* Turns of the motor per second, and per second squared, a drive starts with. */
@@ -172,6 +174,11 @@ static void refresh_rest(struct virtual_drive *drive)
     p->actual_internal = signed_round(plant->measured_mm * plant->encoder_steps_per_mm);
     p->actual_velocity = signed_round(plant->measured_velocity_mm_s * drive->increments_per_mm);
     p->actual_torque = torque(drive);
+    p->manufacturer_status = virtual_drive_manufacturer_status(drive);
+    p->high_resolution_us = virtual_drive_high_resolution_us(drive);
+    const struct time_stamp time = virtual_drive_time_of_day(drive);
+    p->time_ms = time.ms;
+    p->time_days = time.days;
 }
 
 void virtual_drive_refresh(struct virtual_drive *drive, unsigned groups)
@@ -205,12 +212,24 @@ void virtual_drive_apply_touches(struct virtual_drive *drive, unsigned touches)
         virtual_drive_take_mode(drive, drive->objects.process.mode);
     if (touches & DRIVE_TOUCH_CONTROLWORD)
         virtual_drive_take_controlword(drive, drive->objects.process.controlword);
+    if (touches & DRIVE_TOUCH_CLOCK)
+        virtual_drive_set_high_resolution_us(drive, drive->objects.process.high_resolution_us);
 }
 
 static uint32_t check_sync_id(uint32_t value)
 {
     bool is_allowed = value == 0x80 || (value > 0x180 && value < 0x581);
     return is_allowed ? SDO_ABORT_NONE : SDO_ABORT_VALUE;
+}
+
+/* An identifier is changed while nobody listens to it. Nodes of this kind never send it (bit 30). */
+static uint32_t check_time_id(const struct virtual_drive *drive, uint32_t value)
+{
+    uint32_t old = drive->objects.communication.time_cob_id;
+    uint32_t id = value & ~TIME_CONSUMED;
+    if (id <= 0x80 || id > 0x7FF)
+        return SDO_ABORT_VALUE;
+    return old & value & TIME_CONSUMED && value != old ? SDO_ABORT_VALUE : SDO_ABORT_NONE;
 }
 
 static uint32_t check_emcy_id(const struct virtual_drive *drive, uint32_t value)
@@ -251,6 +270,8 @@ static uint32_t check_communication_write(const struct virtual_drive *drive,
         return value == SIGNATURE_SAVE ? SDO_ABORT_NONE : SDO_ABORT_STORE;
     case 0x1011:
         return value == SIGNATURE_LOAD ? SDO_ABORT_NONE : SDO_ABORT_STORE;
+    case 0x1012:
+        return check_time_id(drive, value);
     case 0x1014:
         return check_emcy_id(drive, value);
     case 0x1016:
@@ -317,10 +338,14 @@ static void follow_communication_write(struct virtual_drive *drive, const struct
         virtual_drive_clear_history(drive);
         break;
     case 0x1005:
+    case 0x1012:
         virtual_drive_set_filter(drive);
         break;
     case 0x1006:
         drive->sync_lost_ns = DRIVE_NEVER;
+        break;
+    case 0x1013:
+        virtual_drive_apply_touches(drive, DRIVE_TOUCH_CLOCK);
         break;
     case 0x1010:
         store(drive);

@@ -5,6 +5,7 @@
 #define TAKT_DRIVES_VIRTUAL_DRIVE_PRIVATE_H
 
 #include "canopen/emcy.h"
+#include "canopen/time_stamp.h"
 #include "drives/dictionary.h"
 #include "drives/virtual_drive.h"
 
@@ -24,7 +25,7 @@ enum drive_group {
 };
 
 /* What a write to an object sets off. */
-enum drive_touch { DRIVE_TOUCH_CONTROLWORD = 1, DRIVE_TOUCH_MODE = 2 };
+enum drive_touch { DRIVE_TOUCH_CONTROLWORD = 1, DRIVE_TOUCH_MODE = 2, DRIVE_TOUCH_CLOCK = 4 };
 
 /* Kinds of frames a drive sends, for faults that hold them back. */
 bool virtual_drive_send(struct virtual_drive *drive, enum inject_mute kind,
@@ -52,6 +53,12 @@ static inline double virtual_drive_scale(const struct virtual_drive *drive)
 {
     return drive->increments_per_mm * virtual_drive_sign(drive);
 }
+
+/* Object 1013, by the drive's own clock. */
+uint32_t virtual_drive_high_resolution_us(const struct virtual_drive *drive);
+void virtual_drive_set_high_resolution_us(struct virtual_drive *drive, uint32_t now_us);
+/* Object 2002: TIME as the drive's own clock has gone on since. */
+struct time_stamp virtual_drive_time_of_day(const struct virtual_drive *drive);
 
 /* As after NMT's reset of the node. */
 void virtual_drive_reboot(struct virtual_drive *drive);
@@ -100,6 +107,15 @@ uint32_t virtual_drive_write_sdo(void *drive, uint32_t object, const uint8_t *by
 
 /* ---- virtual_drive_profile.c: states ---- */
 
+/* Bits of object 1002. */
+enum drive_status {
+    DRIVE_STATUS_TORQUE_LIMIT = 1,
+    DRIVE_STATUS_POSITION_LIMIT = 2, /* the target is beyond object 607D */
+    DRIVE_STATUS_WARM = 4,
+    DRIVE_STATUS_HOMED = 8
+};
+
+uint32_t virtual_drive_manufacturer_status(const struct virtual_drive *drive);
 uint16_t virtual_drive_statusword(const struct virtual_drive *drive);
 void virtual_drive_take_controlword(struct virtual_drive *drive, uint16_t controlword);
 void virtual_drive_take_mode(struct virtual_drive *drive, int8_t mode);

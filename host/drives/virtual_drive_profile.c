@@ -31,6 +31,27 @@ static bool is_hot(const struct virtual_drive *drive, double below_k)
     return max_c > 0 && drive->plant.temperature_c > max_c - below_k;
 }
 
+static bool is_at_torque_limit(const struct virtual_drive *drive)
+{
+    return maths_abs(drive->plant.acceleration_mm_s2) >=
+           drive->plant.acceleration_max_mm_s2 * drive->plant.damage.torque_ratio;
+}
+
+/* Object 1002: what is behind the statusword. */
+uint32_t virtual_drive_manufacturer_status(const struct virtual_drive *drive)
+{
+    uint32_t word = 0;
+    if (is_at_torque_limit(drive))
+        word |= DRIVE_STATUS_TORQUE_LIMIT;
+    if (drive->is_limited)
+        word |= DRIVE_STATUS_POSITION_LIMIT;
+    if (is_hot(drive, TEMPERATURE_WARNING_K))
+        word |= DRIVE_STATUS_WARM;
+    if (drive->homing.is_homed)
+        word |= DRIVE_STATUS_HOMED;
+    return word;
+}
+
 uint16_t virtual_drive_statusword(const struct virtual_drive *drive)
 {
     unsigned word = cia402_statusword(drive->state) | CIA402_VOLTAGE_ENABLED;
@@ -40,8 +61,7 @@ uint16_t virtual_drive_statusword(const struct virtual_drive *drive)
         word |= CIA402_FOLLOWING_FAILED;
     if (is_hot(drive, TEMPERATURE_WARNING_K))
         word |= STATUS_WARNING;
-    if (maths_abs(drive->plant.acceleration_mm_s2) >=
-        drive->plant.acceleration_max_mm_s2 * drive->plant.damage.torque_ratio)
+    if (drive->is_limited || is_at_torque_limit(drive))
         word |= STATUS_INTERNAL_LIMIT;
     return (uint16_t)(word | virtual_drive_mode_status(drive));
 }
@@ -227,6 +247,7 @@ static void run_fault_reaction(struct virtual_drive *drive, uint32_t cycle_ns)
 
 void virtual_drive_move(struct virtual_drive *drive, uint32_t cycle_ns)
 {
+    drive->is_limited = false;
     switch (drive->state) {
     case CIA402_ENABLED:
         run_enabled(drive, cycle_ns);

@@ -87,7 +87,12 @@ struct virtual_drive {
     uint16_t controlword; /* the one before, for edges */
     uint64_t now_ns;      /* since it was switched on */
     uint64_t due_ns;      /* nothing of all that waits for a time happens before */
-    uint64_t boot_ns;     /* it boots then, and hears nothing before; 0: it has booted */
+    uint64_t heard_ns; /* when the frame that is being taken was on the bus; 0: that is not known */
+    uint64_t sync_ns;  /* the same of the last SYNC */
+    uint32_t clock_us; /* object 1013 less now_ns */
+    struct time_stamp time; /* as TIME has told it, */
+    uint64_t time_ns;       /* then */
+    uint64_t boot_ns;       /* it boots then, and hears nothing before; 0: it has booted */
     struct drive_requests requests;
     const struct dictionary *dictionary;
 
@@ -107,6 +112,7 @@ struct virtual_drive {
     bool is_halted;
     bool is_stopped;   /* quick stop has come to rest and stays */
     bool interpolates; /* mode 7, by controlword bit 4 */
+    bool is_limited;   /* the target is beyond object 607D */
     enum cia402_state leaving_to;
     struct drive_setpoints setpoints;
     struct drive_homing homing;

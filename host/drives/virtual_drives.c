@@ -31,8 +31,7 @@ static void start(struct virtual_drives *set, const struct virtual_drives_config
 
 static void on_frame(void *context, const struct can_frame *frame, uint64_t time_ns)
 {
-    (void)time_ns;
-    virtual_drive_on_frame(context, frame);
+    virtual_drive_on_frame_at(context, frame, time_ns);
 }
 
 void virtual_drives_init(struct virtual_drives *set, struct bus *bus,

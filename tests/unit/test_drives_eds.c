@@ -110,14 +110,14 @@ static void test_every_entry_is_found_and_nothing_else(void)
 static void test_the_objects_of_the_profile_are_there(void)
 {
     static const uint16_t indices[] = {
-        0x1000, 0x1001, 0x1003, 0x1005, 0x1006, 0x1008, 0x1009, 0x100A, 0x1010, 0x1011, 0x1014,
-        0x1015, 0x1016, 0x1017, 0x1018, 0x1019, 0x1029, 0x1200, 0x1400, 0x1401, 0x1402, 0x1403,
-        0x1600, 0x1601, 0x1602, 0x1603, 0x1800, 0x1801, 0x1802, 0x1803, 0x1A00, 0x1A01, 0x1A02,
-        0x1A03, 0x6007, 0x603F, 0x6040, 0x6041, 0x605A, 0x605B, 0x605C, 0x605D, 0x605E, 0x6060,
-        0x6061, 0x6062, 0x6063, 0x6064, 0x6065, 0x6066, 0x6067, 0x6068, 0x606C, 0x6077, 0x607A,
-        0x607C, 0x607D, 0x607F, 0x6080, 0x6081, 0x6083, 0x6084, 0x6085, 0x6086, 0x608F, 0x6091,
-        0x6092, 0x6098, 0x6099, 0x609A, 0x60B0, 0x60B1, 0x60B2, 0x60C0, 0x60C1, 0x60C2, 0x60C4,
-        0x60F4, 0x60FD, 0x60FE, 0x6502};
+        0x1000, 0x1001, 0x1002, 0x1003, 0x1005, 0x1006, 0x1007, 0x1008, 0x1009, 0x100A, 0x1010,
+        0x1011, 0x1012, 0x1013, 0x1014, 0x1015, 0x1016, 0x1017, 0x1018, 0x1019, 0x1029, 0x1200,
+        0x1400, 0x1401, 0x1402, 0x1403, 0x1600, 0x1601, 0x1602, 0x1603, 0x1800, 0x1801, 0x1802,
+        0x1803, 0x1A00, 0x1A01, 0x1A02, 0x1A03, 0x6007, 0x603F, 0x6040, 0x6041, 0x605A, 0x605B,
+        0x605C, 0x605D, 0x605E, 0x6060, 0x6061, 0x6062, 0x6063, 0x6064, 0x6065, 0x6066, 0x6067,
+        0x6068, 0x606C, 0x6077, 0x607A, 0x607C, 0x607D, 0x607F, 0x6080, 0x6081, 0x6083, 0x6084,
+        0x6085, 0x6086, 0x608F, 0x6091, 0x6092, 0x6098, 0x6099, 0x609A, 0x60B0, 0x60B1, 0x60B2,
+        0x60C0, 0x60C1, 0x60C2, 0x60C4, 0x60F4, 0x60FD, 0x60FE, 0x6502};
     bool has_index;
     for (unsigned i = 0; i < sizeof indices / sizeof indices[0]; i++) {
         TEST_ASSERT_NOT_NULL(object_table_find(indices[i], 0, &has_index));
@@ -137,6 +137,25 @@ static void test_no_two_numbers_share_memory(void)
             unsigned b_bytes = object_type_bytes((enum object_type)b->type);
             bool apart = a->field + a_bytes <= b->field || b->field + b_bytes <= a->field;
             TEST_ASSERT_TRUE(apart || a->flags & OBJECT_FIXED || b->flags & OBJECT_FIXED);
+        }
+    }
+}
+
+/* Tools find objects by their names. */
+static void test_names_are_unique(void)
+{
+    for (unsigned i = 0; i < object_table_count; i++) {
+        const struct object_row *a = row_at(i);
+        for (unsigned k = 0; k < i; k++) {
+            const struct object_row *b = row_at(k);
+            bool is_sub = a->title != NULL || a->kind == OBJECT_SAME;
+            bool are_apart = strcmp(a->name, b->name) != 0;
+            TEST_ASSERT_TRUE_MESSAGE(are_apart || a->index != b->index || !is_sub, a->name);
+            if (a->kind == OBJECT_SAME || b->kind == OBJECT_SAME)
+                continue;
+            const char *name_a = a->kind == OBJECT_VAR ? a->name : a->title;
+            const char *name_b = b->kind == OBJECT_VAR ? b->name : b->title;
+            TEST_ASSERT_TRUE_MESSAGE(strcmp(name_a, name_b) != 0, name_a);
         }
     }
 }
@@ -307,6 +326,7 @@ int main(void)
     RUN_TEST(test_every_entry_is_found_and_nothing_else);
     RUN_TEST(test_the_objects_of_the_profile_are_there);
     RUN_TEST(test_no_two_numbers_share_memory);
+    RUN_TEST(test_names_are_unique);
     RUN_TEST(test_the_sheet_has_exactly_the_entries_of_the_table);
     RUN_TEST(test_the_lists_of_the_sheet_name_every_index_once);
     RUN_TEST(test_type_access_and_mapping_are_those_of_the_table);

@@ -20,6 +20,7 @@
 #define REACHED 0x0400
 #define BIT_12  0x1000
 #define BIT_13  0x2000
+#define LIMITED 0x0800 /* internal limit active */
 
 static struct lone_drive lone;
 
@@ -184,9 +185,15 @@ static void test_targets_beyond_the_software_limits_end_at_them(void)
     go(5000, 0);
     lone_step(&lone, 1000);
     TEST_ASSERT_TRUE(command_mm() == 2);
+    TEST_ASSERT_TRUE(lone_statusword(&lone) & LIMITED);
     go(-5000, 0);
     lone_step(&lone, 1000);
     TEST_ASSERT_TRUE(command_mm() == -1);
+    TEST_ASSERT_TRUE(lone_statusword(&lone) & LIMITED);
+    go(2500, REL); /* from the limit, not from what was wanted */
+    lone_step(&lone, 1000);
+    TEST_ASSERT_TRUE(command_mm() == 1.5);
+    TEST_ASSERT_FALSE(lone_statusword(&lone) & LIMITED);
 }
 
 static void test_without_a_rising_bit_4_nothing_moves(void)
@@ -361,6 +368,17 @@ static void test_cyclic_targets_are_held_within_the_software_limits(void)
     target_by_pdo(20);
     lone_step(&lone, 2);
     TEST_ASSERT_TRUE(command_mm() == 0.015);
+    TEST_ASSERT_TRUE(lone_statusword(&lone) & LIMITED);
+    TEST_ASSERT_EQUAL_HEX32(2 | 8, lone_read(&lone, 0x1002, 0)); /* by its target; it is homed */
+    target_by_pdo(15);
+    lone_step(&lone, 2);
+    TEST_ASSERT_FALSE(lone_statusword(&lone) & LIMITED);
+    TEST_ASSERT_EQUAL_HEX32(8, lone_read(&lone, 0x1002, 0));
+    target_by_pdo(20);
+    lone_step(&lone, 2);
+    lone_control(&lone, CIA402_SHUTDOWN, CSP);
+    lone_step(&lone, 1);
+    TEST_ASSERT_FALSE(lone_statusword(&lone) & LIMITED);
 }
 
 static void test_interpolated_position_follows_60C1_while_bit_4_is_set(void)

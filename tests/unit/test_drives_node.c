@@ -326,6 +326,54 @@ static void test_sync_may_have_another_identifier(void)
     TEST_ASSERT_EQUAL_UINT(1, count_sent(0x185));
 }
 
+/* ---- Clocks ---- */
+
+/* RPDO2, the target, is taken within 300 us of a SYNC; the frames come so much behind it. */
+static void test_targets_behind_the_window_of_1007_are_none(void)
+{
+    static const uint32_t behind_us[] = {299, 301, 300};
+    static const int32_t expected_inc[] = {1, 1, 3};
+    TEST_ASSERT_EQUAL_HEX32(0, lone_write(&lone, 0x1007, 0, 4, 300));
+    lone_enable(&lone, 8);
+    for (unsigned i = 0; i < 3; i++) {
+        const struct can_frame sync = {.id = 0x080};
+        const struct can_frame target = {.id = 0x305, .length = 4, .data = {(uint8_t)(i + 1)}};
+        uint64_t sync_ns = 1000000000u + i * LONE_CYCLE_NS;
+        lone.sent_count = 0;
+        virtual_drive_on_frame_at(&lone.drive, &sync, sync_ns);
+        virtual_drive_on_frame_at(&lone.drive, &target, sync_ns + behind_us[i] * UINT64_C(1000));
+        virtual_drive_on_frame_at(&lone.drive, &sync, sync_ns + 999999);
+        TEST_ASSERT_EQUAL_INT(expected_inc[i], (int32_t)lone_read(&lone, 0x607A, 0));
+    }
+}
+
+static void test_the_time_of_day_is_taken_where_1012_says_so_and_goes_on(void)
+{
+    struct can_frame frame;
+    const struct time_stamp time = {.ms = TIME_MS_PER_DAY - 1, .days = 15000};
+    time_stamp_write(&frame, &time);
+    virtual_drive_on_frame(&lone.drive, &frame);
+    TEST_ASSERT_EQUAL_UINT32(0, lone_read(&lone, 0x2002, 2));
+    TEST_ASSERT_EQUAL_HEX32(0, lone_write(&lone, 0x1012, 0, 4, 0x80000000 | 0x100));
+    virtual_drive_on_frame(&lone.drive, &frame);
+    TEST_ASSERT_EQUAL_UINT32(15000, lone_read(&lone, 0x2002, 2));
+    TEST_ASSERT_EQUAL_UINT32(TIME_MS_PER_DAY - 1, lone_read(&lone, 0x2002, 1));
+    lone_step(&lone, 6);
+    TEST_ASSERT_EQUAL_UINT32(15001, lone_read(&lone, 0x2002, 2));
+    TEST_ASSERT_EQUAL_UINT32(5, lone_read(&lone, 0x2002, 1));
+    TEST_ASSERT_EQUAL_HEX32(0x06090030, lone_write(&lone, 0x1012, 0, 4, 0x80000000 | 0x101));
+    TEST_ASSERT_EQUAL_HEX32(0x06090030, lone_write(&lone, 0x1012, 0, 4, 0x40000100));
+}
+
+static void test_the_high_resolution_time_counts_on_from_what_is_written(void)
+{
+    lone_step(&lone, 3);
+    TEST_ASSERT_EQUAL_UINT32(3000, lone_read(&lone, 0x1013, 0));
+    TEST_ASSERT_EQUAL_HEX32(0, lone_write(&lone, 0x1013, 0, 4, 0xFFFFFFFF));
+    lone_step(&lone, 2);
+    TEST_ASSERT_EQUAL_UINT32(1999, lone_read(&lone, 0x1013, 0));
+}
+
 /* ---- Stored parameters ---- */
 
 static void test_a_reset_forgets_what_was_not_stored(void)
@@ -417,6 +465,9 @@ int main(void)
     RUN_TEST(test_an_event_sends_a_tpdo_but_not_within_its_inhibit_time);
     RUN_TEST(test_type_0_answers_the_sync_after_a_change);
     RUN_TEST(test_sync_may_have_another_identifier);
+    RUN_TEST(test_targets_behind_the_window_of_1007_are_none);
+    RUN_TEST(test_the_time_of_day_is_taken_where_1012_says_so_and_goes_on);
+    RUN_TEST(test_the_high_resolution_time_counts_on_from_what_is_written);
     RUN_TEST(test_a_reset_forgets_what_was_not_stored);
     RUN_TEST(test_stored_parameters_survive_a_reset_until_defaults_are_restored);
     RUN_TEST(test_reads_and_writes_that_cannot_be_say_why);
