@@ -205,8 +205,8 @@ void eds_write(FILE *stream, const struct virtual_drive *drive, const char *name
 {
     const struct dictionary *dictionary = drive->dictionary;
     struct drive_objects objects = drive->objects;
-    objects.communication = drive->initial_communication;
-    objects.settings = drive->initial_settings;
+    objects.communication = drive->initial.communication;
+    objects.settings = drive->initial.settings;
     write_file_info(stream, name);
     write_device_info(stream, dictionary);
     write_dummies(stream, dictionary);

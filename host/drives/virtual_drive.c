@@ -48,8 +48,15 @@ void virtual_drive_tell(const struct virtual_drive *drive, enum drive_event_kind
         drive->observer.on_event(drive->observer.context, &event);
 }
 
-static void accept(struct virtual_drive *drive, unsigned id)
+/* Of an object that says more about it in its upper bits. */
+static unsigned identifier_of(uint32_t cob_id)
 {
+    return cob_id & COB_ID_MASK;
+}
+
+static void accept(struct virtual_drive *drive, uint32_t cob_id)
+{
+    unsigned id = identifier_of(cob_id);
     drive->accepts[id >> 5] |= 1u << (id & 31);
 }
 
@@ -60,7 +67,7 @@ void virtual_drive_set_filter(struct virtual_drive *drive)
     accept(drive, NMT_COMMAND_COB_ID);
     accept(drive, c->sync_cob_id);
     if (c->time_cob_id & TIME_CONSUMED)
-        accept(drive, c->time_cob_id & COB_ID_MASK);
+        accept(drive, c->time_cob_id);
     accept(drive, SDO_REQUEST_FUNCTION + drive->config.node);
     for (unsigned i = 0; i < DRIVE_CONSUMERS; i++)
         if (c->consumer_heartbeat[i])
@@ -100,8 +107,7 @@ void virtual_drive_init(struct virtual_drive *drive, const struct virtual_drive_
     virtual_drive_init_objects(drive);
     if (target && drive->dictionary == &dictionary_own)
         set_target_pdo(drive, target);
-    drive->initial_communication = drive->stored_communication = drive->objects.communication;
-    drive->initial_settings = drive->stored_settings = drive->objects.settings;
+    drive->initial = drive->stored = drive->objects;
     virtual_drive_derive(drive);
     drive->homing.is_homed = config->plant.absolute_encoder;
     virtual_drive_update_pdos(drive);
@@ -124,6 +130,11 @@ void virtual_drive_inject(struct virtual_drive *drive, const struct inject *scri
 {
     drive->faults.script = script;
     drive->faults.clock = clock;
+}
+
+void virtual_drive_keep(struct virtual_drive *drive, const struct drive_keeper *keeper)
+{
+    drive->keeper = *keeper;
 }
 
 void virtual_drive_look_soon(struct virtual_drive *drive)
@@ -193,12 +204,8 @@ void virtual_drive_boot(struct virtual_drive *drive)
 static void reset(struct virtual_drive *drive, bool whole_node)
 {
     virtual_drive_lose_connection(drive);
-    drive->objects.communication = drive->stored_communication;
-    dictionary_set_initial(drive->dictionary, DICTIONARY_MEMORY, &drive->objects,
-                           drive->config.node, 0, whole_node ? UINT16_MAX : LAST_COMMUNICATION);
+    virtual_drive_restore(drive, whole_node ? UINT16_MAX : LAST_COMMUNICATION);
     if (whole_node) {
-        drive->objects.settings = drive->stored_settings;
-        virtual_drive_derive(drive);
         virtual_drive_clear_history(drive);
         virtual_drive_reset_profile(drive);
     }
@@ -327,7 +334,7 @@ void virtual_drive_set_high_resolution_us(struct virtual_drive *drive, uint32_t 
 static bool is_time(const struct virtual_drive *drive, const struct can_frame *frame)
 {
     uint32_t id = drive->objects.communication.time_cob_id;
-    return id & TIME_CONSUMED && frame->id == (id & COB_ID_MASK);
+    return id & TIME_CONSUMED && frame->id == identifier_of(id);
 }
 
 static void take_other(struct virtual_drive *drive, const struct can_frame *frame)
@@ -349,7 +356,7 @@ void virtual_drive_on_frame(struct virtual_drive *drive, const struct can_frame 
     if (drive->faults.is_hung || drive->boot_ns != 0 ||
         frame->id > NODE_FUNCTION_MASK + NODE_ID_MASK)
         return;
-    if (frame->id == drive->objects.communication.sync_cob_id)
+    if (frame->id == identifier_of(drive->objects.communication.sync_cob_id))
         take_sync(drive, frame);
     else if (is_time(drive, frame))
         take_time(drive, frame);
@@ -468,5 +475,6 @@ uint32_t virtual_drive_get_watched_ms(const struct virtual_drive *drive)
 
 bool virtual_drive_is_sync(const struct virtual_drive *drive, const struct can_frame *frame)
 {
-    return frame->id == drive->objects.communication.sync_cob_id && frame->length <= 1;
+    return frame->id == identifier_of(drive->objects.communication.sync_cob_id) &&
+           frame->length <= 1;
 }

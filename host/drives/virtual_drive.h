@@ -39,6 +39,8 @@ struct virtual_drive_config {
     uint16_t closed; /* its inputs that are high for good; the others are those of its outputs */
 };
 
+struct virtual_drive;
+
 #include "drives/virtual_drive_state.h"
 
 /*
@@ -52,6 +54,12 @@ void virtual_drive_init(struct virtual_drive *drive, const struct virtual_drive_
 /* Both may be left out. eds: the text of object 1021; it must stay. */
 void virtual_drive_observe(struct virtual_drive *drive, const struct drive_observer *observer);
 void virtual_drive_set_eds(struct virtual_drive *drive, const char *eds, size_t length);
+
+/*
+ * Who is to keep what object 1010 stores, and 1011 takes back, beyond the drive's own life; drive_store.h has a form for
+ * that. Without one it lives as long as the drive.
+ */
+void virtual_drive_keep(struct virtual_drive *drive, const struct drive_keeper *keeper);
 
 /*
  * Faults of the script that name this drive happen by the clock, which the caller keeps running.

@@ -63,7 +63,7 @@ static void take_data_sheet(struct virtual_drive *drive)
 {
     struct drive_communication *c = &drive->objects.communication;
     dictionary_set_initial(drive->dictionary, DICTIONARY_NOT_OF_MACHINE, &drive->objects,
-                           drive->config.node, 0, UINT16_MAX);
+                           drive->config.node);
     for (unsigned i = 0; i < DRIVE_PDO_COUNT; i++) {
         if (!has_object(drive, 0x1400 + i, 1) || !has_object(drive, 0x1600 + i, 0))
             c->rpdo[i].cob_id |= PDO_NOT_VALID;
@@ -79,7 +79,7 @@ void virtual_drive_init_objects(struct virtual_drive *drive)
     struct drive_objects *o = &drive->objects;
     double turn_mm = plant->travel_per_revolution_mm;
     memset(o, 0, sizeof *o);
-    dictionary_set_initial(&dictionary_own, DICTIONARY_ALL, o, drive->config.node, 0, UINT16_MAX);
+    dictionary_set_initial(&dictionary_own, DICTIONARY_ALL, o, drive->config.node);
     drive->increments_per_mm = drive->config.increments_per_mm;
     o->identity.serial = drive->config.node;
     o->identity.encoder_counts = plant->encoder_counts_per_revolution;
@@ -115,7 +115,7 @@ void virtual_drive_init_objects(struct virtual_drive *drive)
 static void rescale(struct virtual_drive *drive)
 {
     const struct drive_settings *s = &drive->objects.settings;
-    const struct drive_settings *initial = &drive->initial_settings;
+    const struct drive_settings *initial = &drive->initial.settings;
     double turn = (double)s->feed_increments / s->feed_shaft * s->gear_shaft / s->gear_motor;
     bool is_initial = s->feed_increments == initial->feed_increments &&
                       s->feed_shaft == initial->feed_shaft &&
@@ -146,7 +146,7 @@ static uint64_t interpolation_ns(const struct drive_settings *s)
 void virtual_drive_derive(struct virtual_drive *drive)
 {
     const struct drive_settings *s = &drive->objects.settings;
-    const struct drive_settings *initial = &drive->initial_settings;
+    const struct drive_settings *initial = &drive->initial.settings;
     const struct drive_plant_config *plant = &drive->config.plant;
     rescale(drive);
     drive->interpolation_ns = interpolation_ns(s);
@@ -316,19 +316,29 @@ static uint32_t check_number(const struct virtual_drive *drive, const struct obj
                                : check_profile_write(drive, row, value);
 }
 
-/* Stored values are those a reset brings back; they live as long as the process. */
-static void store(struct virtual_drive *drive)
+/*
+ * Objects 1010 and 1011. Stored values are those a reset brings back; whoever keeps them may fail, and then nothing has
+ * changed.
+ */
+static uint32_t set_stored(struct virtual_drive *drive, const struct drive_objects *values)
 {
-    drive->stored_communication = drive->objects.communication;
-    drive->stored_settings = drive->objects.settings;
-    drive->objects.process.store = 1;
+    const struct drive_objects before = drive->stored;
+    drive->objects.process.store = drive->objects.process.restore = 1;
+    drive->stored = *values;
+    if (drive->keeper.keep == NULL || drive->keeper.keep(drive->keeper.context, drive))
+        return SDO_ABORT_NONE;
+    drive->stored = before;
+    return SDO_ABORT_HARDWARE;
 }
 
-static void restore(struct virtual_drive *drive)
+void virtual_drive_restore(struct virtual_drive *drive, uint16_t last)
 {
-    drive->stored_communication = drive->initial_communication;
-    drive->stored_settings = drive->initial_settings;
-    drive->objects.process.restore = 1;
+    drive->objects.communication = drive->stored.communication;
+    dictionary_copy_memory(drive->dictionary, &drive->objects, &drive->stored, last);
+    if (last < UINT16_MAX)
+        return;
+    drive->objects.settings = drive->stored.settings;
+    virtual_drive_derive(drive);
 }
 
 static void follow_communication_write(struct virtual_drive *drive, const struct object_row *row)
@@ -346,12 +356,6 @@ static void follow_communication_write(struct virtual_drive *drive, const struct
         break;
     case 0x1013:
         virtual_drive_apply_touches(drive, DRIVE_TOUCH_CLOCK);
-        break;
-    case 0x1010:
-        store(drive);
-        break;
-    case 0x1011:
-        restore(drive);
         break;
     case 0x1016:
         if (row->sub >= 1 && row->sub <= DRIVE_CONSUMERS)
@@ -398,6 +402,10 @@ static uint32_t write_number(struct virtual_drive *drive, const struct object_ro
     if (code != SDO_ABORT_NONE)
         return code;
     object_write(row, &drive->objects, value);
+    if (row->index == 0x1010)
+        return set_stored(drive, &drive->objects);
+    if (row->index == 0x1011)
+        return set_stored(drive, &drive->initial);
     if (row->index < 0x2000)
         follow_communication_write(drive, row);
     else

@@ -98,6 +98,8 @@ void virtual_drive_refresh(struct virtual_drive *drive, unsigned groups);
 uint32_t virtual_drive_read_row(const struct virtual_drive *drive, const struct object_row *row);
 void virtual_drive_apply_touches(struct virtual_drive *drive, unsigned touches);
 void virtual_drive_init_objects(struct virtual_drive *drive);
+/* What has been stored is in force again, of the objects up to this index. */
+void virtual_drive_restore(struct virtual_drive *drive, uint16_t last);
 /* What the position loop needs, from the settings. */
 void virtual_drive_derive(struct virtual_drive *drive);
 uint32_t virtual_drive_read_sdo(void *drive, uint32_t object, uint8_t number[4],

@@ -74,6 +74,12 @@ struct drive_requests {
     struct can_frame frame[VIRTUAL_DRIVE_REQUESTS];
 };
 
+/* Who keeps what object 1010 stores; false: it could not. */
+struct drive_keeper {
+    bool (*keep)(void *context, const struct virtual_drive *drive);
+    void *context;
+};
+
 struct virtual_drive {
     uint32_t accepts[64]; /* bit id: frames with this identifier are looked at */
     struct virtual_drive_config config;
@@ -141,9 +147,9 @@ struct virtual_drive {
     size_t eds_length;
     struct drive_faults faults;
 
-    /* What a reset brings back: of power-on, or stored by object 1010. */
-    struct drive_communication stored_communication, initial_communication;
-    struct drive_settings stored_settings, initial_settings;
+    /* What a reset brings back, of power-on or stored by object 1010; process values do not count. */
+    struct drive_objects stored, initial;
+    struct drive_keeper keeper;
 };
 
 #endif

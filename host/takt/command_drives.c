@@ -274,6 +274,7 @@ static enum command_status serve(const struct drives_command *command)
         .script = options->inject != NULL ? &command->script : NULL,
         .log = log,
         .bus_log = options->bus_log,
+        .store = options->store,
     });
     if (log != NULL && log != stdout && fclose(log) != 0 && status == STATUS_DONE) {
         message_command_error("--log %s: not everything could be written", options->log);
@@ -322,6 +323,10 @@ static bool check_logs(const struct options *options)
 {
     const char *bus_log = options->bus_log;
 
+    if (options->store != NULL && options->bus == NULL) {
+        message_command_error("--store needs --bus: nobody tells the drives to store anything");
+        return false;
+    }
     if (bus_log == NULL)
         return true;
     if (options->bus == NULL) {
@@ -377,6 +382,8 @@ static const struct option_row rows[] = {
      "there"},
     {"inject", OPTION_TEXT, offsetof(struct options, inject), "FILE",
      "scripted faults; takt help inject explains them"},
+    {"store", OPTION_TEXT, offsetof(struct options, store), "FOLDER",
+     "what drives store (object 1010) is kept there, and they start with it"},
     {"realtime", OPTION_FLAG, offsetof(struct options, realtime), NULL,
      "keep to the wall clock even if SYNC has a period"},
     {"log", OPTION_TEXT, offsetof(struct options, log), "FILE",
@@ -408,6 +415,11 @@ const struct command command_drives = {
         "[drive N] of the machine\n"
         "file has a sheet for each drive, and how long it takes to boot and to answer.\n"
         "\n"
+        "--store FOLDER keeps what a master has the drives store (object 1010) in a file for each "
+        "node, which they have "
+        "again\n"
+        "when they are next switched on. Without it stored values live as long as the command.\n"
+        "\n"
         "--spindle adds a spindle behind the registers of a Delta VFD-B or MS300 converter, "
         "with inertia, ramp,\n"
         "torque limit and trips as [spindle] of the machine file says. Register 3000 (hex) "
@@ -419,7 +431,7 @@ const struct command command_drives = {
         "  takt drives --spindle 127.0.0.1:1503\n"
         "  takt drives --bus slcan:pty:can0.pty --machine mill3.ini --log drives.log\n"
         "  takt drives --bus socketcan:vcan0 --quiet --bus-log bus.log\n"
-        "  takt drives --bus socketcan:vcan0 --eds epos4.eds\n"
+        "  takt drives --bus socketcan:vcan0 --eds epos4.eds --store stored\n"
         "  takt drives --nodes 1-6 --eds data-sheets\n"
         "  takt drives --bus socketcand:listen:29536 --inject faults.inject\n",
     .options = rows,

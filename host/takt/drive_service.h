@@ -25,6 +25,7 @@ struct drive_service_config {
     const struct inject *script; /* NULL: no faults */
     FILE *log;                   /* one line an event; NULL: none */
     const char *bus_log;         /* takt/bus_log.h */
+    const char *store;           /* folder with what drives store (object 1010); NULL: none */
 };
 
 /* Until a signal comes: STATUS_DONE. Else after a message. */

@@ -108,6 +108,7 @@ struct options {
     const char *inject; /* scripted faults */
     const char *nodes;  /* of `takt drives` */
     const char *eds;
+    const char *store; /* folder */
     const char *log;
     const char *bus_log;
     const char *report;

@@ -1,9 +1,14 @@
 /*
  * The drive as a node of CiA 301: heartbeats, errors, PDOs that are mapped anew, stored parameters.
  */
+#define _POSIX_C_SOURCE 200809L /* fmemopen */
+
 #include "lone_drive.h"
 
 #include "canopen/emcy.h"
+#include "drives/drive_store.h"
+
+#include <stdio.h>
 
 static struct lone_drive lone;
 
@@ -401,6 +406,96 @@ static void test_stored_parameters_survive_a_reset_until_defaults_are_restored(v
     TEST_ASSERT_EQUAL_UINT32(50000, lone_read(&lone, 0x6081, 0));
 }
 
+static unsigned kept;
+static bool keeps;
+static char kept_text[4096];
+
+static bool keep(void *context, const struct virtual_drive *drive)
+{
+    FILE *stream = fmemopen(context, sizeof kept_text, "w");
+    TEST_ASSERT_NOT_NULL(stream);
+    drive_store_write(stream, drive);
+    (void)fclose(stream);
+    kept++;
+    return keeps;
+}
+
+static void keep_stored(bool succeeds)
+{
+    keeps = succeeds;
+    kept = 0;
+    virtual_drive_keep(&lone.drive, &(struct drive_keeper){keep, kept_text});
+}
+
+static void test_what_is_stored_is_kept_and_is_there_at_the_next_power_on(void)
+{
+    struct drive_store_problem wrong;
+    keep_stored(true);
+    (void)lone_write(&lone, 0x1017, 0, 2, 100);
+    (void)lone_write(&lone, 0x6081, 0, 4, 1234);
+    (void)lone_write(&lone, 0x607D, 1, 4, (uint32_t)-5);
+    (void)lone_write(&lone, 0x2000, 0, 2, 0x5A58); /* XZ */
+    (void)lone_write(&lone, 0x1800, 1, 4, 0xC0000185);
+    (void)lone_write(&lone, 0x607A, 0, 4, 77);
+    TEST_ASSERT_EQUAL_UINT(0, kept);
+    TEST_ASSERT_EQUAL_HEX32(0, lone_write(&lone, 0x1010, 1, 4, 0x65766173));
+    TEST_ASSERT_EQUAL_UINT(1, kept);
+    TEST_ASSERT_EQUAL_STRING("# stored by node 5, object 1010\n1017:00 0064\n"
+                             "1800:01 C0000185\n2000:00 \"585A\"\n607D:01 FFFFFFFB\n"
+                             "6081:00 000004D2\n",
+                             kept_text);
+    lone_start(&lone);
+    TEST_ASSERT_EQUAL_UINT32(0, lone_read(&lone, 0x1017, 0));
+    const struct can_port port = {.send = lone_send, .receive = lone_receive, .context = &lone};
+    virtual_drive_init(&lone.drive, &lone.config, NULL, &port);
+    TEST_ASSERT_TRUE(drive_store_read(&lone.drive, kept_text, strlen(kept_text), &wrong));
+    virtual_drive_boot(&lone.drive);
+    TEST_ASSERT_EQUAL_UINT32(100, lone_read(&lone, 0x1017, 0));
+    TEST_ASSERT_EQUAL_UINT32(1234, lone_read(&lone, 0x6081, 0));
+    TEST_ASSERT_EQUAL_HEX32(0xFFFFFFFB, lone_read(&lone, 0x607D, 1));
+    TEST_ASSERT_EQUAL_HEX32(0xC0000185, lone_read(&lone, 0x1800, 1));
+    lone_nmt(&lone, NMT_START);
+    lone_sync(&lone);
+    TEST_ASSERT_EQUAL_UINT(0, lone.sent_count); /* TPDO1 is not valid */
+    lone_nmt(&lone, NMT_RESET_NODE);
+    TEST_ASSERT_EQUAL_UINT32(1234, lone_read(&lone, 0x6081, 0));
+}
+
+static void test_values_that_could_not_be_kept_are_not_stored(void)
+{
+    keep_stored(false);
+    (void)lone_write(&lone, 0x6081, 0, 4, 1234);
+    TEST_ASSERT_EQUAL_HEX32(0x06060000, lone_write(&lone, 0x1010, 1, 4, 0x65766173));
+    lone_nmt(&lone, NMT_RESET_NODE);
+    TEST_ASSERT_EQUAL_UINT32(50000, lone_read(&lone, 0x6081, 0));
+}
+
+static void test_restored_defaults_are_kept_too(void)
+{
+    keep_stored(true);
+    (void)lone_write(&lone, 0x6081, 0, 4, 1234);
+    TEST_ASSERT_EQUAL_HEX32(0, lone_write(&lone, 0x1010, 1, 4, 0x65766173));
+    TEST_ASSERT_EQUAL_HEX32(0, lone_write(&lone, 0x1011, 1, 4, 0x64616F6C));
+    TEST_ASSERT_EQUAL_STRING("# stored by node 5, object 1010\n", kept_text);
+}
+
+static void test_a_store_that_is_none_of_this_drive_is_refused_by_its_line(void)
+{
+    static const char *const lines[] = {
+        "nonsense",   "1017",          "1017:00",          "1017:00 12345", "1017:00 12x",
+        "5000:00 00", "6041:00 0000",  "607A:00 00000000", "6007:00 0004",  "1600:00 09",
+        "2000:00 00", "2000:00 \"5\"", "2000:00 \"5G\""};
+    struct drive_store_problem wrong;
+    char text[80];
+    for (unsigned i = 0; i < sizeof lines / sizeof lines[0]; i++) {
+        (void)snprintf(text, sizeof text, "# a comment\n\n%s\n", lines[i]);
+        TEST_ASSERT_FALSE_MESSAGE(drive_store_read(&lone.drive, text, strlen(text), &wrong),
+                                  lines[i]);
+        TEST_ASSERT_EQUAL_UINT(3, wrong.line);
+        TEST_ASSERT_TRUE(wrong.text[0] != '\0');
+    }
+}
+
 /* ---- The dictionary ---- */
 
 static void test_reads_and_writes_that_cannot_be_say_why(void)
@@ -470,6 +565,10 @@ int main(void)
     RUN_TEST(test_the_high_resolution_time_counts_on_from_what_is_written);
     RUN_TEST(test_a_reset_forgets_what_was_not_stored);
     RUN_TEST(test_stored_parameters_survive_a_reset_until_defaults_are_restored);
+    RUN_TEST(test_what_is_stored_is_kept_and_is_there_at_the_next_power_on);
+    RUN_TEST(test_values_that_could_not_be_kept_are_not_stored);
+    RUN_TEST(test_restored_defaults_are_kept_too);
+    RUN_TEST(test_a_store_that_is_none_of_this_drive_is_refused_by_its_line);
     RUN_TEST(test_reads_and_writes_that_cannot_be_say_why);
     RUN_TEST(test_a_stopped_node_answers_no_request);
     RUN_TEST(test_the_feed_constant_says_how_long_an_increment_is);
