@@ -93,6 +93,10 @@ static void write_what(FILE *stream, const struct drive_event *event)
     case DRIVE_EVENT_HOMING:
         write_homing(stream, event);
         break;
+    case DRIVE_EVENT_PROBE:
+        (void)fprintf(stream, "touch probe %u at %ld increments\n", (unsigned)event->first,
+                      (long)(int32_t)event->second);
+        break;
     case DRIVE_EVENT_TIME:
         (void)fprintf(stream, "TIME %u ms of day %u\n", (unsigned)event->first,
                       (unsigned)event->second);

@@ -84,30 +84,33 @@ struct drive_settings {
 
 /* What changes by itself or from cycle to cycle; not stored. */
 struct drive_process {
-    uint16_t controlword;                /* 6040 */
-    uint16_t statusword;                 /* 6041 */
-    int32_t target_position;             /* 607A */
-    int32_t actual_position;             /* 6064 */
-    uint16_t error_code;                 /* 603F */
-    int8_t mode;                         /* 6060 */
-    int8_t mode_display;                 /* 6061 */
-    int32_t following_error;             /* 60F4 */
-    int32_t demand_position;             /* 6062 */
-    int32_t actual_internal;             /* 6063: counts of the encoder */
-    int32_t actual_velocity;             /* 606C */
-    int16_t actual_torque;               /* 6077: 0.1 % of the rated torque */
-    int16_t torque_offset;               /* 60B2 */
-    int32_t position_offset;             /* 60B0 */
-    int32_t velocity_offset;             /* 60B1 */
-    int32_t interpolation_target;        /* 60C1:1 */
-    uint32_t digital_inputs;             /* 60FD */
-    uint32_t digital_outputs;            /* 60FE:1 */
-    uint8_t error_register;              /* 1001 */
-    uint32_t manufacturer_status;        /* 1002 */
-    uint32_t high_resolution_us;         /* 1013 */
-    uint32_t time_ms;                    /* 2002:1 */
-    uint16_t time_days;                  /* 2002:2 */
-    uint8_t history_count;               /* 1003:0 */
+    uint16_t controlword;         /* 6040 */
+    uint16_t statusword;          /* 6041 */
+    int32_t target_position;      /* 607A */
+    int32_t actual_position;      /* 6064 */
+    uint16_t error_code;          /* 603F */
+    int8_t mode;                  /* 6060 */
+    int8_t mode_display;          /* 6061 */
+    int32_t following_error;      /* 60F4 */
+    int32_t demand_position;      /* 6062 */
+    int32_t actual_internal;      /* 6063: counts of the encoder */
+    int32_t actual_velocity;      /* 606C */
+    int16_t actual_torque;        /* 6077: 0.1 % of the rated torque */
+    int16_t torque_offset;        /* 60B2 */
+    int32_t position_offset;      /* 60B0 */
+    int32_t velocity_offset;      /* 60B1 */
+    int32_t interpolation_target; /* 60C1:1 */
+    uint32_t digital_inputs;      /* 60FD */
+    uint32_t digital_outputs;     /* 60FE:1 */
+    uint16_t probe_function;      /* 60B8 */
+    uint16_t probe_status;        /* 60B9 */
+    int32_t probe_latched[4];     /* 60BA ... 60BD: touch probe 1, rising and falling, then 2 */
+    uint8_t error_register;       /* 1001 */
+    uint32_t manufacturer_status; /* 1002 */
+    uint32_t high_resolution_us;  /* 1013 */
+    uint32_t time_ms;             /* 2002:1 */
+    uint16_t time_days;           /* 2002:2 */
+    uint8_t history_count;        /* 1003:0 */
     uint32_t history[DRIVE_HISTORY_MAX]; /* 1003, the newest first */
     uint32_t store, restore;             /* 1010:1, 1011:1: read as 1, "can be done by command" */
     uint8_t buffer_clear;                /* 60C4:6 */

@@ -430,6 +430,13 @@ static bool may_have_event(const struct virtual_drive *drive)
            drive->watched & (DRIVE_GROUP_STATUS | DRIVE_GROUP_INPUTS);
 }
 
+static void run_motor(struct virtual_drive *drive, uint32_t cycle_ns)
+{
+    virtual_drive_begin_probe(drive);
+    virtual_drive_move(drive, cycle_ns);
+    virtual_drive_run_probe(drive);
+}
+
 void virtual_drive_step(struct virtual_drive *drive, uint32_t cycle_ns)
 {
     if (drive->faults.script)
@@ -437,7 +444,7 @@ void virtual_drive_step(struct virtual_drive *drive, uint32_t cycle_ns)
     if (drive->config.is_io)
         virtual_drive_run_io(drive);
     else
-        virtual_drive_move(drive, cycle_ns);
+        run_motor(drive, cycle_ns);
     drive->now_ns += cycle_ns;
     if (may_have_event(drive))
         virtual_drive_note_events(drive);

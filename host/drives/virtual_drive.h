@@ -83,6 +83,14 @@ void virtual_drive_on_frame_at(struct virtual_drive *drive, const struct can_fra
  */
 void virtual_drive_step(struct virtual_drive *drive, uint32_t cycle_ns);
 
+/*
+ * After a step: within it, when so much of it had passed, 0 ... 1, the input of the touch probes became so. A level that it
+ * has already is no edge.
+ */
+void virtual_drive_touch(struct virtual_drive *drive, bool touches, double ratio);
+/* The position that the drive had then by its encoder, unrounded. */
+double virtual_drive_get_position_at_mm(const struct virtual_drive *drive, double ratio);
+
 enum cia402_state virtual_drive_get_state(const struct virtual_drive *drive);
 enum nmt_state virtual_drive_get_nmt_state(const struct virtual_drive *drive);
 /* True position of the axis, unrounded. */

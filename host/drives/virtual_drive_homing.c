@@ -16,6 +16,7 @@
 #define INPUT_NEGATIVE_LIMIT 0x1u
 #define INPUT_POSITIVE_LIMIT 0x2u
 #define INPUT_HOME           0x4u
+#define INPUT_PROBE          0x10000u
 
 #define HOMING_BEGUN       0
 #define HOMING_ATTAINED    1
@@ -77,6 +78,8 @@ uint32_t virtual_drive_inputs(const struct virtual_drive *drive)
         inputs |= is_turned ? INPUT_NEGATIVE_LIMIT : INPUT_POSITIVE_LIMIT;
     if (is_turned ? table_mm <= c->home_switch_mm : table_mm >= c->home_switch_mm)
         inputs |= INPUT_HOME;
+    if (drive->probe.touches)
+        inputs |= INPUT_PROBE;
     return inputs;
 }
 

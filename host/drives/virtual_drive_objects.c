@@ -214,6 +214,8 @@ void virtual_drive_apply_touches(struct virtual_drive *drive, unsigned touches)
         virtual_drive_take_controlword(drive, drive->objects.process.controlword);
     if (touches & DRIVE_TOUCH_CLOCK)
         virtual_drive_set_high_resolution_us(drive, drive->objects.process.high_resolution_us);
+    if (touches & DRIVE_TOUCH_PROBE)
+        virtual_drive_take_probe_function(drive);
 }
 
 static uint32_t check_sync_id(uint32_t value)
@@ -379,6 +381,9 @@ static void follow_profile_write(struct virtual_drive *drive, const struct objec
         break;
     case 0x6060:
         virtual_drive_apply_touches(drive, DRIVE_TOUCH_MODE);
+        break;
+    case 0x60B8:
+        virtual_drive_apply_touches(drive, DRIVE_TOUCH_PROBE);
         break;
     case 0x6091:
     case 0x6092:

@@ -25,7 +25,12 @@ enum drive_group {
 };
 
 /* What a write to an object sets off. */
-enum drive_touch { DRIVE_TOUCH_CONTROLWORD = 1, DRIVE_TOUCH_MODE = 2, DRIVE_TOUCH_CLOCK = 4 };
+enum drive_touch {
+    DRIVE_TOUCH_CONTROLWORD = 1,
+    DRIVE_TOUCH_MODE = 2,
+    DRIVE_TOUCH_CLOCK = 4,
+    DRIVE_TOUCH_PROBE = 8
+};
 
 /* Kinds of frames a drive sends, for faults that hold them back. */
 bool virtual_drive_send(struct virtual_drive *drive, enum inject_mute kind,
@@ -161,6 +166,14 @@ void virtual_drive_begin_homing(struct virtual_drive *drive);
 void virtual_drive_interrupt_homing(struct virtual_drive *drive);
 void virtual_drive_run_homing(struct virtual_drive *drive, uint32_t cycle_ns);
 uint32_t virtual_drive_inputs(const struct virtual_drive *drive); /* 60FD */
+
+/* ---- virtual_drive_probe.c: touch probes ---- */
+
+/* Object 60B8 has been written. */
+void virtual_drive_take_probe_function(struct virtual_drive *drive);
+/* Around a cycle of the motor: where it begins; index pulses that have been passed. */
+void virtual_drive_begin_probe(struct virtual_drive *drive);
+void virtual_drive_run_probe(struct virtual_drive *drive);
 
 /* ---- virtual_drive_faults.c ---- */
 

@@ -300,6 +300,8 @@ void virtual_drive_reset_profile(struct virtual_drive *drive)
     p->position_offset = 0;
     p->velocity_offset = 0;
     p->torque_offset = 0;
+    p->probe_function = p->probe_status = 0;
+    drive->probe.function = 0;
     virtual_drive_hold(drive);
 }
 

@@ -38,6 +38,14 @@ struct drive_setpoints {
     bool is_reached;
 };
 
+/* The touch probes, 1 and 2, of one input. */
+#define DRIVE_TOUCH_PROBES 2
+struct drive_touch_probe {
+    bool touches;      /* the input, 60FD bit 16 */
+    double begin_mm;   /* what the encoder said at the beginning of the cycle */
+    uint16_t function; /* 60B8 as it was seen last */
+};
+
 enum drive_homing_phase {
     HOMING_IDLE,
     HOMING_SEARCH, /* towards the switch */
@@ -122,6 +130,7 @@ struct virtual_drive {
     enum cia402_state leaving_to;
     struct drive_setpoints setpoints;
     struct drive_homing homing;
+    struct drive_touch_probe probe;
 
     struct drive_pdo rpdo[DRIVE_PDO_COUNT], tpdo[DRIVE_PDO_COUNT];
     uint8_t watched;          /* objects whose change is an event: groups */

@@ -10,6 +10,7 @@
 #include "takt/machine_file.h"
 #include "takt/message.h"
 #include "takt/output_file.h"
+#include "takt/probe_file.h"
 #include "takt/serving_options.h"
 #include "takt/spindle_service.h"
 #include "takt/text.h"
@@ -36,6 +37,7 @@ struct drives_command {
     struct dictionary sheet[DATA_SHEETS_MAX]; /* of the machine's drives that have one */
     struct dictionary given;                  /* --eds with --bus: of all drives */
     struct inject script;
+    struct virtual_probe probe;
 };
 
 static bool add_drive(struct drives_command *command, unsigned node)
@@ -275,6 +277,8 @@ static enum command_status serve(const struct drives_command *command)
         .log = log,
         .bus_log = options->bus_log,
         .store = options->store,
+        .machine = &command->setup.machine,
+        .probe = &command->probe,
     });
     if (log != NULL && log != stdout && fclose(log) != 0 && status == STATUS_DONE) {
         message_command_error("--log %s: not everything could be written", options->log);
@@ -356,7 +360,8 @@ static enum command_status command_drives_execute(const struct options *options)
     if (!check_logs(options))
         return STATUS_INPUT;
     if (!machine_file_load(&command.setup, options) || !load_given(&command) ||
-        !set_drives(&command) || !load_script(&command))
+        !set_drives(&command) || !load_script(&command) ||
+        !probe_file_load(&command.probe, options->probe))
         return STATUS_INPUT;
     if (options->eds != NULL && options->bus == NULL)
         status = write_data_sheets(&command);
@@ -382,6 +387,8 @@ static const struct option_row rows[] = {
      "there"},
     {"inject", OPTION_TEXT, offsetof(struct options, inject), "FILE",
      "scripted faults; takt help inject explains them"},
+    {"probe", OPTION_TEXT, offsetof(struct options, probe), "FILE",
+     "what the drives' touch probes meet, as of takt run"},
     {"store", OPTION_TEXT, offsetof(struct options, store), "FOLDER",
      "what drives store (object 1010) is kept there, and they start with it"},
     {"realtime", OPTION_FLAG, offsetof(struct options, realtime), NULL,

@@ -37,6 +37,7 @@ struct drive_service {
     struct bus_log bus_log;
     struct eds_text eds[VIRTUAL_DRIVES_MAX];
     struct virtual_drives set;
+    struct probe_contact contact;
 };
 
 static void log_event(void *context, const struct drive_event *event)
@@ -165,6 +166,7 @@ static enum command_status start(struct drive_service *service)
         return STATUS_INPUT;
     if (config->script != NULL)
         virtual_drives_inject(&service->set, config->script);
+    probe_contact_wire(&service->contact, config->probe, config->machine, &service->set);
     log_start(service);
     virtual_drives_boot(&service->set);
     service->next_ns = link_clock_ns() + service->cycle_ns;
