@@ -78,8 +78,10 @@ struct drive_settings {
     uint8_t interpolation_period;         /* 60C2:1 */
     int8_t interpolation_index;           /* 60C2:2: the period is this power of ten of seconds */
     int8_t homing_method;                 /* 6098 */
-    uint8_t buffer_organisation;          /* 60C4:3 */
-    uint16_t buffer_position;             /* 60C4:4 */
+    uint16_t
+        homing_torque; /* 2003: 0.1 % of the rated one; a motor that stands with it is at a hard stop */
+    uint8_t buffer_organisation; /* 60C4:3 */
+    uint16_t buffer_position;    /* 60C4:4 */
 };
 
 /* What changes by itself or from cycle to cycle; not stored. */

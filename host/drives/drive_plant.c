@@ -41,6 +41,8 @@ void drive_plant_set_default(struct drive_plant_config *config)
         .absolute_encoder = 1,
         .limit_switch_min_mm = -1e6,
         .limit_switch_max_mm = 1e6,
+        .hard_stop_min_mm = -2e6,
+        .hard_stop_max_mm = 2e6,
         .following_error_window_mm = 2,
         .quick_stop_deceleration_mm_s2 = 2000,
     };
@@ -87,6 +89,11 @@ static const char *check_axis(const struct drive_plant_config *c)
               maths_is_finite(c->limit_switch_max_mm),
           limit_switch_max_mm);
     CHECK(maths_is_finite(c->home_switch_mm), home_switch_mm);
+    CHECK(is_not_negative(c->home_switch_length_mm), home_switch_length_mm);
+    CHECK(maths_is_finite(c->hard_stop_min_mm) && c->hard_stop_min_mm <= c->start_mm,
+          hard_stop_min_mm);
+    CHECK(maths_is_finite(c->hard_stop_max_mm) && c->hard_stop_max_mm >= c->start_mm,
+          hard_stop_max_mm);
     return NULL;
 }
 
@@ -201,10 +208,11 @@ static struct motion motion_of(const struct drive_plant *plant)
 /* What does not change within a cycle. */
 struct cycle {
     double step_s, per_step_s;
-    double forward_mm_s;  /* velocity that is fed forward */
-    double forward_mm_s2; /* the same for acceleration */
-    double limit_mm_s2;   /* acceleration by all the torque there is */
-    double coulomb_mm_s;  /* velocity that dry friction takes in a step */
+    double forward_mm_s;   /* velocity that is fed forward */
+    double forward_mm_s2;  /* the same for acceleration */
+    double limit_mm_s2;    /* acceleration by all the torque there is */
+    double coulomb_mm_s;   /* velocity that dry friction takes in a step */
+    double min_mm, max_mm; /* hard stops */
     bool is_jammed;
 };
 
@@ -224,8 +232,17 @@ static struct cycle cycle_of(struct drive_plant *plant, uint32_t cycle_ns)
         .per_step_s = plant->per_step_s,
         .limit_mm_s2 = plant->acceleration_max_mm_s2 * plant->damage.torque_ratio,
         .coulomb_mm_s = plant->coulomb_mm_s2 * plant->step_s,
+        .min_mm = plant->config.hard_stop_min_mm,
+        .max_mm = plant->config.hard_stop_max_mm,
         .is_jammed = plant->damage.is_jammed,
     };
+}
+
+/* The axis is there at once, and stands. */
+static void hit_stop(const struct cycle *c, struct motion *m)
+{
+    m->position_mm = maths_clamp(m->position_mm, c->min_mm, c->max_mm);
+    m->velocity_mm_s = 0;
 }
 
 /*
@@ -245,6 +262,8 @@ static inline void move(const struct drive_plant *plant, const struct cycle *c, 
     m->velocity_mm_s = velocity_mm_s;
     m->position_mm += velocity_mm_s * c->step_s;
     m->acceleration_mm_s2 = acceleration_mm_s2;
+    if (m->position_mm < c->min_mm || m->position_mm > c->max_mm)
+        hit_stop(c, m);
 }
 
 /*

@@ -46,6 +46,10 @@ struct drive_plant_config {
     double limit_switch_min_mm; /* switches on the axis: active at or below, */
     double limit_switch_max_mm; /* at or above */
     double home_switch_mm;      /* active at or above */
+    double
+        home_switch_length_mm; /* up to so much above; 0: without an end. If the motor turns the other way: below */
+    double hard_stop_min_mm; /* the motor comes no farther */
+    double hard_stop_max_mm;
 
     double following_error_window_mm;     /* object 6065: the drive faults beyond; 0: not watched */
     uint32_t following_error_timeout_ms;  /* object 6066: for longer than this */

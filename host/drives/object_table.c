@@ -95,6 +95,9 @@
 #define HISTORY(number)                                                                            \
     SUB(0x1003, number, U32, RO, 0, PROCESS(history[(number)-1]), 0, "Error " #number)
 
+#define METHOD(number, method)                                                                     \
+    ROW(0x60E3, number, OBJECT_SAME, I8, RO, OBJECT_FIXED, 0, method, 0, 0, "Method " #number, NULL)
+
 #define NOT_VALID 0x80000000
 #define NO_RTR    0x40000000
 
@@ -159,6 +162,7 @@ const struct object_row object_table[] = {
     HEAD(0x2002, OBJECT_RECORD, 2, "Time of day"),
     SUB(0x2002, 1, U32, RO, TPDO, PROCESS(time_ms), 0, "Milliseconds since midnight"),
     SUB(0x2002, 2, U16, RO, TPDO, PROCESS(time_days), 0, "Days since 1984"),
+    VAR(0x2003, U16, RW, 0, SET(homing_torque), 1000, "Torque at a hard stop"),
 
     VARL(0x6007, I16, RW, 0, SET(abort_connection_option), 3, 0, 3, "Abort connection option code"),
     VAR(0x603F, U16, RO, TPDO | EVENT, PROCESS(error_code), 0, "Error code"),
@@ -228,6 +232,13 @@ const struct object_row object_table[] = {
     SUBL(0x60C4, 4, U16, RW, 0, SET(buffer_position), 0, 0, 0, "Buffer position"),
     ROW(0x60C4, 5, OBJECT_SAME, U8, WO, OBJECT_LIMITED | OBJECT_FIXED, 0, 4, 4, 4, "Size of data record", NULL),
     SUBL(0x60C4, 6, U8, WO, 0, PROCESS(buffer_clear), 0, 0, 1, "Buffer clear"),
+    HEAD(0x60E3, OBJECT_ARRAY, 36, "Supported homing methods"),
+    METHOD(1, -4), METHOD(2, -3), METHOD(3, -2), METHOD(4, -1), METHOD(5, 1), METHOD(6, 2), METHOD(7, 3),
+    METHOD(8, 4), METHOD(9, 5), METHOD(10, 6), METHOD(11, 7), METHOD(12, 8), METHOD(13, 9), METHOD(14, 10),
+    METHOD(15, 11), METHOD(16, 12), METHOD(17, 13), METHOD(18, 14), METHOD(19, 17), METHOD(20, 18),
+    METHOD(21, 19), METHOD(22, 20), METHOD(23, 21), METHOD(24, 22), METHOD(25, 23), METHOD(26, 24),
+    METHOD(27, 25), METHOD(28, 26), METHOD(29, 27), METHOD(30, 28), METHOD(31, 29), METHOD(32, 30),
+    METHOD(33, 33), METHOD(34, 34), METHOD(35, 35), METHOD(36, 37),
     VAR(0x60F4, I32, RO, TPDO, PROCESS(following_error), 0, "Following error actual value"),
     VAR(0x60FD, U32, RO, TPDO | EVENT, PROCESS(digital_inputs), 0, "Digital inputs"),
     HEAD(0x60FE, OBJECT_ARRAY, 2, "Digital outputs"),

@@ -2,7 +2,8 @@
  * A virtual drive: a CANopen node (CiA 301) with the drive profile CiA 402-2, and the motor behind
  * it. It knows a port, not a bus: whoever owns it hands in the frames and the time.
  *
- * Modes of operation: profile position, homing, interpolated position, cyclic synchronous position.
+ * Modes of operation: profile position, velocity and torque, homing, interpolated position, cyclic synchronous position,
+ * velocity and torque.
  */
 #ifndef TAKT_DRIVES_VIRTUAL_DRIVE_H
 #define TAKT_DRIVES_VIRTUAL_DRIVE_H

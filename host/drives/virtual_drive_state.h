@@ -49,6 +49,8 @@ struct drive_touch_probe {
 enum drive_homing_phase {
     HOMING_IDLE,
     HOMING_SEARCH, /* towards the switch */
+    HOMING_PASS,   /* out of it again, so that its edge is found from outside */
+    HOMING_PUSH,   /* towards a hard stop */
     HOMING_EDGE,   /* slowly to its edge */
     HOMING_INDEX,  /* slowly to the next index pulse */
     HOMING_STOP,   /* the home position is known */
@@ -59,6 +61,10 @@ struct drive_homing {
     enum drive_homing_phase phase;
     int8_t method; /* of the homing under way */
     bool is_homed;
+    int8_t
+        search; /* direction under way, of the drive; the other one after the first end of the axis */
+    bool was_active;   /* the switch, in the cycle before */
+    uint64_t push_ns;  /* that the motor has stood with all the torque it takes */
     double index_mm;   /* of the motor: where the awaited index pulse is */
     double encoder_mm; /* what the encoder says at the home position */
 };
