@@ -21,12 +21,20 @@ static const char *mode_name(uint32_t mode)
     switch (mode) {
     case CIA402_MODE_PROFILE_POSITION:
         return "profile position";
+    case CIA402_MODE_PROFILE_VELOCITY:
+        return "profile velocity";
+    case CIA402_MODE_PROFILE_TORQUE:
+        return "profile torque";
     case CIA402_MODE_HOMING:
         return "homing";
     case CIA402_MODE_INTERPOLATED_POSITION:
         return "interpolated position";
     case CIA402_MODE_CYCLIC_SYNC_POSITION:
         return "cyclic synchronous position";
+    case CIA402_MODE_CYCLIC_SYNC_VELOCITY:
+        return "cyclic synchronous velocity";
+    case CIA402_MODE_CYCLIC_SYNC_TORQUE:
+        return "cyclic synchronous torque";
     default:
         return "none";
     }

@@ -57,9 +57,13 @@ struct drive_settings {
     uint32_t max_profile_velocity;        /* 607F */
     uint32_t max_motor_speed_rpm;         /* 6080 */
     uint32_t profile_velocity;            /* 6081 */
+    uint32_t end_velocity;                /* 6082: at a target behind which another one waits */
     uint32_t profile_acceleration;        /* 6083 */
     uint32_t profile_deceleration;        /* 6084 */
     uint32_t quick_stop_deceleration;     /* 6085 */
+    uint32_t torque_slope;                /* 6087: 0.1 % of the rated torque in a second */
+    uint32_t max_acceleration;            /* 60C5 */
+    uint32_t max_deceleration;            /* 60C6 */
     uint32_t gear_motor, gear_shaft;      /* 6091: turns of the motor are so many of the shaft */
     uint32_t feed_increments, feed_shaft; /* 6092: increments in so many turns of the shaft */
     uint32_t homing_velocity[2];          /* 6099: towards the switch, away from it */
@@ -74,6 +78,12 @@ struct drive_settings {
     int16_t halt_option;                  /* 605D */
     int16_t fault_reaction_option;        /* 605E */
     int16_t motion_profile_type;          /* 6086 */
+    int16_t torque_profile_type;          /* 6088 */
+    uint16_t max_torque;                  /* 6072: 0.1 % of the rated torque */
+    uint16_t velocity_window;             /* 606D */
+    uint16_t velocity_window_ms;          /* 606E */
+    uint16_t velocity_threshold;          /* 606F: slower than this it stands */
+    uint8_t polarity;                     /* 607E: bit 7 position, 6 velocity, 5 torque */
     int16_t interpolation_submode;        /* 60C0 */
     uint8_t interpolation_period;         /* 60C2:1 */
     int8_t interpolation_index;           /* 60C2:2: the period is this power of ten of seconds */
@@ -89,6 +99,10 @@ struct drive_process {
     uint16_t controlword;         /* 6040 */
     uint16_t statusword;          /* 6041 */
     int32_t target_position;      /* 607A */
+    int32_t target_velocity;      /* 60FF */
+    int32_t demand_velocity;      /* 606B */
+    int16_t target_torque;        /* 6071 */
+    int16_t demand_torque;        /* 6074 */
     int32_t actual_position;      /* 6064 */
     uint16_t error_code;          /* 603F */
     int8_t mode;                  /* 6060 */

@@ -31,7 +31,7 @@
 #define METHOD_HERE_OLD 35
 
 /* A motor that stands for so long with so much torque (2003) is at a hard stop. */
-#define PUSH_NS (10u * MILLISECOND_NS)
+#define PUSH_NS (UINT64_C(10) * MILLISECOND_NS)
 
 /*
  * First fast in direction `search` until the input is as `search_until`; then, where the edge is that from outside, on in

@@ -61,6 +61,8 @@ static uint8_t touches_of(const struct object_row *row)
         return DRIVE_TOUCH_CONTROLWORD;
     case 0x6060:
         return DRIVE_TOUCH_MODE;
+    case 0x6072:
+        return DRIVE_TOUCH_TORQUE;
     case 0x60B8:
         return DRIVE_TOUCH_PROBE;
     default:

@@ -29,7 +29,8 @@ enum drive_touch {
     DRIVE_TOUCH_CONTROLWORD = 1,
     DRIVE_TOUCH_MODE = 2,
     DRIVE_TOUCH_CLOCK = 4,
-    DRIVE_TOUCH_PROBE = 8
+    DRIVE_TOUCH_PROBE = 8,
+    DRIVE_TOUCH_TORQUE = 16
 };
 
 /* Kinds of frames a drive sends, for faults that hold them back. */
@@ -51,12 +52,12 @@ void virtual_drive_restart_consumer(struct virtual_drive *drive, unsigned i);
 /* -1: the motor turns the other way than the axis counts. */
 static inline double virtual_drive_sign(const struct virtual_drive *drive)
 {
-    return drive->increments_per_mm < 0 ? -1 : 1;
+    return drive->config.increments_per_mm < 0 ? -1 : 1;
 }
 /* Position units per mm of what has no sign: velocities, accelerations, windows. */
 static inline double virtual_drive_scale(const struct virtual_drive *drive)
 {
-    return drive->increments_per_mm * virtual_drive_sign(drive);
+    return drive->increments_per_mm < 0 ? -drive->increments_per_mm : drive->increments_per_mm;
 }
 
 /* Object 1013, by the drive's own clock. */
@@ -102,15 +103,19 @@ uint32_t virtual_drive_check_pdo_write(const struct virtual_drive *drive,
 void virtual_drive_refresh(struct virtual_drive *drive, unsigned groups);
 uint32_t virtual_drive_read_row(const struct virtual_drive *drive, const struct object_row *row);
 void virtual_drive_apply_touches(struct virtual_drive *drive, unsigned touches);
-void virtual_drive_init_objects(struct virtual_drive *drive);
 /* What has been stored is in force again, of the objects up to this index. */
 void virtual_drive_restore(struct virtual_drive *drive, uint16_t last);
-/* What the position loop needs, from the settings. */
-void virtual_drive_derive(struct virtual_drive *drive);
 uint32_t virtual_drive_read_sdo(void *drive, uint32_t object, uint8_t number[4],
                                 const uint8_t **bytes, size_t *length);
 uint32_t virtual_drive_may_write_sdo(void *drive, uint32_t object);
 uint32_t virtual_drive_write_sdo(void *drive, uint32_t object, const uint8_t *bytes, size_t length);
+
+/* ---- virtual_drive_settings.c ---- */
+
+void virtual_drive_init_objects(struct virtual_drive *drive);
+/* What the position loop needs, from the settings. */
+void virtual_drive_derive(struct virtual_drive *drive);
+void virtual_drive_derive_torque(struct virtual_drive *drive);
 
 /* ---- virtual_drive_profile.c: states ---- */
 
@@ -154,7 +159,25 @@ uint16_t virtual_drive_mode_status(const struct virtual_drive *drive);
 void virtual_drive_run_mode(struct virtual_drive *drive, uint32_t cycle_ns);
 /* One cycle of slowing down by deceleration. True: the command stands. */
 bool virtual_drive_slow(struct virtual_drive *drive, double deceleration_mm_s2, uint32_t cycle_ns);
+double virtual_drive_profile_acceleration_mm_s2(const struct virtual_drive *drive);
 double virtual_drive_profile_deceleration_mm_s2(const struct virtual_drive *drive);
+/* The most that profiles may drive, by 607F and 6080, and the motor by 6080. */
+double virtual_drive_profile_velocity_max_mm_s(const struct virtual_drive *drive);
+double virtual_drive_motor_velocity_max_mm_s(const struct virtual_drive *drive);
+/* Has it been within the window of the target for the time of that? Notes it. */
+void virtual_drive_note_reached(struct virtual_drive *drive, bool is_inside, uint16_t time_ms,
+                                uint32_t cycle_ns);
+/* Value goes to goal, by so much at most. */
+double virtual_drive_approach(double value, double goal, double by);
+/* Velocity and torque that are added (60B1, 60B2). */
+void virtual_drive_set_offsets(struct virtual_drive *drive);
+
+/* ---- virtual_drive_speed.c: modes of velocity and torque ---- */
+
+void virtual_drive_run_profile_velocity(struct virtual_drive *drive, uint32_t cycle_ns);
+void virtual_drive_run_cyclic_velocity(struct virtual_drive *drive, uint32_t cycle_ns);
+void virtual_drive_run_profile_torque(struct virtual_drive *drive, uint32_t cycle_ns);
+void virtual_drive_run_cyclic_torque(struct virtual_drive *drive, uint32_t cycle_ns);
 /* Moves the command towards a velocity. */
 void virtual_drive_run_at(struct virtual_drive *drive, double velocity_mm_s,
                           double acceleration_mm_s2, uint32_t cycle_ns);

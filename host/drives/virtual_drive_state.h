@@ -118,8 +118,10 @@ struct virtual_drive {
 
     /* For the position loop, from the objects. */
     double increments_per_mm;
-    double origin_mm;           /* what the encoder says at position 0 */
-    double following_window_mm; /* 0: not watched */
+    double velocity_sign, torque_sign; /* by the motor's direction and object 607E */
+    double torque_ratio;               /* wanted in profile torque, of the rated one */
+    double origin_mm;                  /* what the encoder says at position 0 */
+    double following_window_mm;        /* 0: not watched */
     double quick_stop_mm_s2;
     uint64_t interpolation_ns; /* object 60C2 */
     uint64_t following_ns;     /* how long the following error has been outside its window */

@@ -406,9 +406,9 @@ const struct command command_drives = {
     .usage = "--bus BUS|--spindle WHERE [options]",
     .summary = "virtual CiA 402 drives, for any CANopen master",
     .help =
-        "Every drive is a CANopen node with the drive profile CiA 402 (profile position, "
-        "homing, interpolated\n"
-        "position, cyclic synchronous position) and a simulated motor, described by [drive N] "
+        "Every drive is a CANopen node with the drive profile CiA 402 (homing, interpolated "
+        "position, profile and cyclic\n"
+        "synchronous position, velocity and torque) and a simulated motor, described by [drive N] "
         "of the machine file.\n"
         "They run until Ctrl-C or SIGTERM, which is status 0.\n"
         "\n"

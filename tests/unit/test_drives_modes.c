@@ -287,19 +287,19 @@ static void test_interpolated_position_follows_60C1_while_bit_4_is_set(void)
 static void test_a_mode_the_drive_does_not_have_is_not_taken(void)
 {
     lone_enable(&lone, CSP);
-    lone_control(&lone, ENABLE, 3);
+    lone_control(&lone, ENABLE, 2);
     TEST_ASSERT_EQUAL_UINT32(CSP, lone_read(&lone, 0x6061, 0));
-    TEST_ASSERT_EQUAL_UINT32(3, lone_read(&lone, 0x6060, 0));
+    TEST_ASSERT_EQUAL_UINT32(2, lone_read(&lone, 0x6060, 0));
     lone_control(&lone, ENABLE, PP);
     TEST_ASSERT_EQUAL_UINT32(PP, lone_read(&lone, 0x6061, 0));
 }
 
 static void test_every_mode_of_6502_is_taken(void)
 {
-    static const uint8_t modes[] = {PP, HM, IP, CSP};
+    static const uint8_t modes[] = {PP, 3, 4, HM, IP, CSP, 9, 10};
     uint32_t supported = lone_read(&lone, 0x6502, 0);
-    TEST_ASSERT_EQUAL_HEX32(0xE1, supported);
-    for (unsigned i = 0; i < 4; i++) {
+    TEST_ASSERT_EQUAL_HEX32(0x3ED, supported);
+    for (unsigned i = 0; i < sizeof modes; i++) {
         TEST_ASSERT_TRUE(supported >> (modes[i] - 1) & 1);
         TEST_ASSERT_EQUAL_HEX32(0, lone_write(&lone, 0x6060, 0, 1, modes[i]));
         TEST_ASSERT_EQUAL_UINT32(modes[i], lone_read(&lone, 0x6061, 0));

@@ -510,7 +510,7 @@ static void test_reads_and_writes_that_cannot_be_say_why(void)
     TEST_ASSERT_EQUAL_HEX32(0x06070013, lone_write(&lone, 0x607A, 0, 2, 0));
     TEST_ASSERT_EQUAL_HEX32(0x06090031, lone_write(&lone, 0x605C, 0, 2, 2));
     TEST_ASSERT_EQUAL_HEX32(0x06090032, lone_write(&lone, 0x6099, 1, 4, 0));
-    TEST_ASSERT_EQUAL_HEX32(0x06090030, lone_write(&lone, 0x6060, 0, 1, 3));
+    TEST_ASSERT_EQUAL_HEX32(0x06090030, lone_write(&lone, 0x6060, 0, 1, 2));
     TEST_ASSERT_EQUAL_HEX32(0x06090030, lone_write(&lone, 0x6098, 0, 1, 15));
     TEST_ASSERT_EQUAL_HEX32(0x06090030, lone_write(&lone, 0x605A, 0, 2, 3));
     (void)lone_write(&lone, 0x1006, 0, 4, 1000);
