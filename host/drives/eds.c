@@ -132,11 +132,11 @@ static void write_number(FILE *stream, const struct object_row *row, const char 
         write_pair(stream, key, "0x%llX", (unsigned long long)value);
 }
 
-/* What is measured has no default. */
+/* What goes on by itself, so that it can be sent in a TPDO, has no default. */
 static void write_default(FILE *stream, const struct object_row *row,
                           const struct drive_objects *objects, uint8_t node)
 {
-    bool is_measured = row->access == OBJECT_RO && row->flags & OBJECT_TO_TPDO;
+    bool is_measured = row->flags & OBJECT_TO_TPDO;
     if (row->type == OBJECT_STRING && row->flags & OBJECT_FIXED)
         write_pair(stream, "DefaultValue", "%s", row->title);
     if (object_type_bytes((enum object_type)row->type) == 0 || is_measured ||
