@@ -112,6 +112,7 @@ struct drives_io {
     uint16_t sent;       /* levels of its outputs on the wire */
     uint8_t input_bytes; /* of its TPDO1; 0: none of them is wired */
     uint8_t output_bytes;
+    uint8_t analogues; /* analogue outputs of its RPDO2; 0: none is wired */
     bool reset_pending;
     bool booted;
     bool started;

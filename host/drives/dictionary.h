@@ -22,7 +22,8 @@ struct dictionary {
 extern const struct dictionary dictionary_own;
 /* Of an I/O node (CiA 401) with so many bytes of inputs, and as many of outputs. */
 extern const struct dictionary dictionary_io;
-#define DICTIONARY_IO_BYTES 2
+#define DICTIONARY_IO_BYTES     2
+#define DICTIONARY_IO_ANALOGUES 4 /* outputs of 16 bits */
 
 #define DICTIONARY_PROBLEM_MAX 120
 

@@ -270,6 +270,17 @@ const struct dictionary dictionary_own = {
     .dummies = 0xFC /* all whole numbers */
 };
 
+#define MAPPING_OF_4(index, mapping, title, first, second, third, fourth)                          \
+    ROW(index, 0, OBJECT_RECORD, U8, RW, OBJECT_LIMITED,                                           \
+        (mapping) + offsetof(struct drive_pdo_mapping, count), 4, 0, 4,                            \
+        "Number of mapped objects", title),                                                        \
+        MAPPED(index, 1, mapping, first), MAPPED(index, 2, mapping, second),                       \
+        MAPPED(index, 3, mapping, third), MAPPED(index, 4, mapping, fourth)
+
+#define ANALOGUE(number)                                                                           \
+    SUB(0x6411, number, I16, RW, RPDO, EXTRA(2 * DICTIONARY_IO_BYTES + 2 * ((number)-1)), 0,       \
+        "Analogue output " #number)
+
 /* clang-format off */
 static const struct object_row io_table[] = {
     CONST(0x1000, U32, 0x00030191, "Device type"),
@@ -288,6 +299,8 @@ static const struct object_row io_table[] = {
     SUB(0x1018, 4, U32, RO, OWN, IDENTITY(serial), 0, "Serial number"),
     RPDO_PARAMETERS(0, "1", 0x200, 255),
     RPDO_MAPPING(0, "1", DICTIONARY_IO_BYTES, 0x62000108, 0x62000208),
+    RPDO_PARAMETERS(1, "2", 0x300, 255),
+    MAPPING_OF_4(0x1601, MAPPING_OF(rpdo, 1), "RPDO mapping parameter 2", 0x64110110, 0x64110210, 0x64110310, 0x64110410),
     TPDO_PARAMETERS(0, "1", NO_RTR | 0x180, 255, 0),
     TPDO_MAPPING(0, "1", DICTIONARY_IO_BYTES, 0x60000108, 0x60000208),
     HEAD(0x6000, OBJECT_ARRAY, DICTIONARY_IO_BYTES, "Read input 8-bit"),
@@ -296,6 +309,8 @@ static const struct object_row io_table[] = {
     HEAD(0x6200, OBJECT_ARRAY, DICTIONARY_IO_BYTES, "Write output 8-bit"),
     SUB(0x6200, 1, U8, RW, RPDO, EXTRA(0), 0, "Outputs 1 to 8"),
     SUB(0x6200, 2, U8, RW, RPDO, EXTRA(1), 0, "Outputs 9 to 16"),
+    HEAD(0x6411, OBJECT_ARRAY, DICTIONARY_IO_ANALOGUES, "Write analogue output 16-bit"),
+    ANALOGUE(1), ANALOGUE(2), ANALOGUE(3), ANALOGUE(4),
 };
 /* clang-format on */
 

@@ -288,6 +288,8 @@ const struct machine_key machine_keys[] = {
           "CANopen node id of an I/O node (CiA 401) on the drives' bus; [io 1] is the first"),
     CHOICE(SECTION_IO, "outputs", KEY_OUTPUTS, IN_IO(output),
            "its outputs from bit 0 on: P0 ... P31 (M62 to M65), flood, mist, spindle, ccw (it turns counter-clockwise), - (free); with ! inverted"),
+    CHOICE(SECTION_IO, "analogue_outputs", KEY_ANALOGUES, IN_IO(analogue),
+           "its analogue outputs from the first on: E0 ... E3 (M67 and M68, per cent of the range), - (free)"),
     CHOICE(SECTION_IO, "inputs", KEY_INPUTS, IN_IO(input),
            "its inputs from bit 0 on: P0 ... P31 (M66), stop and limit (closed circuits that stop the axes when they open), - (free); with ! inverted"),
 
