@@ -41,7 +41,8 @@ struct io_wiring {
 /* Which analogue output of the program it is: 0: none, 1 ... 4: E0 ... E3 of M67 and M68. */
 static inline unsigned io_get_analogue(const struct io_wiring *wiring, unsigned channel)
 {
-    return wiring->analogue[channel / 2] >> 4 * (channel % 2) & 0xFU;
+    const unsigned pair = wiring->analogue[channel / 2];
+    return pair >> 4 * (channel % 2) & 0xFU;
 }
 
 /* From the first to the last that is wired: 0 ... IO_ANALOGUE_MAX. */
