@@ -58,7 +58,7 @@ static void write_device_info(FILE *stream, const struct dictionary *dictionary)
     write_pair(stream, "GroupMessaging", "0");
     write_pair(stream, "NrOfRXPDO", "%u", DRIVE_PDO_COUNT);
     write_pair(stream, "NrOfTXPDO", "%u", DRIVE_PDO_COUNT);
-    write_pair(stream, "LSS_Supported", "0");
+    write_pair(stream, "LSS_Supported", "1");
     (void)fputs(NEWLINE, stream);
 }
 
@@ -116,7 +116,9 @@ static const char *access_text(const struct object_row *row)
     case OBJECT_RW:
         break;
     }
-    return row->flags & OBJECT_TO_RPDO ? "rww" : "rw";
+    if (row->flags & OBJECT_TO_RPDO && !(row->flags & OBJECT_TO_TPDO))
+        return "rww"; /* by RPDO alone */
+    return "rw";
 }
 
 static bool is_signed(const struct object_row *row)

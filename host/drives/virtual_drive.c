@@ -18,6 +18,12 @@
 /* SYNC counts as lost after this many of its periods (object 1006). */
 #define SYNC_LOST_PERIODS 3
 
+/* Without a node id there is nothing to be said but by LSS. */
+static bool is_dumb(const struct virtual_drive *drive, const struct can_frame *frame)
+{
+    return drive->lss.is_nameless && frame->id != LSS_ANSWER_COB_ID;
+}
+
 /*
  * A refused frame is lost, as in a node whose transmit buffers are full; the bus counts it. One that
  * a scripted fault holds back counts as sent.
@@ -26,7 +32,7 @@ bool virtual_drive_send(struct virtual_drive *drive, enum inject_mute kind,
                         const struct can_frame *frame)
 {
     unsigned held_back = drive->faults.mute & (1u << kind | 1u << INJECT_MUTE_ALL);
-    if (held_back || drive->faults.is_hung)
+    if (held_back || drive->faults.is_hung || is_dumb(drive, frame))
         return true;
     return drive->port.send(drive->port.context, frame);
 }
@@ -64,6 +70,7 @@ void virtual_drive_set_filter(struct virtual_drive *drive)
 {
     const struct drive_communication *c = &drive->objects.communication;
     memset(drive->accepts, 0, sizeof drive->accepts);
+    accept(drive, LSS_REQUEST_COB_ID);
     accept(drive, NMT_COMMAND_COB_ID);
     accept(drive, c->sync_cob_id);
     if (c->time_cob_id & TIME_CONSUMED)
@@ -102,6 +109,8 @@ void virtual_drive_init(struct virtual_drive *drive, const struct virtual_drive_
     if (config->dictionary != NULL)
         drive->dictionary = config->dictionary;
     drive->nmt = NMT_BOOTED;
+    drive->lss.node = drive->lss.stored = config->is_nameless ? LSS_NO_NODE : config->node;
+    drive->lss.is_nameless = config->is_nameless;
     drive_plant_init(&drive->plant, &config->plant);
     sdo_server_init(&drive->sdo, config->node, &owner);
     virtual_drive_init_objects(drive);
@@ -196,6 +205,8 @@ void virtual_drive_boot(struct virtual_drive *drive)
     drive->boot_ns = 0;
     restart_communication(drive);
     send_heartbeat(drive, NMT_BOOTED);
+    if (drive->lss.is_nameless)
+        return; /* it stays as it has booted */
     virtual_drive_tell(drive, DRIVE_EVENT_BOOT, 0, 0);
     drive->nmt = NMT_PREOPERATIONAL;
 }
@@ -204,6 +215,7 @@ void virtual_drive_boot(struct virtual_drive *drive)
 static void reset(struct virtual_drive *drive, bool whole_node)
 {
     virtual_drive_lose_connection(drive);
+    virtual_drive_apply_lss(drive, whole_node);
     virtual_drive_restore(drive, whole_node ? UINT16_MAX : LAST_COMMUNICATION);
     if (whole_node) {
         virtual_drive_clear_history(drive);
@@ -228,11 +240,11 @@ static void take_nmt_command(struct virtual_drive *drive, const struct can_frame
     uint8_t node;
     if (!nmt_read_command(frame, &command, &node))
         return;
-    if (node != NMT_ALL_NODES && node != drive->config.node)
+    if (node != NMT_ALL_NODES && (node != drive->config.node || drive->lss.is_nameless))
         return;
     if (command == NMT_RESET_NODE || command == NMT_RESET_COMMUNICATION)
         reset(drive, command == NMT_RESET_NODE);
-    else
+    else if (!drive->lss.is_nameless)
         enter_nmt_state(drive, nmt_next_state(command));
 }
 
@@ -356,8 +368,13 @@ void virtual_drive_on_frame(struct virtual_drive *drive, const struct can_frame 
     if (drive->faults.is_hung || drive->boot_ns != 0 ||
         frame->id > NODE_FUNCTION_MASK + NODE_ID_MASK)
         return;
+    if (drive->lss.is_nameless && frame->id != LSS_REQUEST_COB_ID &&
+        frame->id != NMT_COMMAND_COB_ID)
+        return;
     if (frame->id == identifier_of(drive->objects.communication.sync_cob_id))
         take_sync(drive, frame);
+    else if (frame->id == LSS_REQUEST_COB_ID)
+        virtual_drive_take_lss(drive, frame);
     else if (is_time(drive, frame))
         take_time(drive, frame);
     else if (node_function(frame->id) == SDO_REQUEST_FUNCTION || frame->id == NMT_COMMAND_COB_ID ||

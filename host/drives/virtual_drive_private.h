@@ -190,6 +190,16 @@ void virtual_drive_interrupt_homing(struct virtual_drive *drive);
 void virtual_drive_run_homing(struct virtual_drive *drive, uint32_t cycle_ns);
 uint32_t virtual_drive_inputs(const struct virtual_drive *drive); /* 60FD */
 
+/* ---- virtual_drive_lss.c: layer setting services ---- */
+
+#define LSS_REQUEST_COB_ID 0x7E5
+#define LSS_ANSWER_COB_ID  0x7E4
+#define LSS_NO_NODE        255
+
+void virtual_drive_take_lss(struct virtual_drive *drive, const struct can_frame *frame);
+/* At a reset. */
+void virtual_drive_apply_lss(struct virtual_drive *drive, bool whole_node);
+
 /* ---- virtual_drive_probe.c: touch probes ---- */
 
 /* Object 60B8 has been written. */

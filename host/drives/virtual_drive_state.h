@@ -38,6 +38,15 @@ struct drive_setpoints {
     bool is_reached;
 };
 
+/* Layer setting services. */
+struct drive_lss {
+    uint8_t node,
+        stored; /* from the next reset of the communication on, and of the node; LSS_NO_NODE: none */
+    bool is_nameless;                     /* it has no node id: it hears and says nothing else */
+    bool configures;                      /* state "configuration" */
+    uint8_t matched, identified, scanned; /* parts of the identity so far */
+};
+
 /* The touch probes, 1 and 2, of one input. */
 #define DRIVE_TOUCH_PROBES 2
 struct drive_touch_probe {
@@ -163,6 +172,7 @@ struct virtual_drive {
     const char *eds;
     size_t eds_length;
     struct drive_faults faults;
+    struct drive_lss lss;
 
     /* What a reset brings back, of power-on or stored by object 1010; process values do not count. */
     struct drive_objects stored, initial;

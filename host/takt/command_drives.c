@@ -138,8 +138,9 @@ static bool set_drives(struct drives_command *command)
                           ? set_nodes(command)
                           : data_sheet_set_machine(drives, &command->setup, command->sheet);
 
-    for (unsigned i = 0; i < drives->count && command->given.count > 0; i++) {
-        if (!drives->drive[i].is_io)
+    for (unsigned i = 0; i < drives->count; i++) {
+        drives->drive[i].is_nameless = command->options->unconfigured;
+        if (command->given.count > 0 && !drives->drive[i].is_io)
             drives->drive[i].dictionary = &command->given;
     }
     return good;
@@ -389,6 +390,8 @@ static const struct option_row rows[] = {
      "scripted faults; takt help inject explains them"},
     {"probe", OPTION_TEXT, offsetof(struct options, probe), "FILE",
      "what the drives' touch probes meet, as of takt run"},
+    {"unconfigured", OPTION_FLAG, offsetof(struct options, unconfigured), NULL,
+     "drives have no node id before they get one by LSS; --nodes are their serial numbers"},
     {"store", OPTION_TEXT, offsetof(struct options, store), "FOLDER",
      "what drives store (object 1010) is kept there, and they start with it"},
     {"realtime", OPTION_FLAG, offsetof(struct options, realtime), NULL,
@@ -426,6 +429,11 @@ const struct command command_drives = {
         "node, which they have "
         "again\n"
         "when they are next switched on. Without it stored values live as long as the command.\n"
+        "\n"
+        "Drives can be found and given their node id by LSS (CiA 305), as they are, or with "
+        "--unconfigured as they come "
+        "from\n"
+        "the maker, without one.\n"
         "\n"
         "--spindle adds a spindle behind the registers of a Delta VFD-B or MS300 converter, "
         "with inertia, ramp,\n"

@@ -189,6 +189,19 @@ refused(["--bus", "slcan:pty", "--nodes", "2", "--quiet", "--store", "stored"],
         "stored/takt-drive-2.store:2:0: error: node 2 has no object 6041:00 that can be stored")
 refused(["--eds", ".", "--store", "stored"], "--store needs --bus")
 
+# ---- Without a node id ----
+
+drives, hand = open_drives("--unconfigured")
+for request, answer in ((b"\x4c", 0x50), (b"\x51\0\0\0\0\x80", 0x4F), (b"\x04\x01", None), (b"\x5d", 0x5D), (b"\x11\x02", 0x11)):
+    hand.send(0x7E5, request.ljust(8, b"\0"))
+    got = hand.wait_for(0x7E4) if answer else None
+    t.check(not answer or got[0] == answer, f"LSS {request.hex()} is answered", got)
+t.check(b"t702" not in hand.all, "a node without an id does not boot")
+hand.send(0x000, bytes([130, 0]))
+t.check(hand.wait_for(0x702) == b"\0", "with an id it does")
+t.check(hand.read(0x1018, 4) == 2, "and answers")
+close_drives(drives)
+
 # ---- Whose clock ----
 
 # A SYNC is a millisecond, however fast they come: 101 of them are 100 ms, and five heartbeats.

@@ -203,7 +203,8 @@ static void test_the_lists_of_the_sheet_name_every_index_once(void)
 static const char *access_of(const struct object_row *row)
 {
     static const char *const names[] = {"ro", "rw", "wo", "const"};
-    return row->access == OBJECT_RW && row->flags & OBJECT_TO_RPDO ? "rww" : names[row->access];
+    bool is_received = row->flags & OBJECT_TO_RPDO && !(row->flags & OBJECT_TO_TPDO);
+    return row->access == OBJECT_RW && is_received ? "rww" : names[row->access];
 }
 
 static void test_type_access_and_mapping_are_those_of_the_table(void)
