@@ -207,7 +207,7 @@
     X(IO_TYPE, "I/O %w is no CiA 401 node: the device type, object 1000, is %x")                   \
     X(IO_REFUSES, "I/O %w refuses with abort code %x: %m")                                         \
     X(IO_UNANSWERED, "I/O %w does not answer within %v ms")                                        \
-    X(IO_UNMAPPED, "I/O %w is %x: the bits that are wired are not in the first PDO of the node")   \
+    X(IO_UNMAPPED, "I/O %w is %x: what is wired is not in the first PDOs of the node")             \
     X(IO_SILENT, "I/O %w has sent no inputs for %v ms")                                            \
     X(IO_HEARTBEAT, "I/O %w has sent no heartbeat for %v ms")                                      \
     X(IO_LEFT, "I/O %w is not operational any more, but %m")                                       \

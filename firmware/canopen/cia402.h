@@ -41,6 +41,12 @@
 #define CIA402_HOMING_METHOD        0x6098
 #define CIA402_HOMING_SPEEDS        0x6099 /* 1: towards the switch, 2: towards the zero mark */
 #define CIA402_HOMING_ACCELERATION  0x609A
+#define CIA402_PROBE_FUNCTION       0x60B8
+#define CIA402_PROBE_STATUS         0x60B9
+#define CIA402_PROBE_RISEN          0x60BA /* touch probe 1: position at the rising edge */
+#define CIA402_PROBE_FALLEN         0x60BB
+#define CIA402_PROBE_2_RISEN        0x60BC
+#define CIA402_PROBE_2_FALLEN       0x60BD
 #define CIA402_INTERPOLATION_PERIOD 0x60C2 /* 1: value, 2: power of ten of its unit in s */
 #define CIA402_SUPPORTED_MODES      0x6502 /* bit of mode n: n - 1 */
 
@@ -49,11 +55,26 @@
 /* Value of the connection option: quick stop. */
 #define CIA402_CONNECTION_QUICK_STOP 3
 
+/* Bits of the touch probe function, of touch probe 1; those of 2 are 8 bits higher. */
+#define CIA402_PROBE_ENABLE     0x01u
+#define CIA402_PROBE_CONTINUOUS 0x02u /* every edge; else the first after it has been enabled */
+#define CIA402_PROBE_AT_INDEX   0x04u /* the encoder's index pulse; else the probe input */
+#define CIA402_PROBE_AT_RISE    0x10u
+#define CIA402_PROBE_AT_FALL    0x20u
+/* And of its status. */
+#define CIA402_PROBE_IS_ENABLED 0x01u
+#define CIA402_PROBE_HAS_RISEN  0x02u
+#define CIA402_PROBE_HAS_FALLEN 0x04u
+
 #define CIA402_MODE_NONE                  0
 #define CIA402_MODE_PROFILE_POSITION      1
+#define CIA402_MODE_PROFILE_VELOCITY      3
+#define CIA402_MODE_PROFILE_TORQUE        4
 #define CIA402_MODE_HOMING                6
 #define CIA402_MODE_INTERPOLATED_POSITION 7
 #define CIA402_MODE_CYCLIC_SYNC_POSITION  8
+#define CIA402_MODE_CYCLIC_SYNC_VELOCITY  9
+#define CIA402_MODE_CYCLIC_SYNC_TORQUE    10
 
 enum cia402_state {
     CIA402_NOT_READY,

@@ -20,7 +20,7 @@ static const struct {
     {SDO_ABORT_PDO_LENGTH, "mapped objects exceed the length of the PDO"},
     {0x06040043, "parameters do not go together"},
     {0x06040047, "internal incompatibility in the device"},
-    {0x06060000, "hardware error"},
+    {SDO_ABORT_HARDWARE, "hardware error"},
     {SDO_ABORT_LENGTH, "length of the value does not match"},
     {SDO_ABORT_TOO_LONG, "value too long"},
     {SDO_ABORT_TOO_SHORT, "value too short"},

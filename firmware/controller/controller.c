@@ -122,6 +122,26 @@ void controller_init(struct controller *c, const struct controller_config *confi
     approach_init(&c->approach, &start);
 }
 
+/* The axes come to rest before it, where it waits. */
+static void hold_back(struct controller *c, const struct move *move)
+{
+    struct move stop = *move;
+
+    stop.kind = MOVE_DWELL;
+    stop.dwell_s = 0.0;
+    path_push(&c->path, &stop);
+    c->program_waits = true;
+}
+
+/* The move that has waited. */
+static void take_held(struct controller *c)
+{
+    if (controller_probe_begin(&c->probe)) {
+        path_push(&c->path, &c->probe.move);
+        c->program_waits = false;
+    }
+}
+
 /* A move has been read: onto the path with it. */
 static void take_move(struct controller *c, struct move *move)
 {
@@ -129,8 +149,12 @@ static void take_move(struct controller *c, struct move *move)
     if (c->replays) {
         replay_prepare(move);
     }
-    path_push(&c->path, move);
-    controller_probe_ask(&c->probe, move, cycle_s(&c->machine));
+    if (controller_probe_ask(&c->probe, move, cycle_s(&c->machine),
+                             drives_have_probe(&c->drives))) {
+        path_push(&c->path, move);
+    } else {
+        hold_back(c, move);
+    }
     c->program_ended = move->kind == MOVE_END;
 }
 
@@ -204,6 +228,7 @@ void controller_background(struct controller *c)
         return;
     }
     path_go_on(&c->path);
+    take_held(c);
     c->program_late = false;
     if (motion_ahead(&c->motion) + wanted / TOP_UP_PART <= wanted) {
         while (can_read(c) && motion_ahead(&c->motion) < wanted) {
@@ -395,31 +420,31 @@ static void follow_path(struct controller *c, const struct inputs *in)
     }
 }
 
-/* Where the axes are in the program's coordinates: what the drives report, without what correction has added. */
-static struct point uncorrected_actual(const struct controller *c)
+/* Where the axes are. */
+static struct controller_place place_of(const struct controller *c)
 {
-    struct point actual;
+    struct controller_place at;
 
-    controller_get_actual(c, &actual);
+    controller_get_actual(c, &at.reported);
     for (int i = 0; i < AXIS_COUNT; i++) {
-        actual.at[i] -= c->record.set.at[i] - c->record.cmd.at[i];
+        at.actual.at[i] = at.reported.at[i] - (c->record.set.at[i] - c->record.cmd.at[i]);
     }
-    return actual;
+    return at;
 }
 
 /* What the program has asked of probe and inputs. */
 static void follow_probe(struct controller *c, const struct inputs *in)
 {
-    const struct point actual = uncorrected_actual(c);
+    const struct controller_place at = place_of(c);
 
-    if (controller_probe_watch(&c->probe, &motion_block(&c->motion)->move, in, &actual)) {
+    if (controller_probe_watch(&c->probe, &motion_block(&c->motion)->move, in, &at)) {
         motion_end_here(&c->motion);
     }
     if (c->program_waits && motion_is_idle(&c->motion)) {
         struct inputs seen = *in;
 
         drives_add_inputs(&c->drives, &seen);
-        (void)controller_probe_rest(&c->probe, &seen, &c->record.cmd, &actual);
+        (void)controller_probe_rest(&c->probe, &seen, &c->drives, &c->record.cmd, &at);
     }
 }
 

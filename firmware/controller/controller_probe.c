@@ -11,15 +11,28 @@ static bool is_probing(const struct controller_probe *q)
     return q->state == PROBE_ASKED && q->move.kind == MOVE_PROBE;
 }
 
-void controller_probe_ask(struct controller_probe *q, const struct move *move, double cycle_s)
+bool controller_probe_ask(struct controller_probe *q, const struct move *move, double cycle_s,
+                          bool latches)
 {
     if (move->kind != MOVE_PROBE && move->kind != MOVE_INPUT) {
-        return;
+        return true;
     }
     *q = (struct controller_probe){.move = *move, .answers = q->answers, .taken = q->taken};
     q->cycles_left = (uint64_t)maths_min(maths_ceil(move->timeout_s / cycle_s), CYCLES_MAX);
+    q->latches = latches && move->kind == MOVE_PROBE;
+    handoff_order();
+    q->state = q->latches ? PROBE_HELD : PROBE_ASKED;
+    return !q->latches;
+}
+
+bool controller_probe_begin(struct controller_probe *q)
+{
+    if (q->state != PROBE_ARMED) {
+        return false;
+    }
     handoff_order();
     q->state = PROBE_ASKED;
+    return true;
 }
 
 /* What the move looks for: contact, or none any more. */
@@ -28,15 +41,17 @@ static bool is_found(const struct controller_probe *q, const struct inputs *inpu
     return inputs->probe_contact != q->move.probe_away;
 }
 
-static void find(struct controller_probe *q, const struct point *actual)
+/* Until the axes rest, rest_at is where the drives have reported them at contact. */
+static void find(struct controller_probe *q, const struct controller_place *at)
 {
     q->answer.contact = true;
-    q->answer.contact_at = *actual;
+    q->answer.contact_at = at->actual;
+    q->answer.rest_at = at->reported;
 }
 
 /* As in LinuxCNC, a move that must find what it looks for may not begin where it is found already. */
 bool controller_probe_watch(struct controller_probe *q, const struct move *executed,
-                            const struct inputs *inputs, const struct point *actual)
+                            const struct inputs *inputs, const struct controller_place *at)
 {
     const bool begins = !q->begun;
 
@@ -51,25 +66,79 @@ bool controller_probe_watch(struct controller_probe *q, const struct move *execu
     if (begins && !q->move.probe_optional) {
         q->error = q->move.probe_away ? TAKT_ERROR_PROBE_CLEAR : TAKT_ERROR_PROBE_TOUCHES;
     } else {
-        find(q, actual);
+        find(q, at);
     }
     return true;
 }
 
-/* The drives may follow up to the end after the last setpoint: the probe is looked at once more. */
-static void end_probing(struct controller_probe *q, const struct inputs *inputs,
-                        const struct point *rest, const struct point *actual)
+/*
+ * contact = what the cycle has seen + (latched - reported in that cycle)
+ *
+ * So what correction has added there is left out of both.
+ */
+static void take_latched(struct program_answer *answer, const struct drives *drives)
 {
-    q->answer.rest_at = *rest;
-    if (q->error == TAKT_OK && !q->answer.contact && is_found(q, inputs)) {
-        find(q, actual);
+    struct point latched = answer->rest_at;
+
+    drives_get_latched(drives, &latched);
+    for (int i = 0; i < AXIS_COUNT; i++) {
+        answer->contact_at.at[i] += latched.at[i] - answer->rest_at.at[i];
     }
-    if (q->answer.contact || q->error != TAKT_OK) {
-        return;
+}
+
+/* Touch probes are being read; false: they have been, or there is nothing to be read. */
+static bool is_reading(struct controller_probe *q, struct drives *drives)
+{
+    if (!q->latches || !q->answer.contact) {
+        return false;
     }
+    if (!q->reads) {
+        drives_read_probe(drives);
+        q->reads = true;
+    }
+    if (drives_probe_is_busy(drives)) {
+        return true;
+    }
+    take_latched(&q->answer, drives);
+    return false;
+}
+
+static void end_without_contact(struct controller_probe *q, const struct point *rest)
+{
     q->answer.contact_at = *rest;
     if (!q->move.probe_optional) {
         q->error = q->move.probe_away ? TAKT_ERROR_PROBE_NO_RELEASE : TAKT_ERROR_PROBE_NO_CONTACT;
+    }
+}
+
+/* The drives may follow up to the end after the last setpoint: the probe is looked at once more. False: not yet. */
+static bool end_probing(struct controller_probe *q, const struct inputs *inputs,
+                        struct drives *drives, const struct point *rest,
+                        const struct controller_place *at)
+{
+    if (q->error == TAKT_OK && !q->answer.contact && is_found(q, inputs)) {
+        find(q, at);
+    }
+    if (is_reading(q, drives)) {
+        return false;
+    }
+    q->answer.rest_at = *rest;
+    if (!q->answer.contact && q->error == TAKT_OK) {
+        end_without_contact(q, rest);
+    }
+    return true;
+}
+
+/* The axes rest before the move: the touch probes are told to look for its edge. */
+static void arm(struct controller_probe *q, struct drives *drives)
+{
+    if (!q->begun) {
+        drives_arm_probe(drives, q->move.probe_away);
+        q->begun = true;
+    } else if (!drives_probe_is_busy(drives)) {
+        q->begun = false;
+        handoff_order();
+        q->state = PROBE_ARMED;
     }
 }
 
@@ -112,13 +181,19 @@ static bool end_waiting(struct controller_probe *q, const struct inputs *inputs)
 }
 
 bool controller_probe_rest(struct controller_probe *q, const struct inputs *inputs,
-                           const struct point *rest, const struct point *actual)
+                           struct drives *drives, const struct point *rest,
+                           const struct controller_place *at)
 {
+    if (q->state == PROBE_HELD) {
+        arm(q, drives);
+    }
     if (q->state != PROBE_ASKED) {
         return false;
     }
     if (q->move.kind == MOVE_PROBE) {
-        end_probing(q, inputs, rest, actual);
+        if (!end_probing(q, inputs, drives, rest, at)) {
+            return false;
+        }
     } else if (q->move.analogue) {
         q->answer.value = inputs->analogue[q->move.channel];
     } else if (!end_waiting(q, inputs)) {

@@ -3,7 +3,9 @@
  *
  *     background                              control cycle
  *       program gives out the move
- *       controller_probe_ask     ──────────→    controller_probe_watch   the move is executed; true: brake now
+ *       controller_probe_ask     ──────────→    controller_probe_rest    where drives have touch probes: they are armed
+ *       controller_probe_begin   ←──────────
+ *       the move goes onto the path  ──────→    controller_probe_watch   the move is executed; true: brake now
  *       program says PROGRAM_WAIT               ...
  *                                               controller_probe_rest    nothing moves any more; true: answered
  *       controller_probe_take    ←──────────
@@ -16,6 +18,7 @@
 #define TAKT_CONTROLLER_CONTROLLER_PROBE_H
 
 #include "base/error.h"
+#include "drive/drives.h"
 #include "hal/inputs.h"
 #include "program/program.h"
 
@@ -23,7 +26,9 @@
 #include <stdint.h>
 
 enum controller_probe_state {
-    PROBE_IDLE,    /* nothing has been asked */
+    PROBE_IDLE, /* nothing has been asked */
+    PROBE_HELD, /* the move is not on the path yet: the axes come to rest, the drives' touch probes are armed */
+    PROBE_ARMED,   /* they are: the background puts it there */
     PROBE_ASKED,   /* the move is executed, or comes to rest, or waits */
     PROBE_ANSWERED /* answer and error hold */
 };
@@ -31,6 +36,8 @@ enum controller_probe_state {
 struct controller_probe {
     enum controller_probe_state state;
     struct move move;
+    bool latches;          /* the drives' touch probes have been armed */
+    bool reads;            /* they are being read */
     bool begun;            /* the move has been looked at */
     bool level_before;     /* of the input */
     uint64_t cycles_left;  /* until the input's time is over */
@@ -40,28 +47,42 @@ struct controller_probe {
     struct program_answer taken;
 };
 
-/* A move has come from the program: remembers it when it asks for something. */
-void controller_probe_ask(struct controller_probe *q, const struct move *move, double cycle_s);
+/*
+ * A move has come from the program: remembers it when it asks for something. latches: drives have touch probes. False: it
+ * is not to go onto the path before controller_probe_begin says so.
+ */
+bool controller_probe_ask(struct controller_probe *q, const struct move *move, double cycle_s,
+                          bool latches);
+
+/* True, once: touch probes are armed; the move goes onto the path now. */
+bool controller_probe_begin(struct controller_probe *q);
 
 /* Is there something to watch, and to answer? */
 static inline bool controller_probe_is_asked(const struct controller_probe *q)
 {
-    return q->state == PROBE_ASKED;
+    return q->state == PROBE_ASKED || q->state == PROBE_HELD;
 }
 
+/* Where the axes are, by their drives. */
+struct controller_place {
+    struct point reported;
+    struct point
+        actual; /* the same in the program's coordinates: without what correction has added */
+};
+
 /*
- * In each cycle that executes a motion. actual: where the axes are, by their drives. True, once: the motion is to brake
- * at once and to end where it comes to rest.
+ * In each cycle that executes a motion. True, once: the motion is to brake at once and to end where it comes to rest.
  */
 bool controller_probe_watch(struct controller_probe *q, const struct move *executed,
-                            const struct inputs *inputs, const struct point *actual);
+                            const struct inputs *inputs, const struct controller_place *at);
 
 /*
  * In each cycle in which all that has been read is done and the program waits. rest: where the axes have been sent to
  * last. True: answered.
  */
 bool controller_probe_rest(struct controller_probe *q, const struct inputs *inputs,
-                           const struct point *rest, const struct point *actual);
+                           struct drives *drives, const struct point *rest,
+                           const struct controller_place *at);
 
 /* The answer that waits to be taken, and TAKT_OK or the error that ends the program; false: there is none. */
 bool controller_probe_take(struct controller_probe *q, struct program_answer *answer,

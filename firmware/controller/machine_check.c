@@ -6,6 +6,7 @@
 #include "classic/interpolator.h"
 #include "classic/limiter.h"
 #include "drive/drives.h"
+#include "hal/outputs.h"
 
 #define DEGREE (MATHS_PI / 180.0)
 #define PER_US 1e-6
@@ -128,6 +129,8 @@ static bool is_wired_well(const struct io_wiring *wiring)
 
     for (unsigned i = 0; i < IO_BITS_MAX; i++)
         good = good && io_is_output(wiring->output[i]) && io_is_input(wiring->input[i]);
+    for (unsigned i = 0; i < IO_ANALOGUE_MAX; i++)
+        good = good && io_get_analogue(wiring, i) <= OUTPUTS_ANALOGUE_MAX;
     return good;
 }
 

@@ -118,6 +118,7 @@ enum drives_given_up {
     DRIVES_NO_PERIOD,       /* it does not know the time between targets (60C2) */
     DRIVES_NO_STOP_OPTION,  /* it stops as it likes (6007, 605A, 605E) */
     DRIVES_NO_HOMING_SPEED, /* it homes as fast as it likes (6099, 609A) */
+    DRIVES_NO_TOUCH_PROBE,  /* it latches no position (60B8): a probing move has that of a cycle */
     DRIVES_NO_SCALING, /* it does not tell its scaling (6092, 608F): increments_per_mm is believed */
     DRIVES_GIVEN_UP_COUNT
 };
@@ -153,6 +154,19 @@ static inline void drives_get_actual(const struct drives *d, struct point *actua
 {
     *actual = d->actual;
 }
+/*
+ * The touch probes of the drives, which latch where they are when the probe touches, or (falls) ceases to. In
+ * DRIVES_ENABLED, while the axes rest: arm before the probing move, read after it, each until it is no longer busy.
+ * drives_get_latched: axes whose drives have latched take their place in *at, mm or rad; the others stay.
+ */
+bool drives_have_probe(const struct drives *d);
+void drives_arm_probe(struct drives *d, bool falls);
+void drives_read_probe(struct drives *d);
+bool drives_probe_is_busy(const struct drives *d);
+/* They have been armed: in some cycles there was a request by SDO. */
+bool drives_have_probed(const struct drives *d);
+void drives_get_latched(const struct drives *d, struct point *at);
+
 /* All axes that are to be homed have been: what the next configuration may say. */
 bool drives_are_homed(const struct drives *d);
 

@@ -2,12 +2,13 @@
  * The I/O nodes beside the drives (CiA 401): outputs to valves and contactors, inputs back, of which some stop the axes.
  *
  * A node is used as CiA 401 says it is at power-on: its first RPDO has the outputs (6200), its first TPDO the inputs
- * (6000), eight a byte. That is checked and not changed; the inputs are asked for in every SYNC, so that one lost frame
+ * (6000), eight a byte, and its second RPDO analogue outputs (6411). That is checked and not changed; the inputs are asked for in every SYNC, so that one lost frame
  * costs a cycle, and a node that sends nothing is known within answer_timeout_cycles. A node that cannot do so sends them
  * when they change.
  *
  *     BOOT, with the drives; DRIVES_IO: asked and told, one node after the other; started, one a cycle; inputs have come
  */
+#include "base/maths.h"
 #include "canopen/emcy.h"
 #include "canopen/little_endian.h"
 #include "canopen/objects.h"
@@ -17,7 +18,9 @@
 #include <string.h>
 
 #define BITS_PER_BYTE 8
+#define BITS_PER_WORD 16
 #define IO_KINDS      (IO_INVERTED - 1)
+#define PERCENT       100.0
 
 /* Index of node k in axis_of_node. */
 #define INDEX_OF_IO(k) (AXIS_COUNT + 1U + (k))
@@ -129,6 +132,8 @@ enum step {
     STEP_WATCH,
     STEP_OUTPUT_BYTES,
     STEP_OUTPUTS,
+    STEP_ANALOGUE_COUNT,
+    STEP_ANALOGUES,
     STEP_INPUT_BYTES,
     STEP_INPUTS,
     STEP_BY_SYNC,
@@ -140,7 +145,8 @@ static const struct {
 } steps[STEP_COUNT] = {
     {SDO_OBJECT(OBJECT_DEVICE_TYPE, 0), 0},        {SDO_OBJECT(OBJECT_PRODUCER_HEARTBEAT, 0), 2},
     {SDO_OBJECT(OBJECT_CONSUMER_HEARTBEAT, 1), 4}, {SDO_OBJECT(OBJECT_RPDO_MAPPING, 0), 0},
-    {SDO_OBJECT(OBJECT_RPDO_MAPPING, 1), 0},       {SDO_OBJECT(OBJECT_TPDO_MAPPING, 0), 0},
+    {SDO_OBJECT(OBJECT_RPDO_MAPPING, 1), 0},       {SDO_OBJECT(OBJECT_RPDO_MAPPING + 1, 0), 0},
+    {SDO_OBJECT(OBJECT_RPDO_MAPPING + 1, 1), 0},   {SDO_OBJECT(OBJECT_TPDO_MAPPING, 0), 0},
     {SDO_OBJECT(OBJECT_TPDO_MAPPING, 1), 0},       {SDO_OBJECT(OBJECT_TPDO, OBJECT_PDO_TYPE), 1},
 };
 
@@ -162,6 +168,8 @@ static bool is_wanted(const struct io_wiring *wiring, unsigned step)
 {
     if (step == STEP_OUTPUT_BYTES || step == STEP_OUTPUTS)
         return bytes_of(wiring->output) > 0;
+    if (step == STEP_ANALOGUE_COUNT || step == STEP_ANALOGUES)
+        return io_wired_analogues(wiring) > 0;
     return step < STEP_INPUT_BYTES || bytes_of(wiring->input) > 0;
 }
 
@@ -213,6 +221,13 @@ static void take_value(struct drives *d, unsigned i, uint32_t value)
         break;
     case STEP_OUTPUTS:
         require(d, i, value == PDO_MAPPED(OBJECT_IO_OUTPUTS, 1, BITS_PER_BYTE), value);
+        break;
+    case STEP_ANALOGUE_COUNT:
+        io->analogues = (uint8_t)value;
+        require(d, i, value >= io_wired_analogues(wiring) && value <= IO_ANALOGUE_MAX, value);
+        break;
+    case STEP_ANALOGUES:
+        require(d, i, value == PDO_MAPPED(OBJECT_IO_ANALOGUE_OUTPUTS, 1, BITS_PER_WORD), value);
         break;
     case STEP_INPUT_BYTES:
         io->input_bytes = (uint8_t)value;
@@ -452,6 +467,26 @@ static void send_levels(struct drives *d, unsigned i, const struct can_port *por
         d->io[i].sent = (uint16_t)levels;
 }
 
+/* Per cent of the whole range. */
+static int16_t analogue_of(const struct outputs *outputs, unsigned wired)
+{
+    const double percent = wired > 0 ? outputs->analogue[wired - 1] : 0;
+    return (int16_t)maths_round(maths_clamp(percent, -PERCENT, PERCENT) * (INT16_MAX / PERCENT));
+}
+
+/* In every cycle: a controlled laser follows the path as closely as that. */
+static void send_analogues(const struct drives *d, unsigned i, const struct can_port *port,
+                           const struct outputs *outputs)
+{
+    const unsigned count = d->io[i].analogues;
+    struct can_frame frame = {.id = (uint16_t)(PDO_RPDO2_FUNCTION + d->wiring[i].node),
+                              .length = (uint8_t)(2 * count)};
+    for (unsigned k = 0; k < count; k++)
+        little_endian_write16(frame.data + (size_t)2 * k,
+                              (uint16_t)analogue_of(outputs, io_get_analogue(&d->wiring[i], k)));
+    (void)port->send(port->context, &frame); /* a refused one is followed by the next */
+}
+
 /* When they change, and all again as often as drives tell their errors: a frame may get lost. */
 void drives_send_outputs(struct drives *d, const struct can_port *port,
                          const struct outputs *outputs)
@@ -461,20 +496,28 @@ void drives_send_outputs(struct drives *d, const struct can_port *port,
         const unsigned levels = levels_of(&d->wiring[i], outputs);
         if (d->io[i].started && d->io[i].output_bytes > 0 && (is_due || levels != d->io[i].sent))
             send_levels(d, i, port, levels);
+        if (d->io[i].started && d->io[i].analogues > 0)
+            send_analogues(d, i, port, outputs);
     }
     if (is_due)
         d->io_cycles = 0;
 }
 
-/* Inputs of every node, and the longest outputs, since they do not change in every cycle. */
+/* Inputs and analogue outputs of every node, and the longest outputs, since they do not change in every cycle. */
 struct io_load {
-    uint32_t input_bits, output_bits;
+    uint32_t cyclic_bits, output_bits;
 };
 
-static void add_load(struct io_load *load, unsigned input_bytes, unsigned output_bytes)
+static uint32_t bits_of(unsigned bytes)
 {
-    const uint32_t output_bits = output_bytes > 0 ? drives_frame_bits(output_bytes) : 0;
-    load->input_bits += input_bytes > 0 ? drives_frame_bits(input_bytes) : 0;
+    return bytes > 0 ? drives_frame_bits(bytes) : 0;
+}
+
+static void add_load(struct io_load *load, unsigned input_bytes, unsigned output_bytes,
+                     unsigned analogues)
+{
+    const uint32_t output_bits = bits_of(output_bytes);
+    load->cyclic_bits += bits_of(input_bytes) + bits_of(2 * analogues);
     load->output_bits = output_bits > load->output_bits ? output_bits : load->output_bits;
 }
 
@@ -482,14 +525,15 @@ uint32_t drives_io_bits(const struct drives *d)
 {
     struct io_load load = {0};
     for (unsigned i = 0; i < d->io_count; i++)
-        add_load(&load, d->io[i].input_bytes, d->io[i].output_bytes);
-    return load.input_bits + load.output_bits;
+        add_load(&load, d->io[i].input_bytes, d->io[i].output_bytes, d->io[i].analogues);
+    return load.cyclic_bits + load.output_bits;
 }
 
 uint32_t drives_io_wired_bits(const struct io_wiring *wiring, unsigned count)
 {
     struct io_load load = {0};
     for (unsigned i = 0; i < count; i++)
-        add_load(&load, bytes_of(wiring[i].input), bytes_of(wiring[i].output));
-    return load.input_bits + load.output_bits;
+        add_load(&load, bytes_of(wiring[i].input), bytes_of(wiring[i].output),
+                 io_wired_analogues(&wiring[i]));
+    return load.cyclic_bits + load.output_bits;
 }

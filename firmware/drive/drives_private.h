@@ -169,6 +169,9 @@ static inline bool drives_is_linked(const struct drives *d, const struct drives_
            drives_heartless_cycles(d, axis) <= d->heartless_most_cycles;
 }
 
+/* Touch probes: a cycle in which they are armed or read. */
+void drives_probe_next(struct drives *d);
+
 /* Supervision, once a cycle. */
 void drives_check_operation(struct drives *d);
 /* The same as far as it concerns drives that hold a position while others are homed. True: no fault. */

@@ -133,6 +133,10 @@ void drives_receive(struct drives *d, const struct can_port *port)
         drives_start(d);
         break;
     case DRIVES_ENABLED:
+        if (drives_probe_is_busy(d))
+            drives_probe_next(d);
+        drives_check_operation(d);
+        break;
     case DRIVES_STOPPING:
         drives_check_operation(d);
         break;

@@ -216,6 +216,8 @@ static void send_operation(struct drives *d, const struct can_port *port,
         drives_watch_stop(d);
     if (d->state == DRIVES_ENABLED || d->state == DRIVES_STOPPING)
         send_targets(d, port);
+    if (drives_probe_is_busy(d))
+        send_request(d, port);
 }
 
 /*

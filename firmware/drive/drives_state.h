@@ -67,6 +67,7 @@ struct drives_axis {
     bool booted;       /* its boot-up message has come */
     bool started;      /* NMT start has been sent */
     bool heard;        /* a TPDO1 has come since it was started */
+    bool is_latched;   /* its touch probe has; where stands in struct drives.read */
     uint32_t reported; /* cycle of the last TPDO1 */
     uint32_t beaten;   /* and of the last heartbeat */
     uint16_t statusword;
@@ -111,6 +112,7 @@ struct drives_io {
     uint16_t sent;       /* levels of its outputs on the wire */
     uint8_t input_bytes; /* of its TPDO1; 0: none of them is wired */
     uint8_t output_bytes;
+    uint8_t analogues; /* analogue outputs of its RPDO2; 0: none is wired */
     bool reset_pending;
     bool booted;
     bool started;
@@ -161,9 +163,11 @@ struct drives {
     bool is_stale;      /* the request under way is of a configuration that has been begun again */
     bool is_telling;    /* a controlword or a mode is being written */
     bool homed;         /* no axis is left to be homed */
+    uint8_t probing;    /* bits, drives_probe.c */
     uint8_t home_order; /* axes of this order are being homed; 0: not yet */
-    uint32_t
-        read[6]; /* objects of the drive that is being configured: its period, or its scaling */
+    uint32_t read
+        [AXIS_COUNT]; /* objects of the drive that is being configured: its period, or its scaling;
+                             in operation what each drive has latched */
     struct drives_mapping mapping;
     struct sdo_client sdo;
 

@@ -28,11 +28,31 @@ enum io_bit {
 /* Added to one of these: high on the wire is low here. */
 #define IO_INVERTED 0x80U
 
+/* Analogue outputs of a node that can be wired: the first of its object 6411. */
+#define IO_ANALOGUE_MAX 4
+
 /* Bytes alone: it is stored as it is. */
 struct io_wiring {
     uint8_t node; /* CANopen node id, 1 ... 127; 0: there is no such node */
     uint8_t output[IO_BITS_MAX], input[IO_BITS_MAX]; /* enum io_bit, of bit 0, 1, ... */
+    uint8_t analogue[IO_ANALOGUE_MAX / 2];           /* four bits of each, io_get_analogue */
 };
+
+/* Which analogue output of the program it is: 0: none, 1 ... 4: E0 ... E3 of M67 and M68. */
+static inline unsigned io_get_analogue(const struct io_wiring *wiring, unsigned channel)
+{
+    const unsigned pair = wiring->analogue[channel / 2];
+    return pair >> 4 * (channel % 2) & 0xFU;
+}
+
+/* From the first to the last that is wired: 0 ... IO_ANALOGUE_MAX. */
+static inline unsigned io_wired_analogues(const struct io_wiring *wiring)
+{
+    unsigned count = IO_ANALOGUE_MAX;
+    while (count > 0 && io_get_analogue(wiring, count - 1) == 0)
+        count--;
+    return count;
+}
 
 /* Bits from 0 to the last that is wired: 0 ... IO_BITS_MAX. */
 static inline unsigned io_wired_bits(const uint8_t bit[IO_BITS_MAX])

@@ -27,24 +27,32 @@ const struct object_row *dictionary_find(const struct dictionary *dictionary, ui
     return &row[low];
 }
 
-static bool is_of(const struct object_row *row, enum dictionary_part part)
+bool dictionary_is_memory(const struct object_row *row)
 {
-    if (part == DICTIONARY_NOT_OF_MACHINE)
-        return !(row->flags & OBJECT_BY_MACHINE);
-    return part == DICTIONARY_ALL || row->field >= offsetof(struct drive_objects, extra);
+    return !(row->flags & OBJECT_FIXED) && row->field >= offsetof(struct drive_objects, extra);
 }
 
 void dictionary_set_initial(const struct dictionary *dictionary, enum dictionary_part part,
-                            struct drive_objects *objects, uint8_t node, uint16_t first,
-                            uint16_t last)
+                            struct drive_objects *objects, uint8_t node)
 {
     for (unsigned i = 0; i < dictionary->count; i++) {
         const struct object_row *row = &dictionary->row[i];
-        if (object_type_bytes((enum object_type)row->type) == 0 || row->index < first ||
-            row->index > last || !is_of(row, part))
+        bool is_of_machine = row->flags & OBJECT_BY_MACHINE;
+        if (object_type_bytes((enum object_type)row->type) == 0 ||
+            (is_of_machine && part == DICTIONARY_NOT_OF_MACHINE))
             continue;
         uint32_t added = row->flags & OBJECT_NODE_ID ? node : 0;
         object_write(row, objects, (uint32_t)row->initial + added);
+    }
+}
+
+void dictionary_copy_memory(const struct dictionary *dictionary, struct drive_objects *to,
+                            const struct drive_objects *from, uint16_t last)
+{
+    for (unsigned i = 0; i < dictionary->count; i++) {
+        const struct object_row *row = &dictionary->row[i];
+        if (row->index <= last && dictionary_is_memory(row))
+            object_write(row, to, object_read(row, from));
     }
 }
 

@@ -22,7 +22,8 @@ struct dictionary {
 extern const struct dictionary dictionary_own;
 /* Of an I/O node (CiA 401) with so many bytes of inputs, and as many of outputs. */
 extern const struct dictionary dictionary_io;
-#define DICTIONARY_IO_BYTES 2
+#define DICTIONARY_IO_BYTES     2
+#define DICTIONARY_IO_ANALOGUES 4 /* outputs of 16 bits */
 
 #define DICTIONARY_PROBLEM_MAX 120
 
@@ -46,14 +47,16 @@ void dictionary_free(struct dictionary *dictionary);
 const struct object_row *dictionary_find(const struct dictionary *dictionary, uint16_t index,
                                          uint8_t sub, bool *has_index);
 
-enum dictionary_part { DICTIONARY_ALL, DICTIONARY_NOT_OF_MACHINE, DICTIONARY_MEMORY };
+enum dictionary_part { DICTIONARY_ALL, DICTIONARY_NOT_OF_MACHINE };
 
-/*
- * Default values of the objects from one index to another, with the node id where it belongs; of all, without those that
- * the machine decides, or only of those that are nothing but memory.
- */
+/* Default values of the objects, with the node id where it belongs; of all, or without those that the machine decides. */
 void dictionary_set_initial(const struct dictionary *dictionary, enum dictionary_part part,
-                            struct drive_objects *objects, uint8_t node, uint16_t first,
-                            uint16_t last);
+                            struct drive_objects *objects, uint8_t node);
+
+/* The value is nothing but memory: takt's own drive does not have the object. */
+bool dictionary_is_memory(const struct object_row *row);
+/* Copies the values of such objects up to this index. */
+void dictionary_copy_memory(const struct dictionary *dictionary, struct drive_objects *to,
+                            const struct drive_objects *from, uint16_t last);
 
 #endif

@@ -21,12 +21,20 @@ static const char *mode_name(uint32_t mode)
     switch (mode) {
     case CIA402_MODE_PROFILE_POSITION:
         return "profile position";
+    case CIA402_MODE_PROFILE_VELOCITY:
+        return "profile velocity";
+    case CIA402_MODE_PROFILE_TORQUE:
+        return "profile torque";
     case CIA402_MODE_HOMING:
         return "homing";
     case CIA402_MODE_INTERPOLATED_POSITION:
         return "interpolated position";
     case CIA402_MODE_CYCLIC_SYNC_POSITION:
         return "cyclic synchronous position";
+    case CIA402_MODE_CYCLIC_SYNC_VELOCITY:
+        return "cyclic synchronous velocity";
+    case CIA402_MODE_CYCLIC_SYNC_TORQUE:
+        return "cyclic synchronous torque";
     default:
         return "none";
     }
@@ -92,6 +100,14 @@ static void write_what(FILE *stream, const struct drive_event *event)
         break;
     case DRIVE_EVENT_HOMING:
         write_homing(stream, event);
+        break;
+    case DRIVE_EVENT_PROBE:
+        (void)fprintf(stream, "touch probe %u at %ld increments\n", (unsigned)event->first,
+                      (long)(int32_t)event->second);
+        break;
+    case DRIVE_EVENT_TIME:
+        (void)fprintf(stream, "TIME %u ms of day %u\n", (unsigned)event->first,
+                      (unsigned)event->second);
         break;
     case DRIVE_EVENT_FAULT:
         write_fault(stream, event);

@@ -35,6 +35,8 @@ struct drive_pdo_mapping {
 struct drive_communication {
     uint32_t sync_cob_id;                         /* 1005 */
     uint32_t sync_period_us;                      /* 1006 */
+    uint32_t sync_window_us;                      /* 1007: targets that come later are none */
+    uint32_t time_cob_id;                         /* 1012; bit 31: it is listened to */
     uint32_t emcy_cob_id;                         /* 1014 */
     uint16_t emcy_inhibit_100us;                  /* 1015 */
     uint32_t consumer_heartbeat[DRIVE_CONSUMERS]; /* 1016: node << 16 | ms */
@@ -55,9 +57,13 @@ struct drive_settings {
     uint32_t max_profile_velocity;        /* 607F */
     uint32_t max_motor_speed_rpm;         /* 6080 */
     uint32_t profile_velocity;            /* 6081 */
+    uint32_t end_velocity;                /* 6082: at a target behind which another one waits */
     uint32_t profile_acceleration;        /* 6083 */
     uint32_t profile_deceleration;        /* 6084 */
     uint32_t quick_stop_deceleration;     /* 6085 */
+    uint32_t torque_slope;                /* 6087: 0.1 % of the rated torque in a second */
+    uint32_t max_acceleration;            /* 60C5 */
+    uint32_t max_deceleration;            /* 60C6 */
     uint32_t gear_motor, gear_shaft;      /* 6091: turns of the motor are so many of the shaft */
     uint32_t feed_increments, feed_shaft; /* 6092: increments in so many turns of the shaft */
     uint32_t homing_velocity[2];          /* 6099: towards the switch, away from it */
@@ -72,36 +78,55 @@ struct drive_settings {
     int16_t halt_option;                  /* 605D */
     int16_t fault_reaction_option;        /* 605E */
     int16_t motion_profile_type;          /* 6086 */
+    int16_t torque_profile_type;          /* 6088 */
+    uint16_t max_torque;                  /* 6072: 0.1 % of the rated torque */
+    uint16_t velocity_window;             /* 606D */
+    uint16_t velocity_window_ms;          /* 606E */
+    uint16_t velocity_threshold;          /* 606F: slower than this it stands */
+    uint8_t polarity;                     /* 607E: bit 7 position, 6 velocity, 5 torque */
     int16_t interpolation_submode;        /* 60C0 */
     uint8_t interpolation_period;         /* 60C2:1 */
     int8_t interpolation_index;           /* 60C2:2: the period is this power of ten of seconds */
     int8_t homing_method;                 /* 6098 */
-    uint8_t buffer_organisation;          /* 60C4:3 */
-    uint16_t buffer_position;             /* 60C4:4 */
+    uint16_t
+        homing_torque; /* 2003: 0.1 % of the rated one; a motor that stands with it is at a hard stop */
+    uint8_t buffer_organisation; /* 60C4:3 */
+    uint16_t buffer_position;    /* 60C4:4 */
 };
 
 /* What changes by itself or from cycle to cycle; not stored. */
 struct drive_process {
-    uint16_t controlword;                /* 6040 */
-    uint16_t statusword;                 /* 6041 */
-    int32_t target_position;             /* 607A */
-    int32_t actual_position;             /* 6064 */
-    uint16_t error_code;                 /* 603F */
-    int8_t mode;                         /* 6060 */
-    int8_t mode_display;                 /* 6061 */
-    int32_t following_error;             /* 60F4 */
-    int32_t demand_position;             /* 6062 */
-    int32_t actual_internal;             /* 6063: counts of the encoder */
-    int32_t actual_velocity;             /* 606C */
-    int16_t actual_torque;               /* 6077: 0.1 % of the rated torque */
-    int16_t torque_offset;               /* 60B2 */
-    int32_t position_offset;             /* 60B0 */
-    int32_t velocity_offset;             /* 60B1 */
-    int32_t interpolation_target;        /* 60C1:1 */
-    uint32_t digital_inputs;             /* 60FD */
-    uint32_t digital_outputs;            /* 60FE:1 */
-    uint8_t error_register;              /* 1001 */
-    uint8_t history_count;               /* 1003:0 */
+    uint16_t controlword;         /* 6040 */
+    uint16_t statusword;          /* 6041 */
+    int32_t target_position;      /* 607A */
+    int32_t target_velocity;      /* 60FF */
+    int32_t demand_velocity;      /* 606B */
+    int16_t target_torque;        /* 6071 */
+    int16_t demand_torque;        /* 6074 */
+    int32_t actual_position;      /* 6064 */
+    uint16_t error_code;          /* 603F */
+    int8_t mode;                  /* 6060 */
+    int8_t mode_display;          /* 6061 */
+    int32_t following_error;      /* 60F4 */
+    int32_t demand_position;      /* 6062 */
+    int32_t actual_internal;      /* 6063: counts of the encoder */
+    int32_t actual_velocity;      /* 606C */
+    int16_t actual_torque;        /* 6077: 0.1 % of the rated torque */
+    int16_t torque_offset;        /* 60B2 */
+    int32_t position_offset;      /* 60B0 */
+    int32_t velocity_offset;      /* 60B1 */
+    int32_t interpolation_target; /* 60C1:1 */
+    uint32_t digital_inputs;      /* 60FD */
+    uint32_t digital_outputs;     /* 60FE:1 */
+    uint16_t probe_function;      /* 60B8 */
+    uint16_t probe_status;        /* 60B9 */
+    int32_t probe_latched[4];     /* 60BA ... 60BD: touch probe 1, rising and falling, then 2 */
+    uint8_t error_register;       /* 1001 */
+    uint32_t manufacturer_status; /* 1002 */
+    uint32_t high_resolution_us;  /* 1013 */
+    uint32_t time_ms;             /* 2002:1 */
+    uint16_t time_days;           /* 2002:2 */
+    uint8_t history_count;        /* 1003:0 */
     uint32_t history[DRIVE_HISTORY_MAX]; /* 1003, the newest first */
     uint32_t store, restore;             /* 1010:1, 1011:1: read as 1, "can be done by command" */
     uint8_t buffer_clear;                /* 60C4:6 */

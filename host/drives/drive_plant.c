@@ -41,6 +41,8 @@ void drive_plant_set_default(struct drive_plant_config *config)
         .absolute_encoder = 1,
         .limit_switch_min_mm = -1e6,
         .limit_switch_max_mm = 1e6,
+        .hard_stop_min_mm = -2e6,
+        .hard_stop_max_mm = 2e6,
         .following_error_window_mm = 2,
         .quick_stop_deceleration_mm_s2 = 2000,
     };
@@ -87,6 +89,11 @@ static const char *check_axis(const struct drive_plant_config *c)
               maths_is_finite(c->limit_switch_max_mm),
           limit_switch_max_mm);
     CHECK(maths_is_finite(c->home_switch_mm), home_switch_mm);
+    CHECK(is_not_negative(c->home_switch_length_mm), home_switch_length_mm);
+    CHECK(maths_is_finite(c->hard_stop_min_mm) && c->hard_stop_min_mm <= c->start_mm,
+          hard_stop_min_mm);
+    CHECK(maths_is_finite(c->hard_stop_max_mm) && c->hard_stop_max_mm >= c->start_mm,
+          hard_stop_max_mm);
     return NULL;
 }
 
@@ -155,6 +162,7 @@ void drive_plant_init(struct drive_plant *plant, const struct drive_plant_config
         travel_per_rad_mm * config->torque_max_nm / config->inertia_kg_m2;
     plant->mm_s2_per_rated = travel_per_rad_mm * config->torque_rated_nm / config->inertia_kg_m2;
     plant->rated_per_mm_s2 = 1 / plant->mm_s2_per_rated;
+    plant->torque_limit_mm_s2 = plant->acceleration_max_mm_s2;
     plant->temperature_per_s = 1 / config->temperature_time_s;
     plant->coulomb_mm_s2 = travel_per_rad_mm * config->coulomb_friction_nm / config->inertia_kg_m2;
     plant->friction_per_s = config->viscous_friction_nm_s_per_rad / config->inertia_kg_m2;
@@ -176,6 +184,12 @@ static double slowed(double velocity_mm_s, double by_mm_s)
     if (maths_abs(velocity_mm_s) <= by_mm_s)
         return 0;
     return velocity_mm_s > 0 ? velocity_mm_s - by_mm_s : velocity_mm_s + by_mm_s;
+}
+
+double drive_plant_torque_limit_mm_s2(const struct drive_plant *plant)
+{
+    return maths_min(plant->acceleration_max_mm_s2 * plant->damage.torque_ratio,
+                     plant->torque_limit_mm_s2);
 }
 
 /*
@@ -201,10 +215,11 @@ static struct motion motion_of(const struct drive_plant *plant)
 /* What does not change within a cycle. */
 struct cycle {
     double step_s, per_step_s;
-    double forward_mm_s;  /* velocity that is fed forward */
-    double forward_mm_s2; /* the same for acceleration */
-    double limit_mm_s2;   /* acceleration by all the torque there is */
-    double coulomb_mm_s;  /* velocity that dry friction takes in a step */
+    double forward_mm_s;   /* velocity that is fed forward */
+    double forward_mm_s2;  /* the same for acceleration */
+    double limit_mm_s2;    /* acceleration by all the torque there is */
+    double coulomb_mm_s;   /* velocity that dry friction takes in a step */
+    double min_mm, max_mm; /* hard stops */
     bool is_jammed;
 };
 
@@ -222,10 +237,19 @@ static struct cycle cycle_of(struct drive_plant *plant, uint32_t cycle_ns)
     return (struct cycle){
         .step_s = plant->step_s,
         .per_step_s = plant->per_step_s,
-        .limit_mm_s2 = plant->acceleration_max_mm_s2 * plant->damage.torque_ratio,
+        .limit_mm_s2 = drive_plant_torque_limit_mm_s2(plant),
         .coulomb_mm_s = plant->coulomb_mm_s2 * plant->step_s,
+        .min_mm = plant->config.hard_stop_min_mm,
+        .max_mm = plant->config.hard_stop_max_mm,
         .is_jammed = plant->damage.is_jammed,
     };
+}
+
+/* The axis is there at once, and stands. */
+static void hit_stop(const struct cycle *c, struct motion *m)
+{
+    m->position_mm = maths_clamp(m->position_mm, c->min_mm, c->max_mm);
+    m->velocity_mm_s = 0;
 }
 
 /*
@@ -245,6 +269,8 @@ static inline void move(const struct drive_plant *plant, const struct cycle *c, 
     m->velocity_mm_s = velocity_mm_s;
     m->position_mm += velocity_mm_s * c->step_s;
     m->acceleration_mm_s2 = acceleration_mm_s2;
+    if (m->position_mm < c->min_mm || m->position_mm > c->max_mm)
+        hit_stop(c, m);
 }
 
 /*
@@ -260,6 +286,14 @@ static inline double control_velocity(const struct drive_plant *plant, const str
     return maths_clamp(wanted_mm_s2, -c->limit_mm_s2, c->limit_mm_s2);
 }
 
+/* What the encoder says after a step. */
+static inline void look(const struct drive_plant *plant, const struct cycle *c, struct motion *m)
+{
+    double measured_mm = measure(plant, m->position_mm);
+    m->measured_velocity_mm_s = (measured_mm - m->measured_mm) * c->per_step_s;
+    m->measured_mm = measured_mm;
+}
+
 /*
  * A step of the loops: position loop  v = Kv (told - measured) + forward,  velocity loop,
  * mechanics, encoder.
@@ -271,9 +305,7 @@ static inline void step(const struct drive_plant *plant, const struct cycle *c, 
     double wanted_mm_s = plant->config.position_gain_per_s * error_mm + c->forward_mm_s;
     double error_mm_s = wanted_mm_s - m->measured_velocity_mm_s;
     move(plant, c, m, control_velocity(plant, c, m, error_mm_s));
-    double measured_mm = measure(plant, m->position_mm);
-    m->measured_velocity_mm_s = (measured_mm - m->measured_mm) * c->per_step_s;
-    m->measured_mm = measured_mm;
+    look(plant, c, m);
 }
 
 /*
@@ -314,6 +346,41 @@ void drive_plant_follow(struct drive_plant *plant, double command_mm, uint32_t c
     plant->command_mm = command_mm;
     plant->command_velocity_mm_s = velocity_mm_s;
     end_cycle(plant, &motion);
+}
+
+/* Where the motor is at the end of a cycle. */
+static void stay_with_motor(struct drive_plant *plant, double velocity_mm_s)
+{
+    plant->command_mm = plant->measured_mm;
+    plant->command_velocity_mm_s = velocity_mm_s;
+}
+
+void drive_plant_turn(struct drive_plant *plant, double velocity_mm_s, uint32_t cycle_ns)
+{
+    struct cycle cycle = cycle_of(plant, cycle_ns);
+    struct motion motion = motion_of(plant);
+    double acceleration_mm_s2 = (velocity_mm_s - plant->command_velocity_mm_s) * plant->per_cycle_s;
+    cycle.forward_mm_s = velocity_mm_s + plant->velocity_offset_mm_s;
+    cycle.forward_mm_s2 =
+        plant->config.torque_feed_forward_ratio * acceleration_mm_s2 + plant->torque_offset_mm_s2;
+    for (uint32_t i = 0; i < plant->steps; i++)
+        step(plant, &cycle, &motion, motion.measured_mm);
+    end_cycle(plant, &motion);
+    stay_with_motor(plant, velocity_mm_s);
+}
+
+void drive_plant_push(struct drive_plant *plant, double acceleration_mm_s2, uint32_t cycle_ns)
+{
+    struct cycle cycle = cycle_of(plant, cycle_ns);
+    struct motion motion = motion_of(plant);
+    double limited_mm_s2 = maths_clamp(acceleration_mm_s2, -cycle.limit_mm_s2, cycle.limit_mm_s2);
+    for (uint32_t i = 0; i < plant->steps; i++) {
+        move(plant, &cycle, &motion, limited_mm_s2);
+        look(plant, &cycle, &motion);
+    }
+    motion.integral_mm_s2 = 0;
+    end_cycle(plant, &motion);
+    stay_with_motor(plant, plant->measured_velocity_mm_s);
 }
 
 void drive_plant_begin_brake(struct drive_plant *plant, double deceleration_mm_s2)

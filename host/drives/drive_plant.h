@@ -46,6 +46,10 @@ struct drive_plant_config {
     double limit_switch_min_mm; /* switches on the axis: active at or below, */
     double limit_switch_max_mm; /* at or above */
     double home_switch_mm;      /* active at or above */
+    double
+        home_switch_length_mm; /* up to so much above; 0: without an end. If the motor turns the other way: below */
+    double hard_stop_min_mm; /* the motor comes no farther */
+    double hard_stop_max_mm;
 
     double following_error_window_mm;     /* object 6065: the drive faults beyond; 0: not watched */
     uint32_t following_error_timeout_ms;  /* object 6066: for longer than this */
@@ -69,9 +73,10 @@ struct drive_plant {
     double integral_gain_per_s2;
     double encoder_step_mm; /* 0: no quantisation */
     double encoder_steps_per_mm;
-    double standstill_mm_s; /* slower than this the motor stands */
-    double mm_s2_per_rated; /* acceleration by the rated torque */
-    double rated_per_mm_s2; /* its inverse */
+    double standstill_mm_s;    /* slower than this the motor stands */
+    double mm_s2_per_rated;    /* acceleration by the rated torque */
+    double rated_per_mm_s2;    /* its inverse */
+    double torque_limit_mm_s2; /* acceleration by the torque it is allowed */
     double temperature_per_s;
 
     /* How a cycle of cycle_ns is divided; made anew when another length of cycle comes. */
@@ -124,6 +129,15 @@ void drive_plant_init(struct drive_plant *plant, const struct drive_plant_config
  * velocity.
  */
 void drive_plant_follow(struct drive_plant *plant, double command_mm, uint32_t cycle_ns);
+
+/* One cycle of the velocity loop alone: the command stays with the motor. */
+void drive_plant_turn(struct drive_plant *plant, double velocity_mm_s, uint32_t cycle_ns);
+
+/* One cycle with the torque for this acceleration, as far as there is so much; the command stays with the motor. */
+void drive_plant_push(struct drive_plant *plant, double acceleration_mm_s2, uint32_t cycle_ns);
+
+/* Acceleration by all the torque that it has, has left, and is allowed. */
+double drive_plant_torque_limit_mm_s2(const struct drive_plant *plant);
 
 /*
  * Before the first drive_plant_brake: from here the motor is to stop by deceleration_mm_s2 (> 0),

@@ -58,7 +58,7 @@ static void write_device_info(FILE *stream, const struct dictionary *dictionary)
     write_pair(stream, "GroupMessaging", "0");
     write_pair(stream, "NrOfRXPDO", "%u", DRIVE_PDO_COUNT);
     write_pair(stream, "NrOfTXPDO", "%u", DRIVE_PDO_COUNT);
-    write_pair(stream, "LSS_Supported", "0");
+    write_pair(stream, "LSS_Supported", "1");
     (void)fputs(NEWLINE, stream);
 }
 
@@ -116,7 +116,9 @@ static const char *access_text(const struct object_row *row)
     case OBJECT_RW:
         break;
     }
-    return row->flags & OBJECT_TO_RPDO ? "rww" : "rw";
+    if (row->flags & OBJECT_TO_RPDO && !(row->flags & OBJECT_TO_TPDO))
+        return "rww"; /* by RPDO alone */
+    return "rw";
 }
 
 static bool is_signed(const struct object_row *row)
@@ -132,11 +134,11 @@ static void write_number(FILE *stream, const struct object_row *row, const char 
         write_pair(stream, key, "0x%llX", (unsigned long long)value);
 }
 
-/* What is measured has no default. */
+/* What goes on by itself, so that it can be sent in a TPDO, has no default. */
 static void write_default(FILE *stream, const struct object_row *row,
                           const struct drive_objects *objects, uint8_t node)
 {
-    bool is_measured = row->access == OBJECT_RO && row->flags & OBJECT_TO_TPDO;
+    bool is_measured = row->flags & OBJECT_TO_TPDO;
     if (row->type == OBJECT_STRING && row->flags & OBJECT_FIXED)
         write_pair(stream, "DefaultValue", "%s", row->title);
     if (object_type_bytes((enum object_type)row->type) == 0 || is_measured ||
@@ -205,8 +207,8 @@ void eds_write(FILE *stream, const struct virtual_drive *drive, const char *name
 {
     const struct dictionary *dictionary = drive->dictionary;
     struct drive_objects objects = drive->objects;
-    objects.communication = drive->initial_communication;
-    objects.settings = drive->initial_settings;
+    objects.communication = drive->initial.communication;
+    objects.settings = drive->initial.settings;
     write_file_info(stream, name);
     write_device_info(stream, dictionary);
     write_dummies(stream, dictionary);

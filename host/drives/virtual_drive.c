@@ -11,8 +11,18 @@
 
 #define LAST_COMMUNICATION 0x1FFF
 
+/* Object 1012. */
+#define TIME_CONSUMED 0x80000000u
+#define COB_ID_MASK   0x7FFu
+
 /* SYNC counts as lost after this many of its periods (object 1006). */
 #define SYNC_LOST_PERIODS 3
+
+/* Without a node id there is nothing to be said but by LSS. */
+static bool is_dumb(const struct virtual_drive *drive, const struct can_frame *frame)
+{
+    return drive->lss.is_nameless && frame->id != LSS_ANSWER_COB_ID;
+}
 
 /*
  * A refused frame is lost, as in a node whose transmit buffers are full; the bus counts it. One that
@@ -22,7 +32,7 @@ bool virtual_drive_send(struct virtual_drive *drive, enum inject_mute kind,
                         const struct can_frame *frame)
 {
     unsigned held_back = drive->faults.mute & (1u << kind | 1u << INJECT_MUTE_ALL);
-    if (held_back || drive->faults.is_hung)
+    if (held_back || drive->faults.is_hung || is_dumb(drive, frame))
         return true;
     return drive->port.send(drive->port.context, frame);
 }
@@ -44,8 +54,15 @@ void virtual_drive_tell(const struct virtual_drive *drive, enum drive_event_kind
         drive->observer.on_event(drive->observer.context, &event);
 }
 
-static void accept(struct virtual_drive *drive, unsigned id)
+/* Of an object that says more about it in its upper bits. */
+static unsigned identifier_of(uint32_t cob_id)
 {
+    return cob_id & COB_ID_MASK;
+}
+
+static void accept(struct virtual_drive *drive, uint32_t cob_id)
+{
+    unsigned id = identifier_of(cob_id);
     drive->accepts[id >> 5] |= 1u << (id & 31);
 }
 
@@ -53,8 +70,11 @@ void virtual_drive_set_filter(struct virtual_drive *drive)
 {
     const struct drive_communication *c = &drive->objects.communication;
     memset(drive->accepts, 0, sizeof drive->accepts);
+    accept(drive, LSS_REQUEST_COB_ID);
     accept(drive, NMT_COMMAND_COB_ID);
     accept(drive, c->sync_cob_id);
+    if (c->time_cob_id & TIME_CONSUMED)
+        accept(drive, c->time_cob_id);
     accept(drive, SDO_REQUEST_FUNCTION + drive->config.node);
     for (unsigned i = 0; i < DRIVE_CONSUMERS; i++)
         if (c->consumer_heartbeat[i])
@@ -89,13 +109,14 @@ void virtual_drive_init(struct virtual_drive *drive, const struct virtual_drive_
     if (config->dictionary != NULL)
         drive->dictionary = config->dictionary;
     drive->nmt = NMT_BOOTED;
+    drive->lss.node = drive->lss.stored = config->is_nameless ? LSS_NO_NODE : config->node;
+    drive->lss.is_nameless = config->is_nameless;
     drive_plant_init(&drive->plant, &config->plant);
     sdo_server_init(&drive->sdo, config->node, &owner);
     virtual_drive_init_objects(drive);
     if (target && drive->dictionary == &dictionary_own)
         set_target_pdo(drive, target);
-    drive->initial_communication = drive->stored_communication = drive->objects.communication;
-    drive->initial_settings = drive->stored_settings = drive->objects.settings;
+    drive->initial = drive->stored = drive->objects;
     virtual_drive_derive(drive);
     drive->homing.is_homed = config->plant.absolute_encoder;
     virtual_drive_update_pdos(drive);
@@ -118,6 +139,11 @@ void virtual_drive_inject(struct virtual_drive *drive, const struct inject *scri
 {
     drive->faults.script = script;
     drive->faults.clock = clock;
+}
+
+void virtual_drive_keep(struct virtual_drive *drive, const struct drive_keeper *keeper)
+{
+    drive->keeper = *keeper;
 }
 
 void virtual_drive_look_soon(struct virtual_drive *drive)
@@ -179,6 +205,8 @@ void virtual_drive_boot(struct virtual_drive *drive)
     drive->boot_ns = 0;
     restart_communication(drive);
     send_heartbeat(drive, NMT_BOOTED);
+    if (drive->lss.is_nameless)
+        return; /* it stays as it has booted */
     virtual_drive_tell(drive, DRIVE_EVENT_BOOT, 0, 0);
     drive->nmt = NMT_PREOPERATIONAL;
 }
@@ -187,12 +215,9 @@ void virtual_drive_boot(struct virtual_drive *drive)
 static void reset(struct virtual_drive *drive, bool whole_node)
 {
     virtual_drive_lose_connection(drive);
-    drive->objects.communication = drive->stored_communication;
-    dictionary_set_initial(drive->dictionary, DICTIONARY_MEMORY, &drive->objects,
-                           drive->config.node, 0, whole_node ? UINT16_MAX : LAST_COMMUNICATION);
+    virtual_drive_apply_lss(drive, whole_node);
+    virtual_drive_restore(drive, whole_node ? UINT16_MAX : LAST_COMMUNICATION);
     if (whole_node) {
-        drive->objects.settings = drive->stored_settings;
-        virtual_drive_derive(drive);
         virtual_drive_clear_history(drive);
         virtual_drive_reset_profile(drive);
     }
@@ -215,11 +240,11 @@ static void take_nmt_command(struct virtual_drive *drive, const struct can_frame
     uint8_t node;
     if (!nmt_read_command(frame, &command, &node))
         return;
-    if (node != NMT_ALL_NODES && node != drive->config.node)
+    if (node != NMT_ALL_NODES && (node != drive->config.node || drive->lss.is_nameless))
         return;
     if (command == NMT_RESET_NODE || command == NMT_RESET_COMMUNICATION)
         reset(drive, command == NMT_RESET_NODE);
-    else
+    else if (!drive->lss.is_nameless)
         enter_nmt_state(drive, nmt_next_state(command));
 }
 
@@ -248,6 +273,7 @@ static void take_sync(struct virtual_drive *drive, const struct can_frame *frame
     uint64_t period_ns = (uint64_t)drive->objects.communication.sync_period_us * MICROSECOND_NS;
     if (frame->length > 1)
         return;
+    drive->sync_ns = drive->heard_ns;
     if (drive->communication_error == EMCY_SYNC)
         virtual_drive_set_communication_error(drive, EMCY_NONE);
     if (period_ns != 0) {
@@ -288,6 +314,41 @@ static void answer_request(struct virtual_drive *drive)
     r->due_ns = drive->now_ns + drive->config.sdo_us * (uint64_t)MICROSECOND_NS;
 }
 
+/* ---- Clocks ---- */
+
+static void take_time(struct virtual_drive *drive, const struct can_frame *frame)
+{
+    struct time_stamp time;
+    if (drive->nmt == NMT_STOPPED || !time_stamp_read(frame, &time))
+        return;
+    drive->time = time;
+    drive->time_ns = drive->now_ns;
+    virtual_drive_tell(drive, DRIVE_EVENT_TIME, time.ms, time.days);
+}
+
+struct time_stamp virtual_drive_time_of_day(const struct virtual_drive *drive)
+{
+    return time_stamp_add(drive->time, (drive->now_ns - drive->time_ns) / MILLISECOND_NS);
+}
+
+uint32_t virtual_drive_high_resolution_us(const struct virtual_drive *drive)
+{
+    return (uint32_t)(drive->now_ns / MICROSECOND_NS) + drive->clock_us;
+}
+
+void virtual_drive_set_high_resolution_us(struct virtual_drive *drive, uint32_t now_us)
+{
+    drive->clock_us = now_us - (uint32_t)(drive->now_ns / MICROSECOND_NS);
+}
+
+/* ---- Frames ---- */
+
+static bool is_time(const struct virtual_drive *drive, const struct can_frame *frame)
+{
+    uint32_t id = drive->objects.communication.time_cob_id;
+    return id & TIME_CONSUMED && frame->id == identifier_of(id);
+}
+
 static void take_other(struct virtual_drive *drive, const struct can_frame *frame)
 {
     if (frame->id == NMT_COMMAND_COB_ID)
@@ -307,13 +368,27 @@ void virtual_drive_on_frame(struct virtual_drive *drive, const struct can_frame 
     if (drive->faults.is_hung || drive->boot_ns != 0 ||
         frame->id > NODE_FUNCTION_MASK + NODE_ID_MASK)
         return;
-    if (frame->id == drive->objects.communication.sync_cob_id)
+    if (drive->lss.is_nameless && frame->id != LSS_REQUEST_COB_ID &&
+        frame->id != NMT_COMMAND_COB_ID)
+        return;
+    if (frame->id == identifier_of(drive->objects.communication.sync_cob_id))
         take_sync(drive, frame);
+    else if (frame->id == LSS_REQUEST_COB_ID)
+        virtual_drive_take_lss(drive, frame);
+    else if (is_time(drive, frame))
+        take_time(drive, frame);
     else if (node_function(frame->id) == SDO_REQUEST_FUNCTION || frame->id == NMT_COMMAND_COB_ID ||
              node_function(frame->id) == NMT_HEARTBEAT_FUNCTION)
         take_other(drive, frame);
     else if (drive->nmt == NMT_OPERATIONAL)
         virtual_drive_take_rpdo(drive, frame);
+}
+
+void virtual_drive_on_frame_at(struct virtual_drive *drive, const struct can_frame *frame,
+                               uint64_t time_ns)
+{
+    drive->heard_ns = time_ns;
+    virtual_drive_on_frame(drive, frame);
 }
 
 static uint64_t earlier(uint64_t a, uint64_t b)
@@ -372,6 +447,13 @@ static bool may_have_event(const struct virtual_drive *drive)
            drive->watched & (DRIVE_GROUP_STATUS | DRIVE_GROUP_INPUTS);
 }
 
+static void run_motor(struct virtual_drive *drive, uint32_t cycle_ns)
+{
+    virtual_drive_begin_probe(drive);
+    virtual_drive_move(drive, cycle_ns);
+    virtual_drive_run_probe(drive);
+}
+
 void virtual_drive_step(struct virtual_drive *drive, uint32_t cycle_ns)
 {
     if (drive->faults.script)
@@ -379,7 +461,7 @@ void virtual_drive_step(struct virtual_drive *drive, uint32_t cycle_ns)
     if (drive->config.is_io)
         virtual_drive_run_io(drive);
     else
-        virtual_drive_move(drive, cycle_ns);
+        run_motor(drive, cycle_ns);
     drive->now_ns += cycle_ns;
     if (may_have_event(drive))
         virtual_drive_note_events(drive);
@@ -417,5 +499,6 @@ uint32_t virtual_drive_get_watched_ms(const struct virtual_drive *drive)
 
 bool virtual_drive_is_sync(const struct virtual_drive *drive, const struct can_frame *frame)
 {
-    return frame->id == drive->objects.communication.sync_cob_id && frame->length <= 1;
+    return frame->id == identifier_of(drive->objects.communication.sync_cob_id) &&
+           frame->length <= 1;
 }

@@ -5,9 +5,13 @@
 #include "canopen/objects.h"
 #include "drives/virtual_drive_private.h"
 
+#include <string.h>
+
 /* In object_table.c: objects 6200 and 6000. */
 #define OUTPUTS (drive->objects.extra)
 #define INPUTS  (drive->objects.extra + DICTIONARY_IO_BYTES)
+/* Object 6411. */
+#define ANALOGUES (INPUTS + DICTIONARY_IO_BYTES)
 
 /* A TPDO that is sent when an input changes is also sent when the node becomes operational. */
 static void note_change(struct virtual_drive *drive)
@@ -25,7 +29,7 @@ static void note_change(struct virtual_drive *drive)
     virtual_drive_look_soon(drive);
 }
 
-/* Without a controller all outputs are low: CiA 401, objects 6206 and 6207 by default. */
+/* Without a controller all outputs are low, and 0: CiA 401, objects 6206, 6207, 6443 and 6444 by default. */
 void virtual_drive_run_io(struct virtual_drive *drive)
 {
     bool is_controlled = drive->nmt == NMT_OPERATIONAL && drive->communication_error == EMCY_NONE;
@@ -34,5 +38,7 @@ void virtual_drive_run_io(struct virtual_drive *drive)
             OUTPUTS[i] = 0;
         INPUTS[i] = (uint8_t)(OUTPUTS[i] | drive->config.closed >> 8 * i);
     }
+    if (!is_controlled)
+        memset(ANALOGUES, 0, 2 * DICTIONARY_IO_ANALOGUES);
     note_change(drive);
 }

@@ -30,11 +30,34 @@ double virtual_drive_actual_mm(const struct virtual_drive *drive)
     return drive->plant.measured_mm - drive->origin_mm;
 }
 
-double virtual_drive_profile_deceleration_mm_s2(const struct virtual_drive *drive)
+static double least_mm(const struct virtual_drive *drive, uint32_t a, uint32_t b)
 {
-    return drive->objects.settings.profile_deceleration / virtual_drive_scale(drive);
+    return (a < b ? a : b) / virtual_drive_scale(drive);
 }
 
+double virtual_drive_profile_acceleration_mm_s2(const struct virtual_drive *drive)
+{
+    const struct drive_settings *s = &drive->objects.settings;
+    return least_mm(drive, s->profile_acceleration, s->max_acceleration);
+}
+
+double virtual_drive_profile_deceleration_mm_s2(const struct virtual_drive *drive)
+{
+    const struct drive_settings *s = &drive->objects.settings;
+    return least_mm(drive, s->profile_deceleration, s->max_deceleration);
+}
+
+double virtual_drive_motor_velocity_max_mm_s(const struct virtual_drive *drive)
+{
+    return drive->objects.settings.max_motor_speed_rpm / SECONDS_PER_MIN *
+           drive->config.plant.travel_per_revolution_mm;
+}
+
+double virtual_drive_profile_velocity_max_mm_s(const struct virtual_drive *drive)
+{
+    return maths_min(drive->objects.settings.max_profile_velocity / virtual_drive_scale(drive),
+                     virtual_drive_motor_velocity_max_mm_s(drive));
+}
 /*
  * What the target of an earlier run was is forgotten: the drive stands, or slows down to stand,
  * until it gets a new one.
@@ -52,12 +75,14 @@ void virtual_drive_hold(struct virtual_drive *drive)
     drive->following_ns = 0;
     drive->plant.velocity_offset_mm_s = 0;
     drive->plant.torque_offset_mm_s2 = 0;
+    drive->torque_ratio = 0;
+    p->demand_torque = 0;
     drive->setpoints = (struct drive_setpoints){.active_inc = here_inc, .is_reached = true};
 }
 
 /* ---- Motion of the command ---- */
 
-static double approach(double value, double goal, double by)
+double virtual_drive_approach(double value, double goal, double by)
 {
     if (maths_abs(goal - value) <= by)
         return goal;
@@ -77,7 +102,8 @@ void virtual_drive_run_at(struct virtual_drive *drive, double velocity_mm_s,
                           double acceleration_mm_s2, uint32_t cycle_ns)
 {
     double by_mm_s = acceleration_mm_s2 * (cycle_ns * 1e-9);
-    move_command(drive, approach(drive->velocity_mm_s, velocity_mm_s, by_mm_s), cycle_ns);
+    move_command(drive, virtual_drive_approach(drive->velocity_mm_s, velocity_mm_s, by_mm_s),
+                 cycle_ns);
 }
 
 bool virtual_drive_slow(struct virtual_drive *drive, double deceleration_mm_s2, uint32_t cycle_ns)
@@ -88,18 +114,21 @@ bool virtual_drive_slow(struct virtual_drive *drive, double deceleration_mm_s2, 
 
 struct ramps {
     double velocity_mm_s, acceleration_mm_s2, deceleration_mm_s2;
+    double end_mm_s; /* velocity at the target */
 };
 
 /*
  * The highest velocity u' at the end of a cycle t from which the rest of the way s can still be
- * braked by d, when the cycle itself begins with u towards the target:
- *     s - (u + u') t / 2 >= u'^2 / (2 d)
- * so  u' = -d t / 2 + sqrt((d t / 2)^2 + d (2 s - u t))
+ * braked to e by d, when the cycle itself begins with u towards the target:
+ *     s - (u + u') t / 2 >= (u'^2 - e^2) / (2 d)
+ * so  u' = -d t / 2 + sqrt((d t / 2)^2 + d (2 s - u t) + e^2)
  */
-static double allowed_velocity(double way_mm, double u_mm_s, double d_mm_s2, double t_s)
+static double allowed_velocity(double way_mm, double u_mm_s, const struct ramps *ramps, double t_s)
 {
+    double d_mm_s2 = ramps->deceleration_mm_s2;
     double half = d_mm_s2 * t_s / 2;
-    double square = half * half + d_mm_s2 * (2 * way_mm - u_mm_s * t_s);
+    double square =
+        half * half + d_mm_s2 * (2 * way_mm - u_mm_s * t_s) + ramps->end_mm_s * ramps->end_mm_s;
     return square > half * half ? maths_sqrt(square) - half : 0;
 }
 
@@ -120,36 +149,41 @@ static void run_profile(struct virtual_drive *drive, double target_mm, const str
         drive_plant_follow(&drive->plant, target_mm, cycle_ns);
         return;
     }
-    double allowed_mm_s =
-        allowed_velocity(maths_abs(way_mm), u_mm_s, ramps->deceleration_mm_s2, t_s);
+    double allowed_mm_s = allowed_velocity(maths_abs(way_mm), u_mm_s, ramps, t_s);
     double wanted_mm_s = maths_min(ramps->velocity_mm_s, allowed_mm_s);
     double by_mm_s =
         wanted_mm_s > u_mm_s && u_mm_s >= 0 ? ramps->acceleration_mm_s2 * t_s : brake_mm_s;
-    move_command(drive, sign * approach(u_mm_s, wanted_mm_s, by_mm_s), cycle_ns);
+    move_command(drive, sign * virtual_drive_approach(u_mm_s, wanted_mm_s, by_mm_s), cycle_ns);
 }
 
 /* ---- Profile position ---- */
 
+/* Without a target behind it the end velocity is 0: nobody would stop the axis. */
 static struct ramps profile_ramps(const struct virtual_drive *drive)
 {
     const struct drive_settings *s = &drive->objects.settings;
     double per_mm = virtual_drive_scale(drive);
-    double motor_mm_s =
-        s->max_motor_speed_rpm / SECONDS_PER_MIN * drive->config.plant.travel_per_revolution_mm;
-    uint32_t velocity = s->profile_velocity < s->max_profile_velocity ? s->profile_velocity
-                                                                      : s->max_profile_velocity;
-    return (struct ramps){maths_min(velocity / per_mm, motor_mm_s),
-                          s->profile_acceleration / per_mm, s->profile_deceleration / per_mm};
+    double velocity_mm_s =
+        maths_min(s->profile_velocity / per_mm, virtual_drive_profile_velocity_max_mm_s(drive));
+    double end_mm_s = drive->setpoints.has_next ? s->end_velocity / per_mm : 0;
+    return (struct ramps){velocity_mm_s, virtual_drive_profile_acceleration_mm_s2(drive),
+                          virtual_drive_profile_deceleration_mm_s2(drive),
+                          maths_min(end_mm_s, velocity_mm_s)};
 }
 
-static int64_t limited(const struct virtual_drive *drive, int64_t position_inc)
+/* Object 607D; limits that leave no room are none. */
+static double limited(const struct virtual_drive *drive, double position_inc)
 {
     const int32_t *limit = drive->objects.settings.position_limit;
-    if (limit[0] >= limit[1])
-        return position_inc; /* no limits */
-    if (position_inc < limit[0])
-        return limit[0];
-    return position_inc > limit[1] ? limit[1] : position_inc;
+    return limit[0] < limit[1] ? maths_clamp(position_inc, limit[0], limit[1]) : position_inc;
+}
+
+/* Where the encoder is to be for a target, as far as the limits let it. */
+static double take_target(struct virtual_drive *drive, double target_inc)
+{
+    double limited_inc = limited(drive, target_inc);
+    drive->is_limited = limited_inc != target_inc;
+    return limited_inc / drive->increments_per_mm + drive->origin_mm;
 }
 
 static void activate(struct virtual_drive *drive, int64_t target_inc)
@@ -170,8 +204,7 @@ static void take_setpoint(struct virtual_drive *drive, uint16_t controlword)
     if (s->is_acknowledged)
         return;
     if (controlword & CONTROL_RELATIVE)
-        target_inc += s->active_inc;
-    target_inc = limited(drive, target_inc);
+        target_inc += (int64_t)limited(drive, (double)s->active_inc);
     s->is_acknowledged = true;
     if (controlword & CONTROL_IMMEDIATE || s->is_reached) {
         activate(drive, target_inc);
@@ -188,27 +221,44 @@ static void release_setpoint(struct virtual_drive *drive)
         drive->setpoints.is_acknowledged = false;
 }
 
+void virtual_drive_note_reached(struct virtual_drive *drive, bool is_inside, uint16_t time_ms,
+                                uint32_t cycle_ns)
+{
+    struct drive_setpoints *s = &drive->setpoints;
+    s->in_window_ns = is_inside ? s->in_window_ns + cycle_ns : 0;
+    s->is_reached = is_inside && s->in_window_ns >= (uint64_t)time_ms * MILLISECOND_NS;
+}
+
 /* Objects 6067 and 6068. */
 static void check_reached(struct virtual_drive *drive, double target_mm, uint32_t cycle_ns)
 {
     const struct drive_settings *o = &drive->objects.settings;
-    struct drive_setpoints *s = &drive->setpoints;
     double window_mm = o->position_window / virtual_drive_scale(drive);
     bool is_inside = o->position_window == WINDOW_ANY ||
                      maths_abs(target_mm - drive->plant.measured_mm) <= window_mm;
-    s->in_window_ns = is_inside ? s->in_window_ns + cycle_ns : 0;
-    s->is_reached =
-        is_inside && s->in_window_ns >= (uint64_t)o->position_window_ms * MILLISECOND_NS;
+    virtual_drive_note_reached(drive, is_inside, o->position_window_ms, cycle_ns);
+}
+
+/* With an end velocity the target is passed on the way to the next one, in the cycle that would reach it. */
+static bool passes_target(const struct virtual_drive *drive, double target_mm,
+                          const struct ramps *ramps, uint32_t cycle_ns)
+{
+    double way_mm = target_mm - drive->plant.command_mm;
+    double step_mm = drive->velocity_mm_s * (cycle_ns * 1e-9);
+    return ramps->end_mm_s > 0 && maths_abs(way_mm) <= maths_abs(step_mm);
 }
 
 static void run_position(struct virtual_drive *drive, uint32_t cycle_ns)
 {
     struct drive_setpoints *s = &drive->setpoints;
+    double target_mm = take_target(drive, (double)s->active_inc);
     struct ramps ramps = profile_ramps(drive);
-    if (s->has_next && s->is_reached)
+    if (s->has_next && (s->is_reached || passes_target(drive, target_mm, &ramps, cycle_ns))) {
         activate(drive, s->next_inc);
+        target_mm = take_target(drive, (double)s->active_inc);
+        ramps = profile_ramps(drive);
+    }
     release_setpoint(drive);
-    double target_mm = (double)s->active_inc / drive->increments_per_mm + drive->origin_mm;
     run_profile(drive, target_mm, &ramps, cycle_ns);
     check_reached(drive, target_mm, cycle_ns);
 }
@@ -226,10 +276,7 @@ static uint32_t period_cycles(const struct virtual_drive *drive, uint32_t cycle_
 /* The command goes to the target in a straight line, within the period after it has changed. */
 static void run_interpolated(struct virtual_drive *drive, double target_inc, uint32_t cycle_ns)
 {
-    const int32_t *limit = drive->objects.settings.position_limit;
-    double limited_inc =
-        limit[0] < limit[1] ? maths_clamp(target_inc, limit[0], limit[1]) : target_inc;
-    double goal_mm = limited_inc / drive->increments_per_mm + drive->origin_mm;
+    double goal_mm = take_target(drive, target_inc);
     double command_mm = goal_mm;
     if (goal_mm != drive->goal_mm) {
         drive->goal_mm = goal_mm;
@@ -244,13 +291,14 @@ static void run_interpolated(struct virtual_drive *drive, double target_inc, uin
 }
 
 /* Objects 60B1 and 60B2. */
-static void set_offsets(struct virtual_drive *drive)
+void virtual_drive_set_offsets(struct virtual_drive *drive)
 {
     const struct drive_process *p = &drive->objects.process;
     struct drive_plant *plant = &drive->plant;
     plant->velocity_offset_mm_s =
-        p->velocity_offset ? p->velocity_offset / drive->increments_per_mm : 0;
-    plant->torque_offset_mm_s2 = p->torque_offset ? virtual_drive_sign(drive) * p->torque_offset /
+        p->velocity_offset ? drive->velocity_sign * p->velocity_offset / virtual_drive_scale(drive)
+                           : 0;
+    plant->torque_offset_mm_s2 = p->torque_offset ? drive->torque_sign * p->torque_offset /
                                                         TORQUE_PER_RATED * plant->mm_s2_per_rated
                                                   : 0;
 }
@@ -258,7 +306,7 @@ static void set_offsets(struct virtual_drive *drive)
 static void run_cyclic(struct virtual_drive *drive, uint32_t cycle_ns)
 {
     const struct drive_process *p = &drive->objects.process;
-    set_offsets(drive);
+    virtual_drive_set_offsets(drive);
     run_interpolated(drive, (double)p->target_position + p->position_offset, cycle_ns);
 }
 
@@ -285,22 +333,44 @@ static void run_halt(struct virtual_drive *drive, uint32_t cycle_ns)
     release_setpoint(drive);
 }
 
-/* In cyclic synchronous position halt is the controller's own business: it sends the targets. */
-void virtual_drive_run_mode(struct virtual_drive *drive, uint32_t cycle_ns)
+/* Modes in which halt is the controller's own business: it sends the targets. */
+static bool run_cyclic_mode(struct virtual_drive *drive, int8_t mode, uint32_t cycle_ns)
 {
-    int8_t mode = drive->objects.process.mode_display;
     if (mode == CIA402_MODE_CYCLIC_SYNC_POSITION)
         run_cyclic(drive, cycle_ns);
+    else if (mode == CIA402_MODE_CYCLIC_SYNC_VELOCITY)
+        virtual_drive_run_cyclic_velocity(drive, cycle_ns);
+    else if (mode == CIA402_MODE_CYCLIC_SYNC_TORQUE)
+        virtual_drive_run_cyclic_torque(drive, cycle_ns);
+    else
+        return false;
+    return true;
+}
+
+/* Halt takes the torque away by its slope in profile torque; in the others the axis slows down. */
+static void run_other_mode(struct virtual_drive *drive, int8_t mode, uint32_t cycle_ns)
+{
+    if (mode == CIA402_MODE_PROFILE_TORQUE)
+        virtual_drive_run_profile_torque(drive, cycle_ns);
     else if (drive->is_halted)
         run_halt(drive, cycle_ns);
     else if (mode == CIA402_MODE_PROFILE_POSITION)
         run_position(drive, cycle_ns);
+    else if (mode == CIA402_MODE_PROFILE_VELOCITY)
+        virtual_drive_run_profile_velocity(drive, cycle_ns);
     else if (mode == CIA402_MODE_HOMING)
         virtual_drive_run_homing(drive, cycle_ns);
     else if (mode == CIA402_MODE_INTERPOLATED_POSITION)
         run_ip(drive, cycle_ns);
     else
         (void)virtual_drive_slow(drive, virtual_drive_profile_deceleration_mm_s2(drive), cycle_ns);
+}
+
+void virtual_drive_run_mode(struct virtual_drive *drive, uint32_t cycle_ns)
+{
+    int8_t mode = drive->objects.process.mode_display;
+    if (!run_cyclic_mode(drive, mode, cycle_ns))
+        run_other_mode(drive, mode, cycle_ns);
 }
 
 static void take_interpolation(struct virtual_drive *drive, bool enables)
@@ -360,14 +430,29 @@ static uint16_t position_status(const struct virtual_drive *drive)
     return (uint16_t)word;
 }
 
+/* Bit 12: it stands (606F). */
+static uint16_t velocity_status(const struct virtual_drive *drive)
+{
+    double threshold_mm_s = drive->objects.settings.velocity_threshold / virtual_drive_scale(drive);
+    bool stands = maths_abs(drive->plant.measured_velocity_mm_s) <= threshold_mm_s;
+    bool is_reached = drive->is_halted ? drive->velocity_mm_s == 0 : drive->setpoints.is_reached;
+    return (uint16_t)((is_reached ? STATUS_REACHED : 0) | (stands ? STATUS_BIT_12 : 0));
+}
+
 uint16_t virtual_drive_mode_status(const struct virtual_drive *drive)
 {
     bool is_enabled = drive->state == CIA402_ENABLED && !drive->is_leaving;
     switch (drive->objects.process.mode_display) {
     case CIA402_MODE_CYCLIC_SYNC_POSITION:
+    case CIA402_MODE_CYCLIC_SYNC_VELOCITY:
+    case CIA402_MODE_CYCLIC_SYNC_TORQUE:
         return is_enabled ? CIA402_FOLLOWS_TARGET : 0;
     case CIA402_MODE_PROFILE_POSITION:
         return position_status(drive);
+    case CIA402_MODE_PROFILE_VELOCITY:
+        return velocity_status(drive);
+    case CIA402_MODE_PROFILE_TORQUE:
+        return drive->setpoints.is_reached ? STATUS_REACHED : 0;
     case CIA402_MODE_HOMING:
         return homing_status(drive);
     case CIA402_MODE_INTERPOLATED_POSITION:

@@ -11,155 +11,18 @@
 #define SIGNATURE_SAVE 0x65766173u /* "save", the first letter in the lowest byte */
 #define SIGNATURE_LOAD 0x64616F6Cu /* "load" */
 
-#define PDO_NOT_VALID 0x80000000u
+#define TIME_CONSUMED 0x80000000u /* object 1012 */
 
-#define NOT_WATCHED UINT32_MAX /* windows of position and following error */
-
-/* Turns of the motor per second, and per second squared, a drive starts with. */
-#define DEFAULT_PROFILE_TURNS_S       5.0
-#define DEFAULT_PROFILE_TURNS_S2      50.0
-#define DEFAULT_MAX_TURNS_S           50.0
-#define DEFAULT_HOMING_TURNS_S        2.0
-#define DEFAULT_HOMING_SLOW_TURNS_S   0.2
-#define DEFAULT_HOMING_TURNS_S2       20.0
-#define DEFAULT_POSITION_WINDOW_TURNS 1e-3
-#define DEFAULT_CYCLE_US              1000
-#define TORQUE_PER_RATED              1000.0
-
-static uint32_t unsigned_increments(const struct virtual_drive *drive, double value)
-{
-    double increments = maths_round(value * virtual_drive_scale(drive));
-    return (uint32_t)maths_clamp(increments, 0, (double)UINT32_MAX);
-}
+#define TORQUE_PER_RATED 1000.0
 
 static int32_t signed_round(double value)
 {
     return (int32_t)maths_clamp(maths_round(value), (double)INT32_MIN, (double)INT32_MAX);
 }
 
-/* The period as 60C2 tells it: the fewest microseconds that fit, exactly where they do. */
-static void set_interpolation_period(struct drive_settings *s, uint32_t cycle_us)
-{
-    uint32_t period = cycle_us != 0 ? cycle_us : DEFAULT_CYCLE_US;
-    int8_t index = -6;
-    while (index < 0 && (period > UINT8_MAX || period % 10 == 0)) {
-        period = period / 10;
-        index++;
-    }
-    s->interpolation_period = (uint8_t)period;
-    s->interpolation_index = index;
-}
-
-static bool has_object(const struct virtual_drive *drive, unsigned index, uint8_t sub)
-{
-    bool has_index;
-    return dictionary_find(drive->dictionary, (uint16_t)index, sub, &has_index) != NULL;
-}
-
-/* Values of a data sheet, and PDOs that it has. */
-static void take_data_sheet(struct virtual_drive *drive)
-{
-    struct drive_communication *c = &drive->objects.communication;
-    dictionary_set_initial(drive->dictionary, DICTIONARY_NOT_OF_MACHINE, &drive->objects,
-                           drive->config.node, 0, UINT16_MAX);
-    for (unsigned i = 0; i < DRIVE_PDO_COUNT; i++) {
-        if (!has_object(drive, 0x1400 + i, 1) || !has_object(drive, 0x1600 + i, 0))
-            c->rpdo[i].cob_id |= PDO_NOT_VALID;
-        if (!has_object(drive, 0x1800 + i, 1) || !has_object(drive, 0x1A00 + i, 0))
-            c->tpdo[i].cob_id |= PDO_NOT_VALID;
-    }
-}
-
-/* What the machine makes of the initial values: everything that is counted in increments. */
-void virtual_drive_init_objects(struct virtual_drive *drive)
-{
-    const struct drive_plant_config *plant = &drive->config.plant;
-    struct drive_objects *o = &drive->objects;
-    double turn_mm = plant->travel_per_revolution_mm;
-    memset(o, 0, sizeof *o);
-    dictionary_set_initial(&dictionary_own, DICTIONARY_ALL, o, drive->config.node, 0, UINT16_MAX);
-    drive->increments_per_mm = drive->config.increments_per_mm;
-    o->identity.serial = drive->config.node;
-    o->identity.encoder_counts = plant->encoder_counts_per_revolution;
-    o->settings.following_window =
-        plant->following_error_window_mm > 0
-            ? unsigned_increments(drive, plant->following_error_window_mm)
-            : NOT_WATCHED;
-    o->settings.following_timeout_ms = (uint16_t)plant->following_error_timeout_ms;
-    o->settings.quick_stop_deceleration =
-        unsigned_increments(drive, plant->quick_stop_deceleration_mm_s2);
-    o->settings.position_window =
-        unsigned_increments(drive, DEFAULT_POSITION_WINDOW_TURNS * turn_mm);
-    o->settings.max_profile_velocity = unsigned_increments(drive, DEFAULT_MAX_TURNS_S * turn_mm);
-    o->settings.profile_velocity = unsigned_increments(drive, DEFAULT_PROFILE_TURNS_S * turn_mm);
-    o->settings.profile_acceleration =
-        unsigned_increments(drive, DEFAULT_PROFILE_TURNS_S2 * turn_mm);
-    o->settings.profile_deceleration = o->settings.profile_acceleration;
-    o->settings.homing_velocity[0] = unsigned_increments(drive, DEFAULT_HOMING_TURNS_S * turn_mm);
-    o->settings.homing_velocity[1] =
-        unsigned_increments(drive, DEFAULT_HOMING_SLOW_TURNS_S * turn_mm);
-    o->settings.homing_acceleration = unsigned_increments(drive, DEFAULT_HOMING_TURNS_S2 * turn_mm);
-    o->settings.feed_increments = unsigned_increments(drive, turn_mm);
-    set_interpolation_period(&o->settings, drive->config.cycle_us);
-    if (drive->dictionary != &dictionary_own)
-        take_data_sheet(drive);
-}
-
-/*
- * Increments are what objects 6091 and 6092 make of a turn of the motor:
- *     increments/turn = feed / feed_shaft_turns * gear_shaft_turns / gear_motor_turns
- * As they were at power-on they stand for what the machine says, which need not be a whole number.
- */
-static void rescale(struct virtual_drive *drive)
-{
-    const struct drive_settings *s = &drive->objects.settings;
-    const struct drive_settings *initial = &drive->initial_settings;
-    double turn = (double)s->feed_increments / s->feed_shaft * s->gear_shaft / s->gear_motor;
-    bool is_initial = s->feed_increments == initial->feed_increments &&
-                      s->feed_shaft == initial->feed_shaft &&
-                      s->gear_motor == initial->gear_motor && s->gear_shaft == initial->gear_shaft;
-    drive->increments_per_mm = is_initial ? drive->config.increments_per_mm
-                                          : virtual_drive_sign(drive) * turn /
-                                                drive->config.plant.travel_per_revolution_mm;
-}
-
-/* A value of the machine that its object could not hold is used as long as nobody has changed it. */
-static double in_mm(const struct virtual_drive *drive, uint32_t value, uint32_t initial,
-                    double machine)
-{
-    bool is_initial =
-        value == initial && drive->increments_per_mm == drive->config.increments_per_mm;
-    return is_initial ? machine : value / virtual_drive_scale(drive);
-}
-
-/* period = 60C2:01 10^60C2:02 seconds */
-static uint64_t interpolation_ns(const struct drive_settings *s)
-{
-    uint64_t ns = s->interpolation_period * UINT64_C(1000);
-    for (int exponent = -6; exponent < s->interpolation_index; exponent++)
-        ns *= 10;
-    return ns;
-}
-
-void virtual_drive_derive(struct virtual_drive *drive)
-{
-    const struct drive_settings *s = &drive->objects.settings;
-    const struct drive_settings *initial = &drive->initial_settings;
-    const struct drive_plant_config *plant = &drive->config.plant;
-    rescale(drive);
-    drive->interpolation_ns = interpolation_ns(s);
-    drive->following_window_mm = 0;
-    if (s->following_window != NOT_WATCHED)
-        drive->following_window_mm = in_mm(drive, s->following_window, initial->following_window,
-                                           plant->following_error_window_mm);
-    drive->quick_stop_mm_s2 =
-        in_mm(drive, s->quick_stop_deceleration, initial->quick_stop_deceleration,
-              plant->quick_stop_deceleration_mm_s2);
-}
-
 static int16_t torque(const struct virtual_drive *drive)
 {
-    double torque = maths_round(virtual_drive_sign(drive) * TORQUE_PER_RATED *
+    double torque = maths_round(drive->torque_sign * TORQUE_PER_RATED *
                                 drive_plant_torque_ratio(&drive->plant));
     return (int16_t)maths_clamp(torque, INT16_MIN, INT16_MAX);
 }
@@ -170,8 +33,15 @@ static void refresh_rest(struct virtual_drive *drive)
     struct drive_process *p = &drive->objects.process;
     p->demand_position = virtual_drive_increments(drive, plant->command_mm - drive->origin_mm);
     p->actual_internal = signed_round(plant->measured_mm * plant->encoder_steps_per_mm);
-    p->actual_velocity = signed_round(plant->measured_velocity_mm_s * drive->increments_per_mm);
+    double velocity_per_mm = drive->velocity_sign * virtual_drive_scale(drive);
+    p->actual_velocity = signed_round(plant->measured_velocity_mm_s * velocity_per_mm);
+    p->demand_velocity = signed_round(plant->command_velocity_mm_s * velocity_per_mm);
     p->actual_torque = torque(drive);
+    p->manufacturer_status = virtual_drive_manufacturer_status(drive);
+    p->high_resolution_us = virtual_drive_high_resolution_us(drive);
+    const struct time_stamp time = virtual_drive_time_of_day(drive);
+    p->time_ms = time.ms;
+    p->time_days = time.days;
 }
 
 void virtual_drive_refresh(struct virtual_drive *drive, unsigned groups)
@@ -205,12 +75,28 @@ void virtual_drive_apply_touches(struct virtual_drive *drive, unsigned touches)
         virtual_drive_take_mode(drive, drive->objects.process.mode);
     if (touches & DRIVE_TOUCH_CONTROLWORD)
         virtual_drive_take_controlword(drive, drive->objects.process.controlword);
+    if (touches & DRIVE_TOUCH_CLOCK)
+        virtual_drive_set_high_resolution_us(drive, drive->objects.process.high_resolution_us);
+    if (touches & DRIVE_TOUCH_TORQUE)
+        virtual_drive_derive_torque(drive);
+    if (touches & DRIVE_TOUCH_PROBE)
+        virtual_drive_take_probe_function(drive);
 }
 
 static uint32_t check_sync_id(uint32_t value)
 {
     bool is_allowed = value == 0x80 || (value > 0x180 && value < 0x581);
     return is_allowed ? SDO_ABORT_NONE : SDO_ABORT_VALUE;
+}
+
+/* An identifier is changed while nobody listens to it. Nodes of this kind never send it (bit 30). */
+static uint32_t check_time_id(const struct virtual_drive *drive, uint32_t value)
+{
+    uint32_t old = drive->objects.communication.time_cob_id;
+    uint32_t id = value & ~TIME_CONSUMED;
+    if (id <= 0x80 || id > 0x7FF)
+        return SDO_ABORT_VALUE;
+    return old & value & TIME_CONSUMED && value != old ? SDO_ABORT_VALUE : SDO_ABORT_NONE;
 }
 
 static uint32_t check_emcy_id(const struct virtual_drive *drive, uint32_t value)
@@ -251,6 +137,8 @@ static uint32_t check_communication_write(const struct virtual_drive *drive,
         return value == SIGNATURE_SAVE ? SDO_ABORT_NONE : SDO_ABORT_STORE;
     case 0x1011:
         return value == SIGNATURE_LOAD ? SDO_ABORT_NONE : SDO_ABORT_STORE;
+    case 0x1012:
+        return check_time_id(drive, value);
     case 0x1014:
         return check_emcy_id(drive, value);
     case 0x1016:
@@ -273,6 +161,7 @@ static uint32_t check_profile_write(const struct virtual_drive *drive, const str
         return check_quick_stop((uint32_t)value);
     case 0x6060:
         return virtual_drive_has_mode(drive, (int8_t)value) ? SDO_ABORT_NONE : SDO_ABORT_VALUE;
+    case 0x607E:
     case 0x6091:
     case 0x6092:
         return drive->state == CIA402_ENABLED ? SDO_ABORT_STATE : SDO_ABORT_NONE;
@@ -295,19 +184,29 @@ static uint32_t check_number(const struct virtual_drive *drive, const struct obj
                                : check_profile_write(drive, row, value);
 }
 
-/* Stored values are those a reset brings back; they live as long as the process. */
-static void store(struct virtual_drive *drive)
+/*
+ * Objects 1010 and 1011. Stored values are those a reset brings back; whoever keeps them may fail, and then nothing has
+ * changed.
+ */
+static uint32_t set_stored(struct virtual_drive *drive, const struct drive_objects *values)
 {
-    drive->stored_communication = drive->objects.communication;
-    drive->stored_settings = drive->objects.settings;
-    drive->objects.process.store = 1;
+    const struct drive_objects before = drive->stored;
+    drive->objects.process.store = drive->objects.process.restore = 1;
+    drive->stored = *values;
+    if (drive->keeper.keep == NULL || drive->keeper.keep(drive->keeper.context, drive))
+        return SDO_ABORT_NONE;
+    drive->stored = before;
+    return SDO_ABORT_HARDWARE;
 }
 
-static void restore(struct virtual_drive *drive)
+void virtual_drive_restore(struct virtual_drive *drive, uint16_t last)
 {
-    drive->stored_communication = drive->initial_communication;
-    drive->stored_settings = drive->initial_settings;
-    drive->objects.process.restore = 1;
+    drive->objects.communication = drive->stored.communication;
+    dictionary_copy_memory(drive->dictionary, &drive->objects, &drive->stored, last);
+    if (last < UINT16_MAX)
+        return;
+    drive->objects.settings = drive->stored.settings;
+    virtual_drive_derive(drive);
 }
 
 static void follow_communication_write(struct virtual_drive *drive, const struct object_row *row)
@@ -317,16 +216,14 @@ static void follow_communication_write(struct virtual_drive *drive, const struct
         virtual_drive_clear_history(drive);
         break;
     case 0x1005:
+    case 0x1012:
         virtual_drive_set_filter(drive);
         break;
     case 0x1006:
         drive->sync_lost_ns = DRIVE_NEVER;
         break;
-    case 0x1010:
-        store(drive);
-        break;
-    case 0x1011:
-        restore(drive);
+    case 0x1013:
+        virtual_drive_apply_touches(drive, DRIVE_TOUCH_CLOCK);
         break;
     case 0x1016:
         if (row->sub >= 1 && row->sub <= DRIVE_CONSUMERS)
@@ -351,6 +248,13 @@ static void follow_profile_write(struct virtual_drive *drive, const struct objec
     case 0x6060:
         virtual_drive_apply_touches(drive, DRIVE_TOUCH_MODE);
         break;
+    case 0x6072:
+        virtual_drive_apply_touches(drive, DRIVE_TOUCH_TORQUE);
+        break;
+    case 0x60B8:
+        virtual_drive_apply_touches(drive, DRIVE_TOUCH_PROBE);
+        break;
+    case 0x607E:
     case 0x6091:
     case 0x6092:
         virtual_drive_derive(drive);
@@ -359,6 +263,7 @@ static void follow_profile_write(struct virtual_drive *drive, const struct objec
     case 0x6065:
     case 0x6085:
     case 0x60C2:
+    case 0x60C6:
         virtual_drive_derive(drive);
         break;
     default:
@@ -373,6 +278,10 @@ static uint32_t write_number(struct virtual_drive *drive, const struct object_ro
     if (code != SDO_ABORT_NONE)
         return code;
     object_write(row, &drive->objects, value);
+    if (row->index == 0x1010)
+        return set_stored(drive, &drive->objects);
+    if (row->index == 0x1011)
+        return set_stored(drive, &drive->initial);
     if (row->index < 0x2000)
         follow_communication_write(drive, row);
     else

@@ -54,9 +54,20 @@ static bool find_mapped(const struct virtual_drive *drive, uint32_t entry,
 
 static uint8_t touches_of(const struct object_row *row)
 {
-    if (row->index == 0x6040)
+    switch (row->index) {
+    case 0x1013:
+        return DRIVE_TOUCH_CLOCK;
+    case 0x6040:
         return DRIVE_TOUCH_CONTROLWORD;
-    return row->index == 0x6060 ? DRIVE_TOUCH_MODE : 0;
+    case 0x6060:
+        return DRIVE_TOUCH_MODE;
+    case 0x6072:
+        return DRIVE_TOUCH_TORQUE;
+    case 0x60B8:
+        return DRIVE_TOUCH_PROBE;
+    default:
+        return 0;
+    }
 }
 
 static uint8_t group_of(const struct object_row *row)
@@ -86,7 +97,8 @@ static void add_mapped(struct virtual_drive *drive, struct drive_pdo *pdo, uint3
 {
     const struct object_row *row;
     uint32_t code;
-    if (!find_mapped(drive, entry, direction, &row, &code))
+    if (!find_mapped(drive, entry, direction, &row, &code) ||
+        pdo->length + (entry & 0xFF) / 8 > CAN_DATA_MAX)
         return;
     pdo->row[pdo->count] = row;
     if (row && !(row->flags & OBJECT_FIXED))
@@ -240,6 +252,13 @@ static void apply(struct virtual_drive *drive, const struct drive_pdo *pdo,
         virtual_drive_apply_touches(drive, pdo->touches);
 }
 
+/* Object 1007: what is synchronous counts only so long after SYNC. */
+static bool is_too_late(const struct virtual_drive *drive)
+{
+    uint64_t window_ns = (uint64_t)drive->objects.communication.sync_window_us * 1000;
+    return window_ns != 0 && drive->heard_ns - drive->sync_ns > window_ns;
+}
+
 static void take(struct virtual_drive *drive, struct drive_pdo *pdo, const struct can_frame *frame)
 {
     if (pdo->count == 0)
@@ -247,11 +266,11 @@ static void take(struct virtual_drive *drive, struct drive_pdo *pdo, const struc
     if (frame->length < pdo->length) {
         virtual_drive_send_emergency(drive, EMCY_PDO_LENGTH,
                                      EMCY_REGISTER_GENERIC | EMCY_REGISTER_COMMUNICATION);
-    } else if (pdo->transmission <= TYPE_SYNC_MAX) {
+    } else if (pdo->transmission > TYPE_SYNC_MAX) {
+        apply(drive, pdo, frame);
+    } else if (!is_too_late(drive)) {
         pdo->held = *frame;
         pdo->is_held = true;
-    } else {
-        apply(drive, pdo, frame);
     }
 }
 

@@ -31,6 +31,27 @@ static bool is_hot(const struct virtual_drive *drive, double below_k)
     return max_c > 0 && drive->plant.temperature_c > max_c - below_k;
 }
 
+static bool is_at_torque_limit(const struct virtual_drive *drive)
+{
+    return maths_abs(drive->plant.acceleration_mm_s2) >=
+           drive_plant_torque_limit_mm_s2(&drive->plant);
+}
+
+/* Object 1002: what is behind the statusword. */
+uint32_t virtual_drive_manufacturer_status(const struct virtual_drive *drive)
+{
+    uint32_t word = 0;
+    if (is_at_torque_limit(drive))
+        word |= DRIVE_STATUS_TORQUE_LIMIT;
+    if (drive->is_limited)
+        word |= DRIVE_STATUS_POSITION_LIMIT;
+    if (is_hot(drive, TEMPERATURE_WARNING_K))
+        word |= DRIVE_STATUS_WARM;
+    if (drive->homing.is_homed)
+        word |= DRIVE_STATUS_HOMED;
+    return word;
+}
+
 uint16_t virtual_drive_statusword(const struct virtual_drive *drive)
 {
     unsigned word = cia402_statusword(drive->state) | CIA402_VOLTAGE_ENABLED;
@@ -40,8 +61,7 @@ uint16_t virtual_drive_statusword(const struct virtual_drive *drive)
         word |= CIA402_FOLLOWING_FAILED;
     if (is_hot(drive, TEMPERATURE_WARNING_K))
         word |= STATUS_WARNING;
-    if (maths_abs(drive->plant.acceleration_mm_s2) >=
-        drive->plant.acceleration_max_mm_s2 * drive->plant.damage.torque_ratio)
+    if (drive->is_limited || is_at_torque_limit(drive))
         word |= STATUS_INTERNAL_LIMIT;
     return (uint16_t)(word | virtual_drive_mode_status(drive));
 }
@@ -135,15 +155,16 @@ void virtual_drive_take_controlword(struct virtual_drive *drive, uint16_t contro
     virtual_drive_take_mode_controlword(drive, previous, controlword);
 }
 
+/* As object 6502 has them: all but 2, velocity for converters, and 5, which is none. */
+#define MODES_WRITTEN 0x3EDu
+
 /* Object 6502 says which of those that are written here; a sheet without it, or with an empty one, has them all. */
 bool virtual_drive_has_mode(const struct virtual_drive *drive, int8_t mode)
 {
     bool has_index;
     const struct object_row *row = dictionary_find(drive->dictionary, 0x6502, 0, &has_index);
     uint32_t modes = row != NULL && row->initial != 0 ? (uint32_t)row->initial : UINT32_MAX;
-    bool is_written = mode == CIA402_MODE_PROFILE_POSITION || mode == CIA402_MODE_HOMING ||
-                      mode == CIA402_MODE_INTERPOLATED_POSITION ||
-                      mode == CIA402_MODE_CYCLIC_SYNC_POSITION;
+    bool is_written = mode >= 1 && mode <= 10 && MODES_WRITTEN >> (mode - 1) & 1;
     return mode == CIA402_MODE_NONE || (is_written && modes >> (mode - 1) & 1);
 }
 
@@ -227,6 +248,7 @@ static void run_fault_reaction(struct virtual_drive *drive, uint32_t cycle_ns)
 
 void virtual_drive_move(struct virtual_drive *drive, uint32_t cycle_ns)
 {
+    drive->is_limited = false;
     switch (drive->state) {
     case CIA402_ENABLED:
         run_enabled(drive, cycle_ns);
@@ -279,6 +301,10 @@ void virtual_drive_reset_profile(struct virtual_drive *drive)
     p->position_offset = 0;
     p->velocity_offset = 0;
     p->torque_offset = 0;
+    p->target_velocity = 0;
+    p->target_torque = 0;
+    p->probe_function = p->probe_status = 0;
+    drive->probe.function = 0;
     virtual_drive_hold(drive);
 }
 

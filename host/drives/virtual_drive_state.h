@@ -38,9 +38,28 @@ struct drive_setpoints {
     bool is_reached;
 };
 
+/* Layer setting services. */
+struct drive_lss {
+    uint8_t node,
+        stored; /* from the next reset of the communication on, and of the node; LSS_NO_NODE: none */
+    bool is_nameless;                     /* it has no node id: it hears and says nothing else */
+    bool configures;                      /* state "configuration" */
+    uint8_t matched, identified, scanned; /* parts of the identity so far */
+};
+
+/* The touch probes, 1 and 2, of one input. */
+#define DRIVE_TOUCH_PROBES 2
+struct drive_touch_probe {
+    bool touches;      /* the input, 60FD bit 16 */
+    double begin_mm;   /* what the encoder said at the beginning of the cycle */
+    uint16_t function; /* 60B8 as it was seen last */
+};
+
 enum drive_homing_phase {
     HOMING_IDLE,
     HOMING_SEARCH, /* towards the switch */
+    HOMING_PASS,   /* out of it again, so that its edge is found from outside */
+    HOMING_PUSH,   /* towards a hard stop */
     HOMING_EDGE,   /* slowly to its edge */
     HOMING_INDEX,  /* slowly to the next index pulse */
     HOMING_STOP,   /* the home position is known */
@@ -51,6 +70,10 @@ struct drive_homing {
     enum drive_homing_phase phase;
     int8_t method; /* of the homing under way */
     bool is_homed;
+    int8_t
+        search; /* direction under way, of the drive; the other one after the first end of the axis */
+    bool was_active;   /* the switch, in the cycle before */
+    uint64_t push_ns;  /* that the motor has stood with all the torque it takes */
     double index_mm;   /* of the motor: where the awaited index pulse is */
     double encoder_mm; /* what the encoder says at the home position */
 };
@@ -74,6 +97,12 @@ struct drive_requests {
     struct can_frame frame[VIRTUAL_DRIVE_REQUESTS];
 };
 
+/* Who keeps what object 1010 stores; false: it could not. */
+struct drive_keeper {
+    bool (*keep)(void *context, const struct virtual_drive *drive);
+    void *context;
+};
+
 struct virtual_drive {
     uint32_t accepts[64]; /* bit id: frames with this identifier are looked at */
     struct virtual_drive_config config;
@@ -87,14 +116,21 @@ struct virtual_drive {
     uint16_t controlword; /* the one before, for edges */
     uint64_t now_ns;      /* since it was switched on */
     uint64_t due_ns;      /* nothing of all that waits for a time happens before */
-    uint64_t boot_ns;     /* it boots then, and hears nothing before; 0: it has booted */
+    uint64_t heard_ns; /* when the frame that is being taken was on the bus; 0: that is not known */
+    uint64_t sync_ns;  /* the same of the last SYNC */
+    uint32_t clock_us; /* object 1013 less now_ns */
+    struct time_stamp time; /* as TIME has told it, */
+    uint64_t time_ns;       /* then */
+    uint64_t boot_ns;       /* it boots then, and hears nothing before; 0: it has booted */
     struct drive_requests requests;
     const struct dictionary *dictionary;
 
     /* For the position loop, from the objects. */
     double increments_per_mm;
-    double origin_mm;           /* what the encoder says at position 0 */
-    double following_window_mm; /* 0: not watched */
+    double velocity_sign, torque_sign; /* by the motor's direction and object 607E */
+    double torque_ratio;               /* wanted in profile torque, of the rated one */
+    double origin_mm;                  /* what the encoder says at position 0 */
+    double following_window_mm;        /* 0: not watched */
     double quick_stop_mm_s2;
     uint64_t interpolation_ns; /* object 60C2 */
     uint64_t following_ns;     /* how long the following error has been outside its window */
@@ -107,9 +143,11 @@ struct virtual_drive {
     bool is_halted;
     bool is_stopped;   /* quick stop has come to rest and stays */
     bool interpolates; /* mode 7, by controlword bit 4 */
+    bool is_limited;   /* the target is beyond object 607D */
     enum cia402_state leaving_to;
     struct drive_setpoints setpoints;
     struct drive_homing homing;
+    struct drive_touch_probe probe;
 
     struct drive_pdo rpdo[DRIVE_PDO_COUNT], tpdo[DRIVE_PDO_COUNT];
     uint8_t watched;          /* objects whose change is an event: groups */
@@ -134,10 +172,11 @@ struct virtual_drive {
     const char *eds;
     size_t eds_length;
     struct drive_faults faults;
+    struct drive_lss lss;
 
-    /* What a reset brings back: of power-on, or stored by object 1010. */
-    struct drive_communication stored_communication, initial_communication;
-    struct drive_settings stored_settings, initial_settings;
+    /* What a reset brings back, of power-on or stored by object 1010; process values do not count. */
+    struct drive_objects stored, initial;
+    struct drive_keeper keeper;
 };
 
 #endif

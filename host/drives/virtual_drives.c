@@ -31,8 +31,7 @@ static void start(struct virtual_drives *set, const struct virtual_drives_config
 
 static void on_frame(void *context, const struct can_frame *frame, uint64_t time_ns)
 {
-    (void)time_ns;
-    virtual_drive_on_frame(context, frame);
+    virtual_drive_on_frame_at(context, frame, time_ns);
 }
 
 void virtual_drives_init(struct virtual_drives *set, struct bus *bus,
@@ -133,10 +132,49 @@ static bool all_enabled(const struct virtual_drives *set)
     return true;
 }
 
+void virtual_drives_set_contact(struct virtual_drives *set,
+                                const struct virtual_drives_contact *contact)
+{
+    set->contact = *contact;
+}
+
+/* When so much of the last cycle had passed. */
+static bool touched_at(const struct virtual_drives *set, double ratio)
+{
+    double position_mm[VIRTUAL_DRIVES_MAX] = {0};
+    for (unsigned i = 0; i < set->motors; i++)
+        position_mm[i] = virtual_drive_get_position_at_mm(&set->drive[i], ratio);
+    return set->contact.touches(set->contact.context, position_mm);
+}
+
+/* Halvings of a cycle: fewer increments than 2^32 are passed in it. */
+#define HALVINGS 32
+
+/* The edge lies between two moments of the last cycle; what touches for less than a cycle is not seen. */
+static void look_for_contact(struct virtual_drives *set)
+{
+    bool touches = touched_at(set, 1);
+    double before = 0, after = 1;
+    if (touches == set->touches)
+        return;
+    for (unsigned i = 0; i < HALVINGS; i++) {
+        double middle = (before + after) / 2;
+        if (touched_at(set, middle) == touches)
+            after = middle;
+        else
+            before = middle;
+    }
+    set->touches = touches;
+    for (unsigned i = 0; i < set->motors; i++)
+        virtual_drive_touch(&set->drive[i], touches, after);
+}
+
 void virtual_drives_step(struct virtual_drives *set, uint32_t cycle_ns)
 {
     for (unsigned i = 0; i < set->count; i++)
         virtual_drive_step(&set->drive[i], cycle_ns);
+    if (set->contact.touches != NULL)
+        look_for_contact(set);
     if (set->own_count > 0)
         hand_round(set);
     set->clock.now_ns += cycle_ns;

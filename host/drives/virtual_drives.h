@@ -30,10 +30,18 @@ struct virtual_drives_port {
     unsigned index;
 };
 
+/* What the touch probes of all drives are wired to: does it touch where the drives are, mm or rad, by their index? */
+struct virtual_drives_contact {
+    bool (*touches)(void *context, const double position_mm[VIRTUAL_DRIVES_MAX]);
+    void *context;
+};
+
 struct virtual_drives {
     unsigned count;
     unsigned motors; /* of these; the others are I/O nodes */
     struct inject_clock clock;
+    struct virtual_drives_contact contact; /* without touches: nothing */
+    bool touches;
     struct virtual_drive drive[VIRTUAL_DRIVES_MAX];
 
     /* Not on the embedded bus: the drives hear each other, too. */
@@ -75,6 +83,10 @@ void virtual_drives_observe(struct virtual_drives *set, const struct drive_obser
 
 /* Faults of the script happen from now on, by the time of virtual_drives_step. It must stay. */
 void virtual_drives_inject(struct virtual_drives *set, const struct inject *script);
+
+/* Without it touch probes meet nothing. */
+void virtual_drives_set_contact(struct virtual_drives *set,
+                                const struct virtual_drives_contact *contact);
 
 /* A frame has come by the port of virtual_drives_open. */
 void virtual_drives_take(struct virtual_drives *set, const struct can_frame *frame);

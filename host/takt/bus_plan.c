@@ -3,6 +3,7 @@
 #include "canopen/nmt.h"
 #include "canopen/node.h"
 #include "canopen/pdo.h"
+#include "canopen/sdo.h"
 #include "canopen/sync.h"
 
 #include <string.h>
@@ -34,18 +35,29 @@ void bus_plan_set(struct bus_plan *plan, const struct machine *machine, const st
     for (unsigned i = 0; i < count; i++)
         add_message(plan, pdo[i].is_target ? "RPDO2" : "TPDO1", pdo[i].id, pdo[i].length);
     add_message(plan, "TPDO2", PDO_TPDO2_FUNCTION + NODE_MIN, ERROR_LENGTH);
+    if (drives_have_probed(drives)) {
+        add_message(plan, "SDO answer", SDO_RESPONSE_FUNCTION + NODE_MIN, CAN_DATA_MAX);
+        add_message(plan, "SDO request", SDO_REQUEST_FUNCTION + NODE_MIN, CAN_DATA_MAX);
+    }
     add_message(plan, "heartbeat", NMT_HEARTBEAT_FUNCTION + NODE_MIN, HEARTBEAT_LENGTH);
     (void)bus_response_predict(plan->message, plan->count, plan->bitrate, plan->worst_ns);
 }
 
-/* For TPDO2 and heartbeats, whichever node they are of. */
+/* Of several nodes, but in the plan once. */
+static bool is_of_any_node(const struct bus_message *message)
+{
+    const unsigned function = node_function(message->id);
+
+    return function == PDO_TPDO2_FUNCTION || function == NMT_HEARTBEAT_FUNCTION ||
+           function == SDO_RESPONSE_FUNCTION || function == SDO_REQUEST_FUNCTION;
+}
+
 static uint32_t find_observed_ns(const struct bus_plan *plan, const struct bus *bus, unsigned i)
 {
     unsigned id = plan->message[i].id, nodes = 1;
     uint32_t most_ns = 0;
 
-    if (node_function((uint16_t)id) == PDO_TPDO2_FUNCTION ||
-        node_function((uint16_t)id) == NMT_HEARTBEAT_FUNCTION)
+    if (is_of_any_node(&plan->message[i]))
         nodes = NODE_MAX;
     for (unsigned k = 0; k < nodes; k++) {
         uint32_t response_ns = bus_get_response_max_ns(bus, id + k);

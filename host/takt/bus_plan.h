@@ -13,9 +13,10 @@
 #include <stdbool.h>
 
 /*
- * SYNC, the PDOs of the drives in every cycle; and one TPDO2 and one heartbeat, which nodes send in turns.
+ * SYNC, the PDOs of the drives in every cycle; and one TPDO2 and one heartbeat, which nodes send in turns. Where touch
+ * probes have been used there is a request and its answer, too; what has to wait for these may be without a bound.
  */
-#define BUS_PLAN_MAX (3 + DRIVES_CYCLE_PDOS_MAX)
+#define BUS_PLAN_MAX (5 + DRIVES_CYCLE_PDOS_MAX)
 
 struct bus_plan {
     uint32_t bitrate; /* bit/s */

@@ -10,6 +10,7 @@
 #include "takt/machine_file.h"
 #include "takt/message.h"
 #include "takt/output_file.h"
+#include "takt/probe_file.h"
 #include "takt/serving_options.h"
 #include "takt/spindle_service.h"
 #include "takt/text.h"
@@ -36,6 +37,7 @@ struct drives_command {
     struct dictionary sheet[DATA_SHEETS_MAX]; /* of the machine's drives that have one */
     struct dictionary given;                  /* --eds with --bus: of all drives */
     struct inject script;
+    struct virtual_probe probe;
 };
 
 static bool add_drive(struct drives_command *command, unsigned node)
@@ -136,8 +138,9 @@ static bool set_drives(struct drives_command *command)
                           ? set_nodes(command)
                           : data_sheet_set_machine(drives, &command->setup, command->sheet);
 
-    for (unsigned i = 0; i < drives->count && command->given.count > 0; i++) {
-        if (!drives->drive[i].is_io)
+    for (unsigned i = 0; i < drives->count; i++) {
+        drives->drive[i].is_nameless = command->options->unconfigured;
+        if (command->given.count > 0 && !drives->drive[i].is_io)
             drives->drive[i].dictionary = &command->given;
     }
     return good;
@@ -274,6 +277,9 @@ static enum command_status serve(const struct drives_command *command)
         .script = options->inject != NULL ? &command->script : NULL,
         .log = log,
         .bus_log = options->bus_log,
+        .store = options->store,
+        .machine = &command->setup.machine,
+        .probe = &command->probe,
     });
     if (log != NULL && log != stdout && fclose(log) != 0 && status == STATUS_DONE) {
         message_command_error("--log %s: not everything could be written", options->log);
@@ -322,6 +328,10 @@ static bool check_logs(const struct options *options)
 {
     const char *bus_log = options->bus_log;
 
+    if (options->store != NULL && options->bus == NULL) {
+        message_command_error("--store needs --bus: nobody tells the drives to store anything");
+        return false;
+    }
     if (bus_log == NULL)
         return true;
     if (options->bus == NULL) {
@@ -351,7 +361,8 @@ static enum command_status command_drives_execute(const struct options *options)
     if (!check_logs(options))
         return STATUS_INPUT;
     if (!machine_file_load(&command.setup, options) || !load_given(&command) ||
-        !set_drives(&command) || !load_script(&command))
+        !set_drives(&command) || !load_script(&command) ||
+        !probe_file_load(&command.probe, options->probe))
         return STATUS_INPUT;
     if (options->eds != NULL && options->bus == NULL)
         status = write_data_sheets(&command);
@@ -377,6 +388,12 @@ static const struct option_row rows[] = {
      "there"},
     {"inject", OPTION_TEXT, offsetof(struct options, inject), "FILE",
      "scripted faults; takt help inject explains them"},
+    {"probe", OPTION_TEXT, offsetof(struct options, probe), "FILE",
+     "what the drives' touch probes meet, as of takt run"},
+    {"unconfigured", OPTION_FLAG, offsetof(struct options, unconfigured), NULL,
+     "drives have no node id before they get one by LSS; --nodes are their serial numbers"},
+    {"store", OPTION_TEXT, offsetof(struct options, store), "FOLDER",
+     "what drives store (object 1010) is kept there, and they start with it"},
     {"realtime", OPTION_FLAG, offsetof(struct options, realtime), NULL,
      "keep to the wall clock even if SYNC has a period"},
     {"log", OPTION_TEXT, offsetof(struct options, log), "FILE",
@@ -392,9 +409,9 @@ const struct command command_drives = {
     .usage = "--bus BUS|--spindle WHERE [options]",
     .summary = "virtual CiA 402 drives, for any CANopen master",
     .help =
-        "Every drive is a CANopen node with the drive profile CiA 402 (profile position, "
-        "homing, interpolated\n"
-        "position, cyclic synchronous position) and a simulated motor, described by [drive N] "
+        "Every drive is a CANopen node with the drive profile CiA 402 (homing, interpolated "
+        "position, profile and cyclic\n"
+        "synchronous position, velocity and torque) and a simulated motor, described by [drive N] "
         "of the machine file.\n"
         "They run until Ctrl-C or SIGTERM, which is status 0.\n"
         "\n"
@@ -408,6 +425,16 @@ const struct command command_drives = {
         "[drive N] of the machine\n"
         "file has a sheet for each drive, and how long it takes to boot and to answer.\n"
         "\n"
+        "--store FOLDER keeps what a master has the drives store (object 1010) in a file for each "
+        "node, which they have "
+        "again\n"
+        "when they are next switched on. Without it stored values live as long as the command.\n"
+        "\n"
+        "Drives can be found and given their node id by LSS (CiA 305), as they are, or with "
+        "--unconfigured as they come "
+        "from\n"
+        "the maker, without one.\n"
+        "\n"
         "--spindle adds a spindle behind the registers of a Delta VFD-B or MS300 converter, "
         "with inertia, ramp,\n"
         "torque limit and trips as [spindle] of the machine file says. Register 3000 (hex) "
@@ -419,7 +446,7 @@ const struct command command_drives = {
         "  takt drives --spindle 127.0.0.1:1503\n"
         "  takt drives --bus slcan:pty:can0.pty --machine mill3.ini --log drives.log\n"
         "  takt drives --bus socketcan:vcan0 --quiet --bus-log bus.log\n"
-        "  takt drives --bus socketcan:vcan0 --eds epos4.eds\n"
+        "  takt drives --bus socketcan:vcan0 --eds epos4.eds --store stored\n"
         "  takt drives --nodes 1-6 --eds data-sheets\n"
         "  takt drives --bus socketcand:listen:29536 --inject faults.inject\n",
     .options = rows,

@@ -2,12 +2,16 @@
 
 #include "takt/drive_service.h"
 
+#include "drives/drive_store.h"
 #include "drives/eds.h"
 #include "takt/bus_log.h"
 #include "takt/interrupt.h"
 #include "takt/message.h"
+#include "takt/output_file.h"
+#include "takt/text.h"
 
 #include <stdlib.h>
+#include <unistd.h>
 
 /* Frames taken before the time is looked at again. */
 #define FRAMES_PER_ROUND_MAX 256
@@ -33,6 +37,7 @@ struct drive_service {
     struct bus_log bus_log;
     struct eds_text eds[VIRTUAL_DRIVES_MAX];
     struct virtual_drives set;
+    struct probe_contact contact;
 };
 
 static void log_event(void *context, const struct drive_event *event)
@@ -68,6 +73,67 @@ static bool make_eds(struct virtual_drive *drive, struct eds_text *text)
     return true;
 }
 
+static void store_path(const struct drive_service *service, const struct virtual_drive *drive,
+                       char path[OUTPUT_PATH_MAX])
+{
+    (void)snprintf(path, OUTPUT_PATH_MAX, "%s/takt-drive-%u.store", service->config->store,
+                   (unsigned)drive->config.node);
+}
+
+/* A message says so when it fails; the drive tells its master. */
+static bool keep_stored(void *context, const struct virtual_drive *drive)
+{
+    static struct output_file file;
+    char path[OUTPUT_PATH_MAX];
+
+    store_path(context, drive, path);
+    if (!output_file_open(&file, path))
+        return false;
+    drive_store_write(file.stream, drive);
+    return output_file_finish(&file) && output_file_place(&file);
+}
+
+/* False after a message. A drive that has stored nothing has no file. */
+static bool load_stored(struct drive_service *service, struct virtual_drive *drive)
+{
+    char path[OUTPUT_PATH_MAX];
+    struct drive_store_problem wrong;
+    struct text text;
+    bool good;
+
+    virtual_drive_keep(drive, &(struct drive_keeper){keep_stored, service});
+    store_path(service, drive, path);
+    if (access(path, F_OK) != 0)
+        return true;
+    if (!text_read(&text, path))
+        return false;
+    good = drive_store_read(drive, text.bytes, text.length, &wrong);
+    if (!good)
+        message_error(path, wrong.line, 0, "%s", wrong.text);
+    text_free(&text);
+    return good;
+}
+
+static bool load_all_stored(struct drive_service *service)
+{
+    for (unsigned i = 0; i < service->set.count && service->config->store != NULL; i++) {
+        if (!load_stored(service, &service->set.drive[i]))
+            return false;
+    }
+    return true;
+}
+
+static bool make_all_eds(struct drive_service *service)
+{
+    for (unsigned i = 0; i < service->set.count; i++) {
+        if (!make_eds(&service->set.drive[i], &service->eds[i])) {
+            message_command_error("out of memory");
+            return false;
+        }
+    }
+    return true;
+}
+
 static enum command_status open_link(struct drive_service *service)
 {
     struct link_config config = {.bitrate = service->config->bitrate};
@@ -94,14 +160,13 @@ static enum command_status start(struct drive_service *service)
     bus_log_observe_link(&service->bus_log, service->link);
     service->cycle_ns = (uint64_t)config->cycle_us * 1000;
     virtual_drives_open(&service->set, &service->port, config->drives);
-    for (unsigned i = 0; i < service->set.count; i++) {
-        if (!make_eds(&service->set.drive[i], &service->eds[i])) {
-            message_command_error("out of memory");
-            return STATUS_ENVIRONMENT;
-        }
-    }
+    if (!make_all_eds(service))
+        return STATUS_ENVIRONMENT;
+    if (!load_all_stored(service))
+        return STATUS_INPUT;
     if (config->script != NULL)
         virtual_drives_inject(&service->set, config->script);
+    probe_contact_wire(&service->contact, config->probe, config->machine, &service->set);
     log_start(service);
     virtual_drives_boot(&service->set);
     service->next_ns = link_clock_ns() + service->cycle_ns;

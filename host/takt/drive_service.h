@@ -12,6 +12,7 @@
 #include "bus/link.h"
 #include "drives/virtual_drives.h"
 #include "takt/command.h"
+#include "takt/probe_contact.h"
 
 #include <stdbool.h>
 #include <stdio.h>
@@ -23,8 +24,11 @@ struct drive_service_config {
     bool is_paced;
     const struct virtual_drives_config *drives;
     const struct inject *script; /* NULL: no faults */
-    FILE *log;                   /* one line an event; NULL: none */
-    const char *bus_log;         /* takt/bus_log.h */
+    const struct machine *machine;
+    const struct virtual_probe *probe; /* what touch probes meet, by the machine's axes */
+    FILE *log;                         /* one line an event; NULL: none */
+    const char *bus_log;               /* takt/bus_log.h */
+    const char *store;                 /* folder with what drives store (object 1010); NULL: none */
 };
 
 /* Until a signal comes: STATUS_DONE. Else after a message. */

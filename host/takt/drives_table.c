@@ -38,6 +38,8 @@ static const struct {
     [DRIVES_NO_STOP_OPTION] = {"stop_option", "6007 605A 605E", "the drive stops as it is set up"},
     [DRIVES_NO_HOMING_SPEED] = {"homing_speed", "6099 609A",
                                 "the drive homes as fast as it is set up"},
+    [DRIVES_NO_TOUCH_PROBE] = {"touch_probe", "60B8",
+                               "no touch probe: a probing move has the position of a cycle"},
     [DRIVES_NO_SCALING] = {"scaling", "608F 6091 6092",
                            "is not told: increments_per_mm is believed"},
 };

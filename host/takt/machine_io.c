@@ -1,5 +1,7 @@
 #include "takt/machine_io.h"
 
+#include "hal/outputs.h"
+
 #include <ctype.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -94,5 +96,61 @@ void machine_io_write(const uint8_t bits[IO_BITS_MAX], char *text, size_t size)
         else
             used +=
                 (size_t)snprintf(text + used, size - used, "%s%s%s", space, mark, io_name(kind));
+    }
+}
+
+/* 0: free; n + 1: En. False: neither. */
+static bool read_analogue(const char *word, size_t length, unsigned *wired)
+{
+    *wired = 0;
+    if (length == 1 && word[0] == '-')
+        return true;
+    if (length != 2 || word[0] != 'E' || word[1] < '0' || word[1] >= '0' + OUTPUTS_ANALOGUE_MAX)
+        return false;
+    *wired = (unsigned)(word[1] - '0') + 1;
+    return true;
+}
+
+bool machine_io_read_analogues(uint8_t field[IO_ANALOGUE_MAX / 2], const char *value,
+                               const char *name, struct machine_problem *wrong)
+{
+    uint8_t read[IO_ANALOGUE_MAX / 2] = {0};
+
+    for (unsigned count = 0; *(value += strspn(value, " \t,")) != '\0'; count++) {
+        const size_t length = strcspn(value, " \t,");
+        unsigned wired;
+
+        if (!read_analogue(value, length, &wired)) {
+            (void)snprintf(wrong->text, sizeof wrong->text, "%s: '%.*s' is none of E0 ... E3 and -",
+                           name, (int)(length < IO_WORD_MAX ? length : IO_WORD_MAX), value);
+            return false;
+        }
+        if (count == IO_ANALOGUE_MAX) {
+            (void)snprintf(wrong->text, sizeof wrong->text, "%s: more than %d outputs", name,
+                           IO_ANALOGUE_MAX);
+            return false;
+        }
+        read[count / 2] = (uint8_t)(read[count / 2] | wired << 4 * (count % 2));
+        value += length;
+    }
+    memcpy(field, read, sizeof read);
+    return true;
+}
+
+void machine_io_write_analogues(const uint8_t field[IO_ANALOGUE_MAX / 2], char *text, size_t size)
+{
+    struct io_wiring wiring = {0};
+    size_t used = 0;
+
+    memcpy(wiring.analogue, field, sizeof wiring.analogue);
+    text[0] = '\0';
+    for (unsigned i = 0; i < io_wired_analogues(&wiring) && used < size; i++) {
+        const unsigned wired = io_get_analogue(&wiring, i);
+        const char *space = i > 0 ? " " : "";
+
+        if (wired == 0)
+            used += (size_t)snprintf(text + used, size - used, "%s-", space);
+        else
+            used += (size_t)snprintf(text + used, size - used, "%sE%u", space, wired - 1);
     }
 }

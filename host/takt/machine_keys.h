@@ -35,6 +35,7 @@ enum machine_key_type {
     KEY_LAYERS,
     KEY_OUTPUTS,
     KEY_INPUTS, /* what the bits of an I/O node are */
+    KEY_ANALOGUES,
     KEY_AXIS_TYPE,
     KEY_DRIVE_TYPE,
     KEY_STEP_FORM,

@@ -43,6 +43,8 @@ static void set_rotary(struct machine_setup *setup, unsigned axis)
     setup->drive[axis].plant.pitch_error_period_mm = 10.0 * DEGREE;
     setup->drive[axis].plant.limit_switch_min_mm = -360000.0 * DEGREE;
     setup->drive[axis].plant.limit_switch_max_mm = 360000.0 * DEGREE;
+    setup->drive[axis].plant.hard_stop_min_mm = -720000.0 * DEGREE;
+    setup->drive[axis].plant.hard_stop_max_mm = 720000.0 * DEGREE;
 }
 
 void machine_setup_set_default(struct machine_setup *setup)

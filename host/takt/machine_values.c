@@ -420,6 +420,8 @@ bool machine_key_set(struct machine_setup *setup, struct machine_place place,
     case KEY_OUTPUTS:
     case KEY_INPUTS:
         return machine_io_read(field, value, key->type == KEY_OUTPUTS, key->name, wrong);
+    case KEY_ANALOGUES:
+        return machine_io_read_analogues(field, value, key->name, wrong);
     case KEY_UINT32:
         if (!read_count(key, value, &number, wrong))
             return false;
@@ -519,6 +521,9 @@ void machine_key_get(const struct machine_setup *setup, struct machine_place pla
     case KEY_OUTPUTS:
     case KEY_INPUTS:
         machine_io_write(field, text, size);
+        break;
+    case KEY_ANALOGUES:
+        machine_io_write_analogues(field, text, size);
         break;
     case KEY_UINT32:
         (void)snprintf(text, size, "%u", (unsigned)*(const uint32_t *)field);

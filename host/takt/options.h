@@ -109,6 +109,8 @@ struct options {
     const char *inject; /* scripted faults */
     const char *nodes;  /* of `takt drives` */
     const char *eds;
+    const char *store; /* folder */
+    bool unconfigured;
     const char *log;
     const char *bus_log;
     const char *report;

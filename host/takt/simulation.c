@@ -137,6 +137,7 @@ enum command_status simulation_open(const struct session *session, struct simula
         return status;
     }
     field_watch_drives(&s->field, controller_get_drives(&s->controller));
+    probe_contact_wire(&s->contact, &s->probe, &session->setup.machine, &s->field.drives);
     tool_point_init(&s->tool_point, &session->setup);
     correction_watch_init(&s->correction, s->tool_point.cycle_s);
     s->program = session->program.name;
@@ -173,6 +174,7 @@ static void set_inputs(struct simulation *s)
     struct point at;
 
     controller_get_actual(&s->controller, &at);
+    s->contact.at = at;
     virtual_probe_set_inputs(&s->probe, time_s, &at, &s->inputs);
     s->inputs.feed_override_percent = override_file_at(&s->feed_override, time_s);
     s->inputs.rapid_override_percent = override_file_at(&s->rapid_override, time_s);

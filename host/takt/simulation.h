@@ -15,6 +15,7 @@
 #include "takt/cycle_cost.h"
 #include "takt/field.h"
 #include "takt/override_file.h"
+#include "takt/probe_contact.h"
 #include "takt/session.h"
 #include "takt/tool_point.h"
 #include "target/target.h"
@@ -33,6 +34,7 @@ struct simulation {
     struct announcer announcer; /* of what the program says */
     uint32_t answers;           /* to its questions, so far */
     struct virtual_probe probe;
+    struct probe_contact contact; /* of it and the drives inside */
     struct override_file feed_override, rapid_override;
     struct inputs inputs; /* of the next cycle */
     struct virtual_spindle spindle;

@@ -130,7 +130,10 @@ static void add_responses(cJSON *bus, const struct summary *summary)
         cJSON_AddStringToObject(object, "name", plan->name[i]);
         cJSON_AddNumberToObject(object, "id", plan->message[i].id);
         cJSON_AddNumberToObject(object, "bytes", plan->message[i].length);
-        cJSON_AddNumberToObject(object, "predicted_us", 1e-3 * (double)plan->worst_ns[i]);
+        if (plan->worst_ns[i] != UINT64_MAX)
+            cJSON_AddNumberToObject(object, "predicted_us", 1e-3 * (double)plan->worst_ns[i]);
+        else
+            cJSON_AddNullToObject(object, "predicted_us"); /* there is no bound */
         if (summary->responses_observed)
             cJSON_AddNumberToObject(object, "observed_us", 1e-3 * (double)summary->response_ns[i]);
         else

@@ -73,8 +73,10 @@ static void write_response(FILE *stream, const struct summary *summary)
     uint64_t predicted_ns = 0, observed_ns = 0;
 
     for (unsigned i = 0; i < summary->bus_plan.count; i++) {
-        if (summary->bus_plan.worst_ns[i] > predicted_ns)
-            predicted_ns = summary->bus_plan.worst_ns[i];
+        const uint64_t worst_ns = summary->bus_plan.worst_ns[i];
+
+        if (worst_ns != UINT64_MAX && worst_ns > predicted_ns)
+            predicted_ns = worst_ns;
         if (summary->response_ns[i] > observed_ns)
             observed_ns = summary->response_ns[i];
     }

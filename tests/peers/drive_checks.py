@@ -170,6 +170,47 @@ def check_profile_position(node):
         until("the drive stands at its target", lambda: abs(actual(node) - target_mm * PER_MM) < 0.001 * PER_MM)
 
 
+def check_velocity_and_torque(node):
+    node.op_mode = "PROFILED VELOCITY"
+    node.sdo[0x60FF].raw = 5 * PER_MM
+    until("the velocity is reached", lambda: node.check_statusword() & 0x0400)
+    check("and is that", abs(node.sdo[0x606C].raw - 5 * PER_MM) < 0.5 * PER_MM, node.sdo[0x606C].raw)
+    node.sdo[0x60FF].raw = 0
+    until("the axis stands", lambda: node.check_statusword() & 0x1000)
+    node.sdo[0x6071].raw = 0
+    node.op_mode = "PROFILED TORQUE"
+    node.sdo[0x6071].raw = 10
+    until("the torque is reached", lambda: node.sdo[0x6074].raw == 10)
+    until("the motor turns by it", lambda: node.sdo[0x606C].raw > PER_MM)
+    node.sdo[0x6071].raw = 0
+    node.op_mode = "PROFILED VELOCITY"
+    until("and stands again", lambda: node.check_statusword() & 0x1400 == 0x1400)
+
+
+def check_time(node, network):
+    node.sdo[0x1012].raw = 0x80000100
+    network.time.transmit(1e9)  # s since 1970
+    until("the time of day is taken", lambda: node.sdo[0x2002][2].raw == 1000000000 // 86400 - 5113)  # days to 1984
+
+
+def check_lss(bus, connect):
+    """A drive as it comes from its maker is found, gets its node id and boots."""
+    drives = Drives(bus, "--nodes", str(NODE), "--unconfigured")
+    network = canopen.Network()
+    connect(network, drives.address)
+    found, identity = network.lss.fast_scan()
+    check("a drive without a node id is found", found and identity[1:] == [0x402, 0x10000, NODE], found, identity)
+    expect("it has none", network.lss.inquire_node_id(), 255)
+    network.lss.configure_node_id(NODE)
+    network.lss.store_configuration()
+    network.lss.send_switch_state_global(network.lss.WAITING_STATE)
+    node = network.add_node(NODE, f"takt-drive-{NODE}.eds")
+    network.nmt.send_command(130)
+    expect("it answers by its new id", node.sdo[0x1018][4].raw, NODE)
+    network.disconnect()
+    drives.stop()
+
+
 def check_homing(node):
     node.sdo[0x6098].raw = 34  # the next index pulse, at 10 mm
     check("homing succeeds", node.homing(timeout=PATIENCE_S))
@@ -252,6 +293,8 @@ def check_bus(bus, connect):
     network.sync.start(0.01)
     check_enabling(node)
     check_profile_position(node)
+    check_velocity_and_torque(node)
+    check_time(node, network)
     check_homing(node)
     check_cyclic_position(node, network)
     check_fault(node, network)
@@ -264,4 +307,5 @@ def check_bus(bus, connect):
     for line in ("node 2: EMCY 8611", "node 2: homing attained, method 34", "node 2: mode profile position",
                  "node 2: fault -> switch on disabled"):
         check(f"the log has '{line}'", line in log, log)
+    check_lss(bus, connect)
     print(f"{bus}: {held} claims held")

@@ -169,6 +169,39 @@ for line in ("node 2: boot-up", "node 2: SDO for 5000:00 aborted: 06020000", "no
              "node 2: EMCY 0000: errors are gone, register 00"):
     t.check(re.search(rf"^\d+\.\d{{6}} {re.escape(line)}$", log, re.MULTILINE), f"the log has: {line}", log)
 
+# ---- What is stored ----
+
+os.mkdir("stored")
+for value, stored in ((1234, True), (5678, False)):
+    drives, hand = open_drives("--quiet", "--log", "-", "--store", "stored")
+    t.check(hand.read(0x6081) == (5000000 if stored else 1234), "stored values are there at the next start", hand.read(0x6081))
+    hand.write(0x6081, 0, 4, value)
+    if stored:
+        t.check(hand.write(0x1010, 1, 4, 0x65766173)[0] == 0x60, "values are stored")
+    close_drives(drives)
+with open("stored/takt-drive-2.store") as file:
+    t.check(file.read() == "# stored by node 2, object 1010\n6081:00 000004D2\n", "and can be read")
+drives, hand = open_drives("--quiet", "--log", "-", "--store", "no/such/folder")
+t.check(hand.write(0x1010, 1, 4, 0x65766173) == (0x80, 0x06060000), "a drive whose memory fails says so")
+close_drives(drives)
+t.write("stored/takt-drive-2.store", "6081:00 000004D2\n6041:00 0000\n")
+refused(["--bus", "slcan:pty", "--nodes", "2", "--quiet", "--store", "stored"],
+        "stored/takt-drive-2.store:2:0: error: node 2 has no object 6041:00 that can be stored")
+refused(["--eds", ".", "--store", "stored"], "--store needs --bus")
+
+# ---- Without a node id ----
+
+drives, hand = open_drives("--unconfigured")
+for request, answer in ((b"\x4c", 0x50), (b"\x51\0\0\0\0\x80", 0x4F), (b"\x04\x01", None), (b"\x5d", 0x5D), (b"\x11\x02", 0x11)):
+    hand.send(0x7E5, request.ljust(8, b"\0"))
+    got = hand.wait_for(0x7E4) if answer else None
+    t.check(not answer or got[0] == answer, f"LSS {request.hex()} is answered", got)
+t.check(b"t702" not in hand.all, "a node without an id does not boot")
+hand.send(0x000, bytes([130, 0]))
+t.check(hand.wait_for(0x702) == b"\0", "with an id it does")
+t.check(hand.read(0x1018, 4) == 2, "and answers")
+close_drives(drives)
+
 # ---- Whose clock ----
 
 # A SYNC is a millisecond, however fast they come: 101 of them are 100 ms, and five heartbeats.

@@ -73,7 +73,7 @@ t.check(status == 0 and abs(starts[1] - starts[3]) < 0.01 < ends[3] - starts[3],
 status, err, _ = run("axis.Y.home_order=1", "axis.Y.home_method=17", "axis.Y.home_timeout_s=0.5")
 t.check(status == 1 and "homing of axis Y (node 2) has not ended within 0.5 s" in err, "a switch too far is given up", err)
 
-status, err, _ = run("axis.Y.home_order=1", "axis.Y.home_method=5")
+status, err, _ = run("axis.Y.home_order=1", "axis.Y.home_method=15")
 t.check(status == 1 and "axis Y (node 2), object 6098:00, refuses with abort code 06090030: invalid value" in err,
         "a method the drive does not know is refused", err)
 

@@ -83,6 +83,28 @@ def check_digest():
     t.check(plain[0] == with_io[0] == 0 and same, "an I/O node changes no setpoint")
 
 
+def check_analogues():
+    """M67 with the motion, M68 at once; what the node has is what the program says, and 0 when it is left."""
+    machine = t.write("analogue.ini", "[io 1]\nnode = 20\nanalogue_outputs = E1 - E0\n")
+    program = t.write("laser.ngc", "G21 G90 F3000\nM68 E0 Q25\nM67 E1 Q-100\nG1 X5\nM67 E1 Q200\nG1 X10\nM68 E0 Q0\nM68 E1 Q0\nM2\n")
+    status, _, err = t.run("run", program, "--machine", machine, "--bus-log", "laser.log", "--json", "laser.json")
+    t.check(status == 0, "a program with analogue outputs runs", err)
+    values = [data for _, data in frames("laser.log", "314")]
+    steps = [data for i, data in enumerate(values) if i == 0 or data != values[i - 1]]
+    t.check(steps == ["0" * 16, "0180000000200000", "FF7F000000200000", "0" * 16],
+            "every analogue output is on the bus", steps)
+    times = [time for time, _ in frames("laser.log", "314")]
+    t.check(max(b - a for a, b in zip(times, times[1:])) < 1.5, "in every cycle")
+    both = bus_pair.run_both(machine, program, "takt drives has analogue outputs, too")
+    if both:
+        bus_pair.compare("outside", *both)
+    for value, said in (("E4", "'E4' is none of E0 ... E3 and -"), ("E0 E0 E0 E0 E0", "more than 4 outputs")):
+        status, _, err = t.run("machine", "--set", "io.1.node=20", "--set", f"io.1.analogue_outputs={value}")
+        t.check(status == 2 and said in err, f"analogue_outputs={value} is refused", status, err)
+    status, out, err = t.run("machine", machine)
+    t.check("analogue_outputs = E1 - E0\n" in out, "and what is taken is printed", err)
+
+
 def check_outside():
     """The same in two processes: the trace is that of the embedded bus."""
     both = bus_pair.run_both(MACHINE, LOOP, "takt drives has I/O nodes, too")
@@ -111,6 +133,7 @@ def check_service():
 check_outputs()
 check_stops()
 check_digest()
+check_analogues()
 check_outside()
 check_service()
 t.finish()

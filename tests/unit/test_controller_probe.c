@@ -17,6 +17,7 @@ static struct reader reader;
 static struct offset offset;
 static struct controller_probe probe;
 static struct inputs inputs;
+static struct drives drives; /* none: there is no touch probe */
 static struct move executed;
 static struct point setpoint;
 static struct diagnostic error;
@@ -51,7 +52,7 @@ static void read_question(void)
 
     while ((result = offset_next(&offset, &reader.program, &executed, &reader.diagnostic)) ==
            PROGRAM_MOVE) {
-        controller_probe_ask(&probe, &executed, CYCLE_S);
+        (void)controller_probe_ask(&probe, &executed, CYCLE_S, false);
         if (probe.state == PROBE_ASKED) {
             break;
         }
@@ -60,14 +61,14 @@ static void read_question(void)
 }
 
 /* Where the axes are, and what the probe says there. */
-static struct point look(void)
+static struct controller_place look(void)
 {
     struct point actual = setpoint;
 
     actual.at[AXIS_X] -= LAG_MM;
     inputs.probe_contact =
         actual.at[AXIS_X] >= touches_from_mm && actual.at[AXIS_X] < touches_to_mm;
-    return actual;
+    return (struct controller_place){.reported = actual, .actual = actual};
 }
 
 /* The fake motion: the probing move until it ends, or until it has braked. */
@@ -77,9 +78,9 @@ static void run_probing(void)
 
     while (setpoint.at[AXIS_X] < end_mm) {
         setpoint.at[AXIS_X] += 1.0;
-        const struct point actual = look();
+        const struct controller_place at = look();
 
-        if (controller_probe_watch(&probe, &executed, &inputs, &actual)) {
+        if (controller_probe_watch(&probe, &executed, &inputs, &at)) {
             end_mm = maths_min(end_mm, setpoint.at[AXIS_X] + BRAKING_MM);
         }
     }
@@ -88,9 +89,9 @@ static void run_probing(void)
 /* One cycle at rest. */
 static bool rest(void)
 {
-    const struct point actual = look();
+    const struct controller_place at = look();
 
-    return controller_probe_rest(&probe, &inputs, &setpoint, &actual);
+    return controller_probe_rest(&probe, &inputs, &drives, &setpoint, &at);
 }
 
 static void answer_program(void)
@@ -211,7 +212,9 @@ static void test_contact_while_the_axes_catch_up_at_the_end_still_counts(void)
     read_question();
     run_probing();
     inputs.probe_contact = true;
-    TEST_ASSERT_TRUE(controller_probe_rest(&probe, &inputs, &setpoint, &setpoint));
+    TEST_ASSERT_TRUE(controller_probe_rest(
+        &probe, &inputs, &drives, &setpoint,
+        &(struct controller_place){.reported = setpoint, .actual = setpoint}));
     answer_program();
     TEST_ASSERT_EQUAL_INT(TAKT_OK, error.code);
     expect_rapid_to(30.0);
@@ -233,9 +236,9 @@ static void test_other_motions_do_not_ask_the_probe(void)
     open_text("F60 G38.2 X30\n");
     read_question();
     executed.kind = MOVE_FEED;
-    const struct point actual = look();
+    const struct controller_place at = look();
 
-    TEST_ASSERT_FALSE(controller_probe_watch(&probe, &executed, &inputs, &actual));
+    TEST_ASSERT_FALSE(controller_probe_watch(&probe, &executed, &inputs, &at));
 }
 
 static void expect_value(double value)

@@ -13,9 +13,16 @@ static uint8_t levels;        /* its inputs, sent after every SYNC while it is s
 static unsigned frames_of_io; /* with outputs */
 static uint8_t shown_outputs;
 static struct outputs outputs;
+static struct can_frame analogues; /* the last one with analogue outputs */
+static unsigned frames_of_analogues;
 
 static bool io_send(void *context, const struct can_frame *frame)
 {
+    if (frame->id == PDO_RPDO2_FUNCTION + IO_NODE) {
+        frames_of_analogues++;
+        analogues = *frame;
+        return true;
+    }
     if (frame->id == PDO_RPDO1_FUNCTION + IO_NODE) {
         frames_of_io++;
         shown_outputs = frame->data[0];
@@ -182,8 +189,7 @@ static void test_more_bits_than_the_node_has_are_refused(void)
 {
     enable(&(const struct io_wiring){.output = {0, 0, 0, 0, 0, 0, 0, 0, IO_FLOOD}});
     assert_text(
-        "I/O node 20, object 1600:00, is 0001: the bits that are wired are not in the first "
-        "PDO of the node");
+        "I/O node 20, object 1600:00, is 0001: what is wired is not in the first PDOs of the node");
 }
 
 /* What the node answers to one request leads to. */
@@ -212,8 +218,8 @@ static void test_a_node_of_no_use_is_refused_with_the_reason(void)
                  "I/O node 20, object 1600:01, does not answer within 10 ms");
     check_answer((struct fake_rule){.object = SDO_OBJECT(0x1A00, 0), .value = 9},
                  TAKT_ERROR_IO_UNMAPPED,
-                 "I/O node 20, object 1A00:00, is 0009: the bits that are wired are not in the "
-                 "first PDO of the node");
+                 "I/O node 20, object 1A00:00, is 0009: what is wired is not in the first PDOs of "
+                 "the node");
 }
 
 static void test_a_node_that_is_not_there_is_named(void)
@@ -272,6 +278,63 @@ static void test_a_node_without_inputs_is_watched_by_its_heartbeat(void)
     TEST_ASSERT_EQUAL_INT(TAKT_ERROR_IO_HEARTBEAT, drives_get_fault(&drives)->code);
 }
 
+static void enable_analogues(uint32_t count, uint32_t first)
+{
+    set_rule((struct fake_rule){.node = IO_NODE, .object = SDO_OBJECT(0x1601, 0), .value = count});
+    set_rule((struct fake_rule){.node = IO_NODE, .object = SDO_OBJECT(0x1601, 1), .value = first});
+    frames_of_analogues = 0;
+    /* the first is E2, the second free, the third E0 */
+    enable(&(const struct io_wiring){.input = {IO_PROGRAM}, .analogue = {0x03, 0x01}});
+}
+
+static int analogue(unsigned channel)
+{
+    return (int16_t)little_endian_read16(analogues.data + (size_t)2 * channel);
+}
+
+/* Per cent of the range, which ends at 32767 on both sides; what is not wired is 0. */
+static void test_analogue_outputs_are_sent_in_every_cycle(void)
+{
+    enable_analogues(4, 0x64110110);
+    TEST_ASSERT_EQUAL_INT(DRIVES_ENABLED, drives_get_state(&drives));
+    outputs.analogue[0] = 50;
+    outputs.analogue[1] = 77;
+    outputs.analogue[2] = -100;
+    frames_of_analogues = 0;
+    run(10);
+    TEST_ASSERT_EQUAL_UINT(10, frames_of_analogues);
+    TEST_ASSERT_EQUAL_UINT8(8, analogues.length);
+    TEST_ASSERT_EQUAL_INT(-32767, analogue(0));
+    TEST_ASSERT_EQUAL_INT(0, analogue(1));
+    TEST_ASSERT_EQUAL_INT(16384, analogue(2));
+    TEST_ASSERT_EQUAL_INT(0, analogue(3));
+    outputs.analogue[0] = 1e9;
+    run(1);
+    TEST_ASSERT_EQUAL_INT(32767, analogue(2));
+}
+
+static void test_analogue_outputs_must_be_in_the_second_rpdo(void)
+{
+    enable_analogues(2, 0x64110110);
+    assert_text(
+        "I/O node 20, object 1601:00, is 0002: what is wired is not in the first PDOs of the node");
+    setUp();
+    enable_analogues(4, 0x62000108);
+    assert_text("I/O node 20, object 1601:01, is 62000108: what is wired is not in the first PDOs "
+                "of the node");
+}
+
+static void test_analogue_outputs_load_every_cycle(void)
+{
+    struct drives_load with, without;
+    const struct io_wiring plain = {.node = IO_NODE, .input = {IO_PROGRAM}};
+    struct io_wiring wired = plain;
+    wired.analogue[0] = 0x21;
+    (void)drives_predict_whole_load(3, &plain, 1, 1000000, 1000, &without);
+    (void)drives_predict_whole_load(3, &wired, 1, 1000000, 1000, &with);
+    TEST_ASSERT_EQUAL_UINT32(without.bits + 55 + 10 * 4, with.bits);
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -288,5 +351,8 @@ int main(void)
     RUN_TEST(test_a_node_that_fails_in_operation_is_a_fault);
     RUN_TEST(test_a_node_without_inputs_is_watched_by_its_heartbeat);
     RUN_TEST(test_more_bits_than_the_node_has_are_refused);
+    RUN_TEST(test_analogue_outputs_are_sent_in_every_cycle);
+    RUN_TEST(test_analogue_outputs_must_be_in_the_second_rpdo);
+    RUN_TEST(test_analogue_outputs_load_every_cycle);
     return UNITY_END();
 }

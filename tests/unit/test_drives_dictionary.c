@@ -142,6 +142,43 @@ static void test_a_drive_of_a_sheet_has_its_objects_and_no_others(void)
     TEST_ASSERT_EQUAL_INT(CIA402_READY, virtual_drive_get_state(&lone.drive));
 }
 
+/* A sheet may be wrong in any way; what does not fit into a frame any more is left out. */
+static void test_a_mapping_of_a_sheet_that_is_longer_than_a_frame_ends_with_the_frame(void)
+{
+    read_sheet(DRIVE "[6041]\nDataType=6\nAccessType=ro\nPDOMapping=1\n"
+                     "[6064]\nDataType=4\nAccessType=ro\nPDOMapping=1\n"
+                     "[60F4]\nDataType=4\nAccessType=ro\nPDOMapping=1\n"
+                     "[1800sub1]\nDataType=7\nDefaultValue=$NODEID+0x180\n"
+                     "[1800sub2]\nDataType=5\nDefaultValue=1\n"
+                     "[1A00sub0]\nDataType=5\nDefaultValue=3\n"
+                     "[1A00sub1]\nDataType=7\nDefaultValue=0x60640020\n"
+                     "[1A00sub2]\nDataType=7\nDefaultValue=0x60F40020\n"
+                     "[1A00sub3]\nDataType=7\nDefaultValue=0x60410010\n");
+    lone_set_default(&lone);
+    lone.config.dictionary = &sheet;
+    lone_start(&lone);
+    lone_nmt(&lone, NMT_START);
+    lone_sync(&lone);
+    TEST_ASSERT_EQUAL_UINT(8, lone_find(&lone, 0x180 + LONE_NODE)->length);
+}
+
+/* Bit 30 of 1005 says that a node sends SYNC; the identifier is below it. */
+static void test_bits_above_the_identifier_of_sync_do_not_count(void)
+{
+    read_sheet(DRIVE "[6041]\nDataType=6\nAccessType=ro\nPDOMapping=1\n"
+                     "[1005]\nDataType=7\nDefaultValue=0x40000081\n"
+                     "[1800sub1]\nDataType=7\nDefaultValue=$NODEID+0x180\n"
+                     "[1800sub2]\nDataType=5\nDefaultValue=1\n"
+                     "[1A00sub0]\nDataType=5\nDefaultValue=1\n"
+                     "[1A00sub1]\nDataType=7\nDefaultValue=0x60410010\n");
+    lone_set_default(&lone);
+    lone.config.dictionary = &sheet;
+    lone_start(&lone);
+    lone_nmt(&lone, NMT_START);
+    lone_take(&lone, 0x081, 0, 0, 0);
+    TEST_ASSERT_NOT_NULL(lone_find(&lone, 0x180 + LONE_NODE));
+}
+
 /* A drive that takes its time hears nothing before it has booted, and answers as late as it says. */
 static void test_booting_and_answering_take_their_time(void)
 {
@@ -247,6 +284,8 @@ int main(void)
     RUN_TEST(test_a_mapping_has_no_more_entries_than_the_sheet_and_a_frame);
     RUN_TEST(test_what_is_no_data_sheet_is_told_so);
     RUN_TEST(test_a_drive_of_a_sheet_has_its_objects_and_no_others);
+    RUN_TEST(test_a_mapping_of_a_sheet_that_is_longer_than_a_frame_ends_with_the_frame);
+    RUN_TEST(test_bits_above_the_identifier_of_sync_do_not_count);
     RUN_TEST(test_booting_and_answering_take_their_time);
     RUN_TEST(test_any_bytes_are_read_or_refused);
     return UNITY_END();

@@ -1,5 +1,5 @@
 /*
- * Modes of operation of the drive: profile position, homing, interpolated and cyclic position, and
+ * Modes of operation of the drive but for homing: profile position, interpolated and cyclic position, and
  * what the option codes say of stopping. 1000 increments/mm, a cycle of 1 ms.
  */
 #include "lone_drive.h"
@@ -20,6 +20,7 @@
 #define REACHED 0x0400
 #define BIT_12  0x1000
 #define BIT_13  0x2000
+#define LIMITED 0x0800 /* internal limit active */
 
 static struct lone_drive lone;
 
@@ -184,9 +185,15 @@ static void test_targets_beyond_the_software_limits_end_at_them(void)
     go(5000, 0);
     lone_step(&lone, 1000);
     TEST_ASSERT_TRUE(command_mm() == 2);
+    TEST_ASSERT_TRUE(lone_statusword(&lone) & LIMITED);
     go(-5000, 0);
     lone_step(&lone, 1000);
     TEST_ASSERT_TRUE(command_mm() == -1);
+    TEST_ASSERT_TRUE(lone_statusword(&lone) & LIMITED);
+    go(2500, REL); /* from the limit, not from what was wanted */
+    lone_step(&lone, 1000);
+    TEST_ASSERT_TRUE(command_mm() == 1.5);
+    TEST_ASSERT_FALSE(lone_statusword(&lone) & LIMITED);
 }
 
 static void test_without_a_rising_bit_4_nothing_moves(void)
@@ -200,122 +207,6 @@ static void test_without_a_rising_bit_4_nothing_moves(void)
     lone_control(&lone, ENABLE | NEW, PP);
     lone_step(&lone, 1000);
     TEST_ASSERT_TRUE(command_mm() == 5);
-}
-
-/* ---- Homing ---- */
-
-static void home_with(uint8_t method, double start_mm)
-{
-    lone_set_default(&lone);
-    lone.config.plant.start_mm = start_mm;
-    lone.config.plant.absolute_encoder = 0;
-    lone.config.plant.limit_switch_min_mm = -12.345;
-    lone.config.plant.limit_switch_max_mm = 23.456;
-    lone.config.plant.home_switch_mm = 3.21;
-    lone_start(&lone);
-    TEST_ASSERT_EQUAL_HEX32(0, lone_write(&lone, 0x6098, 0, 1, method));
-    lone_enable(&lone, HM);
-    lone_control(&lone, ENABLE | NEW, HM);
-}
-
-static uint16_t run_homing(void)
-{
-    for (unsigned k = 0; k < 30000; k++) {
-        uint16_t status = lone_statusword(&lone) & (REACHED | BIT_12 | BIT_13);
-        if (status != 0)
-            return status;
-        lone_step(&lone, 1);
-    }
-    return 0;
-}
-
-/* Where position 0 is on the axis. */
-static double zero_mm(void)
-{
-    return virtual_drive_get_position_mm(&lone.drive) - lone_actual(&lone) / 1000.0;
-}
-
-/* Pulses are at multiples of 10 mm. */
-static void test_every_method_finds_its_home_from_every_side(void)
-{
-    static const struct {
-        uint8_t method;
-        double home_mm;
-    } rows[] = {{1, -10},      {2, 20},      {3, 0},     {4, 10},
-                {17, -12.345}, {18, 23.456}, {19, 3.21}, {20, 3.21}};
-    static const double starts_mm[] = {-12.5, -7.3, 0.4, 3.3, 18.8, 23.6};
-    for (unsigned i = 0; i < sizeof rows / sizeof rows[0]; i++) {
-        for (unsigned k = 0; k < sizeof starts_mm / sizeof starts_mm[0]; k++) {
-            home_with(rows[i].method, starts_mm[k]);
-            TEST_ASSERT_EQUAL_HEX16(REACHED | BIT_12, run_homing());
-            TEST_ASSERT_TRUE(fabs(zero_mm() - rows[i].home_mm) < 0.001);
-        }
-    }
-}
-
-static void test_index_pulses_are_the_next_in_their_direction(void)
-{
-    home_with(33, 4);
-    TEST_ASSERT_EQUAL_HEX16(REACHED | BIT_12, run_homing());
-    TEST_ASSERT_TRUE(fabs(zero_mm() - 0) < 0.001);
-    home_with(34, 4);
-    TEST_ASSERT_EQUAL_HEX16(REACHED | BIT_12, run_homing());
-    TEST_ASSERT_TRUE(fabs(zero_mm() - 10) < 0.001);
-}
-
-static void test_bit_10_is_set_while_idle_and_falls_with_the_controlword_that_starts(void)
-{
-    lone.config.plant.absolute_encoder = 0;
-    lone_start(&lone);
-    (void)lone_write(&lone, 0x6098, 0, 1, 33);
-    lone_enable(&lone, HM);
-    TEST_ASSERT_EQUAL_HEX16(REACHED, lone_statusword(&lone) & (REACHED | BIT_12 | BIT_13));
-    lone_control(&lone, ENABLE | NEW, HM);
-    TEST_ASSERT_EQUAL_HEX16(0, lone_statusword(&lone) & (REACHED | BIT_12 | BIT_13));
-}
-
-static void test_a_drive_with_an_absolute_encoder_is_homed_at_power_on(void)
-{
-    lone_enable(&lone, HM);
-    TEST_ASSERT_EQUAL_HEX16(REACHED | BIT_12, lone_statusword(&lone) & (REACHED | BIT_12 | BIT_13));
-}
-
-/* CiA 402: the zero position is the home position plus the home offset. */
-static void test_home_is_at_minus_the_home_offset(void)
-{
-    lone.config.plant.start_mm = 2;
-    lone_start(&lone);
-    (void)lone_write(&lone, 0x607C, 0, 4, 1500);
-    (void)lone_write(&lone, 0x6098, 0, 1, 37);
-    lone_enable(&lone, HM);
-    lone_control(&lone, ENABLE | NEW, HM);
-    lone_step(&lone, 2);
-    TEST_ASSERT_EQUAL_INT(-1500, lone_actual(&lone));
-    TEST_ASSERT_EQUAL_INT(-1500, (int32_t)lone_read(&lone, 0x607A, 0));
-    TEST_ASSERT_TRUE(fabs(zero_mm() - 3.5) < 0.001);
-}
-
-static void test_homing_that_runs_into_the_other_end_fails_and_may_be_tried_again(void)
-{
-    home_with(3, 0);
-    lone.drive.config.plant.home_switch_mm = 100;
-    TEST_ASSERT_EQUAL_HEX16(BIT_13, run_homing() & BIT_13);
-    lone_step(&lone, 500);
-    TEST_ASSERT_EQUAL_HEX16(BIT_13 | REACHED, lone_statusword(&lone) & (REACHED | BIT_12 | BIT_13));
-    lone.drive.config.plant.home_switch_mm = 3.21;
-    lone_control(&lone, ENABLE, HM);
-    lone_control(&lone, ENABLE | NEW, HM);
-    TEST_ASSERT_EQUAL_HEX16(REACHED | BIT_12, run_homing());
-}
-
-static void test_homing_is_interrupted_when_bit_4_falls(void)
-{
-    home_with(17, 0);
-    lone_step(&lone, 300);
-    lone_control(&lone, ENABLE, HM);
-    lone_step(&lone, 300);
-    TEST_ASSERT_EQUAL_HEX16(REACHED, lone_statusword(&lone) & (REACHED | BIT_12 | BIT_13));
-    TEST_ASSERT_TRUE(lone.drive.plant.command_velocity_mm_s == 0);
 }
 
 /* ---- Cyclic and interpolated position ---- */
@@ -361,6 +252,17 @@ static void test_cyclic_targets_are_held_within_the_software_limits(void)
     target_by_pdo(20);
     lone_step(&lone, 2);
     TEST_ASSERT_TRUE(command_mm() == 0.015);
+    TEST_ASSERT_TRUE(lone_statusword(&lone) & LIMITED);
+    TEST_ASSERT_EQUAL_HEX32(2 | 8, lone_read(&lone, 0x1002, 0)); /* by its target; it is homed */
+    target_by_pdo(15);
+    lone_step(&lone, 2);
+    TEST_ASSERT_FALSE(lone_statusword(&lone) & LIMITED);
+    TEST_ASSERT_EQUAL_HEX32(8, lone_read(&lone, 0x1002, 0));
+    target_by_pdo(20);
+    lone_step(&lone, 2);
+    lone_control(&lone, CIA402_SHUTDOWN, CSP);
+    lone_step(&lone, 1);
+    TEST_ASSERT_FALSE(lone_statusword(&lone) & LIMITED);
 }
 
 static void test_interpolated_position_follows_60C1_while_bit_4_is_set(void)
@@ -385,19 +287,19 @@ static void test_interpolated_position_follows_60C1_while_bit_4_is_set(void)
 static void test_a_mode_the_drive_does_not_have_is_not_taken(void)
 {
     lone_enable(&lone, CSP);
-    lone_control(&lone, ENABLE, 3);
+    lone_control(&lone, ENABLE, 2);
     TEST_ASSERT_EQUAL_UINT32(CSP, lone_read(&lone, 0x6061, 0));
-    TEST_ASSERT_EQUAL_UINT32(3, lone_read(&lone, 0x6060, 0));
+    TEST_ASSERT_EQUAL_UINT32(2, lone_read(&lone, 0x6060, 0));
     lone_control(&lone, ENABLE, PP);
     TEST_ASSERT_EQUAL_UINT32(PP, lone_read(&lone, 0x6061, 0));
 }
 
 static void test_every_mode_of_6502_is_taken(void)
 {
-    static const uint8_t modes[] = {PP, HM, IP, CSP};
+    static const uint8_t modes[] = {PP, 3, 4, HM, IP, CSP, 9, 10};
     uint32_t supported = lone_read(&lone, 0x6502, 0);
-    TEST_ASSERT_EQUAL_HEX32(0xE1, supported);
-    for (unsigned i = 0; i < 4; i++) {
+    TEST_ASSERT_EQUAL_HEX32(0x3ED, supported);
+    for (unsigned i = 0; i < sizeof modes; i++) {
         TEST_ASSERT_TRUE(supported >> (modes[i] - 1) & 1);
         TEST_ASSERT_EQUAL_HEX32(0, lone_write(&lone, 0x6060, 0, 1, modes[i]));
         TEST_ASSERT_EQUAL_UINT32(modes[i], lone_read(&lone, 0x6061, 0));
@@ -534,13 +436,6 @@ int main(void)
     RUN_TEST(test_halt_stops_and_lets_go_on);
     RUN_TEST(test_targets_beyond_the_software_limits_end_at_them);
     RUN_TEST(test_without_a_rising_bit_4_nothing_moves);
-    RUN_TEST(test_every_method_finds_its_home_from_every_side);
-    RUN_TEST(test_index_pulses_are_the_next_in_their_direction);
-    RUN_TEST(test_bit_10_is_set_while_idle_and_falls_with_the_controlword_that_starts);
-    RUN_TEST(test_a_drive_with_an_absolute_encoder_is_homed_at_power_on);
-    RUN_TEST(test_home_is_at_minus_the_home_offset);
-    RUN_TEST(test_homing_that_runs_into_the_other_end_fails_and_may_be_tried_again);
-    RUN_TEST(test_homing_is_interrupted_when_bit_4_falls);
     RUN_TEST(test_a_target_is_reached_in_the_interpolation_period);
     RUN_TEST(test_offsets_add_to_target_velocity_and_torque);
     RUN_TEST(test_cyclic_targets_are_held_within_the_software_limits);

@@ -1,9 +1,14 @@
 /*
  * The drive as a node of CiA 301: heartbeats, errors, PDOs that are mapped anew, stored parameters.
  */
+#define _POSIX_C_SOURCE 200809L /* fmemopen */
+
 #include "lone_drive.h"
 
 #include "canopen/emcy.h"
+#include "drives/drive_store.h"
+
+#include <stdio.h>
 
 static struct lone_drive lone;
 
@@ -326,6 +331,54 @@ static void test_sync_may_have_another_identifier(void)
     TEST_ASSERT_EQUAL_UINT(1, count_sent(0x185));
 }
 
+/* ---- Clocks ---- */
+
+/* RPDO2, the target, is taken within 300 us of a SYNC; the frames come so much behind it. */
+static void test_targets_behind_the_window_of_1007_are_none(void)
+{
+    static const uint32_t behind_us[] = {299, 301, 300};
+    static const int32_t expected_inc[] = {1, 1, 3};
+    TEST_ASSERT_EQUAL_HEX32(0, lone_write(&lone, 0x1007, 0, 4, 300));
+    lone_enable(&lone, 8);
+    for (unsigned i = 0; i < 3; i++) {
+        const struct can_frame sync = {.id = 0x080};
+        const struct can_frame target = {.id = 0x305, .length = 4, .data = {(uint8_t)(i + 1)}};
+        uint64_t sync_ns = 1000000000u + i * LONE_CYCLE_NS;
+        lone.sent_count = 0;
+        virtual_drive_on_frame_at(&lone.drive, &sync, sync_ns);
+        virtual_drive_on_frame_at(&lone.drive, &target, sync_ns + behind_us[i] * UINT64_C(1000));
+        virtual_drive_on_frame_at(&lone.drive, &sync, sync_ns + 999999);
+        TEST_ASSERT_EQUAL_INT(expected_inc[i], (int32_t)lone_read(&lone, 0x607A, 0));
+    }
+}
+
+static void test_the_time_of_day_is_taken_where_1012_says_so_and_goes_on(void)
+{
+    struct can_frame frame;
+    const struct time_stamp time = {.ms = TIME_MS_PER_DAY - 1, .days = 15000};
+    time_stamp_write(&frame, &time);
+    virtual_drive_on_frame(&lone.drive, &frame);
+    TEST_ASSERT_EQUAL_UINT32(0, lone_read(&lone, 0x2002, 2));
+    TEST_ASSERT_EQUAL_HEX32(0, lone_write(&lone, 0x1012, 0, 4, 0x80000000 | 0x100));
+    virtual_drive_on_frame(&lone.drive, &frame);
+    TEST_ASSERT_EQUAL_UINT32(15000, lone_read(&lone, 0x2002, 2));
+    TEST_ASSERT_EQUAL_UINT32(TIME_MS_PER_DAY - 1, lone_read(&lone, 0x2002, 1));
+    lone_step(&lone, 6);
+    TEST_ASSERT_EQUAL_UINT32(15001, lone_read(&lone, 0x2002, 2));
+    TEST_ASSERT_EQUAL_UINT32(5, lone_read(&lone, 0x2002, 1));
+    TEST_ASSERT_EQUAL_HEX32(0x06090030, lone_write(&lone, 0x1012, 0, 4, 0x80000000 | 0x101));
+    TEST_ASSERT_EQUAL_HEX32(0x06090030, lone_write(&lone, 0x1012, 0, 4, 0x40000100));
+}
+
+static void test_the_high_resolution_time_counts_on_from_what_is_written(void)
+{
+    lone_step(&lone, 3);
+    TEST_ASSERT_EQUAL_UINT32(3000, lone_read(&lone, 0x1013, 0));
+    TEST_ASSERT_EQUAL_HEX32(0, lone_write(&lone, 0x1013, 0, 4, 0xFFFFFFFF));
+    lone_step(&lone, 2);
+    TEST_ASSERT_EQUAL_UINT32(1999, lone_read(&lone, 0x1013, 0));
+}
+
 /* ---- Stored parameters ---- */
 
 static void test_a_reset_forgets_what_was_not_stored(void)
@@ -353,6 +406,96 @@ static void test_stored_parameters_survive_a_reset_until_defaults_are_restored(v
     TEST_ASSERT_EQUAL_UINT32(50000, lone_read(&lone, 0x6081, 0));
 }
 
+static unsigned kept;
+static bool keeps;
+static char kept_text[4096];
+
+static bool keep(void *context, const struct virtual_drive *drive)
+{
+    FILE *stream = fmemopen(context, sizeof kept_text, "w");
+    TEST_ASSERT_NOT_NULL(stream);
+    drive_store_write(stream, drive);
+    (void)fclose(stream);
+    kept++;
+    return keeps;
+}
+
+static void keep_stored(bool succeeds)
+{
+    keeps = succeeds;
+    kept = 0;
+    virtual_drive_keep(&lone.drive, &(struct drive_keeper){keep, kept_text});
+}
+
+static void test_what_is_stored_is_kept_and_is_there_at_the_next_power_on(void)
+{
+    struct drive_store_problem wrong;
+    keep_stored(true);
+    (void)lone_write(&lone, 0x1017, 0, 2, 100);
+    (void)lone_write(&lone, 0x6081, 0, 4, 1234);
+    (void)lone_write(&lone, 0x607D, 1, 4, (uint32_t)-5);
+    (void)lone_write(&lone, 0x2000, 0, 2, 0x5A58); /* XZ */
+    (void)lone_write(&lone, 0x1800, 1, 4, 0xC0000185);
+    (void)lone_write(&lone, 0x607A, 0, 4, 77);
+    TEST_ASSERT_EQUAL_UINT(0, kept);
+    TEST_ASSERT_EQUAL_HEX32(0, lone_write(&lone, 0x1010, 1, 4, 0x65766173));
+    TEST_ASSERT_EQUAL_UINT(1, kept);
+    TEST_ASSERT_EQUAL_STRING("# stored by node 5, object 1010\n1017:00 0064\n"
+                             "1800:01 C0000185\n2000:00 \"585A\"\n607D:01 FFFFFFFB\n"
+                             "6081:00 000004D2\n",
+                             kept_text);
+    lone_start(&lone);
+    TEST_ASSERT_EQUAL_UINT32(0, lone_read(&lone, 0x1017, 0));
+    const struct can_port port = {.send = lone_send, .receive = lone_receive, .context = &lone};
+    virtual_drive_init(&lone.drive, &lone.config, NULL, &port);
+    TEST_ASSERT_TRUE(drive_store_read(&lone.drive, kept_text, strlen(kept_text), &wrong));
+    virtual_drive_boot(&lone.drive);
+    TEST_ASSERT_EQUAL_UINT32(100, lone_read(&lone, 0x1017, 0));
+    TEST_ASSERT_EQUAL_UINT32(1234, lone_read(&lone, 0x6081, 0));
+    TEST_ASSERT_EQUAL_HEX32(0xFFFFFFFB, lone_read(&lone, 0x607D, 1));
+    TEST_ASSERT_EQUAL_HEX32(0xC0000185, lone_read(&lone, 0x1800, 1));
+    lone_nmt(&lone, NMT_START);
+    lone_sync(&lone);
+    TEST_ASSERT_EQUAL_UINT(0, lone.sent_count); /* TPDO1 is not valid */
+    lone_nmt(&lone, NMT_RESET_NODE);
+    TEST_ASSERT_EQUAL_UINT32(1234, lone_read(&lone, 0x6081, 0));
+}
+
+static void test_values_that_could_not_be_kept_are_not_stored(void)
+{
+    keep_stored(false);
+    (void)lone_write(&lone, 0x6081, 0, 4, 1234);
+    TEST_ASSERT_EQUAL_HEX32(0x06060000, lone_write(&lone, 0x1010, 1, 4, 0x65766173));
+    lone_nmt(&lone, NMT_RESET_NODE);
+    TEST_ASSERT_EQUAL_UINT32(50000, lone_read(&lone, 0x6081, 0));
+}
+
+static void test_restored_defaults_are_kept_too(void)
+{
+    keep_stored(true);
+    (void)lone_write(&lone, 0x6081, 0, 4, 1234);
+    TEST_ASSERT_EQUAL_HEX32(0, lone_write(&lone, 0x1010, 1, 4, 0x65766173));
+    TEST_ASSERT_EQUAL_HEX32(0, lone_write(&lone, 0x1011, 1, 4, 0x64616F6C));
+    TEST_ASSERT_EQUAL_STRING("# stored by node 5, object 1010\n", kept_text);
+}
+
+static void test_a_store_that_is_none_of_this_drive_is_refused_by_its_line(void)
+{
+    static const char *const lines[] = {
+        "nonsense",   "1017",          "1017:00",          "1017:00 12345", "1017:00 12x",
+        "5000:00 00", "6041:00 0000",  "607A:00 00000000", "6007:00 0004",  "1600:00 09",
+        "2000:00 00", "2000:00 \"5\"", "2000:00 \"5G\""};
+    struct drive_store_problem wrong;
+    char text[80];
+    for (unsigned i = 0; i < sizeof lines / sizeof lines[0]; i++) {
+        (void)snprintf(text, sizeof text, "# a comment\n\n%s\n", lines[i]);
+        TEST_ASSERT_FALSE_MESSAGE(drive_store_read(&lone.drive, text, strlen(text), &wrong),
+                                  lines[i]);
+        TEST_ASSERT_EQUAL_UINT(3, wrong.line);
+        TEST_ASSERT_TRUE(wrong.text[0] != '\0');
+    }
+}
+
 /* ---- The dictionary ---- */
 
 static void test_reads_and_writes_that_cannot_be_say_why(void)
@@ -367,8 +510,8 @@ static void test_reads_and_writes_that_cannot_be_say_why(void)
     TEST_ASSERT_EQUAL_HEX32(0x06070013, lone_write(&lone, 0x607A, 0, 2, 0));
     TEST_ASSERT_EQUAL_HEX32(0x06090031, lone_write(&lone, 0x605C, 0, 2, 2));
     TEST_ASSERT_EQUAL_HEX32(0x06090032, lone_write(&lone, 0x6099, 1, 4, 0));
-    TEST_ASSERT_EQUAL_HEX32(0x06090030, lone_write(&lone, 0x6060, 0, 1, 3));
-    TEST_ASSERT_EQUAL_HEX32(0x06090030, lone_write(&lone, 0x6098, 0, 1, 7));
+    TEST_ASSERT_EQUAL_HEX32(0x06090030, lone_write(&lone, 0x6060, 0, 1, 2));
+    TEST_ASSERT_EQUAL_HEX32(0x06090030, lone_write(&lone, 0x6098, 0, 1, 15));
     TEST_ASSERT_EQUAL_HEX32(0x06090030, lone_write(&lone, 0x605A, 0, 2, 3));
     (void)lone_write(&lone, 0x1006, 0, 4, 1000);
     TEST_ASSERT_EQUAL_HEX32(0x08000022, lone_write(&lone, 0x1019, 0, 1, 10));
@@ -417,8 +560,15 @@ int main(void)
     RUN_TEST(test_an_event_sends_a_tpdo_but_not_within_its_inhibit_time);
     RUN_TEST(test_type_0_answers_the_sync_after_a_change);
     RUN_TEST(test_sync_may_have_another_identifier);
+    RUN_TEST(test_targets_behind_the_window_of_1007_are_none);
+    RUN_TEST(test_the_time_of_day_is_taken_where_1012_says_so_and_goes_on);
+    RUN_TEST(test_the_high_resolution_time_counts_on_from_what_is_written);
     RUN_TEST(test_a_reset_forgets_what_was_not_stored);
     RUN_TEST(test_stored_parameters_survive_a_reset_until_defaults_are_restored);
+    RUN_TEST(test_what_is_stored_is_kept_and_is_there_at_the_next_power_on);
+    RUN_TEST(test_values_that_could_not_be_kept_are_not_stored);
+    RUN_TEST(test_restored_defaults_are_kept_too);
+    RUN_TEST(test_a_store_that_is_none_of_this_drive_is_refused_by_its_line);
     RUN_TEST(test_reads_and_writes_that_cannot_be_say_why);
     RUN_TEST(test_a_stopped_node_answers_no_request);
     RUN_TEST(test_the_feed_constant_says_how_long_an_increment_is);

@@ -207,8 +207,9 @@ static void test_a_gantry_and_io_nodes_that_are_written_read_as_the_same(void)
     TEST_ASSERT_NOT_NULL(file);
     setup.machine.gantry = (struct machine_gantry){AXIS_Y, 9, 1, -99.4, 0.8};
     setup.drive[MACHINE_SECOND_DRIVE].plant.inertia_kg_m2 = 0.125;
-    setup.machine.io[0] = (struct io_wiring){20, {IO_FLOOD, IO_FREE, IO_MIST | IO_INVERTED}, {0}};
-    setup.machine.io[1] = (struct io_wiring){21, {0}, {IO_STOP, IO_PROGRAM + 31}};
+    setup.machine.io[0] =
+        (struct io_wiring){20, {IO_FLOOD, IO_FREE, IO_MIST | IO_INVERTED}, {0}, {0x04, 0x10}};
+    setup.machine.io[1] = (struct io_wiring){21, {0}, {IO_STOP, IO_PROGRAM + 31}, {0}};
     machine_file_write(file, &setup);
     (void)fclose(file);
     machine_setup_set_default(&again);

@@ -1,0 +1,191 @@
+/*
+ * Values of the objects that the machine makes at power-on, and what motion needs to know of the settings.
+ */
+#include "base/maths.h"
+#include "drives/virtual_drive_private.h"
+
+#include <string.h>
+
+#define PDO_NOT_VALID 0x80000000u
+
+/* Object 607E. */
+#define POLARITY_POSITION 0x80u
+#define POLARITY_VELOCITY 0x40u
+#define POLARITY_TORQUE   0x20u
+
+#define NOT_WATCHED UINT32_MAX /* windows of position and following error */
+
+/* Turns of the motor per second, and per second squared, a drive starts with. */
+#define DEFAULT_PROFILE_TURNS_S       5.0
+#define DEFAULT_PROFILE_TURNS_S2      50.0
+#define DEFAULT_MAX_TURNS_S           50.0
+#define DEFAULT_HOMING_TURNS_S        2.0
+#define DEFAULT_HOMING_SLOW_TURNS_S   0.2
+#define DEFAULT_HOMING_TURNS_S2       20.0
+#define DEFAULT_POSITION_WINDOW_TURNS 1e-3
+#define DEFAULT_VELOCITY_TURNS_S      0.05 /* window and threshold */
+#define DEFAULT_CYCLE_US              1000
+#define TORQUE_PER_RATED              1000.0
+
+static uint32_t unsigned_increments(const struct virtual_drive *drive, double value)
+{
+    double increments = maths_round(value * virtual_drive_scale(drive));
+    return (uint32_t)maths_clamp(increments, 0, (double)UINT32_MAX);
+}
+
+/* The period as 60C2 tells it: the fewest microseconds that fit, exactly where they do. */
+static void set_interpolation_period(struct drive_settings *s, uint32_t cycle_us)
+{
+    uint32_t period = cycle_us != 0 ? cycle_us : DEFAULT_CYCLE_US;
+    int8_t index = -6;
+    while (index < 0 && (period > UINT8_MAX || period % 10 == 0)) {
+        period = period / 10;
+        index++;
+    }
+    s->interpolation_period = (uint8_t)period;
+    s->interpolation_index = index;
+}
+
+static bool has_object(const struct virtual_drive *drive, unsigned index, uint8_t sub)
+{
+    bool has_index;
+    return dictionary_find(drive->dictionary, (uint16_t)index, sub, &has_index) != NULL;
+}
+
+/* Values of a data sheet, and PDOs that it has. */
+static void take_data_sheet(struct virtual_drive *drive)
+{
+    struct drive_communication *c = &drive->objects.communication;
+    dictionary_set_initial(drive->dictionary, DICTIONARY_NOT_OF_MACHINE, &drive->objects,
+                           drive->config.node);
+    for (unsigned i = 0; i < DRIVE_PDO_COUNT; i++) {
+        if (!has_object(drive, 0x1400 + i, 1) || !has_object(drive, 0x1600 + i, 0))
+            c->rpdo[i].cob_id |= PDO_NOT_VALID;
+        if (!has_object(drive, 0x1800 + i, 1) || !has_object(drive, 0x1A00 + i, 0))
+            c->tpdo[i].cob_id |= PDO_NOT_VALID;
+    }
+}
+
+/* What the machine makes of the initial values: everything that is counted in increments. */
+void virtual_drive_init_objects(struct virtual_drive *drive)
+{
+    const struct drive_plant_config *plant = &drive->config.plant;
+    struct drive_objects *o = &drive->objects;
+    double turn_mm = plant->travel_per_revolution_mm;
+    memset(o, 0, sizeof *o);
+    dictionary_set_initial(&dictionary_own, DICTIONARY_ALL, o, drive->config.node);
+    drive->increments_per_mm = drive->config.increments_per_mm;
+    o->identity.serial = drive->config.node;
+    o->identity.encoder_counts = plant->encoder_counts_per_revolution;
+    o->settings.following_window =
+        plant->following_error_window_mm > 0
+            ? unsigned_increments(drive, plant->following_error_window_mm)
+            : NOT_WATCHED;
+    o->settings.following_timeout_ms = (uint16_t)plant->following_error_timeout_ms;
+    o->settings.quick_stop_deceleration =
+        unsigned_increments(drive, plant->quick_stop_deceleration_mm_s2);
+    o->settings.position_window =
+        unsigned_increments(drive, DEFAULT_POSITION_WINDOW_TURNS * turn_mm);
+    o->settings.max_profile_velocity = unsigned_increments(drive, DEFAULT_MAX_TURNS_S * turn_mm);
+    o->settings.profile_velocity = unsigned_increments(drive, DEFAULT_PROFILE_TURNS_S * turn_mm);
+    o->settings.profile_acceleration =
+        unsigned_increments(drive, DEFAULT_PROFILE_TURNS_S2 * turn_mm);
+    o->settings.profile_deceleration = o->settings.profile_acceleration;
+    o->settings.homing_velocity[0] = unsigned_increments(drive, DEFAULT_HOMING_TURNS_S * turn_mm);
+    o->settings.homing_velocity[1] =
+        unsigned_increments(drive, DEFAULT_HOMING_SLOW_TURNS_S * turn_mm);
+    o->settings.homing_acceleration = unsigned_increments(drive, DEFAULT_HOMING_TURNS_S2 * turn_mm);
+    o->settings.feed_increments = unsigned_increments(drive, turn_mm);
+    o->settings.velocity_window = o->settings.velocity_threshold = (uint16_t)maths_min(
+        unsigned_increments(drive, DEFAULT_VELOCITY_TURNS_S * turn_mm), UINT16_MAX);
+    o->settings.max_torque = (uint16_t)maths_clamp(
+        maths_round(TORQUE_PER_RATED * plant->torque_max_nm / plant->torque_rated_nm), 0,
+        UINT16_MAX);
+    set_interpolation_period(&o->settings, drive->config.cycle_us);
+    if (drive->dictionary != &dictionary_own)
+        take_data_sheet(drive);
+}
+
+/* Object 607E has been changed in this bit; as it was at power-on it is part of what the machine says. */
+static bool is_turned(const struct virtual_drive *drive, unsigned bit)
+{
+    return (drive->objects.settings.polarity ^ drive->initial.settings.polarity) & bit;
+}
+
+/*
+ * Increments are what objects 6091 and 6092 make of a turn of the motor:
+ *     increments/turn = feed / feed_shaft_turns * gear_shaft_turns / gear_motor_turns
+ * As they were at power-on they stand for what the machine says, which need not be a whole number.
+ */
+static void rescale(struct virtual_drive *drive)
+{
+    const struct drive_settings *s = &drive->objects.settings;
+    const struct drive_settings *initial = &drive->initial.settings;
+    double turn = (double)s->feed_increments / s->feed_shaft * s->gear_shaft / s->gear_motor;
+    double polarity = is_turned(drive, POLARITY_POSITION) ? -1 : 1;
+    bool is_initial = s->feed_increments == initial->feed_increments &&
+                      s->feed_shaft == initial->feed_shaft &&
+                      s->gear_motor == initial->gear_motor && s->gear_shaft == initial->gear_shaft;
+    double increments_per_mm = is_initial ? drive->config.increments_per_mm
+                                          : virtual_drive_sign(drive) * turn /
+                                                drive->config.plant.travel_per_revolution_mm;
+    drive->increments_per_mm = polarity * increments_per_mm;
+}
+
+/* A value of the machine that its object could not hold is used as long as nobody has changed it. */
+static double in_mm(const struct virtual_drive *drive, uint32_t value, uint32_t initial,
+                    double machine)
+{
+    bool is_initial = value == initial && maths_abs(drive->increments_per_mm) ==
+                                              maths_abs(drive->config.increments_per_mm);
+    return is_initial ? machine : value / virtual_drive_scale(drive);
+}
+
+/* period = 60C2:01 10^60C2:02 seconds */
+static uint64_t interpolation_ns(const struct drive_settings *s)
+{
+    uint64_t ns = s->interpolation_period * UINT64_C(1000);
+    for (int exponent = -6; exponent < s->interpolation_index; exponent++)
+        ns *= 10;
+    return ns;
+}
+
+static double sign_of(const struct virtual_drive *drive, unsigned bit)
+{
+    return is_turned(drive, bit) ? -virtual_drive_sign(drive) : virtual_drive_sign(drive);
+}
+
+static void derive_signs(struct virtual_drive *drive)
+{
+    drive->velocity_sign = sign_of(drive, POLARITY_VELOCITY);
+    drive->torque_sign = sign_of(drive, POLARITY_TORQUE);
+}
+
+/* Object 6072. As at power-on it stands for what the motor has. */
+void virtual_drive_derive_torque(struct virtual_drive *drive)
+{
+    const uint16_t max_torque = drive->objects.settings.max_torque;
+    bool is_initial = max_torque == drive->initial.settings.max_torque;
+    drive->plant.torque_limit_mm_s2 =
+        is_initial ? drive->plant.acceleration_max_mm_s2
+                   : max_torque / TORQUE_PER_RATED * drive->plant.mm_s2_per_rated;
+}
+
+void virtual_drive_derive(struct virtual_drive *drive)
+{
+    const struct drive_settings *s = &drive->objects.settings;
+    const struct drive_settings *initial = &drive->initial.settings;
+    const struct drive_plant_config *plant = &drive->config.plant;
+    rescale(drive);
+    drive->interpolation_ns = interpolation_ns(s);
+    drive->following_window_mm = 0;
+    if (s->following_window != NOT_WATCHED)
+        drive->following_window_mm = in_mm(drive, s->following_window, initial->following_window,
+                                           plant->following_error_window_mm);
+    drive->quick_stop_mm_s2 =
+        maths_min(in_mm(drive, s->quick_stop_deceleration, initial->quick_stop_deceleration,
+                        plant->quick_stop_deceleration_mm_s2),
+                  in_mm(drive, s->max_deceleration, initial->max_deceleration, MATHS_INFINITY));
+    derive_signs(drive);
+    virtual_drive_derive_torque(drive);
+}
