@@ -13,6 +13,7 @@
 #include "thread_bench.h"
 
 #include <stdio.h>
+#include <string.h>
 #include <unity.h>
 
 #define MACHINES   300

@@ -11,9 +11,6 @@
 #include "spindle/virtual_spindle.h"
 #include "sync/lock.h"
 
-#include <string.h>
-#include <unity.h>
-
 #define BENCH_AHEAD     2
 #define BENCH_MOVES_MAX 64
 #define BENCH_AXES      3
@@ -50,193 +47,25 @@ struct bench {
     uint64_t cycles;
 };
 
-static inline void bench_set_default(struct bench *b)
-{
-    memset(b, 0, sizeof(*b));
-    b->limits = (struct plan_limits){.axes = 7, .cycle_s = 1e-3, .chord_error_max_mm = 1e-3};
-    for (int i = 0; i < BENCH_AXES; i++) {
-        b->limits.velocity_mm_s[i] = 100.0;
-        b->limits.acceleration_mm_s2[i] = 1000.0;
-        b->limits.jerk_mm_s3[i] = 50000.0;
-    }
-    virtual_spindle_set_default(&b->spindle_config);
-    b->operator=(struct motion_operator){.feed_ratio = 1.0, .rapid_ratio = 1.0};
-    b->look_ahead = 64;
-    b->lock_config = (struct lock_config){
-        .ahead_cycles = BENCH_AHEAD,
-        .tolerance_mm = 0.1,
-        .wait_s = 10.0,
-    };
-}
-
-static inline void bench_add(struct bench *b, const struct move *m)
-{
-    TEST_ASSERT_TRUE(b->moves < BENCH_MOVES_MAX);
-    b->move[b->moves++] = *m;
-}
-
-static inline void bench_turn(struct bench *b, double rpm)
-{
-    const struct move m = {.kind = MOVE_SPINDLE,
-                           .direction = rpm < 0.0 ? SPINDLE_CCW : SPINDLE_CW,
-                           .speed_rpm = maths_abs(rpm)};
-
-    bench_add(b, &m);
-}
-
-static inline void bench_go(struct bench *b, enum move_kind kind, double x, double z,
-                            double pitch_mm)
-{
-    const struct move m = {
-        .kind = kind,
-        .line = b->moves + 1,
-        .end = {{x, 0.0, z}},
-        .feed_mm_s = kind == MOVE_RAPID ? 0.0 : 10.0,
-        .feed_rev_mm = pitch_mm,
-        .overrides = OVERRIDE_HOLD,
-        .speed_ratio = 1.0,
-        .turns = 1,
-    };
-
-    bench_add(b, &m);
-}
-
-static inline void bench_tap(struct bench *b, double z, double pitch_mm, double ratio)
-{
-    const double start = b->moves > 0 ? b->move[b->moves - 1].end.at[AXIS_Z] : 0.0;
-    const double x = b->moves > 0 ? b->move[b->moves - 1].end.at[AXIS_X] : 0.0;
-
-    bench_go(b, MOVE_TAP, x, z, pitch_mm);
-    bench_go(b, MOVE_TAP_OUT, x, start, pitch_mm);
-    b->move[b->moves - 1].speed_ratio = ratio;
-}
+void bench_set_default(struct bench *b);
+void bench_turn(struct bench *b, double rpm);
+void bench_go(struct bench *b, enum move_kind kind, double x, double z, double pitch_mm);
+void bench_tap(struct bench *b, double z, double pitch_mm, double ratio);
 
 /* After limits, spindle and moves have been set. */
-static inline void bench_start(struct bench *b)
-{
-    const struct point start = {{0}};
-    const struct move end = {.kind = MOVE_END};
-
-    bench_add(b, &end);
-    TEST_ASSERT_NULL(virtual_spindle_check(&b->spindle_config));
-    virtual_spindle_init(&b->spindle, &b->spindle_config);
-    b->lock_config.cycle_s = b->limits.cycle_s;
-    b->lock_config.counts = maths_max(1.0, (double)b->spindle_config.encoder_counts_per_revolution);
-    b->lock_config.ramp_rpm_s = b->spindle_config.ramp_rpm_s;
-    b->lock_config.max_rpm = b->spindle_config.max_rpm;
-    lock_init(&b->lock, &b->lock_config);
-    path_init(&b->path, &b->limits, &start);
-    motion_init(&b->motion, &b->path, &start, false);
-    handover_allow(&b->motion);
-}
-
-static inline void bench_plan(struct bench *b)
-{
-    if (motion_wanted(&b->motion) == NULL) {
-        return;
-    }
-    while (b->pushed < b->moves && path_has_room(&b->path) &&
-           motion_ahead(&b->motion) < b->look_ahead) {
-        path_push(&b->path, &b->move[b->pushed++]);
-    }
-    if (b->pushed == b->moves) {
-        path_finish(&b->path);
-    }
-    motion_build(&b->motion);
-}
-
-static inline void bench_judge(struct bench *b)
-{
-    const double t = b->limits.cycle_s;
-    struct bench_judge *j = &b->judge;
-
-    for (int i = 0; i < BENCH_AXES; i++) {
-        double *h = j->history[i];
-
-        memmove(h + 1, h, 3 * sizeof(*h));
-        h[0] = b->record.cmd.at[i];
-        const double v = maths_abs(h[0] - h[1]) / t;
-        const double a = maths_abs(h[0] - 2 * h[1] + h[2]) / (t * t);
-        const double k = maths_abs(h[0] - 3 * h[1] + 3 * h[2] - h[3]) / (t * t * t);
-
-        j->velocity = maths_max(j->velocity, v / b->limits.velocity_mm_s[i]);
-        j->acceleration = maths_max(j->acceleration, a / b->limits.acceleration_mm_s2[i]);
-        j->jerk = maths_max(j->jerk, k / b->limits.jerk_mm_s3[i]);
-    }
-}
-
-static inline void bench_check_limits(const struct bench *b)
-{
-    TEST_ASSERT_TRUE(b->judge.velocity <= 1.0001);
-    TEST_ASSERT_TRUE(b->judge.acceleration <= 1.0001);
-    TEST_ASSERT_TRUE(b->judge.jerk <= 1.001);
-}
-
-static inline void bench_apply_events(struct bench *b)
-{
-    for (uint32_t i = b->motion.passed_first; i != b->path.first; i++) {
-        const struct move *m = &path_read(&b->path, i)->move;
-
-        if (m->kind == MOVE_SPINDLE) {
-            b->command_rpm = m->direction == SPINDLE_CCW ? -m->speed_rpm : m->speed_rpm;
-        }
-    }
-    (void)lock_get_command(&b->lock, &b->command_rpm);
-}
-
-static inline void bench_turn_spindle(struct bench *b)
-{
-    b->feedback = virtual_spindle_step(&b->spindle, b->limits.cycle_s, b->command_rpm, 0.0);
-    b->feedback.silent = b->is_silent;
-    memmove(b->true_rev + 1, b->true_rev, BENCH_AHEAD * sizeof(double));
-    b->true_rev[0] = b->spindle.angle_rev;
-}
+void bench_start(struct bench *b);
 
 /* One control cycle and what the spindle does in it. False: the program is over, or has failed. */
-static inline bool bench_cycle(struct bench *b)
-{
-    bench_plan(b);
-    lock_measure(&b->lock, &b->feedback);
-    b->is_locked = false;
-    b->locked = LOCK_CYCLE;
-    b->result = motion_cycle(&b->motion, &b->operator, & b->record);
-    if (b->result == MOTION_HANDED_OVER) {
-        b->is_locked = true;
-        b->locked = lock_cycle(&b->lock, &b->motion, &b->operator, b->command_rpm, &b->record);
-    }
-    bench_apply_events(b);
-    if (b->locked == LOCK_FAILED || b->result == MOTION_DONE) {
-        return false;
-    }
-    if (b->is_locked || b->result == MOTION_CYCLE) {
-        bench_judge(b);
-        b->point = b->record.cmd;
-        b->cycles++;
-    }
-    memmove(b->sent_mm + 1, b->sent_mm, BENCH_AHEAD * sizeof(double));
-    b->sent_mm[0] = b->lock.follower.at.x_mm;
-    bench_turn_spindle(b);
-    return true;
-}
+bool bench_cycle(struct bench *b);
+void bench_check_limits(const struct bench *b);
 
 /*
  * How far the axes are off the thread now, mm: the setpoint of BENCH_AHEAD cycles ago against the true angle.
  * Meaningful in a thread of one block, BENCH_AHEAD cycles after its start.
  */
-static inline double bench_off_mm(const struct bench *b)
-{
-    const double rev = b->lock.sense * b->true_rev[1] - b->lock.at.zero_rev;
-
-    return b->sent_mm[BENCH_AHEAD] - (b->lock.at.start_mm + b->lock.at.pitch_mm * rev);
-}
+double bench_off_mm(const struct bench *b);
 
 /* Has the lead-in been over BENCH_AHEAD cycles ago, and is the thread still followed? */
-static inline bool bench_is_on_thread(const struct bench *b)
-{
-    const double rev = b->lock.sense * b->true_rev[BENCH_AHEAD];
-
-    return b->is_locked && b->lock.phase == LOCK_FOLLOWS && !b->lock.follower.braking &&
-           lead_in_is_over(&b->lock.lead_in, rev);
-}
+bool bench_is_on_thread(const struct bench *b);
 
 #endif
