@@ -10,7 +10,7 @@
  * test_threads NUMBER runs so many machines, test_threads NUMBER FIRST from that seed on.
  */
 #include "property_arguments.h"
-#include "thread_bench.h"
+#include "support/thread_bench.h"
 
 #include <stdio.h>
 #include <string.h>

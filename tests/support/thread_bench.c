@@ -1,4 +1,4 @@
-#include "thread_bench.h"
+#include "support/thread_bench.h"
 
 #include <string.h>
 #include <unity.h>
