@@ -41,7 +41,7 @@ static bool port_send(void *context, const struct can_frame *frame)
                                   .since_ns = bus->now_ns,
                                   .port = (uint16_t)(port - bus->port),
                                   .frame = *frame};
-    if (port->waiting == BUS_TRANSMIT_MAX || bus->waiting_count == BUS_WAITING_MAX ||
+    if (port->waiting >= BUS_TRANSMIT_MAX || bus->waiting_count >= BUS_WAITING_MAX ||
         (bus_is_faulty(bus, bus->now_ns) && !bus_admit(bus, &waiting))) {
         bus->counts.refused++;
         return false;

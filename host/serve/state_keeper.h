@@ -19,8 +19,8 @@
 #include <stdint.h>
 
 /*
- * After a power cut a state is at most so old, and as long as two writes take: one that was cut, and one that the change
- * had to wait for.
+ * After a power cut a state is at most so old, or as old as the write takes that a change had to wait for, and as long as
+ * its own write takes, which was cut: a second, where a write takes half of one.
  */
 #define STATE_KEEPER_OFFER_NS UINT64_C(250000000)
 

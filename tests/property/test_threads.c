@@ -10,9 +10,10 @@
  * test_threads NUMBER runs so many machines, test_threads NUMBER FIRST from that seed on.
  */
 #include "property_arguments.h"
-#include "thread_bench.h"
+#include "support/thread_bench.h"
 
 #include <stdio.h>
+#include <string.h>
 #include <unity.h>
 
 #define MACHINES   300

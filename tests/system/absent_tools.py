@@ -14,7 +14,7 @@ TESTS = {
     "browser": "report_in_browser",
     "busybox": "socketcan|drives_with_canopen_on_socketcan",
     "can-utils": "frame_lengths_against_can_utils",
-    "clang": "fuzz_short|fuzz_modbus_short|style_clang|style_tidy|style_format",
+    "clang": "fuzz_short|fuzz_modbus_short|style_tidy|style_format",
     "cross-compiler": "build_image_.*|target_.*",
     "linuxcnc": "canon_against_linuxcnc|events_against_linuxcnc|spindle_with_linuxcnc",
     "packages": "controller_with_canopen|drives_with_canopen|panel_with_pymodbus",

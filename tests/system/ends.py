@@ -290,6 +290,9 @@ class Outside:
 
     def judge_drives_alone(self):
         """The controller is gone: the drives rest by themselves. Their heartbeats are the clock."""
+        self.proxy.ask_positions()
+        if self.moment.command != "run" and self.proxy.none_enabled():
+            raise Disturbed # in alarm before: drives that are off wait for SYNC, and move nothing
         self.proxy.wait_for_beats(2)
         self.judge_standstill(lambda: self.proxy.wait_for_beats(3))
 
@@ -338,6 +341,8 @@ class Moment:
             ready = self.process.stdout.readline()
             assert ":" in ready, self.process.communicate()
             self.client = p.Client(int(ready.rsplit(":", 1)[1]))
+            p.until(lambda: self.client.counts("STATE") in (p.IDLE, p.ALARM), lambda: "the service does not start")
+            self.look_for_silence()
             self.client.wait_for("STATE", p.IDLE)
             self.client.put("CYCLE_START", 1)
 
@@ -379,12 +384,15 @@ class Moment:
             return 3
         return 0 if self.command == "serve" else 128 + getattr(signal, "SIG" + self.way)
 
+    def look_for_silence(self):
+        if "has sent no position" in self.client.text("ALARM_TEXT"):
+            raise Disturbed
+
     def judge_lost_bus_of_service(self):
         """The panel stays, tells of it, and after RESET the drives are enabled again."""
         proxy = self.field.proxy
         self.client.wait_for("STATE", p.ALARM)
-        if "has sent no position" in self.client.text("ALARM_TEXT"):
-            raise Disturbed
+        self.look_for_silence()
         self.check("bus" in self.client.text("ALARM_TEXT"), "the alarm is about the bus", self.client.text("ALARM_TEXT"))
         proxy.wait(lambda: proxy.controller is not None, "the service looks for the bus")
         proxy.wait(proxy.none_enabled, "the drives stay off until RESET")

@@ -289,6 +289,19 @@ static void test_there_is_an_end_to_the_list_of_faults(void)
     TEST_ASSERT_FALSE(bus_add_fault(&bus, &(struct bus_fault){.kind = BUS_FAULT_DROP}));
 }
 
+/* It takes the place that was made when it went onto the wire, and that another has taken since. */
+static void test_a_full_port_takes_no_more_when_a_frame_comes_back(void)
+{
+    add_fault((struct bus_fault){.kind = BUS_FAULT_CORRUPT, .count = BUS_FAULT_ALWAYS});
+    while (give(0, 0x100))
+        continue;
+    for (unsigned k = 1; k <= 1000; k++) {
+        run_to(k * UINT64_C(20000));
+        (void)give(0, 0x200);
+        TEST_ASSERT_LESS_OR_EQUAL_UINT(BUS_TRANSMIT_MAX + 1, bus.port[0].waiting);
+    }
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -307,5 +320,6 @@ int main(void)
     RUN_TEST(test_a_node_that_is_alone_tries_for_ever_and_never_goes_off);
     RUN_TEST(test_a_bus_is_as_new_when_all_faults_are_over);
     RUN_TEST(test_there_is_an_end_to_the_list_of_faults);
+    RUN_TEST(test_a_full_port_takes_no_more_when_a_frame_comes_back);
     return UNITY_END();
 }

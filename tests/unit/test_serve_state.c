@@ -12,7 +12,7 @@
 #define SECTOR_BYTES 16384U
 #define TOOLS        3
 
-static struct tool tools[TOOLS], read_tools[TOOLS];
+static struct tool tools[TOOLS], read_tools[TOOLS], offered_tools[TOOLS];
 static struct state state, read;
 
 /*
@@ -191,6 +191,110 @@ static void test_a_power_cut_at_every_write_leaves_the_last_state_or_the_one_bef
     }
 }
 
+/*
+ * A session in virtual time: changes at random moments, a control thread that looks every millisecond, a disk on which a state
+ * takes WRITE_NS. Power fails at one of the disk's steps.
+ */
+#define MILLISECOND_NS UINT64_C(1000000)
+#define AGE_MAX_NS     (1000 * MILLISECOND_NS)
+
+/*
+ * The slowest disk for that age: a change waits until the write before it is done, at least STATE_KEEPER_OFFER_NS from its
+ * offer on, and for its own write; and is seen two looks late.
+ */
+#define WRITE_NS ((AGE_MAX_NS - 2 * MILLISECOND_NS) / 2)
+
+struct session {
+    struct state_keeper keeper;
+    uint64_t now_ns, next_change_ns,
+        written_ns;                   /* written_ns: when the write under way is; 0: none is */
+    uint64_t changed_ns[CHANGES + 1]; /* when each was made */
+    unsigned changes, writes;
+};
+
+static uint32_t draw(uint32_t *state_of_dice, uint32_t below)
+{
+    *state_of_dice = *state_of_dice * 1664525U + 1013904223U;
+    return (*state_of_dice >> 8) % below;
+}
+
+/* What the service's thread does, at the time at which it is done. */
+static void finish_write(struct session *s)
+{
+    (void)state_keeper_keep(&s->keeper.store, &s->keeper.offered);
+    atomic_store(&s->keeper.is_full, false);
+    s->written_ns = 0;
+    s->writes++;
+}
+
+static void offer(struct session *s)
+{
+    struct state *wanted = state_keeper_wants(&s->keeper, s->now_ns);
+
+    if (wanted == NULL)
+        return;
+    struct tool *own = wanted->tools;
+    *wanted = state;
+    wanted->tools = own;
+    memcpy(own, state.tools, sizeof tools);
+    atomic_store(&s->keeper.is_full, true);
+    s->written_ns = s->now_ns + WRITE_NS;
+}
+
+/* Until power fails, or all changes have been made and written. */
+static void live(struct session *s, uint32_t seed)
+{
+    while (!disk.is_off && (s->changes < CHANGES || s->now_ns < s->next_change_ns + AGE_MAX_NS)) {
+        s->now_ns += MILLISECOND_NS;
+        if (s->changes < CHANGES && s->now_ns >= s->next_change_ns) {
+            change(++s->changes);
+            s->changed_ns[s->changes] = s->now_ns;
+            s->next_change_ns += (1 + draw(&seed, 200)) * MILLISECOND_NS;
+        }
+        if (s->written_ns != 0 && s->now_ns >= s->written_ns)
+            finish_write(s);
+        offer(s);
+    }
+}
+
+static void begin_session(struct session *s)
+{
+    struct flash_port port;
+
+    setUp();
+    memset(s, 0, sizeof *s);
+    TEST_ASSERT_TRUE(state_disk_open_on(&s->keeper.disk, &ops, SECTOR_BYTES));
+    for (unsigned i = 0; i < FLASH_SECTORS; i++)
+        memset(state_disk_mirror(&s->keeper.disk, i), 0xFF, SECTOR_BYTES);
+    port = state_disk_get_port(&s->keeper.disk);
+    store_open(&s->keeper.store, &port);
+    s->keeper.offered.tools = offered_tools;
+    s->keeper.is_running = true;
+}
+
+static void test_a_power_cut_at_every_write_of_a_session_loses_nothing_older_than_a_second(void)
+{
+    static struct session s;
+    unsigned steps = 1;
+
+    for (unsigned fails_at = 0; fails_at < steps; fails_at++) {
+        begin_session(&s);
+        disk.fails_at = fails_at;
+        disk.torn = fails_at % 3;
+        live(&s, 1);
+        steps = disk.is_off ? fails_at + 2 : fails_at;
+        const unsigned found = look_at_disk();
+        if (found > 0)
+            expect_whole(found);
+        if (found < s.changes)
+            TEST_ASSERT_LESS_OR_EQUAL_UINT64(AGE_MAX_NS, s.now_ns - s.changed_ns[found + 1]);
+        state_disk_close(&s.keeper.disk);
+    }
+    TEST_ASSERT_EQUAL_UINT(CHANGES, s.changes);
+    TEST_ASSERT_GREATER_OR_EQUAL_UINT(4 * 40, disk.steps);
+    TEST_ASSERT_EQUAL_UINT(CHANGES, look_at_disk());
+}
+
 static void test_a_state_goes_on_after_a_power_cut(void)
 {
     for (unsigned fails_at = 0; fails_at < 12; fails_at++) {
@@ -283,6 +387,7 @@ int main(void)
 {
     UNITY_BEGIN();
     RUN_TEST(test_a_power_cut_at_every_write_leaves_the_last_state_or_the_one_before);
+    RUN_TEST(test_a_power_cut_at_every_write_of_a_session_loses_nothing_older_than_a_second);
     RUN_TEST(test_a_state_goes_on_after_a_power_cut);
     RUN_TEST(test_what_has_not_changed_is_not_written);
     RUN_TEST(test_a_state_of_a_later_version_is_refused_and_lines_it_adds_are_skipped);

@@ -1,7 +1,7 @@
 /*
  * Threads and rigid tapping against the virtual spindle: phase, limits, and what happens when it goes wrong.
  */
-#include "thread_bench.h"
+#include "support/thread_bench.h"
 
 #include <unity.h>
 

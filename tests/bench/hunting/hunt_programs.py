@@ -25,14 +25,16 @@ class Machine:
 
     def __init__(self, axes, cycle_us, law="jerk", look_ahead=256):
         self.axes, self.cycle_us, self.law, self.look_ahead = axes, cycle_us, law, look_ahead
+        self.on_can = False # else step drives, which add nothing of their own
 
     def text(self):
         rows = ["[machine]", f"cycle_us = {self.cycle_us}", f"law = {self.law}", f"look_ahead_blocks = {self.look_ahead}"]
         for node, (letter, limits) in enumerate(self.axes.items(), 1):
             unit = "mm" if letter in hunt_path.LINEAR else "deg"
             keys = (f"max_velocity_{unit}_s", f"max_acceleration_{unit}_s2", f"max_jerk_{unit}_s3")
-            rows += [f"[axis {letter}]", f"drive_node = {node}", "drive_type = step", f"steps_per_{unit} = 1"]
-            rows += ["step_rate_max_hz = 1e7", f"increments_per_{unit} = 1000", f"travel_min_{unit} = {-TRAVEL}", f"travel_max_{unit} = {TRAVEL}"]
+            rows += [f"[axis {letter}]", f"drive_node = {node}"]
+            rows += [] if self.on_can else ["drive_type = step", f"steps_per_{unit} = 1", "step_rate_max_hz = 1e7"]
+            rows += [f"increments_per_{unit} = 1000", f"travel_min_{unit} = {-TRAVEL}", f"travel_max_{unit} = {TRAVEL}"]
             rows += [f"following_error_max_{unit} = 0"] + [f"{key} = {value!r}" for key, value in zip(keys, limits)]
         return "\n".join(rows) + "\n"
 

@@ -1,56 +1,9 @@
-/*
- * Path, motion, lock and the virtual spindle together, without drives: for tests of threads. What is thought to happen
- * on a machine is judged here: the axes are at a setpoint BENCH_AHEAD cycles after its cycle.
- */
-#ifndef TAKT_TESTS_THREAD_BENCH_H
-#define TAKT_TESTS_THREAD_BENCH_H
-
-#include "base/maths.h"
-#include "motion/handover.h"
-#include "plan/path.h"
-#include "spindle/virtual_spindle.h"
-#include "sync/lock.h"
+#include "support/thread_bench.h"
 
 #include <string.h>
 #include <unity.h>
 
-#define BENCH_AHEAD     2
-#define BENCH_MOVES_MAX 64
-#define BENCH_AXES      3
-
-struct bench_judge {
-    double history[BENCH_AXES][4];       /* newest first */
-    double velocity, acceleration, jerk; /* largest ratio to the limit so far */
-};
-
-struct bench {
-    struct plan_limits limits;
-    struct path path;
-    struct motion motion;
-    struct lock lock;
-    struct lock_config lock_config;
-    struct virtual_spindle_config spindle_config;
-    struct virtual_spindle spindle;
-    struct motion_operator operator;
-    struct move move[BENCH_MOVES_MAX];
-    unsigned moves, pushed;
-    uint32_t look_ahead;
-    double command_rpm;
-    struct spindle_feedback feedback;
-    struct cycle_record record;
-    struct point point; /* of the last cycle with a record */
-    enum motion_result result;
-    enum lock_result locked;
-    bool is_locked; /* the last cycle was */
-    bool is_silent; /* the spindle's drive does not answer */
-    double true_rev[BENCH_AHEAD +
-                    1]; /* angles of this cycle and those after the setpoints still on their way */
-    double sent_mm[BENCH_AHEAD + 1]; /* positions on the line, likewise */
-    struct bench_judge judge;
-    uint64_t cycles;
-};
-
-static inline void bench_set_default(struct bench *b)
+void bench_set_default(struct bench *b)
 {
     memset(b, 0, sizeof(*b));
     b->limits = (struct plan_limits){.axes = 7, .cycle_s = 1e-3, .chord_error_max_mm = 1e-3};
@@ -69,13 +22,13 @@ static inline void bench_set_default(struct bench *b)
     };
 }
 
-static inline void bench_add(struct bench *b, const struct move *m)
+static void bench_add(struct bench *b, const struct move *m)
 {
     TEST_ASSERT_TRUE(b->moves < BENCH_MOVES_MAX);
     b->move[b->moves++] = *m;
 }
 
-static inline void bench_turn(struct bench *b, double rpm)
+void bench_turn(struct bench *b, double rpm)
 {
     const struct move m = {.kind = MOVE_SPINDLE,
                            .direction = rpm < 0.0 ? SPINDLE_CCW : SPINDLE_CW,
@@ -84,8 +37,7 @@ static inline void bench_turn(struct bench *b, double rpm)
     bench_add(b, &m);
 }
 
-static inline void bench_go(struct bench *b, enum move_kind kind, double x, double z,
-                            double pitch_mm)
+void bench_go(struct bench *b, enum move_kind kind, double x, double z, double pitch_mm)
 {
     const struct move m = {
         .kind = kind,
@@ -101,7 +53,7 @@ static inline void bench_go(struct bench *b, enum move_kind kind, double x, doub
     bench_add(b, &m);
 }
 
-static inline void bench_tap(struct bench *b, double z, double pitch_mm, double ratio)
+void bench_tap(struct bench *b, double z, double pitch_mm, double ratio)
 {
     const double start = b->moves > 0 ? b->move[b->moves - 1].end.at[AXIS_Z] : 0.0;
     const double x = b->moves > 0 ? b->move[b->moves - 1].end.at[AXIS_X] : 0.0;
@@ -111,8 +63,7 @@ static inline void bench_tap(struct bench *b, double z, double pitch_mm, double 
     b->move[b->moves - 1].speed_ratio = ratio;
 }
 
-/* After limits, spindle and moves have been set. */
-static inline void bench_start(struct bench *b)
+void bench_start(struct bench *b)
 {
     const struct point start = {{0}};
     const struct move end = {.kind = MOVE_END};
@@ -130,7 +81,7 @@ static inline void bench_start(struct bench *b)
     handover_allow(&b->motion);
 }
 
-static inline void bench_plan(struct bench *b)
+static void bench_plan(struct bench *b)
 {
     if (motion_wanted(&b->motion) == NULL) {
         return;
@@ -145,7 +96,7 @@ static inline void bench_plan(struct bench *b)
     motion_build(&b->motion);
 }
 
-static inline void bench_judge(struct bench *b)
+static void bench_judge(struct bench *b)
 {
     const double t = b->limits.cycle_s;
     struct bench_judge *j = &b->judge;
@@ -165,14 +116,14 @@ static inline void bench_judge(struct bench *b)
     }
 }
 
-static inline void bench_check_limits(const struct bench *b)
+void bench_check_limits(const struct bench *b)
 {
     TEST_ASSERT_TRUE(b->judge.velocity <= 1.0001);
     TEST_ASSERT_TRUE(b->judge.acceleration <= 1.0001);
     TEST_ASSERT_TRUE(b->judge.jerk <= 1.001);
 }
 
-static inline void bench_apply_events(struct bench *b)
+static void bench_apply_events(struct bench *b)
 {
     for (uint32_t i = b->motion.passed_first; i != b->path.first; i++) {
         const struct move *m = &path_read(&b->path, i)->move;
@@ -184,7 +135,7 @@ static inline void bench_apply_events(struct bench *b)
     (void)lock_get_command(&b->lock, &b->command_rpm);
 }
 
-static inline void bench_turn_spindle(struct bench *b)
+static void bench_turn_spindle(struct bench *b)
 {
     b->feedback = virtual_spindle_step(&b->spindle, b->limits.cycle_s, b->command_rpm, 0.0);
     b->feedback.silent = b->is_silent;
@@ -192,8 +143,7 @@ static inline void bench_turn_spindle(struct bench *b)
     b->true_rev[0] = b->spindle.angle_rev;
 }
 
-/* One control cycle and what the spindle does in it. False: the program is over, or has failed. */
-static inline bool bench_cycle(struct bench *b)
+bool bench_cycle(struct bench *b)
 {
     bench_plan(b);
     lock_measure(&b->lock, &b->feedback);
@@ -219,24 +169,17 @@ static inline bool bench_cycle(struct bench *b)
     return true;
 }
 
-/*
- * How far the axes are off the thread now, mm: the setpoint of BENCH_AHEAD cycles ago against the true angle.
- * Meaningful in a thread of one block, BENCH_AHEAD cycles after its start.
- */
-static inline double bench_off_mm(const struct bench *b)
+double bench_off_mm(const struct bench *b)
 {
     const double rev = b->lock.sense * b->true_rev[1] - b->lock.at.zero_rev;
 
     return b->sent_mm[BENCH_AHEAD] - (b->lock.at.start_mm + b->lock.at.pitch_mm * rev);
 }
 
-/* Has the lead-in been over BENCH_AHEAD cycles ago, and is the thread still followed? */
-static inline bool bench_is_on_thread(const struct bench *b)
+bool bench_is_on_thread(const struct bench *b)
 {
     const double rev = b->lock.sense * b->true_rev[BENCH_AHEAD];
 
     return b->is_locked && b->lock.phase == LOCK_FOLLOWS && !b->lock.follower.braking &&
            lead_in_is_over(&b->lock.lead_in, rev);
 }
-
-#endif

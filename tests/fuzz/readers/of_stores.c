@@ -1,0 +1,217 @@
+/*
+ * What is stored: compiled programs, settings, flash, the state of a service. Where a checksum keeps damage out, it is
+ * made right here, so that what comes behind it is reached: by the lowest bit of the first byte.
+ */
+#include "readers.h"
+
+#include "base/crc32.h"
+#include "motion/handover.h"
+#include "replay/replay.h"
+#include "serve/state.h"
+#include "storage/settings.h"
+#include "storage/store.h"
+
+#include <string.h>
+
+#define BYTES_MAX    65536U
+#define CYCLES       200
+#define SECTOR_BYTES 1024U
+#define FLASH_BYTES  ((size_t)FLASH_SECTORS * SECTOR_BYTES)
+#define TOOLS_MAX    16
+
+/* At a multiple of 8. */
+static uint64_t memory[BYTES_MAX / 8];
+
+static uint8_t *bytes(void)
+{
+    return (uint8_t *)memory;
+}
+
+static size_t take_bytes(const uint8_t *data, size_t size)
+{
+    const size_t taken = size < BYTES_MAX ? size : BYTES_MAX;
+
+    memcpy(bytes(), data, taken);
+    return taken;
+}
+
+struct stream {
+    size_t length, given;
+};
+
+static size_t read_stream(void *context, uint8_t *to, size_t size)
+{
+    struct stream *s = context;
+    const size_t left = s->length - s->given;
+    const size_t count = left < size ? left : size;
+
+    memcpy(to, bytes() + s->given, count);
+    s->given += count;
+    return count;
+}
+
+/* Header and records with right checksums, as far as there are whole ones. */
+static void seal_plan(size_t length)
+{
+    struct replay_header header;
+    uint32_t crc = CRC32_START;
+    size_t at = REPLAY_HEADER_BYTES;
+
+    if (length < REPLAY_HEADER_BYTES)
+        return;
+    header = (struct replay_header){.cycle_us = 1000,
+                                    .step_cycles = 1U + bytes()[0] % 4U,
+                                    .quantum_bits = bytes()[1] % 41U,
+                                    .ceiling_percent = 100U + bytes()[2] % 21U,
+                                    .blocks = bytes()[3],
+                                    .sections = bytes()[4],
+                                    .intervals = bytes()[5],
+                                    .kept = 0.99};
+    replay_header_write(&header, bytes());
+    while (at + REPLAY_RECORD_HEAD + REPLAY_RECORD_TAIL <= length) {
+        const size_t whole = REPLAY_RECORD_HEAD + (size_t)replay_get(bytes() + at + 1, 2);
+
+        if (at + whole + REPLAY_RECORD_TAIL > length)
+            return;
+        crc = crc32_add(crc, bytes() + at, whole);
+        replay_put(bytes() + at + whole, crc, REPLAY_RECORD_TAIL);
+        at += whole + REPLAY_RECORD_TAIL;
+    }
+}
+
+static struct path path;
+static struct motion motion;
+static struct plan_limits limits;
+
+static void open_path(void)
+{
+    const struct point start = {{0}};
+    const struct move line = {
+        .kind = MOVE_FEED, .end = {{1.0}}, .feed_mm_s = 10, .turns = 1, .line = 1};
+
+    limits = (struct plan_limits){.axes = 7, .cycle_s = 1e-3, .chord_error_max_mm = 1e-3};
+    for (unsigned i = 0; i < AXIS_COUNT; i++) {
+        limits.velocity_mm_s[i] = 100;
+        limits.acceleration_mm_s2[i] = 1000;
+        limits.jerk_mm_s3[i] = 50000;
+    }
+    path_init(&path, &limits, &start);
+    motion_init(&motion, &path, &start, false);
+    handover_allow_all(&motion);
+    path_push(&path, &line);
+    path_finish(&path);
+    path_go_on(&path);
+    motion_build(&motion);
+}
+
+/* A compiled program, replayed beside a path of one line. */
+void read_plan(const uint8_t *data, size_t size)
+{
+    static struct replay replay;
+    struct stream stream = {0};
+    const struct replay_source source = {.context = &stream, .read = read_stream};
+    const struct motion_operator as_programmed = {.feed_ratio = 1, .rapid_ratio = 1};
+    struct cycle_record record;
+
+    if (size == 0)
+        return;
+    stream.length = take_bytes(data + 1, size - 1);
+    if (data[0] & 1U)
+        seal_plan(stream.length);
+    open_path();
+    replay_init(&replay, path_lend(&path, sizeof(struct intake)), &source);
+    for (unsigned i = 0; i < CYCLES; i++) {
+        replay_read(&replay, &limits);
+        if (motion_cycle(&motion, &as_programmed, &record) == MOTION_HANDED_OVER &&
+            replay_cycle(&replay, &motion, &as_programmed, &record) == REPLAY_FAILED)
+            return;
+    }
+}
+
+static void seal_settings(size_t length)
+{
+    const uint32_t words[] = {(uint32_t)length, crc32_add(CRC32_START, bytes() + 12, length - 12)};
+
+    memcpy(bytes(), "TKM1", 4);
+    memcpy(bytes() + 4, words, sizeof words);
+}
+
+/* The machine of an image. */
+void read_settings(const uint8_t *data, size_t size)
+{
+    static struct machine machine;
+    static struct correction_tables tables;
+    static struct correction scratch;
+    struct diagnostic wrong;
+    size_t length;
+
+    if (size == 0)
+        return;
+    length = take_bytes(data + 1, size - 1);
+    if ((data[0] & 1U) && length >= 16)
+        seal_settings(length);
+    if (settings_read(bytes(), length, &machine, &tables, &wrong))
+        (void)settings_check_share(&machine, &tables, &scratch, &wrong);
+}
+
+static bool erase(void *context, unsigned sector)
+{
+    (void)context;
+    memset(bytes() + (size_t)SECTOR_BYTES * sector, 0xFF, SECTOR_BYTES);
+    return true;
+}
+
+static bool program(void *context, unsigned sector, uint32_t offset, const uint8_t *from,
+                    uint32_t words)
+{
+    const size_t size = (size_t)words * FLASH_WORD_BYTES;
+
+    (void)context;
+    require(offset + size <= SECTOR_BYTES);
+    memcpy(bytes() + (size_t)SECTOR_BYTES * sector + offset, from, size);
+    return true;
+}
+
+/* Two sectors of anything: what counts is within its sector, and a new set can be stored. */
+void read_flash(const uint8_t *data, size_t size)
+{
+    static const uint8_t set[] = "a new set";
+    const struct flash_port port = {.sector_bytes = SECTOR_BYTES,
+                                    .sector = {bytes(), bytes() + SECTOR_BYTES},
+                                    .erase = erase,
+                                    .program = program};
+    struct store store;
+    const uint8_t *found;
+    uint32_t length;
+
+    memset(memory, 0xFF, FLASH_BYTES);
+    (void)take_bytes(data, size < FLASH_BYTES ? size : FLASH_BYTES);
+    store_open(&store, &port);
+    if (store_get(&store, &found, &length))
+        require(length <= store_room(&store) && found >= bytes() &&
+                found + length <= bytes() + FLASH_BYTES);
+    require(store_begin(&store, sizeof set) && store_write(&store, set, sizeof set) &&
+            store_commit(&store));
+    store_open(&store, &port);
+    require(store_get(&store, &found, &length) && length == sizeof set &&
+            memcmp(found, set, length) == 0);
+}
+
+/* What is read of a state is written, and read as the same. */
+void read_state(const uint8_t *data, size_t size)
+{
+    static struct tool tools[TOOLS_MAX];
+    static struct state state;
+    char problem[STATE_PROBLEM_MAX + 1];
+    size_t length;
+    char *text;
+
+    memset(&state, 0, sizeof state);
+    state.tools = tools;
+    state.tools_max = TOOLS_MAX;
+    if (!state_read(&state, (const char *)data, size, problem))
+        return;
+    text = state_write(&state, &length);
+    require(text != NULL && state_read(&state, text, length, problem));
+    free(text);
+}
