@@ -5,9 +5,6 @@
 
 #include <string.h>
 
-/* Long ago: more cycles than any window. */
-#define LONG_AGO UINT32_C(0x7fffffff)
-
 /* Path units a cycle: of more, half a unit is less than 1e-5. */
 #define SLOW_UNITS 65536.0
 
@@ -56,8 +53,8 @@ static void follow_landing(struct lead *l)
 
 static void count_changes(struct lead *l, double change)
 {
-    l->since_plus = change > 0.0 ? 0 : l->since_plus < LONG_AGO ? l->since_plus + 1 : LONG_AGO;
-    l->since_minus = change < 0.0 ? 0 : l->since_minus < LONG_AGO ? l->since_minus + 1 : LONG_AGO;
+    l->since_plus = change > 0.0 ? 0 : l->since_plus < LEAD_LONG_AGO ? l->since_plus + 1 : LEAD_LONG_AGO;
+    l->since_minus = change < 0.0 ? 0 : l->since_minus < LEAD_LONG_AGO ? l->since_minus + 1 : LEAD_LONG_AGO;
 }
 
 /*
@@ -172,8 +169,8 @@ static void enter_span(struct lead *l, uint32_t k, uint64_t from, struct lead_st
     l->before = from;
     l->at = from + start->step * (window - 1) / 2;
     l->feed = (double)start->step / PATH_UNITS_PER_MM;
-    l->since_plus = LONG_AGO;
-    l->since_minus = LONG_AGO;
+    l->since_plus = LEAD_LONG_AGO;
+    l->since_minus = LEAD_LONG_AGO;
     l->run.over = false;
     l->abrupt = false;
     start->at = l->at;

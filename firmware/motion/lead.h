@@ -107,6 +107,14 @@ void lead_end_blocks(struct lead *l, bool on);
 bool lead_has_halted(const struct lead *l);
 void lead_leave_halt(struct lead *l);
 
+/*
+ * Could it be at a position, a little ahead, with this feed, mm/cycle, and meet what is ahead? highest: at the highest
+ * overrides, else as they are.
+ */
+bool lead_could_be(const struct lead *l, uint64_t at, double feed, bool highest);
+/* It is there: the setpoint is moved by others (hold.h), to a position, and has had that feed for a whole window. */
+void lead_follow(struct lead *l, uint64_t at, double feed, uint64_t setpoint);
+
 /* A span that begins: the averages start anew from where the lead point is, as if it had always moved by step. */
 struct lead_start {
     uint64_t at;

@@ -280,6 +280,57 @@ void lead_enter_piece(struct lead *l, uint32_t k)
     lead_follow_pieces(l);
 }
 
+/* -- a setpoint that is moved by others -- */
+
+bool lead_could_be(const struct lead *l, uint64_t at, double feed, bool highest)
+{
+    const struct ceiling *c = l->here.ceiling;
+    const double x = path_mm(c->origin, at);
+    const double least = feed * (1.0 - LEAD_ENERGY_SLACK);
+
+    if (!highest && l->here.low_count > 0 && least > l->here.low_feed) {
+        return false;
+    }
+    for (uint32_t k = l->here.piece, i = 0; k < c->count && i < LEAD_PIECES_MAX; k++, i++) {
+        const struct ceiling_piece *p = &c->piece[k];
+
+        if (least > ceiling_feed(c, highest ? p->feed_max_mm_s : p->feed_mm_s)) {
+            return false;
+        }
+        if (x <= c->end_mm[k] || lead_is_last_of_span(p)) {
+            return x <= c->end_mm[k] && can_meet(c, k, x, lead_square(least), highest);
+        }
+    }
+    return false;
+}
+
+void lead_follow(struct lead *l, uint64_t at, double feed, uint64_t setpoint)
+{
+    struct lead_place *p = &l->here;
+    const struct ceiling *c = p->ceiling;
+    const double x = path_mm(c->origin, at);
+
+    l->before = l->at;
+    l->at = at;
+    l->feed = feed;
+    l->owed = 0.0;
+    l->abrupt = false;
+    l->since_plus = l->since_minus = LEAD_LONG_AGO;
+    for (unsigned i = 0; i < LEAD_PIECES_MAX && p->piece > 0 && x < c->end_mm[p->piece - 1]; i++) {
+        p->piece--;
+    }
+    for (unsigned i = 0; i < LEAD_PIECES_MAX && p->piece + 1 < c->count && x >= c->end_mm[p->piece] &&
+                         !lead_is_last_of_span(&c->piece[p->piece]);
+         i++) {
+        p->piece++;
+        low_push(p, p->piece);
+    }
+    p->late = false;
+    p->early_a = MATHS_INFINITY;
+    note_entry(l);
+    (void)lead_low_feed(l, setpoint);
+}
+
 /* -- a new ceiling -- */
 
 void lead_set_ceiling(struct lead *l, const struct ceiling *ceiling)

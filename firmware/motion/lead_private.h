@@ -10,6 +10,9 @@
 
 #include <stddef.h>
 
+/* Long ago: more cycles than any window. */
+#define LEAD_LONG_AGO UINT32_C(0x7fffffff)
+
 /* Rounding of feed squared. */
 #define LEAD_ENERGY_SLACK 1e-6
 
