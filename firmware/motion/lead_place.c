@@ -286,19 +286,18 @@ bool lead_could_be(const struct lead *l, uint64_t at, double feed, bool highest)
 {
     const struct ceiling *c = l->here.ceiling;
     const double x = path_mm(c->origin, at);
-    const double least = feed * (1.0 - LEAD_ENERGY_SLACK);
 
-    if (!highest && l->here.low_count > 0 && least > l->here.low_feed) {
+    if (!highest && l->here.low_count > 0 && feed > l->here.low_feed) {
         return false;
     }
     for (uint32_t k = l->here.piece, i = 0; k < c->count && i < LEAD_PIECES_MAX; k++, i++) {
         const struct ceiling_piece *p = &c->piece[k];
 
-        if (least > ceiling_feed(c, highest ? p->feed_max_mm_s : p->feed_mm_s)) {
+        if (feed > ceiling_feed(c, highest ? p->feed_max_mm_s : p->feed_mm_s)) {
             return false;
         }
         if (x <= c->end_mm[k] || lead_is_last_of_span(p)) {
-            return x <= c->end_mm[k] && can_meet(c, k, x, lead_square(least), highest);
+            return x <= c->end_mm[k] && can_meet(c, k, x, lead_square(feed), highest);
         }
     }
     return false;
