@@ -448,5 +448,12 @@ bool hold_begin(struct hold *h, const struct path *path, const struct lead *l, d
     h->ease = 0.0;
     h->stops = true;
     h->top = h->place.rate;
-    return h->place.change <= 0.0 && find_step(h, path, l, true);
+    if (h->place.change <= 0.0) {
+        return find_step(h, path, l, true);
+    }
+    h->ease = find_ease(h, path, l, &h->place, hardest_step(h), true);
+    if (h->ease > 0.0) {
+        go_on_easing(h);
+    }
+    return h->ease > 0.0;
 }

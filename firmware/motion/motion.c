@@ -406,7 +406,7 @@ static bool may_hold(const struct motion *m)
     const struct lead *l = &m->lead;
     const struct average *a = &m->mover.average;
 
-    return !l->standing && !l->run.active && !m->held && m->feed_before[0] > 0.0 &&
+    return !l->standing && !l->run.active && m->feed_before[0] > 0.0 &&
            path_at(m->path, m->path->first)->smooth && a->box[a->boxes - 1].end <= MOTION_INPUTS_MAX;
 }
 
@@ -421,13 +421,11 @@ static void begin_hold(struct motion *m)
 
     m->looks = may_hold(m);
     m->holds = m->looks && hold_begin(&m->mover.beside.hold, m->path, &m->lead, at, way, anew);
-    m->held = m->held || m->holds;
 }
 
 /* The setpoint is moved by the hold, or the lead point goes on. */
 static bool move_by_hold(struct motion *m, bool hold)
 {
-    m->held = m->held && (hold || m->holds);
     m->looks = m->looks && hold;
     if (m->holds && !hold_step(&m->mover.beside.hold, m->path, &m->lead, hold)) {
         end_hold(m);

@@ -63,7 +63,6 @@ struct motion {
     double lag;        /* of the setpoint behind the lead point, path units */
     bool proportional;
     bool holds; /* the setpoint is moved by the hold, not by the lead point, */
-    bool held;  /* or has been, in the present hold, */
     bool looks; /* or looks whether it can be */
     bool done; /* the oldest block: the next cycle passes it */
     bool
