@@ -335,6 +335,7 @@ static bool try_step(struct hold *h, const struct path *path, const struct lead 
     if (!(e > 0.0)) {
         return false;
     }
+    h->moved = next.at - h->place.at;
     h->place = next;
     h->ease = e;
     return true;
@@ -344,18 +345,16 @@ static bool try_step(struct hold *h, const struct path *path, const struct lead 
 static void go_on_easing(struct hold *h)
 {
     const double w = h->place.change < 0.0 ? h->ease : -h->ease;
-    const double t = maths_abs(h->place.change) / h->ease;
+    const double t = maths_min(1.0, maths_abs(h->place.change) / h->ease);
+    const double from = h->place.at;
 
-    if (t >= 1.0) {
-        advance(&h->place, w, 1.0);
-        return;
-    }
     advance(&h->place, w, t);
-    h->place.change = 0.0;
-    if (h->place.rate < REST_PART * h->top) {
-        h->place.rate = 0.0;
+    if (t < 1.0 || maths_abs(h->place.change) < REST_PART * h->ease) {
+        h->place.change = 0.0;
+        h->place.rate = h->place.rate < REST_PART * h->top ? 0.0 : h->place.rate;
     }
     advance(&h->place, 0.0, 1.0 - t);
+    h->moved = h->place.at - from;
 }
 
 /*
@@ -408,6 +407,7 @@ bool hold_step(struct hold *h, const struct path *path, const struct lead *l, bo
     h->step = stop == h->stops ? h->step : STEP_LESS;
     h->stops = stop;
     if (stop && h->place.rate == 0.0) {
+        h->moved = 0.0;
         return true;
     }
     if (!stop && has_arrived(h, path, l)) {
@@ -447,7 +447,7 @@ bool hold_begin(struct hold *h, const struct path *path, const struct lead *l, d
     h->place.rate = way[0] / h->length + 0.5 * h->place.change;
     h->ease = 0.0;
     h->stops = true;
-    h->top = h->place.rate;
+    h->top = maths_max(h->place.rate, lead_top_feed(l) * PATH_UNITS_PER_MM / h->length);
     if (h->place.change <= 0.0) {
         return find_step(h, path, l, true);
     }

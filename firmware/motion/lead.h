@@ -112,6 +112,8 @@ void lead_leave_halt(struct lead *l);
  * overrides, else as they are.
  */
 bool lead_could_be(const struct lead *l, uint64_t at, double feed, bool highest);
+/* The highest feed where it is, mm/cycle, whatever the overrides are. */
+double lead_top_feed(const struct lead *l);
 /* It is there: the setpoint is moved by others (hold.h), to a position, and has had that feed for a whole window. */
 void lead_follow(struct lead *l, uint64_t at, double feed, uint64_t setpoint);
 

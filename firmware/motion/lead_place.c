@@ -303,6 +303,11 @@ bool lead_could_be(const struct lead *l, uint64_t at, double feed, bool highest)
     return false;
 }
 
+double lead_top_feed(const struct lead *l)
+{
+    return lead_has_piece(l) ? lead_feed(l, lead_piece(l, l->here.piece)->feed_max_mm_s) : 0.0;
+}
+
 void lead_follow(struct lead *l, uint64_t at, double feed, uint64_t setpoint)
 {
     struct lead_place *p = &l->here;

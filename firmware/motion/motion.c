@@ -393,11 +393,10 @@ static void follow_hold(struct motion *m)
     const uint64_t start = path_start(m->path, h->block);
     const double at = hold_at(h);
     const uint64_t ahead = start + (uint64_t)(at + 0.5 * (m->lead.window - 1.0) * hold_way(h));
-    const uint64_t setpoint = start + (uint64_t)at;
 
-    m->feed = path_mm(m->setpoint, setpoint);
+    m->feed = h->moved * h->length / PATH_UNITS_PER_MM;
     lead_follow(&m->lead, ahead, hold_way(h) / PATH_UNITS_PER_MM, m->setpoint);
-    m->lag = (double)(int64_t)(ahead - start) - at;
+    m->lag = h->place.rate > 0.0 ? (double)(int64_t)(ahead - start) - at : 0.0;
 }
 
 /* Is the setpoint on a smoothed curve, and moved by the lead point through a short window? */
