@@ -282,12 +282,24 @@ void lead_enter_piece(struct lead *l, uint32_t k)
 
 /* -- a setpoint that is moved by others -- */
 
+/* The lowest feed of what the setpoint has not left yet. */
+static double low_feed_now(const struct lead *l, bool highest)
+{
+    const struct lead_place *p = &l->here;
+
+    if (p->low_count == 0) {
+        return MATHS_INFINITY;
+    }
+    return highest ? lead_feed(l, lead_piece(l, p->low[p->low_first % LEAD_LOW_MAX].feed)->feed_max_mm_s)
+                   : p->low_feed;
+}
+
 bool lead_could_be(const struct lead *l, uint64_t at, double feed, bool highest)
 {
     const struct ceiling *c = l->here.ceiling;
     const double x = path_mm(c->origin, at);
 
-    if (!highest && l->here.low_count > 0 && feed > l->here.low_feed) {
+    if (feed > low_feed_now(l, highest)) {
         return false;
     }
     for (uint32_t k = l->here.piece, i = 0; k < c->count && i < LEAD_PIECES_MAX; k++, i++) {
