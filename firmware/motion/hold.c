@@ -238,13 +238,13 @@ static void advance(struct hold_state *s, double w, double t)
 }
 
 /*
- * The lead point of a setpoint that moves at a constant rate is half the window before it; it takes over at the end of the
- * cycle in which the change comes to 0.
+ * The lead point of a setpoint that moves at a constant rate is half the window before it. It takes over at the end of the
+ * cycle in which the change comes to 0, and keeps its feed in the next one (lead_follow).
  */
 static bool lead_can_take(const struct hold *h, const struct path *path, const struct lead *l,
                           const struct hold_state *s, bool stop)
 {
-    const double ahead = (s->at + 0.5 * (l->window + 1.0) * s->rate) * h->length;
+    const double ahead = (s->at + 0.5 * (l->window + 3.0) * s->rate) * h->length;
 
     return lead_could_be(l, path_start(path, h->block) + (uint64_t)ahead,
                          s->rate * h->length / PATH_UNITS_PER_MM, stop);

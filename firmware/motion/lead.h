@@ -114,7 +114,10 @@ void lead_leave_halt(struct lead *l);
 bool lead_could_be(const struct lead *l, uint64_t at, double feed, bool highest);
 /* The highest feed where it is, mm/cycle, whatever the overrides are. */
 double lead_top_feed(const struct lead *l);
-/* It is there: the setpoint is moved by others (hold.h), to a position, and has had that feed for a whole window. */
+/*
+ * It is there: the setpoint is moved by others (hold.h), to a position, and has had that feed for a whole window but for one
+ * cycle, in which it keeps it: third differences reach over so many more.
+ */
 void lead_follow(struct lead *l, uint64_t at, double feed, uint64_t setpoint);
 
 /* A span that begins: the averages start anew from where the lead point is, as if it had always moved by step. */

@@ -331,7 +331,7 @@ void lead_follow(struct lead *l, uint64_t at, double feed, uint64_t setpoint)
     l->feed = feed;
     l->owed = 0.0;
     l->abrupt = false;
-    l->since_plus = l->since_minus = LEAD_LONG_AGO;
+    l->since_plus = l->since_minus = (uint32_t)l->window - 1;
     for (unsigned i = 0; i < LEAD_PIECES_MAX && p->piece > 0 && x < c->end_mm[p->piece - 1]; i++) {
         p->piece--;
     }
