@@ -326,6 +326,9 @@ static bool try_step(struct hold *h, const struct path *path, const struct lead 
     if (stop && next.rate == 0.0) {
         return false;
     }
+    if (w * next.change < 0.0 && maths_abs(w) > maths_abs(next.change)) {
+        w = -next.change; /* in one direction in a cycle: the bounds need it */
+    }
     advance(&next, w, 1.0);
     if (!can_go(h, &h->place, &next, w)) {
         return false;
@@ -377,7 +380,7 @@ static bool find_step(struct hold *h, const struct path *path, const struct lead
         }
         h->step = maths_max(STEP_LEAST, STEP_LESS * h->step);
     }
-    return try_step(h, path, l, 0.0, hardest, stop) ||
+    return (wanted * h->place.change >= 0.0 && try_step(h, path, l, 0.0, hardest, stop)) ||
            try_step(h, path, l, -LESS_PART * h->place.change, hardest, stop);
 }
 
@@ -401,10 +404,8 @@ static void pass_blocks(struct hold *h)
 
 bool hold_step(struct hold *h, const struct path *path, const struct lead *l, bool stop)
 {
-    const bool turns = stop ? h->place.change > 0.0 : h->place.change < 0.0;
-
     read_pieces(h, path);
-    h->step = stop == h->stops ? h->step : STEP_LESS;
+    h->step = stop == h->stops ? h->step : 1.0;
     h->stops = stop;
     if (stop && h->place.rate == 0.0) {
         h->moved = 0.0;
@@ -413,7 +414,7 @@ bool hold_step(struct hold *h, const struct path *path, const struct lead *l, bo
     if (!stop && has_arrived(h, path, l)) {
         return false;
     }
-    if (turns || !find_step(h, path, l, stop)) {
+    if (!find_step(h, path, l, stop)) {
         if (h->place.change == 0.0) {
             return false;
         }
@@ -431,7 +432,7 @@ static void look_ahead(struct hold *h, const struct path *path, bool anew)
         h->end = path->first;
         h->whole = false;
         h->length = length_of(path, path->first);
-        h->step = STEP_LESS;
+        h->step = 1.0;
     }
     h->block = path->first;
     read_pieces(h, path);
@@ -448,12 +449,5 @@ bool hold_begin(struct hold *h, const struct path *path, const struct lead *l, d
     h->ease = 0.0;
     h->stops = true;
     h->top = maths_max(h->place.rate, lead_top_feed(l) * PATH_UNITS_PER_MM / h->length);
-    if (h->place.change <= 0.0) {
-        return find_step(h, path, l, true);
-    }
-    h->ease = find_ease(h, path, l, &h->place, hardest_step(h), true);
-    if (h->ease > 0.0) {
-        go_on_easing(h);
-    }
-    return h->ease > 0.0;
+    return find_step(h, path, l, true);
 }
