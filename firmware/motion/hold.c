@@ -31,13 +31,13 @@
 #define READ_MAX 6
 
 /* Parts that the ease is looked at in. */
-#define EASE_PARTS 6
+#define EASE_PARTS 8
 
 /* The eases tried, in parts of the hardest, beside the one that is known. */
 static const double ease_part[] = {1.0, 0.3, 0.1};
 
 /* Where w can not be found the next one tried is so much smaller; where it was found, twice as large. */
-#define STEP_LESS 0.25
+#define STEP_LESS 0.5
 #define STEP_LEAST (1.0 / 4096.0)
 
 /* Where the change cannot be kept, and need not be brought to 0 yet: by this part of it. */
