@@ -323,7 +323,7 @@ static bool try_step(struct hold *h, const struct path *path, const struct lead 
 {
     struct hold_state next = h->place;
 
-    if (stop && next.rate == 0.0) {
+    if (next.rate == 0.0 && !(w > 0.0)) {
         return false;
     }
     if (w * next.change < 0.0 && maths_abs(w) > maths_abs(next.change)) {
