@@ -14,6 +14,7 @@ void lead_init(struct lead *l, enum law law, uint64_t at)
     l->law = law;
     l->at = at;
     l->span = at - 1;
+    l->known = at;
     l->halt.left = at;
     l->standing = true;
 }
@@ -34,7 +35,7 @@ void lead_release(struct lead *l)
 
 /* -- one cycle -- */
 
-/* The joint that the span ends with keeps the feed that was promised for it, as long as the axes can do it. */
+/* The joint that the span ends with keeps the feed that was promised for it. */
 static void follow_landing(struct lead *l)
 {
     const uint32_t k = lead_landing(l);
@@ -43,11 +44,8 @@ static void follow_landing(struct lead *l)
         l->landing_feed = 0.0;
         return;
     }
-    const struct ceiling_piece *joint = lead_piece(l, k);
-
     l->landing_feed = lead_leave_of(l, k) == l->joint ? l->landing_feed : 0.0;
-    l->landing_feed = maths_min(maths_max(l->landing_feed, lead_feed(l, joint->feed_mm_s)),
-                                lead_feed(l, joint->feed_max_mm_s));
+    l->landing_feed = maths_max(l->landing_feed, lead_feed(l, lead_piece(l, k)->feed_mm_s));
     l->joint = lead_leave_of(l, k);
 }
 
@@ -121,8 +119,7 @@ static void run_on(struct lead *l, uint64_t setpoint, bool hold)
     const double low = lead_low_feed(l, setpoint);
     struct lead_brake b;
 
-    lead_brake_ahead(l, &b);
-    l->rest_a = maths_max(l->rest_a, (double)lead_piece(l, l->here.piece)->acceleration);
+    lead_brake_ahead(l, low, &b);
 
     if (hold) {
         b.feed = 0.0;
@@ -165,7 +162,6 @@ static void enter_span(struct lead *l, uint32_t k, uint64_t from, struct lead_st
     const uint32_t window = law_window_cycles(l->law, l->cycles);
 
     l->window = (double)window;
-    l->rest_a = l->feed > 0.0 ? MATHS_INFINITY : 0.0;
     l->before = from;
     l->at = from + start->step * (window - 1) / 2;
     l->feed = (double)start->step / PATH_UNITS_PER_MM;

@@ -184,10 +184,18 @@ static void ask(struct motion *m, const struct motion_operator *wanted)
     m->request.lead = m->lead.at;
     m->request.span = m->lead.span;
     m->request.cycles = m->lead.cycles;
-    m->request.rest_a = m->lead.rest_a;
     m->asked++;
     handoff_set_count(&m->path->kept, m->path->first);
     handoff_set_flag(&m->wanted, true);
+}
+
+/* The lead point has not taken the last ceiling: that is free, and another one is needed. */
+static void note_refused(struct motion *m)
+{
+    if (m->lead.here.ceiling == path_ceiling(m->path, 1 - m->active)) {
+        m->active = 1 - m->active;
+        m->made_holds = false;
+    }
 }
 
 /* While a ceiling is being taken none is free to be made: then a new one is asked for some cycles later. */
@@ -202,7 +210,11 @@ static void exchange(struct motion *m, const struct motion_operator *wanted)
         m->asks = true;
     }
     m->busy = m->busy || m->lead.coming.ceiling != NULL;
-    if (!lead_take(&m->lead) && m->asks) {
+    if (lead_take(&m->lead)) {
+        return;
+    }
+    note_refused(m);
+    if (m->asks) {
         ask(m, wanted);
         m->asks = false;
     }
