@@ -49,6 +49,9 @@ static const double ease_part[] = {1.0, 0.3, 0.1};
 /* Where the axes hardly move: the rate changes by no more than this part of what it began with in a cycle. */
 #define CHANGE_PART 0.2
 
+/* Blocks from the setpoint to the lead point, at most. */
+#define BLOCKS_MAX 64
+
 /* Rounding. */
 #define SLACK 1e-5f
 #define REST_PART 1e-9
@@ -237,17 +240,38 @@ static void advance(struct hold_state *s, double w, double t)
     s->change += t * w;
 }
 
+/* Is a feed not above what the pieces allow from a state up to a place? Path units a cycle, path units. */
+static bool tops_allow(const struct hold *h, const struct path *path, const struct hold_state *s,
+                       double way, uint64_t end)
+{
+    const double feed_mm_s = way / (PATH_UNITS_PER_MM * path->limits.cycle_s) * (1.0 - REST_PART);
+    uint32_t block = h->block + (uint32_t)s->at;
+
+    for (unsigned i = 0; i < BLOCKS_MAX && block != path->closed; i++, block++) {
+        if ((int64_t)(end - path_start(path, block)) <= 0) {
+            return true;
+        }
+        if (feed_mm_s > path_block_top(path_at(path, block))) {
+            return false;
+        }
+    }
+    return false;
+}
+
 /*
  * The lead point of a setpoint that moves at a constant rate is half the window before it. It takes over at the end of the
- * cycle in which the change comes to 0, and keeps its feed in the next one (lead_follow).
+ * cycle in which the change comes to 0, and keeps its feed in the next one (lead_follow). To stop it may be faster than the
+ * overrides ask for.
  */
 static bool lead_can_take(const struct hold *h, const struct path *path, const struct lead *l,
                           const struct hold_state *s, bool stop)
 {
     const double ahead = (s->at + 0.5 * (l->window + 3.0) * s->rate) * h->length;
+    const double way = s->rate * h->length;
+    const uint64_t at = path_start(path, h->block) + (uint64_t)ahead;
 
-    return lead_could_be(l, path_start(path, h->block) + (uint64_t)ahead,
-                         s->rate * h->length / PATH_UNITS_PER_MM, stop);
+    return lead_could_be(l, at, way / PATH_UNITS_PER_MM, stop) &&
+           (!stop || tops_allow(h, path, s, way, at));
 }
 
 /* Is the change brought to 0 by e within all limits, at a rate and place from which the lead point could go on? */
@@ -448,6 +472,7 @@ bool hold_begin(struct hold *h, const struct path *path, const struct lead *l, d
     h->place.rate = way[0] / h->length + 0.5 * h->place.change;
     h->ease = 0.0;
     h->stops = true;
-    h->top = maths_max(h->place.rate, lead_top_feed(l) * PATH_UNITS_PER_MM / h->length);
+    h->top = maths_max(h->place.rate, path_block_top(path_at(path, h->block)) * path->limits.cycle_s *
+                                          PATH_UNITS_PER_MM / h->length);
     return find_step(h, path, l, true);
 }

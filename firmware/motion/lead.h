@@ -116,8 +116,6 @@ void lead_leave_halt(struct lead *l);
  * overrides, else as they are.
  */
 bool lead_could_be(const struct lead *l, uint64_t at, double feed, bool highest);
-/* The highest feed where it is, mm/cycle, whatever the overrides are. */
-double lead_top_feed(const struct lead *l);
 /*
  * It is there: the setpoint is moved by others (hold.h), to a position, and has had that feed for a whole window but for one
  * cycle, in which it keeps it: third differences reach over so many more.

@@ -249,16 +249,13 @@ void lead_enter_piece(struct lead *l, uint32_t k)
 
 /* -- a setpoint that is moved by others -- */
 
-/* The lowest feed of what the setpoint has not left yet. */
-static double low_feed_now(const struct lead *l, bool highest)
+/* At the highest overrides: by the ends of pieces alone. */
+static bool can_meet_highest(const struct ceiling *c, uint32_t k, double x, double energy)
 {
-    const struct lead_place *p = &l->here;
+    const struct ceiling_piece *p = &c->piece[k];
+    const double end = ceiling_feed(c, p->end_feed_max_mm_s);
 
-    if (p->low_count == 0) {
-        return MATHS_INFINITY;
-    }
-    return highest ? lead_feed(l, lead_piece(l, p->low[p->low_first % LEAD_LOW_MAX].feed)->feed_max_mm_s)
-                   : p->low_feed;
+    return energy <= end * end + 2.0 * (double)p->acceleration * (c->end_mm[k] - x);
 }
 
 bool lead_could_be(const struct lead *l, uint64_t at, double feed, bool highest)
@@ -266,39 +263,27 @@ bool lead_could_be(const struct lead *l, uint64_t at, double feed, bool highest)
     const struct ceiling *c = l->here.ceiling;
     const double x = path_mm(c->origin, at);
 
-    if (feed > low_feed_now(l, highest)) {
+    if (!highest && l->here.low_count > 0 && feed > l->here.low_feed) {
         return false;
     }
     for (uint32_t k = l->here.piece, i = 0; k < c->count && i < LEAD_PIECES_MAX; k++, i++) {
-        const struct ceiling_piece *p = &c->piece[k];
-
-        if (feed > ceiling_feed(c, highest ? p->feed_max_mm_s : p->feed_mm_s)) {
-            return false;
+        if (x <= c->end_mm[k]) {
+            return highest ? can_meet_highest(c, k, x, feed * feed)
+                           : can_meet(c, k, x, feed * feed);
         }
-        if (x <= c->end_mm[k] || lead_is_last_of_span(p)) {
-            return x <= c->end_mm[k] && can_meet(c, k, x, lead_square(feed), highest);
+        if (lead_is_last_of_span(&c->piece[k]) ||
+            (!highest && feed > ceiling_feed(c, c->piece[k].feed_mm_s))) {
+            return false;
         }
     }
     return false;
 }
 
-double lead_top_feed(const struct lead *l)
+/* The piece that lies where it is, whatever it has been in. */
+static void find_piece(struct lead_place *p, double x)
 {
-    return lead_has_piece(l) ? lead_feed(l, lead_piece(l, l->here.piece)->feed_max_mm_s) : 0.0;
-}
-
-void lead_follow(struct lead *l, uint64_t at, double feed, uint64_t setpoint)
-{
-    struct lead_place *p = &l->here;
     const struct ceiling *c = p->ceiling;
-    const double x = path_mm(c->origin, at);
 
-    l->before = l->at;
-    l->at = at;
-    l->feed = feed;
-    l->owed = 0.0;
-    l->abrupt = false;
-    l->since_plus = l->since_minus = (uint32_t)l->window - 1;
     for (unsigned i = 0; i < LEAD_PIECES_MAX && p->piece > 0 && x < c->end_mm[p->piece - 1]; i++) {
         p->piece--;
     }
@@ -308,9 +293,25 @@ void lead_follow(struct lead *l, uint64_t at, double feed, uint64_t setpoint)
         p->piece++;
         low_push(p, p->piece);
     }
+}
+
+void lead_follow(struct lead *l, uint64_t at, double feed, uint64_t setpoint)
+{
+    struct lead_place *p = &l->here;
+    const struct ceiling *c = p->ceiling;
+
+    l->before = l->at;
+    l->at = at;
+    l->feed = feed;
+    l->owed = 0.0;
+    l->abrupt = false;
+    l->since_plus = l->since_minus = (uint32_t)l->window - 1;
+    find_piece(p, path_mm(c->origin, at));
+    const uint64_t start = ceiling_start(c, p->piece);
+
     p->late = false;
-    p->early_a = MATHS_INFINITY;
-    note_entry(l);
+    l->entered = lead_is_beyond(start, l->entered) ? start : l->entered;
+    l->known = lead_leave_of(l, c->count - 1);
     (void)lead_low_feed(l, setpoint);
 }
 

@@ -417,7 +417,7 @@ static bool may_hold(const struct motion *m)
     const struct lead *l = &m->lead;
     const struct average *a = &m->mover.average;
 
-    return !l->standing && !l->run.active && m->feed_before[0] > 0.0 &&
+    return !l->standing && !l->run.active && !l->here.late && m->feed_before[0] > 0.0 &&
            path_at(m->path, m->path->first)->smooth && a->box[a->boxes - 1].end <= MOTION_INPUTS_MAX;
 }
 
