@@ -49,8 +49,8 @@ static const double ease_part[] = {1.0, 0.3, 0.1};
 /* Where the axes hardly move: the rate changes by no more than this part of what it began with in a cycle. */
 #define CHANGE_PART 0.2
 
-/* Blocks from the setpoint to the lead point, at most. */
-#define BLOCKS_MAX 64
+/* Blocks from the setpoint to what begins at the lead point, at most. */
+#define BLOCKS_MAX 128
 
 /* Rounding. */
 #define SLACK 1e-5f
@@ -240,22 +240,33 @@ static void advance(struct hold_state *s, double w, double t)
     s->change += t * w;
 }
 
-/* Is a feed not above what the pieces allow from a state up to a place? Path units a cycle, path units. */
-static bool tops_allow(const struct hold *h, const struct path *path, const struct hold_state *s,
-                       double way, uint64_t end)
+/*
+ * Is the feed of a lead point, path units a cycle, not above the highest of what it has come to, from the setpoint on? A
+ * block from S on begins for it at S - c b, b half the window and a margin.
+ */
+static bool tops_allow(const struct hold *h, const struct path *path, const struct lead *l,
+                       const struct hold_state *s, uint64_t at)
 {
-    const double feed_mm_s = way / (PATH_UNITS_PER_MM * path->limits.cycle_s) * (1.0 - REST_PART);
+    const double b = 0.5 * (l->window - 1.0) + CEILING_MARGIN_CYCLES;
+    const double way = s->rate * h->length * (1.0 - REST_PART);
+    const double per_mm_s = path->limits.cycle_s * PATH_UNITS_PER_MM;
     uint32_t block = h->block + (uint32_t)s->at;
 
     for (unsigned i = 0; i < BLOCKS_MAX && block != path->closed; i++, block++) {
-        if ((int64_t)(end - path_start(path, block)) <= 0) {
+        const double gap = (double)(int64_t)(path_start(path, block) - at);
+        const double top = path_block_top(path_at(path, block)) * per_mm_s;
+
+        if (gap >= way * b) {
             return true;
         }
-        if (feed_mm_s > path_block_top(path_at(path, block))) {
+        if (way > top && gap < top * b) {
             return false;
         }
+        if (path_at(path, block)->end == JOINT_STOP) {
+            return true;
+        }
     }
-    return false;
+    return block == path->closed;
 }
 
 /*
@@ -271,7 +282,7 @@ static bool lead_can_take(const struct hold *h, const struct path *path, const s
     const uint64_t at = path_start(path, h->block) + (uint64_t)ahead;
 
     return lead_could_be(l, at, way / PATH_UNITS_PER_MM, stop) &&
-           (!stop || tops_allow(h, path, s, way, at));
+           (!stop || tops_allow(h, path, l, s, at));
 }
 
 /* Is the change brought to 0 by e within all limits, at a rate and place from which the lead point could go on? */
