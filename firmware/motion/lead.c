@@ -5,9 +5,6 @@
 
 #include <string.h>
 
-/* Long ago: more cycles than any window. */
-#define LONG_AGO UINT32_C(0x7fffffff)
-
 /* Path units a cycle: of more, half a unit is less than 1e-5. */
 #define SLOW_UNITS 65536.0
 
@@ -17,6 +14,7 @@ void lead_init(struct lead *l, enum law law, uint64_t at)
     l->law = law;
     l->at = at;
     l->span = at - 1;
+    l->known = at;
     l->halt.left = at;
     l->standing = true;
 }
@@ -37,7 +35,7 @@ void lead_release(struct lead *l)
 
 /* -- one cycle -- */
 
-/* The joint that the span ends with keeps the feed that was promised for it, as long as the axes can do it. */
+/* The joint that the span ends with keeps the feed that was promised for it. */
 static void follow_landing(struct lead *l)
 {
     const uint32_t k = lead_landing(l);
@@ -46,18 +44,15 @@ static void follow_landing(struct lead *l)
         l->landing_feed = 0.0;
         return;
     }
-    const struct ceiling_piece *joint = lead_piece(l, k);
-
     l->landing_feed = lead_leave_of(l, k) == l->joint ? l->landing_feed : 0.0;
-    l->landing_feed = maths_min(maths_max(l->landing_feed, lead_feed(l, joint->feed_mm_s)),
-                                lead_feed(l, joint->feed_max_mm_s));
+    l->landing_feed = maths_max(l->landing_feed, lead_feed(l, lead_piece(l, k)->feed_mm_s));
     l->joint = lead_leave_of(l, k);
 }
 
 static void count_changes(struct lead *l, double change)
 {
-    l->since_plus = change > 0.0 ? 0 : l->since_plus < LONG_AGO ? l->since_plus + 1 : LONG_AGO;
-    l->since_minus = change < 0.0 ? 0 : l->since_minus < LONG_AGO ? l->since_minus + 1 : LONG_AGO;
+    l->since_plus = change > 0.0 ? 0 : l->since_plus < LEAD_LONG_AGO ? l->since_plus + 1 : LEAD_LONG_AGO;
+    l->since_minus = change < 0.0 ? 0 : l->since_minus < LEAD_LONG_AGO ? l->since_minus + 1 : LEAD_LONG_AGO;
 }
 
 /*
@@ -124,8 +119,7 @@ static void run_on(struct lead *l, uint64_t setpoint, bool hold)
     const double low = lead_low_feed(l, setpoint);
     struct lead_brake b;
 
-    lead_brake_ahead(l, &b);
-    l->rest_a = maths_max(l->rest_a, (double)lead_piece(l, l->here.piece)->acceleration);
+    lead_brake_ahead(l, low, &b);
 
     if (hold) {
         b.feed = 0.0;
@@ -168,12 +162,11 @@ static void enter_span(struct lead *l, uint32_t k, uint64_t from, struct lead_st
     const uint32_t window = law_window_cycles(l->law, l->cycles);
 
     l->window = (double)window;
-    l->rest_a = l->feed > 0.0 ? MATHS_INFINITY : 0.0;
     l->before = from;
     l->at = from + start->step * (window - 1) / 2;
     l->feed = (double)start->step / PATH_UNITS_PER_MM;
-    l->since_plus = LONG_AGO;
-    l->since_minus = LONG_AGO;
+    l->since_plus = LEAD_LONG_AGO;
+    l->since_minus = LEAD_LONG_AGO;
     l->run.over = false;
     l->abrupt = false;
     start->at = l->at;

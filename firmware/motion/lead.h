@@ -34,8 +34,10 @@ struct lead_low {
 struct lead_place {
     const struct ceiling *ceiling; /* NULL: none */
     uint32_t piece; /* the ceiling's count: beyond its end. At a stop: the first behind it */
-    bool late;      /* the next piece begins here, but must not be come to yet */
-    double early_a; /* acceleration that still counts when a piece was come to before it begins */
+    bool
+        late; /* something that was not known before begins here, but it is too fast for that yet: */
+    uint64_t late_start; /* it starts here for the setpoint, */
+    double late_a;       /* and this acceleration still counts, as was promised */
     /* from the setpoint's piece to the lead point's, feeds rising: the first is the lowest */
     uint32_t low_first, low_count;
     struct lead_low low[LEAD_LOW_MAX];
@@ -58,23 +60,24 @@ struct lead_halt {
 struct lead {
     enum law law;
     uint64_t at;
-    uint64_t before;      /* at the beginning of the last cycle */
-    uint64_t span;        /* where the span starts that has been begun last */
-    uint64_t entered;     /* where what the lead point has come to last starts for the setpoint */
-    double feed;          /* at the end of the last cycle */
-    double owed;          /* path units: what a slow feed has been rounded by so far */
-    bool standing;        /* at a stop, or where the machine was switched on: between two spans */
-    bool abrupt;          /* came to rest where it was: waits for a cycle more before it moves on */
-    bool released;        /* and may leave it */
-    uint32_t cycles;      /* of the first averaging box, in this span */
-    double rest_a;        /* highest acceleration in it if it began at rest; infinite: it did not */
-    double window;        /* cycles that the averages reach over */
+    uint64_t before;  /* at the beginning of the last cycle */
+    uint64_t span;    /* where the span starts that has been begun last */
+    uint64_t known;   /* up to here it can follow the ceilings so far: what starts behind is new */
+    uint64_t entered; /* where what the lead point has come to last starts for the setpoint */
+    double feed;      /* at the end of the last cycle */
+    double owed;      /* path units: what a slow feed has been rounded by so far */
+    bool standing;    /* at a stop, or where the machine was switched on: between two spans */
+    bool abrupt;      /* came to rest where it was: waits for a cycle more before it moves on */
+    bool released;    /* and may leave it */
+    uint32_t cycles;  /* of the first averaging box, in this span */
+    double window;    /* cycles that the averages reach over */
     uint32_t since_plus;  /* cycles since it sped up */
     uint32_t since_minus; /* and since it slowed down */
     struct lead_place here;
     struct lead_place coming; /* in the next ceiling */
     uint64_t joint;           /* the next one to land on, where there is one */
-    double landing_feed;      /* for it */
+    double
+        landing_feed; /* for it: as was promised until it can come down to what the ceiling says now */
     struct landing_run run;
     struct lead_halt halt;
 };
@@ -84,7 +87,8 @@ void lead_init(struct lead *l, enum law law, uint64_t at);
 
 /*
  * A new ceiling, over a path that reaches further or under other overrides. It is taken when the lead point's place in it
- * has been found, some cycles later; until then the ceiling in use and the new one stay as they are.
+ * has been found, some cycles later; until then the ceiling in use and the new one stay as they are. Not taken is one that
+ * ends too early, for want of pieces.
  */
 void lead_set_ceiling(struct lead *l, const struct ceiling *ceiling);
 
@@ -106,6 +110,17 @@ void lead_end_blocks(struct lead *l, bool on);
 /* Is it at rest there? It stays until it is told that the setpoint has come. */
 bool lead_has_halted(const struct lead *l);
 void lead_leave_halt(struct lead *l);
+
+/*
+ * Could it be at a position, a little ahead, with this feed, mm/cycle, and meet what is ahead? highest: at the highest
+ * overrides, else as they are.
+ */
+bool lead_could_be(const struct lead *l, uint64_t at, double feed, bool highest);
+/*
+ * It is there: the setpoint is moved by others (hold.h), to a position, and has had that feed for a whole window but for one
+ * cycle, in which it keeps it: third differences reach over so many more.
+ */
+void lead_follow(struct lead *l, uint64_t at, double feed, uint64_t setpoint);
 
 /* A span that begins: the averages start anew from where the lead point is, as if it had always moved by step. */
 struct lead_start {

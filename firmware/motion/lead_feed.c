@@ -123,20 +123,17 @@ static void brake_for_piece(const struct lead *l, uint32_t k, double gap_mm, str
 }
 
 /*
- * The next piece must not be come to yet: slows down until that does no harm, v e <= S - s - (w + v)/2, and what follows
- * can be met (lead_place.c), and comes to rest at S at the latest.
+ * Too fast for what begins here: slows down until that does no harm, v e <= S - s - (w + v)/2, and what follows can be met
+ * (lead_place.c), and comes to rest at S at the latest.
  */
 static void brake_late(const struct lead *l, struct lead_brake *b)
 {
-    const uint32_t next = l->here.piece + 1;
-    const uint64_t start = ceiling_start(l->here.ceiling, next);
-    const double gap_mm = path_mm(l->at, start);
-    const double harmless = maths_min((gap_mm - 0.5 * l->feed) / (lead_entry_cycles(l) + 0.5),
-                                      lead_feed(l, lead_piece(l, next)->feed_max_mm_s));
+    const double gap_mm = path_mm(l->at, l->here.late_start);
+    const double harmless = (gap_mm - 0.5 * l->feed) / (lead_entry_cycles(l) + 0.5);
 
-    b->feed = harmless < l->feed ? maths_max(0.0, harmless) : 0.0;
+    b->feed = harmless < l->feed ? maths_min(b->feed, maths_max(0.0, harmless)) : 0.0;
     if (gap_mm >= 0.0) {
-        brake_to_rest(l, start, b->a, b);
+        brake_to_rest(l, l->here.late_start, b->a, b);
     }
 }
 
@@ -154,7 +151,7 @@ static bool is_open(const struct lead *l)
 static double feed_to_wait(const struct lead *l, double top)
 {
     const struct ceiling *c = l->here.ceiling;
-    const double a = (double)lead_piece(l, l->here.piece)->acceleration;
+    const double a = lead_acceleration(l);
     const double m = a * (OPEN_CYCLES + 0.5);
     const double gap_mm = c->end_mm[c->count - 1] - path_mm(c->origin, l->at) - 0.5 * l->feed;
 
@@ -164,14 +161,13 @@ static double feed_to_wait(const struct lead *l, double top)
     return gap_mm > 0.0 ? maths_min(top, maths_sqrt(m * m + 2.0 * a * gap_mm) - m) : 0.0;
 }
 
-void lead_brake_ahead(const struct lead *l, struct lead_brake *b)
+void lead_brake_ahead(const struct lead *l, double low, struct lead_brake *b)
 {
-    const struct ceiling_piece *here = lead_piece(l, l->here.piece);
     const double s = path_mm(l->here.ceiling->origin, l->at);
 
     b->at_mm = s;
-    b->feed = maths_min(l->feed, lead_feed(l, here->feed_mm_s));
-    b->a = (double)here->acceleration;
+    b->feed = maths_min(l->feed, low);
+    b->a = lead_acceleration(l);
     b->rest = false;
     if (l->here.late) {
         brake_late(l, b);
@@ -191,7 +187,6 @@ void lead_brake_ahead(const struct lead *l, struct lead_brake *b)
     if (!b->rest && is_open(l)) {
         b->feed = maths_min(b->feed, feed_to_wait(l, l->feed));
     }
-    b->a = maths_min(b->a, l->here.early_a);
 }
 
 /* -- landing -- */
@@ -212,7 +207,7 @@ static double landing_gap(const struct lead *l)
 /* How hard the lead point may slow down on its way to the joint: above its feed as in the piece that it is in. */
 static double landing_acceleration(const struct lead *l, double feed)
 {
-    const double here = (double)lead_piece(l, l->here.piece)->acceleration;
+    const double here = lead_acceleration(l);
 
     return feed > l->landing_feed
                ? here
@@ -287,22 +282,6 @@ static double landing_reach(const struct lead *l)
     return l->feed * (0.5 * l->feed / a + 2.0 * l->window + LANDING_CYCLES);
 }
 
-/* Does anything before the joint ask for less than the present feed? highest: at the highest overrides. */
-static bool is_way_free(const struct lead *l, bool highest)
-{
-    const struct ceiling_piece *p = lead_piece(l, l->here.piece);
-
-    if (l->here.piece + 1 >= p->landing) {
-        return true;
-    }
-    while (!(highest ? p->lowest_max : p->lowest)) {
-        p++;
-    }
-    const double feed = lead_feed(l, highest ? p->end_feed_max_mm_s : p->end_feed_mm_s);
-
-    return lead_square(feed) >= lead_square(l->feed) * (1.0 - LEAD_ENERGY_SLACK);
-}
-
 /* The feed at the end of this cycle if nothing else but braking happens. */
 static double braked_feed(const struct lead *l, const struct lead_brake *b)
 {
@@ -332,13 +311,11 @@ static bool can_rest_before(const struct lead *l, double gap_mm)
 static bool must_land(const struct lead *l, const struct lead_brake *b, double gap_mm,
                       struct landing_run *run)
 {
-    const double highest = lead_feed(l, lead_piece(l, lead_landing(l))->feed_max_mm_s);
+    const double highest = lead_feed(l, lead_piece(l, lead_landing(l))->end_feed_max_mm_s);
 
-    if (landing_from(l, gap_mm, l->feed, l->landing_feed, run) && is_way_free(l, false)) {
-        return true;
-    }
-    return landing_from(l, gap_mm, l->feed, highest, run) &&
-           !can_land_after(l, b, gap_mm, highest) && is_way_free(l, true);
+    return landing_from(l, gap_mm, l->feed, l->landing_feed, run) ||
+           (landing_from(l, gap_mm, l->feed, highest, run) &&
+            !can_land_after(l, b, gap_mm, highest));
 }
 
 /* A joint that cannot be landed on any more, nor come down to by the ceiling, is a stop. */
@@ -365,8 +342,8 @@ void lead_consider_landing(struct lead *l, bool hold, struct lead_brake *b)
     if (!hold || !can_rest_before(l, gap_mm)) {
         l->run.active = must_land(l, b, gap_mm, &l->run);
     }
-    if (!l->run.active && (hold || (must_stop(l) && is_way_free(l, false)))) {
-        brake_to_rest(l, lead_leave_of(l, lead_landing(l)), stop_acceleration(l), b);
+    if (!l->run.active && (hold || must_stop(l))) {
+        brake_to_rest(l, l->joint, stop_acceleration(l), b);
     }
 }
 
@@ -419,7 +396,7 @@ static double feed_to_keep(const struct lead *l, double s, double top, double lo
 
 double lead_speed_up(const struct lead *l, double at_mm, double low)
 {
-    const double a = (double)lead_piece(l, l->here.piece)->acceleration;
+    const double a = lead_acceleration(l);
 
     if (!lead_has_rested(l) || low <= l->feed * (1.0 + 1e-12)) {
         return l->feed;

@@ -8,9 +8,8 @@
  *     w^2 <= 2 a (E - s - w k)
  *
  * with k the cycles until it may brake, a the lowest acceleration of the piece that it is in, of the motion's blocks and of
- * the joint that ends the span. It speeds up only so far that this holds when it may brake again, and comes to a piece that
- * belongs to what is behind E only if it holds with that one's acceleration; until then it stays in the one it is in
- * (lead_place.c). Wherever a hold keeps the limits so does a halt: no window, joint or promise of a ceiling depends on the
+ * the joint that ends the span. It speeds up only so far that this holds when it may brake again, and takes on the
+ * acceleration of what is behind E only if it holds with that; until then it keeps the one it had (lead_place.c). Wherever a hold keeps the limits so does a halt: no window, joint or promise of a ceiling depends on the
  * operator's switch.
  *
  * Too fast for the next end it slows down as in a hold, and so on until there is one that it can rest at. If that end is a
@@ -59,11 +58,8 @@ void lead_leave_halt(struct lead *l)
 double lead_halt_acceleration(const struct lead *l)
 {
     const uint32_t landing = lead_landing(l);
-    double a = maths_min(l->halt.a, l->here.early_a);
+    const double a = lead_has_piece(l) ? maths_min(l->halt.a, lead_acceleration(l)) : l->halt.a;
 
-    if (lead_has_piece(l)) {
-        a = maths_min(a, (double)lead_piece(l, l->here.piece)->acceleration);
-    }
     return landing == CEILING_NONE ? a : maths_min(a, (double)lead_piece(l, landing)->acceleration);
 }
 

@@ -1,16 +1,18 @@
 /*
  * Goal: a new ceiling never asks for what cannot be done any more.
  *
- * While the lead point is in a piece it may slow down by that piece's acceleration, and what lies ahead could be met from
- * there when the piece was come to. A new ceiling may show something slow, or with a low acceleration, where only the end
- * of what was known had been: or begin it earlier, since a higher ceiling c begins c b before its block, b half the window
- * and a margin. The lead point does not come to such a piece where it begins, but where that can do no harm: with its
- * block from S on, at
+ * Where the lead point may brake how hard is the same under every override (plan/ceiling.h). So whatever the override, it can
+ * do what it could do under the one before: brake as hard as its place allows, and be no faster anywhere than then. It is in
+ * the piece that lies where it is, however fast it is.
+ *
+ * But a new ceiling may also show something slow, or with a low acceleration, where only the end of what was known had been.
+ * The lead point that is too fast for that is late: it keeps the acceleration it had, and brakes, until it does no harm. With
+ * the block from S on that is when what it begins there can be met, and
  *
  *     w b <= S - s
  *
- * for then all that the averages hold when the setpoint comes to S is that piece's. Until then it stays in the piece it
- * is in and slows down as hard as that one allows: at worst to rest at S, which is what it was promised.
+ * b half the window and a margin: for then all that the averages hold when the setpoint comes to S is that block's. At worst
+ * it comes to rest at S, which is what it was promised.
  */
 #include "motion/lead_private.h"
 
@@ -89,17 +91,19 @@ static double brake_position(const struct lead *l, const struct ceiling *c)
     return path_mm(c->origin, l->at) + l->feed * wait;
 }
 
-/* Can what lies ahead be met by braking at this feed squared from x on, in piece k? highest: at the highest overrides. */
-static bool can_meet(const struct ceiling *c, uint32_t k, double x, double energy, bool highest)
+/* Can what lies ahead be met at this feed squared, which is braked from at x at the earliest, from piece k on? */
+static bool can_meet(const struct ceiling *c, uint32_t k, double x, double energy)
 {
-    for (uint32_t i = 0; i < LEAD_PIECES_MAX; i++) {
-        const struct ceiling_piece *p = &c->piece[k + i];
-        const double end_energy =
-            lead_square(ceiling_feed(c, highest ? p->end_feed_max_mm_s : p->end_feed_mm_s));
-        const bool last = lead_is_last_of_span(p) || k + i + 1 == c->count;
+    for (uint32_t i = k; i < k + LEAD_PIECES_MAX; i++) {
+        const struct ceiling_piece *p = &c->piece[i];
+        const double end_energy = lead_square(ceiling_feed(c, p->end_feed_mm_s));
+        const bool last = lead_is_last_of_span(p) || i + 1 == c->count;
 
-        if (c->end_mm[k + i] >= x || last) {
-            return energy <= end_energy + 2.0 * (double)p->acceleration * (c->end_mm[k + i] - x);
+        if (energy > lead_square(ceiling_feed(c, p->feed_mm_s))) {
+            return false;
+        }
+        if (c->end_mm[i] >= x || last) {
+            return energy <= end_energy + 2.0 * (double)p->acceleration * (c->end_mm[i] - x);
         }
         if (energy > end_energy) {
             return false;
@@ -108,31 +112,10 @@ static bool can_meet(const struct ceiling *c, uint32_t k, double x, double energ
     return true; /* so many pieces within a window: what ends the last one counts for those behind */
 }
 
-/* Without rounding. */
-static double energy_of(const struct lead *l)
-{
-    return l->feed * l->feed * (1.0 - LEAD_ENERGY_SLACK);
-}
-
-/* Can what lies ahead be met at the highest overrides if the lead point comes to piece k here? */
+/* Can the lead point in piece k do what the ceiling asks for from here on, but for rounding? */
 static bool can_follow(const struct lead *l, const struct ceiling *c, uint32_t k)
 {
-    return can_meet(c, k, brake_position(l, c), energy_of(l), true);
-}
-
-/* Likewise from piece k to next, before that begins: until there it brakes as the pieces allow that it leaves. */
-static bool can_follow_early(const struct lead *l, const struct ceiling *c, uint32_t k,
-                             uint32_t next)
-{
-    const double begin_mm = c->end_mm[next - 1];
-    const double x = brake_position(l, c);
-    double a = l->here.early_a;
-
-    for (uint32_t i = k; i < next; i++) {
-        a = maths_min(a, (double)c->piece[i].acceleration);
-    }
-    return x < begin_mm ? can_meet(c, next, begin_mm, energy_of(l) - 2.0 * a * (begin_mm - x), true)
-                        : can_meet(c, next, x, energy_of(l), true);
+    return can_meet(c, k, brake_position(l, c), lead_square(l->feed) * (1.0 - LEAD_ENERGY_SLACK));
 }
 
 /* Does a piece allow whatever the averages may hold from the one before? */
@@ -140,81 +123,59 @@ static bool is_no_lower(const struct lead *l, const struct ceiling *c, uint32_t 
 {
     const struct ceiling_piece *had = &c->piece[k - 1];
     const struct ceiling_piece *p = &c->piece[k];
-    const double feed_max = ceiling_feed(c, p->feed_max_mm_s) * (1.0 + SLACK);
-    const bool kept = l->feed <= feed_max && l->since_minus >= l->window;
+    const double feed = ceiling_feed(c, p->feed_mm_s) * (1.0 + SLACK);
+    const bool kept = l->feed <= feed && l->since_minus >= l->window;
 
-    return (had->feed_max_mm_s <= p->feed_max_mm_s || kept) && p->acceleration >= had->acceleration;
+    return (had->feed_mm_s <= p->feed_mm_s || kept) && p->acceleration >= had->acceleration;
 }
 
-/*
- * Has the lead point come past the end of piece k in this cycle, with a feed from which everything behind can be met? A
- * ceiling taken in between may begin the next piece, of less acceleration, so early that it is too fast there.
- */
+/* Has the lead point come to piece k in this cycle, as slow as it asks for? */
 static bool is_as_planned(const struct lead *l, const struct ceiling *c, uint32_t k)
 {
-    const double energy = lead_square(ceiling_feed(c, c->piece[k].end_feed_mm_s));
-
-    return path_mm(c->origin, l->before) < c->end_mm[k] &&
-           l->feed * l->feed <= energy * (1.0 + LEAD_ENERGY_SLACK) &&
-           can_meet(c, k + 1, brake_position(l, c), energy_of(l), false);
+    return path_mm(c->origin, l->before) < c->end_mm[k - 1] && can_follow(l, c, k);
 }
 
-/* From piece k to the next, past its end. */
-static bool may_enter(const struct lead *l, const struct ceiling *c, uint32_t k)
+/* Does it halt before a place, and could not with the acceleration of piece k, which starts there for the setpoint? */
+static bool halts_before(const struct lead *l, const struct ceiling *c, uint32_t k, uint64_t start)
 {
-    const struct ceiling_piece *p = &c->piece[k + 1];
-    const uint64_t start = ceiling_start(c, k + 1);
+    return l->halt.found && lead_is_beyond(start, l->halt.end) &&
+           !lead_can_halt(l, (double)c->piece[k].acceleration);
+}
 
-    if (!p->opens || l->feed == 0.0 || lead_is_beyond(l->entered, start)) {
+/* May the lead point come to what begins with piece k and starts at a place for the setpoint? */
+static bool may_enter(const struct lead *l, const struct ceiling *c, uint32_t k, uint64_t start)
+{
+    if (l->feed == 0.0 || lead_is_beyond(l->entered, start)) {
         return true;
     }
-    if (l->halt.found && lead_is_beyond(start, l->halt.end) &&
-        !lead_can_halt(l, (double)p->acceleration)) {
-        return false;
-    }
-    if (is_no_lower(l, c, k + 1) || is_as_planned(l, c, k)) {
-        return true;
-    }
-    return l->feed * lead_entry_cycles(l) <= path_mm(l->at, start) &&
-           l->feed <= ceiling_feed(c, p->feed_max_mm_s) * (1.0 + SLACK) && can_follow(l, c, k + 1);
+    return !halts_before(l, c, k, start) &&
+           (!lead_is_beyond(start, l->known) || is_no_lower(l, c, k) || is_as_planned(l, c, k));
 }
 
-/* The next piece, behind k, that something begins with; 0: there is none in this span. */
-static uint32_t next_opening(const struct ceiling *c, uint32_t k)
+static uint64_t nearer(const struct lead *l, uint64_t one, uint64_t other)
 {
-    for (uint32_t i = 0; i < LEAD_PIECES_MAX && !lead_is_last_of_span(&c->piece[k]); i++) {
-        k++;
-        if (k == c->count) {
-            return 0;
-        }
-        if (c->piece[k].opens) {
-            return k;
-        }
-    }
-    return 0;
+    return path_mm(l->at, one) < path_mm(l->at, other) ? one : other;
 }
 
-/*
- * A lead point that cannot come down to the next ceiling where that begins, because it was lowered just now, has to come
- * to it earlier: at w b = S - s, as long as what follows can be met from there at the highest overrides.
- */
-static bool must_enter(const struct lead *l, const struct ceiling *c, uint32_t k)
+/* Comes to piece k. What it is too fast for is new to it until it no longer is. */
+static void come_to(struct lead *l, struct lead_place *p, uint32_t k)
 {
-    const uint32_t next = next_opening(c, k);
-    const double w = l->feed;
+    const struct ceiling *c = p->ceiling;
 
-    if (next == 0) {
-        return false;
+    p->piece = k;
+    if (!c->piece[k].opens) {
+        return;
     }
-    const struct ceiling_piece *p = &c->piece[next];
-    const double end = ceiling_feed(c, c->piece[next - 1].end_feed_mm_s);
-    const double gap_mm = c->end_mm[next - 1] - brake_position(l, c);
+    const uint64_t start = ceiling_start(c, k);
 
-    return ceiling_feed(c, p->feed_mm_s) < w && w <= ceiling_feed(c, p->feed_max_mm_s) &&
-           w * (lead_entry_cycles(l) + 1.0) >= path_mm(l->at, ceiling_start(c, next)) &&
-           w * w * (1.0 - LEAD_ENERGY_SLACK) >
-               end * end + 2.0 * (double)c->piece[k].acceleration * gap_mm &&
-           can_follow_early(l, c, k, next);
+    if (may_enter(l, c, k, start)) {
+        l->entered = lead_is_beyond(start, l->entered) ? start : l->entered;
+        return;
+    }
+    p->late_start = p->late ? nearer(l, p->late_start, start) : start;
+    p->late_a = p->late ? p->late_a : (double)c->piece[k - 1].acceleration;
+    p->late = true;
+    l->known = nearer(l, l->known, start);
 }
 
 /* Comes to the piece behind that which the lead point is in, if it is there. False: it stays. */
@@ -223,61 +184,135 @@ static bool go_on(struct lead *l, struct lead_place *p)
     const struct ceiling *c = p->ceiling;
     const uint32_t k = p->piece;
 
-    if (lead_is_last_of_span(&c->piece[k])) {
+    if (lead_is_last_of_span(&c->piece[k]) || !has_passed(l, c, k)) {
         return false;
     }
-    const bool passed = has_passed(l, c, k);
-
     if (k + 1 == c->count) {
-        p->piece += passed ? 1 : 0;
+        p->piece++;
         return false;
     }
-    if (!passed && !must_enter(l, c, k)) {
-        return false;
-    }
-    p->late = !may_enter(l, c, k);
-    if (p->late) {
-        return false;
-    }
-    p->early_a = passed ? MATHS_INFINITY : maths_min(p->early_a, (double)c->piece[k].acceleration);
-    p->piece++;
-    low_push(p, p->piece);
+    come_to(l, p, k + 1);
+    low_push(p, k + 1);
     return true;
 }
 
-/* What begins for the setpoint at the piece of the lead point has been come to. */
-static void note_entry(struct lead *l)
+/* Would what begins here do no harm any more? */
+static bool is_harmless(const struct lead *l)
 {
-    if (lead_has_piece(l)) {
-        const uint64_t start = ceiling_start(l->here.ceiling, l->here.piece);
+    const struct lead_place *p = &l->here;
 
-        l->entered = lead_is_beyond(start, l->entered) ? start : l->entered;
+    return l->feed == 0.0 || (l->feed * lead_entry_cycles(l) <= path_mm(l->at, p->late_start) &&
+                              can_follow(l, p->ceiling, p->piece) &&
+                              !halts_before(l, p->ceiling, p->piece, p->late_start));
+}
+
+/* Once it can do all that the ceiling asks for it can do so under any override, as far as is known now. */
+static void note_known(struct lead *l)
+{
+    struct lead_place *p = &l->here;
+
+    if (!lead_has_piece(l)) {
+        return;
+    }
+    if (p->late && is_harmless(l)) {
+        p->late = false;
+        l->entered = lead_is_beyond(p->late_start, l->entered) ? p->late_start : l->entered;
+    }
+    const uint64_t end = lead_leave_of(l, p->ceiling->count - 1);
+    const uint32_t k = lead_landing(l);
+    const double joint =
+        k == CEILING_NONE ? l->landing_feed : lead_feed(l, lead_piece(l, k)->feed_mm_s);
+
+    if (!p->late && (!lead_is_beyond(l->known, end) || joint < l->landing_feed) &&
+        can_follow(l, p->ceiling, p->piece)) {
+        l->known = end;
+        l->landing_feed = joint;
     }
 }
 
 void lead_follow_pieces(struct lead *l)
 {
-    l->here.late = false;
-    if (l->here.early_a != MATHS_INFINITY && lead_has_piece(l) && l->here.piece > 0 &&
-        has_passed(l, l->here.ceiling, l->here.piece - 1)) {
-        l->here.early_a = MATHS_INFINITY;
+    for (unsigned i = 0; i < LEAD_PIECES_MAX && lead_has_piece(l) && go_on(l, &l->here); i++) {
     }
-    for (unsigned i = 0; i < LEAD_PIECES_MAX && lead_has_piece(l); i++) {
-        if (!go_on(l, &l->here)) {
-            return;
-        }
-        note_entry(l);
-    }
+    note_known(l);
 }
 
 void lead_enter_piece(struct lead *l, uint32_t k)
 {
     l->here.piece = k;
     l->here.low_count = 0;
-    l->here.early_a = MATHS_INFINITY;
+    l->here.late = false;
     low_push(&l->here, k);
     l->entered = l->span;
     lead_follow_pieces(l);
+}
+
+/* -- a setpoint that is moved by others -- */
+
+/* At the highest overrides: by the ends of pieces alone. */
+static bool can_meet_highest(const struct ceiling *c, uint32_t k, double x, double energy)
+{
+    const struct ceiling_piece *p = &c->piece[k];
+    const double end = ceiling_feed(c, p->end_feed_max_mm_s);
+
+    return energy <= end * end + 2.0 * (double)p->acceleration * (c->end_mm[k] - x);
+}
+
+bool lead_could_be(const struct lead *l, uint64_t at, double feed, bool highest)
+{
+    const struct ceiling *c = l->here.ceiling;
+    const double x = path_mm(c->origin, at);
+
+    if (!highest && l->here.low_count > 0 && feed > l->here.low_feed) {
+        return false;
+    }
+    for (uint32_t k = l->here.piece, i = 0; k < c->count && i < LEAD_PIECES_MAX; k++, i++) {
+        if (x <= c->end_mm[k]) {
+            return highest ? can_meet_highest(c, k, x, feed * feed)
+                           : can_meet(c, k, x, feed * feed);
+        }
+        if (lead_is_last_of_span(&c->piece[k]) ||
+            (!highest && feed > ceiling_feed(c, c->piece[k].feed_mm_s))) {
+            return false;
+        }
+    }
+    return false;
+}
+
+/* The piece that lies where it is, whatever it has been in. */
+static void find_piece(struct lead_place *p, double x)
+{
+    const struct ceiling *c = p->ceiling;
+
+    for (unsigned i = 0; i < LEAD_PIECES_MAX && p->piece > 0 && x < c->end_mm[p->piece - 1]; i++) {
+        p->piece--;
+    }
+    for (unsigned i = 0; i < LEAD_PIECES_MAX && p->piece + 1 < c->count && x >= c->end_mm[p->piece] &&
+                         !lead_is_last_of_span(&c->piece[p->piece]);
+         i++) {
+        p->piece++;
+        low_push(p, p->piece);
+    }
+}
+
+void lead_follow(struct lead *l, uint64_t at, double feed, uint64_t setpoint)
+{
+    struct lead_place *p = &l->here;
+    const struct ceiling *c = p->ceiling;
+
+    l->before = l->at;
+    l->at = at;
+    l->feed = feed;
+    l->owed = 0.0;
+    l->abrupt = false;
+    l->since_plus = l->since_minus = (uint32_t)l->window - 1;
+    find_piece(p, path_mm(c->origin, at));
+    const uint64_t start = ceiling_start(c, p->piece);
+
+    p->late = false;
+    l->entered = lead_is_beyond(start, l->entered) ? start : l->entered;
+    l->known = lead_leave_of(l, c->count - 1);
+    (void)lead_low_feed(l, setpoint);
 }
 
 /* -- a new ceiling -- */
@@ -287,7 +322,7 @@ void lead_set_ceiling(struct lead *l, const struct ceiling *ceiling)
     l->coming.ceiling = ceiling;
     l->coming.piece = 0;
     l->coming.low_count = 0;
-    l->coming.early_a = MATHS_INFINITY;
+    l->coming.late = false;
 }
 
 /* Goes on by one piece in search of the lead point. False: that one is its own. */
@@ -314,6 +349,19 @@ static bool search(struct lead *l)
     return go_on(l, p);
 }
 
+/* Had it no room for what is known, and ends before the lead point can? Then the one before goes on. */
+static bool is_too_short(const struct lead *l)
+{
+    const struct lead_place *p = &l->coming;
+    const uint32_t count = p->ceiling->count;
+
+    if (l->feed == 0.0 || count == 0 ||
+        lead_is_beyond(ceiling_leave(p->ceiling, count - 1), l->known)) {
+        return false;
+    }
+    return p->piece == count || !can_follow(l, p->ceiling, p->piece);
+}
+
 /* From now on the lead point is in the ceiling that came. Of the list what is used. */
 static void take_place(struct lead *l)
 {
@@ -323,7 +371,8 @@ static void take_place(struct lead *l)
     to->ceiling = from->ceiling;
     to->piece = from->piece;
     to->late = from->late;
-    to->early_a = from->early_a;
+    to->late_start = from->late_start;
+    to->late_a = from->late_a;
     to->low_first = 0;
     to->low_count = from->low_count;
     for (uint32_t i = 0; i < from->low_count; i++) {
@@ -338,14 +387,17 @@ bool lead_find_place(struct lead *l)
 {
     unsigned looked = 0;
 
-    l->coming.late = false;
     while (looked < LEAD_PIECES_MAX && search(l)) {
         looked++;
     }
     if (looked == LEAD_PIECES_MAX) {
         return true;
     }
+    if (is_too_short(l)) {
+        l->coming.ceiling = NULL;
+        return false;
+    }
     take_place(l);
-    note_entry(l);
+    note_known(l);
     return false;
 }

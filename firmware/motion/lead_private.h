@@ -10,6 +10,9 @@
 
 #include <stddef.h>
 
+/* Long ago: more cycles than any window. */
+#define LEAD_LONG_AGO UINT32_C(0x7fffffff)
+
 /* Rounding of feed squared. */
 #define LEAD_ENERGY_SLACK 1e-6
 
@@ -90,6 +93,12 @@ static inline bool lead_has_rested(const struct lead *l)
     return l->since_minus >= l->window + (l->abrupt ? 1.0 : 0.0);
 }
 
+/* How hard it may brake where it is, mm/cycle2. */
+static inline double lead_acceleration(const struct lead *l)
+{
+    return l->here.late ? l->here.late_a : (double)lead_piece(l, l->here.piece)->acceleration;
+}
+
 /* Half the window and the margin but for one cycle: that in which the lead point comes to a piece. */
 static inline double lead_entry_cycles(const struct lead *l)
 {
@@ -103,8 +112,8 @@ void lead_enter_piece(struct lead *l, uint32_t k);
 /* lead_place.c: forgets ceilings that the setpoint has left, and tells the lowest of the others. */
 double lead_low_feed(struct lead *l, uint64_t setpoint);
 
-/* lead_feed.c: what is ahead within a cycle: the lowest feed that any piece's end asks for. */
-void lead_brake_ahead(const struct lead *l, struct lead_brake *b);
+/* lead_feed.c: what is ahead within a cycle: the lowest feed that any piece's end asks for, or the ceiling low. */
+void lead_brake_ahead(const struct lead *l, double low, struct lead_brake *b);
 /* lead_feed.c: begins to land (run.active) when it is time to, or makes the joint a stop where it cannot be done. */
 void lead_consider_landing(struct lead *l, bool hold, struct lead_brake *b);
 static inline void lead_approach_landing(struct lead *l, bool hold, struct lead_brake *b)

@@ -11,12 +11,14 @@
 
 #include "motion/average.h"
 #include "motion/cycle_record.h"
+#include "motion/hold.h"
 #include "motion/lead.h"
 #include "motion/watch.h"
 #include "plan/ceiling.h"
 #include "plan/path.h"
 
 #include <stdbool.h>
+#include <stddef.h>
 #include <stdint.h>
 
 #define MOTION_EXCHANGE_CYCLES 16
@@ -42,6 +44,14 @@ struct motion_operator {
     double spindle_rev_s; /* >= 0; 0 holds them */
 };
 
+/* A smoothed curve has a short window: a hold of it is kept behind its inputs. */
+#define MOTION_INPUTS_MAX 128
+
+struct motion_beside {
+    uint8_t average[offsetof(struct average, input) + MOTION_INPUTS_MAX * sizeof(uint64_t)];
+    struct hold hold;
+};
+
 struct motion {
     double cycle_s;
     struct path *path;
@@ -49,8 +59,11 @@ struct motion {
     struct point at;   /* last commanded position */
     uint64_t setpoint; /* where that is on the path, rounded down */
     double feed;       /* mm/cycle, of the setpoint */
+    double feed_before[2]; /* likewise, in the two cycles before */
     double lag;        /* of the setpoint behind the lead point, path units */
     bool proportional;
+    bool holds; /* the setpoint is moved by the hold, not by the lead point, */
+    bool looks; /* or looks whether it can be */
     bool done; /* the oldest block: the next cycle passes it */
     bool
         busy; /* this cycle does what few do: a block read, a span begun, a place in a ceiling looked for */
@@ -62,7 +75,10 @@ struct motion {
         passed_first; /* the path's first before this cycle: blocks from there to first were passed in it */
     uint64_t late; /* exchanges for which no ceiling was ready */
     struct lead lead;
-    struct average average;
+    union {
+        struct average average;
+        struct motion_beside beside; /* where a span's window is short */
+    } mover;
     unsigned active;  /* the ceiling in use, of the path's two */
     bool has_ceiling; /* there has been one */
     bool asks;        /* the background is to be asked for one as soon as there is room */

@@ -3,15 +3,15 @@
  * time linear in blocks. How the pieces lie against the blocks, and why limits then hold for the setpoint, is in
  * spans.md.
  *
- * Forward: one piece for each ceiling, shifted by half the averaging window times its feed. Backward: the feed at the
- * end of each piece, by constant deceleration: u = min(c^2, u_next + 2 a L).
+ * Forward: one piece for each ceiling, shifted by half the averaging window times its feed; and where a block's acceleration
+ * is lower than what lies there, that from half the window times its highest feed before it on. Backward: the feed at the end
+ * of each piece, by constant deceleration: u = min(c^2, u_next + 2 a L).
  */
 #include "plan/ceiling.h"
 
 #include "base/maths.h"
 #include "plan/path.h"
 #include "plan/path_unit.h"
-#include "plan/rest.h"
 #include "plan/span.h"
 #include "smooth/single.h"
 
@@ -19,7 +19,7 @@
 
 static_assert(CEILING_PIECES_MAX < CEILING_NONE, "pieces fit into ceiling_piece.landing");
 static_assert(PATH_BLOCKS_MAX < 1 << 9, "blocks fit into ceiling_piece.start");
-static_assert(sizeof(struct ceiling_piece) == 24, "no padding");
+static_assert(sizeof(struct ceiling_piece) == 20, "no padding");
 
 /*
  * Between being asked for and being taken a ceiling grows so many cycles old at most (MOTION_EXCHANGE_CYCLES and the
@@ -45,12 +45,12 @@ struct builder {
     double cycle_s;
     uint32_t cycles; /* of the first box, in the span being laid */
     double behind;   /* cycles that the setpoint follows behind the lead point, with the margin */
-    double begin_mm; /* where the newest ceiling begins */
-    float feed_max_mm_s; /* of the block being laid, whatever the overrides are */
-    double fastest;      /* the highest of those laid so far */
-    double gentlest;     /* and the lowest acceleration */
-    uint32_t start;      /* block that begins what is being laid */
-    struct rest_span rest;
+    double begin_mm; /* where the newest ceiling begins, */
+    double
+        early_mm; /* and where it would at the highest override: its acceleration counts from there on */
+    double fastest;  /* the highest feed of those laid so far */
+    double gentlest; /* and the lowest acceleration */
+    uint32_t start;  /* block that begins what is being laid */
     unsigned heads;
     struct head head[HEADS_MAX]; /* both rising */
 };
@@ -137,8 +137,8 @@ static void begin_span(struct builder *s, uint32_t index)
     s->behind = 0.5 * ((double)law_window_cycles(s->path->limits.law, s->cycles) - 1.0) +
                 CEILING_MARGIN_CYCLES;
     s->begin_mm = path_mm(s->c->origin, start);
+    s->early_mm = s->begin_mm;
     s->heads = 0;
-    rest_begin(&s->rest, s->path, s->request, index, s->cycles);
 }
 
 /* Blocks from the first on, as pieces count them. */
@@ -155,7 +155,6 @@ static struct ceiling_piece *append(struct builder *s, double end_mm, float feed
 
     *p = (struct ceiling_piece){
         .feed_mm_s = feed_mm_s,
-        .feed_max_mm_s = feed_mm_s > s->feed_max_mm_s ? feed_mm_s : s->feed_max_mm_s,
         .acceleration = (float)a,
         .start = since(s, s->start) & 0x1ffU,
         .leave = since(s, leave) & 0x1ffU,
@@ -198,6 +197,45 @@ static void begin_ceiling(struct builder *s, double at_mm, double lead_mm)
         s->c->end_mm[k - 1] = s->begin_mm;
     }
     drop_empty(s->c, k);
+}
+
+/* Divides piece k at a place in it. */
+static void divide(struct ceiling *c, uint32_t k, double at_mm)
+{
+    for (uint32_t i = c->count++; i > k; i--) {
+        c->end_mm[i] = c->end_mm[i - 1];
+        c->piece[i] = c->piece[i - 1];
+    }
+    c->end_mm[k] = at_mm;
+    c->piece[k + 1].opens = true;
+}
+
+/* The highest feed whatever the overrides are, of the block that a piece begins with; or of the joint. */
+static float top_feed(const struct ceiling *c, const struct ceiling_piece *p)
+{
+    return p->landed ? p->feed_mm_s
+                     : maths_float_below(path_block_top(path_at(c->path, c->first + p->start)));
+}
+
+/*
+ * What has been laid from a place on allows no more than the block being laid. It begins with a piece of its own, if need be
+ * behind one without length: a lead point may have to stay in what was there before (motion/lead_place.c).
+ */
+static void lower(struct builder *s, double from_mm, double top_mm_s, double a)
+{
+    struct ceiling *c = s->c;
+
+    for (uint32_t k = c->count; k-- > 0 && c->end_mm[k] > from_mm;) {
+        if ((double)c->piece[k].acceleration <= a &&
+            (double)top_feed(c, &c->piece[k]) <= top_mm_s) {
+            continue;
+        }
+        if ((k > 0 ? c->end_mm[k - 1] : 0.0) <= from_mm) {
+            divide(c, k++, from_mm);
+        }
+        c->piece[k].acceleration = (float)maths_min(a, (double)c->piece[k].acceleration);
+        c->piece[k].start = since(s, s->start) & 0x1ffU;
+    }
 }
 
 /*
@@ -264,34 +302,32 @@ static bool continues(const struct builder *s, const struct path_block *b, float
     const struct ceiling_piece *last = &s->c->piece[s->c->count - 1];
 
     return !last->stop && !last->landed && last->feed_mm_s == feed_mm_s &&
-           last->feed_max_mm_s == s->feed_max_mm_s && (double)last->acceleration == a &&
+           (double)last->acceleration == a && (double)top_feed(s->c, last) <= path_block_top(b) &&
            ceiling_overrides(s->c, s->c->count - 1) == block_overrides(b);
 }
 
 static void lay_block(struct builder *s, uint32_t index)
 {
     const struct path_block *b = path_at(s->path, index);
-    const struct rest_feeds feeds = rest_block_feeds(&s->rest, index);
-    const float feed_mm_s = maths_float_below(feeds.now);
+    const float feed_mm_s = maths_float_below(ceiling_block_feed(s->path, index, s->request));
+    const double top = path_block_top(b) * s->cycle_s;
     const double a = ceiling_block_acceleration(s->path, index, s->cycles);
     const double start_mm = path_mm(s->c->origin, b->start);
     const double end_mm = path_mm(s->c->origin, path_end(s->path, index));
 
-    s->feed_max_mm_s = maths_float_below(feeds.highest);
-    const double feed_max = ceiling_feed(s->c, s->feed_max_mm_s);
-    const double reach_mm = end_mm + feed_max * s->behind;
-
-    s->fastest = maths_max(s->fastest, feed_max);
+    s->fastest = maths_max(s->fastest, top);
     s->gentlest = maths_min(s->gentlest, a);
     s->start = index;
     if (continues(s, b, feed_mm_s, a)) {
         s->c->end_mm[s->c->count - 1] = end_mm;
         s->c->piece[s->c->count - 1].leave = since(s, index + 1) & 0x1ffU;
     } else {
+        s->early_mm = maths_max(s->early_mm, start_mm - top * s->behind);
         begin_ceiling(s, start_mm, ceiling_feed(s->c, feed_mm_s) * s->behind);
+        lower(s, s->early_mm, path_block_top(b), a);
         append_pieces(s, end_mm, feed_mm_s, a, index + 1);
     }
-    add_head(s, a, reach_mm);
+    add_head(s, a, end_mm + top * s->behind);
 }
 
 /*
@@ -326,7 +362,6 @@ static void lay_landed_joint(struct builder *s, uint32_t index)
     feed = maths_min(feed, shorter_mm / (wider + 4.0 + landing_ramp(feed, a, wider)));
     feed = feed < PASS_WORTH * a ? 0.0 : feed;
     begin_ceiling(s, end_mm, feed * (0.5 * (window + 1.0) + landing_ramp(feed, a, window) + 1.0));
-    s->feed_max_mm_s = 0.0F;
     s->start = index + 1;
     struct ceiling_piece *p = append(s, end_mm, maths_float_below(feed / s->cycle_s), a, index + 1);
 
@@ -334,10 +369,10 @@ static void lay_landed_joint(struct builder *s, uint32_t index)
     p->landed = true;
 }
 
-/* For one block more: a piece for each head and one without, and a landed joint. */
+/* For one block more: a piece for each head and one without, one of lower acceleration before, and a landed joint. */
 static bool has_room(const struct builder *s)
 {
-    return s->c->count + s->heads + 2U <= CEILING_PIECES_MAX;
+    return s->c->count + s->heads + 3U <= CEILING_PIECES_MAX;
 }
 
 /* Lays the blocks from the ring into pieces. */
@@ -389,9 +424,9 @@ static float feed_below(const struct ceiling *c, double energy)
 }
 
 /* Ceiling of a piece, and feed at its end: as the overrides are, or at their highest. */
-static float feed_of(const struct ceiling_piece *p, bool highest)
+static float feed_of(const struct ceiling *c, const struct ceiling_piece *p, bool highest)
 {
-    return highest ? p->feed_max_mm_s : p->feed_mm_s;
+    return highest ? top_feed(c, p) : p->feed_mm_s;
 }
 
 static float end_feed_of(const struct ceiling_piece *p, bool highest)
@@ -399,18 +434,12 @@ static float end_feed_of(const struct ceiling_piece *p, bool highest)
     return highest ? p->end_feed_max_mm_s : p->end_feed_mm_s;
 }
 
-static double end_energy(const struct ceiling *c, uint32_t k, bool highest)
-{
-    return square(ceiling_feed(c, end_feed_of(&c->piece[k], highest)));
-}
-
 /* Feed at the beginning of a piece from which its end can be met: u = min(c^2, u_end + 2 a L). */
-static float begin_feed(const struct ceiling *c, uint32_t k, bool highest)
+static float begin_feed(const struct ceiling *c, uint32_t k, float feed_mm_s, float end_mm_s)
 {
-    const struct ceiling_piece *p = &c->piece[k];
     const double length_mm = c->end_mm[k] - (k == 0 ? 0.0 : c->end_mm[k - 1]);
-    const double energy = end_energy(c, k, highest) + 2.0 * (double)p->acceleration * length_mm;
-    const float feed_mm_s = feed_of(p, highest);
+    const double energy =
+        square(ceiling_feed(c, end_mm_s)) + 2.0 * (double)c->piece[k].acceleration * length_mm;
 
     return energy < square(ceiling_feed(c, feed_mm_s)) ? feed_below(c, energy) : feed_mm_s;
 }
@@ -420,9 +449,9 @@ static float begin_feed(const struct ceiling *c, uint32_t k, bool highest)
  * what follows: it is then half the next span's window ahead, at x; by the pieces up to there w is no more than their
  * ceilings, and w^2 <= u + 2 a (x_end - x).
  */
-static float landed_feed(const struct ceiling *c, uint32_t k, enum law law, float feed_mm_s,
-                         bool highest)
+static float landed_feed(const struct ceiling *c, uint32_t k, enum law law, bool highest)
 {
+    const float feed_mm_s = c->piece[k].feed_mm_s;
     const double start_mm = c->end_mm[k];
     double feed = ceiling_feed(c, feed_mm_s);
     uint32_t i = k + 1;
@@ -434,7 +463,7 @@ static float landed_feed(const struct ceiling *c, uint32_t k, enum law law, floa
     const double hold_mm = start_mm + feed * cycles;
 
     while (i < c->count && c->end_mm[i] < hold_mm) {
-        feed = maths_min(feed, ceiling_feed(c, feed_of(&c->piece[i], highest)));
+        feed = maths_min(feed, ceiling_feed(c, feed_of(c, &c->piece[i], highest)));
         feed = maths_min(feed, ceiling_feed(c, end_feed_of(&c->piece[i], highest)));
         i++;
     }
@@ -442,53 +471,39 @@ static float landed_feed(const struct ceiling *c, uint32_t k, enum law law, floa
         const struct ceiling_piece *p = &c->piece[i];
         const double a = (double)p->acceleration;
         const double m = a * cycles;
-        const double energy = end_energy(c, i, highest) + 2.0 * a * (c->end_mm[i] - start_mm);
+        const double energy =
+            square(ceiling_feed(c, end_feed_of(p, highest))) + 2.0 * a * (c->end_mm[i] - start_mm);
 
-        feed = maths_min(feed, ceiling_feed(c, feed_of(p, highest)));
+        feed = maths_min(feed, ceiling_feed(c, feed_of(c, p, highest)));
         feed = maths_min(feed, maths_sqrt(m * m + maths_max(0.0, energy)) - m);
     }
     return maths_float_below(feed / c->cycle_s);
 }
 
-/*
- * Feed at the end of piece k from which what is behind it can be met at the highest overrides: at worst by coming to rest
- * where the setpoint comes to it. A ceiling that begins earlier because it is higher asks for no more than that.
- */
-static float highest_feed(const struct ceiling *c, uint32_t k, float feed_mm_s)
-{
-    if (k + 1 == c->count || !c->piece[k + 1].opens) {
-        return feed_mm_s;
-    }
-    const uint64_t start = path_start(c->path, c->first + c->piece[k + 1].start);
-    const double rest =
-        2.0 * (double)c->piece[k].acceleration * (path_mm(c->origin, start) - c->end_mm[k]);
-
-    return rest > square(ceiling_feed(c, feed_mm_s)) ? feed_below(c, rest) : feed_mm_s;
-}
-
-/* Between a piece and the joint that the span ends with: the pieces that ask for no more than any behind them. */
-static void note_lowest(struct ceiling *c, uint32_t k, float *low_mm_s, float *low_max_mm_s)
+/* What the lead point may do in a piece from which feeds at its end are known; they become those at its beginning. */
+static void plan_piece(struct ceiling *c, uint32_t k, enum law law, float *feed_mm_s,
+                       float *max_mm_s)
 {
     struct ceiling_piece *p = &c->piece[k];
-    const bool none = p->landing == CEILING_NONE || k + 1U >= p->landing;
+    const float end_mm_s = p->stop ? 0.0F : *feed_mm_s;
+    const float end_max_mm_s = p->stop ? 0.0F : *max_mm_s;
+    float top_mm_s = top_feed(c, p);
 
-    if (none) {
-        *low_mm_s = (float)MATHS_INFINITY;
-        *low_max_mm_s = (float)MATHS_INFINITY;
-        return;
+    p->end_feed_mm_s = end_mm_s;
+    p->end_feed_max_mm_s = end_max_mm_s;
+    if (p->landed) {
+        top_mm_s = landed_feed(c, k, law, true);
+        p->feed_mm_s = landed_feed(c, k, law, false);
+        p->end_feed_max_mm_s = top_mm_s;
     }
-    p->lowest = p->end_feed_mm_s <= *low_mm_s;
-    p->lowest_max = p->end_feed_max_mm_s <= *low_max_mm_s;
-    *low_mm_s = p->lowest ? p->end_feed_mm_s : *low_mm_s;
-    *low_max_mm_s = p->lowest_max ? p->end_feed_max_mm_s : *low_max_mm_s;
+    *feed_mm_s = begin_feed(c, k, p->feed_mm_s, end_mm_s);
+    *max_mm_s = begin_feed(c, k, top_mm_s, end_max_mm_s);
 }
 
 static void plan_backward(struct ceiling *c, enum law law)
 {
     float feed_mm_s = 0.0F;
-    float feed_max_mm_s = 0.0F;
-    float low_mm_s = 0.0F;
-    float low_max_mm_s = 0.0F;
+    float max_mm_s = 0.0F;
     unsigned landing = CEILING_NONE;
     bool open = true;
 
@@ -499,16 +514,8 @@ static void plan_backward(struct ceiling *c, enum law law)
         landing = p->stop ? CEILING_NONE : p->landed ? k : landing;
         open = open && !p->stop && (!p->landed || k + 1 == c->count);
         c->open_from = open ? k : c->open_from;
-        p->end_feed_mm_s = p->stop ? 0.0F : feed_mm_s;
-        p->end_feed_max_mm_s = p->stop ? 0.0F : highest_feed(c, k, feed_max_mm_s);
-        if (p->landed) {
-            p->feed_max_mm_s = landed_feed(c, k, law, p->feed_mm_s, true);
-            p->feed_mm_s = landed_feed(c, k, law, p->feed_mm_s, false);
-        }
         p->landing = landing & CEILING_NONE;
-        note_lowest(c, k, &low_mm_s, &low_max_mm_s);
-        feed_mm_s = begin_feed(c, k, false);
-        feed_max_mm_s = begin_feed(c, k, true);
+        plan_piece(c, k, law, &feed_mm_s, &max_mm_s);
     }
 }
 

@@ -6,7 +6,9 @@
  *         |       \____/                          \    (a line in feed squared: constant deceleration)
  *         +------------------------------------------> path position
  *
- * Positions are those of the lead point: a slow stretch begins for it as much earlier as the setpoint follows behind.
+ * Positions are those of the lead point: a slow stretch begins for it as much earlier as the setpoint follows behind, at the
+ * feed that the overrides allow; a lower acceleration counts from where the block's highest feed would begin on, so that no
+ * override changes how hard the lead point may brake anywhere.
  * Units here are mm and control cycles: feeds mm/cycle, accelerations mm/cycle2. See spans.md.
  */
 #ifndef TAKT_PLAN_CEILING_H
@@ -17,10 +19,10 @@
 
 /*
  * Pieces of one ceiling at most. A block has one or two, and neighbours of the same limits share one. Where this is not
- * enough the ceiling is not complete: it ends at rest before the last blocks. With 240 a smoothed spiral takes 1.1 % longer,
- * with 256 0.17 %, with 272 one cycle, with 288 none that was tried.
+ * enough the ceiling is not complete: it ends at rest before the last blocks. With 272 a smoothed spiral takes 0.3 % longer,
+ * with 288 0.08 %, with 304 none that was tried.
  */
-#define CEILING_PIECES_MAX 272
+#define CEILING_PIECES_MAX 288
 
 /* No piece. */
 #define CEILING_NONE 511U
@@ -43,17 +45,15 @@ struct ceiling_piece {
     float feed_mm_s;     /* not above this in the piece, nor until the setpoint has left it */
     float acceleration;  /* mm/cycle2, also of braking */
     float end_feed_mm_s; /* at the end, from which all that follows can be met */
-    /* the first and the last at the highest override, or coming to rest before what follows: a promise, see spans.md */
-    float feed_max_mm_s;
+    /* this at the highest override; of a landed joint the highest feed there */
     float end_feed_max_mm_s;
-    unsigned start : 9;   /* block that it begins with, from the ceiling's first on */
-    unsigned leave : 9;   /* and the one behind it, at whose start the setpoint leaves it */
+    unsigned start : 9; /* block that it begins with, from the ceiling's first on */
+    unsigned
+        leave : 9; /* the one behind those of this feed, at whose start the setpoint leaves it */
     unsigned landing : 9; /* first landed joint in or after it; CEILING_NONE: a stop comes first */
     unsigned opens : 1;   /* what was not there before begins: a block, or the way to the joint */
     unsigned stop : 1;    /* the span ends with this piece, where it is left */
     unsigned landed : 1;  /* likewise, and a setpoint falls there in motion */
-    unsigned lowest : 1;  /* no end_feed is lower from here to the last but one before landing */
-    unsigned lowest_max : 1; /* likewise end_feed_max */
 };
 
 struct path;
@@ -79,11 +79,10 @@ static inline double ceiling_feed(const struct ceiling *c, float feed_mm_s)
 
 /* What a ceiling is made for. */
 struct ceiling_request {
-    uint32_t first;  /* block to begin with */
-    uint64_t lead;   /* where the lead point is */
-    uint64_t span;   /* where the span starts that it has begun last */
-    uint32_t cycles; /* of the first averaging box in that span */
-    double rest_a;   /* mm/cycle2: highest in it so far if it began at rest; infinite: it did not */
+    uint32_t first;       /* block to begin with */
+    uint64_t lead;        /* where the lead point is */
+    uint64_t span;        /* where the span starts that it has begun last */
+    uint32_t cycles;      /* of the first averaging box in that span */
     double feed_ratio;    /* override of programmed feeds, 0 < ratio <= BLOCK_OVERRIDE_MAX */
     double rapid_ratio;   /* likewise of rapids, <= 1 */
     double spindle_rev_s; /* > 0: as measured, for feeds per revolution; 0: as commanded */

@@ -504,15 +504,22 @@ static unsigned read_control(const uint8_t *record, struct point control[], unsi
 }
 
 /* What it has not itself is found in the records before, back to one that has all. */
-static void read_spline(const uint8_t *record, const uint8_t *const before[RECORD_BEFORE],
-                        struct block *b)
+void record_control(const uint8_t *record, const uint8_t *const before[RECORD_BEFORE],
+                    struct point control[4])
 {
-    struct point control[4];
     unsigned missing = read_control(record, control, 4);
 
     for (unsigned i = 0; missing > 0 && before[i] != NULL; i++) {
         missing = read_control(before[i], control, missing);
     }
+}
+
+static void read_spline(const uint8_t *record, const uint8_t *const before[RECORD_BEFORE],
+                        struct block *b)
+{
+    struct point control[4];
+
+    record_control(record, before, control);
     curve_set_spline(&b->curve, control, b->length_mm);
     if ((record[AT_FLAGS] & FLAG_MOVE_END) != 0) {
         b->curve.end = b->move.end;

@@ -83,6 +83,9 @@ const uint8_t *record_begin(const uint8_t *record, const struct record_modes *mo
                             struct block *b);
 void record_take(const uint8_t *record, const uint8_t *const before[RECORD_BEFORE],
                  const uint8_t *from, struct block *b);
+/* The control points of a piece of a smoothed curve. */
+void record_control(const uint8_t *record, const uint8_t *const before[RECORD_BEFORE],
+                    struct point control[4]);
 bool record_begin_curve(const uint8_t *record, struct block *b);
 void record_finish(const uint8_t *record, struct block *b);
 

@@ -177,13 +177,27 @@ static void read_limits(const struct path_block *from, uint64_t end, struct bloc
     b->continues = from->continues;
 }
 
+static void find_before(const struct path_ring *r, uint32_t index,
+                        const uint8_t *before[RECORD_BEFORE])
+{
+    for (uint32_t i = 0; i < RECORD_BEFORE; i++) {
+        before[i] = i < index ? ring_record(r, index - 1 - i) : NULL;
+    }
+}
+
+void ring_control(const struct path_ring *r, uint32_t index, struct point control[4])
+{
+    const uint8_t *before[RECORD_BEFORE];
+
+    find_before(r, index, before);
+    record_control(ring_record(r, index), before, control);
+}
+
 static void take(struct path_ring *r, uint32_t index, struct path_view *view)
 {
-    const uint8_t *before[RECORD_BEFORE] = {NULL};
+    const uint8_t *before[RECORD_BEFORE];
 
-    for (uint32_t i = 0; i < RECORD_BEFORE && i < index; i++) {
-        before[i] = ring_record(r, index - 1 - i);
-    }
+    find_before(r, index, before);
     record_take(ring_record(r, index), before, view->from, &view->block);
 }
 

@@ -118,6 +118,9 @@ const struct block *ring_read(struct path_ring *r, uint32_t index, uint64_t end)
 /* The next part of that, for a cycle that has no time for all: four at most. */
 void ring_prepare(struct path_ring *r, uint32_t index, uint64_t end);
 
+/* The control points of a block that is a piece of a smoothed curve. */
+void ring_control(const struct path_ring *r, uint32_t index, struct point control[4]);
+
 /* The highest feed whatever the override, mm/s. */
 double path_block_top(const struct path_block *b);
 

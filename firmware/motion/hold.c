@@ -1,0 +1,489 @@
+/*
+ * Goal: on a smoothed curve the axes come to rest, and up to speed again, as quickly as they can at each place of it.
+ *
+ * With the place u(t) on the curve x(u), rate r = u', change q = r' and w = q', the chain rule gives for every axis
+ *
+ *     x''  of time:   x' q + x'' r^2                       within A
+ *     x''' of time:   x' w + 3 x'' r q + x''' r^3          within J
+ *
+ * with their signs: an axis that the curve speeds up can be braked twice as hard, one that it slows down not at all. Each
+ * cycle takes the hardest w, of a few, after which the change can still be brought back to 0 by a constant e (the ease)
+ * with both kept all the way. At a constant rate that is not above that of the pieces everything is kept, and the lead
+ * point (lead.h) can take over: its own condition for what lies ahead is asked for at that place. So whatever follows, the
+ * way that was found last can be gone on with, by which no limit is ever broken.
+ *
+ *     change q |        w       e          each cycle: w, then e until q = 0
+ *              |\      /|\     /
+ *              | \____/ | \___/
+ *              +--------+------------ time
+ *
+ * Setpoints are samples of x(u(t)), so their third differences are averages of its third derivative.
+ *
+ * Derivatives are bounded over parts of the way: with u, r and q between the values at both ends, which they pass from one
+ * to the other without turning back.
+ */
+#include "motion/hold.h"
+
+#include "base/maths.h"
+#include "plan/path_unit.h"
+
+/* Pieces that are read in a cycle. */
+#define READ_MAX 6
+
+/* Parts that the ease is looked at in. */
+#define EASE_PARTS 8
+
+/* The eases tried, in parts of the hardest, beside the one that is known. */
+static const double ease_part[] = {1.0, 0.3, 0.1};
+
+/* Where w can not be found the next one tried is so much smaller; where it was found, twice as large. */
+#define STEP_LESS 0.5
+#define STEP_LEAST (1.0 / 4096.0)
+
+/* Where the change cannot be kept, and need not be brought to 0 yet: by this part of it. */
+#define LESS_PART 0.125
+
+/* The rate is so near to that of the ceiling that the lead point goes on by itself. */
+#define ARRIVED_PART 1e-3
+
+/* Where the axes hardly move: the rate changes by no more than this part of what it began with in a cycle. */
+#define CHANGE_PART 0.2
+
+/* Blocks from the setpoint to what begins at the lead point, at most. */
+#define BLOCKS_MAX 128
+
+/* Rounding. */
+#define SLACK 1e-5f
+#define REST_PART 1e-9
+
+struct range {
+    float low;
+    float high;
+};
+
+static struct range between(float a, float b)
+{
+    return a < b ? (struct range){a, b} : (struct range){b, a};
+}
+
+static struct range times(struct range a, struct range b)
+{
+    const struct range one = between(a.low * b.low, a.low * b.high);
+    const struct range two = between(a.high * b.low, a.high * b.high);
+
+    return (struct range){one.low < two.low ? one.low : two.low,
+                          one.high > two.high ? one.high : two.high};
+}
+
+static struct range plus(struct range a, struct range b)
+{
+    return (struct range){a.low + b.low, a.high + b.high};
+}
+
+static bool is_within(struct range a, float limit)
+{
+    return a.high <= limit && a.low >= -limit;
+}
+
+/* -- the pieces -- */
+
+static const struct hold_piece *piece_at(const struct hold *h, uint32_t block)
+{
+    return &h->piece[block % HOLD_PIECES_MAX];
+}
+
+/* Of a uniform cubic B-spline: x' = (c2 - c0)/2, x'' = c0 - 2 c1 + c2 where the piece begins. */
+static void read_piece(struct hold *h, const struct path *path, uint32_t block)
+{
+    struct hold_piece *p = &h->piece[block % HOLD_PIECES_MAX];
+    struct point c[4];
+
+    ring_control(&path->ring, block, c);
+    for (unsigned i = 0; i < h->axes; i++) {
+        const unsigned axis = h->axis[i];
+        const double step0 = c[1].at[axis] - c[0].at[axis];
+        const double step1 = c[2].at[axis] - c[1].at[axis];
+        const double step2 = c[3].at[axis] - c[2].at[axis];
+
+        p->first[i] = (float)(0.5 * (step0 + step1));
+        p->second[0][i] = (float)(step1 - step0);
+        p->second[1][i] = (float)(step2 - step1);
+    }
+}
+
+static double length_of(const struct path *path, uint32_t block)
+{
+    return (double)(path_end(path, block) - path_start(path, block));
+}
+
+/* Does the block go on with the curve of the one before? */
+static bool goes_on(const struct hold *h, const struct path *path, uint32_t block)
+{
+    return path_at(path, block)->smooth && path_at(path, block - 1)->end == JOINT_PASSED &&
+           length_of(path, block) == h->length;
+}
+
+static void read_pieces(struct hold *h, const struct path *path)
+{
+    for (unsigned i = 0; i < READ_MAX && !h->whole && h->end != path->closed &&
+                         h->end - h->block < HOLD_PIECES_MAX;
+         i++) {
+        h->whole = h->end != h->block && !goes_on(h, path, h->end);
+        if (!h->whole) {
+            read_piece(h, path, h->end++);
+        }
+    }
+}
+
+static void take_limits(struct hold *h, const struct plan_limits *limits)
+{
+    const double t = limits->cycle_s;
+
+    h->axes = 0;
+    for (unsigned i = 0; i < AXIS_COUNT; i++) {
+        if ((limits->axes >> i & 1U) != 0) {
+            h->axis[h->axes] = (uint8_t)i;
+            h->velocity[h->axes] = (float)(limits->velocity_mm_s[i] * t);
+            h->acceleration[h->axes] = (float)(limits->acceleration_mm_s2[i] * t * t);
+            h->jerk[h->axes] = (float)(limits->jerk_mm_s3[i] * t * t * t);
+            h->axes++;
+        }
+    }
+}
+
+/* -- what the axes need on a part of the way -- */
+
+struct part {
+    struct range rate;
+    struct range change;
+    struct range rate2, rate_change; /* r^2, r q */
+    struct range rate3;
+    float w;
+};
+
+static struct part part_of(const struct hold_state *a, const struct hold_state *b, double w)
+{
+    struct part p = {
+        .rate = between((float)a->rate, (float)b->rate),
+        .change = between((float)a->change, (float)b->change),
+        .w = (float)w,
+    };
+
+    p.rate2 = times(p.rate, p.rate);
+    p.rate3 = times(p.rate2, p.rate);
+    p.rate_change = times(p.rate, p.change);
+    return p;
+}
+
+/* Axis i on a piece from f to g of it. */
+static bool axis_can(const struct hold *h, const struct hold_piece *piece, unsigned i, float f,
+                     float g, const struct part *p)
+{
+    const float bend = piece->second[0][i];
+    const float third = piece->second[1][i] - bend;
+    const float sag = (third < 0.0f ? -third : third) * (g - f) * (g - f) * 0.125f;
+    struct range first = between(piece->first[i] + f * (bend + 0.5f * f * third),
+                                 piece->first[i] + g * (bend + 0.5f * g * third));
+    const struct range second = between(bend + f * third, bend + g * third);
+
+    first = (struct range){first.low - sag, first.high + sag};
+    const struct range v = times(first, p->rate);
+    const struct range a = plus(times(first, p->change), times(second, p->rate2));
+    const struct range three = {3.0f * second.low, 3.0f * second.high};
+    const struct range j =
+        plus(plus(times(first, between(p->w, p->w)), times(three, p->rate_change)),
+             times(between(third, third), p->rate3));
+
+    return is_within(v, h->velocity[i] * (1.0f + SLACK)) && is_within(a, h->acceleration[i]) &&
+           is_within(j, h->jerk[i]);
+}
+
+static bool axes_can(const struct hold *h, uint32_t block, float f, float g, const struct part *p)
+{
+    for (unsigned i = 0; i < h->axes; i++) {
+        if (!axis_can(h, piece_at(h, block), i, f, g, p)) {
+            return false;
+        }
+    }
+    return true;
+}
+
+/* From one state to another by w, on pieces that are known. */
+static bool can_go(const struct hold *h, const struct hold_state *a, const struct hold_state *b,
+                   double w)
+{
+    const uint32_t first = (uint32_t)a->at;
+    const uint32_t last = (uint32_t)b->at;
+    const struct part p = part_of(a, b, w);
+
+    if (last >= h->end - h->block) {
+        return false;
+    }
+    for (uint32_t i = first; i <= last; i++) {
+        const float f = i == first ? (float)(a->at - (double)i) : 0.0f;
+        const float g = i == last ? (float)(b->at - (double)i) : 1.0f;
+
+        if (!axes_can(h, h->block + i, f, g, &p)) {
+            return false;
+        }
+    }
+    return true;
+}
+
+/* -- the way on -- */
+
+/* u + r t + q t^2/2 + w t^3/6 */
+static void advance(struct hold_state *s, double w, double t)
+{
+    s->at += t * (s->rate + t * (0.5 * s->change + t * w * (1.0 / 6.0)));
+    s->rate = maths_max(0.0, s->rate + t * (s->change + 0.5 * t * w));
+    s->change += t * w;
+}
+
+/*
+ * Is the feed of a lead point, path units a cycle, not above the highest of what it has come to, from the setpoint on? A
+ * block from S on begins for it at S - c b, b half the window and a margin.
+ */
+static bool tops_allow(const struct hold *h, const struct path *path, const struct lead *l,
+                       const struct hold_state *s, uint64_t at)
+{
+    const double b = 0.5 * (l->window - 1.0) + CEILING_MARGIN_CYCLES;
+    const double way = s->rate * h->length * (1.0 - REST_PART);
+    const double per_mm_s = path->limits.cycle_s * PATH_UNITS_PER_MM;
+    uint32_t block = h->block + (uint32_t)s->at;
+
+    for (unsigned i = 0; i < BLOCKS_MAX && block != path->closed; i++, block++) {
+        const double gap = (double)(int64_t)(path_start(path, block) - at);
+        const double top = path_block_top(path_at(path, block)) * per_mm_s;
+
+        if (gap >= way * b) {
+            return true;
+        }
+        if (way > top && gap < top * b) {
+            return false;
+        }
+        if (path_at(path, block)->end == JOINT_STOP) {
+            return true;
+        }
+    }
+    return block == path->closed;
+}
+
+/*
+ * The lead point of a setpoint that moves at a constant rate is half the window before it. It takes over at the end of the
+ * cycle in which the change comes to 0, and keeps its feed in the next one (lead_follow). To stop it may be faster than the
+ * overrides ask for.
+ */
+static bool lead_can_take(const struct hold *h, const struct path *path, const struct lead *l,
+                          const struct hold_state *s, bool stop)
+{
+    const double ahead = (s->at + 0.5 * (l->window + 3.0) * s->rate) * h->length;
+    const double way = s->rate * h->length;
+    const uint64_t at = path_start(path, h->block) + (uint64_t)ahead;
+
+    return lead_could_be(l, at, way / PATH_UNITS_PER_MM, stop) &&
+           (!stop || tops_allow(h, path, l, s, at));
+}
+
+/* Is the change brought to 0 by e within all limits, at a rate and place from which the lead point could go on? */
+static bool can_ease(const struct hold *h, const struct path *path, const struct lead *l,
+                     struct hold_state s, double e, bool stop)
+{
+    const double w = s.change < 0.0 ? e : -e;
+
+    if (s.change != 0.0) {
+        const double t = maths_abs(s.change) / (e * EASE_PARTS);
+
+        for (unsigned i = 0; i < EASE_PARTS; i++) {
+            const struct hold_state from = s;
+
+            advance(&s, w, t);
+            if (i + 1 == EASE_PARTS) {
+                s.change = 0.0;
+            }
+            if (!can_go(h, &from, &s, w)) {
+                return false;
+            }
+        }
+    }
+    return lead_can_take(h, path, l, &s, stop);
+}
+
+/* So hard that braking ends at rest at the latest: r = q^2/2e. */
+static double least_ease(const struct hold_state *s)
+{
+    return s->change < 0.0 ? s->change * s->change / (2.0 * s->rate) : 0.0;
+}
+
+/* An ease for what follows this state; 0: none was found. */
+static double find_ease(const struct hold *h, const struct path *path, const struct lead *l,
+                        const struct hold_state *s, double hardest, bool stop)
+{
+    const double least = least_ease(s);
+
+    if (h->ease > least && can_ease(h, path, l, *s, h->ease, stop)) {
+        return h->ease;
+    }
+    for (unsigned i = 0; i < sizeof(ease_part) / sizeof(ease_part[0]); i++) {
+        const double e = maths_max(least, ease_part[i] * hardest);
+
+        if (e <= hardest && can_ease(h, path, l, *s, e, stop)) {
+            return e;
+        }
+    }
+    return 0.0;
+}
+
+/* w by which one axis alone would use all of its acceleration, or of its jerk, from no change; limited where none moves. */
+static double hardest_step(const struct hold *h)
+{
+    const struct hold_piece *p = piece_at(h, h->block);
+    const float f = (float)h->place.at;
+    double hardest = CHANGE_PART * h->top;
+
+    for (unsigned i = 0; i < h->axes; i++) {
+        const float third = p->second[1][i] - p->second[0][i];
+        const double first =
+            maths_abs((double)(p->first[i] + f * (p->second[0][i] + 0.5f * f * third)));
+
+        hardest = maths_min(hardest, (double)maths_min((double)h->jerk[i], (double)h->acceleration[i]) /
+                                         maths_max(first, 1e-30));
+    }
+    return hardest;
+}
+
+/* Goes on by w if there is an ease behind it. */
+static bool try_step(struct hold *h, const struct path *path, const struct lead *l, double w,
+                     double hardest, bool stop)
+{
+    struct hold_state next = h->place;
+
+    if (next.rate == 0.0 && !(w > 0.0)) {
+        return false;
+    }
+    if (w * next.change < 0.0 && maths_abs(w) > maths_abs(next.change)) {
+        w = -next.change; /* in one direction in a cycle: the bounds need it */
+    }
+    advance(&next, w, 1.0);
+    if (!can_go(h, &h->place, &next, w)) {
+        return false;
+    }
+    const double e = find_ease(h, path, l, &next, hardest, stop);
+
+    if (!(e > 0.0)) {
+        return false;
+    }
+    h->moved = next.at - h->place.at;
+    h->place = next;
+    h->ease = e;
+    return true;
+}
+
+/* The change goes to 0 by the ease that was found last. */
+static void go_on_easing(struct hold *h)
+{
+    const double w = h->place.change < 0.0 ? h->ease : -h->ease;
+    const double t = maths_min(1.0, maths_abs(h->place.change) / h->ease);
+    const double from = h->place.at;
+
+    advance(&h->place, w, t);
+    if (t < 1.0 || maths_abs(h->place.change) < REST_PART * h->ease) {
+        h->place.change = 0.0;
+        h->place.rate = h->place.rate < REST_PART * h->top ? 0.0 : h->place.rate;
+    }
+    advance(&h->place, 0.0, 1.0 - t);
+    h->moved = h->place.at - from;
+}
+
+/*
+ * True: it has gone on by a w of the direction wanted, or at the change it has. To rest in two cycles, one of w and one of
+ * the ease that takes back all of the change: q + w = -2 (r + q + w/2).
+ */
+static bool find_step(struct hold *h, const struct path *path, const struct lead *l, bool stop)
+{
+    const double hardest = hardest_step(h);
+    const double wanted = (stop ? -1.0 : 1.0) * hardest;
+
+    if (stop && h->place.rate <= 2.0 * hardest &&
+        try_step(h, path, l, -h->place.rate - 1.5 * h->place.change, hardest, stop)) {
+        return true;
+    }
+    for (unsigned i = 0; i < 2; i++) {
+        if (try_step(h, path, l, h->step * wanted, hardest, stop)) {
+            h->step = i == 0 ? maths_min(1.0, 2.0 * h->step) : h->step;
+            return true;
+        }
+        h->step = maths_max(STEP_LEAST, STEP_LESS * h->step);
+    }
+    return (wanted * h->place.change >= 0.0 && try_step(h, path, l, 0.0, hardest, stop)) ||
+           try_step(h, path, l, -LESS_PART * h->place.change, hardest, stop);
+}
+
+/* Is it at the rate that the lead point may have here, or nearly? */
+static bool has_arrived(const struct hold *h, const struct path *path, const struct lead *l)
+{
+    struct hold_state faster = h->place;
+
+    faster.rate *= 1.0 + ARRIVED_PART;
+    return h->place.change == 0.0 && h->place.rate > 0.0 && !lead_can_take(h, path, l, &faster, false);
+}
+
+/* Counts from the start of the block that the setpoint is in. */
+static void pass_blocks(struct hold *h)
+{
+    while (h->place.at >= 1.0 && h->block + 1 != h->end) {
+        h->place.at -= 1.0;
+        h->block++;
+    }
+}
+
+bool hold_step(struct hold *h, const struct path *path, const struct lead *l, bool stop)
+{
+    read_pieces(h, path);
+    h->step = stop == h->stops ? h->step : 1.0;
+    h->stops = stop;
+    if (stop && h->place.rate == 0.0) {
+        h->moved = 0.0;
+        return true;
+    }
+    if (!stop && has_arrived(h, path, l)) {
+        return false;
+    }
+    if (!find_step(h, path, l, stop)) {
+        if (h->place.change == 0.0) {
+            return false;
+        }
+        go_on_easing(h);
+    }
+    pass_blocks(h);
+    return true;
+}
+
+/* The pieces ahead, from the path's first block on; those that are known stay. */
+static void look_ahead(struct hold *h, const struct path *path, bool anew)
+{
+    if (anew || (int32_t)(h->end - path->first) <= 0) {
+        take_limits(h, &path->limits);
+        h->end = path->first;
+        h->whole = false;
+        h->length = length_of(path, path->first);
+        h->step = 1.0;
+    }
+    h->block = path->first;
+    read_pieces(h, path);
+}
+
+/* The last three places lie on u + r t + q t^2/2. */
+bool hold_begin(struct hold *h, const struct path *path, const struct lead *l, double at,
+                const double way[2], bool anew)
+{
+    look_ahead(h, path, anew);
+    h->place.at = at / h->length;
+    h->place.change = (way[0] - way[1]) / h->length;
+    h->place.rate = way[0] / h->length + 0.5 * h->place.change;
+    h->ease = 0.0;
+    h->stops = true;
+    h->top = maths_max(h->place.rate, path_block_top(path_at(path, h->block)) * path->limits.cycle_s *
+                                          PATH_UNITS_PER_MM / h->length);
+    return find_step(h, path, l, true);
+}

@@ -1,0 +1,216 @@
+/*
+ * Feed holds on smoothed paths, from any moment: on machines drawn by their dimensionless numbers the axes come to rest
+ * within a time that their limits tell, and go on afterwards, and no limit is broken.
+ *
+ * test_holds NUMBER runs so many programs instead of PROGRAMS, test_holds NUMBER FIRST from that seed on. It prints how
+ * long the holds took, in parts of V/A + A/J.
+ */
+#include "motion/motion.h"
+#include "plan/path.h"
+#include "property_arguments.h"
+#include "random_chain.h"
+
+#include <stdio.h>
+#include <string.h>
+#include <unity.h>
+
+/* Programs in a run. */
+#define PROGRAMS 30
+
+#define MOVES_MAX 100
+
+/* A program that takes longer stands still for ever. */
+#define CYCLES_MAX 2000000
+
+/* The longest hold, in parts of V/A + A/J, and cycles beside it. */
+#define HOLD_PARTS_MAX  1.5
+#define HOLD_CYCLES_MAX 10.0
+
+/* Tenths of V/A + A/J that holds are counted in. */
+#define TENTHS_MAX 50
+
+static struct path path;
+static struct motion motion;
+static unsigned programs = PROGRAMS;
+static unsigned first_seed = 1;
+
+struct run {
+    struct chain chain;
+    struct chain chance; /* of the operator */
+    struct plan_limits limits;
+    enum chain_family family;
+    double tolerance_mm;
+    unsigned moves;
+    unsigned pushed;
+    double hold_cycles; /* V/A + A/J of the slowest axis */
+    bool holds;
+    bool moved; /* the axes did when it began */
+    uint64_t change; /* cycle of the next hold, or in which the present one began */
+    double longest;  /* in parts of that */
+    unsigned held;
+    struct chain_judge judge;
+};
+
+static struct run run;
+static unsigned taken[TENTHS_MAX + 1];
+static unsigned holds;
+
+void setUp(void)
+{
+}
+
+void tearDown(void)
+{
+}
+
+/* V J/A^2, tau J/A and P J^2/A^3 evenly on a logarithmic scale; axes up to three times apart. */
+static void random_machine(struct run *r)
+{
+    struct plan_limits *l = &r->limits;
+    const double v = chain_decades(&r->chain, 1.0, 2.7);
+    const double braking = chain_decades(&r->chain, -0.5, 2.0); /* V J/A^2 */
+    const double t = maths_power(2.0, (double)(int)chain_between(&r->chain, -2, 3)) * 1e-3;
+    const double rounding = chain_decades(&r->chain, -2.0, 0.5); /* tau J/A */
+
+    l->axes = 7;
+    l->cycle_s = t;
+    l->chord_error_max_mm = 0.01;
+    l->landing = LANDING_SPAN;
+    l->law = (enum law)chain_between(&r->chain, 0, 3);
+    for (int i = 0; i < CHAIN_AXES; i++) {
+        const double part = chain_decades(&r->chain, -0.5, 0.0);
+
+        l->velocity_mm_s[i] = v * part;
+        l->acceleration_mm_s2[i] = v * part * rounding / (t * braking);
+        l->jerk_mm_s3[i] = l->acceleration_mm_s2[i] * rounding / t;
+        r->hold_cycles = maths_max(r->hold_cycles, (v * part / l->acceleration_mm_s2[i] + t / rounding) / t);
+    }
+}
+
+static void set_up_run(struct run *r, unsigned seed)
+{
+    memset(r, 0, sizeof(*r));
+    r->chain.seed = UINT64_C(0x9e3779b97f4a7c15) * seed;
+    r->chance.seed = UINT64_C(0xd1b54a32d192ed03) * seed;
+    random_machine(r);
+    r->family = (enum chain_family)chain_between(&r->chain, 0, CHAIN_MIXED + 1);
+    r->tolerance_mm = chain_decades(&r->chain, -3, -0.3);
+    r->moves = (unsigned)chain_decades(&r->chain, 1, 2);
+    r->change = 1 + (uint64_t)(r->hold_cycles * chain_decades(&r->chance, -1, 1));
+}
+
+static void push_next(struct run *r)
+{
+    struct move m;
+
+    if (r->pushed < r->moves) {
+        m = chain_next(&r->chain, r->family, r->pushed);
+        m.path = PATH_BLEND;
+        m.tolerance_mm = r->tolerance_mm;
+        r->pushed++;
+    } else {
+        memset(&m, 0, sizeof(m));
+        m.kind = MOVE_END;
+    }
+    path_push(&path, &m);
+    if (m.kind == MOVE_END) {
+        path_finish(&path);
+    }
+}
+
+static void plan(struct run *r)
+{
+    if (motion_wanted(&motion) == NULL) {
+        return;
+    }
+    path_go_on(&path);
+    while (!path.finished && path_has_room(&path)) {
+        push_next(r);
+    }
+    motion_build(&motion);
+}
+
+static void count_hold(struct run *r)
+{
+    const double cycles = (double)(motion.cycles - r->change);
+    const double parts = maths_max(0.0, cycles - HOLD_CYCLES_MAX) / r->hold_cycles;
+
+    r->longest = maths_max(r->longest, parts);
+    r->held++;
+    holds++;
+    taken[parts * 10.0 < TENTHS_MAX ? (unsigned)(parts * 10.0) : TENTHS_MAX]++;
+}
+
+/* Holds until the axes are at rest, and for a little while; then not, for a random time. */
+static void follow(struct run *r)
+{
+    if (r->holds ? motion_rests(&motion) && motion.cycles > r->change + 2
+                 : motion.cycles >= r->change) {
+        if (r->holds && r->moved) {
+            count_hold(r);
+        }
+        r->moved = !motion_rests(&motion);
+        r->holds = !r->holds;
+        r->change = motion.cycles;
+        if (!r->holds) {
+            r->change += 1 + (uint64_t)(r->hold_cycles * chain_decades(&r->chance, -1.5, 1));
+        }
+    }
+}
+
+static enum motion_result run_program(struct run *r)
+{
+    const struct point start = {{0}};
+    struct motion_operator now = {.feed_ratio = 1.0, .rapid_ratio = 1.0};
+    struct cycle_record record;
+    enum motion_result result;
+
+    path_init(&path, &r->limits, &start);
+    motion_init(&motion, &path, &start, false);
+    do {
+        plan(r);
+        follow(r);
+        now.hold = r->holds;
+        result = motion_cycle(&motion, &now, &record);
+        if (result == MOTION_CYCLE) {
+            chain_judge_setpoint(&r->judge, &r->limits, &record.cmd);
+        }
+    } while ((result == MOTION_CYCLE || result == MOTION_NOT_YET) && motion.cycles < CYCLES_MAX);
+    return result;
+}
+
+static void test_axes_come_to_rest_within_what_their_limits_tell(void)
+{
+    unsigned failed = 0;
+
+    for (unsigned seed = first_seed; seed < first_seed + programs; seed++) {
+        set_up_run(&run, seed);
+        const enum motion_result result = run_program(&run);
+
+        if (result != MOTION_DONE || run.judge.velocity > 1.0001 || run.judge.acceleration > 1.0001 ||
+            run.judge.jerk > 1.001 || run.longest > HOLD_PARTS_MAX) {
+            failed++;
+            printf("seed %u family %d law %d moves %u cycle %g s P %g V %g A %g J %g: %s in %llu cycles, %u holds, %.2f at "
+                   "most, v %.5f a %.5f j %.5f\n",
+                   seed, (int)run.family, (int)run.limits.law, run.moves, run.limits.cycle_s,
+                   run.tolerance_mm, run.limits.velocity_mm_s[0], run.limits.acceleration_mm_s2[0],
+                   run.limits.jerk_mm_s3[0], result == MOTION_DONE ? "done" : "not done",
+                   (unsigned long long)motion.cycles, run.held, run.longest, run.judge.velocity,
+                   run.judge.acceleration, run.judge.jerk);
+        }
+    }
+    printf("%u programs, %u holds, in tenths of V/A + A/J:", programs, holds);
+    for (unsigned i = 0; i <= TENTHS_MAX; i++) {
+        printf(" %u", taken[i]);
+    }
+    printf("\n");
+    TEST_ASSERT_EQUAL_UINT(0, failed);
+}
+
+int main(int argc, char **argv)
+{
+    read_number_and_first(argc, argv, &programs, &first_seed);
+    UNITY_BEGIN();
+    RUN_TEST(test_axes_come_to_rest_within_what_their_limits_tell);
+    return UNITY_END();
+}
