@@ -89,7 +89,7 @@ static void add_course(struct line *l, const struct move *move)
     add_text(l, planes[move->plane]);
 }
 
-static bool is_rotary_only(const struct move *move, const struct point *at)
+bool canon_is_rotary(const struct move *move, const struct point *at)
 {
     struct curve curve;
 
@@ -98,7 +98,7 @@ static bool is_rotary_only(const struct move *move, const struct point *at)
 
 static void add_feed(struct line *l, const struct move *move, const struct point *at)
 {
-    const double scale = is_rotary_only(move, at) ? DEGREES_PER_RAD : 1.0;
+    const double scale = canon_is_rotary(move, at) ? DEGREES_PER_RAD : 1.0;
 
     if (move->feed_rev_mm != 0.0) {
         add_word(l, 'F', move->feed_rev_mm * scale);

@@ -49,6 +49,9 @@
 /* Longest text with its end: six axes, three of a centre, P, F, and the words around them. */
 #define CANON_TEXT_MAX 512
 
+/* Does it move rotary axes alone, from at? Its feed counts degrees then. */
+bool canon_is_rotary(const struct move *move, const struct point *at);
+
 /*
  * Writes move without a line end, zero-terminated, into text[CANON_TEXT_MAX]; returns its length. axes: bit i set:
  * the machine has axis i. at: machine position the move starts from; the caller follows it, by move->end after

@@ -30,9 +30,10 @@ struct command {
 
 extern const struct command command_run;
 extern const struct command command_plan;
-extern const struct command command_check, command_lint;
-extern const struct command command_canon;
+extern const struct command command_check;
 extern const struct command command_lint;
+extern const struct command command_canon;
+extern const struct command command_convert;
 extern const struct command command_trace;
 extern const struct command command_machine;
 extern const struct command command_cycle_frequency;

@@ -87,10 +87,11 @@ struct options {
     const char *override;
     const char *rapid_override;
     const char *override_method;
-    double until_s;        /* 0: to the end */
-    const char *stock_top; /* of `takt lint`, mm */
-    double tolerance;      /* of `takt trace`; 0: equal. Of `takt bore`, mm; 0: its default */
-    const char *output;    /* -o is short for --output */
+    double until_s;         /* 0: to the end */
+    const char *to_dialect; /* of `takt convert` */
+    const char *stock_top;  /* of `takt lint`, mm */
+    double tolerance;       /* of `takt trace`; 0: equal. Of `takt bore`, mm; 0: its default */
+    const char *output;     /* -o is short for --output */
     struct option_bore bore;
     struct option_frequency frequency;
     struct option_correction correction;
