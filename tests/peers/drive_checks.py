@@ -173,8 +173,8 @@ def check_profile_position(node):
 def check_velocity_and_torque(node):
     node.op_mode = "PROFILED VELOCITY"
     node.sdo[0x60FF].raw = 5 * PER_MM
-    until("the velocity is reached", lambda: node.check_statusword() & 0x0400)
-    check("and is that", abs(node.sdo[0x606C].raw - 5 * PER_MM) < 0.5 * PER_MM, node.sdo[0x606C].raw)
+    until("the velocity is reached", lambda: abs(node.sdo[0x606C].raw - 5 * PER_MM) < 0.5 * PER_MM)
+    until("and that is told", lambda: node.check_statusword() & 0x0400)
     node.sdo[0x60FF].raw = 0
     until("the axis stands", lambda: node.check_statusword() & 0x1000)
     node.sdo[0x6071].raw = 0
