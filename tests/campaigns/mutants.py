@@ -70,7 +70,8 @@ def build(*targets):
 def prepare():
     copy_sources()
     unity = "-DTAKT_UNITY_CACHE=" + os.path.join(SOURCE, "build", "unity")
-    configured = run("cmake", "--preset", "host", "-G", "Ninja", "-DTAKT_TESTS=ON", unity, cwd=COPY)
+    timeout = f"-DTAKT_TEST_TIMEOUT_S={TIMEOUT_S}"
+    configured = run("cmake", "--preset", "host", "-G", "Ninja", "-DTAKT_TESTS=ON", unity, timeout, cwd=COPY)
     if configured.returncode != 0 or not build():
         sys.exit("the sources without a mutant cannot be built: see " + BUILD)
 
@@ -130,7 +131,7 @@ def find_killer(room):
             continue
         if not build(*targets):
             return "build"
-        done = run("ctest", "--test-dir", BUILD, "--stop-on-failure", "--timeout", str(TIMEOUT_S), "-j", str(os.cpu_count()), *tests)
+        done = run("ctest", "--test-dir", BUILD, "--stop-on-failure", "-j", str(os.cpu_count()), *tests)
         failed = re.search(r"Test +#\d+: (\S+) \.*\*\*\*(?!Skipped|Not Run)", done.stdout)
         if failed:
             return failed.group(1)

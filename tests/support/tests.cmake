@@ -1,7 +1,7 @@
 # How a test is built and registered with CTest. tests/README.md says which kind belongs where.
 
-# Seconds after which a test that hangs is ended; no test measures its own time by it.
-set(TAKT_TEST_TIMEOUT_S 600)
+# No test measures its own time by it.
+set(TAKT_TEST_TIMEOUT_S 600 CACHE STRING "Seconds after which a test that hangs is ended")
 set(TAKT_TEST_ENVIRONMENT TAKT_SOURCE=${CMAKE_SOURCE_DIR})
 if(TARGET takt)
   list(APPEND TAKT_TEST_ENVIRONMENT TAKT=$<TARGET_FILE:takt>)
