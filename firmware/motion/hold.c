@@ -37,7 +37,7 @@
 static const double ease_part[] = {1.0, 0.3, 0.1};
 
 /* Where w can not be found the next one tried is so much smaller; where it was found, twice as large. */
-#define STEP_LESS 0.5
+#define STEP_LESS  0.5
 #define STEP_LEAST (1.0 / 4096.0)
 
 /* Where the change cannot be kept, and need not be brought to 0 yet: by this part of it. */
@@ -53,7 +53,7 @@ static const double ease_part[] = {1.0, 0.3, 0.1};
 #define BLOCKS_MAX 128
 
 /* Rounding. */
-#define SLACK 1e-5f
+#define SLACK     1e-5f
 #define REST_PART 1e-9
 
 struct range {
@@ -125,8 +125,8 @@ static bool goes_on(const struct hold *h, const struct path *path, uint32_t bloc
 
 static void read_pieces(struct hold *h, const struct path *path)
 {
-    for (unsigned i = 0; i < READ_MAX && !h->whole && h->end != path->closed &&
-                         h->end - h->block < HOLD_PIECES_MAX;
+    for (unsigned i = 0;
+         i < READ_MAX && !h->whole && h->end != path->closed && h->end - h->block < HOLD_PIECES_MAX;
          i++) {
         h->whole = h->end != h->block && !goes_on(h, path, h->end);
         if (!h->whole) {
@@ -346,8 +346,9 @@ static double hardest_step(const struct hold *h)
         const double first =
             maths_abs((double)(p->first[i] + f * (p->second[0][i] + 0.5f * f * third)));
 
-        hardest = maths_min(hardest, (double)maths_min((double)h->jerk[i], (double)h->acceleration[i]) /
-                                         maths_max(first, 1e-30));
+        hardest =
+            maths_min(hardest, (double)maths_min((double)h->jerk[i], (double)h->acceleration[i]) /
+                                   maths_max(first, 1e-30));
     }
     return hardest;
 }
@@ -425,7 +426,8 @@ static bool has_arrived(const struct hold *h, const struct path *path, const str
     struct hold_state faster = h->place;
 
     faster.rate *= 1.0 + ARRIVED_PART;
-    return h->place.change == 0.0 && h->place.rate > 0.0 && !lead_can_take(h, path, l, &faster, false);
+    return h->place.change == 0.0 && h->place.rate > 0.0 &&
+           !lead_can_take(h, path, l, &faster, false);
 }
 
 /* Counts from the start of the block that the setpoint is in. */
@@ -483,7 +485,7 @@ bool hold_begin(struct hold *h, const struct path *path, const struct lead *l, d
     h->place.rate = way[0] / h->length + 0.5 * h->place.change;
     h->ease = 0.0;
     h->stops = true;
-    h->top = maths_max(h->place.rate, path_block_top(path_at(path, h->block)) * path->limits.cycle_s *
-                                          PATH_UNITS_PER_MM / h->length);
+    h->top = maths_max(h->place.rate, path_block_top(path_at(path, h->block)) *
+                                          path->limits.cycle_s * PATH_UNITS_PER_MM / h->length);
     return find_step(h, path, l, true);
 }

@@ -287,8 +287,8 @@ static void find_piece(struct lead_place *p, double x)
     for (unsigned i = 0; i < LEAD_PIECES_MAX && p->piece > 0 && x < c->end_mm[p->piece - 1]; i++) {
         p->piece--;
     }
-    for (unsigned i = 0; i < LEAD_PIECES_MAX && p->piece + 1 < c->count && x >= c->end_mm[p->piece] &&
-                         !lead_is_last_of_span(&c->piece[p->piece]);
+    for (unsigned i = 0; i < LEAD_PIECES_MAX && p->piece + 1 < c->count &&
+                         x >= c->end_mm[p->piece] && !lead_is_last_of_span(&c->piece[p->piece]);
          i++) {
         p->piece++;
         low_push(p, p->piece);

@@ -44,7 +44,7 @@ struct run {
     unsigned pushed;
     double hold_cycles; /* V/A + A/J of the slowest axis */
     bool holds;
-    bool moved; /* the axes did when it began */
+    bool moved;      /* the axes did when it began */
     uint64_t change; /* cycle of the next hold, or in which the present one began */
     double longest;  /* in parts of that */
     unsigned held;
@@ -83,7 +83,8 @@ static void random_machine(struct run *r)
         l->velocity_mm_s[i] = v * part;
         l->acceleration_mm_s2[i] = v * part * rounding / (t * braking);
         l->jerk_mm_s3[i] = l->acceleration_mm_s2[i] * rounding / t;
-        r->hold_cycles = maths_max(r->hold_cycles, (v * part / l->acceleration_mm_s2[i] + t / rounding) / t);
+        r->hold_cycles =
+            maths_max(r->hold_cycles, (v * part / l->acceleration_mm_s2[i] + t / rounding) / t);
     }
 }
 
@@ -187,10 +188,12 @@ static void test_axes_come_to_rest_within_what_their_limits_tell(void)
         set_up_run(&run, seed);
         const enum motion_result result = run_program(&run);
 
-        if (result != MOTION_DONE || run.judge.velocity > 1.0001 || run.judge.acceleration > 1.0001 ||
-            run.judge.jerk > 1.001 || run.longest > HOLD_PARTS_MAX) {
+        if (result != MOTION_DONE || run.judge.velocity > 1.0001 ||
+            run.judge.acceleration > 1.0001 || run.judge.jerk > 1.001 ||
+            run.longest > HOLD_PARTS_MAX) {
             failed++;
-            printf("seed %u family %d law %d moves %u cycle %g s P %g V %g A %g J %g: %s in %llu cycles, %u holds, %.2f at "
+            printf("seed %u family %d law %d moves %u cycle %g s P %g V %g A %g J %g: %s in %llu "
+                   "cycles, %u holds, %.2f at "
                    "most, v %.5f a %.5f j %.5f\n",
                    seed, (int)run.family, (int)run.limits.law, run.moves, run.limits.cycle_s,
                    run.tolerance_mm, run.limits.velocity_mm_s[0], run.limits.acceleration_mm_s2[0],
