@@ -69,6 +69,7 @@ struct lead {
     bool standing;    /* at a stop, or where the machine was switched on: between two spans */
     bool abrupt;      /* came to rest where it was: waits for a cycle more before it moves on */
     bool released;    /* and may leave it */
+    bool follows;     /* it can do all that the ceiling asks for */
     uint32_t cycles;  /* of the first averaging box, in this span */
     double window;    /* cycles that the averages reach over */
     uint32_t since_plus;  /* cycles since it sped up */
