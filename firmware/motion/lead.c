@@ -51,8 +51,12 @@ static void follow_landing(struct lead *l)
 
 static void count_changes(struct lead *l, double change)
 {
-    l->since_plus = change > 0.0 ? 0 : l->since_plus < LEAD_LONG_AGO ? l->since_plus + 1 : LEAD_LONG_AGO;
-    l->since_minus = change < 0.0 ? 0 : l->since_minus < LEAD_LONG_AGO ? l->since_minus + 1 : LEAD_LONG_AGO;
+    l->since_plus = change > 0.0                    ? 0
+                    : l->since_plus < LEAD_LONG_AGO ? l->since_plus + 1
+                                                    : LEAD_LONG_AGO;
+    l->since_minus = change < 0.0                     ? 0
+                     : l->since_minus < LEAD_LONG_AGO ? l->since_minus + 1
+                                                      : LEAD_LONG_AGO;
 }
 
 /*

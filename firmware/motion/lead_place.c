@@ -268,34 +268,23 @@ void lead_enter_piece(struct lead *l, uint32_t k)
 
 /* -- a setpoint that is moved by others -- */
 
-/* At the highest overrides: by the ends of pieces alone. */
-static bool can_meet_highest(const struct ceiling *c, uint32_t k, double x, double energy)
-{
-    const struct ceiling_piece *p = &c->piece[k];
-    const double end = ceiling_feed(c, p->end_feed_max_mm_s);
-
-    return energy <= end * end + 2.0 * (double)p->acceleration * (c->end_mm[k] - x);
-}
-
 bool lead_could_be(const struct lead *l, uint64_t at, double feed, bool highest)
 {
     const struct ceiling *c = l->here.ceiling;
     const double x = path_mm(c->origin, at);
+    uint32_t k = l->here.piece;
 
     if (!highest && l->here.low_count > 0 && feed > l->here.low_feed) {
         return false;
     }
-    for (uint32_t k = l->here.piece, i = 0; k < c->count && i < LEAD_PIECES_MAX; k++, i++) {
-        if (x <= c->end_mm[k]) {
-            return highest ? can_meet_highest(c, k, x, feed * feed)
-                           : can_meet(c, k, x, feed * feed);
-        }
-        if (lead_is_last_of_span(&c->piece[k]) ||
-            (!highest && feed > ceiling_feed(c, c->piece[k].feed_mm_s))) {
+    for (uint32_t i = 0; i < LEAD_PIECES_MAX && k < c->count && x > c->end_mm[k]; i++, k++) {
+        const float top_mm_s = highest ? ceiling_top_feed(c, k) : c->piece[k].feed_mm_s;
+
+        if (lead_is_last_of_span(&c->piece[k]) || feed > ceiling_feed(c, top_mm_s)) {
             return false;
         }
     }
-    return false;
+    return k < c->count && x <= c->end_mm[k] && can_meet(c, k, x, feed * feed, highest);
 }
 
 /* The piece that lies where it is, whatever it has been in. */
@@ -330,7 +319,7 @@ void lead_follow(struct lead *l, uint64_t at, double feed, uint64_t setpoint)
 
     p->late = false;
     l->entered = lead_is_beyond(start, l->entered) ? start : l->entered;
-    l->known = lead_leave_of(l, c->count - 1);
+    note_following(l);
     (void)lead_low_feed(l, setpoint);
 }
 
