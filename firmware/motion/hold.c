@@ -26,6 +26,7 @@
 
 #include "base/maths.h"
 #include "plan/path_unit.h"
+#include "smooth/single.h"
 
 /* Pieces that are read in a cycle. */
 #define READ_MAX 6
@@ -34,27 +35,29 @@
 #define EASE_PARTS 8
 
 /* The eases tried, in parts of the hardest, beside the one that is known. */
-static const double ease_part[] = {1.0, 0.3, 0.1};
+#define EASES 3
+static const float ease_part[EASES] = {1.0f, 0.3f, 0.1f};
 
 /* Where w can not be found the next one tried is so much smaller; where it was found, twice as large. */
-#define STEP_LESS  0.5
-#define STEP_LEAST (1.0 / 4096.0)
+#define STEP_LESS  0.5f
+#define STEP_LEAST (1.0f / 4096.0f)
 
 /* Where the change cannot be kept, and need not be brought to 0 yet: by this part of it. */
-#define LESS_PART 0.125
+#define LESS_PART 0.125f
 
 /* The rate is so near to that of the ceiling that the lead point goes on by itself. */
-#define ARRIVED_PART 1e-3
+#define ARRIVED_PART 1e-3f
 
 /* Where the axes hardly move: the rate changes by no more than this part of what it began with in a cycle. */
-#define CHANGE_PART 0.2
+#define CHANGE_PART 0.2f
 
 /* Blocks from the setpoint to what begins at the lead point, at most. */
 #define BLOCKS_MAX 128
 
 /* Rounding. */
-#define SLACK     1e-5f
-#define REST_PART 1e-9
+#define SLACK      1e-5f
+#define REST_PART  1e-9
+#define TRIAL_PART 4e-6
 
 struct range {
     float low;
@@ -151,6 +154,16 @@ static void take_limits(struct hold *h, const struct plan_limits *limits)
     }
 }
 
+/*
+ * A state that is tried, in single precision: what rounding does to it is less than the bounds leave. What is gone along is
+ * in double precision.
+ */
+struct trial {
+    float at;
+    float rate;
+    float change;
+};
+
 /* -- what the axes need on a part of the way -- */
 
 struct part {
@@ -161,12 +174,12 @@ struct part {
     float w;
 };
 
-static struct part part_of(const struct hold_state *a, const struct hold_state *b, double w)
+static struct part part_of(const struct trial *a, const struct trial *b, float w)
 {
     struct part p = {
-        .rate = between((float)a->rate, (float)b->rate),
-        .change = between((float)a->change, (float)b->change),
-        .w = (float)w,
+        .rate = between(a->rate, b->rate),
+        .change = between(a->change, b->change),
+        .w = w,
     };
 
     p.rate2 = times(p.rate, p.rate);
@@ -209,8 +222,7 @@ static bool axes_can(const struct hold *h, uint32_t block, float f, float g, con
 }
 
 /* From one state to another by w, on pieces that are known. */
-static bool can_go(const struct hold *h, const struct hold_state *a, const struct hold_state *b,
-                   double w)
+static bool can_go(const struct hold *h, const struct trial *a, const struct trial *b, float w)
 {
     const uint32_t first = (uint32_t)a->at;
     const uint32_t last = (uint32_t)b->at;
@@ -220,8 +232,8 @@ static bool can_go(const struct hold *h, const struct hold_state *a, const struc
         return false;
     }
     for (uint32_t i = first; i <= last; i++) {
-        const float f = i == first ? (float)(a->at - (double)i) : 0.0f;
-        const float g = i == last ? (float)(b->at - (double)i) : 1.0f;
+        const float f = i == first ? a->at - (float)i : 0.0f;
+        const float g = i == last ? b->at - (float)i : 1.0f;
 
         if (!axes_can(h, h->block + i, f, g, &p)) {
             return false;
@@ -240,21 +252,29 @@ static void advance(struct hold_state *s, double w, double t)
     s->change += t * w;
 }
 
+static void try_advance(struct trial *s, float w, float t)
+{
+    s->at += t * (s->rate + t * (0.5f * s->change + t * w * (1.0f / 6.0f)));
+    s->rate = single_max(0.0f, s->rate + t * (s->change + 0.5f * t * w));
+    s->change += t * w;
+}
+
 /*
  * Is the feed of a lead point, path units a cycle, not above the highest of what it has come to, from the setpoint on? A
  * block from S on begins for it at S - c b, b half the window and a margin.
  */
 static bool tops_allow(const struct hold *h, const struct path *path, const struct lead *l,
-                       const struct hold_state *s, uint64_t at)
+                       const struct trial *s, uint64_t at)
 {
-    const double b = 0.5 * (l->window - 1.0) + CEILING_MARGIN_CYCLES;
-    const double way = s->rate * h->length * (1.0 - REST_PART);
-    const double per_mm_s = path->limits.cycle_s * PATH_UNITS_PER_MM;
+    const float b = (float)(0.5 * (l->window - 1.0) + CEILING_MARGIN_CYCLES);
+    const float length = (float)h->length;
+    const float way = s->rate * length;
+    const float per_mm_s = (float)(path->limits.cycle_s * PATH_UNITS_PER_MM);
     uint32_t block = h->block + (uint32_t)s->at;
 
     for (unsigned i = 0; i < BLOCKS_MAX && block != path->closed; i++, block++) {
-        const double gap = (double)(int64_t)(path_start(path, block) - at);
-        const double top = path_block_top(path_at(path, block)) * per_mm_s;
+        const float gap = (float)(int64_t)(path_start(path, block) - at);
+        const float top = (float)path_block_top(path_at(path, block)) * per_mm_s * (1.0f + SLACK);
 
         if (gap >= way * b) {
             return true;
@@ -275,31 +295,31 @@ static bool tops_allow(const struct hold *h, const struct path *path, const stru
  * overrides ask for.
  */
 static bool lead_can_take(const struct hold *h, const struct path *path, const struct lead *l,
-                          const struct hold_state *s, bool stop)
+                          const struct trial *s, bool stop)
 {
-    const double ahead = (s->at + 0.5 * (l->window + 3.0) * s->rate) * h->length;
-    const double way = s->rate * h->length;
+    const double rate = (double)s->rate * (1.0 + TRIAL_PART);
+    const double ahead = ((double)s->at + 0.5 * (l->window + 3.0) * rate) * h->length;
     const uint64_t at = path_start(path, h->block) + (uint64_t)ahead;
 
-    return lead_could_be(l, at, way / PATH_UNITS_PER_MM, stop) &&
+    return lead_could_be(l, at, rate * h->length / PATH_UNITS_PER_MM, stop) &&
            (!stop || tops_allow(h, path, l, s, at));
 }
 
 /* Is the change brought to 0 by e within all limits, at a rate and place from which the lead point could go on? */
 static bool can_ease(const struct hold *h, const struct path *path, const struct lead *l,
-                     struct hold_state s, double e, bool stop)
+                     struct trial s, float e, bool stop)
 {
-    const double w = s.change < 0.0 ? e : -e;
+    const float w = s.change < 0.0f ? e : -e;
 
-    if (s.change != 0.0) {
-        const double t = maths_abs(s.change) / (e * EASE_PARTS);
+    if (s.change != 0.0f) {
+        const float t = single_abs(s.change) / (e * (float)EASE_PARTS);
 
         for (unsigned i = 0; i < EASE_PARTS; i++) {
-            const struct hold_state from = s;
+            const struct trial from = s;
 
-            advance(&s, w, t);
+            try_advance(&s, w, t);
             if (i + 1 == EASE_PARTS) {
-                s.change = 0.0;
+                s.change = 0.0f;
             }
             if (!can_go(h, &from, &s, w)) {
                 return false;
@@ -310,73 +330,68 @@ static bool can_ease(const struct hold *h, const struct path *path, const struct
 }
 
 /* So hard that braking ends at rest at the latest: r = q^2/2e. */
-static double least_ease(const struct hold_state *s)
+static float least_ease(const struct trial *s)
 {
-    return s->change < 0.0 ? s->change * s->change / (2.0 * s->rate) : 0.0;
+    return s->change < 0.0f ? s->change * s->change / (2.0f * s->rate) : 0.0f;
 }
 
-/* An ease for what follows this state; 0: none was found. */
-static double find_ease(const struct hold *h, const struct path *path, const struct lead *l,
-                        const struct hold_state *s, double hardest, bool stop)
+/* An ease for what follows this state: the one that is known, or another, each cycle the next of them. 0: none was found. */
+static float find_ease(const struct hold *h, const struct path *path, const struct lead *l,
+                       const struct trial *s, float hardest, bool stop)
 {
-    const double least = least_ease(s);
+    const float least = least_ease(s);
+    const float known = (float)h->ease;
+    const float other = single_max(least, ease_part[h->turn % EASES] * hardest);
 
-    if (h->ease > least && can_ease(h, path, l, *s, h->ease, stop)) {
-        return h->ease;
+    if (known > least && can_ease(h, path, l, *s, known, stop)) {
+        return known;
     }
-    for (unsigned i = 0; i < sizeof(ease_part) / sizeof(ease_part[0]); i++) {
-        const double e = maths_max(least, ease_part[i] * hardest);
-
-        if (e <= hardest && can_ease(h, path, l, *s, e, stop)) {
-            return e;
-        }
-    }
-    return 0.0;
+    return other <= hardest && can_ease(h, path, l, *s, other, stop) ? other : 0.0f;
 }
 
 /* w by which one axis alone would use all of its acceleration, or of its jerk, from no change; limited where none moves. */
-static double hardest_step(const struct hold *h)
+static float hardest_step(const struct hold *h)
 {
     const struct hold_piece *p = piece_at(h, h->block);
     const float f = (float)h->place.at;
-    double hardest = CHANGE_PART * h->top;
+    float hardest = CHANGE_PART * (float)h->top;
 
     for (unsigned i = 0; i < h->axes; i++) {
         const float third = p->second[1][i] - p->second[0][i];
-        const double first =
-            maths_abs((double)(p->first[i] + f * (p->second[0][i] + 0.5f * f * third)));
+        const float first = p->first[i] + f * (p->second[0][i] + 0.5f * f * third);
+        const float most = single_min(h->jerk[i], h->acceleration[i]);
 
-        hardest =
-            maths_min(hardest, (double)maths_min((double)h->jerk[i], (double)h->acceleration[i]) /
-                                   maths_max(first, 1e-30));
+        hardest = most < hardest * single_abs(first) ? most / single_abs(first) : hardest;
     }
     return hardest;
 }
 
-/* Goes on by w if there is an ease behind it. */
-static bool try_step(struct hold *h, const struct path *path, const struct lead *l, double w,
-                     double hardest, bool stop)
+/* Goes on by w if there is an ease behind it. In one direction in a cycle: the bounds need it. */
+static bool try_step(struct hold *h, const struct path *path, const struct lead *l, float w,
+                     float hardest, bool stop)
 {
-    struct hold_state next = h->place;
+    const struct trial here = {(float)h->place.at, (float)h->place.rate, (float)h->place.change};
+    const bool turns = w * here.change < 0.0f && single_abs(w) > single_abs(here.change);
+    const double by = turns ? -h->place.change : (double)w;
+    struct hold_state place = h->place;
 
-    if (next.rate == 0.0 && !(w > 0.0)) {
+    if (here.rate == 0.0f && !(w > 0.0f)) {
         return false;
     }
-    if (w * next.change < 0.0 && maths_abs(w) > maths_abs(next.change)) {
-        w = -next.change; /* in one direction in a cycle: the bounds need it */
-    }
-    advance(&next, w, 1.0);
-    if (!can_go(h, &h->place, &next, w)) {
-        return false;
-    }
-    const double e = find_ease(h, path, l, &next, hardest, stop);
+    advance(&place, by, 1.0);
+    const struct trial next = {(float)place.at, (float)place.rate, (float)place.change};
 
-    if (!(e > 0.0)) {
+    if (!can_go(h, &here, &next, (float)by)) {
         return false;
     }
-    h->moved = next.at - h->place.at;
-    h->place = next;
-    h->ease = e;
+    const float e = find_ease(h, path, l, &next, hardest, stop);
+
+    if (!(e > 0.0f)) {
+        return false;
+    }
+    h->moved = place.at - h->place.at;
+    h->place = place;
+    h->ease = (double)e;
     return true;
 }
 
@@ -402,30 +417,33 @@ static void go_on_easing(struct hold *h)
  */
 static bool find_step(struct hold *h, const struct path *path, const struct lead *l, bool stop)
 {
-    const double hardest = hardest_step(h);
-    const double wanted = (stop ? -1.0 : 1.0) * hardest;
+    const float hardest = hardest_step(h);
+    const float wanted = stop ? -hardest : hardest;
+    const float rate = (float)h->place.rate;
+    const float change = (float)h->place.change;
 
-    if (stop && h->place.rate <= 2.0 * hardest &&
-        try_step(h, path, l, -h->place.rate - 1.5 * h->place.change, hardest, stop)) {
+    h->turn++;
+    if (stop && rate <= 2.0f * hardest &&
+        try_step(h, path, l, -rate - 1.5f * change, hardest, stop)) {
         return true;
     }
     for (unsigned i = 0; i < 2; i++) {
         if (try_step(h, path, l, h->step * wanted, hardest, stop)) {
-            h->step = i == 0 ? maths_min(1.0, 2.0 * h->step) : h->step;
+            h->step = i == 0 ? single_min(1.0f, 2.0f * h->step) : h->step;
             return true;
         }
-        h->step = maths_max(STEP_LEAST, STEP_LESS * h->step);
+        h->step = single_max(STEP_LEAST, STEP_LESS * h->step);
     }
-    return (wanted * h->place.change >= 0.0 && try_step(h, path, l, 0.0, hardest, stop)) ||
-           try_step(h, path, l, -LESS_PART * h->place.change, hardest, stop);
+    return (wanted * change >= 0.0f && try_step(h, path, l, 0.0f, hardest, stop)) ||
+           try_step(h, path, l, -LESS_PART * change, hardest, stop);
 }
 
 /* Is it at the rate that the lead point may have here, or nearly? */
 static bool has_arrived(const struct hold *h, const struct path *path, const struct lead *l)
 {
-    struct hold_state faster = h->place;
+    const struct trial faster = {.at = (float)h->place.at,
+                                 .rate = (float)h->place.rate * (1.0f + ARRIVED_PART)};
 
-    faster.rate *= 1.0 + ARRIVED_PART;
     return h->place.change == 0.0 && h->place.rate > 0.0 &&
            !lead_can_take(h, path, l, &faster, false);
 }
@@ -442,7 +460,7 @@ static void pass_blocks(struct hold *h)
 bool hold_step(struct hold *h, const struct path *path, const struct lead *l, bool stop)
 {
     read_pieces(h, path);
-    h->step = stop == h->stops ? h->step : 1.0;
+    h->step = stop == h->stops ? h->step : 1.0f;
     h->stops = stop;
     if (stop && h->place.rate == 0.0) {
         h->moved = 0.0;
@@ -469,7 +487,7 @@ static void look_ahead(struct hold *h, const struct path *path, bool anew)
         h->end = path->first;
         h->whole = false;
         h->length = length_of(path, path->first);
-        h->step = 1.0;
+        h->step = 1.0f;
     }
     h->block = path->first;
     read_pieces(h, path);

@@ -46,11 +46,12 @@ struct hold {
     bool whole;     /* and no further piece goes on with the curve */
     double length;  /* path units of a piece */
     struct hold_state place;
-    double moved; /* pieces, in the last cycle */
-    double ease;  /* by which its change can be brought to 0 from here: |w| */
-    double step;  /* the hardest w that was found last, in parts of the hardest the axes can */
-    bool stops;   /* it was to stop in the last cycle */
-    double top;   /* rate that the curve was made for, or more */
+    double moved;  /* pieces, in the last cycle */
+    double ease;   /* by which its change can be brought to 0 from here: |w| */
+    float step;    /* the hardest w that was found last, in parts of the hardest the axes can */
+    unsigned turn; /* counts cycles */
+    bool stops;    /* it was to stop in the last cycle */
+    double top;    /* rate that the curve was made for, or more */
     struct hold_piece piece[HOLD_PIECES_MAX];
 };
 
