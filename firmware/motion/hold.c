@@ -51,8 +51,11 @@ static const float ease_part[EASES] = {1.0f, 0.3f, 0.1f};
 /* Where the axes hardly move: the rate changes by no more than this part of what it began with in a cycle. */
 #define CHANGE_PART 0.2f
 
-/* Blocks from the setpoint to what begins at the lead point, at most. */
-#define BLOCKS_MAX 128
+/* Blocks up to what begins at the lead point that are looked at for each state tried, at most. */
+#define BLOCKS_MAX 32
+
+/* Of these, so many are found to be fast enough in a cycle. */
+#define CLEAR_MAX 8
 
 /* Rounding. */
 #define SLACK      1e-5f
@@ -259,34 +262,54 @@ static void try_advance(struct trial *s, float w, float t)
     s->change += t * w;
 }
 
+/* The highest rate on a block, whatever the overrides are: pieces a cycle. */
+static float top_rate(const struct hold *h, const struct path *path, uint32_t block)
+{
+    return (float)path_block_top(path_at(path, block)) * h->per_mm_s * (1.0f + SLACK);
+}
+
+/* Does the curve end before a block? */
+static bool is_behind(const struct path *path, uint32_t block)
+{
+    return block == path->closed || path_at(path, block - 1)->end == JOINT_STOP;
+}
+
+/* Goes on past the blocks that are not too fast for the present rate: braking they stay so. */
+static void pass_clear(struct hold *h, const struct path *path)
+{
+    const float rate = (float)h->place.rate;
+
+    h->clear = (int32_t)(h->clear - h->block) < 0 ? h->block : h->clear;
+    for (unsigned i = 0; i < CLEAR_MAX && (h->clear == h->block || !is_behind(path, h->clear)) &&
+                         top_rate(h, path, h->clear) >= rate;
+         i++) {
+        h->clear++;
+    }
+}
+
 /*
- * Is the feed of a lead point, path units a cycle, not above the highest of what it has come to, from the setpoint on? A
- * block from S on begins for it at S - c b, b half the window and a margin.
+ * Is the rate of a lead point at a place not above the highest of what it has come to, from the setpoint on? A block from S
+ * on begins for it at S - c b, b half the window and a margin. Pieces.
  */
 static bool tops_allow(const struct hold *h, const struct path *path, const struct lead *l,
-                       const struct trial *s, uint64_t at)
+                       const struct trial *s, float ahead)
 {
     const float b = (float)(0.5 * (l->window - 1.0) + CEILING_MARGIN_CYCLES);
-    const float length = (float)h->length;
-    const float way = s->rate * length;
-    const float per_mm_s = (float)(path->limits.cycle_s * PATH_UNITS_PER_MM);
-    uint32_t block = h->block + (uint32_t)s->at;
 
-    for (unsigned i = 0; i < BLOCKS_MAX && block != path->closed; i++, block++) {
-        const float gap = (float)(int64_t)(path_start(path, block) - at);
-        const float top = (float)path_block_top(path_at(path, block)) * per_mm_s * (1.0f + SLACK);
+    for (uint32_t i = 0; i < BLOCKS_MAX; i++) {
+        const uint32_t block = h->clear + i;
+        const float gap = (float)(block - h->block) - ahead;
 
-        if (gap >= way * b) {
+        if (gap >= s->rate * b || (block != h->block && is_behind(path, block))) {
             return true;
         }
-        if (way > top && gap < top * b) {
+        const float top = top_rate(h, path, block);
+
+        if (s->rate > top && gap < top * b) {
             return false;
         }
-        if (path_at(path, block)->end == JOINT_STOP) {
-            return true;
-        }
     }
-    return block == path->closed;
+    return false;
 }
 
 /*
@@ -298,11 +321,11 @@ static bool lead_can_take(const struct hold *h, const struct path *path, const s
                           const struct trial *s, bool stop)
 {
     const double rate = (double)s->rate * (1.0 + TRIAL_PART);
-    const double ahead = ((double)s->at + 0.5 * (l->window + 3.0) * rate) * h->length;
-    const uint64_t at = path_start(path, h->block) + (uint64_t)ahead;
+    const double ahead = (double)s->at + 0.5 * (l->window + 3.0) * rate;
+    const uint64_t at = path_start(path, h->block) + (uint64_t)(ahead * h->length);
 
-    return lead_could_be(l, at, rate * h->length / PATH_UNITS_PER_MM, stop) &&
-           (!stop || tops_allow(h, path, l, s, at));
+    return (!stop || tops_allow(h, path, l, s, (float)ahead)) &&
+           lead_could_be(l, at, rate * h->length / PATH_UNITS_PER_MM, stop);
 }
 
 /* Is the change brought to 0 by e within all limits, at a rate and place from which the lead point could go on? */
@@ -460,6 +483,8 @@ static void pass_blocks(struct hold *h)
 bool hold_step(struct hold *h, const struct path *path, const struct lead *l, bool stop)
 {
     read_pieces(h, path);
+    h->clear = stop == h->stops ? h->clear : h->block;
+    pass_clear(h, path);
     h->step = stop == h->stops ? h->step : 1.0f;
     h->stops = stop;
     if (stop && h->place.rate == 0.0) {
@@ -487,6 +512,8 @@ static void look_ahead(struct hold *h, const struct path *path, bool anew)
         h->end = path->first;
         h->whole = false;
         h->length = length_of(path, path->first);
+        h->per_mm_s = (float)(path->limits.cycle_s * PATH_UNITS_PER_MM / h->length);
+        h->clear = path->first;
         h->step = 1.0f;
     }
     h->block = path->first;
@@ -503,7 +530,7 @@ bool hold_begin(struct hold *h, const struct path *path, const struct lead *l, d
     h->place.rate = way[0] / h->length + 0.5 * h->place.change;
     h->ease = 0.0;
     h->stops = true;
-    h->top = maths_max(h->place.rate, path_block_top(path_at(path, h->block)) *
-                                          path->limits.cycle_s * PATH_UNITS_PER_MM / h->length);
+    h->top = maths_max(h->place.rate, (double)top_rate(h, path, h->block));
+    pass_clear(h, path);
     return find_step(h, path, l, true);
 }

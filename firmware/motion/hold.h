@@ -45,6 +45,8 @@ struct hold {
     uint32_t end;   /* the pieces of the blocks from it on to this one are known */
     bool whole;     /* and no further piece goes on with the curve */
     double length;  /* path units of a piece */
+    float per_mm_s; /* pieces a cycle for mm/s of path */
+    uint32_t clear; /* blocks from the first to before this one are fast enough for the rate */
     struct hold_state place;
     double moved;  /* pieces, in the last cycle */
     double ease;   /* by which its change can be brought to 0 from here: |w| */
