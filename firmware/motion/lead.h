@@ -60,7 +60,6 @@ struct lead_halt {
 struct lead {
     enum law law;
     uint64_t at;
-    uint64_t before;  /* at the beginning of the last cycle */
     uint64_t span;    /* where the span starts that has been begun last */
     uint64_t known;   /* up to here it can follow the ceilings so far: what starts behind is new */
     uint64_t entered; /* where what the lead point has come to last starts for the setpoint */

@@ -140,12 +140,6 @@ static bool is_no_lower(const struct lead *l, const struct ceiling *c, uint32_t 
     return (had->feed_mm_s <= p->feed_mm_s || kept) && p->acceleration >= had->acceleration;
 }
 
-/* Has the lead point come to piece k in this cycle, as slow as it asks for? */
-static bool is_as_planned(const struct lead *l, const struct ceiling *c, uint32_t k)
-{
-    return path_mm(c->origin, l->before) < c->end_mm[k - 1] && can_follow(l, c, k, false);
-}
-
 /* Does it halt before a place, and could not with the acceleration of piece k, which starts there for the setpoint? */
 static bool halts_before(const struct lead *l, const struct ceiling *c, uint32_t k, uint64_t start)
 {
@@ -160,7 +154,7 @@ static bool may_enter(const struct lead *l, const struct ceiling *c, uint32_t k,
         return true;
     }
     return !halts_before(l, c, k, start) &&
-           (!lead_is_beyond(start, l->known) || is_no_lower(l, c, k) || is_as_planned(l, c, k));
+           (!lead_is_beyond(start, l->known) || is_no_lower(l, c, k));
 }
 
 static uint64_t nearer(const struct lead *l, uint64_t one, uint64_t other)
