@@ -302,7 +302,6 @@ void lead_follow(struct lead *l, uint64_t at, double feed, uint64_t setpoint)
     struct lead_place *p = &l->here;
     const struct ceiling *c = p->ceiling;
 
-    l->before = l->at;
     l->at = at;
     l->feed = feed;
     l->owed = 0.0;
