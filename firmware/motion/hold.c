@@ -32,7 +32,7 @@
 #define READ_MAX 6
 
 /* Parts that the ease is looked at in. */
-#define EASE_PARTS 8
+#define EASE_PARTS 4
 
 /* The eases tried, in parts of the hardest, beside the one that is known. */
 #define EASES 3
@@ -52,7 +52,7 @@ static const float ease_part[EASES] = {1.0f, 0.3f, 0.1f};
 #define CHANGE_PART 0.2f
 
 /* Blocks up to what begins at the lead point that are looked at for each state tried, at most. */
-#define BLOCKS_MAX 32
+#define BLOCKS_MAX 16
 
 /* Of these, so many are found to be fast enough in a cycle. */
 #define CLEAR_MAX 8
@@ -67,26 +67,24 @@ struct range {
     float high;
 };
 
-static struct range between(float a, float b)
+static inline struct range between(float a, float b)
 {
     return a < b ? (struct range){a, b} : (struct range){b, a};
 }
 
-static struct range times(struct range a, struct range b)
+/* By something that is not below 0. */
+static inline struct range times(struct range a, struct range by)
 {
-    const struct range one = between(a.low * b.low, a.low * b.high);
-    const struct range two = between(a.high * b.low, a.high * b.high);
-
-    return (struct range){one.low < two.low ? one.low : two.low,
-                          one.high > two.high ? one.high : two.high};
+    return (struct range){a.low * (a.low < 0.0f ? by.high : by.low),
+                          a.high * (a.high < 0.0f ? by.low : by.high)};
 }
 
-static struct range plus(struct range a, struct range b)
+static inline struct range plus(struct range a, struct range b)
 {
     return (struct range){a.low + b.low, a.high + b.high};
 }
 
-static bool is_within(struct range a, float limit)
+static inline bool is_within(struct range a, float limit)
 {
     return a.high <= limit && a.low >= -limit;
 }
@@ -169,49 +167,65 @@ struct trial {
 
 /* -- what the axes need on a part of the way -- */
 
+/* Rate, size of the change, and products of them; the sign of the change, and w by that sign. */
 struct part {
-    struct range rate;
-    struct range change;
-    struct range rate2, rate_change; /* r^2, r q */
-    struct range rate3;
+    struct range rate, change;
+    struct range rate2, rate3;
+    struct range three_rate_change;
+    float sign;
     float w;
 };
 
+static struct range size_between(float a, float b)
+{
+    return between(single_abs(a), single_abs(b));
+}
+
 static struct part part_of(const struct trial *a, const struct trial *b, float w)
 {
+    const float sign = a->change < 0.0f || b->change < 0.0f ? -1.0f : 1.0f;
     struct part p = {
         .rate = between(a->rate, b->rate),
-        .change = between(a->change, b->change),
-        .w = w,
+        .change = size_between(a->change, b->change),
+        .sign = sign,
+        .w = sign * w,
     };
+    const struct range three = {3.0f * p.rate.low, 3.0f * p.rate.high};
 
     p.rate2 = times(p.rate, p.rate);
     p.rate3 = times(p.rate2, p.rate);
-    p.rate_change = times(p.rate, p.change);
+    p.three_rate_change = times(three, p.change);
     return p;
 }
 
-/* Axis i on a piece from f to g of it. */
+static inline struct range by_sign(struct range a, float sign)
+{
+    return sign < 0.0f ? (struct range){-a.high, -a.low} : a;
+}
+
+/*
+ * Axis i on a piece from f to g of it. Both sums by the sign of the change:
+ *     x' |q| + sign x'' r^2            x' (sign w) + 3 x'' r |q| + sign x''' r^3
+ */
 static bool axis_can(const struct hold *h, const struct hold_piece *piece, unsigned i, float f,
                      float g, const struct part *p)
 {
+    const float start = piece->first[i];
     const float bend = piece->second[0][i];
     const float third = piece->second[1][i] - bend;
-    const float sag = (third < 0.0f ? -third : third) * (g - f) * (g - f) * 0.125f;
-    struct range first = between(piece->first[i] + f * (bend + 0.5f * f * third),
-                                 piece->first[i] + g * (bend + 0.5f * g * third));
+    const float twist = p->sign * third;
+    const float sag = single_abs(third) * (g - f) * (g - f) * 0.125f;
+    const struct range at =
+        between(start + f * (bend + 0.5f * f * third), start + g * (bend + 0.5f * g * third));
+    const struct range first = {at.low - sag, at.high + sag};
     const struct range second = between(bend + f * third, bend + g * third);
+    const struct range a = plus(times(first, p->change), times(by_sign(second, p->sign), p->rate2));
+    const struct range j = plus(plus(between(first.low * p->w, first.high * p->w),
+                                     times((struct range){twist, twist}, p->rate3)),
+                                times(second, p->three_rate_change));
 
-    first = (struct range){first.low - sag, first.high + sag};
-    const struct range v = times(first, p->rate);
-    const struct range a = plus(times(first, p->change), times(second, p->rate2));
-    const struct range three = {3.0f * second.low, 3.0f * second.high};
-    const struct range j =
-        plus(plus(times(first, between(p->w, p->w)), times(three, p->rate_change)),
-             times(between(third, third), p->rate3));
-
-    return is_within(v, h->velocity[i] * (1.0f + SLACK)) && is_within(a, h->acceleration[i]) &&
-           is_within(j, h->jerk[i]);
+    return is_within(times(first, p->rate), h->velocity[i] * (1.0f + SLACK)) &&
+           is_within(a, h->acceleration[i]) && is_within(j, h->jerk[i]);
 }
 
 static bool axes_can(const struct hold *h, uint32_t block, float f, float g, const struct part *p)
@@ -358,9 +372,12 @@ static float least_ease(const struct trial *s)
     return s->change < 0.0f ? s->change * s->change / (2.0f * s->rate) : 0.0f;
 }
 
-/* An ease for what follows this state: the one that is known, or another, each cycle the next of them. 0: none was found. */
+/*
+ * An ease for what follows this state: the one that is known, or for what is tried first another, each cycle the next of
+ * them. 0: none was found.
+ */
 static float find_ease(const struct hold *h, const struct path *path, const struct lead *l,
-                       const struct trial *s, float hardest, bool stop)
+                       const struct trial *s, float hardest, bool stop, bool first)
 {
     const float least = least_ease(s);
     const float known = (float)h->ease;
@@ -369,7 +386,7 @@ static float find_ease(const struct hold *h, const struct path *path, const stru
     if (known > least && can_ease(h, path, l, *s, known, stop)) {
         return known;
     }
-    return other <= hardest && can_ease(h, path, l, *s, other, stop) ? other : 0.0f;
+    return first && other <= hardest && can_ease(h, path, l, *s, other, stop) ? other : 0.0f;
 }
 
 /* w by which one axis alone would use all of its acceleration, or of its jerk, from no change; limited where none moves. */
@@ -391,7 +408,7 @@ static float hardest_step(const struct hold *h)
 
 /* Goes on by w if there is an ease behind it. In one direction in a cycle: the bounds need it. */
 static bool try_step(struct hold *h, const struct path *path, const struct lead *l, float w,
-                     float hardest, bool stop)
+                     float hardest, bool stop, bool first)
 {
     const struct trial here = {(float)h->place.at, (float)h->place.rate, (float)h->place.change};
     const bool turns = w * here.change < 0.0f && single_abs(w) > single_abs(here.change);
@@ -407,7 +424,7 @@ static bool try_step(struct hold *h, const struct path *path, const struct lead 
     if (!can_go(h, &here, &next, (float)by)) {
         return false;
     }
-    const float e = find_ease(h, path, l, &next, hardest, stop);
+    const float e = find_ease(h, path, l, &next, hardest, stop, first);
 
     if (!(e > 0.0f)) {
         return false;
@@ -447,18 +464,18 @@ static bool find_step(struct hold *h, const struct path *path, const struct lead
 
     h->turn++;
     if (stop && rate <= 2.0f * hardest &&
-        try_step(h, path, l, -rate - 1.5f * change, hardest, stop)) {
+        try_step(h, path, l, -rate - 1.5f * change, hardest, stop, true)) {
         return true;
     }
     for (unsigned i = 0; i < 2; i++) {
-        if (try_step(h, path, l, h->step * wanted, hardest, stop)) {
+        if (try_step(h, path, l, h->step * wanted, hardest, stop, i == 0)) {
             h->step = i == 0 ? single_min(1.0f, 2.0f * h->step) : h->step;
             return true;
         }
         h->step = single_max(STEP_LEAST, STEP_LESS * h->step);
     }
-    return (wanted * change >= 0.0f && try_step(h, path, l, 0.0f, hardest, stop)) ||
-           try_step(h, path, l, -LESS_PART * change, hardest, stop);
+    return (wanted * change >= 0.0f && try_step(h, path, l, 0.0f, hardest, stop, h->ease == 0.0)) ||
+           try_step(h, path, l, -LESS_PART * change, hardest, stop, h->ease == 0.0);
 }
 
 /* Is it at the rate that the lead point may have here, or nearly? */
