@@ -29,7 +29,7 @@
 #include "smooth/single.h"
 
 /* Pieces that are read in a cycle. */
-#define READ_MAX 6
+#define READ_MAX 4
 
 /* Parts that the ease is looked at in. */
 #define EASE_PARTS 4
@@ -56,6 +56,9 @@ static const float ease_part[EASES] = {1.0f, 0.3f, 0.1f};
 
 /* Of these, so many are found to be fast enough in a cycle. */
 #define CLEAR_MAX 8
+
+/* After so many states in a cycle that the lead point could not go on from, no other is looked for. */
+#define REFUSALS_MAX 2
 
 /* Rounding. */
 #define SLACK      1e-5f
@@ -343,8 +346,8 @@ static bool lead_can_take(const struct hold *h, const struct path *path, const s
 }
 
 /* Is the change brought to 0 by e within all limits, at a rate and place from which the lead point could go on? */
-static bool can_ease(const struct hold *h, const struct path *path, const struct lead *l,
-                     struct trial s, float e, bool stop)
+static bool can_ease(struct hold *h, const struct path *path, const struct lead *l, struct trial s,
+                     float e, bool stop)
 {
     const float w = s.change < 0.0f ? e : -e;
 
@@ -363,7 +366,11 @@ static bool can_ease(const struct hold *h, const struct path *path, const struct
             }
         }
     }
-    return lead_can_take(h, path, l, &s, stop);
+    if (h->refusals < REFUSALS_MAX && lead_can_take(h, path, l, &s, stop)) {
+        return true;
+    }
+    h->refusals++;
+    return false;
 }
 
 /* So hard that braking ends at rest at the latest: r = q^2/2e. */
@@ -376,7 +383,7 @@ static float least_ease(const struct trial *s)
  * An ease for what follows this state: the one that is known, or for what is tried first another, each cycle the next of
  * them. 0: none was found.
  */
-static float find_ease(const struct hold *h, const struct path *path, const struct lead *l,
+static float find_ease(struct hold *h, const struct path *path, const struct lead *l,
                        const struct trial *s, float hardest, bool stop, bool first)
 {
     const float least = least_ease(s);
@@ -463,6 +470,7 @@ static bool find_step(struct hold *h, const struct path *path, const struct lead
     const float change = (float)h->place.change;
 
     h->turn++;
+    h->refusals = 0;
     if (stop && rate <= 2.0f * hardest &&
         try_step(h, path, l, -rate - 1.5f * change, hardest, stop, true)) {
         return true;
