@@ -26,61 +26,68 @@
 
 #include "base/maths.h"
 #include "plan/path_unit.h"
+#include "smooth/single.h"
 
 /* Pieces that are read in a cycle. */
-#define READ_MAX 6
+#define READ_MAX 4
 
 /* Parts that the ease is looked at in. */
-#define EASE_PARTS 8
+#define EASE_PARTS 4
 
 /* The eases tried, in parts of the hardest, beside the one that is known. */
-static const double ease_part[] = {1.0, 0.3, 0.1};
+#define EASES 3
+static const float ease_part[EASES] = {1.0f, 0.3f, 0.1f};
 
 /* Where w can not be found the next one tried is so much smaller; where it was found, twice as large. */
-#define STEP_LESS 0.5
-#define STEP_LEAST (1.0 / 4096.0)
+#define STEP_LESS  0.5f
+#define STEP_LEAST (1.0f / 4096.0f)
 
 /* Where the change cannot be kept, and need not be brought to 0 yet: by this part of it. */
-#define LESS_PART 0.125
+#define LESS_PART 0.125f
 
 /* The rate is so near to that of the ceiling that the lead point goes on by itself. */
-#define ARRIVED_PART 1e-3
+#define ARRIVED_PART 1e-3f
 
 /* Where the axes hardly move: the rate changes by no more than this part of what it began with in a cycle. */
-#define CHANGE_PART 0.2
+#define CHANGE_PART 0.2f
 
-/* Blocks from the setpoint to what begins at the lead point, at most. */
-#define BLOCKS_MAX 128
+/* Blocks up to what begins at the lead point that are looked at for each state tried, at most. */
+#define BLOCKS_MAX 16
+
+/* Of these, so many are found to be fast enough in a cycle. */
+#define CLEAR_MAX 8
+
+/* After so many states in a cycle that the lead point could not go on from, no other is looked for. */
+#define REFUSALS_MAX 2
 
 /* Rounding. */
-#define SLACK 1e-5f
-#define REST_PART 1e-9
+#define SLACK      1e-5f
+#define REST_PART  1e-9
+#define TRIAL_PART 4e-6
 
 struct range {
     float low;
     float high;
 };
 
-static struct range between(float a, float b)
+static inline struct range between(float a, float b)
 {
     return a < b ? (struct range){a, b} : (struct range){b, a};
 }
 
-static struct range times(struct range a, struct range b)
+/* By something that is not below 0. */
+static inline struct range times(struct range a, struct range by)
 {
-    const struct range one = between(a.low * b.low, a.low * b.high);
-    const struct range two = between(a.high * b.low, a.high * b.high);
-
-    return (struct range){one.low < two.low ? one.low : two.low,
-                          one.high > two.high ? one.high : two.high};
+    return (struct range){a.low * (a.low < 0.0f ? by.high : by.low),
+                          a.high * (a.high < 0.0f ? by.low : by.high)};
 }
 
-static struct range plus(struct range a, struct range b)
+static inline struct range plus(struct range a, struct range b)
 {
     return (struct range){a.low + b.low, a.high + b.high};
 }
 
-static bool is_within(struct range a, float limit)
+static inline bool is_within(struct range a, float limit)
 {
     return a.high <= limit && a.low >= -limit;
 }
@@ -125,8 +132,8 @@ static bool goes_on(const struct hold *h, const struct path *path, uint32_t bloc
 
 static void read_pieces(struct hold *h, const struct path *path)
 {
-    for (unsigned i = 0; i < READ_MAX && !h->whole && h->end != path->closed &&
-                         h->end - h->block < HOLD_PIECES_MAX;
+    for (unsigned i = 0;
+         i < READ_MAX && !h->whole && h->end != path->closed && h->end - h->block < HOLD_PIECES_MAX;
          i++) {
         h->whole = h->end != h->block && !goes_on(h, path, h->end);
         if (!h->whole) {
@@ -151,51 +158,77 @@ static void take_limits(struct hold *h, const struct plan_limits *limits)
     }
 }
 
+/*
+ * A state that is tried, in single precision: what rounding does to it is less than the bounds leave. What is gone along is
+ * in double precision.
+ */
+struct trial {
+    float at;
+    float rate;
+    float change;
+};
+
 /* -- what the axes need on a part of the way -- */
 
+/* Rate, size of the change, and products of them; the sign of the change, and w by that sign. */
 struct part {
-    struct range rate;
-    struct range change;
-    struct range rate2, rate_change; /* r^2, r q */
-    struct range rate3;
+    struct range rate, change;
+    struct range rate2, rate3;
+    struct range three_rate_change;
+    float sign;
     float w;
 };
 
-static struct part part_of(const struct hold_state *a, const struct hold_state *b, double w)
+static struct range size_between(float a, float b)
 {
+    return between(single_abs(a), single_abs(b));
+}
+
+static struct part part_of(const struct trial *a, const struct trial *b, float w)
+{
+    const float sign = a->change < 0.0f || b->change < 0.0f ? -1.0f : 1.0f;
     struct part p = {
-        .rate = between((float)a->rate, (float)b->rate),
-        .change = between((float)a->change, (float)b->change),
-        .w = (float)w,
+        .rate = between(a->rate, b->rate),
+        .change = size_between(a->change, b->change),
+        .sign = sign,
+        .w = sign * w,
     };
+    const struct range three = {3.0f * p.rate.low, 3.0f * p.rate.high};
 
     p.rate2 = times(p.rate, p.rate);
     p.rate3 = times(p.rate2, p.rate);
-    p.rate_change = times(p.rate, p.change);
+    p.three_rate_change = times(three, p.change);
     return p;
 }
 
-/* Axis i on a piece from f to g of it. */
+static inline struct range by_sign(struct range a, float sign)
+{
+    return sign < 0.0f ? (struct range){-a.high, -a.low} : a;
+}
+
+/*
+ * Axis i on a piece from f to g of it. Both sums by the sign of the change:
+ *     x' |q| + sign x'' r^2            x' (sign w) + 3 x'' r |q| + sign x''' r^3
+ */
 static bool axis_can(const struct hold *h, const struct hold_piece *piece, unsigned i, float f,
                      float g, const struct part *p)
 {
+    const float start = piece->first[i];
     const float bend = piece->second[0][i];
     const float third = piece->second[1][i] - bend;
-    const float sag = (third < 0.0f ? -third : third) * (g - f) * (g - f) * 0.125f;
-    struct range first = between(piece->first[i] + f * (bend + 0.5f * f * third),
-                                 piece->first[i] + g * (bend + 0.5f * g * third));
+    const float twist = p->sign * third;
+    const float sag = single_abs(third) * (g - f) * (g - f) * 0.125f;
+    const struct range at =
+        between(start + f * (bend + 0.5f * f * third), start + g * (bend + 0.5f * g * third));
+    const struct range first = {at.low - sag, at.high + sag};
     const struct range second = between(bend + f * third, bend + g * third);
+    const struct range a = plus(times(first, p->change), times(by_sign(second, p->sign), p->rate2));
+    const struct range j = plus(plus(between(first.low * p->w, first.high * p->w),
+                                     times((struct range){twist, twist}, p->rate3)),
+                                times(second, p->three_rate_change));
 
-    first = (struct range){first.low - sag, first.high + sag};
-    const struct range v = times(first, p->rate);
-    const struct range a = plus(times(first, p->change), times(second, p->rate2));
-    const struct range three = {3.0f * second.low, 3.0f * second.high};
-    const struct range j =
-        plus(plus(times(first, between(p->w, p->w)), times(three, p->rate_change)),
-             times(between(third, third), p->rate3));
-
-    return is_within(v, h->velocity[i] * (1.0f + SLACK)) && is_within(a, h->acceleration[i]) &&
-           is_within(j, h->jerk[i]);
+    return is_within(times(first, p->rate), h->velocity[i] * (1.0f + SLACK)) &&
+           is_within(a, h->acceleration[i]) && is_within(j, h->jerk[i]);
 }
 
 static bool axes_can(const struct hold *h, uint32_t block, float f, float g, const struct part *p)
@@ -209,8 +242,7 @@ static bool axes_can(const struct hold *h, uint32_t block, float f, float g, con
 }
 
 /* From one state to another by w, on pieces that are known. */
-static bool can_go(const struct hold *h, const struct hold_state *a, const struct hold_state *b,
-                   double w)
+static bool can_go(const struct hold *h, const struct trial *a, const struct trial *b, float w)
 {
     const uint32_t first = (uint32_t)a->at;
     const uint32_t last = (uint32_t)b->at;
@@ -220,8 +252,8 @@ static bool can_go(const struct hold *h, const struct hold_state *a, const struc
         return false;
     }
     for (uint32_t i = first; i <= last; i++) {
-        const float f = i == first ? (float)(a->at - (double)i) : 0.0f;
-        const float g = i == last ? (float)(b->at - (double)i) : 1.0f;
+        const float f = i == first ? a->at - (float)i : 0.0f;
+        const float g = i == last ? b->at - (float)i : 1.0f;
 
         if (!axes_can(h, h->block + i, f, g, &p)) {
             return false;
@@ -240,33 +272,61 @@ static void advance(struct hold_state *s, double w, double t)
     s->change += t * w;
 }
 
+static void try_advance(struct trial *s, float w, float t)
+{
+    s->at += t * (s->rate + t * (0.5f * s->change + t * w * (1.0f / 6.0f)));
+    s->rate = single_max(0.0f, s->rate + t * (s->change + 0.5f * t * w));
+    s->change += t * w;
+}
+
+/* The highest rate on a block, whatever the overrides are: pieces a cycle. */
+static float top_rate(const struct hold *h, const struct path *path, uint32_t block)
+{
+    return (float)path_block_top(path_at(path, block)) * h->per_mm_s * (1.0f + SLACK);
+}
+
+/* Does the curve end before a block? */
+static bool is_behind(const struct path *path, uint32_t block)
+{
+    return block == path->closed || path_at(path, block - 1)->end == JOINT_STOP;
+}
+
+/* Goes on past the blocks that are not too fast for the present rate: braking they stay so. */
+static void pass_clear(struct hold *h, const struct path *path)
+{
+    const float rate = (float)h->place.rate;
+
+    h->clear = (int32_t)(h->clear - h->block) < 0 ? h->block : h->clear;
+    for (unsigned i = 0; i < CLEAR_MAX && (h->clear == h->block || !is_behind(path, h->clear)) &&
+                         top_rate(h, path, h->clear) >= rate;
+         i++) {
+        h->clear++;
+    }
+}
+
 /*
- * Is the feed of a lead point, path units a cycle, not above the highest of what it has come to, from the setpoint on? A
- * block from S on begins for it at S - c b, b half the window and a margin.
+ * Is the rate of a lead point at a place not above the highest of what it has come to, from the setpoint on? A block from S
+ * on begins for it at S - c b, b half the window and a margin. Pieces.
  */
 static bool tops_allow(const struct hold *h, const struct path *path, const struct lead *l,
-                       const struct hold_state *s, uint64_t at)
+                       const struct trial *s, float ahead)
 {
-    const double b = 0.5 * (l->window - 1.0) + CEILING_MARGIN_CYCLES;
-    const double way = s->rate * h->length * (1.0 - REST_PART);
-    const double per_mm_s = path->limits.cycle_s * PATH_UNITS_PER_MM;
-    uint32_t block = h->block + (uint32_t)s->at;
+    const float b = (float)(0.5 * (l->window - 1.0) + CEILING_MARGIN_CYCLES);
 
-    for (unsigned i = 0; i < BLOCKS_MAX && block != path->closed; i++, block++) {
-        const double gap = (double)(int64_t)(path_start(path, block) - at);
-        const double top = path_block_top(path_at(path, block)) * per_mm_s;
+    for (uint32_t i = 0; i < BLOCKS_MAX; i++) {
+        const uint32_t block = h->clear + i;
+        const float gap = (float)(block - h->block) - ahead;
 
-        if (gap >= way * b) {
+        if (gap >= s->rate * b || (block != h->block && is_behind(path, block))) {
             return true;
         }
-        if (way > top && gap < top * b) {
+        const float top = top_rate(h, path, block);
+
+        if (s->rate > top && gap < top * b) {
             return false;
         }
-        if (path_at(path, block)->end == JOINT_STOP) {
-            return true;
-        }
     }
-    return block == path->closed;
+    return false;
 }
 
 /*
@@ -275,107 +335,110 @@ static bool tops_allow(const struct hold *h, const struct path *path, const stru
  * overrides ask for.
  */
 static bool lead_can_take(const struct hold *h, const struct path *path, const struct lead *l,
-                          const struct hold_state *s, bool stop)
+                          const struct trial *s, bool stop)
 {
-    const double ahead = (s->at + 0.5 * (l->window + 3.0) * s->rate) * h->length;
-    const double way = s->rate * h->length;
-    const uint64_t at = path_start(path, h->block) + (uint64_t)ahead;
+    const double rate = (double)s->rate * (1.0 + TRIAL_PART);
+    const double ahead = (double)s->at + 0.5 * (l->window + 3.0) * rate;
+    const uint64_t at = path_start(path, h->block) + (uint64_t)(ahead * h->length);
 
-    return lead_could_be(l, at, way / PATH_UNITS_PER_MM, stop) &&
-           (!stop || tops_allow(h, path, l, s, at));
+    return (!stop || tops_allow(h, path, l, s, (float)ahead)) &&
+           lead_could_be(l, at, rate * h->length / PATH_UNITS_PER_MM, stop);
 }
 
 /* Is the change brought to 0 by e within all limits, at a rate and place from which the lead point could go on? */
-static bool can_ease(const struct hold *h, const struct path *path, const struct lead *l,
-                     struct hold_state s, double e, bool stop)
+static bool can_ease(struct hold *h, const struct path *path, const struct lead *l, struct trial s,
+                     float e, bool stop)
 {
-    const double w = s.change < 0.0 ? e : -e;
+    const float w = s.change < 0.0f ? e : -e;
 
-    if (s.change != 0.0) {
-        const double t = maths_abs(s.change) / (e * EASE_PARTS);
+    if (s.change != 0.0f) {
+        const float t = single_abs(s.change) / (e * (float)EASE_PARTS);
 
         for (unsigned i = 0; i < EASE_PARTS; i++) {
-            const struct hold_state from = s;
+            const struct trial from = s;
 
-            advance(&s, w, t);
+            try_advance(&s, w, t);
             if (i + 1 == EASE_PARTS) {
-                s.change = 0.0;
+                s.change = 0.0f;
             }
             if (!can_go(h, &from, &s, w)) {
                 return false;
             }
         }
     }
-    return lead_can_take(h, path, l, &s, stop);
+    if (h->refusals < REFUSALS_MAX && lead_can_take(h, path, l, &s, stop)) {
+        return true;
+    }
+    h->refusals++;
+    return false;
 }
 
 /* So hard that braking ends at rest at the latest: r = q^2/2e. */
-static double least_ease(const struct hold_state *s)
+static float least_ease(const struct trial *s)
 {
-    return s->change < 0.0 ? s->change * s->change / (2.0 * s->rate) : 0.0;
+    return s->change < 0.0f ? s->change * s->change / (2.0f * s->rate) : 0.0f;
 }
 
-/* An ease for what follows this state; 0: none was found. */
-static double find_ease(const struct hold *h, const struct path *path, const struct lead *l,
-                        const struct hold_state *s, double hardest, bool stop)
+/*
+ * An ease for what follows this state: the one that is known, or for what is tried first another, each cycle the next of
+ * them. 0: none was found.
+ */
+static float find_ease(struct hold *h, const struct path *path, const struct lead *l,
+                       const struct trial *s, float hardest, bool stop, bool first)
 {
-    const double least = least_ease(s);
+    const float least = least_ease(s);
+    const float known = (float)h->ease;
+    const float other = single_max(least, ease_part[h->turn % EASES] * hardest);
 
-    if (h->ease > least && can_ease(h, path, l, *s, h->ease, stop)) {
-        return h->ease;
+    if (known > least && can_ease(h, path, l, *s, known, stop)) {
+        return known;
     }
-    for (unsigned i = 0; i < sizeof(ease_part) / sizeof(ease_part[0]); i++) {
-        const double e = maths_max(least, ease_part[i] * hardest);
-
-        if (e <= hardest && can_ease(h, path, l, *s, e, stop)) {
-            return e;
-        }
-    }
-    return 0.0;
+    return first && other <= hardest && can_ease(h, path, l, *s, other, stop) ? other : 0.0f;
 }
 
 /* w by which one axis alone would use all of its acceleration, or of its jerk, from no change; limited where none moves. */
-static double hardest_step(const struct hold *h)
+static float hardest_step(const struct hold *h)
 {
     const struct hold_piece *p = piece_at(h, h->block);
     const float f = (float)h->place.at;
-    double hardest = CHANGE_PART * h->top;
+    float hardest = CHANGE_PART * (float)h->top;
 
     for (unsigned i = 0; i < h->axes; i++) {
         const float third = p->second[1][i] - p->second[0][i];
-        const double first =
-            maths_abs((double)(p->first[i] + f * (p->second[0][i] + 0.5f * f * third)));
+        const float first = p->first[i] + f * (p->second[0][i] + 0.5f * f * third);
+        const float most = single_min(h->jerk[i], h->acceleration[i]);
 
-        hardest = maths_min(hardest, (double)maths_min((double)h->jerk[i], (double)h->acceleration[i]) /
-                                         maths_max(first, 1e-30));
+        hardest = most < hardest * single_abs(first) ? most / single_abs(first) : hardest;
     }
     return hardest;
 }
 
-/* Goes on by w if there is an ease behind it. */
-static bool try_step(struct hold *h, const struct path *path, const struct lead *l, double w,
-                     double hardest, bool stop)
+/* Goes on by w if there is an ease behind it. In one direction in a cycle: the bounds need it. */
+static bool try_step(struct hold *h, const struct path *path, const struct lead *l, float w,
+                     float hardest, bool stop, bool first)
 {
-    struct hold_state next = h->place;
+    const struct trial here = {(float)h->place.at, (float)h->place.rate, (float)h->place.change};
+    const bool turns = w * here.change < 0.0f && single_abs(w) > single_abs(here.change);
+    const double by = turns ? -h->place.change : (double)w;
+    struct hold_state place = h->place;
 
-    if (next.rate == 0.0 && !(w > 0.0)) {
+    if (here.rate == 0.0f && !(w > 0.0f)) {
         return false;
     }
-    if (w * next.change < 0.0 && maths_abs(w) > maths_abs(next.change)) {
-        w = -next.change; /* in one direction in a cycle: the bounds need it */
-    }
-    advance(&next, w, 1.0);
-    if (!can_go(h, &h->place, &next, w)) {
-        return false;
-    }
-    const double e = find_ease(h, path, l, &next, hardest, stop);
+    advance(&place, by, 1.0);
+    const struct trial next = {(float)place.at, (float)place.rate, (float)place.change};
 
-    if (!(e > 0.0)) {
+    if (!can_go(h, &here, &next, (float)by)) {
         return false;
     }
-    h->moved = next.at - h->place.at;
-    h->place = next;
-    h->ease = e;
+    const float e = find_ease(h, path, l, &next, hardest, stop, first);
+
+    if (!(e > 0.0f)) {
+        return false;
+    }
+    h->moved = place.at - h->place.at;
+    h->place = place;
+    h->ease = (double)e;
     return true;
 }
 
@@ -401,31 +464,36 @@ static void go_on_easing(struct hold *h)
  */
 static bool find_step(struct hold *h, const struct path *path, const struct lead *l, bool stop)
 {
-    const double hardest = hardest_step(h);
-    const double wanted = (stop ? -1.0 : 1.0) * hardest;
+    const float hardest = hardest_step(h);
+    const float wanted = stop ? -hardest : hardest;
+    const float rate = (float)h->place.rate;
+    const float change = (float)h->place.change;
 
-    if (stop && h->place.rate <= 2.0 * hardest &&
-        try_step(h, path, l, -h->place.rate - 1.5 * h->place.change, hardest, stop)) {
+    h->turn++;
+    h->refusals = 0;
+    if (stop && rate <= 2.0f * hardest &&
+        try_step(h, path, l, -rate - 1.5f * change, hardest, stop, true)) {
         return true;
     }
     for (unsigned i = 0; i < 2; i++) {
-        if (try_step(h, path, l, h->step * wanted, hardest, stop)) {
-            h->step = i == 0 ? maths_min(1.0, 2.0 * h->step) : h->step;
+        if (try_step(h, path, l, h->step * wanted, hardest, stop, i == 0)) {
+            h->step = i == 0 ? single_min(1.0f, 2.0f * h->step) : h->step;
             return true;
         }
-        h->step = maths_max(STEP_LEAST, STEP_LESS * h->step);
+        h->step = single_max(STEP_LEAST, STEP_LESS * h->step);
     }
-    return (wanted * h->place.change >= 0.0 && try_step(h, path, l, 0.0, hardest, stop)) ||
-           try_step(h, path, l, -LESS_PART * h->place.change, hardest, stop);
+    return (wanted * change >= 0.0f && try_step(h, path, l, 0.0f, hardest, stop, h->ease == 0.0)) ||
+           try_step(h, path, l, -LESS_PART * change, hardest, stop, h->ease == 0.0);
 }
 
 /* Is it at the rate that the lead point may have here, or nearly? */
 static bool has_arrived(const struct hold *h, const struct path *path, const struct lead *l)
 {
-    struct hold_state faster = h->place;
+    const struct trial faster = {.at = (float)h->place.at,
+                                 .rate = (float)h->place.rate * (1.0f + ARRIVED_PART)};
 
-    faster.rate *= 1.0 + ARRIVED_PART;
-    return h->place.change == 0.0 && h->place.rate > 0.0 && !lead_can_take(h, path, l, &faster, false);
+    return h->place.change == 0.0 && h->place.rate > 0.0 &&
+           !lead_can_take(h, path, l, &faster, false);
 }
 
 /* Counts from the start of the block that the setpoint is in. */
@@ -440,7 +508,9 @@ static void pass_blocks(struct hold *h)
 bool hold_step(struct hold *h, const struct path *path, const struct lead *l, bool stop)
 {
     read_pieces(h, path);
-    h->step = stop == h->stops ? h->step : 1.0;
+    h->clear = stop == h->stops ? h->clear : h->block;
+    pass_clear(h, path);
+    h->step = stop == h->stops ? h->step : 1.0f;
     h->stops = stop;
     if (stop && h->place.rate == 0.0) {
         h->moved = 0.0;
@@ -467,7 +537,9 @@ static void look_ahead(struct hold *h, const struct path *path, bool anew)
         h->end = path->first;
         h->whole = false;
         h->length = length_of(path, path->first);
-        h->step = 1.0;
+        h->per_mm_s = (float)(path->limits.cycle_s * PATH_UNITS_PER_MM / h->length);
+        h->clear = path->first;
+        h->step = 1.0f;
     }
     h->block = path->first;
     read_pieces(h, path);
@@ -483,7 +555,7 @@ bool hold_begin(struct hold *h, const struct path *path, const struct lead *l, d
     h->place.rate = way[0] / h->length + 0.5 * h->place.change;
     h->ease = 0.0;
     h->stops = true;
-    h->top = maths_max(h->place.rate, path_block_top(path_at(path, h->block)) * path->limits.cycle_s *
-                                          PATH_UNITS_PER_MM / h->length);
+    h->top = maths_max(h->place.rate, (double)top_rate(h, path, h->block));
+    pass_clear(h, path);
     return find_step(h, path, l, true);
 }

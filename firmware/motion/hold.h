@@ -45,12 +45,16 @@ struct hold {
     uint32_t end;   /* the pieces of the blocks from it on to this one are known */
     bool whole;     /* and no further piece goes on with the curve */
     double length;  /* path units of a piece */
+    float per_mm_s; /* pieces a cycle for mm/s of path */
+    uint32_t clear; /* blocks from the first to before this one are fast enough for the rate */
     struct hold_state place;
-    double moved; /* pieces, in the last cycle */
-    double ease; /* by which its change can be brought to 0 from here: |w| */
-    double step; /* the hardest w that was found last, in parts of the hardest the axes can */
-    bool stops;  /* it was to stop in the last cycle */
-    double top;  /* rate that the curve was made for, or more */
+    double moved;      /* pieces, in the last cycle */
+    double ease;       /* by which its change can be brought to 0 from here: |w| */
+    float step;        /* the hardest w that was found last, in parts of the hardest the axes can */
+    unsigned turn;     /* counts cycles */
+    unsigned refusals; /* of the lead point, in this cycle */
+    bool stops;        /* it was to stop in the last cycle */
+    double top;        /* rate that the curve was made for, or more */
     struct hold_piece piece[HOLD_PIECES_MAX];
 };
 

@@ -51,8 +51,12 @@ static void follow_landing(struct lead *l)
 
 static void count_changes(struct lead *l, double change)
 {
-    l->since_plus = change > 0.0 ? 0 : l->since_plus < LEAD_LONG_AGO ? l->since_plus + 1 : LEAD_LONG_AGO;
-    l->since_minus = change < 0.0 ? 0 : l->since_minus < LEAD_LONG_AGO ? l->since_minus + 1 : LEAD_LONG_AGO;
+    l->since_plus = change > 0.0                    ? 0
+                    : l->since_plus < LEAD_LONG_AGO ? l->since_plus + 1
+                                                    : LEAD_LONG_AGO;
+    l->since_minus = change < 0.0                     ? 0
+                     : l->since_minus < LEAD_LONG_AGO ? l->since_minus + 1
+                                                      : LEAD_LONG_AGO;
 }
 
 /*
@@ -162,7 +166,6 @@ static void enter_span(struct lead *l, uint32_t k, uint64_t from, struct lead_st
     const uint32_t window = law_window_cycles(l->law, l->cycles);
 
     l->window = (double)window;
-    l->before = from;
     l->at = from + start->step * (window - 1) / 2;
     l->feed = (double)start->step / PATH_UNITS_PER_MM;
     l->since_plus = LEAD_LONG_AGO;
@@ -236,7 +239,6 @@ bool lead_step(struct lead *l, uint64_t setpoint, bool hold, struct lead_start *
     }
     const bool too_fast = l->halt.on && lead_seek_halt(l);
 
-    l->before = l->at;
     follow_landing(l);
     if (l->run.active) {
         run_landing(l);

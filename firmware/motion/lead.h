@@ -60,7 +60,6 @@ struct lead_halt {
 struct lead {
     enum law law;
     uint64_t at;
-    uint64_t before;  /* at the beginning of the last cycle */
     uint64_t span;    /* where the span starts that has been begun last */
     uint64_t known;   /* up to here it can follow the ceilings so far: what starts behind is new */
     uint64_t entered; /* where what the lead point has come to last starts for the setpoint */
@@ -69,6 +68,7 @@ struct lead {
     bool standing;    /* at a stop, or where the machine was switched on: between two spans */
     bool abrupt;      /* came to rest where it was: waits for a cycle more before it moves on */
     bool released;    /* and may leave it */
+    bool follows;     /* it can do all that the ceiling asks for */
     uint32_t cycles;  /* of the first averaging box, in this span */
     double window;    /* cycles that the averages reach over */
     uint32_t since_plus;  /* cycles since it sped up */

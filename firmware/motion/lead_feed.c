@@ -282,6 +282,22 @@ static double landing_reach(const struct lead *l)
     return l->feed * (0.5 * l->feed / a + 2.0 * l->window + LANDING_CYCLES);
 }
 
+/* Does anything before the joint ask for less than the present feed? highest: at the highest overrides. */
+static bool is_way_free(const struct lead *l, bool highest)
+{
+    const struct ceiling_piece *p = lead_piece(l, l->here.piece);
+
+    if (l->here.piece + 1 >= p->landing) {
+        return true;
+    }
+    while (!(highest ? p->lowest_max : p->lowest)) {
+        p++;
+    }
+    const double feed = lead_feed(l, highest ? p->end_feed_max_mm_s : p->end_feed_mm_s);
+
+    return lead_square(feed) >= lead_square(l->feed) * (1.0 - LEAD_ENERGY_SLACK);
+}
+
 /* The feed at the end of this cycle if nothing else but braking happens. */
 static double braked_feed(const struct lead *l, const struct lead_brake *b)
 {
@@ -313,9 +329,11 @@ static bool must_land(const struct lead *l, const struct lead_brake *b, double g
 {
     const double highest = lead_feed(l, lead_piece(l, lead_landing(l))->end_feed_max_mm_s);
 
-    return landing_from(l, gap_mm, l->feed, l->landing_feed, run) ||
-           (landing_from(l, gap_mm, l->feed, highest, run) &&
-            !can_land_after(l, b, gap_mm, highest));
+    if (landing_from(l, gap_mm, l->feed, l->landing_feed, run) && is_way_free(l, false)) {
+        return true;
+    }
+    return landing_from(l, gap_mm, l->feed, highest, run) &&
+           !can_land_after(l, b, gap_mm, highest) && is_way_free(l, true);
 }
 
 /* A joint that cannot be landed on any more, nor come down to by the ceiling, is a stop. */
@@ -342,7 +360,7 @@ void lead_consider_landing(struct lead *l, bool hold, struct lead_brake *b)
     if (!hold || !can_rest_before(l, gap_mm)) {
         l->run.active = must_land(l, b, gap_mm, &l->run);
     }
-    if (!l->run.active && (hold || must_stop(l))) {
+    if (!l->run.active && (hold || (must_stop(l) && is_way_free(l, false)))) {
         brake_to_rest(l, l->joint, stop_acceleration(l), b);
     }
 }

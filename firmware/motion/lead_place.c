@@ -91,21 +91,31 @@ static double brake_position(const struct lead *l, const struct ceiling *c)
     return path_mm(c->origin, l->at) + l->feed * wait;
 }
 
-/* Can what lies ahead be met at this feed squared, which is braked from at x at the earliest, from piece k on? */
-static bool can_meet(const struct ceiling *c, uint32_t k, double x, double energy)
+/* A feed of its pieces, squared. */
+static double energy_of(const struct ceiling *c, float feed_mm_s)
+{
+    return lead_square(ceiling_feed(c, feed_mm_s));
+}
+
+/*
+ * Can what lies ahead be met at this feed squared, which is braked from at x at the earliest, from piece k on? highest: at
+ * the highest overrides.
+ */
+static bool can_meet(const struct ceiling *c, uint32_t k, double x, double energy, bool highest)
 {
     for (uint32_t i = k; i < k + LEAD_PIECES_MAX; i++) {
         const struct ceiling_piece *p = &c->piece[i];
-        const double end_energy = lead_square(ceiling_feed(c, p->end_feed_mm_s));
+        const double top = energy_of(c, highest ? ceiling_top_feed(c, i) : p->feed_mm_s);
+        const double end = energy_of(c, highest ? p->end_feed_max_mm_s : p->end_feed_mm_s);
         const bool last = lead_is_last_of_span(p) || i + 1 == c->count;
 
-        if (energy > lead_square(ceiling_feed(c, p->feed_mm_s))) {
+        if (energy > top) {
             return false;
         }
         if (c->end_mm[i] >= x || last) {
-            return energy <= end_energy + 2.0 * (double)p->acceleration * (c->end_mm[i] - x);
+            return energy <= end + 2.0 * (double)p->acceleration * (c->end_mm[i] - x);
         }
-        if (energy > end_energy) {
+        if (energy > end) {
             return false;
         }
     }
@@ -113,9 +123,10 @@ static bool can_meet(const struct ceiling *c, uint32_t k, double x, double energ
 }
 
 /* Can the lead point in piece k do what the ceiling asks for from here on, but for rounding? */
-static bool can_follow(const struct lead *l, const struct ceiling *c, uint32_t k)
+static bool can_follow(const struct lead *l, const struct ceiling *c, uint32_t k, bool highest)
 {
-    return can_meet(c, k, brake_position(l, c), lead_square(l->feed) * (1.0 - LEAD_ENERGY_SLACK));
+    return can_meet(c, k, brake_position(l, c), lead_square(l->feed) * (1.0 - LEAD_ENERGY_SLACK),
+                    highest);
 }
 
 /* Does a piece allow whatever the averages may hold from the one before? */
@@ -127,12 +138,6 @@ static bool is_no_lower(const struct lead *l, const struct ceiling *c, uint32_t 
     const bool kept = l->feed <= feed && l->since_minus >= l->window;
 
     return (had->feed_mm_s <= p->feed_mm_s || kept) && p->acceleration >= had->acceleration;
-}
-
-/* Has the lead point come to piece k in this cycle, as slow as it asks for? */
-static bool is_as_planned(const struct lead *l, const struct ceiling *c, uint32_t k)
-{
-    return path_mm(c->origin, l->before) < c->end_mm[k - 1] && can_follow(l, c, k);
 }
 
 /* Does it halt before a place, and could not with the acceleration of piece k, which starts there for the setpoint? */
@@ -149,7 +154,7 @@ static bool may_enter(const struct lead *l, const struct ceiling *c, uint32_t k,
         return true;
     }
     return !halts_before(l, c, k, start) &&
-           (!lead_is_beyond(start, l->known) || is_no_lower(l, c, k) || is_as_planned(l, c, k));
+           (!lead_is_beyond(start, l->known) || is_no_lower(l, c, k));
 }
 
 static uint64_t nearer(const struct lead *l, uint64_t one, uint64_t other)
@@ -175,6 +180,7 @@ static void come_to(struct lead *l, struct lead_place *p, uint32_t k)
     p->late_start = p->late ? nearer(l, p->late_start, start) : start;
     p->late_a = p->late ? p->late_a : (double)c->piece[k - 1].acceleration;
     p->late = true;
+    l->follows = false;
     l->known = nearer(l, l->known, start);
 }
 
@@ -202,38 +208,45 @@ static bool is_harmless(const struct lead *l)
     const struct lead_place *p = &l->here;
 
     return l->feed == 0.0 || (l->feed * lead_entry_cycles(l) <= path_mm(l->at, p->late_start) &&
-                              can_follow(l, p->ceiling, p->piece) &&
+                              can_follow(l, p->ceiling, p->piece, false) &&
                               !halts_before(l, p->ceiling, p->piece, p->late_start));
 }
 
 /* Once it can do all that the ceiling asks for it can do so under any override, as far as is known now. */
+static void note_following(struct lead *l)
+{
+    const uint64_t end = lead_leave_of(l, l->here.ceiling->count - 1);
+
+    l->follows = true;
+    l->known = lead_is_beyond(end, l->known) ? end : l->known;
+    l->landing_feed = 0.0;
+}
+
 static void note_known(struct lead *l)
 {
     struct lead_place *p = &l->here;
 
-    if (!lead_has_piece(l)) {
+    if (l->follows || !lead_has_piece(l)) {
         return;
     }
     if (p->late && is_harmless(l)) {
         p->late = false;
         l->entered = lead_is_beyond(p->late_start, l->entered) ? p->late_start : l->entered;
     }
-    const uint64_t end = lead_leave_of(l, p->ceiling->count - 1);
-    const uint32_t k = lead_landing(l);
-    const double joint =
-        k == CEILING_NONE ? l->landing_feed : lead_feed(l, lead_piece(l, k)->feed_mm_s);
+    if (!p->late && can_follow(l, p->ceiling, p->piece, false)) {
+        note_following(l);
+    }
+}
 
-    if (!p->late && (!lead_is_beyond(l->known, end) || joint < l->landing_feed) &&
-        can_follow(l, p->ceiling, p->piece)) {
-        l->known = end;
-        l->landing_feed = joint;
+static void go_through_pieces(struct lead *l)
+{
+    for (unsigned i = 0; i < LEAD_PIECES_MAX && lead_has_piece(l) && go_on(l, &l->here); i++) {
     }
 }
 
 void lead_follow_pieces(struct lead *l)
 {
-    for (unsigned i = 0; i < LEAD_PIECES_MAX && lead_has_piece(l) && go_on(l, &l->here); i++) {
-    }
+    go_through_pieces(l);
     note_known(l);
 }
 
@@ -244,39 +257,28 @@ void lead_enter_piece(struct lead *l, uint32_t k)
     l->here.late = false;
     low_push(&l->here, k);
     l->entered = l->span;
-    lead_follow_pieces(l);
+    go_through_pieces(l);
 }
 
 /* -- a setpoint that is moved by others -- */
-
-/* At the highest overrides: by the ends of pieces alone. */
-static bool can_meet_highest(const struct ceiling *c, uint32_t k, double x, double energy)
-{
-    const struct ceiling_piece *p = &c->piece[k];
-    const double end = ceiling_feed(c, p->end_feed_max_mm_s);
-
-    return energy <= end * end + 2.0 * (double)p->acceleration * (c->end_mm[k] - x);
-}
 
 bool lead_could_be(const struct lead *l, uint64_t at, double feed, bool highest)
 {
     const struct ceiling *c = l->here.ceiling;
     const double x = path_mm(c->origin, at);
+    uint32_t k = l->here.piece;
 
     if (!highest && l->here.low_count > 0 && feed > l->here.low_feed) {
         return false;
     }
-    for (uint32_t k = l->here.piece, i = 0; k < c->count && i < LEAD_PIECES_MAX; k++, i++) {
-        if (x <= c->end_mm[k]) {
-            return highest ? can_meet_highest(c, k, x, feed * feed)
-                           : can_meet(c, k, x, feed * feed);
-        }
-        if (lead_is_last_of_span(&c->piece[k]) ||
-            (!highest && feed > ceiling_feed(c, c->piece[k].feed_mm_s))) {
+    for (uint32_t i = 0; i < LEAD_PIECES_MAX && k < c->count && x > c->end_mm[k]; i++, k++) {
+        const float top_mm_s = highest ? ceiling_top_feed(c, k) : c->piece[k].feed_mm_s;
+
+        if (lead_is_last_of_span(&c->piece[k]) || feed > ceiling_feed(c, top_mm_s)) {
             return false;
         }
     }
-    return false;
+    return k < c->count && x <= c->end_mm[k] && can_meet(c, k, x, feed * feed, highest);
 }
 
 /* The piece that lies where it is, whatever it has been in. */
@@ -287,8 +289,8 @@ static void find_piece(struct lead_place *p, double x)
     for (unsigned i = 0; i < LEAD_PIECES_MAX && p->piece > 0 && x < c->end_mm[p->piece - 1]; i++) {
         p->piece--;
     }
-    for (unsigned i = 0; i < LEAD_PIECES_MAX && p->piece + 1 < c->count && x >= c->end_mm[p->piece] &&
-                         !lead_is_last_of_span(&c->piece[p->piece]);
+    for (unsigned i = 0; i < LEAD_PIECES_MAX && p->piece + 1 < c->count &&
+                         x >= c->end_mm[p->piece] && !lead_is_last_of_span(&c->piece[p->piece]);
          i++) {
         p->piece++;
         low_push(p, p->piece);
@@ -300,7 +302,6 @@ void lead_follow(struct lead *l, uint64_t at, double feed, uint64_t setpoint)
     struct lead_place *p = &l->here;
     const struct ceiling *c = p->ceiling;
 
-    l->before = l->at;
     l->at = at;
     l->feed = feed;
     l->owed = 0.0;
@@ -311,7 +312,7 @@ void lead_follow(struct lead *l, uint64_t at, double feed, uint64_t setpoint)
 
     p->late = false;
     l->entered = lead_is_beyond(start, l->entered) ? start : l->entered;
-    l->known = lead_leave_of(l, c->count - 1);
+    note_following(l);
     (void)lead_low_feed(l, setpoint);
 }
 
@@ -349,17 +350,16 @@ static bool search(struct lead *l)
     return go_on(l, p);
 }
 
-/* Had it no room for what is known, and ends before the lead point can? Then the one before goes on. */
-static bool is_too_short(const struct lead *l)
+/*
+ * Does the ceiling ask for what cannot be done, whatever the override? It had too few pieces to reach as far as the one
+ * before; or less acceleration came into view. Then that one goes on, until the lead point is slow enough.
+ */
+static bool is_refused(const struct lead *l)
 {
     const struct lead_place *p = &l->coming;
-    const uint32_t count = p->ceiling->count;
 
-    if (l->feed == 0.0 || count == 0 ||
-        lead_is_beyond(ceiling_leave(p->ceiling, count - 1), l->known)) {
-        return false;
-    }
-    return p->piece == count || !can_follow(l, p->ceiling, p->piece);
+    return l->feed > 0.0 && l->here.ceiling != NULL &&
+           (p->piece == p->ceiling->count || !can_follow(l, p->ceiling, p->piece, true));
 }
 
 /* From now on the lead point is in the ceiling that came. Of the list what is used. */
@@ -393,11 +393,17 @@ bool lead_find_place(struct lead *l)
     if (looked == LEAD_PIECES_MAX) {
         return true;
     }
-    if (is_too_short(l)) {
+    const struct lead_place *p = &l->coming;
+    const bool follows = p->piece < p->ceiling->count && can_follow(l, p->ceiling, p->piece, false);
+
+    if (!follows && is_refused(l)) {
         l->coming.ceiling = NULL;
         return false;
     }
     take_place(l);
-    note_known(l);
+    l->follows = false;
+    if (follows && !l->here.late) {
+        note_following(l);
+    }
     return false;
 }

@@ -2,6 +2,7 @@
 
 #include "base/handoff.h"
 #include "base/maths.h"
+#include "motion/held.h"
 #include "plan/path_unit.h"
 #include "plan/span.h"
 #include "smooth/single.h"
@@ -385,74 +386,10 @@ static double feed_between(const struct motion *m, const struct block *b, const 
     return (double)(single_sqrt(square) / (float)m->cycle_s);
 }
 
-/* From where the setpoint is the lead point goes on by itself, at the same feed. */
-static void end_hold(struct motion *m)
-{
-    struct lead *l = &m->lead;
-    const uint64_t step = (uint64_t)(hold_way(&m->mover.beside.hold) + 0.5);
-    const uint64_t at = path_start(m->path, m->mover.beside.hold.block) + (uint64_t)(hold_at(&m->mover.beside.hold) + 0.5);
-
-    lead_follow(l, at + step * ((uint64_t)l->window - 1) / 2, (double)step / PATH_UNITS_PER_MM, m->setpoint);
-    average_start(&m->mover.average, m->path->limits.law, l->cycles, l->at, step);
-    m->lag = average_lag(&m->mover.average);
-    m->holds = false;
-}
-
-/* The lead point is where it would be if the setpoint had always moved as it does now. */
-static void follow_hold(struct motion *m)
-{
-    const struct hold *h = &m->mover.beside.hold;
-    const uint64_t start = path_start(m->path, h->block);
-    const double at = hold_at(h);
-    const uint64_t ahead = start + (uint64_t)(at + 0.5 * (m->lead.window - 1.0) * hold_way(h));
-
-    m->feed = h->moved * h->length / PATH_UNITS_PER_MM;
-    lead_follow(&m->lead, ahead, hold_way(h) / PATH_UNITS_PER_MM, m->setpoint);
-    m->lag = h->place.rate > 0.0 ? (double)(int64_t)(ahead - start) - at : 0.0;
-}
-
-/* Is the setpoint on a smoothed curve, and moved by the lead point through a short window? */
-static bool may_hold(const struct motion *m)
-{
-    const struct lead *l = &m->lead;
-    const struct average *a = &m->mover.average;
-
-    return !l->standing && !l->run.active && !l->here.late && m->feed_before[0] > 0.0 &&
-           path_at(m->path, m->path->first)->smooth && a->box[a->boxes - 1].end <= MOTION_INPUTS_MAX;
-}
-
-/* Takes over as soon as it can. */
-static void begin_hold(struct motion *m)
-{
-    const uint64_t start = path_start(m->path, m->path->first);
-    const double at = (double)(int64_t)(m->lead.at - start) - m->lag;
-    const double way[] = {m->feed_before[0] * PATH_UNITS_PER_MM,
-                          m->feed_before[1] * PATH_UNITS_PER_MM};
-    const bool anew = !m->looks;
-
-    m->looks = may_hold(m);
-    m->holds = m->looks && hold_begin(&m->mover.beside.hold, m->path, &m->lead, at, way, anew);
-}
-
-/* The setpoint is moved by the hold, or the lead point goes on. */
-static bool move_by_hold(struct motion *m, bool hold)
-{
-    m->looks = m->looks && hold;
-    if (m->holds && !hold_step(&m->mover.beside.hold, m->path, &m->lead, hold)) {
-        end_hold(m);
-    } else if (!m->holds && hold) {
-        begin_hold(m);
-    }
-    if (m->holds) {
-        follow_hold(m);
-    }
-    return m->holds;
-}
-
 /* The lead point moves and its average with it. */
 static void move_lead(struct motion *m, bool hold)
 {
-    if (move_by_hold(m, hold)) {
+    if (held_move(m, hold)) {
         return;
     }
     struct lead_start start = {.at = m->lead.at};
@@ -549,7 +486,7 @@ static bool end_path(struct motion *m)
         return m->feed != 0.0;
     }
     if (m->holds) {
-        end_hold(m);
+        held_end(m);
     }
     path_restart(m->path, &m->at, m->lead.at);
     lead_init(&m->lead, m->path->limits.law, m->lead.at);

@@ -55,16 +55,16 @@ struct motion_beside {
 struct motion {
     double cycle_s;
     struct path *path;
-    uint64_t cycles;   /* made so far */
-    struct point at;   /* last commanded position */
-    uint64_t setpoint; /* where that is on the path, rounded down */
-    double feed;       /* mm/cycle, of the setpoint */
+    uint64_t cycles;       /* made so far */
+    struct point at;       /* last commanded position */
+    uint64_t setpoint;     /* where that is on the path, rounded down */
+    double feed;           /* mm/cycle, of the setpoint */
     double feed_before[2]; /* likewise, in the two cycles before */
-    double lag;        /* of the setpoint behind the lead point, path units */
+    double lag;            /* of the setpoint behind the lead point, path units */
     bool proportional;
     bool holds; /* the setpoint is moved by the hold, not by the lead point, */
     bool looks; /* or looks whether it can be */
-    bool done; /* the oldest block: the next cycle passes it */
+    bool done;  /* the oldest block: the next cycle passes it */
     bool
         busy; /* this cycle does what few do: a block read, a span begun, a place in a ceiling looked for */
     uint32_t current; /* the block of the last cycle */

@@ -210,13 +210,6 @@ static void divide(struct ceiling *c, uint32_t k, double at_mm)
     c->piece[k + 1].opens = true;
 }
 
-/* The highest feed whatever the overrides are, of the block that a piece begins with; or of the joint. */
-static float top_feed(const struct ceiling *c, const struct ceiling_piece *p)
-{
-    return p->landed ? p->feed_mm_s
-                     : maths_float_below(path_block_top(path_at(c->path, c->first + p->start)));
-}
-
 /*
  * What has been laid from a place on allows no more than the block being laid. It begins with a piece of its own, if need be
  * behind one without length: a lead point may have to stay in what was there before (motion/lead_place.c).
@@ -226,8 +219,7 @@ static void lower(struct builder *s, double from_mm, double top_mm_s, double a)
     struct ceiling *c = s->c;
 
     for (uint32_t k = c->count; k-- > 0 && c->end_mm[k] > from_mm;) {
-        if ((double)c->piece[k].acceleration <= a &&
-            (double)top_feed(c, &c->piece[k]) <= top_mm_s) {
+        if ((double)c->piece[k].acceleration <= a && (double)ceiling_top_feed(c, k) <= top_mm_s) {
             continue;
         }
         if ((k > 0 ? c->end_mm[k - 1] : 0.0) <= from_mm) {
@@ -302,7 +294,8 @@ static bool continues(const struct builder *s, const struct path_block *b, float
     const struct ceiling_piece *last = &s->c->piece[s->c->count - 1];
 
     return !last->stop && !last->landed && last->feed_mm_s == feed_mm_s &&
-           (double)last->acceleration == a && (double)top_feed(s->c, last) <= path_block_top(b) &&
+           (double)last->acceleration == a &&
+           (double)ceiling_top_feed(s->c, s->c->count - 1) <= path_block_top(b) &&
            ceiling_overrides(s->c, s->c->count - 1) == block_overrides(b);
 }
 
@@ -424,9 +417,9 @@ static float feed_below(const struct ceiling *c, double energy)
 }
 
 /* Ceiling of a piece, and feed at its end: as the overrides are, or at their highest. */
-static float feed_of(const struct ceiling *c, const struct ceiling_piece *p, bool highest)
+static float feed_of(const struct ceiling *c, uint32_t k, bool highest)
 {
-    return highest ? top_feed(c, p) : p->feed_mm_s;
+    return highest ? ceiling_top_feed(c, k) : c->piece[k].feed_mm_s;
 }
 
 static float end_feed_of(const struct ceiling_piece *p, bool highest)
@@ -463,7 +456,7 @@ static float landed_feed(const struct ceiling *c, uint32_t k, enum law law, bool
     const double hold_mm = start_mm + feed * cycles;
 
     while (i < c->count && c->end_mm[i] < hold_mm) {
-        feed = maths_min(feed, ceiling_feed(c, feed_of(c, &c->piece[i], highest)));
+        feed = maths_min(feed, ceiling_feed(c, feed_of(c, i, highest)));
         feed = maths_min(feed, ceiling_feed(c, end_feed_of(&c->piece[i], highest)));
         i++;
     }
@@ -474,7 +467,7 @@ static float landed_feed(const struct ceiling *c, uint32_t k, enum law law, bool
         const double energy =
             square(ceiling_feed(c, end_feed_of(p, highest))) + 2.0 * a * (c->end_mm[i] - start_mm);
 
-        feed = maths_min(feed, ceiling_feed(c, feed_of(c, p, highest)));
+        feed = maths_min(feed, ceiling_feed(c, feed_of(c, i, highest)));
         feed = maths_min(feed, maths_sqrt(m * m + maths_max(0.0, energy)) - m);
     }
     return maths_float_below(feed / c->cycle_s);
@@ -487,7 +480,7 @@ static void plan_piece(struct ceiling *c, uint32_t k, enum law law, float *feed_
     struct ceiling_piece *p = &c->piece[k];
     const float end_mm_s = p->stop ? 0.0F : *feed_mm_s;
     const float end_max_mm_s = p->stop ? 0.0F : *max_mm_s;
-    float top_mm_s = top_feed(c, p);
+    float top_mm_s = ceiling_top_feed(c, k);
 
     p->end_feed_mm_s = end_mm_s;
     p->end_feed_max_mm_s = end_max_mm_s;
@@ -500,10 +493,28 @@ static void plan_piece(struct ceiling *c, uint32_t k, enum law law, float *feed_
     *max_mm_s = begin_feed(c, k, top_mm_s, end_max_mm_s);
 }
 
+/* Between a piece and the joint that the span ends with: the pieces that ask for no more than any behind them. */
+static void note_lowest(struct ceiling *c, uint32_t k, float *low_mm_s, float *low_max_mm_s)
+{
+    struct ceiling_piece *p = &c->piece[k];
+
+    if (p->landing == CEILING_NONE || k + 1U >= p->landing) {
+        *low_mm_s = (float)MATHS_INFINITY;
+        *low_max_mm_s = (float)MATHS_INFINITY;
+        return;
+    }
+    p->lowest = p->end_feed_mm_s <= *low_mm_s;
+    p->lowest_max = p->end_feed_max_mm_s <= *low_max_mm_s;
+    *low_mm_s = p->lowest ? p->end_feed_mm_s : *low_mm_s;
+    *low_max_mm_s = p->lowest_max ? p->end_feed_max_mm_s : *low_max_mm_s;
+}
+
 static void plan_backward(struct ceiling *c, enum law law)
 {
     float feed_mm_s = 0.0F;
     float max_mm_s = 0.0F;
+    float low_mm_s = 0.0F;
+    float low_max_mm_s = 0.0F;
     unsigned landing = CEILING_NONE;
     bool open = true;
 
@@ -516,6 +527,7 @@ static void plan_backward(struct ceiling *c, enum law law)
         c->open_from = open ? k : c->open_from;
         p->landing = landing & CEILING_NONE;
         plan_piece(c, k, law, &feed_mm_s, &max_mm_s);
+        note_lowest(c, k, &low_mm_s, &low_max_mm_s);
     }
 }
 
@@ -551,6 +563,14 @@ uint64_t ceiling_start(const struct ceiling *c, uint32_t k)
 uint64_t ceiling_leave(const struct ceiling *c, uint32_t k)
 {
     return path_start(c->path, kept_block(c, c->piece[k].leave));
+}
+
+float ceiling_top_feed(const struct ceiling *c, uint32_t k)
+{
+    const struct ceiling_piece *p = &c->piece[k];
+
+    return p->landed ? p->feed_mm_s
+                     : maths_float_below(path_block_top(path_at(c->path, kept_block(c, p->start))));
 }
 
 unsigned ceiling_overrides(const struct ceiling *c, uint32_t k)

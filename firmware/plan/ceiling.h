@@ -54,6 +54,8 @@ struct ceiling_piece {
     unsigned opens : 1;   /* what was not there before begins: a block, or the way to the joint */
     unsigned stop : 1;    /* the span ends with this piece, where it is left */
     unsigned landed : 1;  /* likewise, and a setpoint falls there in motion */
+    unsigned lowest : 1;  /* no end_feed is lower from here to the last but one before landing */
+    unsigned lowest_max : 1; /* likewise end_feed_max */
 };
 
 struct path;
@@ -101,6 +103,9 @@ void ceiling_build(struct ceiling *c, struct path *path, const struct ceiling_re
  */
 uint64_t ceiling_start(const struct ceiling *c, uint32_t k);
 uint64_t ceiling_leave(const struct ceiling *c, uint32_t k);
+
+/* The highest feed whatever the overrides are, of what a piece begins with, mm/s. */
+float ceiling_top_feed(const struct ceiling *c, uint32_t k);
 
 /* Control cycle: what the operator may do in a piece, CEILING_...: as in the last block that it is made of. */
 unsigned ceiling_overrides(const struct ceiling *c, uint32_t k);

@@ -22,9 +22,10 @@
 /* A program that takes longer stands still for ever. */
 #define CYCLES_MAX 2000000
 
-/* The longest hold, in parts of V/A + A/J, and cycles beside it. */
-#define HOLD_PARTS_MAX  1.5
-#define HOLD_CYCLES_MAX 10.0
+/* A hold takes up to so many parts of V/A + A/J, and cycles beside it; so many of a hundred holds may take more. */
+#define HOLD_PARTS      1.5
+#define HOLD_CYCLES     10.0
+#define SLOW_OF_HUNDRED 1
 
 /* Tenths of V/A + A/J that holds are counted in. */
 #define TENTHS_MAX 50
@@ -44,7 +45,7 @@ struct run {
     unsigned pushed;
     double hold_cycles; /* V/A + A/J of the slowest axis */
     bool holds;
-    bool moved; /* the axes did when it began */
+    bool moved;      /* the axes did when it began */
     uint64_t change; /* cycle of the next hold, or in which the present one began */
     double longest;  /* in parts of that */
     unsigned held;
@@ -53,7 +54,7 @@ struct run {
 
 static struct run run;
 static unsigned taken[TENTHS_MAX + 1];
-static unsigned holds;
+static unsigned holds, slow;
 
 void setUp(void)
 {
@@ -83,7 +84,8 @@ static void random_machine(struct run *r)
         l->velocity_mm_s[i] = v * part;
         l->acceleration_mm_s2[i] = v * part * rounding / (t * braking);
         l->jerk_mm_s3[i] = l->acceleration_mm_s2[i] * rounding / t;
-        r->hold_cycles = maths_max(r->hold_cycles, (v * part / l->acceleration_mm_s2[i] + t / rounding) / t);
+        r->hold_cycles =
+            maths_max(r->hold_cycles, (v * part / l->acceleration_mm_s2[i] + t / rounding) / t);
     }
 }
 
@@ -133,11 +135,12 @@ static void plan(struct run *r)
 static void count_hold(struct run *r)
 {
     const double cycles = (double)(motion.cycles - r->change);
-    const double parts = maths_max(0.0, cycles - HOLD_CYCLES_MAX) / r->hold_cycles;
+    const double parts = maths_max(0.0, cycles - HOLD_CYCLES) / r->hold_cycles;
 
     r->longest = maths_max(r->longest, parts);
     r->held++;
     holds++;
+    slow += parts > HOLD_PARTS ? 1 : 0;
     taken[parts * 10.0 < TENTHS_MAX ? (unsigned)(parts * 10.0) : TENTHS_MAX]++;
 }
 
@@ -179,38 +182,42 @@ static enum motion_result run_program(struct run *r)
     return result;
 }
 
-static void test_axes_come_to_rest_within_what_their_limits_tell(void)
+static void test_axes_come_to_rest_within_what_their_limits_tell_and_break_none(void)
 {
     unsigned failed = 0;
+    unsigned longest_seed = 0;
+    double longest = 0.0;
 
     for (unsigned seed = first_seed; seed < first_seed + programs; seed++) {
         set_up_run(&run, seed);
         const enum motion_result result = run_program(&run);
 
-        if (result != MOTION_DONE || run.judge.velocity > 1.0001 || run.judge.acceleration > 1.0001 ||
-            run.judge.jerk > 1.001 || run.longest > HOLD_PARTS_MAX) {
+        if (result != MOTION_DONE || run.judge.velocity > 1.0001 ||
+            run.judge.acceleration > 1.0001 || run.judge.jerk > 1.001) {
             failed++;
-            printf("seed %u family %d law %d moves %u cycle %g s P %g V %g A %g J %g: %s in %llu cycles, %u holds, %.2f at "
-                   "most, v %.5f a %.5f j %.5f\n",
-                   seed, (int)run.family, (int)run.limits.law, run.moves, run.limits.cycle_s,
-                   run.tolerance_mm, run.limits.velocity_mm_s[0], run.limits.acceleration_mm_s2[0],
-                   run.limits.jerk_mm_s3[0], result == MOTION_DONE ? "done" : "not done",
-                   (unsigned long long)motion.cycles, run.held, run.longest, run.judge.velocity,
-                   run.judge.acceleration, run.judge.jerk);
+            printf("seed %u: %s in %llu cycles, %u holds, v %.5f a %.5f j %.5f\n", seed,
+                   result == MOTION_DONE ? "done" : "not done", (unsigned long long)motion.cycles,
+                   run.held, run.judge.velocity, run.judge.acceleration, run.judge.jerk);
+        }
+        if (run.longest > longest) {
+            longest = run.longest;
+            longest_seed = seed;
         }
     }
     printf("%u programs, %u holds, in tenths of V/A + A/J:", programs, holds);
     for (unsigned i = 0; i <= TENTHS_MAX; i++) {
         printf(" %u", taken[i]);
     }
-    printf("\n");
+    printf("\n%u took more than %.1f of it and %.0f cycles, at most %.2f (seed %u)\n", slow,
+           HOLD_PARTS, HOLD_CYCLES, longest, longest_seed);
     TEST_ASSERT_EQUAL_UINT(0, failed);
+    TEST_ASSERT_LESS_OR_EQUAL_UINT(holds * SLOW_OF_HUNDRED, 100 * slow);
 }
 
 int main(int argc, char **argv)
 {
     read_number_and_first(argc, argv, &programs, &first_seed);
     UNITY_BEGIN();
-    RUN_TEST(test_axes_come_to_rest_within_what_their_limits_tell);
+    RUN_TEST(test_axes_come_to_rest_within_what_their_limits_tell_and_break_none);
     return UNITY_END();
 }

@@ -68,12 +68,14 @@ static float single_feed(double feed)
 }
 
 /* The block of a stretch, at the end of the ceiling's path. */
-static void push_block(const struct ceiling *c, double from_mm, double end_mm)
+static void push_block(const struct ceiling *c, double feed, double from_mm, double end_mm)
 {
     struct path *path = &paths[c - ceilings];
 
-    path->ring.block[path->pushed] =
-        (struct path_block){.start = path_units(from_mm), .cycles = WINDOW};
+    path->ring.block[path->pushed] = (struct path_block){.start = path_units(from_mm),
+                                                         .feed_program_mm_s = single_feed(feed),
+                                                         .feed_limit_mm_s = single_feed(feed),
+                                                         .cycles = WINDOW};
     path->pushed++;
     path->position = path_units(end_mm);
 }
@@ -111,7 +113,7 @@ static void append(struct ceiling *c, const struct stretch *s, double ratio, dou
         append_piece(c, begin_mm, last->feed_mm_s, s->a, last->leave);
     }
     append_piece(c, end_mm, single_feed(feed), s->a, block + 1);
-    push_block(c, from_mm, end_mm);
+    push_block(c, s->feed, from_mm, end_mm);
 }
 
 /* sqrt(min(c^2, u + 2 a L)) */
@@ -123,18 +125,20 @@ static float feed_before(const struct ceiling_piece *p, float feed_mm_s, float e
     return u < square((double)feed_mm_s * CYCLE_S) ? single_feed(maths_sqrt(u)) : feed_mm_s;
 }
 
-/* Backwards from rest. */
+/* Backwards from rest, as the overrides are and at their highest. */
 static void plan(struct ceiling *c)
 {
     float feed_mm_s = 0.0F;
+    float max_mm_s = 0.0F;
 
     for (uint32_t k = c->count; k-- > 0;) {
         struct ceiling_piece *p = &c->piece[k];
         const double length_mm = c->end_mm[k] - (k > 0 ? c->end_mm[k - 1] : 0.0);
 
         p->end_feed_mm_s = feed_mm_s;
-        p->end_feed_max_mm_s = p->landed ? p->feed_mm_s : feed_mm_s;
+        p->end_feed_max_mm_s = p->landed ? p->feed_mm_s : max_mm_s;
         feed_mm_s = feed_before(p, p->feed_mm_s, feed_mm_s, length_mm);
+        max_mm_s = feed_before(p, ceiling_top_feed(c, k), max_mm_s, length_mm);
     }
 }
 
