@@ -48,15 +48,7 @@ static_assert(MOVE_END <= KIND_MASK && GOVERNOR_RAMP < 8, "both fit into a byte"
 
 bool record_is_same(const void *a, const void *b, size_t size)
 {
-    const uint8_t *one = a;
-    const uint8_t *other = b;
-
-    for (size_t i = 0; i < size; i++) {
-        if (one[i] != other[i]) {
-            return false;
-        }
-    }
-    return true;
+    return memcmp(a, b, size) == 0;
 }
 
 static bool is_same_number(double a, double b)
