@@ -296,8 +296,11 @@ static void pass_clear(struct hold *h, const struct path *path)
 {
     const float rate = (float)h->place.rate;
 
-    h->clear = (int32_t)(h->clear - h->block) < 0 ? h->block : h->clear;
-    for (unsigned i = 0; i < CLEAR_MAX && (h->clear == h->block || !is_behind(path, h->clear)) &&
+    if (h->place.change > 0.0 || (int32_t)(h->clear - h->block) < 0) {
+        h->clear = h->block;
+    }
+    for (unsigned i = 0; i < CLEAR_MAX && !(h->place.change > 0.0) &&
+                         (h->clear == h->block || !is_behind(path, h->clear)) &&
                          top_rate(h, path, h->clear) >= rate;
          i++) {
         h->clear++;
