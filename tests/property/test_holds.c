@@ -22,7 +22,11 @@
 /* A program that takes longer stands still for ever. */
 #define CYCLES_MAX 2000000
 
-/* A hold takes up to so many parts of V/A + A/J, and cycles beside it; so many of a hundred holds may take more. */
+/*
+ * A hold takes up to so many parts of V/A + A/J, and cycles beside it; so many of a hundred holds may take more. Not counted
+ * are those of machines that stop in less than HOLD_CYCLES_MIN: what rounds to cycles is most of them.
+ */
+#define HOLD_CYCLES_MIN 4.0
 #define HOLD_PARTS      1.5
 #define HOLD_CYCLES     10.0
 #define SLOW_OF_HUNDRED 1
@@ -137,8 +141,11 @@ static void count_hold(struct run *r)
     const double cycles = (double)(motion.cycles - r->change);
     const double parts = maths_max(0.0, cycles - HOLD_CYCLES) / r->hold_cycles;
 
-    r->longest = maths_max(r->longest, parts);
     r->held++;
+    if (r->hold_cycles < HOLD_CYCLES_MIN) {
+        return;
+    }
+    r->longest = maths_max(r->longest, parts);
     holds++;
     slow += parts > HOLD_PARTS ? 1 : 0;
     taken[parts * 10.0 < TENTHS_MAX ? (unsigned)(parts * 10.0) : TENTHS_MAX]++;
