@@ -87,11 +87,12 @@ void profile_mirror(struct profile *p, bool u, bool v)
 static bool falls(const struct profile_segment *s)
 {
     const double way = s->end.u - s->start.u;
-    const double side = s->left ? 1.0 : -1.0;
 
     if (s->kind != PROFILE_ARC) {
         return way <= PROFILE_SHORT_MM;
     }
+    const double side = s->left ? 1.0 : -1.0;
+
     return way <= -PROFILE_SHORT_MM && side * (s->start.v - s->centre.v) >= -PROFILE_SHORT_MM &&
            side * (s->end.v - s->centre.v) >= -PROFILE_SHORT_MM;
 }

@@ -39,6 +39,6 @@ void virtual_drive_run_io(struct virtual_drive *drive)
         INPUTS[i] = (uint8_t)(OUTPUTS[i] | drive->config.closed >> 8 * i);
     }
     if (!is_controlled)
-        memset(ANALOGUES, 0, 2 * DICTIONARY_IO_ANALOGUES);
+        memset(ANALOGUES, 0, (size_t)2 * DICTIONARY_IO_ANALOGUES);
     note_change(drive);
 }

@@ -24,6 +24,11 @@ KERNEL = "--kernel" in sys.argv
 INTERFACE = "slcan0"
 READY, STOP = "drives.ready", "drives.stop"
 
+# A kernel in a process gets its time when the host has some. Where that was so late that the drives missed a SYNC, and
+# said so, nothing is learned about the controller: the whole is tried again, so many times in all.
+TRIES = 3
+LATE = "8700"
+
 # The controller keeps so many bytes of a plan that is not running yet.
 KEPT_BYTES = 2048
 
@@ -130,16 +135,39 @@ def check_streams(panel):
     t.check(abs(panel.number("ACTUAL_Z") - 2) < 0.01, "the drive stands where it ends")
 
 
-def check_run(board, panel, digest):
+def check_run(board, panel, digest, may_be_late):
+    """False: the drives missed a SYNC, and that may be."""
     target.wait_for(lambda: any("state: idle" in line for line in board.log()), "the drives are enabled")
     home(panel)
     seen = run_program(panel)
+    if may_be_late and LATE in panel.read("ALARM_TEXT")["ALARM_TEXT"]:
+        return False
     t.check(panel.number("OUTCOME") == 1, "the program is completed", panel.read("ALARM_TEXT"))
     t.check(panel.digest() == digest, "its setpoints are those of takt run", panel.digest(), digest)
     t.check(len(set(seen)) > 1, "positions were read in motion", seen)
     t.check(abs(panel.number("ACTUAL_Z") - 1) < 0.01, "the drive stands where the program ends")
     log = "\n".join(board.log())
     t.check("state: running" in log and f"completed, setpoints {digest}" in log, "the log has what happened", log)
+    return True
+
+
+def try_run(image, digest, may_be_late):
+    for left in (READY, STOP):
+        if os.path.exists(left):
+            os.remove(left)
+    line = serial_pair.Pair()
+    bus = Kernel() if KERNEL else Adapter()
+    board = target.Board("m4f", image, line.paths[0], bus.path, "log.txt")
+    try:
+        panel = target.Panel(line.paths[1])
+        was_in_time = check_run(board, panel, digest, may_be_late)
+        if not KERNEL:  # what carries the frames is nothing to a stream
+            check_streams(panel)
+        return was_in_time
+    finally:
+        board.stop()
+        line.close()
+        bus.stop()
 
 
 def main():
@@ -149,18 +177,10 @@ def main():
         t.skip("slcand is not installed (Debian and Ubuntu: can-utils)")
     t.write("part.ngc", PROGRAM)
     digest = digest_of("part.ngc")
-    line = serial_pair.Pair()
-    bus = Kernel() if KERNEL else Adapter()
-    board = target.Board("m4f", image, line.paths[0], bus.path, "log.txt")
-    try:
-        panel = target.Panel(line.paths[1])
-        check_run(board, panel, digest)
-        if not KERNEL:  # what carries the frames is nothing to a stream
-            check_streams(panel)
-    finally:
-        board.stop()
-        line.close()
-        bus.stop()
+    tries = 1
+    while not try_run(image, digest, KERNEL and tries < TRIES):
+        print("the drives missed a SYNC: once more")
+        tries += 1
     t.finish()
 
 

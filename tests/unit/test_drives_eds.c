@@ -155,7 +155,8 @@ static void test_names_are_unique(void)
                 continue;
             const char *name_a = a->kind == OBJECT_VAR ? a->name : a->title;
             const char *name_b = b->kind == OBJECT_VAR ? b->name : b->title;
-            TEST_ASSERT_TRUE_MESSAGE(strcmp(name_a, name_b) != 0, name_a);
+            const bool same = name_a != NULL && name_b != NULL && strcmp(name_a, name_b) == 0;
+            TEST_ASSERT_FALSE_MESSAGE(same, name_a);
         }
     }
 }

@@ -178,9 +178,11 @@ static void test_60E3_names_every_method_that_is_taken(void)
     for (int method = -128; method < 128; method++)
         taken += lone_write(&lone, 0x6098, 0, 1, (uint8_t)method) == 0;
     TEST_ASSERT_EQUAL_UINT(count, taken);
-    for (uint8_t i = 1; i <= count; i++)
-        TEST_ASSERT_EQUAL_HEX32(
-            0, lone_write(&lone, 0x6098, 0, 1, lone_read(&lone, 0x60E3, i) & 0xFF));
+    for (uint32_t i = 1; i <= count; i++) {
+        const uint32_t method = lone_read(&lone, 0x60E3, (uint8_t)i) & 0xFF;
+
+        TEST_ASSERT_EQUAL_HEX32(0, lone_write(&lone, 0x6098, 0, 1, method));
+    }
 }
 
 static void test_index_pulses_are_the_next_in_their_direction(void)
