@@ -152,7 +152,10 @@ static struct profile_segment *add_segment(struct program *p)
         (void)report(p, TAKT_ERROR_PROFILE_LONG, PROGRAM_CONTOUR_MAX);
         return NULL;
     }
-    return &profile->segment[profile->count++];
+    struct profile_segment *s = &profile->segment[profile->count++];
+
+    *s = (struct profile_segment){.kind = PROFILE_LINE};
+    return s;
 }
 
 /* X and Z, or U and W from where the profile has come to. */
