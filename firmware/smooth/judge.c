@@ -20,7 +20,7 @@
 /* Changes of rate are not rounded over more cycles than these. */
 #define ROUNDING_CYCLES_MAX 64.0
 
-/* Between the places looked at the curve goes on by less than this part of the tolerance. */
+/* The places looked at are within this part of the tolerance, or less: within_of(). */
 #define JUDGED 0.985f
 
 /* A rate does not change faster than this times what it may change by on every piece. */
@@ -180,8 +180,47 @@ float judge_change_on(const struct judge_need *need, const struct route *r,
     return by;
 }
 
+/*
+ * The part of c_0 - 2 c_1 + c_2 across the way from the piece's first control point to its last, over all axes, in which mm
+ * and degrees count alike: what lies along it takes no place off the line.
+ */
+static float bend_across(const struct window *w, const struct route *r, unsigned piece,
+                         unsigned sample)
+{
+    float square = 0.0f;
+    float dot = 0.0f;
+    float way = 0.0f;
+
+    for (unsigned i = 0; i < r->slots.count; i++) {
+        const int32_t step0 = window_x(w, i, sample) - window_x(w, i, sample - 1);
+        const int32_t step1 = window_x(w, i, sample + 1) - window_x(w, i, sample);
+        const float bend = w->weighted_unit_mm[i] * (float)(step1 - step0);
+        const float along =
+            w->weighted_unit_mm[i] * (float)(window_x(w, i, piece + 3) - window_x(w, i, piece));
+
+        square += bend * bend;
+        dot += bend * along;
+        way += along * along;
+    }
+    return single_sqrt(single_max(0.0f, way > 0.0f ? square - dot * dot / way : square));
+}
+
+/*
+ * How near places looked at must be. Between two that are h of a piece apart the curve leaves their chord by |x''| h^2/8 at
+ * most, and the second derivative of a piece is largest at one of its ends.
+ */
+static float within_of(const struct window *w, const struct route *r, unsigned piece)
+{
+    const float bend =
+        single_max(bend_across(w, r, piece, piece + 1), bend_across(w, r, piece, piece + 2));
+    const float off = bend / (8.0f * PLACES * PLACES);
+    const float tolerance_mm = (float)r->tolerance_mm;
+
+    return single_min(JUDGED * tolerance_mm, tolerance_mm - off);
+}
+
 static bool place_is_near(const struct window *w, const struct route *r, unsigned piece,
-                          const float weight[4], const struct window_spot *spot)
+                          const float weight[4], const struct window_spot *spot, float within_mm)
 {
     struct route_foot foot = {.element = w->element[piece + 1],
                               .at_mm = window_at(w, piece, weight)};
@@ -194,18 +233,21 @@ static bool place_is_near(const struct window *w, const struct route *r, unsigne
     window_reach(w, piece + 2 < w->count - 1 ? piece + 2 : piece + 1, &ignored, &to);
     window_place(w, r, spot, p);
     route_foot(r, p, from, to, &foot);
-    return foot.distance_mm <= JUDGED * (float)r->tolerance_mm;
+    return foot.distance_mm <= within_mm;
 }
 
 /* Is a chord between the places looked at in a piece near enough to the corner? */
 static bool piece_passes_corner(const struct window *w, const struct route *r, unsigned piece,
                                 uint32_t element)
 {
-    const float within = JUDGED * (float)r->tolerance_mm - (float)r->chord_mm;
+    const float within = within_of(w, r, piece) - (float)r->chord_mm;
     struct window_spot a;
     struct window_spot b;
     float weight[4];
 
+    if (within < 0.0f) {
+        return false;
+    }
     window_weights(0.0f, weight);
     window_spot(w, r, piece, weight, &a);
     for (unsigned k = 1; k <= PLACES; k++) {
@@ -259,13 +301,15 @@ static bool passes_corners(const struct window *w, const struct route *r, unsign
 
 static bool piece_is_good(const struct window *w, const struct route *r, unsigned piece)
 {
+    const float within_mm = within_of(w, r, piece);
+
     for (unsigned k = 1; k <= PLACES; k++) {
         struct window_spot spot;
         float weight[4];
 
         window_weights((float)k / PLACES, weight);
         window_spot(w, r, piece, weight, &spot);
-        if (!place_is_near(w, r, piece, weight, &spot)) {
+        if (!place_is_near(w, r, piece, weight, &spot, within_mm)) {
             return false;
         }
     }

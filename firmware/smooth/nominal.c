@@ -51,9 +51,12 @@ static float feed_of(const struct curve_bounds *b, const struct route_slots *slo
     return feed;
 }
 
-/* a = sqrt(A^2 - (x_ss v^2)^2) / |x_s| */
-static float along_of(const struct curve_bounds *b, const struct route_slots *slots, float feed)
+/*
+ * a = sqrt(A^2 - (x_ss v^2)^2) / |x_s|, ALONG of it; and no more than jerk can bring about while a window lasts: route.h
+ */
+static float along_of(const struct curve_bounds *b, const struct route *r, float feed)
 {
+    const struct route_slots *slots = &r->slots;
     float along = SINGLE_INFINITY;
 
     for (unsigned i = 0; i < slots->count; i++) {
@@ -62,10 +65,11 @@ static float along_of(const struct curve_bounds *b, const struct route_slots *sl
         const float normal = (float)b->second[slots->axis[i]] * feed * feed;
 
         if (first > 0.0f) {
-            along = single_min(along, single_sqrt(a * a - normal * normal) / first);
+            along = single_min(along, ALONG * (single_sqrt(a * a - normal * normal) / first));
+            along = single_min(along, slots->jerk_mm_s3[i] * r->easing_s / first);
         }
     }
-    return ALONG * along;
+    return along;
 }
 
 void nominal_set(struct route_element *e, const struct curve *curve, float per_mm,
@@ -77,7 +81,7 @@ void nominal_set(struct route_element *e, const struct curve *curve, float per_m
     const float feed = single_min(e->programmed_mm_s, feed_of(&b, &r->slots));
 
     e->feed_mm_s = per_mm * feed;
-    e->along_mm_s2 = per_mm * along_of(&b, &r->slots, feed);
+    e->along_mm_s2 = per_mm * along_of(&b, r, feed);
 }
 
 /*

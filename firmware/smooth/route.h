@@ -76,6 +76,8 @@ struct route {
     uint32_t count;                  /* elements pushed so far */
     uint32_t capacity;               /* elements there is room for */
     unsigned bent_first, bent_count; /* bent ones forgotten, and pushed */
+    float
+        easing_s; /* the mean acceleration of a ramp in what a window knows ahead, as a part of jerk */
     double end_mm;
     double end[AXIS_COUNT]; /* of the newest element; by slot */
     double start[SMOOTH_COORDINATES_MAX];

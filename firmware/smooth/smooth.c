@@ -41,6 +41,9 @@
 #define INTERVAL_OF_JERK         0.7
 #define INTERVAL_OF_ACCELERATION 0.9
 
+/* A window is at least this part of the time in which the slowest axis reaches its velocity: README.md. */
+#define WINDOW_OF_RAMP 0.5
+
 /* What a microcontroller is ready to give for smoothing. */
 _Static_assert(sizeof(struct smooth) + sizeof(union smooth_scratch) <= 27UL * 1024UL,
                "too much memory");
@@ -81,8 +84,25 @@ bool smooth_has_room(const struct smooth *s)
     return !s->open || (!s->finished && route_has_room(&s->route));
 }
 
-/* Of the axis that crosses the tolerance soonest, at least a cycle. */
-static double interval_of(const struct smooth_limits *limits, double tolerance_mm)
+/* Time in which the slowest axis reaches its velocity: V/A + A/J, or 2 sqrt(V/J) where A is not reached. */
+static double longest_ramp(const struct smooth_limits *limits)
+{
+    double longest = 0.0;
+
+    for (int i = 0; i < AXIS_COUNT; i++) {
+        const double v = limits->velocity_mm_s[i];
+        const double j = limits->jerk_mm_s3[i];
+        const double a = maths_min(limits->acceleration_mm_s2[i], maths_sqrt(v * j));
+
+        if ((limits->axes >> i & 1U) != 0) {
+            longest = maths_max(longest, v / a + a / j);
+        }
+    }
+    return longest;
+}
+
+/* Of the axis that crosses the tolerance soonest. */
+static double soonest_interval(const struct smooth_limits *limits, double tolerance_mm)
 {
     double soonest = MATHS_INFINITY;
 
@@ -96,7 +116,26 @@ static double interval_of(const struct smooth_limits *limits, double tolerance_m
             soonest = maths_min(soonest, maths_max(jerk, acceleration));
         }
     }
-    return maths_max(limits->cycle_s, soonest);
+    return soonest;
+}
+
+/* At least a cycle, and so long that no axis needs many windows to reach its velocity. */
+static double interval_of(const struct smooth *s, const struct smooth_limits *limits,
+                          double tolerance_mm)
+{
+    const unsigned samples = window_capacity(&s->route);
+    const double ramp_s = longest_ramp(&s->limits) * WINDOW_OF_RAMP / samples;
+
+    return maths_max(maths_max(s->limits.cycle_s, ramp_s), soonest_interval(limits, tolerance_mm));
+}
+
+/*
+ * Half of a window is known ahead of what is kept. In half of that acceleration rises, by jerk times a quarter of the window,
+ * in the other half it falls again: half of it is the mean.
+ */
+static float easing_of(const struct window *w)
+{
+    return (float)(w->capacity * w->interval_s / 8.0);
 }
 
 /* How far merged lines may leave the programmed ends: G64 Q, but the tolerance is worth more to smoothing. */
@@ -149,7 +188,8 @@ static void begin(struct smooth *s, const struct move *move)
     s->idle = 0;
     judge_change(&limits, &s->change);
     s->merge.open = false;
-    window_init(&s->window, &s->route, interval_of(&limits, move->tolerance_mm));
+    window_init(&s->window, &s->route, interval_of(s, &limits, move->tolerance_mm));
+    s->route.easing_s = easing_of(&s->window);
 }
 
 /* The newest line will not grow any more. */

@@ -54,7 +54,7 @@ void window_init(struct window *w, const struct route *r, double interval_s)
 {
     w->count = 0;
     w->at_end = false;
-    w->capacity = SMOOTH_SAMPLES_MAX / r->slots.groups;
+    w->capacity = window_capacity(r);
     w->interval_s = interval_s;
     w->reach_min_mm = maths_min(REACH_MIN_MM, REACH_TOLERANCES * r->tolerance_mm);
     memset(w->x, 0, sizeof w->x);

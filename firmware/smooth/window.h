@@ -43,6 +43,11 @@ struct window_spot {
 /* Weights of four neighbours at fraction f of a piece. */
 void window_weights(float f, float weight[4]);
 
+/* Samples there is room for. */
+static inline unsigned window_capacity(const struct route *r)
+{
+    return SMOOTH_SAMPLES_MAX / r->slots.groups;
+}
 /* Sets sizes and units for a chain on this route. Empty. */
 void window_init(struct window *w, const struct route *r, double interval_s);
 /* Begins at rest at the start of the route. */

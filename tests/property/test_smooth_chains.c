@@ -344,19 +344,28 @@ static void test_exact_motions_between_chains_are_landed_on_block_by_block(void)
             }
         }
     }
-    TEST_ASSERT_TRUE(landings >= programs / 2);
+    TEST_ASSERT_TRUE(landings >= programs / 2 || programs < 10);
 }
 
 static void test_chains_that_once_stood_for_ever_come_to_their_end(void)
 {
-    static const unsigned seeds[] = {
-        63, /* a change of rate needed all of the jerk */
-        84, /* corners that lay too close together to be passed held the curve back */
+    static const struct {
+        unsigned seed;
+        bool rotary;
+    } chains[] = {
+        {63, false},  /* a change of rate needed all of the jerk */
+        {84, false},  /* corners that lay too close together to be passed held the curve back */
+        {1100, true}, /* the slowest axis needed five windows to reach its velocity, */
+        {3034, true}, /* or sixteen */
+        {4021, true}, /* the nominal feed rose by accelerations that jerk could not bring about */
     };
 
-    for (unsigned i = 0; i < sizeof(seeds) / sizeof(seeds[0]); i++) {
-        set_up_run(&run, seeds[i]);
-        check_run(&run, run_program(&run), seeds[i]);
+    for (unsigned i = 0; i < sizeof(chains) / sizeof(chains[0]); i++) {
+        set_up_run(&run, chains[i].seed);
+        if (chains[i].rotary) {
+            random_rotary(&run);
+        }
+        check_run(&run, run_program(&run), chains[i].seed);
     }
 }
 
