@@ -260,12 +260,13 @@ static void limit_axes(struct block_shape *shape, struct bound *c, const struct 
 void block_set_motion(struct block *b, const struct move *move, const struct curve *curve,
                       const struct plan_limits *limits)
 {
+    const struct scale machine = scale_of_machine(limits);
     struct bound c = {MATHS_INFINITY, GOVERNOR_VELOCITY};
 
     memset(b, 0, sizeof(*b));
     b->move = *move;
     b->curve = *curve;
-    b->scale = scale_of_curve(curve, scale_of_machine(limits));
+    b->scale = scale_of_curve(curve, &machine);
     b->feed_program_mm_s = move->kind == MOVE_RAPID ? MATHS_INFINITY : move->feed_mm_s / b->scale;
     b->length_mm = curve->length_mm / b->scale;
     b->length = path_units(b->length_mm);

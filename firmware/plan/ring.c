@@ -207,7 +207,7 @@ static enum view_state finish(const struct path_ring *r, uint32_t index, uint64_
     struct block *b = &view->block;
 
     record_finish(ring_record(r, index), b);
-    b->scale = scale_of_curve(&b->curve, r->scale);
+    b->scale = scale_of_curve(&b->curve, &r->scale);
     b->length_mm = b->curve.length_mm / b->scale;
     read_limits(ring_at(r, index), end, b);
     return VIEW_READ;

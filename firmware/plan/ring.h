@@ -9,6 +9,7 @@
 
 #include "plan/block.h"
 #include "plan/record.h"
+#include "plan/scale.h"
 
 #include <stdbool.h>
 #include <stdint.h>
@@ -71,8 +72,8 @@ struct path_ring {
     uint32_t modes_used[PATH_MODES_MAX]; /* the newest block of these modes, plus 1; 0: none yet */
     unsigned modes_newest;
     struct record_chain chain;
-    double scale;   /* of the machine (scale.h) */
-    uint32_t place; /* of the next record, in bytes */
+    struct scale scale; /* of the machine */
+    uint32_t place;     /* of the next record, in bytes */
     uint8_t byte[PATH_BYTES_MAX];
     struct path_view
         view[2]; /* of blocks of even and of odd numbers: the oldest and the one behind it */

@@ -15,13 +15,17 @@
 /* Of one block: with what is ahead of it (path.c) differences of positions stay within 63 bits. */
 #define LENGTH_UNITS 2305843009213693952.0
 
-/* Fastest way in a cycle along axes from ... to - 1. */
-static double fastest(const struct plan_limits *limits, unsigned from, unsigned to)
+/* The bits of the linear axes, and of the rotary ones. */
+#define LINEAR ((1U << AXIS_LINEAR_COUNT) - 1U)
+#define ROTARY (((1U << AXIS_COUNT) - 1U) & ~LINEAR)
+
+/* Fastest way in a cycle along some axes. */
+static double fastest(const struct plan_limits *limits, unsigned axes)
 {
     double square = 0.0;
 
-    for (unsigned i = from; i < to; i++) {
-        if ((limits->axes >> i & 1U) != 0) {
+    for (unsigned i = 0; i < AXIS_COUNT; i++) {
+        if ((limits->axes & axes & 1U << i) != 0) {
             square += limits->velocity_mm_s[i] * limits->velocity_mm_s[i];
         }
     }
@@ -29,13 +33,13 @@ static double fastest(const struct plan_limits *limits, unsigned from, unsigned 
 }
 
 /* Units of a scale of 1 in the least J tau^3. */
-static double least_jerk(const struct plan_limits *limits)
+static double least_jerk(const struct plan_limits *limits, unsigned axes)
 {
     const double t = limits->cycle_s;
     double least = MATHS_INFINITY;
 
     for (unsigned i = 0; i < AXIS_COUNT; i++) {
-        if ((limits->axes >> i & 1U) != 0) {
+        if ((limits->axes & axes & 1U << i) != 0) {
             least = maths_min(least, limits->jerk_mm_s3[i] * (t * t * t));
         }
     }
@@ -43,7 +47,7 @@ static double least_jerk(const struct plan_limits *limits)
 }
 
 /* Likewise in the largest sum: the lead point is half a window ahead. */
-static double largest_sum(const struct plan_limits *limits)
+static double largest_sum(const struct plan_limits *limits, unsigned axes)
 {
     const uint32_t cycles = law_cycles_max(limits->law);
     double product = 1.0;
@@ -52,14 +56,13 @@ static double largest_sum(const struct plan_limits *limits)
         product *= (double)law_box_cycles(i, cycles);
     }
     return 0.5 * (double)law_window_cycles(limits->law, cycles) * product * PATH_UNITS_PER_MM *
-           maths_max(fastest(limits, 0, AXIS_LINEAR_COUNT),
-                     fastest(limits, AXIS_LINEAR_COUNT, AXIS_COUNT));
+           fastest(limits, axes);
 }
 
-double scale_of_machine(const struct plan_limits *limits)
+static double scale_of_axes(const struct plan_limits *limits, unsigned axes)
 {
-    const double jerk = least_jerk(limits);
-    const double sum = largest_sum(limits);
+    const double jerk = least_jerk(limits, axes);
+    const double sum = largest_sum(limits, axes);
     double scale = 1.0;
 
     while (jerk < JERK_UNITS * scale && 2.0 * sum < SUM_UNITS * scale) {
@@ -69,6 +72,14 @@ double scale_of_machine(const struct plan_limits *limits)
         scale *= 2.0;
     }
     return scale;
+}
+
+struct scale scale_of_machine(const struct plan_limits *limits)
+{
+    return (struct scale){
+        .linear = scale_of_axes(limits, LINEAR),
+        .rotary = scale_of_axes(limits, ROTARY),
+    };
 }
 
 /* |d abc / ds|^2 */
@@ -85,13 +96,14 @@ static double turning_square(const struct curve *c)
 }
 
 /* A smoothed curve counts its nominal time (block.c). */
-double scale_of_curve(const struct curve *c, double machine)
+double scale_of_curve(const struct curve *c, const struct scale *machine)
 {
     if (c->kind == CURVE_SPLINE) {
         return 1.0;
     }
-    const double square = c->rotary ? 1.0 : turning_square(c);
-    const double scale = square > 1.0 ? machine / maths_sqrt(square) : machine;
+    const double turning = c->rotary ? 0.0 : maths_sqrt(turning_square(c));
+    const double linear = c->rotary ? machine->rotary : machine->linear;
+    const double scale = turning * linear > machine->rotary ? machine->rotary / turning : linear;
 
     return maths_max(scale, c->length_mm * (PATH_UNITS_PER_MM / (double)SCALE_LENGTH_UNITS));
 }

@@ -3,9 +3,10 @@
  *
  * A curve is told by its arc length over X, Y, Z. Beside a short way of these a rotary axis may go far: were the path
  * counted by them, each unit of it would be a large step of that axis, and a feed of it less than a unit a cycle. So the
- * path is as long as the longer of both ways, in mm along X, Y, Z and in rad along A, B, C:
+ * path is as long as the longer of both ways, in mm along X, Y, Z and in rad along A, B, C, each counted by what the
+ * machine's axes of that kind are like: a unit that suits fast linear ones may be large for a slow rotary one.
  *
- *     path = W max(|xyz|, |abc|),      scale = length of the curve / path
+ *     path = max(W |xyz|, V |abc|),      scale = length of the curve / path
  *
  * It depends on the direction alone and changes steadily with it, so that blocks of one direction have one scale. Feeds,
  * accelerations and jerks of a block are those of the path.
@@ -22,12 +23,16 @@
 #define SCALE_LENGTH_UNITS (UINT64_C(1) << 61)
 
 /*
- * 1/W of a machine, a power of two: 1 unless a unit of path would show in the jerk of its slowest axis, or sums over the
- * longest window would be too large for its fastest.
+ * 1/W and 1/V of a machine, powers of two: 1 unless a unit of path would show in the jerk of the slowest axis of that kind,
+ * or sums over the longest window would be too large for the fastest.
  */
-double scale_of_machine(const struct plan_limits *limits);
+struct scale {
+    double linear, rotary;
+};
 
-/* The scale of a curve on a machine of that one. */
-double scale_of_curve(const struct curve *c, double machine);
+struct scale scale_of_machine(const struct plan_limits *limits);
+
+/* The scale of a curve on a machine. */
+double scale_of_curve(const struct curve *c, const struct scale *machine);
 
 #endif

@@ -483,6 +483,8 @@ static void test_whatever_the_operator_does_they_keep_them(void)
 /* Found by longer runs of this test. */
 static void test_rare_programs_keep_the_limits(void)
 {
+    TEST_ASSERT_TRUE(
+        check(314501, false)); /* units that suit fast linear axes, for slow rotary ones */
     TEST_ASSERT_TRUE(check(53610, false)); /* the end of a stop was on it units before it was */
 }
 

@@ -71,15 +71,30 @@ static void test_a_turn_has_the_same_limits_beside_any_short_way(void)
 
 static void test_a_unit_does_not_show_in_the_jerk_of_a_slow_axis(void)
 {
-    TEST_ASSERT_EQUAL_DOUBLE(1.0, scale_of_machine(&limits));
+    TEST_ASSERT_EQUAL_DOUBLE(1.0, scale_of_machine(&limits).linear);
+    TEST_ASSERT_EQUAL_DOUBLE(1.0, scale_of_machine(&limits).rotary);
     for (int i = 0; i < 7; i++) {
         const double jerk = 1e3 * maths_power(3.0, -i);
 
         limits.jerk_mm_s3[AXIS_C] = jerk;
-        const double unit = scale_of_machine(&limits) / PATH_UNITS_PER_MM;
+        const double unit = scale_of_machine(&limits).rotary / PATH_UNITS_PER_MM;
 
         TEST_ASSERT_TRUE(unit <= jerk * 1e-9 / 65536.0);
     }
+}
+
+static void test_nor_does_it_beside_linear_axes_that_leave_no_room_for_smaller_ones(void)
+{
+    limits.law = LAW_GENTLE;
+    limits.velocity_mm_s[AXIS_Y] = 20000.0;
+    limits.jerk_mm_s3[AXIS_C] = 1.0;
+    const struct scale s = scale_of_machine(&limits);
+    const double turn = block_to(1.0, 1e3, 1.0).scale;
+
+    TEST_ASSERT_TRUE(s.rotary / PATH_UNITS_PER_MM <= 1.0 * 1e-9 / 65536.0);
+    TEST_ASSERT_TRUE(s.linear > s.rotary);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-15, s.rotary / 1e3, turn);
+    TEST_ASSERT_EQUAL_DOUBLE(s.linear, block_to(1.0, 0.0, 1.0).scale);
 }
 
 static void test_sums_over_the_longest_window_stay_within_64_bits(void)
@@ -96,7 +111,7 @@ static void test_sums_over_the_longest_window_stay_within_64_bits(void)
         for (unsigned box = 0; box < law_boxes(laws[i]); box++) {
             sum *= law_box_cycles(box, cycles);
         }
-        TEST_ASSERT_TRUE(sum / scale_of_machine(&limits) < 9.3e18);
+        TEST_ASSERT_TRUE(sum / scale_of_machine(&limits).linear < 9.3e18);
     }
 }
 
@@ -126,6 +141,7 @@ int main(void)
     RUN_TEST(test_the_programmed_time_stays_what_it_is);
     RUN_TEST(test_a_turn_has_the_same_limits_beside_any_short_way);
     RUN_TEST(test_a_unit_does_not_show_in_the_jerk_of_a_slow_axis);
+    RUN_TEST(test_nor_does_it_beside_linear_axes_that_leave_no_room_for_smaller_ones);
     RUN_TEST(test_sums_over_the_longest_window_stay_within_64_bits);
     RUN_TEST(test_the_longest_way_fits_into_path_positions);
     RUN_TEST(test_what_is_far_slower_than_a_cycle_of_braking_is_come_to_at_rest);
