@@ -13,6 +13,9 @@
  * a joint at feed v uses the part P v + Q v^2 of the jerk limit and R v of the acceleration limit. The blocks beside it
  * leave it that part (block.c): up to BLOCK_SHARE_MAX.
  *
+ * The line between two setpoints leaves out the corner, by D v cycle / 4 at most: C v <= 1 with C = |D| cycle / 4 d over the
+ * axes X, Y, Z, and d what a chord may be off. It binds where a cycle is long beside what the axes can do.
+ *
  * Short blocks. Joints less than three cycles apart add up. With f = min(1, d / (6 cycles)), d the time of the shorter
  * block beside a joint at its ceiling, a joint may use f of the share. If several fall into three cycles, each block
  * between them, of time D_b, bounds f by D_b / (6 cycles) for the joints at its two ends, and the D_b add up to less than three
@@ -46,6 +49,7 @@ struct joint_steps {
     double p_s_mm;   /* P, s/mm */
     double q_s2_mm2; /* Q, s2/mm2 */
     double r_s_mm;   /* R, s/mm */
+    double c_s_mm;   /* C, s/mm */
 };
 
 /* Tangent and curvature by the path, at a place of a block's curve. */
@@ -59,6 +63,17 @@ static void measure_at(const struct block *b, double at_mm, struct point *t, str
     }
 }
 
+/* |D| over X, Y, Z. */
+static double corner_off(const struct point *t0, const struct point *t1)
+{
+    double square = 0.0;
+
+    for (int i = 0; i < AXIS_LINEAR_COUNT; i++) {
+        square += (t1->at[i] - t0->at[i]) * (t1->at[i] - t0->at[i]);
+    }
+    return maths_sqrt(square);
+}
+
 static void joint_measure(const struct block *before, const struct block *after,
                           const struct plan_limits *limits, struct joint_steps *steps)
 {
@@ -67,7 +82,8 @@ static void joint_measure(const struct block *before, const struct block *after,
 
     measure_at(before, before->curve.length_mm, &t0, &k0);
     measure_at(after, 0.0, &t1, &k1);
-    *steps = (struct joint_steps){0.0, 0.0, 0.0};
+    *steps = (struct joint_steps){.c_s_mm = corner_off(&t0, &t1) * cycle /
+                                            (4.0 * limits->chord_error_max_mm)};
     for (int i = 0; i < AXIS_COUNT; i++) {
         if ((limits->axes >> i & 1U) != 0) {
             const double d = maths_abs(t1.at[i] - t0.at[i]);
@@ -81,7 +97,7 @@ static void joint_measure(const struct block *before, const struct block *after,
     }
 }
 
-/* Largest v with P v + Q v^2 <= share and R v <= acceleration: a joint by itself. */
+/* Largest v with P v + Q v^2 <= share, R v <= acceleration and C v <= 1: a joint by itself. */
 static double alone_feed(const struct joint_steps *steps)
 {
     const double p = steps->p_s_mm;
@@ -90,13 +106,14 @@ static double alone_feed(const struct joint_steps *steps)
     const double by_jerk = root > 0.0 ? 2.0 * BLOCK_SHARE_MAX / root : MATHS_INFINITY;
     const double by_acceleration =
         steps->r_s_mm > 0.0 ? JOINT_ACCELERATION / steps->r_s_mm : MATHS_INFINITY;
+    const double by_chord = steps->c_s_mm > 0.0 ? 1.0 / steps->c_s_mm : MATHS_INFINITY;
 
-    return maths_min(by_jerk, by_acceleration);
+    return maths_min(maths_min(by_jerk, by_acceleration), by_chord);
 }
 
 /*
  * The same with f = reach / v, reach = length / (6 cycles) the feed at which blocks stop being short:
- * P v^2 + Q v^3 <= share reach and R v^2 <= acceleration reach. v0, where the larger of the first two terms meets the
+ * P v^2 + Q v^3 <= share reach, R v^2 <= acceleration reach and C v^2 <= reach. v0, where the larger of the first two terms meets the
  * right side, then scaled by the root of the excess: exact for one term, safe for both.
  */
 static double crowded_feed(const struct joint_steps *steps, double reach_mm_s)
@@ -117,6 +134,9 @@ static double crowded_feed(const struct joint_steps *steps, double reach_mm_s)
     }
     if (steps->r_s_mm > 0.0) {
         v = maths_min(v, maths_sqrt(JOINT_ACCELERATION * reach_mm_s / steps->r_s_mm));
+    }
+    if (steps->c_s_mm > 0.0) {
+        v = maths_min(v, maths_sqrt(reach_mm_s / steps->c_s_mm));
     }
     return v;
 }
