@@ -49,14 +49,19 @@ static void follow_landing(struct lead *l)
     l->joint = lead_leave_of(l, k);
 }
 
+/* Cycles since something: one more, or none. */
+static uint32_t since(uint32_t cycles, bool again)
+{
+    if (again) {
+        return 0;
+    }
+    return cycles < LEAD_LONG_AGO ? cycles + 1 : LEAD_LONG_AGO;
+}
+
 static void count_changes(struct lead *l, double change)
 {
-    l->since_plus = change > 0.0                    ? 0
-                    : l->since_plus < LEAD_LONG_AGO ? l->since_plus + 1
-                                                    : LEAD_LONG_AGO;
-    l->since_minus = change < 0.0                     ? 0
-                     : l->since_minus < LEAD_LONG_AGO ? l->since_minus + 1
-                                                      : LEAD_LONG_AGO;
+    l->since_plus = since(l->since_plus, change > 0.0);
+    l->since_minus = since(l->since_minus, change < 0.0);
 }
 
 /*

@@ -33,9 +33,8 @@ struct lead_low {
 /* Where the lead point is in a ceiling. */
 struct lead_place {
     const struct ceiling *ceiling; /* NULL: none */
-    uint32_t piece; /* the ceiling's count: beyond its end. At a stop: the first behind it */
-    bool
-        late; /* something that was not known before begins here, but it is too fast for that yet: */
+    uint32_t piece;      /* the ceiling's count: beyond its end. At a stop: the first behind it */
+    bool late;           /* too fast for something that begins here and was not known before: */
     uint64_t late_start; /* it starts here for the setpoint, */
     double late_a;       /* and this acceleration still counts, as was promised */
     /* from the setpoint's piece to the lead point's, feeds rising: the first is the lowest */
@@ -76,8 +75,7 @@ struct lead {
     struct lead_place here;
     struct lead_place coming; /* in the next ceiling */
     uint64_t joint;           /* the next one to land on, where there is one */
-    double
-        landing_feed; /* for it: as was promised until it can come down to what the ceiling says now */
+    double landing_feed; /* as was promised for it, until it can come down to what is said now */
     struct landing_run run;
     struct lead_halt halt;
 };

@@ -7,10 +7,11 @@
  *
  *     w^2 <= 2 a (E - s - w k)
  *
- * with k the cycles until it may brake, a the lowest acceleration of the piece that it is in, of the motion's blocks and of
- * the joint that ends the span. It speeds up only so far that this holds when it may brake again, and takes on the
- * acceleration of what is behind E only if it holds with that; until then it keeps the one it had (lead_place.c). Wherever a hold keeps the limits so does a halt: no window, joint or promise of a ceiling depends on the
- * operator's switch.
+ * with k the cycles until it may brake, a the lowest acceleration of the piece that it is in, of the motion's blocks and
+ * of the joint that ends the span. It speeds up only so far that this holds when it may brake again, and takes on the
+ * acceleration of what is behind E only if it holds with that; until then it keeps the one it had (lead_place.c).
+ * Wherever a hold keeps the limits so does a halt: no window, joint or promise of a ceiling depends on the operator's
+ * switch.
  *
  * Too fast for the next end it slows down as in a hold, and so on until there is one that it can rest at. If that end is a
  * joint which has to be landed on in motion, the next one is in the span behind. The ceiling's own stops need nothing.

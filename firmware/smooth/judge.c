@@ -7,8 +7,9 @@
 /* Rounding of limits. */
 #define LIMIT 0.999f
 
-/* Part of its acceleration that an axis at its highest velocity is left for changes of rate (override, hold). */
-#define CHANGE_PART 0.06
+/* Parts of its acceleration that an axis at its highest velocity is left for changes of rate (override, hold). */
+#define CHANGE_LEAST     0.06
+#define CHANGE_MOST_PART 0.2
 
 /* Parts of the jerk that beginning to change the rate may need, and changing it in a bend: the curve needs the rest. */
 #define ROUNDING_PART 0.3
@@ -31,6 +32,12 @@
 
 /* A corner is passed so many pieces from where its place is, at most. */
 #define CORNER_PIECES 3
+
+/* Pieces of the curve handed on that tell how much of the route is behind it. */
+#define BEHIND_PIECES 4
+
+/* Part of what the order of the route leaves, which the curve between the places looked at does not need. */
+#define ORDER_PART 0.3
 
 /* Corners of lines that turn less are within the tube anyway. */
 #define CORNER_MIN 0.005f
@@ -84,25 +91,52 @@ void judge_need(const struct window *w, const struct route *r, unsigned piece,
 }
 
 /*
- * Rounded over what the axes need from no acceleration to all of it, A/J; where that is too long, a change is so much
- * slower that no axis needs more than its part of the jerk for it.
+ * The lead point comes to rest from the full rate over the pieces that it knows, n of d s: r' = 1/(2 n d). Less would make it
+ * slow before the end of what is known, over and over; more is not worth what it takes from the curve.
  */
-void judge_change(const struct smooth_limits *limits, struct judge_change *change)
+static double change_of_axis_at_rest(const struct smooth_limits *limits, double interval_s,
+                                     int axis)
+{
+    const double most = limits->acceleration_mm_s2[axis] / limits->velocity_mm_s[axis];
+    const double needed = 1.0 / (2.0 * SMOOTH_AHEAD_PIECES * interval_s);
+
+    return maths_clamp(needed, CHANGE_LEAST * most, CHANGE_MOST_PART * most);
+}
+
+/*
+ * Rounded over what the axes need from no acceleration to all of it, A/J; where that is too long, a change is so much
+ * slower that no axis needs more than its part of the jerk for it: V r'/R <= part J.
+ */
+void judge_change(const struct smooth_limits *limits, double interval_s,
+                  struct judge_change *change)
 {
     double rounding_s = limits->cycle_s;
+    double most = MATHS_INFINITY;
 
     change->by = MATHS_INFINITY;
     for (int i = 0; i < AXIS_COUNT; i++) {
-        const double a = limits->acceleration_mm_s2[i];
-
         if ((limits->axes >> i & 1U) != 0) {
-            change->by = maths_min(change->by, CHANGE_PART * a / limits->velocity_mm_s[i]);
-            rounding_s = maths_max(rounding_s, a / limits->jerk_mm_s3[i]);
+            const double ramp_s = limits->acceleration_mm_s2[i] / limits->jerk_mm_s3[i];
+
+            change->by = maths_min(change->by, change_of_axis_at_rest(limits, interval_s, i));
+            rounding_s = maths_max(rounding_s, ramp_s);
+            most =
+                maths_min(most, ROUNDING_PART * limits->jerk_mm_s3[i] / limits->velocity_mm_s[i]);
         }
     }
     change->rounding_s = maths_min(rounding_s, ROUNDING_CYCLES_MAX * limits->cycle_s);
-    change->by *= maths_min(1.0, ROUNDING_PART / CHANGE_PART * change->rounding_s / rounding_s);
+    if (change->rounding_s < rounding_s) {
+        change->by = maths_min(change->by, most * change->rounding_s);
+    }
     change->rounded = change->by / change->rounding_s;
+}
+
+void judge_leave(const struct judge_change *change, struct route_slots *slots)
+{
+    for (unsigned i = 0; i < slots->count; i++) {
+        slots->left[i] =
+            1.0f - (float)change->by * slots->velocity_mm_s[i] / slots->acceleration_mm_s2[i];
+    }
 }
 
 /*
@@ -219,21 +253,39 @@ static float within_of(const struct window *w, const struct route *r, unsigned p
     return single_min(JUDGED * tolerance_mm, tolerance_mm - off);
 }
 
-static bool place_is_near(const struct window *w, const struct route *r, unsigned piece,
-                          const float weight[4], const struct window_spot *spot, float within_mm)
+/*
+ * The curve follows the route in order within P where places s that do not fall can be found within P of it. Beside a foot at
+ * s_f, d away, those are s_f - h ... s_f + h, h^2 = P^2 - d^2. None may lie before the beginning of an earlier one; of a
+ * part of them, since only some places are looked at. By how much one does:
+ */
+static float out_of_order(const struct route *r, const struct route_foot *foot, double *behind_mm)
 {
-    struct route_foot foot = {.element = w->element[piece + 1],
-                              .at_mm = window_at(w, piece, weight)};
+    const double d = (double)foot->distance_mm;
+    const double half_mm =
+        ORDER_PART * maths_sqrt(maths_max(0.0, r->tolerance_mm * r->tolerance_mm - d * d));
+    const float before_mm = (float)(*behind_mm - foot->at_mm - half_mm);
+
+    *behind_mm = maths_max(*behind_mm, foot->at_mm - half_mm);
+    return before_mm;
+}
+
+/* The place on the route beside one of the curve. */
+static void find_foot(const struct window *w, const struct route *r, unsigned piece,
+                      const float weight[4], struct route_foot *foot)
+{
+    struct window_spot spot;
     double from;
     double to;
     double ignored;
     double p[AXIS_COUNT];
 
+    foot->element = w->element[piece + 1];
+    foot->at_mm = window_at(w, piece, weight);
     window_reach(w, piece + 1, &from, &ignored);
     window_reach(w, piece + 2 < w->count - 1 ? piece + 2 : piece + 1, &ignored, &to);
-    window_place(w, r, spot, p);
-    route_foot(r, p, from, to, &foot);
-    return foot.distance_mm <= within_mm;
+    window_spot(w, r, piece, weight, &spot);
+    window_place(w, r, &spot, p);
+    route_foot(r, p, from, to, foot);
 }
 
 /* Is a chord between the places looked at in a piece near enough to the corner? */
@@ -299,28 +351,45 @@ static bool passes_corners(const struct window *w, const struct route *r, unsign
     return true;
 }
 
-static bool piece_is_good(const struct window *w, const struct route *r, unsigned piece)
+/* How far the piece leaves the tolerance, or the order, at the first place that does; 0 or less: none does. */
+static float beyond_of(const struct window *w, const struct route *r, unsigned piece,
+                       double *behind_mm)
 {
     const float within_mm = within_of(w, r, piece);
+    float beyond_mm = 0.0f;
 
-    for (unsigned k = 1; k <= PLACES; k++) {
-        struct window_spot spot;
+    for (unsigned k = 1; k <= PLACES && !(beyond_mm > 0.0f); k++) {
+        struct route_foot foot;
         float weight[4];
 
         window_weights((float)k / PLACES, weight);
-        window_spot(w, r, piece, weight, &spot);
-        if (!place_is_near(w, r, piece, weight, &spot, within_mm)) {
-            return false;
-        }
+        find_foot(w, r, piece, weight, &foot);
+        beyond_mm = single_max(foot.distance_mm - within_mm, out_of_order(r, &foot, behind_mm));
     }
-    return passes_corners(w, r, piece, w->count - 3);
+    return beyond_mm;
 }
 
-unsigned judge_pieces(const struct window *w, const struct route *r, unsigned count)
+double judge_behind(const struct window *w, const struct route *r, unsigned count)
+{
+    double behind_mm = 0.0;
+
+    for (unsigned i = count > BEHIND_PIECES ? count - BEHIND_PIECES : 0; i < count; i++) {
+        (void)beyond_of(w, r, i, &behind_mm);
+    }
+    return behind_mm;
+}
+
+unsigned judge_pieces(const struct window *w, const struct route *r, unsigned count,
+                      double behind_mm, float *beyond_mm)
 {
     unsigned good = 0;
 
-    while (good < count && piece_is_good(w, r, good)) {
+    *beyond_mm = 0.0f;
+    while (good < count) {
+        *beyond_mm = beyond_of(w, r, good, &behind_mm);
+        if (*beyond_mm > 0.0f || !passes_corners(w, r, good, w->count - 3)) {
+            return good;
+        }
         good++;
     }
     return good;

@@ -27,8 +27,11 @@ struct judge_change {
     double rounding_s; /* over which it is rounded */
 };
 
-/* What a machine's axes are left for changes of rate. */
-void judge_change(const struct smooth_limits *limits, struct judge_change *change);
+/* What a machine's axes are left for changes of rate, where a piece takes so long. */
+void judge_change(const struct smooth_limits *limits, double interval_s,
+                  struct judge_change *change);
+/* And what they are left for the curve: sets the slots' part. */
+void judge_leave(const struct judge_change *change, struct route_slots *slots);
 void judge_need(const struct window *w, const struct route *r, unsigned piece,
                 struct judge_need *need);
 /*
@@ -39,8 +42,15 @@ float judge_change_on(const struct judge_need *need, const struct route *r,
                       const struct judge_change *change, float rate);
 void judge_rate(const struct judge_need *need, const struct route *r, uint32_t element,
                 const struct judge_change *change, struct judge_rate *rate);
-/* Pieces from the first one on, count at most, that keep the tolerance and pass their corners within it. */
-unsigned judge_pieces(const struct window *w, const struct route *r, unsigned count);
+/* Place on the route that has been left for good after the first count pieces, or 0. */
+double judge_behind(const struct window *w, const struct route *r, unsigned count);
+/*
+ * Pieces from the first one on, count at most, that keep the tolerance, pass their corners within it and follow the route in
+ * order. behind_mm: this far it has been left already. beyond_mm: how far the next piece leaves the tolerance or goes back;
+ * 0 or less if it does not.
+ */
+unsigned judge_pieces(const struct window *w, const struct route *r, unsigned count,
+                      double behind_mm, float *beyond_mm);
 /* Of the first count of these, those that pass every corner beside them without the pieces behind, which may change. */
 unsigned judge_whole(const struct window *w, const struct route *r, unsigned count);
 

@@ -19,6 +19,9 @@
 /* Samples that are smoothed together; half as many where a machine has more axes than lanes. */
 #define SMOOTH_SAMPLES_MAX 80
 
+/* Pieces of the curve that lie before the lead point while programs are read in time. */
+#define SMOOTH_AHEAD_PIECES 256
+
 /* Samples at each end of the window that stay where they are: a cubic piece has four. */
 #define SMOOTH_FIXED 3
 
@@ -29,7 +32,7 @@ struct smooth_limits {
     double jerk_mm_s3[AXIS_COUNT];
     double cycle_s; /* control cycle */
     double
-        chord_mm; /* how far the line through setpoints may leave the curve: A cycle^2/8; set by the smoother */
+        chord_mm; /* the line through setpoints leaves the curve by it: A cycle^2/8; the smoother's */
 };
 
 /*

@@ -5,6 +5,9 @@
 /* Part of the axes' acceleration for the nominal feed along the path; smoothing needs the rest to round its ramps. */
 #define ALONG 0.95f
 
+/* Likewise of their jerk: at a corner one axis slows down while another speeds up, and the path does both at once. */
+#define ALONG_JERK 1.9f
+
 /* Part of the axes' limits for the curvature of arcs. */
 #define BENT 0.9f
 
@@ -51,12 +54,24 @@ static float feed_of(const struct curve_bounds *b, const struct route_slots *slo
     return feed;
 }
 
-/*
- * a = sqrt(A^2 - (x_ss v^2)^2) / |x_s|, ALONG of it; and no more than jerk can bring about while a window lasts: route.h
- */
-static float along_of(const struct curve_bounds *b, const struct route *r, float feed)
+/* j = J/|x_s| */
+static float jerk_of(const struct curve_bounds *b, const struct route_slots *slots)
 {
-    const struct route_slots *slots = &r->slots;
+    float jerk = SINGLE_INFINITY;
+
+    for (unsigned i = 0; i < slots->count; i++) {
+        const float first = (float)b->first[slots->axis[i]];
+
+        if (first > 0.0f) {
+            jerk = single_min(jerk, slots->jerk_mm_s3[i] / first);
+        }
+    }
+    return ALONG_JERK * jerk;
+}
+
+/* a = sqrt(A^2 - (x_ss v^2)^2) / |x_s| */
+static float along_of(const struct curve_bounds *b, const struct route_slots *slots, float feed)
+{
     float along = SINGLE_INFINITY;
 
     for (unsigned i = 0; i < slots->count; i++) {
@@ -65,11 +80,10 @@ static float along_of(const struct curve_bounds *b, const struct route *r, float
         const float normal = (float)b->second[slots->axis[i]] * feed * feed;
 
         if (first > 0.0f) {
-            along = single_min(along, ALONG * (single_sqrt(a * a - normal * normal) / first));
-            along = single_min(along, slots->jerk_mm_s3[i] * r->easing_s / first);
+            along = single_min(along, single_sqrt(a * a - normal * normal) / first);
         }
     }
-    return along;
+    return ALONG * along;
 }
 
 void nominal_set(struct route_element *e, const struct curve *curve, float per_mm,
@@ -81,7 +95,8 @@ void nominal_set(struct route_element *e, const struct curve *curve, float per_m
     const float feed = single_min(e->programmed_mm_s, feed_of(&b, &r->slots));
 
     e->feed_mm_s = per_mm * feed;
-    e->along_mm_s2 = per_mm * along_of(&b, r, feed);
+    e->along.acceleration = per_mm * along_of(&b, &r->slots, feed);
+    e->along.jerk = per_mm * jerk_of(&b, &r->slots);
 }
 
 /*
@@ -178,27 +193,60 @@ static float corner_feed(struct route *r, uint32_t index)
 
 static void set_corner(struct route *r, uint32_t index)
 {
-    const float feed = corner_feed(r, index);
-
-    at(r, index)->energy_cap = feed * feed;
+    at(r, index)->start_mm_s = corner_feed(r, index);
 }
 
-/* u = min(cap, u_next + 2 a L), backwards until nothing changes any more. */
-static void pass_back(struct route *r, uint32_t changed)
+static struct braking_limits lower(struct braking_limits a, struct braking_limits b)
 {
-    float next = 0.0f;
+    return (struct braking_limits){single_min(a.acceleration, b.acceleration),
+                                   single_min(a.jerk, b.jerk)};
+}
+
+/* Backwards, which starts of elements bind: those that are slower than what follows asks for. */
+static void find_binding(struct route *r, uint32_t changed)
+{
+    const struct braking_limits none = {SINGLE_INFINITY, SINGLE_INFINITY};
+    struct braking_limits limits = none;
+    double end_mm = r->end_mm;
+    float to = 0.0f;
 
     for (uint32_t i = r->count; i > r->first; i--) {
         struct route_element *e = at(r, i - 1);
-        const float energy =
-            single_min(e->energy_cap, next + 2.0f * e->along_mm_s2 * length_of(r, i - 1));
+        const bool bound = e->binds;
 
-        if (energy == e->energy && i - 1 < changed) {
+        limits = lower(limits, e->along);
+        e->binds = braking_way(&limits, e->start_mm_s, 0.0f, to) <= (float)(end_mm - e->start_mm);
+        if (!e->binds) {
+            continue;
+        }
+        if (bound && i - 1 < changed) {
             return;
         }
-        e->energy = energy;
-        next = energy;
+        limits = none;
+        end_mm = e->start_mm;
+        to = e->start_mm_s;
     }
+}
+
+bool nominal_allows(const struct route *r, uint32_t element, double at_mm, float feed,
+                    float acceleration)
+{
+    const struct route_element *e = route_element(r, element);
+    const float rise = single_max(acceleration, 0.0f);
+    struct braking_limits limits = e->along;
+    uint32_t i = element + 1;
+
+    if (feed + 0.5f * rise * rise / limits.jerk > e->feed_mm_s) {
+        return false;
+    }
+    while (i < r->count && !route_element(r, i)->binds) {
+        limits = lower(limits, route_element(r, i)->along);
+        i++;
+    }
+    const double end_mm = i < r->count ? route_element(r, i)->start_mm : r->end_mm;
+    const float to = i < r->count ? route_element(r, i)->start_mm_s : 0.0f;
+
+    return braking_way(&limits, feed, acceleration, to) <= (float)(end_mm - at_mm);
 }
 
 void nominal_update(struct route *r)
@@ -213,5 +261,5 @@ void nominal_update(struct route *r)
         changed = newest - BEHIND;
         set_corner(r, changed);
     }
-    pass_back(r, changed);
+    find_binding(r, changed);
 }

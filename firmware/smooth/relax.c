@@ -25,10 +25,6 @@
 #define LAST        4
 #define LAST_FAVOUR 30.0f
 
-/* Part of the axes' limits the boxes have: feed changes need the rest (judge.c). */
-#define BOX_BEND  0.94f
-#define BOX_TWIST 0.945f
-
 /* How much less acceleration and jerk are preferred to more, inside their boxes. */
 #define CALM 0.3f
 
@@ -89,8 +85,9 @@ static void set_rows(struct relax_scale *s, const struct route *r, unsigned grou
         const float per_near = tolerance_mm / r->slots.weight[i];
 
         s->bend_most[group][i - first] =
-            BOX_BEND * r->slots.acceleration_mm_s2[i] * d * d / per_near;
-        s->twist_most[group][i - first] = BOX_TWIST * r->slots.jerk_mm_s3[i] * d * d * d / per_near;
+            r->slots.left[i] * r->slots.acceleration_mm_s2[i] * d * d / per_near;
+        s->twist_most[group][i - first] =
+            r->slots.left[i] * r->slots.jerk_mm_s3[i] * d * d * d / per_near;
         widen(&bend, 1.0f / s->bend_most[group][i - first]);
         widen(&twist, 1.0f / s->twist_most[group][i - first]);
     }

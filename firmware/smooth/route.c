@@ -511,13 +511,3 @@ void route_foot(const struct route *r, const double x[], double from_mm, double 
         walk(r, x, from_mm, to_mm, false, f);
     }
 }
-
-float route_feed(const struct route *r, double at_mm, uint32_t *hint)
-{
-    *hint = route_find(r, at_mm, *hint);
-    const struct route_element *e = route_element(r, *hint);
-    const float end_energy = *hint + 1 < r->count ? route_element(r, *hint + 1)->energy : 0.0f;
-    const float ahead = single_max(0.0f, (float)(route_end_of(r, *hint) - at_mm));
-
-    return single_min(e->feed_mm_s, single_sqrt(end_energy + 2.0f * e->along_mm_s2 * ahead));
-}

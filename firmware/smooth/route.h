@@ -11,6 +11,7 @@
 
 #include "geometry/curve.h"
 #include "program/move.h"
+#include "smooth/braking.h"
 #include "smooth/limits.h"
 
 #include <stdbool.h>
@@ -25,6 +26,7 @@ struct route_slots {
     float velocity_mm_s[SMOOTH_SLOTS_MAX];
     float acceleration_mm_s2[SMOOTH_SLOTS_MAX];
     float jerk_mm_s3[SMOOTH_SLOTS_MAX];
+    float left[SMOOTH_SLOTS_MAX]; /* part of both that changes of rate leave the curve (judge.h) */
 };
 
 /* What a curve has that a line between the same two points does not have; its slope is found from those. */
@@ -40,18 +42,18 @@ struct route_bent {
 
 /* Its start stands in the route's coordinates, its end is the start of the next one. */
 struct route_element {
-    double start_mm;           /* on the route */
-    uint32_t line;             /* of the program */
-    uint32_t number;           /* of the motion */
-    float programmed_mm_s;     /* feed; infinite for a rapid */
-    float feed_mm_s;           /* highest nominal feed: programmed, and what its curvature allows */
-    float along_mm_s2;         /* nominal acceleration along it */
-    float energy_cap;          /* highest feed squared at its start, for the corner there, mm2/s2 */
-    float energy;              /* from which everything known that follows can be met */
-    uint16_t turn;             /* |change of direction| at its start, in ROUTE_TURN */
-    unsigned char bent_number; /* bent elements before it, modulo 256 */
-    unsigned char mode : 3;    /* index among the route's modes */
+    double start_mm;       /* on the route */
+    uint32_t line;         /* of the program */
+    uint32_t number;       /* of the motion */
+    float programmed_mm_s; /* feed; infinite for a rapid */
+    float feed_mm_s;       /* highest nominal feed: programmed, and what its curvature allows */
+    struct braking_limits along; /* nominal acceleration and jerk along it */
+    float start_mm_s;            /* highest nominal feed at its start, for the corner there */
+    uint16_t turn;               /* |change of direction| at its start, in ROUTE_TURN */
+    unsigned char bent_number;   /* bent elements before it, modulo 256 */
+    unsigned char mode : 3;      /* index among the route's modes */
     unsigned char bent : 1;
+    unsigned char binds : 1;  /* its start is slower than what follows asks for */
     unsigned char rotary : 1; /* only rotary axes move: its feed counts radians */
 };
 
@@ -76,8 +78,6 @@ struct route {
     uint32_t count;                  /* elements pushed so far */
     uint32_t capacity;               /* elements there is room for */
     unsigned bent_first, bent_count; /* bent ones forgotten, and pushed */
-    float
-        easing_s; /* the mean acceleration of a ramp in what a window knows ahead, as a part of jerk */
     double end_mm;
     double end[AXIS_COUNT]; /* of the newest element; by slot */
     double start[SMOOTH_COORDINATES_MAX];
@@ -139,7 +139,5 @@ void route_corner(const struct route *r, uint32_t index, float before[], float a
  */
 void route_foot(const struct route *r, const double x[], double from_mm, double to_mm,
                 struct route_foot *f);
-/* Highest nominal feed at a place. */
-float route_feed(const struct route *r, double at_mm, uint32_t *hint);
 
 #endif

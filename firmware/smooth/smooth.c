@@ -27,6 +27,9 @@
 /* Times that a window is slowed down because a piece leaves the tolerance. */
 #define ATTEMPTS 16
 
+/* Of what it left the tolerance by before, a slower piece leaves it by so much at most, or slower is no help. */
+#define NEARER 0.95f
+
 /* Part of the tolerance that the chords between setpoints may take, for each axis. */
 #define CHORD_PART 0.1
 
@@ -129,15 +132,6 @@ static double interval_of(const struct smooth *s, const struct smooth_limits *li
     return maths_max(maths_max(s->limits.cycle_s, ramp_s), soonest_interval(limits, tolerance_mm));
 }
 
-/*
- * Half of a window is known ahead of what is kept. In half of that acceleration rises, by jerk times a quarter of the window,
- * in the other half it falls again: half of it is the mean.
- */
-static float easing_of(const struct window *w)
-{
-    return (float)(w->capacity * w->interval_s / 8.0);
-}
-
 /* How far merged lines may leave the programmed ends: G64 Q, but the tolerance is worth more to smoothing. */
 static double merged_within(const struct move *move)
 {
@@ -174,6 +168,8 @@ static void begin(struct smooth *s, const struct move *move)
 
     limit_chord(&limits, tolerance_mm);
     route_init(&s->route, &limits, tolerance_mm);
+    const double interval_s = interval_of(s, &limits, move->tolerance_mm);
+
     s->open = true;
     s->ready = 0;
     s->taken = 0;
@@ -181,15 +177,16 @@ static void begin(struct smooth *s, const struct move *move)
     s->stops = false;
     s->starts = true;
     s->standing = 0;
+    s->behind_mm = 0.0;
     s->known_mm = 0.0;
     s->tried_mm = 0.0;
     s->tried = 0;
     s->mark_mm = 0.0;
     s->idle = 0;
-    judge_change(&limits, &s->change);
+    judge_change(&limits, interval_s, &s->change);
+    judge_leave(&s->change, &s->route.slots);
     s->merge.open = false;
-    window_init(&s->window, &s->route, interval_of(s, &limits, move->tolerance_mm));
-    s->route.easing_s = easing_of(&s->window);
+    window_init(&s->window, &s->route, interval_s);
 }
 
 /* The newest line will not grow any more. */
@@ -229,7 +226,7 @@ static bool feels_end(const struct smooth *s, double at_mm, uint32_t element, do
     const struct route_element *e = route_element(&s->route, element);
     const float ahead = (float)(known_mm - at_mm);
 
-    return e->feed_mm_s * e->feed_mm_s > 2.0f * e->along_mm_s2 * ahead;
+    return braking_way(&e->along, e->feed_mm_s, 0.0f, 0.0f) > ahead;
 }
 
 static bool last_feels_end(const struct smooth *s, double known_mm)
@@ -312,9 +309,18 @@ static unsigned wanted(const struct smooth *s)
     return s->window.at_end || pieces < enough ? pieces : enough;
 }
 
-static unsigned judged(const struct smooth *s)
+/* The pieces that keep it, and by how much the next one does not. */
+struct verdict {
+    unsigned good;
+    float beyond_mm;
+};
+
+static struct verdict judged(const struct smooth *s)
 {
-    return judge_pieces(&s->window, &s->route, wanted(s));
+    struct verdict v;
+
+    v.good = judge_pieces(&s->window, &s->route, wanted(s), s->behind_mm, &v.beyond_mm);
+    return v;
 }
 
 /* Pieces to keep when so many from the first on are good. */
@@ -409,29 +415,58 @@ static bool stands_still(struct smooth *s)
     return s->idle > pieces;
 }
 
+/* The curve as it is, timed once more: where it does not keep the tolerance so, it stays as it was. */
+static unsigned time_last(struct smooth *s, union smooth_scratch *scratch, unsigned good)
+{
+    timing_again(&scratch->timing, &s->window, &s->route);
+    window_extend(&s->window, &s->route);
+    window_locate(&s->window, &s->route);
+    const unsigned again = judged(s).good;
+
+    if (again >= wanted(s)) {
+        return again;
+    }
+    s->window = scratch->timing.window;
+    return good;
+}
+
 /*
- * Where a piece leaves the tolerance, it is slowed down: the slower, the nearer the samples are to each other and the
- * curve to them. What comes well before it is kept, the rest is tried again with the next window.
+ * Where a piece leaves the tolerance, it is slowed down: the slower, the nearer the samples are to each other and the curve to
+ * them. Where that brings it no nearer the curve would only come there later and later.
  */
+static unsigned slow_down(struct smooth *s, union smooth_scratch *scratch)
+{
+    struct verdict v = judged(s);
+    float before_mm = SINGLE_INFINITY;
+
+    for (unsigned i = 0; i < ATTEMPTS && v.good < wanted(s); i++) {
+        if (v.beyond_mm > NEARER * before_mm) {
+            break;
+        }
+        before_mm = v.beyond_mm > 0.0f ? v.beyond_mm : SINGLE_INFINITY;
+        timing_slow(&scratch->timing, &s->window, &s->route, v.good);
+        window_extend(&s->window, &s->route);
+        relax_and_locate(s, scratch);
+        v = judged(s);
+    }
+    return v.good;
+}
+
+/* What comes well before a piece that leaves the tolerance is kept, the rest is tried again with the next window. */
 static void smooth_window(struct smooth *s, union smooth_scratch *scratch)
 {
     const bool goes_on = s->head.proved > 0;
     const unsigned rounds = goes_on ? ROUNDS : ROUNDS_FIRST;
-    unsigned good = 0;
 
     for (unsigned i = 0; i < rounds; i++) {
         relax_and_locate(s, scratch);
-        timing_again(&scratch->timing, &s->window, &s->route, &s->change);
+        timing_again(&scratch->timing, &s->window, &s->route);
         window_extend(&s->window, &s->route);
     }
     relax_and_locate(s, scratch);
-    good = judged(s);
-    for (unsigned i = 0; i < ATTEMPTS && good < wanted(s); i++) {
-        timing_slow(&scratch->timing, &s->window, &s->route, good);
-        window_extend(&s->window, &s->route);
-        relax_and_locate(s, scratch);
-        good = judged(s);
-    }
+    unsigned good = slow_down(s, scratch);
+
+    good = time_last(s, scratch, good);
     s->ends = s->finished && s->window.at_end;
     good = judge_whole(&s->window, &s->route, good);
     s->ready = judge_whole(&s->window, &s->route, kept(s, good));
@@ -483,8 +518,8 @@ static void set_piece(struct smooth *s, struct smooth_piece *piece)
 }
 
 /*
- * At both ends of what begins and ends at rest by itself the axes stand for a while, and the rate of nominal time rises and falls: in half
- * of what it is rounded over, and as long again until the setpoint has come so far.
+ * At both ends of what begins and ends at rest by itself the axes stand for a while, and the rate of nominal time rises and
+ * falls: in half of what it is rounded over, and as long again until the setpoint has come so far.
  */
 static unsigned standing_pieces(const struct smooth *s)
 {
@@ -525,6 +560,9 @@ static void take_standing(struct smooth *s, struct smooth_piece *piece)
 /* Pieces that have been taken leave the window, elements that they have passed the route. */
 static void drop_taken(struct smooth *s)
 {
+    if (s->taken > 0) {
+        s->behind_mm = judge_behind(&s->window, &s->route, s->taken);
+    }
     window_drop(&s->window, &s->route, s->taken);
     s->taken = 0;
     s->ready = 0;

@@ -36,9 +36,8 @@ struct smooth_piece {
     double interval_s;
     struct smooth_rate rate;
     struct smooth_change
-        change; /* rounded over the same time in all pieces in which the axes move */
-    bool
-        stop; /* comes to rest at its end, though the chain goes on: no way on was found in motion */
+        change;  /* rounded over the same time in all pieces in which the axes move */
+    bool stop;   /* comes to rest at its end, though the chain goes on: no way on was found */
     bool rotary; /* no linear axis moves in that motion */
     bool last;   /* of the chain: ends at rest, in the end of the last motion */
 };
@@ -70,6 +69,7 @@ struct smooth {
     struct judge_change change;
     struct move move;  /* of the piece taken last */
     unsigned proved;   /* pieces at the window's beginning that keep the tolerance, as they were */
+    double behind_mm;  /* place on the route that has been left for good (judge.h) */
     double known_mm;   /* end of the route when the window was filled */
     double tried_mm;   /* place its last sample had when the route was not known far enough yet, */
     uint32_t tried;    /* and the element there */
@@ -77,8 +77,7 @@ struct smooth {
     unsigned idle;     /* and pieces kept since then */
     unsigned standing; /* pieces that are still to come, in which the axes stand */
     bool starts;       /* the next piece begins at rest */
-    bool
-        leaves; /* after those the chain goes on; else they end it, or the part of it before a stop */
+    bool leaves;       /* after those the chain goes on; else they end it, or a part of it */
     struct smooth_piece stand;
     bool stops;     /* the last of the ready ones is a stop */
     bool ends;      /* the window's end is that of the chain */

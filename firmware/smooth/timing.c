@@ -1,87 +1,84 @@
 #include "smooth/timing.h"
 
-#include "smooth/judge.h"
 #include "smooth/single.h"
-
-/* The step from what is to what should be, and its bounds: the samples move after that, so it is taken with care. */
-#define RATE_LOW  0.5f
-#define RATE_HIGH 1.3f
-
-/* Pieces to both sides that share the lowest rate, and over which rates are averaged. */
-#define AROUND 1
 
 /* How much slower, and for how many pieces around, when a tolerance cannot be kept. */
 #define SLOWER        0.8f
 #define SLOWER_AROUND 12
 
-static unsigned pieces_of(const struct window *w)
+/* Where a new sample is on the window before: its piece, how far in that, and b there. */
+struct spot {
+    unsigned piece;
+    float fraction;
+    float energy;
+    float slope; /* b' */
+};
+
+static float rate_at(const struct tempo *p, float u)
 {
-    return w->count - 3;
+    float slope;
+
+    return single_sqrt(tempo_energy(p, u, &slope));
 }
 
-/* Rate at which a piece would just keep every limit, and the programmed feed: its power of 3/4 is taken. */
-static float wanted(const struct window *w, const struct route *r,
-                    const struct judge_change *change, unsigned piece)
+/* One interval on, u' = r(u), by Runge and Kutta's rule of fourth order. */
+static float next(const struct tempo *p, float u)
 {
-    struct judge_need need;
-    struct judge_rate rate;
+    const float a = rate_at(p, u);
+    const float b = rate_at(p, u + 0.5f * a);
+    const float c = rate_at(p, u + 0.5f * b);
+    const float d = rate_at(p, u + c);
 
-    judge_need(w, r, piece, &need);
-    judge_rate(&need, r, w->element[piece + 1], change, &rate);
-    const float root = single_sqrt(single_sqrt(single_min(rate.most, rate.programmed)));
-
-    return single_clamp(root * root * root, RATE_LOW, RATE_HIGH);
+    return u + (a + 2.0f * (b + c) + d) * (1.0f / 6.0f);
 }
 
-static void lowest_around(struct timing *t, unsigned pieces)
+static struct spot spot_at(const struct timing *t, float u)
 {
-    for (unsigned i = 0; i < pieces; i++) {
-        const unsigned from = i < AROUND ? 0 : i - AROUND;
-        const unsigned to = i + AROUND < pieces ? i + AROUND : pieces - 1;
-
-        t->least[i] = t->rate[from];
-        for (unsigned k = from + 1; k <= to; k++) {
-            t->least[i] = single_min(t->least[i], t->rate[k]);
-        }
-    }
-}
-
-static void mean_around(struct timing *t, unsigned pieces)
-{
-    for (unsigned i = 0; i < pieces; i++) {
-        const unsigned from = i < AROUND ? 0 : i - AROUND;
-        const unsigned to = i + AROUND < pieces ? i + AROUND : pieces - 1;
-        float sum = 0.0f;
-
-        for (unsigned k = from; k <= to; k++) {
-            sum += t->least[k];
-        }
-        t->rate[i] = sum / (float)(to - from + 1);
-    }
-}
-
-/* Rate at u samples from the first one of w, linear between the middles of pieces. */
-static float rate_at(const struct timing *t, unsigned pieces, float u)
-{
-    const float middle = single_clamp(u - 1.5f, 0.0f, (float)(pieces - 1));
-    const unsigned i = (unsigned)middle;
-    const float f = middle - (float)i;
-
-    return i + 1 < pieces ? (1.0f - f) * t->rate[i] + f * t->rate[i + 1] : t->rate[i];
-}
-
-static void append(struct window *w, const struct window *from, const struct route *r, float u)
-{
-    const unsigned last = from->count - 4;
+    const unsigned last = t->window.count - 4;
     const unsigned piece = u - 1.0f < (float)last ? (unsigned)(u - 1.0f) : last;
+    struct spot s = {.piece = piece, .fraction = single_min(1.0f, u - 1.0f - (float)piece)};
+
+    s.energy = tempo_energy(&t->tempo, u, &s.slope);
+    return s;
+}
+
+/*
+ * The control point that has the curve where it was: c = x - (x'' b + x' b'/2)/6, its own second derivative being the one of
+ * time (Schoenberg's quasi-interpolant of third order).
+ */
+static void stand_off(const struct window *from, unsigned group, const struct spot *s,
+                      struct window_spot *spot)
+{
+    const lanes_int *c = from->x + (size_t)group * from->capacity + s->piece;
+    const lanes step0 = lanes_of(c[1] - c[0]);
+    const lanes step1 = lanes_of(c[2] - c[1]);
+    const lanes step2 = lanes_of(c[3] - c[2]);
+    const lanes third = step2 - 2.0f * step1 + step0;
+    const lanes second = step1 - step0 + s->fraction * third;
+    const lanes first =
+        0.5f * (step0 + step1) + s->fraction * (step1 - step0 + (0.5f * s->fraction) * third);
+    const lanes off = (second * s->energy + first * (0.5f * s->slope)) * (1.0f / 6.0f);
+
+    for (unsigned k = 0; k < SMOOTH_LANES; k++) {
+        spot->group[group][k] -= single_round(off[k]);
+    }
+}
+
+static void append(const struct timing *t, struct window *w, const struct route *r, float u)
+{
+    const struct window *from = &t->window;
+    const struct spot s = spot_at(t, u);
     struct window_spot spot;
     float weight[4];
 
-    window_weights(single_min(1.0f, u - 1.0f - (float)piece), weight);
-    window_spot(from, r, piece, weight, &spot);
+    window_weights(s.fraction, weight);
+    window_spot(from, r, s.piece, weight, &spot);
+    for (unsigned g = 0; g < r->slots.groups; g++) {
+        stand_off(from, g, &s, &spot);
+    }
     window_set(w, r, w->count, &spot);
-    w->at_mm[w->count] = window_at(from, piece, weight);
-    w->element[w->count] = from->element[piece + 1];
+    w->at_mm[w->count] = window_at(from, s.piece, weight);
+    w->element[w->count] = from->element[s.piece + 1];
     w->count++;
 }
 
@@ -102,52 +99,35 @@ static void append_end(struct window *w, const struct window *from, const struct
     w->at_end = true;
 }
 
-/* Samples of the window before at the rates found, by the midpoint rule. */
+/* Samples of the window before at the pace found. */
 static void resample(struct timing *t, struct window *w, const struct route *r)
 {
-    const struct window *from = &t->window;
-    const unsigned pieces = pieces_of(from);
-    const float end = (float)(from->count - 2);
+    const float end = (float)(w->count - 2);
     float u = SMOOTH_FIXED - 1;
 
+    t->window = *w;
     w->count = SMOOTH_FIXED;
     w->at_end = false;
     while (w->count + SMOOTH_FIXED < w->capacity) {
-        const float half = u + 0.5f * rate_at(t, pieces, u);
-
-        u += rate_at(t, pieces, half);
+        u = next(&t->tempo, u);
         if (u >= end) {
-            if (from->at_end) {
-                append_end(w, from, r);
+            if (t->window.at_end) {
+                append_end(w, &t->window, r);
             }
             return;
         }
-        append(w, from, r, u);
+        append(t, w, r, u);
     }
 }
 
-void timing_again(struct timing *t, struct window *w, const struct route *r,
-                  const struct judge_change *change)
+void timing_again(struct timing *t, struct window *w, const struct route *r)
 {
-    const unsigned pieces = pieces_of(w);
-
-    for (unsigned i = 0; i < pieces; i++) {
-        t->rate[i] = wanted(w, r, change, i);
-    }
-    lowest_around(t, pieces);
-    mean_around(t, pieces);
-    t->window = *w;
+    tempo_find(&t->tempo, w, r);
     resample(t, w, r);
 }
 
 void timing_slow(struct timing *t, struct window *w, const struct route *r, unsigned piece)
 {
-    const unsigned pieces = pieces_of(w);
-
-    for (unsigned i = 0; i < pieces; i++) {
-        t->least[i] = i + SLOWER_AROUND > piece && i < piece + SLOWER_AROUND ? SLOWER : 1.0f;
-    }
-    mean_around(t, pieces);
-    t->window = *w;
+    tempo_slow(&t->tempo, w, piece, SLOWER_AROUND, SLOWER);
     resample(t, w, r);
 }

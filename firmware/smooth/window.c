@@ -1,5 +1,6 @@
 #include "smooth/window.h"
 
+#include "smooth/nominal.h"
 #include "smooth/single.h"
 
 #include <assert.h>
@@ -164,20 +165,61 @@ void window_rest(struct window *w, const struct route *r)
     }
 }
 
-/* The next place at the nominal feed: no faster than acceleration and what follows allow. */
+/* Halvings in search of the next acceleration. */
+#define HALVINGS 5
+
+/* Where the route is gone along. */
+struct going {
+    uint32_t element;
+    float feed;
+    float acceleration;
+};
+
+static float changed(const struct going *g, const struct braking_limits *along, float interval,
+                     float part)
+{
+    return single_clamp(g->acceleration + part * along->jerk * interval, -along->acceleration,
+                        along->acceleration);
+}
+
+/* With this acceleration for an interval, can all be met that follows? */
+static bool can_go(const struct route *r, double here, const struct going *g, float a,
+                   float interval)
+{
+    const float feed = g->feed + a * interval;
+    const double there = here + (double)(feed * interval);
+
+    return there < route_end(r) && nominal_allows(r, route_find(r, there, g->element), there,
+                                                  feed + 0.5f * a * interval, a);
+}
+
+/* The next place at the nominal feed: no faster than acceleration, jerk and what follows allow. */
 static double next_place(const struct window *w, const struct route *r)
 {
-    const unsigned last = w->count - 1;
-    const double here = w->at_mm[last];
-    const float interval = (float)w->interval_s;
-    const float moved = (float)(here - w->at_mm[last - 1]) / interval;
-    uint32_t hint = w->element[last];
-    const float along = route_element(r, hint)->along_mm_s2;
-    float feed = moved + along * interval;
+    const double *at = &w->at_mm[w->count - 1];
+    const float d = (float)w->interval_s;
+    const float step = (float)(at[0] - at[-1]);
+    struct going g = {w->element[w->count - 1], step / d,
+                      (step - (float)(at[-1] - at[-2])) / (d * d)};
+    const struct braking_limits *along = &route_element(r, g.element)->along;
+    const float least = 0.25f * single_min(along->acceleration, along->jerk * d) * d;
+    float low = -1.0f;
+    float high = 1.0f;
 
-    feed = single_min(feed, route_feed(r, here, &hint) + 0.5f * along * interval);
-    feed = single_min(feed, route_feed(r, here + (double)(feed * interval), &hint));
-    return here + (double)(single_max(feed, 0.25f * along * interval) * interval);
+    g.acceleration = changed(&g, along, d, 0.0f);
+    if (can_go(r, at[0], &g, changed(&g, along, d, high), d)) {
+        low = high;
+    }
+    for (unsigned i = 0; i < HALVINGS && low < high; i++) {
+        const float middle = 0.5f * (low + high);
+
+        if (can_go(r, at[0], &g, changed(&g, along, d, middle), d)) {
+            low = middle;
+        } else {
+            high = middle;
+        }
+    }
+    return at[0] + (double)(single_max(g.feed + changed(&g, along, d, low) * d, least) * d);
 }
 
 void window_extend(struct window *w, const struct route *r)

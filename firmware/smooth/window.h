@@ -22,8 +22,7 @@ struct window {
     unsigned capacity;
     bool at_end; /* its last samples are the end of the route, where the path comes to rest */
     double interval_s;
-    double
-        reach_min_mm; /* along the route to both sides, in which a sample's place is looked for */
+    double reach_min_mm; /* along the route to both sides, where a sample's place is looked for */
     double origin[AXIS_COUNT];                /* by slot, mm */
     double unit_mm[AXIS_COUNT];               /* by slot */
     float weighted_unit_mm[SMOOTH_SLOTS_MAX]; /* what it counts in a distance (limits.h) */

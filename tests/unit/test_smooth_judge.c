@@ -20,6 +20,9 @@ void tearDown(void)
 {
 }
 
+/* That of a tolerance of 0.02 mm at 1000 mm/s2. */
+#define INTERVAL_S 4e-3
+
 /* One axis. */
 static void set_machine(double velocity, double acceleration, double jerk)
 {
@@ -29,7 +32,7 @@ static void set_machine(double velocity, double acceleration, double jerk)
     limits.velocity_mm_s[AXIS_X] = velocity;
     limits.acceleration_mm_s2[AXIS_X] = acceleration;
     limits.jerk_mm_s3[AXIS_X] = jerk;
-    judge_change(&limits, &change);
+    judge_change(&limits, INTERVAL_S, &change);
     route_init(&route, &limits, 0.01);
 }
 
@@ -61,6 +64,20 @@ static void test_a_change_is_rounded_over_the_time_that_the_acceleration_takes(v
     TEST_ASSERT_DOUBLE_WITHIN(1e-15, 0.02, change.rounding_s);
     TEST_ASSERT_DOUBLE_WITHIN(1e-15, 0.6, change.by);
     TEST_ASSERT_DOUBLE_WITHIN(1e-12, 30.0, change.rounded);
+}
+
+/* V r' V/A of the acceleration: 6 % at least, 20 % at most, and between what a stop over 256 pieces needs. */
+static void test_shorter_pieces_leave_more_for_changes_up_to_a_fifth(void)
+{
+    set_machine(100.0, 250.0, 50000.0);
+    judge_change(&limits, 20e-3, &change);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-12, 0.06 * 2.5, change.by);
+    judge_change(&limits, 6e-3, &change);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-12, 1.0 / (2.0 * 256.0 * 6e-3), change.by);
+    judge_change(&limits, 1e-3, &change);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-12, 0.2 * 2.5, change.by);
+    judge_leave(&change, &route.slots);
+    TEST_ASSERT_FLOAT_WITHIN(1e-6f, 0.8f, route.slots.left[0]);
 }
 
 static void test_a_straight_piece_at_its_limits_keeps_nearly_the_nominal_rate(void)
@@ -123,6 +140,7 @@ int main(void)
 {
     UNITY_BEGIN();
     RUN_TEST(test_a_change_is_rounded_over_the_time_that_the_acceleration_takes);
+    RUN_TEST(test_shorter_pieces_leave_more_for_changes_up_to_a_fifth);
     RUN_TEST(test_a_straight_piece_at_its_limits_keeps_nearly_the_nominal_rate);
     RUN_TEST(test_no_machine_makes_a_curve_stand_that_needs_half_its_limits);
     RUN_TEST(test_the_rate_is_never_nothing);
