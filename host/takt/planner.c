@@ -6,6 +6,7 @@
 #include "takt/interrupt.h"
 #include "takt/message.h"
 
+#include <assert.h>
 #include <stdlib.h>
 
 struct planner {
@@ -47,6 +48,9 @@ static void start_planner(struct planner *p, const struct session *s)
     path_init(&p->path, &limits, &config.start);
     motion_init(&p->motion, &p->path, &config.start, false);
 }
+
+static_assert(SMOOTH_AHEAD_PIECES == MACHINE_LOOK_AHEAD_MAX,
+              "smoothing leaves so much for a stop within the blocks that are known");
 
 static void read_move(struct planner *p)
 {

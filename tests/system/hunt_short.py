@@ -24,4 +24,5 @@ def hunt(claim, *arguments):
 
 hunt("exact paths hold on any machine", "30", "1", "--exact")
 hunt("smoothed paths hold their limits", "12", "1", "--machines", "builtin", "--kinds", KINDS)
+hunt("corners of exact paths are not cut where a cycle is long", "1", "40033", "--exact")
 t.finish()
