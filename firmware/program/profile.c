@@ -126,7 +126,7 @@ static bool offset(struct profile_segment *s, double d)
 
         s->start = along(s->centre, f, minus(s->start, s->centre));
         s->end = along(s->centre, f, minus(s->end, s->centre));
-        return f * r >= PROFILE_SHORT_MM;
+        return f * r > PROFILE_SAME_MM;
     }
     const struct profile_point way = minus(s->end, s->start);
     const struct profile_point right = {way.v, -way.u};
@@ -269,7 +269,7 @@ bool profile_round(struct profile *p)
     for (unsigned i = 0; i < p->count; i++) {
         const struct profile_segment *s = &p->segment[i];
 
-        if (!is_corner(s) && (i == 0 || profile_distance(&s->start, &s->end) >= PROFILE_SHORT_MM)) {
+        if (!is_corner(s) && (i == 0 || profile_distance(&s->start, &s->end) > PROFILE_SAME_MM)) {
             p->segment[kept++] = *s;
         }
     }
@@ -427,10 +427,23 @@ static void add_wall(struct profile_path *path, const struct profile_point *from
     add(path, &wall);
 }
 
-/* Arcs round corners that hardly open are left out, their neighbours lengthened. */
-static bool is_gap(const struct over *o)
+/*
+ * Arcs round corners that hardly open are left out, their neighbours lengthened. That leads outside where they touch both
+ * neighbours, and would cut where another curve ends them.
+ */
+static bool is_gap(const struct profile *p, double d, const struct over *o)
 {
-    return o->corner && o->s.start.u - o->s.end.u < GAP_MM;
+    const unsigned i = o->number / 2;
+
+    if (!o->corner || i == 0 || i + 1 == p->count || o->s.start.u - o->s.end.u >= GAP_MM) {
+        return false;
+    }
+    struct profile_segment before = p->segment[i];
+    struct profile_segment behind = p->segment[i + 1];
+
+    return offset(&before, d) && offset(&behind, d) &&
+           profile_distance(&before.end, &o->s.start) < PROFILE_SHORT_MM &&
+           profile_distance(&behind.start, &o->s.end) < PROFILE_SHORT_MM;
 }
 
 /* The last piece has been added: it begins where the one before it ends. */
@@ -471,7 +484,7 @@ static void walk(const struct profile *p, double d, struct profile_point a,
             continue;
         }
         last = o.number;
-        if (is_gap(&o)) {
+        if (is_gap(p, d, &o)) {
             gap = true;
             continue;
         }
@@ -499,7 +512,7 @@ static void lift(const struct profile *p, double d, struct profile_point *end)
 static double signed_distance(const struct profile *p, double distance_mm)
 {
     const struct profile_segment *way = &p->segment[0];
-    const struct profile_point to_end = minus(p->segment[p->count - 1].start, way->start);
+    const struct profile_point to_end = minus(p->segment[p->count - 1].end, way->start);
 
     return cross(to_end, minus(way->end, way->start)) < 0.0 ? -distance_mm : distance_mm;
 }

@@ -236,11 +236,26 @@ static void test_finishing_keeps_the_distance_everywhere(void)
     }
 }
 
+/*
+ * What such profiles have: a last wall that dips below the way to the profile, a corner between two corners that is hardly
+ * there, an arc that the distance swallows but for 0.5 um, an arc left over behind a level, a wall of 1 um.
+ */
+static void test_profiles_with_little_room_keep_the_distance_too(void)
+{
+    static const uint64_t seeds[] = {14243, 7449, 115621, 118998, 121318, 125762};
+
+    for (unsigned i = 0; i < sizeof(seeds) / sizeof(seeds[0]); i++) {
+        try_profile(seeds[i], TURNING_ROUGH);
+        try_profile(seeds[i], TURNING_FINISH);
+    }
+}
+
 int main(int argc, char **argv)
 {
     read_number_and_first(argc, argv, &profiles, &first_seed);
     UNITY_BEGIN();
     RUN_TEST(test_no_move_is_nearer_to_the_profile_than_its_distance);
     RUN_TEST(test_finishing_keeps_the_distance_everywhere);
+    RUN_TEST(test_profiles_with_little_room_keep_the_distance_too);
     return UNITY_END();
 }
