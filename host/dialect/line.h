@@ -85,4 +85,14 @@ bool line_is_assigned(const struct line *l, size_t at);
 
 char line_lower(char c);
 
+/* What O-words go by: <name, or a number without zeros before it. */
+#define LINE_LABEL_MAX 64
+
+/* The label of a line's O-word in lower case, and what stands behind it. False: it has none. */
+bool line_read_label(const struct line *l, char name[LINE_LABEL_MAX], const char **behind);
+/* Does a text begin with a word, which is in lower case? */
+bool line_begins(const char *text, const char *word);
+/* Does a label with this behind it define a subroutine, or a program? */
+bool line_defines_label(const char *behind);
+
 #endif

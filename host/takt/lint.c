@@ -350,3 +350,17 @@ enum command_status lint_program(const struct session *s, double stock_top_mm, u
     *findings = l.findings;
     return status;
 }
+
+bool lint_read_top(const char *text, double *top_mm)
+{
+    char *end;
+
+    *top_mm = 0.0;
+    if (text == NULL)
+        return true;
+    *top_mm = strtod(text, &end);
+    if (end != text && *end == '\0' && *top_mm > -1e6 && *top_mm < 1e6)
+        return true;
+    message_command_error("--stock-top %s: a height in mm is expected", text);
+    return false;
+}
