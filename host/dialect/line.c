@@ -215,6 +215,13 @@ bool line_read(struct line *l, const char *bytes, size_t length)
     return read_words(l);
 }
 
+uint32_t line_whole(double value)
+{
+    if (!(value > 0.0))
+        return 0;
+    return value < (double)UINT32_MAX ? (uint32_t)value : UINT32_MAX;
+}
+
 struct line_word *line_find(struct line *l, char letter, unsigned from)
 {
     for (unsigned i = from; i < l->words; i++) {

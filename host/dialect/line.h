@@ -41,6 +41,9 @@ struct line {
 /* False: it is too long, or has too many words, to be looked at. */
 bool line_read(struct line *l, const char *bytes, size_t length);
 
+/* A value as the number of a program, line or tool: cut to what such a number may be. */
+uint32_t line_whole(double value);
+
 /* The first word of a letter with a value, from a place on; NULL: none. */
 struct line_word *line_find(struct line *l, char letter, unsigned from);
 
