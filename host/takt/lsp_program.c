@@ -101,6 +101,7 @@ static void hear(void *context, const struct message *m)
     else
         (void)snprintf(text, sizeof text, "%s:%u:%u: %s", m->file, (unsigned)m->line,
                        (unsigned)m->column, m->text);
+    lsp_text_clean(text);
     (void)cJSON_AddItemToObject(d, "range", range_of(l->program, here ? m : &elsewhere));
     (void)cJSON_AddNumberToObject(d, "severity", severity(m->kind));
     (void)cJSON_AddStringToObject(d, "source", "takt");
@@ -242,11 +243,12 @@ static const char *meaning_declared(const struct lsp_program *p, const struct li
     return found;
 }
 
-static cJSON *hover(const char *text, cJSON *of)
+static cJSON *hover(char *text, cJSON *of)
 {
     cJSON *h = cJSON_CreateObject();
     cJSON *contents = cJSON_AddObjectToObject(h, "contents");
 
+    lsp_text_clean(text);
     (void)cJSON_AddStringToObject(contents, "kind", "markdown");
     (void)cJSON_AddStringToObject(contents, "value", text);
     (void)cJSON_AddItemToObject(h, "range", of);

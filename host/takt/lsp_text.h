@@ -14,6 +14,9 @@ const char *lsp_text_line(const char *text, size_t text_length, uint32_t line, s
 size_t lsp_text_units(const char *line, size_t length, size_t bytes);
 size_t lsp_text_byte(const char *line, size_t length, size_t units);
 
+/* What is no UTF-8, such as half a character that a message is about, becomes '?'. */
+void lsp_text_clean(char *text);
+
 /* The path of a file: URI; of others the URI itself. Owned by the caller; NULL: out of memory. */
 char *lsp_text_path(const char *uri);
 /* And back, for an absolute path. */

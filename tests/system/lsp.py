@@ -101,6 +101,10 @@ found = editor.open(PART, "G21 G90\nG1 X10\nG1 X20 F300 (\U0001f527) M31\n")
 t.check([d[:4] for d in found] == [(1, 1, 0, 2), (1, 2, 17, 20)], "errors", found)
 t.check("needs a feed" in found[0][4] and "M31 = ignore" in found[1][4], "what to do", found)
 
+# A message about half a character is still a text.
+found = editor.change(PART, "G0 X1 é\nG0 X1 \u20ac\n(\U0001f527 €) G0 X1 €\n")
+t.check([d[1:4] for d in found] == [(0, 6, 7), (1, 6, 7), (2, 13, 14)], "characters", found)
+
 # Findings, as lint finds them; none is left when they are mended.
 found = editor.change(PART, "G21 G90 F300\nG0 Z5\nG1 X1\nM2\n")
 t.check(len(found) == 1 and found[0][:4] == (2, 2, 0, 5) and "spindle stands" in found[0][4], "findings", found)
