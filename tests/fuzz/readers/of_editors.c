@@ -1,8 +1,11 @@
+#define _POSIX_C_SOURCE 200809L
+
 /* What an editor sends to `takt lsp`. */
 #include "readers.h"
 
 #include "takt/lsp.h"
 #include "takt/lsp_frames.h"
+#include "takt/lsp_text.h"
 
 #include <cjson/cJSON.h>
 #include <string.h>
@@ -16,6 +19,18 @@ static void require_json(void *context, const char *json)
     (void)context;
     require(message != NULL);
     cJSON_Delete(message);
+}
+
+/* Whatever the program's bytes are. What names it comes from the editor, and is ASCII here. */
+static void require_text(void *context, const char *json)
+{
+    char *copy = strdup(json);
+
+    require(copy != NULL);
+    lsp_text_clean(copy);
+    require(strcmp(copy, json) == 0);
+    free(copy);
+    require_json(context, json);
 }
 
 /*
@@ -64,14 +79,14 @@ static cJSON *about(unsigned line, unsigned character)
 
 static void hear_program(const struct options *options, const uint8_t *data, size_t size)
 {
-    struct lsp server = {.options = options, .write = require_json, .initialized = true};
+    struct lsp server = {.options = options, .write = require_text, .initialized = true};
     char *text = malloc(size + 1);
     cJSON *open = about(0, 0);
     cJSON *notification = cJSON_CreateObject();
 
     require(text != NULL);
     for (size_t i = 0; i < size; i++)
-        text[i] = (char)(data[i] == 0 || data[i] >= 0x80 ? '?' : data[i]);
+        text[i] = (char)(data[i] == 0 ? '?' : data[i]);
     text[size] = '\0';
     (void)cJSON_AddStringToObject(cJSON_GetObjectItem(open, "textDocument"), "text", text);
     (void)cJSON_AddStringToObject(notification, "method", "textDocument/didOpen");
