@@ -41,75 +41,23 @@ static double radius(const struct profile_segment *s)
     return profile_distance(&s->start, &s->centre);
 }
 
-/* -- frames -- */
-
-/* (u, v) to (v, -u) */
-static void turn_point(struct profile_point *q)
-{
-    *q = (struct profile_point){q->v, -q->u};
-}
-
-void profile_turn(struct profile *p)
-{
-    for (unsigned i = 0; i < p->count; i++) {
-        turn_point(&p->segment[i].start);
-        turn_point(&p->segment[i].end);
-        if (p->segment[i].kind == PROFILE_ARC) {
-            turn_point(&p->segment[i].centre);
-        }
-    }
-}
-
-static void mirror_point(struct profile_point *q, bool u, bool v)
-{
-    q->u = u ? -q->u : q->u;
-    q->v = v ? -q->v : q->v;
-}
-
-static void mirror_segment(struct profile_segment *s, bool u, bool v)
-{
-    mirror_point(&s->start, u, v);
-    mirror_point(&s->end, u, v);
-    if (s->kind == PROFILE_ARC) {
-        mirror_point(&s->centre, u, v);
-        s->left = s->left != (u != v);
-    }
-}
-
-void profile_mirror(struct profile *p, bool u, bool v)
-{
-    for (unsigned i = 0; i < p->count; i++) {
-        mirror_segment(&p->segment[i], u, v);
-    }
-}
-
-/* An arc must stay above its centre if it turns left, below if right. */
-static bool falls(const struct profile_segment *s)
-{
-    const double way = s->end.u - s->start.u;
-
-    if (s->kind != PROFILE_ARC) {
-        return way <= PROFILE_SHORT_MM;
-    }
-    const double side = s->left ? 1.0 : -1.0;
-
-    return way <= -PROFILE_SHORT_MM && side * (s->start.v - s->centre.v) >= -PROFILE_SHORT_MM &&
-           side * (s->end.v - s->centre.v) >= -PROFILE_SHORT_MM;
-}
-
-bool profile_falls(const struct profile *p, unsigned first)
-{
-    for (unsigned i = first; i < p->count; i++) {
-        const uint8_t kind = p->segment[i].kind;
-
-        if (kind != PROFILE_FILLET && kind != PROFILE_CHAMFER && !falls(&p->segment[i])) {
-            return false;
-        }
-    }
-    return true;
-}
-
 /* -- offsets -- */
+
+/*
+ * The centre of an arc as its decimals have it, moved along the chord w until both ends are as far from it:
+ *
+ *     c + w (|e - c|^2 - |s - c|^2) / 2 |w|^2
+ *
+ * Else a gap would open at the end of its offset.
+ */
+static void centre(struct profile_segment *s)
+{
+    const struct profile_point way = minus(s->end, s->start);
+    const struct profile_point from = minus(s->start, s->centre);
+    const struct profile_point to = minus(s->end, s->centre);
+
+    s->centre = along(s->centre, (dot(to, to) - dot(from, from)) / (2.0 * dot(way, way)), way);
+}
 
 /*
  * To the right by d: a line by d times its normal, an arc of radius r to
@@ -121,12 +69,13 @@ bool profile_falls(const struct profile *p, unsigned first)
 static bool offset(struct profile_segment *s, double d)
 {
     if (s->kind == PROFILE_ARC) {
+        centre(s);
         const double r = radius(s);
         const double f = 1.0 + (s->left ? d : -d) / r;
 
         s->start = along(s->centre, f, minus(s->start, s->centre));
         s->end = along(s->centre, f, minus(s->end, s->centre));
-        return f * r >= PROFILE_SHORT_MM;
+        return f * r > PROFILE_SAME_MM;
     }
     const struct profile_point way = minus(s->end, s->start);
     const struct profile_point right = {way.v, -way.u};
@@ -269,7 +218,7 @@ bool profile_round(struct profile *p)
     for (unsigned i = 0; i < p->count; i++) {
         const struct profile_segment *s = &p->segment[i];
 
-        if (!is_corner(s) && (i == 0 || profile_distance(&s->start, &s->end) >= PROFILE_SHORT_MM)) {
+        if (!is_corner(s) && (i == 0 || profile_distance(&s->start, &s->end) > PROFILE_SAME_MM)) {
             p->segment[kept++] = *s;
         }
     }
@@ -427,10 +376,23 @@ static void add_wall(struct profile_path *path, const struct profile_point *from
     add(path, &wall);
 }
 
-/* Arcs round corners that hardly open are left out, their neighbours lengthened. */
-static bool is_gap(const struct over *o)
+/*
+ * Arcs round corners that hardly open are left out, their neighbours lengthened. That leads outside where they touch both
+ * neighbours, and would cut where another curve ends them.
+ */
+static bool is_gap(const struct profile *p, double d, const struct over *o)
 {
-    return o->corner && o->s.start.u - o->s.end.u < GAP_MM;
+    const unsigned i = o->number / 2;
+
+    if (!o->corner || i == 0 || i + 1 == p->count || o->s.start.u - o->s.end.u >= GAP_MM) {
+        return false;
+    }
+    struct profile_segment before = p->segment[i];
+    struct profile_segment behind = p->segment[i + 1];
+
+    return offset(&before, d) && offset(&behind, d) &&
+           profile_distance(&before.end, &o->s.start) < PROFILE_SHORT_MM &&
+           profile_distance(&behind.start, &o->s.end) < PROFILE_SHORT_MM;
 }
 
 /* The last piece has been added: it begins where the one before it ends. */
@@ -471,7 +433,7 @@ static void walk(const struct profile *p, double d, struct profile_point a,
             continue;
         }
         last = o.number;
-        if (is_gap(&o)) {
+        if (is_gap(p, d, &o)) {
             gap = true;
             continue;
         }
@@ -499,7 +461,7 @@ static void lift(const struct profile *p, double d, struct profile_point *end)
 static double signed_distance(const struct profile *p, double distance_mm)
 {
     const struct profile_segment *way = &p->segment[0];
-    const struct profile_point to_end = minus(p->segment[p->count - 1].start, way->start);
+    const struct profile_point to_end = minus(p->segment[p->count - 1].end, way->start);
 
     return cross(to_end, minus(way->end, way->start)) < 0.0 ? -distance_mm : distance_mm;
 }
@@ -536,7 +498,7 @@ static bool offset_down(const struct profile *p, double d, struct profile_path *
     const bool good = offset_up(&image, d, path);
 
     for (unsigned i = 1; i < path->count; i++) {
-        mirror_segment(&path->segment[i], false, true);
+        profile_mirror_segment(&path->segment[i], false, true);
     }
     return good;
 }

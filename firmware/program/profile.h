@@ -50,6 +50,7 @@ double profile_distance(const struct profile_point *a, const struct profile_poin
 /* Quarter turns and mirrors, and back. A mirror turns arcs the other way. */
 void profile_turn(struct profile *p);
 void profile_mirror(struct profile *p, bool u, bool v);
+void profile_mirror_segment(struct profile_segment *s, bool u, bool v);
 
 /* Makes the fillets and chamfers. False: one does not fit. */
 bool profile_round(struct profile *p);

@@ -50,18 +50,18 @@ static void add(struct turning *t, bool rapid, struct profile_point end)
     t->move[t->moves++] = (struct turning_move){.rapid = rapid, .end = end};
 }
 
-/* Along a segment to a point of it; an arc of no length would be a circle. */
+/* Along a segment to a point of it; an arc of no length would be a circle, a short one is as good as its chord. */
 static void add_along(struct turning *t, bool rapid, const struct profile_segment *s,
                       struct profile_point end)
 {
-    const bool none = s->kind == PROFILE_ARC && profile_distance(&t->at, &end) <= PROFILE_SHORT_MM;
+    const double length = profile_distance(&t->at, &end);
 
-    if (none) {
+    if (s->kind == PROFILE_ARC && length <= PROFILE_SAME_MM) {
         t->at = end;
         return;
     }
     add(t, rapid && s->kind == PROFILE_LINE, end);
-    t->move[t->moves - 1].arc = s->kind == PROFILE_ARC;
+    t->move[t->moves - 1].arc = s->kind == PROFILE_ARC && length > PROFILE_SHORT_MM;
     t->move[t->moves - 1].left = s->left;
     t->move[t->moves - 1].centre = s->centre;
     t->at = end;

@@ -31,8 +31,8 @@ static bool has(const uint32_t *numbers, unsigned count, uint32_t number)
 
 static void remember(uint32_t *numbers, unsigned *count, double number)
 {
-    if (*count < TRANSLATE_PROGRAMS_MAX && !has(numbers, *count, (uint32_t)number))
-        numbers[(*count)++] = (uint32_t)number;
+    if (*count < TRANSLATE_PROGRAMS_MAX && !has(numbers, *count, line_whole(number)))
+        numbers[(*count)++] = line_whole(number);
 }
 
 void flow_survey(struct survey *s, struct line *l)
@@ -72,7 +72,7 @@ void flow_note_label(struct translator *t, size_t offset)
         t->label_room = room;
     }
     t->label[t->labels++] =
-        (struct label){t->program, (uint32_t)w->value, t->number, offset, t->depth};
+        (struct label){t->program, line_whole(w->value), t->number, offset, t->depth};
 }
 
 /* The number behind GOTO is a word without a letter: digits among what is left of the line. */
@@ -260,7 +260,7 @@ static void take_macro_call(struct translator *t)
             (void)snprintf(arguments[number - 1], sizeof arguments[0], "%.*s",
                            (int)(w->end - w->value_begin), &l->text[w->value_begin]);
     }
-    call(t, (uint32_t)p->value, arguments);
+    call(t, line_whole(p->value), arguments);
 }
 
 /* M98 of a program that G65 calls too: it sees its caller's parameters. */
@@ -273,7 +273,7 @@ static void take_sub_call(struct translator *t)
 
     if (line_find_code(l, 'm', 980) == NULL || p == NULL || !p->is_number)
         return;
-    const uint32_t number = (uint32_t)p->value;
+    const uint32_t number = line_whole(p->value);
 
     if (has(t->survey.macro, t->survey.macros, number)) {
         for (unsigned i = 0; i < ARGUMENTS; i++)
@@ -307,8 +307,8 @@ static void take_program(struct translator *t)
         end_macro(t);
         t->program++;
         t->depth = 0;
-        if (has(t->survey.macro, t->survey.macros, (uint32_t)first->value)) {
-            t->macro = (uint32_t)first->value;
+        if (has(t->survey.macro, t->survey.macros, line_whole(first->value))) {
+            t->macro = line_whole(first->value);
             (void)snprintf(text, sizeof text, "o%u sub", (unsigned)t->macro);
             (void)line_replace(l, first, text);
         }

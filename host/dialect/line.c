@@ -215,6 +215,13 @@ bool line_read(struct line *l, const char *bytes, size_t length)
     return read_words(l);
 }
 
+uint32_t line_whole(double value)
+{
+    if (!(value > 0.0))
+        return 0;
+    return value < (double)UINT32_MAX ? (uint32_t)value : UINT32_MAX;
+}
+
 struct line_word *line_find(struct line *l, char letter, unsigned from)
 {
     for (unsigned i = from; i < l->words; i++) {
@@ -343,4 +350,46 @@ bool line_is_plain(const struct line *l)
             return false;
     }
     return true;
+}
+
+bool line_read_label(const struct line *l, char name[LINE_LABEL_MAX], const char **behind)
+{
+    const char *at = l->text;
+    size_t length = 0;
+
+    while (*at == ' ' || *at == '\t')
+        at++;
+    if (line_lower(*at) != 'o')
+        return false;
+    for (at++; length < LINE_LABEL_MAX - 1 && *at != '\0'; at++) {
+        const char c = line_lower(*at);
+        const bool named = length > 0 && name[0] == '<';
+
+        if (!named && c != '<' && c != ' ' && !(c >= '0' && c <= '9'))
+            break;
+        if (c == '>') {
+            at++;
+            break;
+        }
+        if (c != ' ' && !(c == '0' && length == 0))
+            name[length++] = c;
+    }
+    name[length] = '\0';
+    *behind = at + strspn(at, " \t");
+    return length > 0;
+}
+
+bool line_begins(const char *text, const char *word)
+{
+    for (; *word != '\0'; text++, word++) {
+        if (line_lower(*text) != *word)
+            return false;
+    }
+    return true;
+}
+
+bool line_defines_label(const char *behind)
+{
+    return line_begins(behind, "sub") || *behind == '\0' || *behind == '(' || *behind == ';' ||
+           *behind == '\r';
 }

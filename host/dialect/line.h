@@ -41,6 +41,9 @@ struct line {
 /* False: it is too long, or has too many words, to be looked at. */
 bool line_read(struct line *l, const char *bytes, size_t length);
 
+/* A value as the number of a program, line or tool: cut to what such a number may be. */
+uint32_t line_whole(double value);
+
 /* The first word of a letter with a value, from a place on; NULL: none. */
 struct line_word *line_find(struct line *l, char letter, unsigned from);
 
@@ -84,5 +87,15 @@ size_t line_name_length(const struct line *l, size_t at);
 bool line_is_assigned(const struct line *l, size_t at);
 
 char line_lower(char c);
+
+/* What O-words go by: <name, or a number without zeros before it. */
+#define LINE_LABEL_MAX 64
+
+/* The label of a line's O-word in lower case, and what stands behind it. False: it has none. */
+bool line_read_label(const struct line *l, char name[LINE_LABEL_MAX], const char **behind);
+/* Does a text begin with a word, which is in lower case? */
+bool line_begins(const char *text, const char *word);
+/* Does a label with this behind it define a subroutine, or a program? */
+bool line_defines_label(const char *behind);
 
 #endif

@@ -404,7 +404,7 @@ static void translate_lathe(struct translator *t)
     if (turn != NULL)
         (void)line_replace(l, turn, "G95");
     if (tool != NULL && tool->is_number && tool->value >= 100.0) {
-        (void)snprintf(text, sizeof text, "T%u M6", (unsigned)(tool->value / 100.0));
+        (void)snprintf(text, sizeof text, "T%u M6", (unsigned)line_whole(tool->value / 100.0));
         (void)line_replace(l, tool, text);
     }
 }

@@ -112,7 +112,7 @@ static const struct turned *find_profile(struct translator *t, double from, doub
         return NULL;
     struct turned *p = &t->profile[t->profiles];
 
-    *p = (struct turned){from, to, PROFILE_LABEL + (unsigned)from, 0};
+    *p = (struct turned){from, to, PROFILE_LABEL + line_whole(from), 0};
     p->label += 10000U * t->profiles++;
     p->side = copy_profile(t, from, to, p->label);
     return p;

@@ -33,6 +33,7 @@ extern const struct command command_plan;
 extern const struct command command_check;
 extern const struct command command_lint;
 extern const struct command command_canon;
+extern const struct command command_lsp;
 extern const struct command command_convert;
 extern const struct command command_trace;
 extern const struct command command_machine;

@@ -1,24 +1,8 @@
 #include "takt/command.h"
 #include "takt/lint.h"
-#include "takt/message.h"
 #include "takt/session.h"
 
 #include <stdio.h>
-#include <stdlib.h>
-
-static bool read_top(const char *text, double *top_mm)
-{
-    char *end;
-
-    *top_mm = 0.0;
-    if (text == NULL)
-        return true;
-    *top_mm = strtod(text, &end);
-    if (end != text && *end == '\0' && *top_mm > -1e6 && *top_mm < 1e6)
-        return true;
-    message_command_error("--stock-top %s: a height in mm is expected", text);
-    return false;
-}
 
 static enum command_status look(const struct options *options, double top_mm)
 {
@@ -42,7 +26,7 @@ static enum command_status command_lint_execute(const struct options *options)
 {
     double top_mm;
 
-    return read_top(options->stock_top, &top_mm) ? look(options, top_mm) : STATUS_INPUT;
+    return lint_read_top(options->stock_top, &top_mm) ? look(options, top_mm) : STATUS_INPUT;
 }
 
 static const struct option_row rows[] = {

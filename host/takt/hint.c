@@ -1,5 +1,6 @@
 #include "takt/hint.h"
 
+#include "dialect/dialect.h"
 #include "dialect/line.h"
 
 #include <stdio.h>
@@ -138,9 +139,9 @@ static void write_number(const char *line, size_t length, size_t at, char text[H
 /* Only the machine's owner can know what it is for. */
 static void write_code(const struct diagnostic *d, char text[HINT_MAX])
 {
-    const size_t digits = d->word[0] != '\0' ? strspn(d->word + 1, "0123456789.") : 0;
+    struct dialect_code code;
 
-    if ((d->word[0] == 'M' || d->word[0] == 'G') && digits > 0 && d->word[1 + digits] == '\0')
+    if (dialect_code_read(&code, d->word, "ignore") == NULL)
         (void)snprintf(text, HINT_MAX,
                        "    if this machine can do without it, add to the machine file, or as "
                        "--set codes.%s=ignore:\n"

@@ -335,7 +335,7 @@ enum command_status lint_program(const struct session *s, double stock_top_mm, u
     enum command_status status;
 
     l = (struct lint){.session = s, .stock_top_mm = stock_top_mm, .lines = count_lines(s)};
-    l.hole_z = INFINITY;
+    l.hole_z = HUGE_VAL;
     l.seen = calloc(l.lines + 2U, 1);
     if (l.seen == NULL) {
         message_command_error("out of memory");
@@ -349,4 +349,18 @@ enum command_status lint_program(const struct session *s, double stock_top_mm, u
     free(l.seen);
     *findings = l.findings;
     return status;
+}
+
+bool lint_read_top(const char *text, double *top_mm)
+{
+    char *end;
+
+    *top_mm = 0.0;
+    if (text == NULL)
+        return true;
+    *top_mm = strtod(text, &end);
+    if (end != text && *end == '\0' && *top_mm > -1e6 && *top_mm < 1e6)
+        return true;
+    message_command_error("--stock-top %s: a height in mm is expected", text);
+    return false;
 }

@@ -12,21 +12,47 @@
 /* Length of a line in which a word is looked for. */
 #define MESSAGE_LINE_MAX 2048
 
+/* Length of a message that is not of a program. */
+#define MESSAGE_TEXT_MAX 8192
+
 static char message_command[32] = "takt";
+
+static struct {
+    void (*hear)(void *listener, const struct message *m);
+    void *listener;
+} message_listener;
+
+void message_listen(void (*hear)(void *listener, const struct message *m), void *listener)
+{
+    message_listener.hear = hear;
+    message_listener.listener = listener;
+}
 
 void message_set_command(const char *name)
 {
     (void)snprintf(message_command, sizeof message_command, "takt %s", name);
 }
 
-__attribute__((format(printf, 5, 0))) static void message_print(const char *kind, const char *file,
-                                                                uint32_t line, uint32_t column,
-                                                                const char *format,
-                                                                va_list arguments)
+static void message_tell(const struct message *m)
 {
-    (void)fprintf(stderr, "%s:%u:%u: %s: ", file, (unsigned)line, (unsigned)column, kind);
-    (void)vfprintf(stderr, format, arguments);
-    (void)fputc('\n', stderr);
+    if (message_listener.hear != NULL)
+        message_listener.hear(message_listener.listener, m);
+    else if (m->file == NULL)
+        (void)fprintf(stderr, "%s: %s: %s\n", message_command, m->kind, m->text);
+    else
+        (void)fprintf(stderr, "%s:%u:%u: %s: %s\n", m->file, (unsigned)m->line, (unsigned)m->column,
+                      m->kind, m->text);
+}
+
+__attribute__((format(printf, 5, 0))) static void message_format(const char *kind, const char *file,
+                                                                 uint32_t line, uint32_t column,
+                                                                 const char *format,
+                                                                 va_list arguments)
+{
+    char text[MESSAGE_TEXT_MAX];
+
+    (void)vsnprintf(text, sizeof text, format, arguments);
+    message_tell(&(struct message){kind, file, line, column, text, ""});
 }
 
 void message_error(const char *file, uint32_t line, uint32_t column, const char *format, ...)
@@ -34,7 +60,7 @@ void message_error(const char *file, uint32_t line, uint32_t column, const char 
     va_list arguments;
 
     va_start(arguments, format);
-    message_print("error", file, line, column, format, arguments);
+    message_format("error", file, line, column, format, arguments);
     va_end(arguments);
 }
 
@@ -43,7 +69,7 @@ void message_warning(const char *file, uint32_t line, uint32_t column, const cha
     va_list arguments;
 
     va_start(arguments, format);
-    message_print("warning", file, line, column, format, arguments);
+    message_format("warning", file, line, column, format, arguments);
     va_end(arguments);
 }
 
@@ -52,9 +78,7 @@ void message_command_error(const char *format, ...)
     va_list arguments;
 
     va_start(arguments, format);
-    (void)fprintf(stderr, "%s: error: ", message_command);
-    (void)vfprintf(stderr, format, arguments);
-    (void)fputc('\n', stderr);
+    message_format("error", NULL, 0, 0, format, arguments);
     va_end(arguments);
 }
 
@@ -63,9 +87,7 @@ void message_command_warning(const char *format, ...)
     va_list arguments;
 
     va_start(arguments, format);
-    (void)fprintf(stderr, "%s: warning: ", message_command);
-    (void)vfprintf(stderr, format, arguments);
-    (void)fputc('\n', stderr);
+    message_format("warning", NULL, 0, 0, format, arguments);
     va_end(arguments);
 }
 
@@ -74,9 +96,7 @@ void message_command_note(const char *format, ...)
     va_list arguments;
 
     va_start(arguments, format);
-    (void)fprintf(stderr, "%s: note: ", message_command);
-    (void)vfprintf(stderr, format, arguments);
-    (void)fputc('\n', stderr);
+    message_format("note", NULL, 0, 0, format, arguments);
     va_end(arguments);
 }
 
@@ -148,8 +168,19 @@ static uint32_t message_column(const struct program_text *program, const struct 
     return 0;
 }
 
+/* What to do about it. */
+static void message_cure(const struct program_text *program, const struct diagnostic *d,
+                         uint32_t column, char cure[HINT_MAX])
+{
+    char line[MESSAGE_LINE_MAX];
+    const size_t length =
+        d->line > 0 ? program_text_line(program, d->line, 0, line, sizeof line) : 0;
+
+    hint_write(d, line, length, column > 0 ? column - 1 : length, cure);
+}
+
 static void message_diagnostic(const char *kind, const struct program_text *program,
-                               const struct diagnostic *diagnostic)
+                               const struct diagnostic *diagnostic, const char *cure)
 {
     char text[DIAGNOSTIC_TEXT_MAX];
 
@@ -159,42 +190,34 @@ static void message_diagnostic(const char *kind, const struct program_text *prog
 
     diagnostic_text(diagnostic, text);
     /* Column 0 is the whole line, which begins at 1. */
-    (void)fprintf(stderr, "%s:%u:%u: %s: %s\n", name, (unsigned)line,
-                  (unsigned)(line > 0 && column == 0 ? 1 : column), kind, text);
+    message_tell(
+        &(struct message){kind, name, line, line > 0 && column == 0 ? 1 : column, text, cure});
+    if (message_listener.hear != NULL)
+        return;
     if (diagnostic->line > 0)
         message_show_line(program, diagnostic->line, column);
-}
-
-/* What to do about it. */
-static void message_hint(const struct program_text *program, const struct diagnostic *d)
-{
-    char line[MESSAGE_LINE_MAX];
-    char hint[HINT_MAX];
-    const size_t length =
-        d->line > 0 ? program_text_line(program, d->line, 0, line, sizeof line) : 0;
-    const uint32_t column = message_column(program, d);
-
-    hint_write(d, line, length, column > 0 ? column - 1 : length, hint);
-    (void)fputs(hint, stderr);
+    (void)fputs(cure, stderr);
 }
 
 void message_program_error(const struct program_text *program, const struct diagnostic *diagnostic)
 {
-    message_diagnostic("error", program, diagnostic);
-    message_hint(program, diagnostic);
+    char cure[HINT_MAX];
+
+    message_cure(program, diagnostic, message_column(program, diagnostic), cure);
+    message_diagnostic("error", program, diagnostic, cure);
 }
 
 void message_program_warning(const struct program_text *program,
                              const struct diagnostic *diagnostic)
 {
-    message_diagnostic("warning", program, diagnostic);
+    message_diagnostic("warning", program, diagnostic, "");
 }
 
 void message_from_program(const struct program_text *program, uint32_t line, const char *text)
 {
     const char *name = program_text_place(program, &line);
 
-    (void)fprintf(stderr, "%s:%u:1: message: %s\n", name, (unsigned)line, text);
+    message_tell(&(struct message){"message", name, line, 1, text, ""});
 }
 
 void message_controller_warning(const struct controller *controller)

@@ -13,6 +13,18 @@
 
 #include <stdint.h>
 
+/* A message as it is told to who listens. */
+struct message {
+    const char *kind;      /* error, warning, message, note */
+    const char *file;      /* NULL: about the command line or the environment */
+    uint32_t line, column; /* from 1; 0: the file as a whole */
+    const char *text;
+    const char *cure; /* lines that say what to do; "" for none */
+};
+
+/* From now on messages go to hear instead of stderr; NULL: to stderr again. */
+void message_listen(void (*hear)(void *listener, const struct message *m), void *listener);
+
 /* The sub-command, for messages about the command line. */
 void message_set_command(const char *name);
 
@@ -25,9 +37,9 @@ __attribute__((format(printf, 1, 2))) void message_command_error(const char *for
 __attribute__((format(printf, 1, 2))) void message_command_warning(const char *format, ...);
 __attribute__((format(printf, 1, 2))) void message_command_note(const char *format, ...);
 
-/* What a controller has to say at its start, if it has. */
 /* What the program itself says in a comment of a line. */
 void message_from_program(const struct program_text *program, uint32_t line, const char *text);
+/* What a controller has to say at its start, if it has. */
 void message_controller_warning(const struct controller *controller);
 
 /* "; did you mean PREFIXWORD?", or "" when word is NULL: for the end of a message. Valid until the next call. */

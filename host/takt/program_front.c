@@ -130,56 +130,18 @@ static void add_bytes(struct joint *j, const char *bytes, size_t length)
     t->length += length;
 }
 
-/* The label of a line's O-word in lower case, and what stands behind it. False: it has none. */
-static bool read_label(const struct line *l, char name[64], const char **behind)
-{
-    const char *at = l->text;
-    size_t length = 0;
-
-    while (*at == ' ' || *at == '\t')
-        at++;
-    if (line_lower(*at) != 'o')
-        return false;
-    for (at++; length < 63 && *at != '\0'; at++) {
-        const char c = line_lower(*at);
-        const bool named = length > 0 && name[0] == '<';
-
-        if (!named && c != '<' && c != ' ' && !(c >= '0' && c <= '9'))
-            break;
-        if (c == '>') {
-            at++;
-            break;
-        }
-        if (c != ' ' && !(c == '0' && length == 0))
-            name[length++] = c;
-    }
-    name[length] = '\0';
-    *behind = at + strspn(at, " \t");
-    return length > 0;
-}
-
-static bool begins(const char *text, const char *word)
-{
-    for (; *word != '\0'; text++, word++) {
-        if (line_lower(*text) != *word)
-            return false;
-    }
-    return true;
-}
-
 static void note_oword(struct joint *j, const char *name, const char *behind)
 {
-    if (begins(behind, "sub") || *behind == '\0' || *behind == '(' || *behind == ';' ||
-        *behind == '\r')
+    if (line_defines_label(behind))
         add_label(&j->defined, name);
-    if (begins(behind, "call"))
+    if (line_begins(behind, "call"))
         add_label(&j->called, name);
 }
 
 static void note_line(struct joint *j, const char *bytes, size_t length)
 {
     static struct line l;
-    char name[64];
+    char name[LINE_LABEL_MAX];
     const char *behind;
 
     if (length > 0 && bytes[0] == DIALECT_GOES_ON) {
@@ -188,7 +150,7 @@ static void note_line(struct joint *j, const char *bytes, size_t length)
     }
     if (!line_read(&l, bytes, length))
         return;
-    if (read_label(&l, name, &behind)) {
+    if (line_read_label(&l, name, &behind)) {
         note_oword(j, name, behind);
         return;
     }

@@ -2,6 +2,8 @@
 
 #include "takt/program_text.h"
 
+#include "takt/message.h"
+
 #include <fcntl.h>
 #include <stdlib.h>
 #include <string.h>
@@ -41,6 +43,22 @@ bool program_text_open(struct program_text *text, const char *path)
     if (!text_read(&text->whole, path))
         return false;
     text->name = text->whole.name;
+    return true;
+}
+
+bool program_text_hold(struct program_text *text, const char *name, const char *bytes,
+                       size_t length)
+{
+    char *copy = malloc(length + 1);
+
+    *text = (struct program_text){.name = name};
+    if (copy == NULL) {
+        message_command_error("out of memory");
+        return false;
+    }
+    memcpy(copy, bytes, length);
+    copy[length] = '\0';
+    text->whole = (struct text){.name = name, .bytes = copy, .length = length};
     return true;
 }
 

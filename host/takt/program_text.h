@@ -48,6 +48,9 @@ struct program_text_reader {
 
 /* Opens path, "-" for standard input. False after a message: it cannot be opened or read. */
 bool program_text_open(struct program_text *text, const char *path);
+/* A text that is in memory already; bytes are copied, name is not. False after a message: out of memory. */
+bool program_text_hold(struct program_text *text, const char *name, const char *bytes,
+                       size_t length);
 void program_text_close(struct program_text *text);
 
 /*

@@ -71,6 +71,15 @@ enum command_status session_open(struct session *s, const struct options *option
                                                                                      : STATUS_INPUT;
 }
 
+enum command_status session_open_text(struct session *s, const struct options *options,
+                                      const char *name, const char *bytes, size_t length)
+{
+    if (session_open_machine(s, options) != STATUS_DONE)
+        return STATUS_INPUT;
+    return program_text_hold(&s->program, name, bytes, length) && prepare_program(s) ? STATUS_DONE
+                                                                                     : STATUS_INPUT;
+}
+
 void session_close(struct session *s)
 {
     program_text_close(&s->program);

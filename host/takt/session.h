@@ -37,6 +37,9 @@ struct session {
 /* Reads everything the options name; the first operand is the program. STATUS_DONE, or STATUS_INPUT after messages;
  * session_close is due in either case. */
 enum command_status session_open(struct session *s, const struct options *options);
+/* The same with a program that is in memory; name is its path. */
+enum command_status session_open_text(struct session *s, const struct options *options,
+                                      const char *name, const char *bytes, size_t length);
 /* The same without a program. */
 enum command_status session_open_machine(struct session *s, const struct options *options);
 void session_close(struct session *s);

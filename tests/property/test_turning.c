@@ -20,6 +20,9 @@
 #define GAP_MM 1e-2
 /* Levels meet the profile within 1e-6 mm, which a shallow slope makes more. */
 #define NEAR_MM 1e-5
+/* Centres with so many decimals lie aside by half of the last, along each axis; radii that differ by it mean 1.5 of it at most. */
+#define DECIMALS_MM 1e-4
+#define ROUNDED_MM  (2.0 * DECIMALS_MM)
 
 static unsigned profiles = PROFILES;
 static unsigned first_seed = 1;
@@ -187,8 +190,23 @@ static struct seen follow(struct turning *t, const struct profile *p)
     return seen;
 }
 
-static void try_profile(uint64_t seed, enum turning_kind kind)
+static double round_decimals(double value)
 {
+    return maths_floor(value / DECIMALS_MM + 0.5) * DECIMALS_MM;
+}
+
+/* As a program has it: the radii of an arc differ at its ends. */
+static void round_centres(struct profile *p)
+{
+    for (unsigned i = 0; i < p->count; i++) {
+        p->segment[i].centre.u = round_decimals(p->segment[i].centre.u);
+        p->segment[i].centre.v = round_decimals(p->segment[i].centre.v);
+    }
+}
+
+static void try_profile(uint64_t seed, enum turning_kind kind, bool rounded)
+{
+    const double near = NEAR_MM + (rounded ? ROUNDED_MM : 0.0);
     struct chain c = {.seed = seed};
     static struct turning t;
     struct profile p;
@@ -197,6 +215,9 @@ static void try_profile(uint64_t seed, enum turning_kind kind)
     memset(&t, 0, sizeof(t));
     random_profile(&c, &p);
     t.profile = p;
+    if (rounded) {
+        round_centres(&t.profile);
+    }
     t.words.kind = (uint8_t)kind;
     t.words.distance_mm = chain_decades(&c, -1.5, 0.4);
     t.words.last_mm = t.words.distance_mm;
@@ -214,25 +235,78 @@ static void try_profile(uint64_t seed, enum turning_kind kind)
                    "seed %u kind %u D %g: nearest %.9g, farthest %.9g, %u moves", (unsigned)seed,
                    (unsigned)kind, t.words.distance_mm, seen.nearest, seen.farthest, seen.moves);
     TEST_ASSERT_TRUE_MESSAGE(seen.moves < 100000, text);
-    TEST_ASSERT_TRUE_MESSAGE(seen.nearest >= t.words.distance_mm - NEAR_MM, text);
+    TEST_ASSERT_TRUE_MESSAGE(seen.nearest >= t.words.distance_mm - near, text);
     if (kind == TURNING_FINISH) {
-        TEST_ASSERT_TRUE_MESSAGE(seen.farthest <= t.words.distance_mm + GAP_MM, text);
+        TEST_ASSERT_TRUE_MESSAGE(seen.farthest <= t.words.distance_mm + GAP_MM + near, text);
     }
 }
 
 static void test_no_move_is_nearer_to_the_profile_than_its_distance(void)
 {
     for (unsigned i = 0; i < profiles; i++) {
-        try_profile(first_seed + i, TURNING_ROUGH);
-        try_profile(first_seed + i, TURNING_NO_POCKETS);
-        try_profile(first_seed + i, TURNING_POCKETS);
+        try_profile(first_seed + i, TURNING_ROUGH, false);
+        try_profile(first_seed + i, TURNING_NO_POCKETS, false);
+        try_profile(first_seed + i, TURNING_POCKETS, false);
     }
 }
 
 static void test_finishing_keeps_the_distance_everywhere(void)
 {
     for (unsigned i = 0; i < profiles; i++) {
-        try_profile(first_seed + i, TURNING_FINISH);
+        try_profile(first_seed + i, TURNING_FINISH, false);
+    }
+}
+
+static void test_arcs_with_four_decimals_are_followed_as_well(void)
+{
+    for (unsigned i = 0; i < profiles; i++) {
+        try_profile(first_seed + i, TURNING_ROUGH, true);
+        try_profile(first_seed + i, TURNING_FINISH, true);
+    }
+}
+
+/* Two quarters that meet where both are upright, with radii that differ by 0.0001 mm at their ends. */
+static void test_roughing_goes_on_where_two_arcs_meet_upright(void)
+{
+    const struct profile p = {.count = 6,
+                              .segment = {{.start = {1.0, 30.0}, .end = {0.0, 4.0}},
+                                          {.start = {0.0, 4.0}, .end = {-1.206, 7.9068}},
+                                          {.start = {-1.206, 7.9068},
+                                           .end = {-2.808, 9.5087},
+                                           .centre = {-1.206, 9.5087},
+                                           .kind = PROFILE_ARC},
+                                          {.start = {-2.808, 9.5087},
+                                           .end = {-3.6326, 10.3334},
+                                           .centre = {-3.6327, 9.5087},
+                                           .kind = PROFILE_ARC,
+                                           .left = true},
+                                          {.start = {-3.6326, 10.3334}, .end = {-10.0, 12.0}},
+                                          {.start = {-10.0, 12.0}, .end = {-10.0, 30.0}}}};
+    static struct turning t;
+    struct turning_move m;
+    double deepest = 0.0;
+
+    memset(&t, 0, sizeof(t));
+    t.profile = p;
+    t.words = (struct turning_words){.distance_mm = 0.13, .step_mm = 1.4, .kind = TURNING_ROUGH};
+    TEST_ASSERT_EQUAL(TURNING_GOOD, turning_open(&t));
+    while (turning_next(&t, &m)) {
+        deepest = maths_min(deepest, m.end.u);
+    }
+    TEST_ASSERT_DOUBLE_WITHIN(NEAR_MM, -10.0 + t.words.distance_mm, deepest);
+}
+
+/*
+ * What such profiles have: a last wall that dips below the way to the profile, a corner between two corners that is hardly
+ * there, an arc that the distance swallows but for 0.5 um, an arc left over behind a level, a wall of 1 um.
+ */
+static void test_profiles_with_little_room_keep_the_distance_too(void)
+{
+    static const uint64_t seeds[] = {14243, 7449, 115621, 118998, 121318, 125762};
+
+    for (unsigned i = 0; i < sizeof(seeds) / sizeof(seeds[0]); i++) {
+        try_profile(seeds[i], TURNING_ROUGH, false);
+        try_profile(seeds[i], TURNING_FINISH, false);
     }
 }
 
@@ -242,5 +316,8 @@ int main(int argc, char **argv)
     UNITY_BEGIN();
     RUN_TEST(test_no_move_is_nearer_to_the_profile_than_its_distance);
     RUN_TEST(test_finishing_keeps_the_distance_everywhere);
+    RUN_TEST(test_arcs_with_four_decimals_are_followed_as_well);
+    RUN_TEST(test_roughing_goes_on_where_two_arcs_meet_upright);
+    RUN_TEST(test_profiles_with_little_room_keep_the_distance_too);
     return UNITY_END();
 }

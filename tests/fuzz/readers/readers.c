@@ -26,6 +26,7 @@ static const struct reader {
     {"candump", NULL, read_candump},
     {"slcan", NULL, read_slcan},
     {"socketcand", NULL, read_socketcand},
+    {"editor", NULL, read_editor},
     {"drives", NULL, read_frames_of_master},
     {"master", NULL, read_frames_of_drives},
     {"plan", NULL, read_plan},

@@ -1,0 +1,299 @@
+"""Random part programs of which most are right: a mill with six axes or a lathe, every line from one random stream.
+
+What the tables of differences from LinuxCNC name on purpose is left out: a change of the feed mode without a new F, feed per
+revolution without a spindle, spirals with G93, tapping and arcs across a rotated plane, G28 in one.
+"""
+import math
+import random
+
+# First and second axis of each plane, the axis across, and the words of the centre.
+PLANES = {"G17": ("XY", "Z", "IJ"), "G18": ("ZX", "Y", "KI"), "G19": ("YZ", "X", "JK")}
+SYSTEMS = ("G54", "G55", "G56", "G57", "G58", "G59", "G59.1", "G59.2", "G59.3")
+
+
+class Writer:
+    """One program: where its axes are in its own words, what is in effect, and its lines."""
+
+    def __init__(self, seed):
+        self.random = random.Random(seed)
+        self.lines = []
+        self.at = dict.fromkeys("XYZABC", 0.0)
+        self.plane = "G17"
+        self.incremental = False
+        self.centre_absolute = False
+        self.feed_mode = "G94"
+        self.rotated = False
+        self.label = 100
+
+    # -- numbers --
+
+    def between(self, low, high):
+        return self.random.uniform(low, high)
+
+    def chance(self, share):
+        return self.random.random() < share
+
+    def number(self, value):
+        """A number as programs write it, or something that has its value."""
+        value = round(value, 4)
+        form = self.random.random()
+        if form < 0.85:
+            return f"{value:.4f}".rstrip("0").rstrip(".") if self.chance(0.5) else f"{value:.4f}"
+        if form < 0.9:
+            part = round(self.between(-5.0, 5.0), 4)
+            return f"[{value - part:.4f} + {part:.4f}]"
+        if form < 0.95:
+            return f"[{2 * value:.4f} / 2]"
+        return f"[ABS[{value:.4f}]]" if value >= 0.0 else f"[0 - ABS[{value:.4f}]]"
+
+    def line(self, text):
+        if self.chance(0.05):
+            text = f"N{len(self.lines) + 1} {text}"
+        if self.chance(0.05):
+            text = text.lower()
+        self.lines.append(text + (" (a comment)" if self.chance(0.03) else ""))
+
+    # -- words --
+
+    def word(self, axis, to):
+        """The word that leads an axis there, and where that is."""
+        to = round(to, 4)
+        by = to - self.at[axis] if self.incremental else to
+        return f"{axis}{self.number(by)}", to
+
+    def go(self, targets):
+        words = []
+        for axis, to in targets.items():
+            text, self.at[axis] = self.word(axis, to)
+            words.append(text)
+        self.random.shuffle(words)
+        return " ".join(words)
+
+    def feed(self, *, needed=False):
+        if not needed and self.feed_mode != "G93" and self.chance(0.8):
+            return ""
+        low, high = {"G93": (0.5, 50.0), "G94": (10.0, 3000.0), "G95": (0.01, 2.0)}[self.feed_mode]
+        return f" F{self.number(self.between(low, high))}"
+
+    def rotary(self):
+        return {axis: self.between(-180.0, 180.0) for axis in "ABC" if self.chance(0.1)}
+
+    def some(self, axes):
+        chosen = [axis for axis in axes if self.chance(0.6)] or [self.random.choice(axes)]
+        return {axis: self.between(-80.0, 80.0) for axis in chosen}
+
+    # -- blocks --
+
+    def settle(self):
+        """Every axis where the program says, after its words have got another meaning."""
+        self.line("G90")
+        self.incremental = False
+        self.line("G0 " + self.go({axis: self.between(-50.0, 50.0) for axis in "XYZ"}))
+        self.line("G0 " + self.go({axis: self.between(-50.0, 50.0) for axis in "ABC"}))
+
+    def straight(self):
+        targets = self.rotary() if self.chance(0.1) else self.some("XYZ") | self.rotary()
+        if not targets:
+            return
+        if self.chance(0.3):
+            self.line("G0 " + self.go(targets))
+        else:
+            self.line("G1 " + self.go(targets) + self.feed())
+
+    def arc(self):
+        (first, second), across, centres = PLANES[self.plane]
+        if self.rotated and self.plane != "G17":
+            return
+        # Rounded ends make a spiral of what has a centre, and its length is another for LinuxCNC.
+        by_radius = self.feed_mode == "G93" or self.chance(0.25)
+        radius = self.between(0.5, 30.0)
+        begin = self.between(0.0, 2.0 * math.pi)
+        sweep = self.between(0.05, 6.0 if by_radius else 2.0 * math.pi - 0.05)
+        left = self.chance(0.5)
+        centre = (self.at[first] - radius * math.cos(begin), self.at[second] - radius * math.sin(begin))
+        end = begin + (sweep if left else -sweep)
+        targets = {first: centre[0] + radius * math.cos(end), second: centre[1] + radius * math.sin(end)}
+        start = self.at[first], self.at[second]
+        if self.chance(0.3):
+            targets[across] = self.between(-40.0, 40.0)
+        targets |= self.rotary()
+        words = self.go(targets)
+        if by_radius:
+            words += f" R{self.number(radius if sweep < math.pi else -radius)}"
+        else:
+            from_start = (0.0, 0.0) if self.centre_absolute else start
+            words += "".join(f" {c}{self.number(m - s)}" for c, m, s in zip(centres, centre, from_start))
+            if self.chance(0.2):
+                words += f" P{self.random.randint(1, 3)}"
+        self.line(f"{'G3' if left else 'G2'} {words}{self.feed()}")
+
+    def modes(self):
+        self.line(self.random.choice(("G61", "G64", "G64 P0.01", "G61.1", "G64 P0.02 Q0.01", "M7", "M8", "M9", "M48", "M49",
+                                      "G97 S900", "M3 S500", "G40", "G98", "G99", "G4 P0.1", "G80", "M50 P0")))
+
+    def distance(self):
+        self.incremental = self.chance(0.5)
+        self.line("G91" if self.incremental else "G90")
+
+    def centre(self):
+        self.centre_absolute = self.chance(0.5)
+        self.line("G90.1" if self.centre_absolute else "G91.1")
+
+    def choose_plane(self):
+        self.plane = self.random.choice(tuple(PLANES))
+        self.line(self.plane)
+
+    def choose_feed_mode(self):
+        mode = self.random.choice([m for m in ("G93", "G94", "G95") if m != self.feed_mode])
+        self.feed_mode = mode
+        self.line(mode if mode == "G93" else mode + self.feed(needed=True))
+
+    def system(self):
+        number = self.random.randint(1, 9)
+        if self.chance(0.6):
+            words = "".join(f" {axis}{self.number(self.between(-20.0, 20.0))}" for axis in "XYZABC" if self.chance(0.5))
+            turn = f" R{self.number(self.between(-90.0, 90.0))}" if self.chance(0.3) else ""
+            self.line(f"G10 L{self.random.choice((2, 20)) if not turn else 2} P{number}{words}{turn}")
+        self.line(SYSTEMS[number - 1])
+        # Which systems are rotated is not followed: any may be from now on.
+        self.rotated = True
+        self.settle()
+
+    def offset(self):
+        kind = self.random.choice(("G92", "G92.1", "G92.2", "G92.3", "G52", "G43.1", "G49"))
+        words = "".join(f" {axis}{self.number(self.between(-10.0, 10.0))}" for axis in "XYZABC" if self.chance(0.4))
+        if kind in ("G92", "G52", "G43.1"):
+            if not words:
+                return
+            kind += words
+        self.line(kind)
+        self.settle()
+
+    def cycle(self):
+        if self.plane != "G17" or self.feed_mode == "G93":
+            return
+        was = self.incremental
+        if was:
+            self.line("G90")
+            self.incremental = False
+        self.line("G0 " + self.go({"Z": self.between(5.0, 20.0)}))
+        code = self.random.choice(("G81", "G82 P0.1", "G83 Q{}", "G85", "G86 P0.1", "G89 P0.2", "G73 Q{}"))
+        # Bites that divide the depth leave it to rounding whether there is one more.
+        code = code.format(f"{self.between(0.3, 3.0):.4f}7")
+        words = self.go({axis: self.between(-40.0, 40.0) for axis in "XY"})
+        self.line(f"{self.random.choice(('G98', 'G99'))} {code} {words} Z{self.number(self.between(-10.0, 0.0))}"
+                  f" R{self.number(self.between(1.0, 4.0))}{self.feed(needed=True)}")
+        # How far pecks go back without D is a matter of LinuxCNC's configuration from 2.10 on.
+        for _ in range(0 if "Q" in code else self.random.randint(0, 3)):
+            self.line(self.go({axis: self.between(-40.0, 40.0) for axis in "XY"}))
+        self.line("G80")
+        self.settle()
+
+    def machine(self):
+        if self.incremental:
+            return
+        self.line("G53 G0 " + "".join(f"{axis}{self.number(self.between(-50.0, 50.0))} " for axis in "XYZ"))
+        self.settle()
+
+    def reference(self):
+        if self.rotated:
+            return
+        self.line(self.random.choice(("G28", "G30")) + " " + self.go(self.some("XYZ")))
+        self.settle()
+
+    def block_of(self, make):
+        """A loop, a branch or a subroutine around other lines, whose end is known again afterwards."""
+        self.label += 1
+        label = f"o{self.label}"
+        form = self.random.choice(("repeat", "if", "sub", "while"))
+        if form == "repeat":
+            self.line(f"{label} repeat [{self.random.randint(1, 3)}]")
+        elif form == "if":
+            self.line(f"{label} if [#<_metric> EQ {self.random.randint(0, 1)}]")
+        elif form == "sub":
+            self.line(f"{label} sub")
+        else:
+            self.line(f"#{self.label}=0")
+            self.line(f"{label} while [#{self.label} LT {self.random.randint(1, 3)}]")
+            self.line(f"#{self.label}=[#{self.label}+1]")
+        self.line("G91 G1 " + "".join(f"{a}{self.number(self.between(-3.0, 3.0))} " for a in "XYZ") + self.feed(needed=True))
+        if make == "polar" and not self.rotated:
+            self.line("G90 G1 @[3] ^[#5420 * 2]" + self.feed(needed=True))
+        self.line(f"{label} end{form}")
+        if form == "sub":
+            self.line(f"{label} call [{self.number(self.between(0.0, 9.0))}]")
+        self.settle()
+
+    # -- lathe --
+
+    def lathe_mode(self):
+        self.line(self.random.choice(("G7", "G8")))
+        self.settle_lathe()
+
+    def settle_lathe(self):
+        self.line("G90")
+        self.incremental = False
+        self.line("G0 " + self.go({axis: self.between(1.0, 50.0) for axis in "XZ"}))
+
+    def lathe_spindle(self):
+        self.line(self.random.choice((f"G96 D{self.random.randint(500, 3000)} S{self.number(self.between(50, 300))}",
+                                      f"G97 S{self.random.randint(100, 2000)}")))
+        self.line(self.random.choice(("M3", "M4")))
+
+    def lathe_tool(self):
+        self.line(f"G43.1 X{self.number(self.between(-5, 5))} Z{self.number(self.between(-5, 5))}")
+        self.settle_lathe()
+
+    def lathe_straight(self):
+        self.line(f"{self.random.choice(('G0', 'G1', 'G1'))} " + self.go({a: self.between(1.0, 40.0) for a in "XZ"})
+                  + self.feed())
+
+    def lathe_thread(self):
+        self.line(f"G33 Z{self.number(self.between(-30.0, 30.0))} K{self.number(self.between(0.2, 3.0))}")
+        self.settle_lathe()
+
+    def lathe_cycle(self):
+        self.line("G90")
+        self.incremental = False
+        self.line("G8")
+        self.line("G0 " + self.go({"X": self.between(25.0, 30.0), "Z": self.between(5.0, 10.0)}))
+        words = [f"P{self.number(self.between(0.5, 3.0))}", f"Z{self.number(self.between(-30.0, -5.0))}",
+                 f"I{self.number(self.between(-6.0, -1.0))}", f"J{self.number(self.between(0.1, 0.8))}",
+                 f"K{self.number(self.between(1.0, 4.0))}"]
+        words += [word for word in (f"R{self.number(self.between(1.0, 2.0))}", f"Q{self.number(self.between(0.0, 30.0))}",
+                                    f"H{self.random.randint(0, 3)}") if self.chance(0.5)]
+        if self.chance(0.3):
+            words.append(f"E{self.number(self.between(0.1, 2.0))} L{self.random.randint(0, 3)}")
+        self.line("G76 " + " ".join(words))
+        self.settle_lathe()
+
+    # -- the whole --
+
+    def mill(self):
+        self.line(self.random.choice(("G21", "G20")) + " G17 G90 G94 F500 S1000 M3")
+        self.settle()
+        makers = [self.straight] * 8 + [self.arc] * 8 + [self.modes] * 2 + [
+            self.distance, self.centre, self.choose_plane, self.choose_feed_mode, self.system, self.offset, self.cycle,
+            self.machine, self.reference, lambda: self.block_of("plain"), lambda: self.block_of("polar")]
+        for _ in range(self.random.randint(5, 40)):
+            self.random.choice(makers)()
+
+    def lathe(self):
+        self.plane = "G18"
+        self.line(self.random.choice(("G21", "G20")) + " G18 G90 G94 F200 S800 M3")
+        self.settle_lathe()
+        makers = [self.lathe_straight] * 6 + [self.modes] + [
+            self.distance, self.centre, self.choose_feed_mode, self.lathe_mode, self.lathe_spindle, self.lathe_tool,
+            self.lathe_thread, self.lathe_cycle]
+        for _ in range(self.random.randint(5, 40)):
+            self.random.choice(makers)()
+
+
+def program(seed):
+    """The text of one program; every third is for a lathe."""
+    writer = Writer(seed)
+    if seed % 3 == 2:
+        writer.lathe()
+    else:
+        writer.mill()
+    return "\n".join(writer.lines + ["M2", ""])
