@@ -120,6 +120,7 @@ enum drives_given_up {
     DRIVES_NO_HOMING_SPEED, /* it homes as fast as it likes (6099, 609A) */
     DRIVES_NO_TOUCH_PROBE,  /* it latches no position (60B8): a probing move has that of a cycle */
     DRIVES_NO_SCALING, /* it does not tell its scaling (6092, 608F): increments_per_mm is believed */
+    DRIVES_GUARDED, /* it has no heartbeat (1017), and is asked for its state instead (100C, 100D) */
     DRIVES_GIVEN_UP_COUNT
 };
 

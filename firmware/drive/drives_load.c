@@ -60,7 +60,8 @@ bool drives_predict_load(unsigned count, uint32_t bitrate, uint32_t cycle_us,
 void drives_get_load(const struct drives *d, struct drives_load *load)
 {
     bool has_error = false;
-    load->bits = drives_frame_bits(0) + drives_frame_bits(HEARTBEAT_LENGTH) + drives_io_bits(d);
+    load->bits = drives_frame_bits(0) + drives_frame_bits(HEARTBEAT_LENGTH) + drives_io_bits(d) +
+                 drives_guard_bits(d);
     for (unsigned i = 0; i < d->count; i++) {
         load->bits += d->axis[i].bits;
         has_error = has_error || !drives_has_given_up(&d->axis[i], DRIVES_NO_ERROR_PDO);

@@ -132,6 +132,23 @@ void drives_io_send_resets(struct drives *d, const struct can_port *port);
 uint32_t drives_io_bits(const struct drives *d);
 /* The same of nodes that have no more than what is wired. */
 uint32_t drives_io_wired_bits(const struct io_wiring *wiring, unsigned count);
+/*
+ * Node guarding. Every node that is guarded is asked in one cycle of so many: a heartbeat's period, or as many as there are
+ * nodes. life_ms: after which the node takes us for lost, and too soon where that is less than two periods.
+ */
+uint32_t drives_guard_cycles(const struct drives *d);
+uint32_t drives_guard_ms(const struct drives *d);
+static inline bool drives_guards_in_time(const struct drives *d, uint32_t life_ms)
+{
+    return life_ms == 0 || life_ms >= 2 * drives_guard_ms(d);
+}
+void drives_begin_guard(struct drives *d, struct drives_guard *guard);
+/* A heartbeat counts; an answer of a guarded node does when its toggle bit has changed. */
+bool drives_takes_beat(struct drives_guard *guard, const struct can_frame *frame);
+void drives_send_guard(struct drives *d, const struct can_port *port);
+/* Of a question and its answer at worst; 0: nobody is guarded. */
+uint32_t drives_guard_bits(const struct drives *d);
+
 bool drives_send_nmt(const struct can_port *port, enum nmt_command command, uint8_t node);
 /* One request, of the client that all nodes share. */
 void drives_ask(struct drives *d, uint8_t node, const struct drives_step *step);

@@ -69,7 +69,8 @@ static void take_heartbeat(struct drives *d, unsigned index, const struct can_fr
     enum nmt_state state;
     if (!nmt_read_heartbeat(frame, &node, &state))
         return;
-    axis->beaten = d->cycle;
+    if (drives_takes_beat(&axis->guard, frame))
+        axis->beaten = d->cycle;
     if (state == NMT_BOOTED && d->state == DRIVES_STARTING)
         drives_start_again(d, index);
     else if (state == NMT_BOOTED)

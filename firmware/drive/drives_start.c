@@ -34,6 +34,7 @@ void drives_begin_axis(struct drives *d, unsigned index)
     if (index == d->count)
         return;
     d->axis[index].given_up &= 1u << DRIVES_NO_PAIR;
+    d->axis[index].guard.is_on = false;
     drives_forget_pdos(&d->axis[index]);
 }
 

@@ -42,6 +42,7 @@ static const struct {
                                "no touch probe: a probing move has the position of a cycle"},
     [DRIVES_NO_SCALING] = {"scaling", "608F 6091 6092",
                            "is not told: increments_per_mm is believed"},
+    [DRIVES_GUARDED] = {"guarded", "1017", "no heartbeat: the drive is asked for its state (100C)"},
 };
 
 void drives_table_set(struct drives_table *table, const struct drives *drives)

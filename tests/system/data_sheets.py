@@ -108,6 +108,26 @@ def read_only_heartbeat(sheet, draw):
     set_access(sheet, "ro", "1017", default=draw.choice(["0", "100", "1000"]))
 
 
+def no_heartbeat(sheet, _):
+    drop(sheet, "1016", "1017")
+
+
+def no_life_time(sheet, _):
+    """Guarded, but it does not notice when that stays out."""
+    drop(sheet, "1016", "1017", "100D")
+
+
+def short_life_time(sheet, _):
+    """It would take any master for lost that asks it as seldom as ours: it is left alone."""
+    no_heartbeat(sheet, None)
+    set_access(sheet, "ro", "100C", default="10")
+    set_access(sheet, "ro", "100D", default="2")
+
+
+def nobody_watched(sheet, _):
+    drop(sheet, "1016", "1017", "100C", "100D")
+
+
 def fixed_mapping(sheet, _):
     """As CiA 402 has it by default: controlword; controlword and mode; controlword and target; ..."""
     maps = {"1600": [0x60400010], "1601": [0x60400010, 0x60600008], "1602": [0x60400010, 0x607A0020], "1603": [],
@@ -191,7 +211,11 @@ HABITS = {
     "60C2 read-only": (read_only_period, set()),
     "1016 out of range": (narrow_consumer, {"watch"}),
     "1016 absent": (no_consumer, {"watch"}),
-    "1017 read-only": (read_only_heartbeat, {"heartbeat"}),
+    "1017 read-only": (read_only_heartbeat, {"guarded"}),
+    "no heartbeat": (no_heartbeat, {"guarded"}),
+    "no heartbeat and no life time": (no_life_time, {"guarded", "watch"}),
+    "a life time that is too short": (short_life_time, {"heartbeat", "watch"}),
+    "neither heartbeat nor guarding": (nobody_watched, {"heartbeat", "watch"}),
     "fixed mapping": (fixed_mapping, {"pair", "mapping", "error_pdo"}),
     "fixed mapping without a mode": (fixed_small_mapping, {"pair", "mapping", "mode_pdo", "error_pdo"}),
     "6060 not mappable": (mode_not_mappable, {"mode_pdo"}),
