@@ -214,15 +214,27 @@ const struct diagnostic *drives_get_fault(const struct drives *d);
 #define DRIVES_CYCLE_FRAMES_MAX (3 + AXIS_COUNT + (AXIS_COUNT + 1) / 2)
 unsigned drives_cycle_frames(unsigned count, uint8_t length[DRIVES_CYCLE_FRAMES_MAX]);
 
-/* The PDOs of a cycle as the start has found them: a frame of each drive's status, position and target; of targets in
- * pairs one. Returns their number. */
+/*
+ * The PDOs as the start has found them: a frame of each drive's status, position and target, of targets in pairs one; of
+ * what I/O nodes hear and say; and of the drives' error codes, of which one comes in a cycle. Returns their number.
+ */
+enum drives_pdo_kind {
+    DRIVES_PDO_REPORT,
+    DRIVES_PDO_TARGET,
+    DRIVES_PDO_INPUTS,
+    DRIVES_PDO_OUTPUTS,
+    DRIVES_PDO_ERROR
+};
 struct drives_pdo {
     uint16_t id;
     uint8_t length; /* bytes at most */
-    bool is_target;
+    enum drives_pdo_kind kind;
 };
-#define DRIVES_CYCLE_PDOS_MAX (3 * AXIS_COUNT)
+#define DRIVES_CYCLE_PDOS_MAX (4 * AXIS_COUNT + 3 * IO_NODES_MAX)
 unsigned drives_get_pdos(const struct drives *d, struct drives_pdo pdo[DRIVES_CYCLE_PDOS_MAX]);
+
+/* There are nodes that are asked for their state: of some cycles that takes a frame and its answer. */
+bool drives_are_guarding(const struct drives *d);
 
 /* What a frame of this identifier tells in every cycle. */
 enum drives_report {

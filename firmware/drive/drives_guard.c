@@ -65,6 +65,11 @@ void drives_send_guard(struct drives *d, const struct can_port *port)
     (void)port->send(port->context, &frame);
 }
 
+bool drives_are_guarding(const struct drives *d)
+{
+    return d->guards;
+}
+
 uint32_t drives_guard_bits(const struct drives *d)
 {
     bool is_any = false;
