@@ -37,8 +37,8 @@ struct drives_identity {
 
 /* How a drive finds its zero (CiA 402, homing mode). For a rotary axis read rad where the name says mm. */
 struct drives_homing {
-    uint8_t order;  /* axes of order 1 first, all of an order at once; 0: this axis is not homed */
-    uint8_t method; /* object 6098 */
+    uint8_t order; /* axes of order 1 first, all of an order at once; 0: this axis is not homed */
+    int8_t method; /* object 6098 */
     double velocity_mm_s;      /* 6099:01, towards the switch; > 0 */
     double zero_mm_s;          /* 6099:02, towards the zero mark; > 0 */
     double acceleration_mm_s2; /* 609A; > 0 */
@@ -59,11 +59,19 @@ struct drives_config_axis {
     struct drives_homing homing;
 };
 
+/* Two drives of one axis: indices of struct drives_config.axis. */
+struct drives_gantry {
+    uint8_t first, second;
+    double skew_max_mm; /* alarm beyond; > 0 */
+};
+#define DRIVES_GANTRIES_MAX AXIS_LINEAR_COUNT
+
 struct drives_config {
     unsigned count; /* drives, 0 ... AXIS_COUNT; none: enabled at once */
     struct drives_config_axis axis[AXIS_COUNT];
-    double skew_max_mm; /* > 0: the last drive is the second of its axis, a gantry; alarm beyond */
-    unsigned io_count;  /* I/O nodes beside them, 0 ... IO_NODES_MAX */
+    unsigned gantry_count;
+    struct drives_gantry gantry[DRIVES_GANTRIES_MAX];
+    unsigned io_count;              /* I/O nodes beside them, 0 ... IO_NODES_MAX */
     const struct io_wiring *wiring; /* of these. Must outlive the drives */
     bool homed; /* all axes have been homed since power-on: they are not homed again */
     uint32_t cycle_us;

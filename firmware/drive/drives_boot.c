@@ -240,7 +240,7 @@ static uint32_t value_of(const struct drives *d, unsigned number)
                                CIA402_CONNECTION_QUICK_STOP,
                                CIA402_OPTION_QUICK_STOP_RAMP,
                                CIA402_OPTION_QUICK_STOP_RAMP,
-                               homing->method,
+                               (uint8_t)homing->method,
                                increments_of(config, homing->velocity_mm_s),
                                increments_of(config, homing->zero_mm_s),
                                increments_of(config, homing->acceleration_mm_s2),

@@ -35,7 +35,10 @@ bool drives_are_watched(const struct drives *d);
 
 static inline bool drives_is_second(const struct drives *d, unsigned index)
 {
-    return d->second != 0 && index == d->second;
+    bool is_second = false;
+    for (unsigned i = 0; i < d->gantry_count; i++)
+        is_second = is_second || index == d->gantry[i].second;
+    return is_second;
 }
 
 /* Setpoints cannot be followed any more: DRIVES_BRAKING. */
@@ -170,11 +173,13 @@ void drives_follow(struct drives *d);
 /* The next order of axes that are homed; none: all drives are ready. */
 void drives_home_next(struct drives *d);
 
-/* A gantry: drives_square.c. A cycle of DRIVES_SQUARE; what is watched in operation. */
+/* Gantries: drives_square.c. A cycle of DRIVES_SQUARE; what is watched in operation. */
 void drives_gantry_init(struct drives *d, const struct drives_config *config);
 void drives_begin_square(struct drives *d);
 void drives_square(struct drives *d);
 void drives_check_skew(struct drives *d);
+/* The axis of a gantry is where its first drive is. */
+void drives_place_gantries(struct drives *d);
 void drives_enter_enabled(struct drives *d);
 void drives_check_all_links(struct drives *d);
 

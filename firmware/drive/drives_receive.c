@@ -127,8 +127,8 @@ void drives_receive(struct drives *d, const struct can_port *port)
     take_frames(d, port);
     if (d->io_count > 0)
         drives_io_check(d);
-    if (d->second != 0) /* the axis is where its first drive is */
-        d->actual.at[d->axis[d->first].config.axis] = d->axis[d->first].actual_mm;
+    if (d->gantry_count > 0)
+        drives_place_gantries(d);
     switch (d->state) {
     case DRIVES_STARTING:
         drives_start(d);

@@ -149,8 +149,8 @@ struct drives {
     uint8_t
         axis_of_node[NODE_MAX + 1]; /* index into axis; AXIS_COUNT: not ours; above: I/O nodes */
     uint8_t io_count;
-    uint8_t first, second; /* drives of the gantry: indices into axis; second 0: there is none */
-    double skew_max_mm;
+    uint8_t gantry_count;
+    struct drives_gantry gantry[DRIVES_GANTRIES_MAX];
     const struct io_wiring *wiring; /* of the I/O nodes */
     struct drives_io io[IO_NODES_MAX];
     uint32_t io_cycles; /* since all outputs were sent */

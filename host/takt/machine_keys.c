@@ -6,6 +6,7 @@
 #define IN_AXIS(field)    offsetof(struct machine_axis, field)
 #define IN_DRIVE(field)   offsetof(struct machine_drive, plant.field)
 #define IN_IO(field)      offsetof(struct io_wiring, field)
+#define IN_GANTRY(field)  offsetof(struct machine_gantry, field)
 #define IN_STEPPER(field) offsetof(struct virtual_stepper_config, field)
 
 /* Rows of the table by what they hold. Ranges: from (above: without) the first number to the second. */
@@ -125,8 +126,8 @@ const struct machine_key machine_keys[] = {
           "serial number its drive must have (1018:04); 0: any"),
     COUNT(SECTION_AXIS, "home_order", KEY_UINT8, IN_AXIS(home_order), 0, 100,
           "at start axes are homed in this order, those of one number together; 0: not homed"),
-    COUNT(SECTION_AXIS, "home_method", KEY_UINT8, IN_AXIS(home_method), 1, 37,
-          "how its drive finds its home (CiA 402, object 6098); 37: where it stands"),
+    COUNT(SECTION_AXIS, "home_method", KEY_INT8, IN_AXIS(home_method), -128, 37,
+          "how its drive finds its home (CiA 402, object 6098); 37: where it stands; below 0: a method of its maker"),
     ABOVE(SECTION_AXIS, "home_velocity_mm_s", SCALE_LENGTH, IN_AXIS(home_velocity_mm_s), 0, 1e5,
           "towards the switch (6099:01)"),
     ABOVE(SECTION_AXIS, "home_zero_velocity_mm_s", SCALE_LENGTH, IN_AXIS(home_zero_velocity_mm_s), 0, 1e5,
@@ -273,15 +274,17 @@ const struct machine_key machine_keys[] = {
     COUNT(SECTION_STEPPER, "encoder", KEY_UINT32, IN_STEPPER(has_encoder), 0, 1,
           "1: the motor has one, so that the controller sees missed steps; 0: it has none"),
 
-    CHOICE(SECTION_GANTRY, "axis", KEY_LINEAR_AXIS, IN_SETUP(machine.gantry.axis),
-           "axis X, Y or Z that has two drives; none"),
-    COUNT(SECTION_GANTRY, "drive_node", KEY_UINT8, IN_SETUP(machine.gantry.drive_node), 1, 127,
+    CHOICE(SECTION_GANTRY, "axis", KEY_LINEAR_AXIS, IN_GANTRY(axis),
+           "axis X, Y or Z that has two drives; none. [gantry 2] and [gantry 3] are further ones"),
+    COUNT(SECTION_GANTRY, "drive_node", KEY_UINT8, IN_GANTRY(drive_node), 1, 127,
           "CANopen node id of its second drive; its other keys are those of the axis"),
-    COUNT(SECTION_GANTRY, "is_reversed", KEY_UINT8, IN_SETUP(machine.gantry.is_reversed), 0, 1,
+    COUNT(SECTION_GANTRY, "is_reversed", KEY_UINT8, IN_GANTRY(is_reversed), 0, 1,
           "1: the second motor turns the other way than the first; it looks for its home on the same side"),
-    FROM(SECTION_GANTRY, "home_offset_mm", SCALE_NONE, IN_SETUP(machine.gantry.home_offset_mm), -1e6, 1e6,
+    COUNT(SECTION_GANTRY, "home_method", KEY_INT8, IN_GANTRY(home_method), -128, 37,
+          "how the second drive finds its home; 0: as that of the axis, on the same side"),
+    FROM(SECTION_GANTRY, "home_offset_mm", SCALE_NONE, IN_GANTRY(home_offset_mm), -1e6, 1e6,
          "machine coordinate of the home of the second drive: its difference to that of the axis squares the gantry"),
-    FROM(SECTION_GANTRY, "skew_max_mm", SCALE_NONE, IN_SETUP(machine.gantry.skew_max_mm), 0, 1e3,
+    FROM(SECTION_GANTRY, "skew_max_mm", SCALE_NONE, IN_GANTRY(skew_max_mm), 0, 1e3,
          "alarm when the two drives are farther apart"),
 
     COUNT(SECTION_IO, "node", KEY_UINT8, IN_IO(node), 1, 127,

@@ -115,9 +115,9 @@ static void add_io_node(struct machine *machine, struct virtual_drives_config *v
 
 static void add_second_drive(struct machine *machine, struct virtual_drives_config *virtual)
 {
-    machine->gantry.axis = AXIS_Y;
-    machine->gantry.drive_node = FOURTH;
-    machine->gantry.skew_max_mm = SKEW_MAX_MM;
+    machine->gantry[0].axis = AXIS_Y;
+    machine->gantry[0].drive_node = FOURTH;
+    machine->gantry[0].skew_max_mm = SKEW_MAX_MM;
     virtual->drive[virtual->count] = virtual->drive[AXIS_Y];
     virtual->drive[virtual->count++].node = FOURTH;
 }
