@@ -110,6 +110,7 @@ void virtual_drive_init(struct virtual_drive *drive, const struct virtual_drive_
     if (config->dictionary != NULL)
         drive->dictionary = config->dictionary;
     drive->nmt = NMT_BOOTED;
+    drive->number = config->node;
     drive->lss.node = drive->lss.stored = config->is_nameless ? LSS_NO_NODE : config->node;
     drive->lss.is_nameless = config->is_nameless;
     drive_plant_init(&drive->plant, &config->plant);

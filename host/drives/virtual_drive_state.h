@@ -104,6 +104,7 @@ struct drive_keeper {
 };
 
 struct virtual_drive {
+    uint8_t number; /* the node id it was made with, by which it is known however it is called */
     uint32_t accepts[64]; /* bit id: frames with this identifier are looked at */
     struct virtual_drive_config config;
     struct can_port port;

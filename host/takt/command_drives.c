@@ -428,7 +428,7 @@ const struct command command_drives = {
         "--store FOLDER keeps what a master has the drives store (object 1010) in a file for each "
         "node, which they have "
         "again\n"
-        "when they are next switched on. Without it stored values live as long as the command.\n"
+        "when they are next switched on, with the node id that LSS has stored. Without it stored values live as long as the command.\n"
         "\n"
         "Drives can be found and given their node id by LSS (CiA 305), as they are, or with "
         "--unconfigured as they come "
