@@ -161,8 +161,8 @@ static void test_an_id_that_cannot_be_kept_is_not_stored(void)
 
 static void test_a_stored_id_that_is_none_is_refused(void)
 {
-    static const char *const texts[] = {"node 0\n", "node 128\n", "node 1234\n",
-                                        "node \n",  "node 9x\n",  "node x9\n"};
+    static const char *const texts[] = {"node 0\n", "node 128\n", "node 1234\n", "node 9x\n",
+                                        "node x9\n"};
     struct drive_store_problem wrong;
     for (unsigned i = 0; i < sizeof texts / sizeof texts[0]; i++) {
         setUp();
