@@ -174,6 +174,7 @@
     X(TABLE_RESERVE, "axis %w would need %v percent of its limits, more than has been reserved")   \
     /* machine and drives */                                                                       \
     X(STALLED, "the axes do not go on, and nothing explains it: a fault of the planner")           \
+    X(TOOL_CHANGE_SLOW, "the tool changer has not ended its answer to M6 within %v s")             \
     X(SPINDLE_SLOW, "the spindle has not reached its speed in time")                               \
     X(DRIVE_FAULT, "the drive of axis %w reports %x: %m")                                          \
     X(DRIVE_STATE, "the drive of axis %w has left operation: its state is '%m'")                   \

@@ -14,6 +14,7 @@ void machine_set_default(struct machine *machine)
     machine->resolution_per_mm = 1000.0;
     machine->look_ahead_blocks = MACHINE_LOOK_AHEAD_MAX;
     machine->spindle_max_rpm = 24000.0;
+    machine->tool_change_s = 60.0;
     machine->spindle_ramp_rpm_s = 12000.0;
     machine->spindle_encoder_counts = 4096;
     machine->thread_tolerance_mm = 0.1;

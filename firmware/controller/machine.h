@@ -94,6 +94,7 @@ struct machine {
     double thread_tolerance_mm; /* a thread farther off the spindle's angle is an alarm; > 0 */
     double spindle_load_limit_percent; /* beyond it the feed is lowered; 0: never */
     double spindle_at_speed_s; /* longest wait for a commanded speed; 0: motion does not wait */
+    double tool_change_s;      /* longest change of the tool by a changer at I/O nodes; > 0 */
     uint32_t can_bitrate;      /* bit/s */
     uint32_t
         heartbeat_ms; /* period of all heartbeats on the bus, up to 20,000; 0: there are none */

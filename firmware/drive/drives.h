@@ -153,6 +153,8 @@ void drives_send_outputs(struct drives *d, const struct can_port *port,
                          const struct outputs *outputs);
 /* Sets the inputs that I/O nodes are wired to, as they were reported last. The others stay. */
 void drives_add_inputs(const struct drives *d, struct inputs *inputs);
+/* An input of another kind. False: none is wired to it. */
+bool drives_find_input(const struct drives *d, enum io_bit kind, bool *is_high);
 
 static inline enum drives_state drives_get_state(const struct drives *d)
 {

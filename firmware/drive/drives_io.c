@@ -446,6 +446,17 @@ void drives_add_inputs(const struct drives *d, struct inputs *inputs)
     }
 }
 
+bool drives_find_input(const struct drives *d, enum io_bit kind, bool *is_high)
+{
+    for (unsigned i = 0; i < d->io_count; i++) {
+        const uint16_t bits = find_inputs(&d->wiring[i], IO_KINDS, kind);
+        *is_high = (d->io[i].levels & bits) != 0;
+        if (bits != 0)
+            return true;
+    }
+    return false;
+}
+
 /* ---- Outputs ---- */
 
 static bool level_of(const struct outputs *outputs, unsigned kind)
@@ -462,7 +473,11 @@ static bool level_of(const struct outputs *outputs, unsigned kind)
                outputs->spindle_orient;
     case IO_SPINDLE_CCW:
         return outputs->spindle_speed_rpm < 0;
+    case IO_TOOL_CHANGE:
+        return outputs->tool_change;
     default:
+        if (kind >= IO_TOOL)
+            return outputs->tool_asked >> (kind - IO_TOOL) & 1;
         return outputs->digital >> (kind - IO_PROGRAM) & 1;
     }
 }

@@ -64,6 +64,7 @@ const struct settings_field settings_fields[] = {
     FROM(23, spindle_ramp_rpm_s, 1e-3, 1e9),
     COUNT(24, spindle_encoder_counts, 0, 16777216),
     ABOVE(25, thread_tolerance_mm, 0, 100),
+    ABOVE(26, tool_change_s, 0, 3600),
     COUNT(30, can_bitrate, 10000, 1000000),
     COUNT(31, heartbeat_ms, 0, 20000),
     ROW(32, false, SETTINGS_U8, offsetof(struct machine, controller_node), 1, 1, 127, false, "controller_node"),

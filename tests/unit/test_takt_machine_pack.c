@@ -93,9 +93,8 @@ static void test_every_value_a_file_may_have_may_be_stored(void)
 {
     for (size_t i = 0; i < machine_keys_count; i++) {
         const struct machine_key *key = &machine_keys[i];
-        const bool is_number =
-            key->type == KEY_DOUBLE || key->type == KEY_UINT32 || key->type == KEY_UINT8 ||
-            key->type == KEY_INT8;
+        const bool is_number = key->type == KEY_DOUBLE || key->type == KEY_UINT32 ||
+                               key->type == KEY_UINT8 || key->type == KEY_INT8;
 
         if (!is_number || !is_of_machine(key))
             continue;
