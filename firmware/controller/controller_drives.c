@@ -37,7 +37,8 @@ static void add_drive(struct drives_config *config, const struct machine *machin
     *drive = (struct drives_config_axis){
         .axis = (enum axis)i,
         .node = axis->drive_node,
-        .keeps_settings = axis->drive_is_set_up != 0,
+        .keeps_settings = axis->drive_is_set_up != 0 || axis->drive_dcf != NULL,
+        .dcf = axis->drive_dcf,
         .increments_per_mm = axis->increments_per_mm,
         .travel_per_turn_mm = axis->travel_per_turn_mm,
         .following_error_max_mm = axis->following_error_max_mm,
@@ -87,6 +88,9 @@ static void add_second(struct drives_config *config, const struct machine *machi
                                .skew_max_mm = gantry->skew_max_mm};
     add_drive(config, machine, gantry->axis);
     drive->node = gantry->drive_node;
+    drive->dcf = gantry->drive_dcf;
+    drive->keeps_settings =
+        machine->axis[gantry->axis].drive_is_set_up != 0 || gantry->drive_dcf != NULL;
     drive->identity.serial = 0;
     drive->homing.offset_mm = gantry->home_offset_mm;
     if (gantry->is_reversed != 0) {

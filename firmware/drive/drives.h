@@ -15,6 +15,7 @@
 
 #include "base/error.h"
 #include "base/point.h"
+#include "canopen/concise_dcf.h"
 #include "drive/io_wiring.h"
 #include "hal/can.h"
 #include "hal/inputs.h"
@@ -51,6 +52,8 @@ struct drives_config_axis {
     enum axis axis;
     uint8_t node;        /* CANopen node id, 1 ... 127 */
     bool keeps_settings; /* it has been set up with its maker's tool: it is only looked at */
+    const struct concise_dcf *
+        dcf; /* it is set up by this, see drives_dcf.c. Must outlive the drives; NULL: by nothing */
     double
         increments_per_mm; /* position units of the drive per mm or rad; < 0: it turns the other way */
     double travel_per_turn_mm;     /* of its motor, to check increments_per_mm by; 0: not checked */

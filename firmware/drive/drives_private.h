@@ -96,6 +96,8 @@ struct drives_answer {
  */
 bool drives_next_ask(struct drives *d, struct drives_step *step);
 void drives_take_ask(struct drives *d, const struct drives_answer *answer);
+bool drives_ask_dcf(struct drives *d); /* asks at once; false: there is nothing to be asked */
+void drives_take_dcf(struct drives *d);
 bool drives_next_set(struct drives *d, struct drives_step *step);
 void drives_take_set(struct drives *d, const struct drives_answer *answer);
 bool drives_next_map(struct drives *d, struct drives_step *step);

@@ -24,6 +24,8 @@ static void rewind_to(struct drives *d, unsigned index)
     d->repeats = 0;
     d->is_looking = false;
     d->mapping.pass = d->mapping.step = 0;
+    d->dcf.at = CONCISE_DCF_FIRST;
+    d->dcf.writes = false;
     d->sdo.result = SDO_IDLE;
 }
 
@@ -102,24 +104,37 @@ void drives_ask(struct drives *d, uint8_t node, const struct drives_step *step)
         sdo_client_upload(&d->sdo, node, step->object, d->sdo_timeout_cycles);
 }
 
-static void ask(struct drives *d, const struct drives_step *step)
+/* The next request of this part of the configuration is made; false: there is none. */
+static bool ask_of_part(struct drives *d)
 {
-    drives_ask(d, d->node[d->at_axis], step);
+    struct drives_step step;
+    bool is_any = false;
+    switch ((enum drives_part)d->at_part) {
+    case DRIVES_DCF:
+        return drives_ask_dcf(d);
+    case DRIVES_ASK:
+        is_any = drives_next_ask(d, &step);
+        break;
+    case DRIVES_SET:
+        is_any = drives_next_set(d, &step);
+        break;
+    case DRIVES_MAP:
+        is_any = drives_next_map(d, &step);
+        break;
+    case DRIVES_PARTS:
+        break;
+    }
+    if (is_any)
+        drives_ask(d, d->node[d->at_axis], &step);
+    return is_any;
 }
 
-static bool next_of_part(struct drives *d, struct drives_step *step)
-{
-    if (d->at_part == DRIVES_ASK)
-        return drives_next_ask(d, step);
-    return d->at_part == DRIVES_SET ? drives_next_set(d, step) : drives_next_map(d, step);
-}
-
-/* The next request of the axis; false: it is configured, or of no use. */
-static bool find_step(struct drives *d, struct drives_step *step)
+/* The next request of the axis is made; false: it is configured, or of no use. */
+static bool ask_next(struct drives *d)
 {
     while (d->at_part < DRIVES_PARTS && d->state == DRIVES_STARTING) {
         unsigned part = d->at_part;
-        if (next_of_part(d, step))
+        if (ask_of_part(d))
             return true;
         if (d->at_part == part) {
             d->at_part++;
@@ -141,13 +156,10 @@ static void check_load(struct drives *d)
 
 static void next_step(struct drives *d)
 {
-    struct drives_step step;
     d->repeats = 0;
     while (d->at_axis < d->count && d->state == DRIVES_STARTING) {
-        if (find_step(d, &step)) {
-            ask(d, &step);
+        if (ask_next(d))
             return;
-        }
         drives_begin_axis(d, d->at_axis + 1u);
     }
     if (d->state == DRIVES_STARTING)
@@ -164,6 +176,8 @@ static void take_answer(struct drives *d)
                                          .value = is_done ? sdo_client_number(sdo) : 0};
     if (d->at_part == DRIVES_ASK)
         drives_take_ask(d, &answer);
+    else if (d->at_part == DRIVES_DCF)
+        drives_take_dcf(d);
     else if (d->at_part == DRIVES_SET)
         drives_take_set(d, &answer);
     else
@@ -176,13 +190,11 @@ static void take_answer(struct drives *d)
  */
 static void miss_answer(struct drives *d)
 {
-    struct drives_step step;
+    const uint32_t object = d->sdo.object;
     bool is_first = d->at_part == DRIVES_ASK && d->at_step == 0;
     bool may_boot = is_first && d->phase_cycles < 2 * d->boot_timeout_cycles;
-    if ((may_boot || d->repeats++ < DRIVES_SDO_REPEATS) && find_step(d, &step))
-        ask(d, &step);
-    else
-        drives_raise_object(d, d->at_axis, d->sdo.object, TAKT_ERROR_DRIVE_UNANSWERED,
+    if (!(may_boot || d->repeats++ < DRIVES_SDO_REPEATS) || !ask_next(d))
+        drives_raise_object(d, d->at_axis, object, TAKT_ERROR_DRIVE_UNANSWERED,
                             drives_cycles_ms(d, d->sdo_timeout_cycles), NULL);
 }
 

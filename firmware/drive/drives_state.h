@@ -29,7 +29,7 @@ enum drives_phase {
 };
 
 /* What a drive is configured by, in this order; then the next drive. */
-enum drives_part { DRIVES_ASK, DRIVES_SET, DRIVES_MAP, DRIVES_PARTS };
+enum drives_part { DRIVES_ASK, DRIVES_DCF, DRIVES_SET, DRIVES_MAP, DRIVES_PARTS };
 
 /* A frame to a drive, as one of its RPDOs takes it. */
 #define DRIVES_NOWHERE 0xFF
@@ -179,6 +179,10 @@ struct drives {
         [AXIS_COUNT]; /* objects of the drive that is being configured: its period, or its scaling;
                              in operation what each drive has latched */
     struct drives_mapping mapping;
+    struct {
+        uint32_t at; /* place in its concise configuration */
+        bool writes; /* it is written, since the drive had something else */
+    } dcf;
     struct sdo_client sdo;
 
     struct diagnostic fault;

@@ -335,7 +335,7 @@ enum command_status lint_program(const struct session *s, double stock_top_mm, u
     enum command_status status;
 
     l = (struct lint){.session = s, .stock_top_mm = stock_top_mm, .lines = count_lines(s)};
-    l.hole_z = INFINITY;
+    l.hole_z = HUGE_VAL;
     l.seen = calloc(l.lines + 2U, 1);
     if (l.seen == NULL) {
         message_command_error("out of memory");

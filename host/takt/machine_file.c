@@ -1,5 +1,6 @@
 #include "takt/machine_file.h"
 
+#include "takt/configuration_file.h"
 #include "takt/machine_keys.h"
 #include "takt/message.h"
 #include "takt/text.h"
@@ -226,7 +227,8 @@ static bool resolve_files(struct machine_setup *setup, const char *machine_file)
     for (unsigned i = 0; i < AXIS_COUNT; i++)
         fits = resolve_path(setup->axis_table[i], machine_file) && fits;
     for (unsigned i = 0; i < MACHINE_SETUP_DRIVES_MAX; i++)
-        fits = resolve_path(setup->drive[i].eds, machine_file) && fits;
+        fits = resolve_path(setup->drive[i].eds, machine_file) &&
+               resolve_path(setup->drive[i].dcf, machine_file) && fits;
     return fits;
 }
 
@@ -390,7 +392,7 @@ bool machine_file_load(struct machine_setup *setup, const struct options *option
         return false;
     wrong = machine_setup_check(setup);
     if (wrong == NULL)
-        return true;
+        return configuration_files_load(setup);
     if (options->machine != NULL)
         message_error(options->machine, 0, 0, "%s", wrong);
     else

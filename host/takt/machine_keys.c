@@ -205,6 +205,8 @@ const struct machine_key machine_keys[] = {
 
     TEXT(SECTION_DRIVE, "eds", offsetof(struct machine_drive, eds), MACHINE_SETUP_PATH_MAX + 1,
          "electronic data sheet (CiA 306): the drive has its objects, PDOs and modes; relative to this file's folder; empty: takt's own drive"),
+    TEXT(SECTION_DRIVE, "dcf", offsetof(struct machine_drive, dcf), MACHINE_SETUP_PATH_MAX + 1,
+         "concise configuration (CiA 302, 1F22) that the drive of this node, also a real one, is checked against, and else set up by; empty: by takt"),
     COUNT(SECTION_DRIVE, "boot_time_ms", KEY_UINT32, offsetof(struct machine_drive, boot_ms), 0, 600000,
           "from a reset to its boot-up message"),
     COUNT(SECTION_DRIVE, "sdo_time_ms", KEY_UINT32, offsetof(struct machine_drive, sdo_ms), 0, 600000,

@@ -26,6 +26,8 @@ struct panel_setup {
 struct machine_drive {
     struct drive_plant_config plant;
     char eds[MACHINE_SETUP_PATH_MAX + 1]; /* its data sheet; empty: takt's own drive */
+    char
+        dcf[MACHINE_SETUP_PATH_MAX + 1]; /* what it is set up by, real or virtual; empty: nothing */
     uint32_t boot_ms;
     uint32_t sdo_ms;
 };

@@ -7,6 +7,8 @@
 #include "readers.h"
 
 #include "base/crc32.h"
+#include "canopen/concise_dcf.h"
+#include "canopen/sdo_client.h"
 #include "drives/drive_store.h"
 #include "drives/virtual_drive.h"
 #include "motion/handover.h"
@@ -165,6 +167,25 @@ static bool send_nowhere(void *context, const struct can_frame *frame)
     (void)context;
     (void)frame;
     return true;
+}
+
+/* A concise configuration that is good lies within its bytes, and has as many entries as it says. */
+void read_configuration(const uint8_t *data, size_t size)
+{
+    const struct concise_dcf dcf = {.bytes = data, .length = (uint32_t)size};
+    uint32_t at = CONCISE_DCF_FIRST, object, count = 0;
+    struct concise_dcf_entry entry;
+
+    if (!concise_dcf_is_well(&dcf, &object))
+        return;
+    while (concise_dcf_next(&dcf, &at, &entry)) {
+        require(entry.size > 0 && entry.size <= SDO_CLIENT_VALUE_MAX &&
+                entry.value + entry.size <= data + size);
+        (void)concise_dcf_has(&dcf, at, entry.object);
+        count++;
+    }
+    require(at == size &&
+            count == (size_t)(data[0] | data[1] << 8 | data[2] << 16) + ((size_t)data[3] << 24));
 }
 
 /* What a virtual drive has on its disk. One that takes it boots, and what it stores is taken again. */
