@@ -195,6 +195,7 @@
     X(DRIVE_SCALING,                                                                               \
       "the drive of axis %w counts %v units in a turn of its motor; increments_per_mm says %l")    \
     X(DRIVE_FOLLOWING, "axis %w lags %v %u behind its setpoint")                                   \
+    X(DRIVE_SHARES, "the drive of axis %w takes the PDO %x, which is meant for another drive")     \
     X(DRIVE_SKEW, "axis %w is %v mm off the other drive of its gantry")                            \
     X(DRIVE_HOMING, "the drive of axis %w reports an error while homing: statusword %x")           \
     X(DRIVE_HOMING_SLOW, "homing of axis %w has not ended within %v s")                            \

@@ -144,6 +144,28 @@ static bool ask_next(struct drives *d)
     return false;
 }
 
+static bool takes(const struct drives_axis *axis, uint16_t cob_id)
+{
+    return (axis->target_frame.length > 0 && axis->target_frame.cob_id == cob_id) ||
+           (axis->control_frame.length > 0 && axis->control_frame.cob_id == cob_id);
+}
+
+/* Drives that keep their PDOs may have been set up for one identifier: each would take the other's target for its own. */
+static void check_shared(struct drives *d, unsigned i)
+{
+    const struct drives_axis *axis = &d->axis[i];
+    for (unsigned k = 0; k < d->count; k++) {
+        const struct drives_axis *other = &d->axis[k];
+        const bool is_pair = k == (i ^ 1U) && axis->is_paired && other->is_paired;
+        if (k == i || is_pair)
+            continue;
+        if (other->target_frame.length > 0 && takes(axis, other->target_frame.cob_id))
+            drives_raise(d, i, TAKT_ERROR_DRIVE_SHARES, other->target_frame.cob_id, NULL);
+        else if (other->control_frame.length > 0 && takes(axis, other->control_frame.cob_id))
+            drives_raise(d, i, TAKT_ERROR_DRIVE_SHARES, other->control_frame.cob_id, NULL);
+    }
+}
+
 static void check_load(struct drives *d)
 {
     struct drives_load load;
@@ -162,6 +184,8 @@ static void next_step(struct drives *d)
             return;
         drives_begin_axis(d, d->at_axis + 1u);
     }
+    for (unsigned i = 0; i < d->count && d->state == DRIVES_STARTING; i++)
+        check_shared(d, i);
     if (d->state == DRIVES_STARTING)
         check_load(d);
     if (d->state == DRIVES_STARTING)

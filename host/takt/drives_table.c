@@ -145,6 +145,9 @@ const char *drives_table_remedy(const struct diagnostic *fault)
     case TAKT_ERROR_DRIVE_UNMAPPED:
         return "map it with the maker's tool into a PDO that is valid and of transmission type 1, "
                "and store that";
+    case TAKT_ERROR_DRIVE_SHARES:
+        return "give each drive a PDO with an identifier of its own with the maker's tool, or "
+               "drive_is_set_up = 0";
     case TAKT_ERROR_DRIVE_PERIOD:
         return "set cycle_us in [machine] to that time, or 60C2 with the maker's tool";
     case TAKT_ERROR_DRIVE_SCALING:

@@ -60,6 +60,11 @@ status, summary, err = run(*FILES, *(f"drive.{node}.eds=set_up.eds" for node in 
 if t.check(status == 0 and summary["setpoint_digest"] == DIGEST, "a drive that has it already runs", err):
     t.check(all(set(written(node)) <= {"6060:00", "6040:00"} for node in (1, 2, 3)), "and is only compared", written(1))
 
+# The virtual drive of Y takes its target from the frame that X has for itself.
+status, _, err = run(*FILES, "drive.1.eds=set_up.eds")
+t.check(status == 1 and "axis X (node 1) takes the PDO" in err and "which is meant for another drive" in err and "maker's tool" in err,
+        "drives that would take each other's targets are refused", err)
+
 data_sheets.set_access(sheet, "ro", "605A", default="1")
 data_sheets.write("other.eds", sheet)
 status, _, err = run(*FILES, "drive.1.eds=other.eds")
