@@ -94,6 +94,18 @@ void drives_table_write_text(FILE *stream, const struct drives_table *table)
     }
 }
 
+bool drives_table_tell(const struct drives *drives, bool is_quiet)
+{
+    struct drives_table table;
+
+    if (drives_get_state(drives) != DRIVES_ENABLED)
+        return false;
+    drives_table_set(&table, drives);
+    if (!is_quiet)
+        drives_table_write_text(stderr, &table);
+    return true;
+}
+
 static void add_drive(cJSON *drives, const struct drives_table *table, unsigned axis, unsigned node)
 {
     const char letter[] = {AXIS_LETTERS[axis], '\0'};
