@@ -12,17 +12,41 @@
 
 #define CAN_DATA_MAX 8
 
+/*
+ * Of an id: a remote frame, which asks for the frame of that identifier. It has no data; its length is that of what it
+ * asks for. Whoever looks for an identifier by == never takes one for a frame with data.
+ */
+#define CAN_REMOTE  0x8000U
+#define CAN_ID_MASK 0x07FFU
+
 struct can_frame {
-    uint16_t id;    /* 11 bits */
+    uint16_t id;    /* 11 bits, and CAN_REMOTE */
     uint8_t length; /* 0 ... CAN_DATA_MAX */
     uint8_t data[CAN_DATA_MAX];
 };
+
+static inline bool can_is_remote(const struct can_frame *frame)
+{
+    return (frame->id & CAN_REMOTE) != 0;
+}
+
+/* Bytes of data on the wire. */
+static inline unsigned can_data_length(const struct can_frame *frame)
+{
+    return can_is_remote(frame) ? 0 : frame->length;
+}
+
+/* Who wins arbitration: the lower one. Of one identifier that is the frame with data. */
+static inline unsigned can_rank(uint16_t id)
+{
+    return (id & CAN_ID_MASK) << 1 | ((id & CAN_REMOTE) != 0);
+}
 
 struct can_port {
     /* Queues a frame for sending. False: no room; the frame is not sent and the caller decides what that means.
      * Must not wait. */
     bool (*send)(void *context, const struct can_frame *frame);
-    /* Takes the oldest received frame. False: none. Must not wait. */
+    /* Takes the oldest received frame. False: none. Must not wait. A port of a master need not receive remote frames. */
     bool (*receive)(void *context, struct can_frame *frame);
     void *context; /* owned by whoever made the port */
 };

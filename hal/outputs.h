@@ -19,8 +19,10 @@ struct outputs {
     double spindle_angle_rad;
     bool mist;
     bool flood;
-    uint32_t tool;    /* in the spindle */
-    uint32_t digital; /* bit i: output i */
+    bool tool_change;    /* M6: the changer is to bring tool_asked, until it has answered */
+    uint32_t tool;       /* in the spindle */
+    uint32_t digital;    /* bit i: output i */
+    uint32_t tool_asked; /* by T: what M6 changes to */
     double analogue[OUTPUTS_ANALOGUE_MAX];
 };
 

@@ -174,6 +174,7 @@
     X(TABLE_RESERVE, "axis %w would need %v percent of its limits, more than has been reserved")   \
     /* machine and drives */                                                                       \
     X(STALLED, "the axes do not go on, and nothing explains it: a fault of the planner")           \
+    X(TOOL_CHANGE_SLOW, "the tool changer has not ended its answer to M6 within %v s")             \
     X(SPINDLE_SLOW, "the spindle has not reached its speed in time")                               \
     X(DRIVE_FAULT, "the drive of axis %w reports %x: %m")                                          \
     X(DRIVE_STATE, "the drive of axis %w has left operation: its state is '%m'")                   \
@@ -194,6 +195,7 @@
     X(DRIVE_SCALING,                                                                               \
       "the drive of axis %w counts %v units in a turn of its motor; increments_per_mm says %l")    \
     X(DRIVE_FOLLOWING, "axis %w lags %v %u behind its setpoint")                                   \
+    X(DRIVE_SHARES, "the drive of axis %w takes the PDO %x, which is meant for another drive")     \
     X(DRIVE_SKEW, "axis %w is %v mm off the other drive of its gantry")                            \
     X(DRIVE_HOMING, "the drive of axis %w reports an error while homing: statusword %x")           \
     X(DRIVE_HOMING_SLOW, "homing of axis %w has not ended within %v s")                            \
@@ -252,12 +254,18 @@
     X(MACHINE_STEPS, "axis %w: its travel does not fit 32 bits of steps")                          \
     X(MACHINE_HOME,                                                                                \
       "axis %w: its home_offset_mm does not fit a drive's 32 bits (home_offset_deg when rotary)")  \
+    X(MACHINE_HOME_METHOD,                                                                         \
+      "axis %w: home_method is 1 ... 37, or below 0 a method of the drive's maker")                \
     X(MACHINE_NODES, "axes %w have the same drive_node %v")                                        \
     X(MACHINE_CONTROLLER_NODE, "controller_node %v is the drive_node of axis %w")                  \
     X(MACHINE_IO, "%w is wired wrongly, or has no node before it: the first is io 1")              \
     X(MACHINE_IO_NODE, "%w: another node on the bus has its id %v")                                \
     X(MACHINE_GANTRY,                                                                              \
-      "the gantry needs a CAN drive on X, Y or Z, a free node, skew_max_mm; %v drives at most")    \
+      "a gantry needs a CAN drive on X, Y or Z, a free node, skew_max_mm; %v drives at most, and " \
+      "no gantry missing before it")                                                               \
+    X(MACHINE_GANTRY_HOME,                                                                         \
+      "gantry of axis %w: the maker's home_method of the axis and a reversed motor need a "        \
+      "home_method in [gantry]")                                                                   \
     X(MACHINE_FORM, "'%w' of this machine is for comparison: this image has only its default")     \
     X(SETTINGS_ABSENT, "no settings are stored: make them with takt machine --pack and load them") \
     X(SETTINGS_KIND, "these are no settings of this version")                                      \

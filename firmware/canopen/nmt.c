@@ -72,7 +72,13 @@ bool nmt_read_heartbeat(const struct can_frame *frame, uint8_t *node, enum nmt_s
     *node = node_id(frame->id);
     if (node_function(frame->id) != NMT_HEARTBEAT_FUNCTION || *node == 0 || frame->length != 1)
         return false;
-    return state_from_byte(frame->data[0], state);
+    return state_from_byte(frame->data[0] & (uint8_t)~NMT_TOGGLE, state);
+}
+
+void nmt_write_guard(struct can_frame *frame, uint8_t node)
+{
+    *frame = (struct can_frame){.id = (uint16_t)((CAN_REMOTE | NMT_HEARTBEAT_FUNCTION) + node),
+                                .length = 1};
 }
 
 enum nmt_state nmt_next_state(enum nmt_command command)

@@ -41,8 +41,19 @@ void nmt_write_command(struct can_frame *frame, enum nmt_command command, uint8_
 bool nmt_read_command(const struct can_frame *frame, enum nmt_command *command, uint8_t *node);
 
 void nmt_write_heartbeat(struct can_frame *frame, uint8_t node, enum nmt_state state);
-/* False: the frame is no heartbeat. */
+/*
+ * False: the frame is no heartbeat. An answer to a guarding master is the same frame with the toggle bit, which changes from
+ * each answer to the next (7.2.8.3.2.1).
+ */
 bool nmt_read_heartbeat(const struct can_frame *frame, uint8_t *node, enum nmt_state *state);
+#define NMT_TOGGLE 0x80u
+
+/* Node guarding: the remote frame by which a master asks a node for its state, of whatever length. */
+void nmt_write_guard(struct can_frame *frame, uint8_t node);
+static inline bool nmt_is_guard(const struct can_frame *frame, uint8_t node)
+{
+    return frame->id == (CAN_REMOTE | NMT_HEARTBEAT_FUNCTION) + node;
+}
 
 /*
  * State of a node after a command. Both resets lead to NMT_BOOTED, which the node leaves by itself.

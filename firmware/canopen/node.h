@@ -8,6 +8,8 @@
 #ifndef TAKT_CANOPEN_NODE_H
 #define TAKT_CANOPEN_NODE_H
 
+#include "hal/can.h"
+
 #include <stdint.h>
 
 #define NODE_MIN 1
@@ -16,9 +18,10 @@
 #define NODE_FUNCTION_MASK 0x780u
 #define NODE_ID_MASK       0x07Fu
 
+/* Of a remote frame no function: it asks for one. */
 static inline uint16_t node_function(uint16_t cob_id)
 {
-    return (uint16_t)(cob_id & NODE_FUNCTION_MASK);
+    return (uint16_t)(cob_id & (CAN_REMOTE | NODE_FUNCTION_MASK));
 }
 
 static inline uint8_t node_id(uint16_t cob_id)

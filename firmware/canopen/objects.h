@@ -8,6 +8,8 @@
 #define OBJECT_DEVICE_TYPE        0x1000
 #define OBJECT_ERROR_REGISTER     0x1001
 #define OBJECT_SYNC_PERIOD        0x1006 /* us */
+#define OBJECT_GUARD_TIME         0x100C /* ms */
+#define OBJECT_LIFE_TIME_FACTOR   0x100D /* guard times without a guarding frame */
 #define OBJECT_CONSUMER_HEARTBEAT 0x1016 /* each sub-index: node << 16 | ms */
 #define OBJECT_PRODUCER_HEARTBEAT 0x1017 /* ms */
 #define OBJECT_IDENTITY           0x1018 /* 1 vendor, 2 product code, 3 revision, 4 serial number */

@@ -113,6 +113,7 @@ void controller_init(struct controller *c, const struct controller_config *confi
     c->state = CONTROLLER_STARTING;
     spindle_watch_init(&c->spindle, cycle_s(&c->machine), c->machine.spindle_load_limit_percent,
                        c->machine.spindle_at_speed_s);
+    tool_changer_init(&c->changer, cycle_s(&c->machine), c->machine.tool_change_s);
     controller_lock_init(c);
     controller_drives_config(&c->machine, &drives);
     drives_init(&c->drives, &drives);
@@ -306,6 +307,21 @@ static void follow_spindle(struct controller *c, const struct spindle_feedback *
     }
 }
 
+/* M6: the changer brings the tool, if there is one. */
+static void follow_changer(struct controller *c)
+{
+    const bool stands = c->state == CONTROLLER_RUNNING && c->motion.changes_tool;
+    bool is_changed = false;
+
+    c->changer.is_there = drives_find_input(&c->drives, IO_TOOL_CHANGED, &is_changed);
+    const enum takt_error error = tool_changer_cycle(&c->changer, stands, is_changed);
+    if (error != TAKT_OK) {
+        controller_fail(
+            c, &(const struct diagnostic){.code = error, .value = c->machine.tool_change_s});
+    }
+    c->outputs.tool_change = tool_changer_asks(&c->changer);
+}
+
 static struct motion_operator operator_of(const struct controller *c, const struct inputs *in)
 {
     return (struct motion_operator){
@@ -316,6 +332,7 @@ static struct motion_operator operator_of(const struct controller *c, const stru
         .single_block = in->single_block,
         .stop = drives_get_state(&c->drives) == DRIVES_STOPPING,
         .wait = c->spindle.waits,
+        .tool_waits = tool_changer_waits(&c->changer),
         .measures = true,
         .spindle_rev_s = c->spindle.rev_s,
     };
@@ -517,79 +534,10 @@ void controller_cycle(struct controller *c, const struct inputs *inputs)
     }
     drives_send(&c->drives, &c->can, &c->record.set);
     if (drives_have_io(&c->drives)) {
+        follow_changer(c);
         drives_send_outputs(&c->drives, &c->can, &c->outputs);
     }
     if (steps_are_there(&c->steps)) {
         controller_steps_cycle(c);
     }
-}
-
-enum controller_state controller_get_state(const struct controller *c)
-{
-    return c->state;
-}
-
-const struct drives *controller_get_drives(const struct controller *c)
-{
-    return &c->drives;
-}
-
-const struct diagnostic *controller_get_fault(const struct controller *c)
-{
-    return &c->fault;
-}
-
-const struct cycle_record *controller_get_record(const struct controller *c)
-{
-    return c->has_record ? &c->record : NULL;
-}
-
-const struct diagnostic *controller_get_warning(const struct controller *c)
-{
-    return &c->warning;
-}
-
-const struct interpolator_errors *controller_get_interpolator_errors(const struct controller *c)
-{
-    return interpolator_get_errors(&c->interpolator);
-}
-
-struct correction *controller_get_correction(struct controller *c)
-{
-    return &c->correction;
-}
-
-void controller_get_actual(const struct controller *c, struct point *actual)
-{
-    drives_get_actual(&c->drives, actual);
-    if (steps_are_there(&c->steps)) {
-        steps_get_actual(&c->steps, actual);
-    }
-}
-
-uint32_t controller_get_answers(const struct controller *c, struct program_answer *last)
-{
-    *last = c->probe.taken;
-    return c->probe.answers;
-}
-
-bool controller_is_starved(const struct controller *c)
-{
-    return (c->replays && c->replay.waits) ||
-           (c->program_late && c->motion.has_ceiling && c->path.first == c->path.closed);
-}
-
-uint64_t controller_get_late(const struct controller *c)
-{
-    return c->motion.late;
-}
-
-const struct outputs *controller_get_outputs(const struct controller *c)
-{
-    return &c->outputs;
-}
-
-const struct block *controller_get_block(const struct controller *c)
-{
-    return c->has_record ? motion_block(&c->motion) : NULL;
 }

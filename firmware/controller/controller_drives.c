@@ -37,7 +37,8 @@ static void add_drive(struct drives_config *config, const struct machine *machin
     *drive = (struct drives_config_axis){
         .axis = (enum axis)i,
         .node = axis->drive_node,
-        .keeps_settings = axis->drive_is_set_up != 0,
+        .keeps_settings = axis->drive_is_set_up != 0 || axis->drive_dcf != NULL,
+        .dcf = axis->drive_dcf,
         .increments_per_mm = axis->increments_per_mm,
         .travel_per_turn_mm = axis->travel_per_turn_mm,
         .following_error_max_mm = axis->following_error_max_mm,
@@ -53,31 +54,51 @@ static void add_drive(struct drives_config *config, const struct machine *machin
  * a search about a switch between them, 7 ... 10 and 11 ... 14. From 17 on the same without index pulse; 33 and 34 are
  * index pulses alone, what comes behind has no direction.
  */
-static uint8_t mirror_method(uint8_t method)
+static int8_t mirror_method(int8_t method)
 {
-    const unsigned way = (method - 1U) % 16U + 1U;
-    const unsigned apart = way <= 2 ? 1 : way <= 6 ? 2 : 4;
-    const unsigned first = way <= 2 ? 1 : way <= 6 ? 3 : 7;
+    const int way = (method - 1) % 16 + 1;
+    const int apart = way <= 2 ? 1 : way <= 6 ? 2 : 4;
+    const int first = way <= 2 ? 1 : way <= 6 ? 3 : 7;
 
-    if (method > 34 || way > 14) {
+    if (method < 1 || method > 34 || way > 14) {
         return method;
     }
-    return (uint8_t)(way - first < apart ? method + apart : method - apart);
+    return (int8_t)(way - first < apart ? method + apart : method - apart);
+}
+
+static uint8_t find_drive(const struct drives_config *config, unsigned axis)
+{
+    uint8_t i = 0;
+
+    while (config->axis[i].axis != axis) {
+        i++;
+    }
+    return i;
 }
 
 /* Of its own is no more than what its place on the gantry asks for. */
-static void add_second(struct drives_config *config, const struct machine *machine)
+static void add_second(struct drives_config *config, const struct machine *machine,
+                       const struct machine_gantry *gantry)
 {
-    const struct machine_gantry *gantry = &machine->gantry;
     struct drives_config_axis *drive = &config->axis[config->count];
 
+    config->gantry[config->gantry_count++] =
+        (struct drives_gantry){.first = find_drive(config, gantry->axis),
+                               .second = (uint8_t)config->count,
+                               .skew_max_mm = gantry->skew_max_mm};
     add_drive(config, machine, gantry->axis);
     drive->node = gantry->drive_node;
+    drive->dcf = gantry->drive_dcf;
+    drive->keeps_settings =
+        machine->axis[gantry->axis].drive_is_set_up != 0 || gantry->drive_dcf != NULL;
     drive->identity.serial = 0;
     drive->homing.offset_mm = gantry->home_offset_mm;
     if (gantry->is_reversed != 0) {
         drive->increments_per_mm = -drive->increments_per_mm;
         drive->homing.method = mirror_method(drive->homing.method);
+    }
+    if (gantry->home_method != 0) {
+        drive->homing.method = gantry->home_method;
     }
 }
 
@@ -94,7 +115,6 @@ void controller_drives_config(const struct machine *machine, struct drives_confi
     config->sdo_timeout_cycles = cycles_in(machine, 1e-3 * machine->sdo_timeout_ms);
     config->stop_timeout_cycles = cycles_in(machine, STOP_TIMEOUT_S);
     config->brake_timeout_cycles = cycles_in(machine, BRAKE_TIMEOUT_S);
-    config->skew_max_mm = machine_has_gantry(machine) ? machine->gantry.skew_max_mm : 0.0;
     config->io_count = machine_io_count(machine);
     config->wiring = machine->io;
     for (unsigned i = 0; i < AXIS_COUNT; i++) {
@@ -102,7 +122,7 @@ void controller_drives_config(const struct machine *machine, struct drives_confi
             add_drive(config, machine, i);
         }
     }
-    if (machine_has_gantry(machine)) {
-        add_second(config, machine);
+    for (unsigned i = 0; i < machine_gantry_count(machine); i++) {
+        add_second(config, machine, &machine->gantry[i]);
     }
 }

@@ -11,6 +11,7 @@
 #include "controller/controller_reader.h"
 #include "controller/outputs.h"
 #include "controller/spindle_watch.h"
+#include "controller/tool_changer.h"
 #include "correction/correction.h"
 #include "drive/drives.h"
 #include "hal/inputs.h"
@@ -36,6 +37,7 @@ struct controller {
         program_error; /* TAKT_OK: none. Reported when everything before it has been done */
     struct outputs outputs;
     struct spindle_watch spindle;
+    struct tool_changer changer;
     struct lock lock;               /* threads */
     struct outputs_surface surface; /* G96 */
     /* cmd and set also without a program cycle: where the axes stand by the program, and what is sent to the drives */

@@ -14,6 +14,7 @@ void machine_set_default(struct machine *machine)
     machine->resolution_per_mm = 1000.0;
     machine->look_ahead_blocks = MACHINE_LOOK_AHEAD_MAX;
     machine->spindle_max_rpm = 24000.0;
+    machine->tool_change_s = 60.0;
     machine->spindle_ramp_rpm_s = 12000.0;
     machine->spindle_encoder_counts = 4096;
     machine->thread_tolerance_mm = 0.1;
@@ -22,8 +23,10 @@ void machine_set_default(struct machine *machine)
     machine->boot_timeout_ms = 3000;
     machine->sdo_timeout_ms = 2000;
     machine->controller_node = 127;
-    machine->gantry.axis = AXIS_COUNT;
-    machine->gantry.drive_node = NODE_MAX - 1;
+    for (unsigned i = 0; i < MACHINE_GANTRIES_MAX; i++) {
+        machine->gantry[i].axis = AXIS_COUNT;
+        machine->gantry[i].drive_node = (uint8_t)(NODE_MAX - 1 - i);
+    }
     correction_settings_set_default(&machine->correction);
     for (int i = 0; i < AXIS_LINEAR_COUNT; i++) {
         machine->axis[i] = (struct machine_axis){
@@ -69,12 +72,17 @@ unsigned machine_io_count(const struct machine *machine)
     return count;
 }
 
-bool machine_has_gantry(const struct machine *machine)
+unsigned machine_gantry_count(const struct machine *machine)
 {
-    return machine->gantry.axis < AXIS_COUNT;
+    unsigned count = 0;
+
+    while (count < MACHINE_GANTRIES_MAX && machine->gantry[count].axis < AXIS_COUNT) {
+        count++;
+    }
+    return count;
 }
 
-unsigned machine_drive_nodes(const struct machine *machine, uint8_t node[AXIS_COUNT + 1])
+unsigned machine_drive_nodes(const struct machine *machine, uint8_t node[MACHINE_NODES_MAX])
 {
     unsigned count = 0;
 
@@ -83,8 +91,8 @@ unsigned machine_drive_nodes(const struct machine *machine, uint8_t node[AXIS_CO
             node[count++] = machine->axis[i].drive_node;
         }
     }
-    if (machine_has_gantry(machine)) {
-        node[count++] = machine->gantry.drive_node;
+    for (unsigned i = 0; i < machine_gantry_count(machine); i++) {
+        node[count++] = machine->gantry[i].drive_node;
     }
     return count;
 }

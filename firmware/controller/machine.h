@@ -6,6 +6,7 @@
 #define TAKT_CONTROLLER_MACHINE_H
 
 #include "base/point.h"
+#include "canopen/concise_dcf.h"
 #include "correction/settings.h"
 #include "drive/io_wiring.h"
 #include "plan/limits.h"
@@ -28,9 +29,11 @@ struct machine_axis {
     uint8_t drive_node;      /* CANopen node id 1 ... 127, one per axis */
     uint8_t drive_is_set_up; /* 1: by its maker's tool; it is only looked at, and told nothing */
     uint8_t home_order;      /* 1 first; axes of an order together; 0: not homed at start */
-    uint8_t home_method;     /* CiA 402, object 6098: 1 ... 37 */
+    int8_t home_method;      /* CiA 402, object 6098: 1 ... 37; below 0 its maker's; not 0 */
     uint8_t home_offset_is_position; /* 1: its drive takes 607C for the position at its home */
     uint32_t drive_type;             /* enum machine_drive_type */
+    const struct concise_dcf
+        *drive_dcf; /* its drive is set up by it; NULL: by nothing. Not owned */
 
     /* Object 1018 of its drive, checked at start. 0: whatever it is. */
     uint32_t drive_vendor;
@@ -61,12 +64,17 @@ struct machine_axis {
 
 /* An axis with two drives. */
 struct machine_gantry {
-    uint32_t axis;         /* AXIS_COUNT: there is none */
-    uint8_t drive_node;    /* of the second drive; everything else is as of the first, but for: */
-    uint8_t is_reversed;   /* 1: its motor turns the other way than that of the first */
+    uint32_t axis;       /* AXIS_COUNT: there is none */
+    uint8_t drive_node;  /* of the second drive; everything else is as of the first, but for: */
+    uint8_t is_reversed; /* 1: its motor turns the other way than that of the first */
+    int8_t home_method;  /* of the second drive; 0: that of the first, for the same side */
+    const struct concise_dcf *drive_dcf;
     double home_offset_mm; /* machine coordinate of its own home */
     double skew_max_mm;    /* alarm when the two are farther apart; > 0 */
 };
+
+/* Every axis that can have one. */
+#define MACHINE_GANTRIES_MAX AXIS_LINEAR_COUNT
 
 struct machine {
     char name[MACHINE_NAME_MAX + 1];
@@ -90,13 +98,14 @@ struct machine {
     double thread_tolerance_mm; /* a thread farther off the spindle's angle is an alarm; > 0 */
     double spindle_load_limit_percent; /* beyond it the feed is lowered; 0: never */
     double spindle_at_speed_s; /* longest wait for a commanded speed; 0: motion does not wait */
+    double tool_change_s;      /* longest change of the tool by a changer at I/O nodes; > 0 */
     uint32_t can_bitrate;      /* bit/s */
     uint32_t
         heartbeat_ms; /* period of all heartbeats on the bus, up to 20,000; 0: there are none */
     uint32_t boot_timeout_ms; /* a drive boots within, after a reset */
     uint32_t sdo_timeout_ms;  /* a drive answers a request within */
     uint8_t controller_node;  /* the controller's own node id, 1 ... 127, of no drive */
-    struct machine_gantry gantry;
+    struct machine_gantry gantry[MACHINE_GANTRIES_MAX]; /* from the first on */
     struct io_wiring io[IO_NODES_MAX]; /* I/O nodes on the bus, from the first on */
     struct correction_settings correction;
 };
@@ -111,12 +120,13 @@ void machine_set_default(struct machine *machine);
 /* Bit i set: the machine has axis i. */
 unsigned machine_axes(const struct machine *machine);
 
-/* The second drive of a gantry is there. */
-bool machine_has_gantry(const struct machine *machine);
+/* Gantries from the first on. */
+unsigned machine_gantry_count(const struct machine *machine);
 
-/* Nodes of all drives on the bus, in their order: those of the axes, then the second one of a gantry. Their number. */
+/* Nodes of all drives on the bus, in their order: those of the axes, then the second ones of gantries. Their number. */
 #define MACHINE_DRIVES_MAX AXIS_COUNT
-unsigned machine_drive_nodes(const struct machine *machine, uint8_t node[AXIS_COUNT + 1]);
+#define MACHINE_NODES_MAX  (AXIS_COUNT + MACHINE_GANTRIES_MAX) /* before it is checked */
+unsigned machine_drive_nodes(const struct machine *machine, uint8_t node[MACHINE_NODES_MAX]);
 
 /* I/O nodes on the bus. */
 unsigned machine_io_count(const struct machine *machine);

@@ -77,6 +77,8 @@ static bool check_steps(const struct checked *c)
 
 static bool check_home(const struct checked *c)
 {
+    if (c->axis->home_method == 0)
+        return refuse(c, TAKT_ERROR_MACHINE_HOME_METHOD, 0, 0);
     return maths_abs(c->axis->home_offset_mm * c->axis->increments_per_mm) <= RANGE ||
            refuse(c, TAKT_ERROR_MACHINE_HOME, 0, 0);
 }
@@ -142,8 +144,8 @@ static bool is_alone(const struct machine *machine, unsigned number)
 
     for (unsigned i = 0; i < AXIS_COUNT; i++)
         alone = alone && !(machine->axis[i].present && machine->axis[i].drive_node == node);
-    if (machine_has_gantry(machine))
-        alone = alone && machine->gantry.drive_node != node;
+    for (unsigned i = 0; i < machine_gantry_count(machine); i++)
+        alone = alone && machine->gantry[i].drive_node != node;
     for (unsigned i = 0; i < number; i++)
         alone = alone && machine->io[i].node != node;
     return alone;
@@ -167,10 +169,10 @@ static bool check_io(const struct machine *machine, struct diagnostic *wrong)
 }
 
 /* Its axis is one of the linear ones, on CAN; its node nobody else's but perhaps an I/O node's, which check_io sees. */
-static bool gantry_is_well(const struct machine *machine)
+static bool gantry_is_well(const struct machine *machine, unsigned number)
 {
-    const struct machine_gantry *gantry = &machine->gantry;
-    uint8_t node[AXIS_COUNT + 1];
+    const struct machine_gantry *gantry = &machine->gantry[number];
+    uint8_t node[MACHINE_NODES_MAX];
     bool good = gantry->axis < AXIS_LINEAR_COUNT &&
                 machine_axis_is_on_can(&machine->axis[gantry->axis]) && gantry->skew_max_mm > 0 &&
                 machine_drive_nodes(machine, node) <= MACHINE_DRIVES_MAX &&
@@ -179,22 +181,46 @@ static bool gantry_is_well(const struct machine *machine)
     for (unsigned i = 0; i < AXIS_COUNT; i++)
         good = good &&
                !(machine->axis[i].present && machine->axis[i].drive_node == gantry->drive_node);
+    for (unsigned i = 0; i < number; i++)
+        good = good && machine->gantry[i].drive_node != gantry->drive_node &&
+               machine->gantry[i].axis != gantry->axis;
     return good && maths_abs(gantry->home_offset_mm *
                              machine->axis[gantry->axis].increments_per_mm) <= RANGE;
 }
 
-static bool check_gantry(const struct machine *machine, struct diagnostic *wrong)
+/* On which side a maker's own method looks for a home nobody can tell. */
+static bool check_gantry_home(const struct machine *machine, unsigned number,
+                              struct diagnostic *wrong)
 {
-    if (!machine_has_gantry(machine) || gantry_is_well(machine))
+    const struct machine_gantry *gantry = &machine->gantry[number];
+
+    if (gantry->is_reversed == 0 || gantry->home_method != 0 ||
+        machine->axis[gantry->axis].home_method > 0)
         return true;
-    diagnostic_set(wrong, TAKT_ERROR_MACHINE_GANTRY, 0, 0, "", 0, MACHINE_DRIVES_MAX);
+    diagnostic_set(wrong, TAKT_ERROR_MACHINE_GANTRY_HOME, 0, 0, &AXIS_LETTERS[gantry->axis], 1, 0);
     return false;
+}
+
+/* One after the other from the first on. */
+static bool check_gantries(const struct machine *machine, struct diagnostic *wrong)
+{
+    const unsigned count = machine_gantry_count(machine);
+    bool good = true;
+
+    for (unsigned i = 0; i < MACHINE_GANTRIES_MAX; i++)
+        good = good &&
+               (i < count ? gantry_is_well(machine, i) : machine->gantry[i].axis >= AXIS_COUNT);
+    if (!good)
+        diagnostic_set(wrong, TAKT_ERROR_MACHINE_GANTRY, 0, 0, "", 0, MACHINE_DRIVES_MAX);
+    for (unsigned i = 0; i < count && good; i++)
+        good = check_gantry_home(machine, i, wrong);
+    return good;
 }
 
 static bool check_bus(const struct machine *machine, struct diagnostic *wrong)
 {
     struct drives_load load;
-    uint8_t node[AXIS_COUNT + 1];
+    uint8_t node[MACHINE_NODES_MAX];
     const unsigned drives = machine_drive_nodes(machine, node);
 
     if (drives_predict_whole_load(drives, machine->io, machine_io_count(machine),
@@ -234,6 +260,6 @@ bool machine_check(const struct machine *machine, struct diagnostic *wrong)
         if (machine->axis[i].present && !check_axis(machine, i, wrong))
             return false;
     }
-    return check_forms(machine, wrong) && check_gantry(machine, wrong) &&
+    return check_forms(machine, wrong) && check_gantries(machine, wrong) &&
            check_io(machine, wrong) && check_bus(machine, wrong);
 }

@@ -87,6 +87,7 @@ static void set_coolant(struct outputs *o, const struct move *m)
 /* T alone prepares a tool and leaves the spindle's. */
 static void set_tool(struct outputs *o, const struct move *m)
 {
+    o->tool_asked = m->tool;
     if (m->tool_change || m->tool_loaded) {
         o->tool = m->tool;
     }

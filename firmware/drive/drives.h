@@ -15,6 +15,7 @@
 
 #include "base/error.h"
 #include "base/point.h"
+#include "canopen/concise_dcf.h"
 #include "drive/io_wiring.h"
 #include "hal/can.h"
 #include "hal/inputs.h"
@@ -37,8 +38,8 @@ struct drives_identity {
 
 /* How a drive finds its zero (CiA 402, homing mode). For a rotary axis read rad where the name says mm. */
 struct drives_homing {
-    uint8_t order;  /* axes of order 1 first, all of an order at once; 0: this axis is not homed */
-    uint8_t method; /* object 6098 */
+    uint8_t order; /* axes of order 1 first, all of an order at once; 0: this axis is not homed */
+    int8_t method; /* object 6098 */
     double velocity_mm_s;      /* 6099:01, towards the switch; > 0 */
     double zero_mm_s;          /* 6099:02, towards the zero mark; > 0 */
     double acceleration_mm_s2; /* 609A; > 0 */
@@ -51,6 +52,8 @@ struct drives_config_axis {
     enum axis axis;
     uint8_t node;        /* CANopen node id, 1 ... 127 */
     bool keeps_settings; /* it has been set up with its maker's tool: it is only looked at */
+    const struct concise_dcf *
+        dcf; /* it is set up by this, see drives_dcf.c. Must outlive the drives; NULL: by nothing */
     double
         increments_per_mm; /* position units of the drive per mm or rad; < 0: it turns the other way */
     double travel_per_turn_mm;     /* of its motor, to check increments_per_mm by; 0: not checked */
@@ -59,11 +62,19 @@ struct drives_config_axis {
     struct drives_homing homing;
 };
 
+/* Two drives of one axis: indices of struct drives_config.axis. */
+struct drives_gantry {
+    uint8_t first, second;
+    double skew_max_mm; /* alarm beyond; > 0 */
+};
+#define DRIVES_GANTRIES_MAX AXIS_LINEAR_COUNT
+
 struct drives_config {
     unsigned count; /* drives, 0 ... AXIS_COUNT; none: enabled at once */
     struct drives_config_axis axis[AXIS_COUNT];
-    double skew_max_mm; /* > 0: the last drive is the second of its axis, a gantry; alarm beyond */
-    unsigned io_count;  /* I/O nodes beside them, 0 ... IO_NODES_MAX */
+    unsigned gantry_count;
+    struct drives_gantry gantry[DRIVES_GANTRIES_MAX];
+    unsigned io_count;              /* I/O nodes beside them, 0 ... IO_NODES_MAX */
     const struct io_wiring *wiring; /* of these. Must outlive the drives */
     bool homed; /* all axes have been homed since power-on: they are not homed again */
     uint32_t cycle_us;
@@ -120,6 +131,7 @@ enum drives_given_up {
     DRIVES_NO_HOMING_SPEED, /* it homes as fast as it likes (6099, 609A) */
     DRIVES_NO_TOUCH_PROBE,  /* it latches no position (60B8): a probing move has that of a cycle */
     DRIVES_NO_SCALING, /* it does not tell its scaling (6092, 608F): increments_per_mm is believed */
+    DRIVES_GUARDED, /* it has no heartbeat (1017), and is asked for its state instead (100C, 100D) */
     DRIVES_GIVEN_UP_COUNT
 };
 
@@ -144,6 +156,8 @@ void drives_send_outputs(struct drives *d, const struct can_port *port,
                          const struct outputs *outputs);
 /* Sets the inputs that I/O nodes are wired to, as they were reported last. The others stay. */
 void drives_add_inputs(const struct drives *d, struct inputs *inputs);
+/* An input of another kind. False: none is wired to it. */
+bool drives_find_input(const struct drives *d, enum io_bit kind, bool *is_high);
 
 static inline enum drives_state drives_get_state(const struct drives *d)
 {
@@ -213,15 +227,27 @@ const struct diagnostic *drives_get_fault(const struct drives *d);
 #define DRIVES_CYCLE_FRAMES_MAX (3 + AXIS_COUNT + (AXIS_COUNT + 1) / 2)
 unsigned drives_cycle_frames(unsigned count, uint8_t length[DRIVES_CYCLE_FRAMES_MAX]);
 
-/* The PDOs of a cycle as the start has found them: a frame of each drive's status, position and target; of targets in
- * pairs one. Returns their number. */
+/*
+ * The PDOs as the start has found them: a frame of each drive's status, position and target, of targets in pairs one; of
+ * what I/O nodes hear and say; and of the drives' error codes, of which one comes in a cycle. Returns their number.
+ */
+enum drives_pdo_kind {
+    DRIVES_PDO_REPORT,
+    DRIVES_PDO_TARGET,
+    DRIVES_PDO_INPUTS,
+    DRIVES_PDO_OUTPUTS,
+    DRIVES_PDO_ERROR
+};
 struct drives_pdo {
     uint16_t id;
     uint8_t length; /* bytes at most */
-    bool is_target;
+    enum drives_pdo_kind kind;
 };
-#define DRIVES_CYCLE_PDOS_MAX (3 * AXIS_COUNT)
+#define DRIVES_CYCLE_PDOS_MAX (4 * AXIS_COUNT + 3 * IO_NODES_MAX)
 unsigned drives_get_pdos(const struct drives *d, struct drives_pdo pdo[DRIVES_CYCLE_PDOS_MAX]);
+
+/* There are nodes that are asked for their state: of some cycles that takes a frame and its answer. */
+bool drives_are_guarding(const struct drives *d);
 
 /* What a frame of this identifier tells in every cycle. */
 enum drives_report {

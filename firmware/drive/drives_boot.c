@@ -155,7 +155,8 @@ void drives_take_ask(struct drives *d, const struct drives_answer *answer)
 /* ---- What it is told ---- */
 
 #define REQUIRED  DRIVES_GIVEN_UP_COUNT
-#define SET_PLAIN 8 /* from here on: only where the axis is homed */
+#define NOTHING   (DRIVES_GIVEN_UP_COUNT + 1)
+#define SET_PLAIN 10 /* from here on: only where the axis is homed */
 
 struct setting {
     uint16_t index;
@@ -163,11 +164,16 @@ struct setting {
     uint8_t given_up; /* if it is not so; REQUIRED: a fault */
 };
 
-#define SET_PERIOD   3
-#define SET_EXPONENT 4
+#define SET_HEARTBEAT 0
+#define SET_GUARD     2 /* and the life time factor: only where there is no heartbeat */
+#define SET_LIFE      3
+#define SET_PERIOD    5
+#define SET_EXPONENT  6
 static const struct setting settings[] = {
     {OBJECT_PRODUCER_HEARTBEAT, 0, 2, DRIVES_NO_HEARTBEAT},
     {OBJECT_CONSUMER_HEARTBEAT, 1, 4, DRIVES_NO_WATCH},
+    {OBJECT_GUARD_TIME, 0, 2, NOTHING},
+    {OBJECT_LIFE_TIME_FACTOR, 0, 1, NOTHING},
     {OBJECT_SYNC_PERIOD, 0, 4, DRIVES_NO_SYNC_PERIOD},
     {CIA402_INTERPOLATION_PERIOD, 1, 1, DRIVES_NO_PERIOD},
     {CIA402_INTERPOLATION_PERIOD, 2, 1, DRIVES_NO_PERIOD},
@@ -226,13 +232,15 @@ static uint32_t value_of(const struct drives *d, unsigned number)
     split_period(d->cycle_us, &period, &exponent);
     const uint32_t values[] = {d->heartbeat_ms,
                                (uint32_t)d->controller_node << 16 | lost_ms,
+                               drives_guard_ms(d),
+                               DRIVES_HEARTBEATS_LOST,
                                d->cycle_us,
                                period,
                                (uint8_t)exponent,
                                CIA402_CONNECTION_QUICK_STOP,
                                CIA402_OPTION_QUICK_STOP_RAMP,
                                CIA402_OPTION_QUICK_STOP_RAMP,
-                               homing->method,
+                               (uint8_t)homing->method,
                                increments_of(config, homing->velocity_mm_s),
                                increments_of(config, homing->zero_mm_s),
                                increments_of(config, homing->acceleration_mm_s2),
@@ -241,9 +249,18 @@ static uint32_t value_of(const struct drives *d, unsigned number)
     return values[number];
 }
 
+/* It shall have a heartbeat and has none, whatever the reason. */
+static bool is_mute(const struct drives *d)
+{
+    return drives_has_given_up(&d->axis[d->at_axis], DRIVES_NO_HEARTBEAT) && d->read[0] == 0 &&
+           d->heartbeat_ms > 0;
+}
+
 bool drives_next_set(struct drives *d, struct drives_step *step)
 {
     const struct drives_axis *axis = &d->axis[d->at_axis];
+    if (d->at_step == SET_GUARD && !is_mute(d))
+        d->at_step = SET_LIFE + 1;
     if (d->at_step == (axis->config.homing.order != 0 ? SET_COUNT : SET_PLAIN))
         return false;
     const struct setting *setting = &settings[d->at_step];
@@ -259,11 +276,35 @@ static void miss(struct drives *d, const struct drives_answer *answer)
 {
     const struct setting *setting = &settings[d->at_step];
     bool is_absent = sdo_says_absent(answer->abort_code);
+    if (setting->given_up == NOTHING)
+        return;
     if (setting->given_up != REQUIRED)
         drives_give_up(d, d->at_axis, (enum drives_given_up)setting->given_up);
     else if (!is_absent || value_of(d, d->at_step) != 0)
         raise_refusal(d, SDO_OBJECT(setting->index, setting->sub),
                       answer->abort_code != SDO_ABORT_NONE ? answer->abort_code : SDO_ABORT_VALUE);
+}
+
+static void take_back(struct drives *d, enum drives_given_up what)
+{
+    d->axis[d->at_axis].given_up &= ~(1u << what);
+}
+
+/*
+ * What stands in for a heartbeat. read: 1017; then 100C, 0 where there is none, and the time after which the drive takes us for
+ * lost, 100C times 100D. Where that is too short the drive is better left alone.
+ */
+static void take_guard(struct drives *d, uint32_t factor)
+{
+    const uint32_t life_ms = d->read[1] * factor;
+    struct drives_guard *guard = &d->axis[d->at_axis].guard;
+    guard->is_on = d->read[1] > 0 && drives_guards_in_time(d, life_ms);
+    if (!guard->is_on)
+        return;
+    take_back(d, DRIVES_NO_HEARTBEAT);
+    drives_give_up(d, d->at_axis, DRIVES_GUARDED);
+    if (life_ms > 0)
+        take_back(d, DRIVES_NO_WATCH);
 }
 
 /*
@@ -295,6 +336,24 @@ static void take_period(struct drives *d, const struct drives_answer *answer, ui
         check_period(d);
 }
 
+/* What the drive has now, 0 where it has no such object. */
+static void take_kept(struct drives *d, uint32_t value)
+{
+    switch (d->at_step) {
+    case SET_HEARTBEAT:
+        d->read[0] = value;
+        break;
+    case SET_GUARD:
+        d->read[1] = value;
+        break;
+    case SET_LIFE:
+        take_guard(d, value);
+        break;
+    default:
+        break;
+    }
+}
+
 static uint32_t mask_of(const struct setting *setting)
 {
     return setting->length == 4 ? UINT32_MAX : (1u << 8 * setting->length) - 1;
@@ -312,6 +371,7 @@ void drives_take_set(struct drives *d, const struct drives_answer *answer)
     uint32_t value = d->is_looking ? answer->value & mask_of(setting) : wanted;
     if (is_refused || value != wanted)
         miss(d, answer);
+    take_kept(d, is_refused ? 0 : value);
     if (d->at_step == SET_PERIOD || d->at_step == SET_EXPONENT)
         take_period(d, answer, value);
     d->is_looking = false;

@@ -110,7 +110,7 @@ void drives_check_operation(struct drives *d)
     for (unsigned i = d->state == DRIVES_ENABLED ? count_well(d, set_mm) : 0; i < d->count; i++)
         if (check_links(d, i) && drives_silent_cycles(d, &d->axis[i]) == 0)
             check_following(d, i, set_mm[i]);
-    if (d->second != 0)
+    if (d->gantry_count > 0)
         drives_check_skew(d);
 }
 

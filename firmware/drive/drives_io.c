@@ -130,6 +130,8 @@ enum step {
     STEP_TYPE,
     STEP_HEARTBEAT,
     STEP_WATCH,
+    STEP_GUARD,
+    STEP_LIFE,
     STEP_OUTPUT_BYTES,
     STEP_OUTPUTS,
     STEP_ANALOGUE_COUNT,
@@ -144,7 +146,8 @@ static const struct {
     uint8_t length;
 } steps[STEP_COUNT] = {
     {SDO_OBJECT(OBJECT_DEVICE_TYPE, 0), 0},        {SDO_OBJECT(OBJECT_PRODUCER_HEARTBEAT, 0), 2},
-    {SDO_OBJECT(OBJECT_CONSUMER_HEARTBEAT, 1), 4}, {SDO_OBJECT(OBJECT_RPDO_MAPPING, 0), 0},
+    {SDO_OBJECT(OBJECT_CONSUMER_HEARTBEAT, 1), 4}, {SDO_OBJECT(OBJECT_GUARD_TIME, 0), 2},
+    {SDO_OBJECT(OBJECT_LIFE_TIME_FACTOR, 0), 1},   {SDO_OBJECT(OBJECT_RPDO_MAPPING, 0), 0},
     {SDO_OBJECT(OBJECT_RPDO_MAPPING, 1), 0},       {SDO_OBJECT(OBJECT_RPDO_MAPPING + 1, 0), 0},
     {SDO_OBJECT(OBJECT_RPDO_MAPPING + 1, 1), 0},   {SDO_OBJECT(OBJECT_TPDO_MAPPING, 0), 0},
     {SDO_OBJECT(OBJECT_TPDO_MAPPING, 1), 0},       {SDO_OBJECT(OBJECT_TPDO, OBJECT_PDO_TYPE), 1},
@@ -158,14 +161,20 @@ static uint32_t value_of(const struct drives *d)
         return d->heartbeat_ms;
     case STEP_WATCH:
         return (uint32_t)d->controller_node << 16 | lost_ms;
+    case STEP_GUARD:
+        return drives_guard_ms(d);
+    case STEP_LIFE:
+        return DRIVES_HEARTBEATS_LOST;
     default:
         return PDO_EVERY_SYNC;
     }
 }
 
-/* Nothing is asked of outputs or inputs that nobody wants. */
-static bool is_wanted(const struct io_wiring *wiring, unsigned step)
+/* Nothing is asked of outputs or inputs that nobody wants; only what has no heartbeat is guarded. */
+static bool is_wanted(const struct io_wiring *wiring, const struct drives_io *io, unsigned step)
 {
+    if (step == STEP_GUARD || step == STEP_LIFE)
+        return io->is_mute;
     if (step == STEP_OUTPUT_BYTES || step == STEP_OUTPUTS)
         return bytes_of(wiring->output) > 0;
     if (step == STEP_ANALOGUE_COUNT || step == STEP_ANALOGUES)
@@ -178,7 +187,7 @@ static bool ask_next(struct drives *d)
 {
     while (d->at_axis < d->io_count) {
         const struct io_wiring *wiring = &d->wiring[d->at_axis];
-        while (d->at_step < STEP_COUNT && !is_wanted(wiring, d->at_step))
+        while (d->at_step < STEP_COUNT && !is_wanted(wiring, &d->io[d->at_axis], d->at_step))
             d->at_step++;
         if (d->at_step < STEP_COUNT) {
             const struct drives_step step = {steps[d->at_step].object, steps[d->at_step].length,
@@ -192,10 +201,15 @@ static bool ask_next(struct drives *d)
     return false;
 }
 
-/* Without a heartbeat nobody would know of a node that has failed; all else that it refuses makes up for itself. */
+/*
+ * Without a heartbeat, and without guarding, nobody would know of a node that has failed; all else that it refuses makes up
+ * for itself.
+ */
 static void take_refusal(struct drives *d, unsigned i)
 {
-    if (d->at_step != STEP_WATCH && d->at_step != STEP_BY_SYNC)
+    d->io[i].is_mute = d->io[i].is_mute || (d->at_step == STEP_HEARTBEAT && d->heartbeat_ms > 0);
+    if (d->at_step != STEP_WATCH && d->at_step != STEP_BY_SYNC && d->at_step != STEP_LIFE &&
+        !(d->at_step == STEP_HEARTBEAT && d->io[i].is_mute))
         raise_object(d, i, TAKT_ERROR_IO_REFUSES, d->sdo.abort_code,
                      sdo_abort_text(d->sdo.abort_code));
 }
@@ -239,8 +253,12 @@ static void take_value(struct drives *d, unsigned i, uint32_t value)
     case STEP_BY_SYNC:
         io->by_sync = true;
         break;
+    case STEP_GUARD:
+        io->guard.is_on = true;
+        break;
     case STEP_HEARTBEAT:
     case STEP_WATCH:
+    case STEP_LIFE:
     case STEP_COUNT:
         break;
     }
@@ -308,6 +326,7 @@ void drives_io_send_start(struct drives *d, const struct can_port *port)
         if (io->started)
             continue;
         io->started = drives_send_nmt(port, NMT_START, d->wiring[i].node);
+        drives_begin_guard(d, &io->guard);
         io->heard = false;
         io->reported = io->beaten = d->cycle;
         return;
@@ -341,7 +360,8 @@ static void take_heartbeat(struct drives *d, unsigned i, const struct can_frame 
     uint8_t node;
     if (!nmt_read_heartbeat(frame, &node, &state))
         return;
-    io->beaten = d->cycle;
+    if (drives_takes_beat(&io->guard, frame))
+        io->beaten = d->cycle;
     if (state == NMT_BOOTED && d->state == DRIVES_STARTING && d->phase < DRIVES_IO)
         io->booted = !io->reset_pending;
     else if (state == NMT_BOOTED || (state != NMT_OPERATIONAL && are_watched(d)))
@@ -426,6 +446,17 @@ void drives_add_inputs(const struct drives *d, struct inputs *inputs)
     }
 }
 
+bool drives_find_input(const struct drives *d, enum io_bit kind, bool *is_high)
+{
+    for (unsigned i = 0; i < d->io_count; i++) {
+        const uint16_t bits = find_inputs(&d->wiring[i], IO_KINDS, kind);
+        *is_high = (d->io[i].levels & bits) != 0;
+        if (bits != 0)
+            return true;
+    }
+    return false;
+}
+
 /* ---- Outputs ---- */
 
 static bool level_of(const struct outputs *outputs, unsigned kind)
@@ -442,7 +473,11 @@ static bool level_of(const struct outputs *outputs, unsigned kind)
                outputs->spindle_orient;
     case IO_SPINDLE_CCW:
         return outputs->spindle_speed_rpm < 0;
+    case IO_TOOL_CHANGE:
+        return outputs->tool_change;
     default:
+        if (kind >= IO_TOOL)
+            return outputs->tool_asked >> (kind - IO_TOOL) & 1;
         return outputs->digital >> (kind - IO_PROGRAM) & 1;
     }
 }

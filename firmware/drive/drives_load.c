@@ -57,19 +57,6 @@ bool drives_predict_load(unsigned count, uint32_t bitrate, uint32_t cycle_us,
     return drives_predict_whole_load(count, NULL, 0, bitrate, cycle_us, load);
 }
 
-void drives_get_load(const struct drives *d, struct drives_load *load)
-{
-    bool has_error = false;
-    load->bits = drives_frame_bits(0) + drives_frame_bits(HEARTBEAT_LENGTH) + drives_io_bits(d);
-    for (unsigned i = 0; i < d->count; i++) {
-        load->bits += d->axis[i].bits;
-        has_error = has_error || !drives_has_given_up(&d->axis[i], DRIVES_NO_ERROR_PDO);
-    }
-    if (has_error)
-        load->bits += drives_frame_bits(DRIVES_STATUS_LENGTH);
-    (void)set_share(load, d->bitrate, d->cycle_us);
-}
-
 /* Of a TPDO with something that ends at this byte: one that the drive keeps may hold more. */
 static uint8_t length_at_most(const struct drives_axis *axis, unsigned end)
 {
@@ -77,22 +64,69 @@ static uint8_t length_at_most(const struct drives_axis *axis, unsigned end)
     return (uint8_t)(is_kept ? CAN_DATA_MAX : end);
 }
 
+static uint32_t longer(uint32_t bits, unsigned length)
+{
+    const uint32_t other = drives_frame_bits(length);
+    return bits > other ? bits : other;
+}
+
+void drives_get_load(const struct drives *d, struct drives_load *load)
+{
+    uint32_t error_bits = 0;
+    load->bits = drives_frame_bits(0) + drives_frame_bits(HEARTBEAT_LENGTH) + drives_io_bits(d) +
+                 drives_guard_bits(d);
+    for (unsigned i = 0; i < d->count; i++) {
+        load->bits += d->axis[i].bits;
+        if (!drives_has_given_up(&d->axis[i], DRIVES_NO_ERROR_PDO))
+            error_bits = longer(error_bits, length_at_most(&d->axis[i], DRIVES_STATUS_LENGTH));
+    }
+    load->bits += error_bits;
+    (void)set_share(load, d->bitrate, d->cycle_us);
+}
+
+static unsigned add_pdo(struct drives_pdo pdo[], unsigned count, unsigned id, unsigned length,
+                        enum drives_pdo_kind kind)
+{
+    pdo[count] = (struct drives_pdo){(uint16_t)id, (uint8_t)length, kind};
+    return count + (length > 0);
+}
+
+static unsigned add_axis(const struct drives *d, unsigned i, struct drives_pdo pdo[],
+                         unsigned count)
+{
+    const struct drives_axis *axis = &d->axis[i];
+    const struct drives_frame *target = &axis->target_frame;
+    bool is_one = axis->status_id == axis->position_id;
+    uint8_t status = length_at_most(axis, axis->status_end);
+    uint8_t position = length_at_most(axis, axis->position_end);
+    if (!is_one)
+        count = add_pdo(pdo, count, axis->status_id, status, DRIVES_PDO_REPORT);
+    count = add_pdo(pdo, count, axis->position_id, is_one && status > position ? status : position,
+                    DRIVES_PDO_REPORT);
+    if (!axis->is_paired || i & 1)
+        count = add_pdo(pdo, count, target->cob_id, target->length, DRIVES_PDO_TARGET);
+    if (!drives_has_given_up(axis, DRIVES_NO_ERROR_PDO))
+        count = add_pdo(pdo, count, axis->error_id, length_at_most(axis, DRIVES_STATUS_LENGTH),
+                        DRIVES_PDO_ERROR);
+    return count;
+}
+
+static unsigned add_io(const struct drives *d, unsigned i, struct drives_pdo pdo[], unsigned count)
+{
+    const struct drives_io *io = &d->io[i];
+    const unsigned node = d->wiring[i].node;
+    count = add_pdo(pdo, count, PDO_TPDO1_FUNCTION + node, io->input_bytes, DRIVES_PDO_INPUTS);
+    count = add_pdo(pdo, count, PDO_RPDO1_FUNCTION + node, io->output_bytes, DRIVES_PDO_OUTPUTS);
+    return add_pdo(pdo, count, PDO_RPDO2_FUNCTION + node, 2U * io->analogues, DRIVES_PDO_OUTPUTS);
+}
+
 unsigned drives_get_pdos(const struct drives *d, struct drives_pdo pdo[DRIVES_CYCLE_PDOS_MAX])
 {
     unsigned count = 0;
-    for (unsigned i = 0; i < d->count; i++) {
-        const struct drives_axis *axis = &d->axis[i];
-        bool is_one = axis->status_id == axis->position_id;
-        uint8_t status = length_at_most(axis, axis->status_end);
-        uint8_t position = length_at_most(axis, axis->position_end);
-        if (!is_one)
-            pdo[count++] = (struct drives_pdo){axis->status_id, status, false};
-        pdo[count++] = (struct drives_pdo){axis->position_id,
-                                           is_one && status > position ? status : position, false};
-        if (!axis->is_paired || i & 1)
-            pdo[count++] =
-                (struct drives_pdo){axis->target_frame.cob_id, axis->target_frame.length, true};
-    }
+    for (unsigned i = 0; i < d->count; i++)
+        count = add_axis(d, i, pdo, count);
+    for (unsigned i = 0; i < d->io_count; i++)
+        count = add_io(d, i, pdo, count);
     return count;
 }
 

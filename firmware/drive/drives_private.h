@@ -35,7 +35,10 @@ bool drives_are_watched(const struct drives *d);
 
 static inline bool drives_is_second(const struct drives *d, unsigned index)
 {
-    return d->second != 0 && index == d->second;
+    bool is_second = false;
+    for (unsigned i = 0; i < d->gantry_count; i++)
+        is_second = is_second || index == d->gantry[i].second;
+    return is_second;
 }
 
 /* Setpoints cannot be followed any more: DRIVES_BRAKING. */
@@ -93,6 +96,8 @@ struct drives_answer {
  */
 bool drives_next_ask(struct drives *d, struct drives_step *step);
 void drives_take_ask(struct drives *d, const struct drives_answer *answer);
+bool drives_ask_dcf(struct drives *d); /* asks at once; false: there is nothing to be asked */
+void drives_take_dcf(struct drives *d);
 bool drives_next_set(struct drives *d, struct drives_step *step);
 void drives_take_set(struct drives *d, const struct drives_answer *answer);
 bool drives_next_map(struct drives *d, struct drives_step *step);
@@ -132,6 +137,23 @@ void drives_io_send_resets(struct drives *d, const struct can_port *port);
 uint32_t drives_io_bits(const struct drives *d);
 /* The same of nodes that have no more than what is wired. */
 uint32_t drives_io_wired_bits(const struct io_wiring *wiring, unsigned count);
+/*
+ * Node guarding. Every node that is guarded is asked in one cycle of so many: a heartbeat's period, or as many as there are
+ * nodes. life_ms: after which the node takes us for lost, and too soon where that is less than two periods.
+ */
+uint32_t drives_guard_cycles(const struct drives *d);
+uint32_t drives_guard_ms(const struct drives *d);
+static inline bool drives_guards_in_time(const struct drives *d, uint32_t life_ms)
+{
+    return life_ms == 0 || life_ms >= 2 * drives_guard_ms(d);
+}
+void drives_begin_guard(struct drives *d, struct drives_guard *guard);
+/* A heartbeat counts; an answer of a guarded node does when its toggle bit has changed. */
+bool drives_takes_beat(struct drives_guard *guard, const struct can_frame *frame);
+void drives_send_guard(struct drives *d, const struct can_port *port);
+/* Of a question and its answer at worst; 0: nobody is guarded. */
+uint32_t drives_guard_bits(const struct drives *d);
+
 bool drives_send_nmt(const struct can_port *port, enum nmt_command command, uint8_t node);
 /* One request, of the client that all nodes share. */
 void drives_ask(struct drives *d, uint8_t node, const struct drives_step *step);
@@ -153,11 +175,13 @@ void drives_follow(struct drives *d);
 /* The next order of axes that are homed; none: all drives are ready. */
 void drives_home_next(struct drives *d);
 
-/* A gantry: drives_square.c. A cycle of DRIVES_SQUARE; what is watched in operation. */
+/* Gantries: drives_square.c. A cycle of DRIVES_SQUARE; what is watched in operation. */
 void drives_gantry_init(struct drives *d, const struct drives_config *config);
 void drives_begin_square(struct drives *d);
 void drives_square(struct drives *d);
 void drives_check_skew(struct drives *d);
+/* The axis of a gantry is where its first drive is. */
+void drives_place_gantries(struct drives *d);
 void drives_enter_enabled(struct drives *d);
 void drives_check_all_links(struct drives *d);
 

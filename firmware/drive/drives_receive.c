@@ -69,7 +69,8 @@ static void take_heartbeat(struct drives *d, unsigned index, const struct can_fr
     enum nmt_state state;
     if (!nmt_read_heartbeat(frame, &node, &state))
         return;
-    axis->beaten = d->cycle;
+    if (drives_takes_beat(&axis->guard, frame))
+        axis->beaten = d->cycle;
     if (state == NMT_BOOTED && d->state == DRIVES_STARTING)
         drives_start_again(d, index);
     else if (state == NMT_BOOTED)
@@ -126,8 +127,8 @@ void drives_receive(struct drives *d, const struct can_port *port)
     take_frames(d, port);
     if (d->io_count > 0)
         drives_io_check(d);
-    if (d->second != 0) /* the axis is where its first drive is */
-        d->actual.at[d->axis[d->first].config.axis] = d->axis[d->first].actual_mm;
+    if (d->gantry_count > 0)
+        drives_place_gantries(d);
     switch (d->state) {
     case DRIVES_STARTING:
         drives_start(d);

@@ -133,6 +133,7 @@ static void send_start(struct drives *d, const struct can_port *port)
     if (axis == NULL)
         return;
     axis->started = drives_send_nmt(port, NMT_START, axis->config.node);
+    drives_begin_guard(d, &axis->guard);
     axis->heard = false;
     axis->reported = d->cycle;
     axis->beaten = d->cycle;
@@ -238,6 +239,7 @@ static void send_quick_stop(struct drives *d, const struct can_port *port)
 void drives_send(struct drives *d, const struct can_port *port, const struct point *setpoint)
 {
     send_heartbeat(d, port);
+    drives_send_guard(d, port);
     switch (d->state) {
     case DRIVES_STARTING:
         send_starting(d, port);

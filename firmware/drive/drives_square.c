@@ -1,5 +1,5 @@
 /*
- * A gantry: two drives of one axis. Each is homed by its own switch; then the second one is brought to where the first one
+ * Gantries: two drives of one axis. Each is homed by its own switch; then the second one is brought to where the first one
  * stands, which squares the axis. From then on both get the same setpoint, and their positions are compared.
  *
  *     skew = actual position of the second - actual position of the first,      |skew| <= skew_max_mm
@@ -13,41 +13,55 @@
 
 void drives_gantry_init(struct drives *d, const struct drives_config *config)
 {
-    unsigned first = 0;
-    if (config->skew_max_mm <= 0)
-        return;
-    assert(config->count >= 2);
-    d->second = (uint8_t)(config->count - 1);
-    while (config->axis[first].axis != config->axis[d->second].axis)
-        first++;
-    assert(first < d->second && config->axis[d->second].homing.zero_mm_s > 0 &&
-           config->axis[d->second].homing.acceleration_mm_s2 > 0);
-    d->first = (uint8_t)first;
-    d->skew_max_mm = config->skew_max_mm;
+    assert(config->gantry_count <= DRIVES_GANTRIES_MAX);
+    d->gantry_count = (uint8_t)config->gantry_count;
+    for (unsigned i = 0; i < d->gantry_count; i++) {
+        const struct drives_gantry *gantry = &config->gantry[i];
+        assert(gantry->first < config->count && gantry->second < config->count &&
+               config->axis[gantry->first].axis == config->axis[gantry->second].axis &&
+               config->axis[gantry->second].homing.zero_mm_s > 0 &&
+               config->axis[gantry->second].homing.acceleration_mm_s2 > 0);
+        d->gantry[i] = *gantry;
+    }
 }
 
-static void check_skew(struct drives *d, double skew_mm)
+void drives_place_gantries(struct drives *d)
 {
-    if (maths_abs(skew_mm) > d->skew_max_mm)
-        drives_raise(d, d->second, TAKT_ERROR_DRIVE_SKEW, maths_abs(skew_mm), NULL);
+    for (unsigned i = 0; i < d->gantry_count; i++) {
+        const struct drives_axis *first = &d->axis[d->gantry[i].first];
+        d->actual.at[first->config.axis] = first->actual_mm;
+    }
+}
+
+static void check_skew(struct drives *d, const struct drives_gantry *gantry, double skew_mm)
+{
+    if (maths_abs(skew_mm) > gantry->skew_max_mm)
+        drives_raise(d, gantry->second, TAKT_ERROR_DRIVE_SKEW, maths_abs(skew_mm), NULL);
 }
 
 /* Positions are compared that were sampled by the same SYNC. */
 void drives_check_skew(struct drives *d)
 {
-    const struct drives_axis *first = &d->axis[d->first], *second = &d->axis[d->second];
-    if (drives_silent_cycles(d, first) == 0 && drives_silent_cycles(d, second) == 0)
-        check_skew(d, second->actual_mm - first->actual_mm);
+    for (unsigned i = 0; i < d->gantry_count; i++) {
+        const struct drives_gantry *gantry = &d->gantry[i];
+        const struct drives_axis *first = &d->axis[gantry->first];
+        const struct drives_axis *second = &d->axis[gantry->second];
+        if (drives_silent_cycles(d, first) == 0 && drives_silent_cycles(d, second) == 0)
+            check_skew(d, gantry, second->actual_mm - first->actual_mm);
+    }
 }
 
 void drives_begin_square(struct drives *d)
 {
-    if (d->second == 0) {
+    if (d->gantry_count == 0) {
         drives_enter_enabled(d);
         return;
     }
     drives_enter_phase(d, DRIVES_SQUARE);
-    d->axis[d->second].braking_inc = d->axis[d->second].target_inc;
+    for (unsigned i = 0; i < d->gantry_count; i++) {
+        struct drives_axis *second = &d->axis[d->gantry[i].second];
+        second->braking_inc = second->target_inc;
+    }
 }
 
 /*
@@ -55,34 +69,41 @@ void drives_begin_square(struct drives *d)
  * 10/sqrt(3) D/T^2 in acceleration, not above those of homing:
  *     T = max(15/8 D / v,  sqrt(10/sqrt(3) D / a))
  */
-static double square_cycles(const struct drives *d, double way_mm)
+static double square_cycles(const struct drives *d, const struct drives_axis *second, double way_mm)
 {
-    const struct drives_homing *homing = &d->axis[d->second].config.homing;
+    const struct drives_homing *homing = &second->config.homing;
     const double by_velocity_s = 1.875 * way_mm / homing->zero_mm_s;
     const double by_acceleration_s = maths_sqrt(10 / SQRT_3 * way_mm / homing->acceleration_mm_s2);
     return 1e6 / d->cycle_us * maths_max(by_velocity_s, by_acceleration_s);
 }
 
-static void move_second(struct drives *d, double way_inc, double u)
+static void move_second(struct drives_axis *second, double way_inc, double u)
 {
-    struct drives_axis *second = &d->axis[d->second];
     const double part = u * u * u * (10 + u * (6 * u - 15));
     second->target_inc = (int32_t)maths_round(second->braking_inc + part * way_inc);
 }
 
-void drives_square(struct drives *d)
+/* A cycle of one of them; true: it is square. */
+static bool square(struct drives *d, const struct drives_gantry *gantry)
 {
-    const struct drives_axis *first = &d->axis[d->first], *second = &d->axis[d->second];
+    const struct drives_axis *first = &d->axis[gantry->first];
+    struct drives_axis *second = &d->axis[gantry->second];
     const double goal_mm = first->target_inc / first->config.increments_per_mm;
     const double way_inc = goal_mm * second->config.increments_per_mm - second->braking_inc;
     const double way_mm = maths_abs(way_inc / second->config.increments_per_mm);
-    const double cycles = square_cycles(d, way_mm);
+    const double cycles = square_cycles(d, second, way_mm);
+    check_skew(d, gantry, way_mm);
+    if (d->state == DRIVES_STARTING)
+        move_second(second, way_inc, d->phase_cycles < cycles ? d->phase_cycles / cycles : 1);
+    return d->phase_cycles >= cycles + DRIVES_LATENCY_CYCLES;
+}
+
+void drives_square(struct drives *d)
+{
+    bool all = true;
     drives_check_all_links(d);
-    check_skew(d, way_mm);
-    if (d->state != DRIVES_STARTING)
-        return;
-    if (d->phase_cycles >= cycles + DRIVES_LATENCY_CYCLES)
+    for (unsigned i = 0; i < d->gantry_count; i++)
+        all = square(d, &d->gantry[i]) && all;
+    if (all && d->state == DRIVES_STARTING)
         drives_enter_enabled(d);
-    else
-        move_second(d, way_inc, d->phase_cycles < cycles ? d->phase_cycles / cycles : 1);
 }

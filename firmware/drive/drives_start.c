@@ -24,6 +24,8 @@ static void rewind_to(struct drives *d, unsigned index)
     d->repeats = 0;
     d->is_looking = false;
     d->mapping.pass = d->mapping.step = 0;
+    d->dcf.at = CONCISE_DCF_FIRST;
+    d->dcf.writes = false;
     d->sdo.result = SDO_IDLE;
 }
 
@@ -34,6 +36,7 @@ void drives_begin_axis(struct drives *d, unsigned index)
     if (index == d->count)
         return;
     d->axis[index].given_up &= 1u << DRIVES_NO_PAIR;
+    d->axis[index].guard.is_on = false;
     drives_forget_pdos(&d->axis[index]);
 }
 
@@ -101,24 +104,37 @@ void drives_ask(struct drives *d, uint8_t node, const struct drives_step *step)
         sdo_client_upload(&d->sdo, node, step->object, d->sdo_timeout_cycles);
 }
 
-static void ask(struct drives *d, const struct drives_step *step)
+/* The next request of this part of the configuration is made; false: there is none. */
+static bool ask_of_part(struct drives *d)
 {
-    drives_ask(d, d->node[d->at_axis], step);
+    struct drives_step step;
+    bool is_any = false;
+    switch ((enum drives_part)d->at_part) {
+    case DRIVES_DCF:
+        return drives_ask_dcf(d);
+    case DRIVES_ASK:
+        is_any = drives_next_ask(d, &step);
+        break;
+    case DRIVES_SET:
+        is_any = drives_next_set(d, &step);
+        break;
+    case DRIVES_MAP:
+        is_any = drives_next_map(d, &step);
+        break;
+    case DRIVES_PARTS:
+        break;
+    }
+    if (is_any)
+        drives_ask(d, d->node[d->at_axis], &step);
+    return is_any;
 }
 
-static bool next_of_part(struct drives *d, struct drives_step *step)
-{
-    if (d->at_part == DRIVES_ASK)
-        return drives_next_ask(d, step);
-    return d->at_part == DRIVES_SET ? drives_next_set(d, step) : drives_next_map(d, step);
-}
-
-/* The next request of the axis; false: it is configured, or of no use. */
-static bool find_step(struct drives *d, struct drives_step *step)
+/* The next request of the axis is made; false: it is configured, or of no use. */
+static bool ask_next(struct drives *d)
 {
     while (d->at_part < DRIVES_PARTS && d->state == DRIVES_STARTING) {
         unsigned part = d->at_part;
-        if (next_of_part(d, step))
+        if (ask_of_part(d))
             return true;
         if (d->at_part == part) {
             d->at_part++;
@@ -126,6 +142,28 @@ static bool find_step(struct drives *d, struct drives_step *step)
         }
     }
     return false;
+}
+
+static bool takes(const struct drives_axis *axis, uint16_t cob_id)
+{
+    return (axis->target_frame.length > 0 && axis->target_frame.cob_id == cob_id) ||
+           (axis->control_frame.length > 0 && axis->control_frame.cob_id == cob_id);
+}
+
+/* Drives that keep their PDOs may have been set up for one identifier: each would take the other's target for its own. */
+static void check_shared(struct drives *d, unsigned i)
+{
+    const struct drives_axis *axis = &d->axis[i];
+    for (unsigned k = 0; k < d->count; k++) {
+        const struct drives_axis *other = &d->axis[k];
+        const bool is_pair = k == (i ^ 1U) && axis->is_paired && other->is_paired;
+        if (k == i || is_pair)
+            continue;
+        if (other->target_frame.length > 0 && takes(axis, other->target_frame.cob_id))
+            drives_raise(d, i, TAKT_ERROR_DRIVE_SHARES, other->target_frame.cob_id, NULL);
+        else if (other->control_frame.length > 0 && takes(axis, other->control_frame.cob_id))
+            drives_raise(d, i, TAKT_ERROR_DRIVE_SHARES, other->control_frame.cob_id, NULL);
+    }
 }
 
 static void check_load(struct drives *d)
@@ -140,15 +178,14 @@ static void check_load(struct drives *d)
 
 static void next_step(struct drives *d)
 {
-    struct drives_step step;
     d->repeats = 0;
     while (d->at_axis < d->count && d->state == DRIVES_STARTING) {
-        if (find_step(d, &step)) {
-            ask(d, &step);
+        if (ask_next(d))
             return;
-        }
         drives_begin_axis(d, d->at_axis + 1u);
     }
+    for (unsigned i = 0; i < d->count && d->state == DRIVES_STARTING; i++)
+        check_shared(d, i);
     if (d->state == DRIVES_STARTING)
         check_load(d);
     if (d->state == DRIVES_STARTING)
@@ -163,6 +200,8 @@ static void take_answer(struct drives *d)
                                          .value = is_done ? sdo_client_number(sdo) : 0};
     if (d->at_part == DRIVES_ASK)
         drives_take_ask(d, &answer);
+    else if (d->at_part == DRIVES_DCF)
+        drives_take_dcf(d);
     else if (d->at_part == DRIVES_SET)
         drives_take_set(d, &answer);
     else
@@ -175,13 +214,11 @@ static void take_answer(struct drives *d)
  */
 static void miss_answer(struct drives *d)
 {
-    struct drives_step step;
+    const uint32_t object = d->sdo.object;
     bool is_first = d->at_part == DRIVES_ASK && d->at_step == 0;
     bool may_boot = is_first && d->phase_cycles < 2 * d->boot_timeout_cycles;
-    if ((may_boot || d->repeats++ < DRIVES_SDO_REPEATS) && find_step(d, &step))
-        ask(d, &step);
-    else
-        drives_raise_object(d, d->at_axis, d->sdo.object, TAKT_ERROR_DRIVE_UNANSWERED,
+    if (!(may_boot || d->repeats++ < DRIVES_SDO_REPEATS) || !ask_next(d))
+        drives_raise_object(d, d->at_axis, object, TAKT_ERROR_DRIVE_UNANSWERED,
                             drives_cycles_ms(d, d->sdo_timeout_cycles), NULL);
 }
 

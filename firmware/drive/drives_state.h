@@ -29,7 +29,7 @@ enum drives_phase {
 };
 
 /* What a drive is configured by, in this order; then the next drive. */
-enum drives_part { DRIVES_ASK, DRIVES_SET, DRIVES_MAP, DRIVES_PARTS };
+enum drives_part { DRIVES_ASK, DRIVES_DCF, DRIVES_SET, DRIVES_MAP, DRIVES_PARTS };
 
 /* A frame to a drive, as one of its RPDOs takes it. */
 #define DRIVES_NOWHERE 0xFF
@@ -56,6 +56,12 @@ enum drives_sends {
     DRIVES_SENDS,      /* it is sent */
     DRIVES_WAITS,      /* its other half is that of the next drive */
     DRIVES_SENDS_MIXED /* there is more in it */
+};
+
+/* A node that is asked for its state, since it has no heartbeat. */
+struct drives_guard {
+    bool is_on;
+    uint8_t toggle; /* NMT_TOGGLE as it came last */
 };
 
 struct drives_axis {
@@ -94,12 +100,13 @@ struct drives_axis {
     uint16_t error_id; /* TPDO that begins with the error code; likewise */
     uint8_t status_end, position_end; /* byte behind them */
     bool beats_by_status;             /* it has no heartbeat: its status counts for one */
-    bool is_paired;                   /* its target shares a frame with that of its neighbour */
-    uint8_t follow_mode;              /* in which it follows targets */
-    uint8_t modes;                    /* object 6502, of the modes 1 ... 8 */
-    uint8_t told_mode;                /* by SDO */
-    uint16_t bits;                    /* of its frames in a cycle, at worst */
-    uint32_t given_up;                /* bits: enum drives_given_up */
+    struct drives_guard guard;
+    bool is_paired;      /* its target shares a frame with that of its neighbour */
+    uint8_t follow_mode; /* in which it follows targets */
+    uint8_t modes;       /* object 6502, of the modes 1 ... 8 */
+    uint8_t told_mode;   /* by SDO */
+    uint16_t bits;       /* of its frames in a cycle, at worst */
+    uint32_t given_up;   /* bits: enum drives_given_up */
 };
 
 /* An I/O node, as the start has found it and as it is. */
@@ -118,6 +125,8 @@ struct drives_io {
     bool started;
     bool heard;   /* its inputs have come since it was started */
     bool by_sync; /* they come in every cycle */
+    bool is_mute; /* it has no heartbeat */
+    struct drives_guard guard;
 };
 
 struct drives {
@@ -140,8 +149,8 @@ struct drives {
     uint8_t
         axis_of_node[NODE_MAX + 1]; /* index into axis; AXIS_COUNT: not ours; above: I/O nodes */
     uint8_t io_count;
-    uint8_t first, second; /* drives of the gantry: indices into axis; second 0: there is none */
-    double skew_max_mm;
+    uint8_t gantry_count;
+    struct drives_gantry gantry[DRIVES_GANTRIES_MAX];
     const struct io_wiring *wiring; /* of the I/O nodes */
     struct drives_io io[IO_NODES_MAX];
     uint32_t io_cycles; /* since all outputs were sent */
@@ -163,12 +172,17 @@ struct drives {
     bool is_stale;      /* the request under way is of a configuration that has been begun again */
     bool is_telling;    /* a controlword or a mode is being written */
     bool homed;         /* no axis is left to be homed */
+    bool guards;        /* nodes that have been started are guarded */
     uint8_t probing;    /* bits, drives_probe.c */
     uint8_t home_order; /* axes of this order are being homed; 0: not yet */
     uint32_t read
         [AXIS_COUNT]; /* objects of the drive that is being configured: its period, or its scaling;
                              in operation what each drive has latched */
     struct drives_mapping mapping;
+    struct {
+        uint32_t at; /* place in its concise configuration */
+        bool writes; /* it is written, since the drive had something else */
+    } dcf;
     struct sdo_client sdo;
 
     struct diagnostic fault;

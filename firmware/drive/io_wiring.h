@@ -22,7 +22,10 @@ enum io_bit {
     IO_SPINDLE_CCW,             /* it turns counter-clockwise (M4) */
     IO_STOP,                    /* inputs: low stops everything at once, and keeps it stopped */
     IO_LIMIT,                   /* becoming low stops everything at once */
-    IO_BIT_COUNT
+    IO_TOOL_CHANGED,            /* the changer's answer to: */
+    IO_TOOL_CHANGE,             /* outputs: M6 asks for the tool */
+    IO_TOOL,                    /* and 7 more: bits of its number, as T has told it */
+    IO_BIT_COUNT = IO_TOOL + 8
 };
 
 /* Added to one of these: high on the wire is low here. */
@@ -71,12 +74,13 @@ static inline unsigned io_kind(uint8_t bit)
 
 static inline bool io_is_output(uint8_t bit)
 {
-    return io_kind(bit) < IO_STOP;
+    const unsigned kind = io_kind(bit);
+    return kind < IO_STOP || (kind >= IO_TOOL_CHANGE && kind < IO_BIT_COUNT);
 }
 static inline bool io_is_input(uint8_t bit)
 {
     const unsigned kind = io_kind(bit);
-    return kind < IO_FLOOD || (kind >= IO_STOP && kind < IO_BIT_COUNT);
+    return kind < IO_FLOOD || (kind >= IO_STOP && kind <= IO_TOOL_CHANGED);
 }
 
 #endif

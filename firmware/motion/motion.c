@@ -223,6 +223,12 @@ static void exchange(struct motion *m, const struct motion_operator *wanted)
 
 /* -- stops, and what happens at them -- */
 
+/* A change of the tool (M6), not its number alone. */
+static bool waits_for_tool(const struct motion *m, enum move_kind kind, bool tool_waits)
+{
+    return kind == MOVE_TOOL && tool_waits && first_block(m)->move.tool_change;
+}
+
 static bool is_wait_over(const struct motion *m, enum move_kind kind)
 {
     return kind != MOVE_DWELL ||
@@ -247,12 +253,14 @@ static bool is_handed_over(const struct motion *m, const struct block *b)
 }
 
 /*
- * Goes through what happens at rest; of that only dwells are read. MOTION_CYCLE: the axes move on in a block; NULL: they
+ * Goes through what happens at rest; of that only dwells and changes of the tool that wait are read. MOTION_CYCLE: the axes move on in a block; NULL: they
  * wait.
  */
-static enum motion_result serve(struct motion *m, const struct block **block)
+static enum motion_result serve(struct motion *m, const struct motion_operator *wanted,
+                                const struct block **block)
 {
     *block = NULL;
+    m->changes_tool = false;
     for (unsigned passed = 0; passed < PASS_MAX; passed++) {
         if (m->done) {
             path_pass(m->path);
@@ -272,7 +280,8 @@ static enum motion_result serve(struct motion *m, const struct block **block)
         if (kind == MOVE_END) {
             return MOTION_DONE;
         }
-        if (!is_wait_over(m, kind)) {
+        m->changes_tool = waits_for_tool(m, kind, wanted->tool_waits);
+        if (m->changes_tool || !is_wait_over(m, kind)) {
             m->waited++;
             m->rested++;
             return MOTION_CYCLE;
@@ -545,7 +554,7 @@ enum motion_result motion_cycle(struct motion *m, const struct motion_operator *
     }
     m->busy = false;
     exchange(m, wanted);
-    const enum motion_result result = serve(m, &b);
+    const enum motion_result result = serve(m, wanted, &b);
 
     if (result != MOTION_CYCLE) {
         return result;

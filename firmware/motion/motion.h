@@ -40,6 +40,7 @@ struct motion_operator {
     bool stop;         /* a hold that nothing in the program can switch off */
     bool single_block; /* every motion that it can still brake in ends at rest */
     bool wait;         /* does not leave a stop: the spindle has not reached its speed */
+    bool tool_waits;   /* a tool change is not passed: the changer has not answered */
     bool measures; /* the spindle's speed, for feeds per revolution; else they are as commanded */
     double spindle_rev_s; /* >= 0; 0 holds them */
 };
@@ -62,9 +63,10 @@ struct motion {
     double feed_before[2]; /* likewise, in the two cycles before */
     double lag;            /* of the setpoint behind the lead point, path units */
     bool proportional;
-    bool holds; /* the setpoint is moved by the hold, not by the lead point, */
-    bool looks; /* or looks whether it can be */
-    bool done;  /* the oldest block: the next cycle passes it */
+    bool holds;        /* the setpoint is moved by the hold, not by the lead point, */
+    bool looks;        /* or looks whether it can be */
+    bool done;         /* the oldest block: the next cycle passes it */
+    bool changes_tool; /* this cycle stands at a tool change that is not passed */
     bool
         busy; /* this cycle does what few do: a block read, a span begun, a place in a ceiling looked for */
     uint32_t current; /* the block of the last cycle */

@@ -29,6 +29,16 @@ static_assert(sizeof(double) == 8, "stored as IEEE-754");
 #define VECTOR(number, field, count, most)                                                         \
     ROW(number, false, SETTINGS_DOUBLE, offsetof(struct machine, correction.field), count,         \
         -(most), most, false, #field)
+#define GANTRY_ROW(number, i, type, field, least, most)                                            \
+    ROW(number, false, type, offsetof(struct machine, gantry[i].field), 1, least, most, false,     \
+        "gantry." #field)
+#define GANTRY(i, axis_number, node, reversed, offset, skew, method)                               \
+    GANTRY_ROW(axis_number, i, SETTINGS_U32, axis, 0, AXIS_COUNT),                                 \
+        GANTRY_ROW(node, i, SETTINGS_U8, drive_node, 1, 127),                                      \
+        GANTRY_ROW(reversed, i, SETTINGS_U8, is_reversed, 0, 1),                                   \
+        GANTRY_ROW(offset, i, SETTINGS_DOUBLE, home_offset_mm, -1e6, 1e6),                         \
+        GANTRY_ROW(skew, i, SETTINGS_DOUBLE, skew_max_mm, 0, 1e3),                                 \
+        GANTRY_ROW(method, i, SETTINGS_I8, home_method, -128, 37)
 #define OF_AXIS(number, type, field, least, most, above)                                           \
     ROW(number, true, type, offsetof(struct machine_axis, field), 1, least, most, above, #field)
 
@@ -54,16 +64,15 @@ const struct settings_field settings_fields[] = {
     FROM(23, spindle_ramp_rpm_s, 1e-3, 1e9),
     COUNT(24, spindle_encoder_counts, 0, 16777216),
     ABOVE(25, thread_tolerance_mm, 0, 100),
+    ABOVE(26, tool_change_s, 0, 3600),
     COUNT(30, can_bitrate, 10000, 1000000),
     COUNT(31, heartbeat_ms, 0, 20000),
     ROW(32, false, SETTINGS_U8, offsetof(struct machine, controller_node), 1, 1, 127, false, "controller_node"),
     COUNT(33, boot_timeout_ms, 1, 600000),
     COUNT(34, sdo_timeout_ms, 1, 600000),
-    COUNT(36, gantry.axis, 0, AXIS_COUNT),
-    ROW(37, false, SETTINGS_U8, offsetof(struct machine, gantry.drive_node), 1, 1, 127, false, "gantry.drive_node"),
-    ROW(38, false, SETTINGS_U8, offsetof(struct machine, gantry.is_reversed), 1, 0, 1, false, "gantry.is_reversed"),
-    FROM(39, gantry.home_offset_mm, -1e6, 1e6),
-    FROM(60, gantry.skew_max_mm, 0, 1e3),
+    GANTRY(0, 36, 37, 38, 39, 60, 61),
+    GANTRY(1, 62, 63, 64, 65, 66, 67),
+    GANTRY(2, 68, 69, 70, 71, 72, 73),
     ROW(35, false, SETTINGS_BYTES, offsetof(struct machine, io), sizeof(struct io_wiring) * IO_NODES_MAX, 0, 0, false, "io"),
 
     VECTOR(40, machine, CORRECTION_COORDINATES * CORRECTION_COORDINATES, CORRECTION_MOST),
@@ -104,7 +113,7 @@ const struct settings_field settings_fields[] = {
     OF_AXIS(114, SETTINGS_U32, drive_revision, 0, U32_MAX, false),
     OF_AXIS(115, SETTINGS_U32, drive_serial, 0, U32_MAX, false),
     OF_AXIS(116, SETTINGS_U8, home_order, 0, 100, false),
-    OF_AXIS(117, SETTINGS_U8, home_method, 1, 37, false),
+    OF_AXIS(117, SETTINGS_I8, home_method, -128, 37, false),
     OF_AXIS(118, SETTINGS_DOUBLE, home_velocity_mm_s, 0, 1e5, true),
     OF_AXIS(119, SETTINGS_DOUBLE, home_zero_velocity_mm_s, 0, 1e5, true),
     OF_AXIS(120, SETTINGS_DOUBLE, home_acceleration_mm_s2, 0, 1e7, true),
@@ -149,6 +158,8 @@ static void get_number(const struct settings_field *field, const uint8_t *at, ui
     } else if (field->type == SETTINGS_U32) {
         memcpy(&word, at, sizeof word);
         little_put32(bytes, word);
+    } else if (field->type == SETTINGS_I8) {
+        little_put32(bytes, (uint32_t)(int8_t)*at);
     } else {
         little_put32(bytes, *at);
     }
@@ -172,6 +183,14 @@ static uint8_t narrow(uint32_t word)
     return word > UINT8_MAX ? UINT8_MAX : (uint8_t)word;
 }
 
+/* The same of a number with a sign: two's complement. */
+static uint8_t narrow_signed(uint32_t word)
+{
+    const bool fits = word <= INT8_MAX || word >= UINT32_MAX - INT8_MAX;
+
+    return fits ? (uint8_t)word : INT8_MAX;
+}
+
 static void set_number(const struct settings_field *field, uint8_t *at, const uint8_t *bytes)
 {
     const uint64_t bits = field->type == SETTINGS_DOUBLE ? little_get64(bytes) : 0;
@@ -183,6 +202,8 @@ static void set_number(const struct settings_field *field, uint8_t *at, const ui
         memcpy(at, &word, sizeof word);
     else if (field->type == SETTINGS_FLAG)
         *at = word != 0;
+    else if (field->type == SETTINGS_I8)
+        *at = narrow_signed(word);
     else
         *at = narrow(word);
 }
@@ -212,7 +233,7 @@ static double value_at(const struct settings_field *field, const uint8_t *at)
         memcpy(&word, at, sizeof word);
         return word;
     }
-    return *at;
+    return field->type == SETTINGS_I8 ? (double)(int8_t)*at : (double)*at;
 }
 
 /* Not a number is in no range. */

@@ -14,6 +14,7 @@ enum settings_type {
     SETTINGS_BYTES,
     SETTINGS_FLAG,
     SETTINGS_U8,
+    SETTINGS_I8,
     SETTINGS_U32,
     SETTINGS_DOUBLE
 };

@@ -2,7 +2,7 @@
 
 #include <string.h>
 
-/* "t", three digits, the length, two digits a byte, the end. */
+/* "t" or "r", three digits, the length, two digits a byte, the end. */
 #define HEAD      5
 #define LINE_MOST (HEAD + 2 * CAN_DATA_MAX + 1)
 
@@ -45,11 +45,11 @@ static int value_of(char c)
 static bool send(void *context, const struct can_frame *frame)
 {
     struct slcan_can *can = context;
-    char text[LINE_MOST] = {'t', digit(frame->id >> 8), digit(frame->id >> 4), digit(frame->id),
-                            digit(frame->length)};
+    char text[LINE_MOST] = {can_is_remote(frame) ? 'r' : 't', digit((frame->id & CAN_ID_MASK) >> 8),
+                            digit(frame->id >> 4), digit(frame->id), digit(frame->length)};
     size_t at = HEAD;
 
-    for (unsigned i = 0; i < frame->length; i++) {
+    for (unsigned i = 0; i < can_data_length(frame); i++) {
         text[at++] = digit(frame->data[i] >> 4);
         text[at++] = digit(frame->data[i]);
     }

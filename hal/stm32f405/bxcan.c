@@ -163,8 +163,8 @@ static void put_into_queue(struct bxcan *can, const struct can_frame *frame, boo
 {
     unsigned at = 0;
 
-    while (at < can->queued &&
-           (can->queue[at].id < frame->id || (behind && can->queue[at].id == frame->id)))
+    while (at < can->queued && (can_rank(can->queue[at].id) < can_rank(frame->id) ||
+                                (behind && can->queue[at].id == frame->id)))
         at++;
     memmove(&can->queue[at + 1], &can->queue[at], (can->queued - at) * sizeof *frame);
     can->queue[at] = *frame;
@@ -185,7 +185,9 @@ static void load_mailbox(struct bxcan *can, unsigned i, const struct can_frame *
     write(can, BXCAN_TDT(i), frame->length);
     write(can, BXCAN_TDL(i), word_of(frame->data));
     write(can, BXCAN_TDH(i), word_of(frame->data + 4));
-    write(can, BXCAN_TI(i), BXCAN_I_ID(frame->id) | BXCAN_TI_TXRQ);
+    write(can, BXCAN_TI(i),
+          BXCAN_I_ID(frame->id & CAN_ID_MASK) | BXCAN_TI_TXRQ |
+              (can_is_remote(frame) ? BXCAN_I_REMOTE : 0));
 }
 
 /* The mailbox with the least urgent frame. */
@@ -194,7 +196,7 @@ static unsigned least_urgent(const struct bxcan *can)
     unsigned last = 0;
 
     for (unsigned i = 1; i < BXCAN_MAILBOXES; i++) {
-        if (can->mailbox[i].id > can->mailbox[last].id)
+        if (can_rank(can->mailbox[i].id) > can_rank(can->mailbox[last].id))
             last = i;
     }
     return last;
@@ -206,7 +208,7 @@ static void make_room(struct bxcan *can, uint16_t id)
     const unsigned last = least_urgent(can);
 
     for (unsigned i = 0; i < BXCAN_MAILBOXES; i++) {
-        if (can->mailbox[i].id < id || can->is_wanted_back[i])
+        if (can_rank(can->mailbox[i].id) < can_rank(id) || can->is_wanted_back[i])
             return;
     }
     can->is_wanted_back[last] = true;

@@ -37,7 +37,7 @@ static bool port_send(void *context, const struct can_frame *frame)
 {
     struct bus_port *port = context;
     struct bus *bus = port->bus;
-    struct bus_waiting waiting = {.order = (uint64_t)frame->id << 48 | bus->sent,
+    struct bus_waiting waiting = {.order = (uint64_t)can_rank(frame->id) << 48 | bus->sent,
                                   .since_ns = bus->now_ns,
                                   .port = (uint16_t)(port - bus->port),
                                   .frame = *frame};

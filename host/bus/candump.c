@@ -73,9 +73,13 @@ static void end_line(struct candump *log, char *text, const uint8_t *data, unsig
 void candump_frame(void *context, const struct can_frame *frame, uint64_t time_ns)
 {
     struct candump *log = context;
-    char *text = hex_put(begin_line(log, time_ns), frame->id, 3);
+    char *text = hex_put(begin_line(log, time_ns), frame->id & CAN_ID_MASK, 3);
     *text++ = '#';
-    end_line(log, text, frame->data, frame->length);
+    if (can_is_remote(frame)) {
+        *text++ = 'R';
+        *text++ = (char)('0' + frame->length);
+    }
+    end_line(log, text, frame->data, can_data_length(frame));
 }
 
 void candump_wire(void *context, const struct wire_frame *frame, uint64_t time_ns)

@@ -1,7 +1,7 @@
 /*
- * A data frame, bit by bit:
+ * A frame, bit by bit; a remote one has RTR 1 and no data:
  *
- *     | start 0 | identifier 11 | RTR 0 | IDE 0 | r0 0 | length 4 | data 8n | CRC 15 | end 10 |
+ *     | start 0 | identifier 11 | RTR r | IDE 0 | r0 0 | length 4 | data 8n | CRC 15 | end 10 |
  *     |<----------------------------- stuffed: 34 + 8n ----------------------------->|
  *
  * end: delimiters, acknowledge and seven bits of end of frame.
@@ -112,13 +112,18 @@ static unsigned count_stuffed(const struct stream_bits *stream)
     return add_stuffing(stream->tables, entry, checksum) / STUFFED_STEP;
 }
 
+static unsigned header_of(const struct can_frame *frame)
+{
+    return can_rank(frame->id) << 6 | frame->length;
+}
+
 unsigned frame_bits_count(const struct frame_bits *tables, const struct can_frame *frame)
 {
     struct stream_bits stream = {.tables = tables, .entry = state_of(1, 0)};
-    unsigned header = (unsigned)frame->id << 7 | frame->length;
+    unsigned header = header_of(frame), length = can_data_length(frame);
     add_bytes(&stream, header, header | HEADER_PAD, 3);
-    add_data(&stream, frame->data, frame->length);
-    return UNSTUFFED + 8u * frame->length + count_stuffed(&stream);
+    add_data(&stream, frame->data, length);
+    return UNSTUFFED + 8u * length + count_stuffed(&stream);
 }
 
 /*
@@ -198,12 +203,12 @@ unsigned frame_bits_levels(const struct frame_bits *tables, const struct can_fra
                            uint8_t level[FRAME_BITS_MAX])
 {
     struct bit_writer writer = {.level = level};
-    unsigned header = (unsigned)frame->id << 7 | frame->length;
+    unsigned header = header_of(frame);
     unsigned checksum = 0;
     for (unsigned shift = 24; shift > 0; shift -= 8)
         checksum = add_checksum(tables, checksum, header >> (shift - 8));
     put_bits(&writer, header, HEADER_BITS);
-    for (unsigned i = 0; i < frame->length; i++) {
+    for (unsigned i = 0; i < can_data_length(frame); i++) {
         checksum = add_checksum(tables, checksum, frame->data[i]);
         put_bits(&writer, frame->data[i], 8);
     }

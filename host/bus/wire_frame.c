@@ -2,23 +2,22 @@
 
 #include <string.h>
 
-#define STANDARD_ID_MAX 0x7FFu
-
 void wire_frame_from_can(struct wire_frame *wire, const struct can_frame *can)
 {
-    wire->id = can->id;
-    wire->flags = 0;
+    wire->id = can->id & CAN_ID_MASK;
+    wire->flags = can_is_remote(can) ? WIRE_REMOTE : 0;
     wire->length = can->length;
-    memcpy(wire->data, can->data, can->length);
+    memcpy(wire->data, can->data, can_data_length(can));
 }
 
 bool wire_frame_to_can(const struct wire_frame *wire, struct can_frame *can)
 {
-    if (wire->flags != 0 || wire->id > STANDARD_ID_MAX || wire->length > CAN_DATA_MAX)
+    if ((wire->flags & ~WIRE_REMOTE) != 0 || wire->id > CAN_ID_MASK || wire->length > CAN_DATA_MAX)
         return false;
-    can->id = (uint16_t)wire->id;
+    can->id = (uint16_t)(wire->id | (wire->flags != 0 ? CAN_REMOTE : 0));
     can->length = wire->length;
-    memcpy(can->data, wire->data, wire->length);
+    memset(can->data, 0, sizeof can->data);
+    memcpy(can->data, wire->data, can_data_length(can));
     return true;
 }
 

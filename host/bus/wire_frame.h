@@ -1,6 +1,6 @@
 /*
  * A CAN frame of any kind, as adapters, sockets and logs know it. The firmware itself speaks
- * classical data frames with 11-bit identifiers only (hal/can.h); everything else passes by it.
+ * classical frames with 11-bit identifiers only (hal/can.h); everything else passes by it.
  */
 #ifndef TAKT_BUS_WIRE_FRAME_H
 #define TAKT_BUS_WIRE_FRAME_H

@@ -39,6 +39,8 @@ struct drive_communication {
     uint32_t time_cob_id;                         /* 1012; bit 31: it is listened to */
     uint32_t emcy_cob_id;                         /* 1014 */
     uint16_t emcy_inhibit_100us;                  /* 1015 */
+    uint16_t guard_ms;                            /* 100C */
+    uint8_t life_factor;                          /* 100D: guard times; 0: it is not watched */
     uint32_t consumer_heartbeat[DRIVE_CONSUMERS]; /* 1016: node << 16 | ms */
     uint16_t producer_heartbeat_ms;               /* 1017 */
     uint8_t sync_overflow;                        /* 1019 */

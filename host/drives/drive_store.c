@@ -1,5 +1,6 @@
 #include "drives/drive_store.h"
 
+#include "canopen/node.h"
 #include "drives/dictionary_words.h"
 #include "drives/virtual_drive_private.h"
 
@@ -7,6 +8,7 @@
 #include <string.h>
 
 #define COMMENT '#'
+#define NODE    "node "
 
 /* ---- What is stored ---- */
 
@@ -59,8 +61,11 @@ static void write_row(FILE *stream, const struct object_row *row,
 void drive_store_write(FILE *stream, const struct virtual_drive *drive)
 {
     const struct dictionary *dictionary = drive->dictionary;
+    const uint8_t born = drive->config.is_nameless ? LSS_NO_NODE : drive->number;
     (void)fprintf(stream, "%c stored by node %u, object 1010\n", COMMENT,
                   (unsigned)drive->config.node);
+    if (drive->lss.stored != born)
+        (void)fprintf(stream, NODE "%u\n", (unsigned)drive->lss.stored);
     for (unsigned i = 0; i < dictionary->count; i++)
         if (is_stored(&dictionary->row[i]))
             write_row(stream, &dictionary->row[i], &drive->stored, &drive->initial);
@@ -130,6 +135,22 @@ static bool take_text(const struct object_row *row, struct drive_objects *stored
     return true;
 }
 
+/* What is stored counts from this node id on. */
+static bool take_node(struct virtual_drive *drive, struct text_part part,
+                      struct drive_store_problem *wrong)
+{
+    unsigned node = 0;
+    for (size_t i = 0; i < part.length && i < 3; i++)
+        node = part.start[i] >= '0' && part.start[i] <= '9'
+                   ? 10 * node + (unsigned)(part.start[i] - '0')
+                   : LSS_NO_NODE + 1;
+    if (part.length > 3 || node == 0 || (node > NODE_MAX && node != LSS_NO_NODE))
+        return refuse(wrong, "a node id is 1 ... %d, or %d: none", NODE_MAX, LSS_NO_NODE);
+    drive->lss.stored = (uint8_t)node;
+    virtual_drive_apply_lss(drive, true);
+    return true;
+}
+
 static bool take_line(struct virtual_drive *drive, struct text_part part,
                       struct drive_store_problem *wrong)
 {
@@ -137,6 +158,8 @@ static bool take_line(struct virtual_drive *drive, struct text_part part,
     bool has_index;
     if (part.length == 0 || part.start[0] == COMMENT)
         return true;
+    if (part.length >= strlen(NODE) && memcmp(part.start, NODE, strlen(NODE)) == 0)
+        return take_node(drive, behind(part, strlen(NODE)), wrong);
     if (!read_place(&part, &index, &sub))
         return refuse(wrong, "an object is expected, as 1017:00");
     const struct object_row *row =

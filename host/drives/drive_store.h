@@ -1,6 +1,7 @@
 /*
  * What a drive has stored by object 1010, as a text: a line for every value that is not the one of power-on,
  *
+ *     node 9              the node id it has been given by LSS; 255: none
  *     1017:00 0064        index and sub-index, then the number, all hexadecimal
  *     2000:00 "4C656674"  bytes of a text
  */

@@ -76,6 +76,7 @@ void virtual_drive_set_filter(struct virtual_drive *drive)
     if (c->time_cob_id & TIME_CONSUMED)
         accept(drive, c->time_cob_id);
     accept(drive, SDO_REQUEST_FUNCTION + drive->config.node);
+    accept(drive, NMT_HEARTBEAT_FUNCTION + drive->config.node);
     for (unsigned i = 0; i < DRIVE_CONSUMERS; i++)
         if (c->consumer_heartbeat[i])
             accept(drive, NMT_HEARTBEAT_FUNCTION + (c->consumer_heartbeat[i] >> 16 & NODE_ID_MASK));
@@ -109,6 +110,7 @@ void virtual_drive_init(struct virtual_drive *drive, const struct virtual_drive_
     if (config->dictionary != NULL)
         drive->dictionary = config->dictionary;
     drive->nmt = NMT_BOOTED;
+    drive->number = config->node;
     drive->lss.node = drive->lss.stored = config->is_nameless ? LSS_NO_NODE : config->node;
     drive->lss.is_nameless = config->is_nameless;
     drive_plant_init(&drive->plant, &config->plant);
@@ -179,7 +181,8 @@ static void restart_communication(struct virtual_drive *drive)
     drive->communication_error = 0;
     drive->emcy_count = 0;
     drive->emcy_ns = 0;
-    drive->sync_lost_ns = DRIVE_NEVER;
+    drive->sync_lost_ns = drive->guard_lost_ns = DRIVE_NEVER;
+    drive->guard_toggle = 0;
     sdo_server_reset(&drive->sdo);
     virtual_drive_update_pdos(drive);
     for (unsigned i = 0; i < DRIVE_CONSUMERS; i++)
@@ -263,6 +266,41 @@ static void take_heartbeat(struct virtual_drive *drive, const struct can_frame *
         if (drive->communication_error == EMCY_HEARTBEAT)
             virtual_drive_set_communication_error(drive, EMCY_NONE);
     }
+}
+
+/* Objects 100C and 100D; 0: no guarding master is watched. */
+static uint32_t life_time_ms(const struct virtual_drive *drive)
+{
+    const struct drive_communication *c = &drive->objects.communication;
+    return c->producer_heartbeat_ms == 0 ? (uint32_t)c->guard_ms * c->life_factor : 0;
+}
+
+static bool can_be_guarded(const struct virtual_drive *drive)
+{
+    bool has_index;
+    return drive->objects.communication.producer_heartbeat_ms == 0 &&
+           dictionary_find(drive->dictionary, 0x100C, 0, &has_index) != NULL;
+}
+
+/*
+ * A guarding master asks for the state, and is watched from its first question on (CiA 301, 7.2.8.3.2.1). A node has either
+ * that or a heartbeat.
+ */
+static void take_guard(struct virtual_drive *drive)
+{
+    const uint32_t life_ms = life_time_ms(drive);
+    struct can_frame frame;
+    if (!can_be_guarded(drive))
+        return;
+    nmt_write_heartbeat(&frame, drive->config.node, drive->nmt);
+    frame.data[0] |= drive->guard_toggle;
+    drive->guard_toggle ^= NMT_TOGGLE;
+    (void)virtual_drive_send(drive, INJECT_MUTE_HEARTBEAT, &frame);
+    drive->guard_lost_ns =
+        life_ms != 0 ? drive->now_ns + (uint64_t)life_ms * MILLISECOND_NS : DRIVE_NEVER;
+    virtual_drive_look_soon(drive);
+    if (drive->communication_error == EMCY_HEARTBEAT)
+        virtual_drive_set_communication_error(drive, EMCY_NONE);
 }
 
 /*
@@ -365,8 +403,11 @@ void virtual_drive_on_frame(struct virtual_drive *drive, const struct can_frame 
 {
     if (!(drive->accepts[frame->id >> 5 & 63] >> (frame->id & 31) & 1))
         return;
-    if (drive->faults.is_hung || drive->boot_ns != 0 ||
-        frame->id > NODE_FUNCTION_MASK + NODE_ID_MASK)
+    if (drive->faults.is_hung || drive->boot_ns != 0)
+        return;
+    if (nmt_is_guard(frame, drive->config.node) && !drive->lss.is_nameless)
+        take_guard(drive);
+    if (frame->id > CAN_ID_MASK)
         return;
     if (drive->lss.is_nameless && frame->id != LSS_REQUEST_COB_ID &&
         frame->id != NMT_COMMAND_COB_ID)
@@ -402,6 +443,10 @@ static void watch_connection(struct virtual_drive *drive)
         drive->sync_lost_ns = DRIVE_NEVER;
         virtual_drive_set_communication_error(drive, EMCY_SYNC);
     }
+    if (drive->now_ns >= drive->guard_lost_ns) {
+        drive->guard_lost_ns = DRIVE_NEVER;
+        virtual_drive_set_communication_error(drive, EMCY_HEARTBEAT);
+    }
     for (unsigned i = 0; i < DRIVE_CONSUMERS; i++) {
         if (drive->now_ns < drive->consumer_ns[i])
             continue;
@@ -431,6 +476,7 @@ static void run_timers(struct virtual_drive *drive)
     virtual_drive_send_due(drive);
     drive->due_ns = earlier(drive->heartbeat_ns, virtual_drive_next_pdo_ns(drive));
     drive->due_ns = earlier(drive->due_ns, drive->sync_lost_ns);
+    drive->due_ns = earlier(drive->due_ns, drive->guard_lost_ns);
     for (unsigned i = 0; i < DRIVE_CONSUMERS; i++)
         drive->due_ns = earlier(drive->due_ns, drive->consumer_ns[i]);
     if (drive->requests.count > 0)
@@ -488,7 +534,7 @@ uint32_t virtual_drive_get_sync_period_us(const struct virtual_drive *drive)
 
 uint32_t virtual_drive_get_watched_ms(const struct virtual_drive *drive)
 {
-    uint32_t shortest_ms = 0;
+    uint32_t shortest_ms = drive->guard_lost_ns != DRIVE_NEVER ? life_time_ms(drive) : 0;
     for (unsigned i = 0; i < DRIVE_CONSUMERS; i++) {
         uint32_t watched_ms = drive->objects.communication.consumer_heartbeat[i] & 0xFFFF;
         if (watched_ms != 0 && (shortest_ms == 0 || watched_ms < shortest_ms))

@@ -101,7 +101,7 @@ double virtual_drive_get_position_mm(const struct virtual_drive *drive);
 /* What the controller says of the time between two SYNCs, object 1006, else 60C2; 0: nothing. */
 uint32_t virtual_drive_get_sync_period_us(const struct virtual_drive *drive);
 
-/* Object 1016: the shortest heartbeat time that it watches, ms; 0: it watches none. */
+/* The shortest time without a heartbeat (1016) or a guarding frame (100C) that it takes, ms; 0: it watches none. */
 uint32_t virtual_drive_get_watched_ms(const struct virtual_drive *drive);
 
 /* The frame is SYNC to this drive (object 1005). */

@@ -29,6 +29,7 @@
 
 #define LSS_DONE         0
 #define LSS_INADMISSIBLE 1 /* a value that cannot be, a service that is not there */
+#define LSS_NOT_STORED   2
 
 #define FASTSCAN_BEGINS 0x80
 
@@ -107,6 +108,18 @@ static void configure_node(struct virtual_drive *drive, uint8_t node)
     answer(drive, LSS_CONFIGURE_NODE, is_one ? LSS_DONE : LSS_INADMISSIBLE);
 }
 
+/* The node id is kept with what object 1010 has stored. */
+static void store(struct virtual_drive *drive)
+{
+    const uint8_t before = drive->lss.stored;
+    bool is_kept;
+    drive->lss.stored = drive->lss.node;
+    is_kept = drive->keeper.keep == NULL || drive->keeper.keep(drive->keeper.context, drive);
+    if (!is_kept)
+        drive->lss.stored = before;
+    answer(drive, LSS_STORE, is_kept ? LSS_DONE : LSS_NOT_STORED);
+}
+
 static void take_configuration(struct virtual_drive *drive, unsigned command, uint8_t value)
 {
     switch (command) {
@@ -117,8 +130,7 @@ static void take_configuration(struct virtual_drive *drive, unsigned command, ui
         answer(drive, command, LSS_INADMISSIBLE);
         break;
     case LSS_STORE:
-        drive->lss.stored = drive->lss.node;
-        answer(drive, command, LSS_DONE);
+        store(drive);
         break;
     case LSS_INQUIRE_NODE:
         answer(drive, command, drive->lss.is_nameless ? LSS_NO_NODE : drive->config.node);

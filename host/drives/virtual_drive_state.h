@@ -104,6 +104,7 @@ struct drive_keeper {
 };
 
 struct virtual_drive {
+    uint8_t number; /* the node id it was made with, by which it is known however it is called */
     uint32_t accepts[64]; /* bit id: frames with this identifier are looked at */
     struct virtual_drive_config config;
     struct can_port port;
@@ -161,9 +162,11 @@ struct virtual_drive {
     uint64_t heartbeat_ns;
     uint64_t
         consumer_ns[DRIVE_CONSUMERS]; /* by then the next must have come; never before the first */
+    uint64_t guard_lost_ns;           /* the same of a guarding master */
     uint64_t sync_lost_ns;
     uint64_t emcy_ns; /* the next emergency may be sent */
 
+    uint8_t guard_toggle;         /* of the next answer to it */
     uint16_t communication_error; /* 8130, 8700: under way; 0: none */
     unsigned emcy_count;
     struct emcy emcy[VIRTUAL_DRIVE_EMCY_QUEUE]; /* that wait for the inhibit time */

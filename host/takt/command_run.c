@@ -1,6 +1,7 @@
 #include "takt/command.h"
 #include "takt/compiled.h"
 #include "takt/compiled_judge.h"
+#include "takt/drives_table.h"
 #include "takt/ending.h"
 #include "takt/error_map.h"
 #include "takt/interrupt.h"
@@ -31,6 +32,7 @@ struct run {
     struct run_outputs outputs;
     struct progress progress;
     struct ending ending;
+    bool has_told_drives;    /* what they do without */
     struct diagnostic fault; /* before its end */
     enum command_status cut; /* not STATUS_DONE: the run ends before its time, with this status */
     uint64_t until_cycles;   /* program cycles after which to stop; UINT64_MAX: the program's end */
@@ -106,6 +108,15 @@ static bool is_bus_lost(const struct run *run)
 }
 
 /* Runs to the program's end, a fault, --until or a signal. False: a file cannot be written, or the bus is gone. */
+/* Drives on a bus outside are others' drives: what they do without is told before they have done it, not after. */
+static void tell_drives(struct run *run)
+{
+    const struct drives *drives = controller_get_drives(&run->simulation->controller);
+
+    run->has_told_drives = run->simulation->field.link == NULL ||
+                           drives_table_tell(drives, run->session.options->quiet);
+}
+
 static bool run_loop(struct run *run)
 {
     const struct controller *controller = &run->simulation->controller;
@@ -114,6 +125,8 @@ static bool run_loop(struct run *run)
 
     while (controller_get_state(controller) < CONTROLLER_COMPLETED && good && !interrupt_asked()) {
         good = run_cycle(run);
+        if (!run->has_told_drives)
+            tell_drives(run);
         if (run->judge.figures.cycles >= run->until_cycles)
             break;
         if (run->simulation->cycles % RUN_LOOK_CYCLES == 0) {

@@ -32,15 +32,16 @@ void data_sheet_set_io(struct virtual_drive_config *drive, const struct io_wirin
 static bool add_drive(struct virtual_drives_config *config, const struct machine_setup *setup,
                       unsigned index, struct dictionary *sheet)
 {
-    const bool is_second = index == MACHINE_SECOND_DRIVE;
     const struct machine *machine = &setup->machine;
-    const struct machine_axis *axis = &machine->axis[is_second ? machine->gantry.axis : index];
+    const struct machine_gantry *gantry =
+        index < MACHINE_SECOND_DRIVE ? NULL : &machine->gantry[index - MACHINE_SECOND_DRIVE];
+    const struct machine_axis *axis = &machine->axis[gantry != NULL ? gantry->axis : index];
+    const bool is_reversed = gantry != NULL && gantry->is_reversed;
     struct virtual_drive_config *drive = &config->drive[config->count++];
 
     *drive = (struct virtual_drive_config){
-        .node = is_second ? machine->gantry.drive_node : axis->drive_node,
-        .increments_per_mm = is_second && machine->gantry.is_reversed ? -axis->increments_per_mm
-                                                                      : axis->increments_per_mm,
+        .node = gantry != NULL ? gantry->drive_node : axis->drive_node,
+        .increments_per_mm = is_reversed ? -axis->increments_per_mm : axis->increments_per_mm,
         .cycle_us = machine->cycle_us,
     };
     return data_sheet_set_drive(drive, &setup->drive[index], sheet);
@@ -55,9 +56,12 @@ bool data_sheet_set_machine(struct virtual_drives_config *config, const struct m
             !add_drive(config, setup, i, &sheet[i]))
             return false;
     }
-    if (machine_has_gantry(&setup->machine) &&
-        !add_drive(config, setup, MACHINE_SECOND_DRIVE, &sheet[MACHINE_SECOND_DRIVE]))
-        return false;
+    for (unsigned i = 0; i < machine_gantry_count(&setup->machine); i++) {
+        const unsigned index = MACHINE_SECOND_DRIVE + i;
+
+        if (!add_drive(config, setup, index, &sheet[index]))
+            return false;
+    }
     for (unsigned i = 0; i < machine_io_count(&setup->machine); i++)
         data_sheet_set_io(&config->drive[config->count++], &setup->machine.io[i]);
     return true;

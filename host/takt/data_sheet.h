@@ -11,10 +11,10 @@
 bool data_sheet_load(struct dictionary *dictionary, const char *path);
 
 /*
- * All virtual drives of a machine: those of its axes on CAN, the second one of a gantry, I/O nodes; sheet: memory for
+ * All virtual drives of a machine: those of its axes on CAN, the second ones of gantries, I/O nodes; sheet: memory for
  * their dictionaries. False after a message.
  */
-#define DATA_SHEETS_MAX (AXIS_COUNT + 1)
+#define DATA_SHEETS_MAX MACHINE_SETUP_DRIVES_MAX
 bool data_sheet_set_machine(struct virtual_drives_config *config, const struct machine_setup *setup,
                             struct dictionary sheet[DATA_SHEETS_MAX]);
 

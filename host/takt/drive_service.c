@@ -77,7 +77,7 @@ static void store_path(const struct drive_service *service, const struct virtual
                        char path[OUTPUT_PATH_MAX])
 {
     (void)snprintf(path, OUTPUT_PATH_MAX, "%s/takt-drive-%u.store", service->config->store,
-                   (unsigned)drive->config.node);
+                   (unsigned)drive->number);
 }
 
 /* A message says so when it fails; the drive tells its master. */

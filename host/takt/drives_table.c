@@ -42,6 +42,7 @@ static const struct {
                                "no touch probe: a probing move has the position of a cycle"},
     [DRIVES_NO_SCALING] = {"scaling", "608F 6091 6092",
                            "is not told: increments_per_mm is believed"},
+    [DRIVES_GUARDED] = {"guarded", "1017", "no heartbeat: the drive is asked for its state (100C)"},
 };
 
 void drives_table_set(struct drives_table *table, const struct drives *drives)
@@ -91,6 +92,18 @@ void drives_table_write_text(FILE *stream, const struct drives_table *table)
         write_row(stream, table, row, head);
         head = "";
     }
+}
+
+bool drives_table_tell(const struct drives *drives, bool is_quiet)
+{
+    struct drives_table table;
+
+    if (drives_get_state(drives) != DRIVES_ENABLED)
+        return false;
+    drives_table_set(&table, drives);
+    if (!is_quiet)
+        drives_table_write_text(stderr, &table);
+    return true;
 }
 
 static void add_drive(cJSON *drives, const struct drives_table *table, unsigned axis, unsigned node)
@@ -144,6 +157,9 @@ const char *drives_table_remedy(const struct diagnostic *fault)
     case TAKT_ERROR_DRIVE_UNMAPPED:
         return "map it with the maker's tool into a PDO that is valid and of transmission type 1, "
                "and store that";
+    case TAKT_ERROR_DRIVE_SHARES:
+        return "give each drive a PDO with an identifier of its own with the maker's tool, or "
+               "drive_is_set_up = 0";
     case TAKT_ERROR_DRIVE_PERIOD:
         return "set cycle_us in [machine] to that time, or 60C2 with the maker's tool";
     case TAKT_ERROR_DRIVE_SCALING:

@@ -114,7 +114,7 @@ static enum command_status open_outside(struct field *field, const struct machin
 {
     struct link_config config = {.bitrate = setup->machine.can_bitrate};
     struct link_error error;
-    uint8_t nodes[AXIS_COUNT + 1];
+    uint8_t nodes[MACHINE_NODES_MAX];
     const unsigned count = machine_drive_nodes(&setup->machine, nodes);
 
     field->link = link_open(bus, &config, &error);

@@ -33,9 +33,10 @@ struct field_traffic {
 struct field {
     struct bus bus; /* both: not used with an outside bus */
     struct virtual_drives drives;
-    struct dictionary sheet[AXIS_COUNT + 1]; /* of the drives, by axis; empty: takt's own */
-    struct virtual_steppers steppers;        /* inside, whatever the bus */
-    const struct inject *script;             /* of faults; NULL: none */
+    struct dictionary
+        sheet[MACHINE_SETUP_DRIVES_MAX]; /* of the drives, by axis; empty: takt's own */
+    struct virtual_steppers steppers;    /* inside, whatever the bus */
+    const struct inject *script;         /* of faults; NULL: none */
     bool has_enabled_faults; /* those that count from the drives' being enabled are on the bus */
     struct link *link;       /* NULL: bus and drives are inside */
     bool returns;            /* a link that is lost is opened again */

@@ -1,5 +1,6 @@
 #include "takt/machine_file.h"
 
+#include "takt/configuration_file.h"
 #include "takt/machine_keys.h"
 #include "takt/message.h"
 #include "takt/text.h"
@@ -29,7 +30,7 @@ struct machine_reader {
     bool in_values;   /* or [values] */
     bool place_known; /* it is another one that is known */
     struct machine_place place;
-    uint32_t set_in_line[MACHINE_KEYS_MAX][MACHINE_SECOND_DRIVE + 1]; /* 0: not yet */
+    uint32_t set_in_line[MACHINE_KEYS_MAX][MACHINE_SETUP_DRIVES_MAX]; /* 0: not yet */
 };
 
 /* Column of the first character from offset on that is no space. */
@@ -225,8 +226,9 @@ static bool resolve_files(struct machine_setup *setup, const char *machine_file)
 
     for (unsigned i = 0; i < AXIS_COUNT; i++)
         fits = resolve_path(setup->axis_table[i], machine_file) && fits;
-    for (unsigned i = 0; i <= MACHINE_SECOND_DRIVE; i++)
-        fits = resolve_path(setup->drive[i].eds, machine_file) && fits;
+    for (unsigned i = 0; i < MACHINE_SETUP_DRIVES_MAX; i++)
+        fits = resolve_path(setup->drive[i].eds, machine_file) &&
+               resolve_path(setup->drive[i].dcf, machine_file) && fits;
     return fits;
 }
 
@@ -390,7 +392,7 @@ bool machine_file_load(struct machine_setup *setup, const struct options *option
         return false;
     wrong = machine_setup_check(setup);
     if (wrong == NULL)
-        return true;
+        return configuration_files_load(setup);
     if (options->machine != NULL)
         message_error(options->machine, 0, 0, "%s", wrong);
     else
@@ -452,14 +454,13 @@ static void write_io_nodes(FILE *file, const struct machine_setup *setup)
     }
 }
 
-static void write_gantry(FILE *file, const struct machine_setup *setup)
+static void write_gantry(FILE *file, const struct machine_setup *setup, unsigned i)
 {
-    if (!machine_has_gantry(&setup->machine))
-        return;
-    (void)fprintf(file, "\n[%s]\n", machine_section_names[SECTION_GANTRY]);
-    write_section(file, setup, (struct machine_place){SECTION_GANTRY, 0});
-    (void)fprintf(file, "\n[drive %u]\n", (unsigned)setup->machine.gantry.drive_node);
-    write_section(file, setup, (struct machine_place){SECTION_DRIVE, MACHINE_SECOND_DRIVE});
+    (void)fprintf(file, i == 0 ? "\n[%s]\n" : "\n[%s %u]\n", machine_section_names[SECTION_GANTRY],
+                  i + 1);
+    write_section(file, setup, (struct machine_place){SECTION_GANTRY, i});
+    (void)fprintf(file, "\n[drive %u]\n", (unsigned)setup->machine.gantry[i].drive_node);
+    write_section(file, setup, (struct machine_place){SECTION_DRIVE, MACHINE_SECOND_DRIVE + i});
 }
 
 void machine_file_write(FILE *file, const struct machine_setup *setup)
@@ -478,7 +479,8 @@ void machine_file_write(FILE *file, const struct machine_setup *setup)
     write_places_of_axes(file, setup, SECTION_AXIS);
     write_places_of_axes(file, setup, SECTION_DRIVE);
     write_places_of_axes(file, setup, SECTION_STEPPER);
-    write_gantry(file, setup);
+    for (unsigned i = 0; i < machine_gantry_count(&setup->machine); i++)
+        write_gantry(file, setup, i);
     write_io_nodes(file, setup);
     write_codes(file, &setup->codes);
 }

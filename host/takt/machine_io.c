@@ -11,9 +11,21 @@
 static const struct {
     const char *name;
     uint8_t bit;
-} io_names[] = {{"-", IO_FREE},          {"flood", IO_FLOOD},     {"mist", IO_MIST},
-                {"spindle", IO_SPINDLE}, {"ccw", IO_SPINDLE_CCW}, {"stop", IO_STOP},
-                {"limit", IO_LIMIT}};
+} io_names[] = {{"-", IO_FREE},
+                {"flood", IO_FLOOD},
+                {"mist", IO_MIST},
+                {"spindle", IO_SPINDLE},
+                {"ccw", IO_SPINDLE_CCW},
+                {"stop", IO_STOP},
+                {"limit", IO_LIMIT},
+                {"tool_change", IO_TOOL_CHANGE},
+                {"tool_changed", IO_TOOL_CHANGED}};
+
+/* Bits that have numbers: P0 ... P31, T0 ... T7. */
+static const struct {
+    char letter;
+    uint8_t first, count;
+} io_rows[] = {{'P', IO_PROGRAM, IO_FLOOD - IO_PROGRAM}, {'T', IO_TOOL, IO_BIT_COUNT - IO_TOOL}};
 
 #define IO_WORD_MAX 15
 
@@ -22,13 +34,17 @@ static bool read_io_bit(const char *word, uint8_t *bit)
 {
     const bool is_inverted = word[0] == '!';
     const char *name = word + is_inverted;
-    char *end;
-    unsigned long line = name[0] == 'P' ? strtoul(name + 1, &end, 10) : IO_BIT_COUNT;
 
-    if (name[0] == 'P' && isdigit((unsigned char)name[1]) && *end == '\0' &&
-        line < IO_FLOOD - IO_PROGRAM) {
-        *bit = (uint8_t)(IO_PROGRAM + line + (is_inverted ? IO_INVERTED : 0));
-        return true;
+    for (size_t i = 0; i < sizeof io_rows / sizeof io_rows[0]; i++) {
+        char *end;
+        unsigned long number = isdigit((unsigned char)name[name[0] != '\0'])
+                                   ? strtoul(name + 1, &end, 10)
+                                   : IO_BIT_COUNT;
+
+        if (name[0] == io_rows[i].letter && number < io_rows[i].count && *end == '\0') {
+            *bit = (uint8_t)(io_rows[i].first + number + (is_inverted ? IO_INVERTED : 0));
+            return true;
+        }
     }
     for (size_t i = 0; i < sizeof io_names / sizeof io_names[0]; i++) {
         if (strcmp(name, io_names[i].name) == 0) {
@@ -53,9 +69,10 @@ bool machine_io_read(uint8_t field[IO_BITS_MAX], const char *value, bool is_outp
         (void)snprintf(word, sizeof word, "%.*s",
                        (int)(length < IO_WORD_MAX ? length : IO_WORD_MAX), value);
         if (!read_io_bit(word, &bit) || !(is_output ? io_is_output(bit) : io_is_input(bit))) {
-            (void)snprintf(wrong->text, sizeof wrong->text, "%s: '%s' is none of %s", name, word,
-                           is_output ? "P0 ... P31, flood, mist, spindle, ccw and -"
-                                     : "P0 ... P31, stop, limit and -");
+            (void)snprintf(
+                wrong->text, sizeof wrong->text, "%s: '%s' is none of %s", name, word,
+                is_output ? "P0 ... P31, flood, mist, spindle, ccw, tool_change, T0 ... T7 and -"
+                          : "P0 ... P31, stop, limit, tool_changed and -");
             return false;
         }
         if (count == IO_BITS_MAX) {
@@ -70,8 +87,19 @@ bool machine_io_read(uint8_t field[IO_BITS_MAX], const char *value, bool is_outp
     return true;
 }
 
+/* "P31", "flood". */
 static const char *io_name(unsigned kind)
 {
+    static char text[4];
+
+    for (size_t i = 0; i < sizeof io_rows / sizeof io_rows[0]; i++) {
+        const unsigned number = kind - io_rows[i].first;
+
+        if (kind >= io_rows[i].first && number < io_rows[i].count) {
+            (void)snprintf(text, sizeof text, "%c%u", io_rows[i].letter, number % 100);
+            return text;
+        }
+    }
     for (size_t i = 0; i < sizeof io_names / sizeof io_names[0]; i++) {
         if (io_names[i].bit == kind)
             return io_names[i].name;
@@ -90,12 +118,7 @@ void machine_io_write(const uint8_t bits[IO_BITS_MAX], char *text, size_t size)
         const char *mark = bits[i] & IO_INVERTED ? "!" : "";
         const char *space = i > 0 ? " " : "";
 
-        if (kind >= IO_PROGRAM && kind < IO_FLOOD)
-            used += (size_t)snprintf(text + used, size - used, "%s%sP%u", space, mark,
-                                     kind - IO_PROGRAM);
-        else
-            used +=
-                (size_t)snprintf(text + used, size - used, "%s%s%s", space, mark, io_name(kind));
+        used += (size_t)snprintf(text + used, size - used, "%s%s%s", space, mark, io_name(kind));
     }
 }
 

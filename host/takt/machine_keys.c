@@ -6,6 +6,7 @@
 #define IN_AXIS(field)    offsetof(struct machine_axis, field)
 #define IN_DRIVE(field)   offsetof(struct machine_drive, plant.field)
 #define IN_IO(field)      offsetof(struct io_wiring, field)
+#define IN_GANTRY(field)  offsetof(struct machine_gantry, field)
 #define IN_STEPPER(field) offsetof(struct virtual_stepper_config, field)
 
 /* Rows of the table by what they hold. Ranges: from (above: without) the first number to the second. */
@@ -82,6 +83,8 @@ const struct machine_key machine_keys[] = {
            "exact; for comparison integrate (lines by digital integration) or rotate (arcs by rotating the radius vector)"),
     CHOICE(SECTION_MACHINE, "step_form", KEY_STEP_FORM, IN_SETUP(machine.step_form),
            "pulses of step drives: even (each axis at its own times); by evaluation functions improved or plain (one axis at a time)"),
+    ABOVE(SECTION_MACHINE, "tool_change_s", SCALE_NONE, IN_SETUP(machine.tool_change_s), 0, 3600,
+          "longest change of the tool (M6) by a changer at I/O nodes"),
     TEXT(SECTION_MACHINE, "tool_table", IN_SETUP(tool_table), MACHINE_SETUP_PATH_MAX + 1,
          "LinuxCNC .tbl file; relative to this file's folder; empty: no tools"),
     TEXT(SECTION_MACHINE, "parameter_file", IN_SETUP(parameter_file), MACHINE_SETUP_PATH_MAX + 1,
@@ -125,8 +128,8 @@ const struct machine_key machine_keys[] = {
           "serial number its drive must have (1018:04); 0: any"),
     COUNT(SECTION_AXIS, "home_order", KEY_UINT8, IN_AXIS(home_order), 0, 100,
           "at start axes are homed in this order, those of one number together; 0: not homed"),
-    COUNT(SECTION_AXIS, "home_method", KEY_UINT8, IN_AXIS(home_method), 1, 37,
-          "how its drive finds its home (CiA 402, object 6098); 37: where it stands"),
+    COUNT(SECTION_AXIS, "home_method", KEY_INT8, IN_AXIS(home_method), -128, 37,
+          "how its drive finds its home (CiA 402, object 6098); 37: where it stands; below 0: a method of its maker"),
     ABOVE(SECTION_AXIS, "home_velocity_mm_s", SCALE_LENGTH, IN_AXIS(home_velocity_mm_s), 0, 1e5,
           "towards the switch (6099:01)"),
     ABOVE(SECTION_AXIS, "home_zero_velocity_mm_s", SCALE_LENGTH, IN_AXIS(home_zero_velocity_mm_s), 0, 1e5,
@@ -202,6 +205,8 @@ const struct machine_key machine_keys[] = {
 
     TEXT(SECTION_DRIVE, "eds", offsetof(struct machine_drive, eds), MACHINE_SETUP_PATH_MAX + 1,
          "electronic data sheet (CiA 306): the drive has its objects, PDOs and modes; relative to this file's folder; empty: takt's own drive"),
+    TEXT(SECTION_DRIVE, "dcf", offsetof(struct machine_drive, dcf), MACHINE_SETUP_PATH_MAX + 1,
+         "concise configuration (CiA 302, 1F22) that the drive of this node, also a real one, is checked against, and else set up by; empty: by takt"),
     COUNT(SECTION_DRIVE, "boot_time_ms", KEY_UINT32, offsetof(struct machine_drive, boot_ms), 0, 600000,
           "from a reset to its boot-up message"),
     COUNT(SECTION_DRIVE, "sdo_time_ms", KEY_UINT32, offsetof(struct machine_drive, sdo_ms), 0, 600000,
@@ -273,25 +278,27 @@ const struct machine_key machine_keys[] = {
     COUNT(SECTION_STEPPER, "encoder", KEY_UINT32, IN_STEPPER(has_encoder), 0, 1,
           "1: the motor has one, so that the controller sees missed steps; 0: it has none"),
 
-    CHOICE(SECTION_GANTRY, "axis", KEY_LINEAR_AXIS, IN_SETUP(machine.gantry.axis),
-           "axis X, Y or Z that has two drives; none"),
-    COUNT(SECTION_GANTRY, "drive_node", KEY_UINT8, IN_SETUP(machine.gantry.drive_node), 1, 127,
+    CHOICE(SECTION_GANTRY, "axis", KEY_LINEAR_AXIS, IN_GANTRY(axis),
+           "axis X, Y or Z that has two drives; none. [gantry 2] and [gantry 3] are further ones"),
+    COUNT(SECTION_GANTRY, "drive_node", KEY_UINT8, IN_GANTRY(drive_node), 1, 127,
           "CANopen node id of its second drive; its other keys are those of the axis"),
-    COUNT(SECTION_GANTRY, "is_reversed", KEY_UINT8, IN_SETUP(machine.gantry.is_reversed), 0, 1,
+    COUNT(SECTION_GANTRY, "is_reversed", KEY_UINT8, IN_GANTRY(is_reversed), 0, 1,
           "1: the second motor turns the other way than the first; it looks for its home on the same side"),
-    FROM(SECTION_GANTRY, "home_offset_mm", SCALE_NONE, IN_SETUP(machine.gantry.home_offset_mm), -1e6, 1e6,
+    COUNT(SECTION_GANTRY, "home_method", KEY_INT8, IN_GANTRY(home_method), -128, 37,
+          "how the second drive finds its home; 0: as that of the axis, on the same side"),
+    FROM(SECTION_GANTRY, "home_offset_mm", SCALE_NONE, IN_GANTRY(home_offset_mm), -1e6, 1e6,
          "machine coordinate of the home of the second drive: its difference to that of the axis squares the gantry"),
-    FROM(SECTION_GANTRY, "skew_max_mm", SCALE_NONE, IN_SETUP(machine.gantry.skew_max_mm), 0, 1e3,
+    FROM(SECTION_GANTRY, "skew_max_mm", SCALE_NONE, IN_GANTRY(skew_max_mm), 0, 1e3,
          "alarm when the two drives are farther apart"),
 
     COUNT(SECTION_IO, "node", KEY_UINT8, IN_IO(node), 1, 127,
           "CANopen node id of an I/O node (CiA 401) on the drives' bus; [io 1] is the first"),
     CHOICE(SECTION_IO, "outputs", KEY_OUTPUTS, IN_IO(output),
-           "its outputs from bit 0 on: P0 ... P31 (M62 to M65), flood, mist, spindle, ccw (it turns counter-clockwise), - (free); with ! inverted"),
+           "its outputs from bit 0 on: P0 ... P31 (M62 to M65), flood, mist, spindle, ccw (it turns counter-clockwise), tool_change (M6), T0 ... T7 (bits of the tool number), - (free); with ! inverted"),
     CHOICE(SECTION_IO, "analogue_outputs", KEY_ANALOGUES, IN_IO(analogue),
            "its analogue outputs from the first on: E0 ... E3 (M67 and M68, per cent of the range), - (free)"),
     CHOICE(SECTION_IO, "inputs", KEY_INPUTS, IN_IO(input),
-           "its inputs from bit 0 on: P0 ... P31 (M66), stop and limit (closed circuits that stop the axes when they open), - (free); with ! inverted"),
+           "its inputs from bit 0 on: P0 ... P31 (M66), stop and limit (closed circuits that stop the axes when they open), tool_changed (M6 waits for it), - (free); with ! inverted"),
 
     TEXT(SECTION_CORRECTION, "volume_table", IN_SETUP(volume_table), MACHINE_SETUP_PATH_MAX + 1,
          "CSV table over X Y Z and the turning axis; relative to this file's folder; empty: none"),

@@ -28,6 +28,7 @@ enum machine_key_type {
     KEY_TEXT,
     KEY_UINT32,
     KEY_UINT8,
+    KEY_INT8,
     KEY_DOUBLE,
     KEY_VECTOR /* size numbers */,
     KEY_AXIS,

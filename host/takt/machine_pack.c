@@ -42,6 +42,15 @@ static void report(const char *path, const struct correction_tables *tables, siz
                      tables != NULL ? tables->axes.count : 0);
 }
 
+static bool has_configuration(const struct machine_setup *setup)
+{
+    bool has = false;
+
+    for (unsigned i = 0; i < MACHINE_SETUP_DRIVES_MAX; i++)
+        has = has || setup->drive[i].dcf[0] != '\0';
+    return has;
+}
+
 enum command_status machine_pack_write(const struct machine_setup *setup, const char *path,
                                        bool is_sector)
 {
@@ -50,6 +59,11 @@ enum command_status machine_pack_write(const struct machine_setup *setup, const 
     enum command_status status = STATUS_ENVIRONMENT;
     size_t size;
 
+    if (has_configuration(setup)) {
+        message_command_error("a target keeps no configurations of drives (dcf): have the drives "
+                              "store them, and say drive_is_set_up = 1");
+        return STATUS_INPUT;
+    }
     if (!correction_file_load(&tables, setup))
         return STATUS_INPUT;
     size = settings_pack(&setup->machine, tables, packed.bytes, sizeof packed.bytes);

@@ -53,7 +53,8 @@ void machine_setup_set_default(struct machine_setup *setup)
     machine_set_default(&setup->machine);
     virtual_spindle_set_default(&setup->spindle);
     setup->geometry.table_axis = AXIS_COUNT;
-    drive_plant_set_default(&setup->drive[MACHINE_SECOND_DRIVE].plant);
+    for (unsigned i = MACHINE_SECOND_DRIVE; i < MACHINE_SETUP_DRIVES_MAX; i++)
+        drive_plant_set_default(&setup->drive[i].plant);
     (void)snprintf(setup->panel.listen, sizeof setup->panel.listen, "127.0.0.1:1502");
     for (unsigned i = 0; i < AXIS_COUNT; i++) {
         drive_plant_set_default(&setup->drive[i].plant);
@@ -75,22 +76,19 @@ __attribute__((format(printf, 1, 2))) static const char *problem(const char *for
     return text;
 }
 
-static const char *check_drive(const struct machine_setup *setup, unsigned axis)
+static const char *check_drive(const struct machine_setup *setup, unsigned index)
 {
-    const char *field = drive_plant_check(&setup->drive[axis].plant);
+    const char *field = drive_plant_check(&setup->drive[index].plant);
+    const unsigned node = index < MACHINE_SECOND_DRIVE
+                              ? setup->machine.axis[index].drive_node
+                              : setup->machine.gantry[index - MACHINE_SECOND_DRIVE].drive_node;
 
-    if (field == NULL)
-        return NULL;
-    if (axis == MACHINE_SECOND_DRIVE)
-        return problem("drive %u: %s is out of range", (unsigned)setup->machine.gantry.drive_node,
-                       field);
-    return problem("drive %u: %s is out of range", (unsigned)setup->machine.axis[axis].drive_node,
-                   field);
+    return field == NULL ? NULL : problem("drive %u: %s is out of range", node, field);
 }
 
 static unsigned count_drives(const struct machine *machine)
 {
-    uint8_t node[AXIS_COUNT + 1];
+    uint8_t node[MACHINE_NODES_MAX];
 
     return machine_drive_nodes(machine, node);
 }
@@ -132,8 +130,8 @@ const char *machine_setup_check(const struct machine_setup *setup)
         if (setup->machine.axis[i].present)
             wrong = check_drive(setup, i);
     }
-    if (machine_has_gantry(&setup->machine) && wrong == NULL)
-        wrong = check_drive(setup, MACHINE_SECOND_DRIVE);
+    for (unsigned i = 0; i < machine_gantry_count(&setup->machine) && wrong == NULL; i++)
+        wrong = check_drive(setup, MACHINE_SECOND_DRIVE + i);
     return wrong;
 }
 

@@ -26,11 +26,15 @@ struct panel_setup {
 struct machine_drive {
     struct drive_plant_config plant;
     char eds[MACHINE_SETUP_PATH_MAX + 1]; /* its data sheet; empty: takt's own drive */
+    char
+        dcf[MACHINE_SETUP_PATH_MAX + 1]; /* what it is set up by, real or virtual; empty: nothing */
     uint32_t boot_ms;
     uint32_t sdo_ms;
 };
 
-#define MACHINE_SECOND_DRIVE AXIS_COUNT
+/* Index of the second drive of the first gantry; behind it those of the others. */
+#define MACHINE_SECOND_DRIVE     AXIS_COUNT
+#define MACHINE_SETUP_DRIVES_MAX (AXIS_COUNT + MACHINE_GANTRIES_MAX)
 
 struct machine_setup {
     struct machine machine;
@@ -39,7 +43,8 @@ struct machine_setup {
     char volume_table[MACHINE_SETUP_PATH_MAX + 1];   /* correction tables; empty: none */
     char axis_table[AXIS_COUNT][MACHINE_SETUP_PATH_MAX + 1];
     struct deviation_config geometry; /* how the virtual machine differs from a perfect one */
-    struct machine_drive drive[AXIS_COUNT + 1]; /* of each axis, and the second one of a gantry */
+    struct machine_drive
+        drive[MACHINE_SETUP_DRIVES_MAX]; /* of each axis, and the second ones of gantries */
     struct virtual_stepper_config stepper[AXIS_COUNT]; /* of each axis, if it has a step drive */
     struct virtual_spindle_config spindle;             /* see machine_setup_get_spindle */
     struct panel_setup panel;

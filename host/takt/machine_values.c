@@ -60,10 +60,11 @@ static bool find_drive(const struct machine_setup *setup, const char *instance, 
             return true;
         }
     }
-    if (end != instance && *end == '\0' && machine_has_gantry(&setup->machine) &&
-        setup->machine.gantry.drive_node == node) {
-        *index = MACHINE_SECOND_DRIVE;
-        return true;
+    for (unsigned i = 0; i < machine_gantry_count(&setup->machine) && *end == '\0'; i++) {
+        if (end != instance && setup->machine.gantry[i].drive_node == node) {
+            *index = MACHINE_SECOND_DRIVE + i;
+            return true;
+        }
     }
     say(wrong, "no axis has drive_node '%.40s'; a drive's section comes after its axis", instance);
     return false;
@@ -88,6 +89,19 @@ static bool find_io(const char *instance, unsigned *index, struct machine_proble
     if (*index < IO_NODES_MAX)
         return true;
     say(wrong, "there is no I/O node '%.40s': they are io 1 to io %d", instance, IO_NODES_MAX);
+    return false;
+}
+
+/* [gantry] is the first. */
+static bool find_gantry(const char *instance, unsigned *index, struct machine_problem *wrong)
+{
+    const unsigned length = (unsigned)strlen(instance);
+
+    *index = length == 0 ? 0 : length == 1 ? (unsigned)(instance[0] - '1') : MACHINE_GANTRIES_MAX;
+    if (*index < MACHINE_GANTRIES_MAX)
+        return true;
+    say(wrong, "there is no gantry '%.40s': they are gantry 1 to gantry %d", instance,
+        MACHINE_GANTRIES_MAX);
     return false;
 }
 
@@ -119,6 +133,8 @@ bool machine_section_find(struct machine_setup *setup, const char *word, const c
         return find_drive(setup, instance, &place->index, wrong);
     if (place->section == SECTION_IO)
         return find_io(instance, &place->index, wrong);
+    if (place->section == SECTION_GANTRY)
+        return find_gantry(instance, &place->index, wrong);
     if (instance[0] == '\0')
         return true;
     say(wrong, "there is only one section '%s': '%.40s' is too much", word, instance);
@@ -197,6 +213,8 @@ static const void *field_of(const struct machine_setup *setup, struct machine_pl
         base = &setup->drive[place.index];
     else if (place.section == SECTION_STEPPER)
         base = &setup->stepper[place.index];
+    else if (place.section == SECTION_GANTRY)
+        base = &setup->machine.gantry[place.index];
     else if (place.section == SECTION_IO)
         base = &setup->machine.io[place.index];
     return (const char *)base + key->offset;
@@ -432,6 +450,11 @@ bool machine_key_set(struct machine_setup *setup, struct machine_place place,
             return false;
         *(uint8_t *)field = (uint8_t)number;
         return true;
+    case KEY_INT8:
+        if (!read_count(key, value, &number, wrong))
+            return false;
+        *(int8_t *)field = (int8_t)number;
+        return true;
     }
     return false;
 }
@@ -527,6 +550,9 @@ void machine_key_get(const struct machine_setup *setup, struct machine_place pla
         break;
     case KEY_UINT32:
         (void)snprintf(text, size, "%u", (unsigned)*(const uint32_t *)field);
+        break;
+    case KEY_INT8:
+        (void)snprintf(text, size, "%d", *(const int8_t *)field);
         break;
     case KEY_UINT8:
         (void)snprintf(text, size, "%u", (unsigned)*(const uint8_t *)field);

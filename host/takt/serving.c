@@ -203,15 +203,9 @@ static void control(struct serving *s)
 /* Once, when the drives are enabled: what they do without. */
 static void tell_drives(struct serving *s)
 {
-    const struct drives *drives = controller_get_drives(&s->service.controller);
-    struct drives_table table;
-
-    if (s->has_told_drives || drives_get_state(drives) != DRIVES_ENABLED)
-        return;
-    s->has_told_drives = true;
-    drives_table_set(&table, drives);
-    if (!s->session.options->quiet)
-        drives_table_write_text(stderr, &table);
+    if (!s->has_told_drives)
+        s->has_told_drives = drives_table_tell(controller_get_drives(&s->service.controller),
+                                               s->session.options->quiet);
 }
 
 /* Once it ends nothing is begun any more. */

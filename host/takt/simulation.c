@@ -80,7 +80,7 @@ static enum command_status start_controllers(struct simulation *s, const struct 
 static enum command_status load_faults(struct simulation *s, const struct session *session)
 {
     const char *path = session->options->inject;
-    uint8_t nodes[AXIS_COUNT + 1 + IO_NODES_MAX];
+    uint8_t nodes[MACHINE_NODES_MAX + IO_NODES_MAX];
     unsigned count = machine_drive_nodes(&session->setup.machine, nodes);
 
     for (unsigned i = 0; i < machine_io_count(&session->setup.machine); i++)

@@ -219,8 +219,10 @@ const struct chip_block chip_can = {BXCAN_CAN1, SIZE, read, write, reset};
 
 static struct can_frame frame_of(const struct mailbox *box)
 {
-    struct can_frame frame = {.id = (uint16_t)BXCAN_ID_OF(box->identifier),
-                              .length = (uint8_t)BXCAN_LENGTH(box->length)};
+    const bool is_remote = (box->identifier & BXCAN_I_REMOTE) != 0;
+    struct can_frame frame = {
+        .id = (uint16_t)(BXCAN_ID_OF(box->identifier) | (is_remote ? CAN_REMOTE : 0)),
+        .length = (uint8_t)BXCAN_LENGTH(box->length)};
 
     for (unsigned i = 0; i < 4; i++) {
         frame.data[i] = (uint8_t)(box->low >> 8U * i);

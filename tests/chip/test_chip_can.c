@@ -407,6 +407,21 @@ static void test_as_many_nodes_are_heard_as_there_are_filters(void)
     TEST_ASSERT_FALSE(open_for(BXCAN_NODES_MAX + 1, nodes));
 }
 
+static void test_a_remote_frame_is_sent_as_one_behind_more_urgent_ones(void)
+{
+    const struct can_frame guard = {.id = CAN_REMOTE | 0x181, .length = 1};
+    struct can_frame frame;
+
+    TEST_ASSERT_TRUE(port.send(port.context, &guard));
+    TEST_ASSERT_TRUE(send(0x301, 1));
+    TEST_ASSERT_TRUE(send(0x080, 2));
+    expect(0x080, 2);
+    frame = transfer();
+    TEST_ASSERT_EQUAL_HEX(CAN_REMOTE | 0x181, frame.id);
+    TEST_ASSERT_EQUAL(1, frame.length);
+    expect(0x301, 1);
+}
+
 static void test_remote_frames_and_long_identifiers_are_not_heard(void)
 {
     for (unsigned kind = 1; kind <= 2; kind++) {
@@ -562,6 +577,7 @@ int main(void)
     RUN_TEST(test_a_full_ring_keeps_the_oldest_and_counts_the_others);
     RUN_TEST(test_only_the_nodes_of_the_machine_are_heard);
     RUN_TEST(test_as_many_nodes_are_heard_as_there_are_filters);
+    RUN_TEST(test_a_remote_frame_is_sent_as_one_behind_more_urgent_ones);
     RUN_TEST(test_remote_frames_and_long_identifiers_are_not_heard);
     RUN_TEST(test_a_short_frame_has_zeros_behind_it_and_a_length_above_8_is_8);
     RUN_TEST(test_after_bus_off_what_was_to_be_sent_is_dropped_and_the_bus_joined_again);

@@ -37,6 +37,16 @@
         name, script, FAULT_GANTRY, TAKT_ERROR_##alarm, text, stop_max_ms, off_max_mm              \
     }
 
+/* The same with drives that have no heartbeat. */
+#define GUARDED_STOPS(name, script, alarm, text, stop_max_ms, off_max_mm)                          \
+    {                                                                                              \
+        name, script, FAULT_GUARDED, TAKT_ERROR_##alarm, text, stop_max_ms, off_max_mm             \
+    }
+#define GUARDED_GOES_ON(name, script, off_max_mm)                                                  \
+    {                                                                                              \
+        name, script, FAULT_GUARDED, TAKT_OK, "", 0, off_max_mm                                    \
+    }
+
 /* clang-format off */
 const struct fault_case fault_cases[] = {
     /* frames lost */
@@ -102,6 +112,15 @@ const struct fault_case fault_cases[] = {
     STOPS("the statusword of Y is stuck, and the drive fails",
           "enabled+0.5s drive 2 freeze object=6041\nenabled+0.5s drive 2 emcy code=7305\n", DRIVE_FAULT,
           "the drive of axis Y (node 2) reports 7305: encoder", 150, 1.2),
+
+    /* drives without a heartbeat, which are guarded */
+    GUARDED_GOES_ON("an answer of the guarded drive of Y is lost", "enabled+0.5s bus drop id=702 node=2", 0.001),
+    GUARDED_STOPS("the guarded drive of Y does not answer any more", "enabled+0.2s drive 2 mute what=heartbeat",
+                  DRIVE_HEARTBEAT, "the drive of axis Y (node 2) has sent no heartbeat for 301 ms", 500, 0.01),
+    GUARDED_STOPS("the cable to the guarded drive of X is cut", "enabled+0.5s bus cut node=1", DRIVE_SILENT,
+                  "the drive of axis X (node 1) has sent no position for 21 ms", 150, 2),
+    GUARDED_STOPS("the guarding frames to Y are lost: it stops by itself", "enabled+0.2s bus drop id=702 node=controller frames=all",
+                  DRIVE_FAULT, "the drive of axis Y (node 2) reports 8130: ", 500, 1),
 
     /* what axes do */
     STOPS("the position of X is stuck", "enabled+0.5s drive 1 freeze object=6064", DRIVE_FOLLOWING,

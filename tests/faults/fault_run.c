@@ -21,8 +21,11 @@
 
 /* Less than the following error that is allowed. */
 #define SKEW_MAX_MM 0.5
-#define CYCLE_NS    1000000U
-#define CYCLES_MAX  12000U
+
+#define OBJECT_TABLE_MAX 1024U
+
+#define CYCLE_NS   1000000U
+#define CYCLES_MAX 12000U
 
 /* Cycles after the end of everything in which an axis that has not been stopped would be seen. */
 #define AFTER_CYCLES 1000U
@@ -112,11 +115,26 @@ static void add_io_node(struct machine *machine, struct virtual_drives_config *v
 
 static void add_second_drive(struct machine *machine, struct virtual_drives_config *virtual)
 {
-    machine->gantry.axis = AXIS_Y;
-    machine->gantry.drive_node = FOURTH;
-    machine->gantry.skew_max_mm = SKEW_MAX_MM;
+    machine->gantry[0].axis = AXIS_Y;
+    machine->gantry[0].drive_node = FOURTH;
+    machine->gantry[0].skew_max_mm = SKEW_MAX_MM;
     virtual->drive[virtual->count] = virtual->drive[AXIS_Y];
     virtual->drive[virtual->count++].node = FOURTH;
+}
+
+/* Their dictionary without a heartbeat (1017) and without watching one (1016). */
+static void take_heartbeats(struct virtual_drives_config *virtual)
+{
+    static struct object_row rows[OBJECT_TABLE_MAX];
+    static struct dictionary mute;
+    mute = dictionary_own;
+    mute.row = rows;
+    mute.count = 0;
+    for (unsigned i = 0; i < dictionary_own.count; i++)
+        if (dictionary_own.row[i].index != 0x1016 && dictionary_own.row[i].index != 0x1017)
+            rows[mute.count++] = dictionary_own.row[i];
+    for (unsigned i = 0; i < DRIVES; i++)
+        virtual->drive[i].dictionary = &mute;
 }
 
 /* Beginnings of faults become known with the moment the drives are enabled. */
@@ -156,6 +174,8 @@ static void open_world(struct world *w, const struct fault_case *fault)
         add_io_node(&machine, &virtual);
     if (fault->machine == FAULT_GANTRY)
         add_second_drive(&machine, &virtual);
+    if (fault->machine == FAULT_GUARDED)
+        take_heartbeats(&virtual);
     (void)bus_init(&w->bus, machine.can_bitrate);
     config.can = bus_attach(&w->bus, NULL);
     virtual_drives_init(&w->drives, &w->bus, &virtual);

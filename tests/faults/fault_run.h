@@ -14,7 +14,8 @@ enum fault_machine {
     FAULT_PLAIN,
     FAULT_HOMED,   /* X looks for its limit switch at start */
     FAULT_WITH_IO, /* there is an I/O node, 4: its inputs are stop, limit and P0 */
-    FAULT_GANTRY   /* Y has a second drive, node 4 */
+    FAULT_GANTRY,  /* Y has a second drive, node 4 */
+    FAULT_GUARDED  /* no drive has a heartbeat: all are guarded */
 };
 
 struct fault_case {

@@ -33,27 +33,29 @@ def free_port():
 class Bench:
     """A running controller and three drives on one bus."""
 
-    def __init__(self, *settings, habits=None):
+    def __init__(self, *settings, habits=None, by_slcan=False, heartbeat_ms=5000):
         port = free_port()
-        command = [TAKT, "run", "part.ngc", "--exact-path", "--json", "run.json", "--quiet", "--bus",
-                   f"socketcand:listen:{port}", "--drives", "external", "--set", "bus.heartbeat_ms=5000"]
+        bus = "slcan:pty:controller" if by_slcan else f"socketcand:listen:{port}"
+        command = [TAKT, "run", "part.ngc", "--exact-path", "--json", "run.json", "--quiet", "--bus", bus, "--drives",
+                   "external", "--set", f"bus.heartbeat_ms={heartbeat_ms}"]
         for setting in settings:
             command += ["--set", setting]
         self.run = subprocess.Popen(command, stderr=subprocess.PIPE, text=True)
         self.network = canopen.Network()
         self.network.NOTIFIER_CYCLE = 0.1
-        self.connect(port)
+        self.how = {"interface": "slcan", "channel": "controller", "bitrate": 1000000, "sleep_after_open": 0.1} if by_slcan else {
+            "interface": "socketcand", "host": "127.0.0.1", "port": port, "channel": "can0", "tcp_tune": True}
+        self.connect()
         self.drives = [node402.Drive(self.network, number, habits=habits) for number in (1, 2, 3)]
 
-    def connect(self, port):
+    def connect(self):
         """As soon as the controller listens; until then python-can would complain."""
         logging.getLogger("can").setLevel(logging.CRITICAL)
         while self.run.poll() is None:
             try:
-                self.network.connect(interface="socketcand", host="127.0.0.1", port=port, channel="can0",
-                                     tcp_tune=True)
+                self.network.connect(**self.how)
                 return
-            except (ConnectionRefusedError, OSError):
+            except (ConnectionRefusedError, OSError, can.CanError):
                 pass
         sys.exit(f"the controller has ended: {self.run.stderr.read()}")
 

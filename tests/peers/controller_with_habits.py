@@ -23,7 +23,9 @@ HABITS = {
     "1006, 605A and 60C2 read-only": (Habits(read_only=[0x1006, 0x605A, 0x60C2]), {"sync_period"}),
     "1016 out of range": (Habits(limits={0x1016: 0xFFFF}), {"watch"}),
     "1016 refused with a code of its own": (Habits(limits={0x1016: 0xFFFF}, code=0x0800DEAD), {"watch"}),
-    "1017 read-only": (Habits(read_only=[0x1017]), {"heartbeat"}),
+    "1017 read-only": (Habits(read_only=[0x1017], absent=[0x100C]), {"heartbeat"}),
+    "guarded": (Habits(absent=[0x1016, 0x1017]), {"guarded"}),
+    "guarded, without a life time": (Habits(read_only=[0x1017], absent=[0x100D]), {"guarded"}),
     "nothing optional": (Habits(absent=OPTIONAL), {"watch", "sync_period", "period"}),
     "6060 not mappable": (Habits(not_mappable=[0x6060]), {"mode_pdo"}),
     "6040 not mappable": (Habits(not_mappable=[0x6040, 0x6060]), {"mode_pdo", "control_pdo"}),
@@ -44,13 +46,16 @@ def main():
         program.write(peer.PROGRAM)
     digest = peer.setpoints_of_embedded_run()
     for name, (habits, given_up) in HABITS.items():
-        bench = peer.Bench(habits=habits)
+        is_guarded = "guarded" in given_up  # by remote frames, which python-can has on SLCAN
+        bench = peer.Bench(habits=habits, **(dict(by_slcan=True, heartbeat_ms=200) if is_guarded else {}))
         status, message, summary = bench.finish()
         missing = {"stop_option"}  # 6007 and 605E, which none of these drives has
         peer.expect(f"{name}: the program completes", (status, message), (0, ""))
         peer.expect(f"{name}: with the setpoints of our own drives", summary["setpoint_digest"], digest)
         found = {lost for drive in summary["drives"] for lost in drive["given_up"]}
         peer.expect(f"{name}: what is given up is told", found - missing, given_up)
+        answers = [drive.guarded.answers for drive in bench.drives]
+        peer.check(f"{name}: guarded drives are asked, others are not", all((n > 2) == is_guarded for n in answers), answers)
         peer.expect(f"{name}: all end at 0", [drive.targets[-1] for drive in bench.drives], [0, 0, 0])
 
 

@@ -279,6 +279,17 @@ def check_heartbeat(node):
     until("and its change", lambda: node.nmt.wait_for_heartbeat(PATIENCE_S) == "PRE-OPERATIONAL")
 
 
+def check_guarding(node):
+    """By the library's remote frames; it takes the toggle bit off."""
+    seen = []
+    node.sdo[0x1017].raw = 0
+    node.nmt.add_heartbeat_callback(seen.append)
+    node.nmt.start_node_guarding(0.02)
+    until("a guarded node answers", lambda: len(seen) > 4)
+    node.nmt.stop_node_guarding()
+    expect("by its state", {state & 0x7F for state in seen}, {0x7F})
+
+
 def check_bus(bus, connect):
     """Drives on a bus; connect(network, address) brings the library there."""
     expect("data sheets are written", subprocess.run([TAKT, "drives", "--eds", "."], check=False).returncode, 0)
@@ -300,6 +311,8 @@ def check_bus(bus, connect):
     check_fault(node, network)
     check_remapping(node)
     check_heartbeat(node)
+    if not bus.startswith("socketcand"):  # python-can has no remote frames there
+        check_guarding(node)
     network.sync.stop()
     network.disconnect()
     drives.stop()

@@ -4,6 +4,7 @@ drive profile is written here from the standard, independently of takt's. Time i
 import struct
 import threading
 
+import can
 import canopen
 from canopen import objectdictionary as od
 
@@ -15,7 +16,7 @@ VENDOR, PRODUCT = 0x00F00D, 0x0BEE
 
 VARIABLES = [
     (0x0007, U32, RW, 0), (0x1000, U32, RO, 0x00020192), (0x1001, U8, RO, 0), (0x1006, U32, RW, 0),
-    (0x1017, U16, RW, 0), (0x603F, U16, RO, 0), (0x6040, U16, RW, 0), (0x6041, U16, RO, 0x0250),
+    (0x100C, U16, RW, 0), (0x100D, U8, RW, 0), (0x1017, U16, RW, 0), (0x603F, U16, RO, 0), (0x6040, U16, RW, 0), (0x6041, U16, RO, 0x0250),
     (0x6060, I8, RW, 0), (0x6061, I8, RO, 0), (0x6064, I32, RO, 0), (0x607A, I32, RW, 0),
     (0x60F4, I32, RO, 0), (0x6502, U32, RO, 0xA0), (0x605A, I16, RW, 2), (0x607C, I32, RW, 0),
     (0x6098, I8, RW, 0), (0x609A, U32, RW, 0),
@@ -94,6 +95,23 @@ def dictionary(node, habits):
     return result
 
 
+class Guarded(can.Listener):
+    """Answers remote frames, which the library passes over: node guarding."""
+
+    def __init__(self, drive):
+        super().__init__()
+        self.drive, self.toggle, self.answers = drive, 0, 0
+
+    def on_message_received(self, msg):
+        node = self.drive.node
+        if not msg.is_remote_frame or msg.arbitration_id != 0x700 + self.drive.number:
+            return
+        state = {"OPERATIONAL": 5, "PRE-OPERATIONAL": 127}.get(node.nmt.state, 4)
+        self.drive.network.send_message(msg.arbitration_id, bytes([state | self.toggle]))
+        self.toggle ^= 0x80
+        self.answers += 1
+
+
 class Drive:
     """The node, and a motor that is where its target says one SYNC later."""
 
@@ -111,6 +129,8 @@ class Drive:
         self.silent_after = None  # number of targets
         self.offset_is_position = False # of its home; CiA 402: minus it
         self.pending = None
+        self.guarded = Guarded(self)
+        network.notifier.add_listener(self.guarded)
         network.subscribe(0x000, self.on_nmt)
         network.subscribe(0x080, self.on_sync)
 
@@ -159,7 +179,7 @@ class Drive:
     def reset(self):
         for index in [i for i in self.node.data_store if 0x1000 <= i < 0x2000]:
             del self.node.data_store[index]
-        self.state = "off"
+        self.state, self.guarded.toggle = "off", 0
         self.node.nmt.send_command(130)  # sends the boot-up message
         self.node.nmt.send_command(128)
 

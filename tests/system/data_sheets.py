@@ -76,6 +76,15 @@ def one_entry_a_pdo(sheet, _):
             sheet[f"{first}{number}sub0"]["HighLimit"] = "1"
 
 
+def short_first_pdos(sheet, _):
+    """Room for one object in the first PDOs, and for more in the others; no error code."""
+    error_not_mappable(sheet, None)
+    for index in ("1600", "1A00"):
+        drop(sheet, *(f"{index}sub{sub}" for sub in range(2, 9)))
+        sheet[index + "sub0"].update(DefaultValue="1", HighLimit="1")
+        sheet[index + "sub1"]["DefaultValue"] = "0x60400010" if index == "1600" else "0x60410010"
+
+
 def read_only_options(sheet, draw):
     set_access(sheet, "ro", "605E", "605A", "6007", default=draw.choice(["0", "1", "2"]))
 
@@ -106,6 +115,26 @@ def no_consumer(sheet, _):
 
 def read_only_heartbeat(sheet, draw):
     set_access(sheet, "ro", "1017", default=draw.choice(["0", "100", "1000"]))
+
+
+def no_heartbeat(sheet, _):
+    drop(sheet, "1016", "1017")
+
+
+def no_life_time(sheet, _):
+    """Guarded, but it does not notice when that stays out."""
+    drop(sheet, "1016", "1017", "100D")
+
+
+def short_life_time(sheet, _):
+    """It would take any master for lost that asks it as seldom as ours: it is left alone."""
+    no_heartbeat(sheet, None)
+    set_access(sheet, "ro", "100C", default="10")
+    set_access(sheet, "ro", "100D", default="2")
+
+
+def nobody_watched(sheet, _):
+    drop(sheet, "1016", "1017", "100C", "100D")
 
 
 def fixed_mapping(sheet, _):
@@ -186,12 +215,17 @@ HABITS = {
     "603F and 60F4 absent": (no_error_objects, {"error_pdo"}),
     "603F and 60F4 not mappable": (error_not_mappable, {"error_pdo"}),
     "one entry a PDO": (one_entry_a_pdo, {"pair", "mode_pdo", "error_pdo", "one_report"}),
+    "one entry in the first PDOs": (short_first_pdos, {"mode_pdo", "error_pdo"}),
     "options read-only": (read_only_options, {"stop_option"}),
     "1006 read-only": (read_only_sync_period, {"sync_period"}),
     "60C2 read-only": (read_only_period, set()),
     "1016 out of range": (narrow_consumer, {"watch"}),
     "1016 absent": (no_consumer, {"watch"}),
-    "1017 read-only": (read_only_heartbeat, {"heartbeat"}),
+    "1017 read-only": (read_only_heartbeat, {"guarded"}),
+    "no heartbeat": (no_heartbeat, {"guarded"}),
+    "no heartbeat and no life time": (no_life_time, {"guarded", "watch"}),
+    "a life time that is too short": (short_life_time, {"heartbeat", "watch"}),
+    "neither heartbeat nor guarding": (nobody_watched, {"heartbeat", "watch"}),
     "fixed mapping": (fixed_mapping, {"pair", "mapping", "error_pdo"}),
     "fixed mapping without a mode": (fixed_small_mapping, {"pair", "mapping", "mode_pdo", "error_pdo"}),
     "6060 not mappable": (mode_not_mappable, {"mode_pdo"}),
@@ -208,7 +242,7 @@ HABITS = {
 
 
 # Habits of PDOs: a drive has one of them.
-OF_PDOS = ("one entry a PDO", "fixed mapping", "fixed mapping without a mode", "6060 not mappable", "6040 not mappable",
+OF_PDOS = ("one entry a PDO", "one entry in the first PDOs", "fixed mapping", "fixed mapping without a mode", "6060 not mappable", "6040 not mappable",
            "identifiers read-only", "two PDOs", "one PDO")
 
 

@@ -103,6 +103,11 @@ for name in ("nothing optional", "one entry a PDO", "interpolated position only"
     if t.check(status == 0, f"{name}: runs over a bus", err):
         t.check(summary["setpoint_digest"] == embedded["setpoint_digest"], f"{name}: with the same setpoints")
     drives.stop()
+drives = bus_pair.Drives("socketcand:listen:0", "--eds", sheet_of(1, data_sheets.interpolated_only))
+status, out, err = t.run("run", bus_pair.PROGRAM, "--bus", "socketcand:" + drives.address)
+t.check(status == 0 and "  given up      XYZ     6502 " in err and "  given up      XYZ     6502 " in out,
+        "what is given up is told when the drives have been enabled, and in the summary", err)
+drives.stop()
 
 # The axes of a motor that turns the other way are where they would be.
 for name, settings in (("plain", []), ("turned", ["axis.X.increments_per_mm=-100000", "axis.Z.increments_per_mm=-100000"])):

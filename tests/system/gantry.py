@@ -32,8 +32,8 @@ INCREMENTS_PER_MM = 100000
 CYCLE_S = 0.001
 
 
-def run(name, *options):
-    status, _, err = t.run("run", PROGRAM, "--machine", FILE, "--bus-log", name + ".log", "--json", name + ".json", *options)
+def run(name, *options, machine=FILE):
+    status, _, err = t.run("run", PROGRAM, "--machine", machine, "--bus-log", name + ".log", "--json", name + ".json", *options)
     return status, err
 
 
@@ -89,6 +89,43 @@ def check_racking():
     t.check(status != 0 and re.search(r"axis Y2 \(node 3\) is 0\.6\d* mm off the other drive", err), "switches too far apart are a fault", status, err)
 
 
+def check_two():
+    """X and Y have two drives each; X finds its homes by a method of the maker, at hard stops."""
+    two = t.write("two.ini", MACHINE.replace("[axis X]", "[machine]\ncycle_us = 2000\n[axis X]\nhome_order = 1\nhome_method = -4\nhome_offset_mm = -20") + """[gantry 2]
+axis = X
+drive_node = 5
+is_reversed = 1
+home_method = -3
+home_offset_mm = -20.3
+skew_max_mm = 0.8
+[drive 1]
+absolute_encoder = 0
+hard_stop_min_mm = -20
+following_error_window_mm = 0
+[drive 5]
+absolute_encoder = 0
+hard_stop_min_mm = -20.3
+following_error_window_mm = 0
+""")
+    status, err = run("two", machine=two)
+    if not t.check(status == 0, "two gantries run", err):
+        return
+    for first, second, name in (("181", "185", "X"), ("182", "183", "Y")):
+        here = {round(500 * time): value(data, 2) for time, data in frames("two.log", first)}
+        there = {round(500 * time): -value(data, 2) for time, data in frames("two.log", second)}
+        moving = [(here[time], there[time]) for time in here if time in there][-400:]
+        t.check(max(abs(a - b) for a, b in moving) < 0.01, f"both drives of {name} go together", moving[:3])
+    t.write("rack.inject", "enabled+2.5s drive 5 weak ratio=0.02\n")
+    status, err = run("rack", "--inject", "rack.inject", machine=two)
+    t.check(status != 0 and "axis X2 (node 5) is 0.8" in err, "each is watched", status, err)
+    t.check(t.run("machine", two)[1].count("\n[gantry") == 2, "both are written")
+    for option, said in (("gantry.2.axis=Y", "a gantry needs"), ("gantry.2.drive_node=3", "a gantry needs"),
+                         ("gantry.axis=none", "a gantry needs"), ("gantry.4.axis=Z", "there is no gantry '4'"),
+                         ("gantry.2.home_method=0", "gantry of axis X"), ("axis.X.home_method=0", "home_method is 1 ... 37")):
+        status, err = run("refused", "--set", option, machine=two)
+        t.check(status == 2 and said in err, option + ": refused", status, err)
+
+
 def check_outside():
     """The same in two processes; when the drives have come to rest after homing depends on when the start heard of them."""
     both = bus_pair.run_both(FILE, PROGRAM, "takt drives has both drives of the gantry")
@@ -98,12 +135,12 @@ def check_outside():
 
 def check_refusals():
     for option, said in (
-        ("gantry.drive_node=2", "the gantry needs"),
-        ("gantry.drive_node=127", "the gantry needs"),
-        ("gantry.skew_max_mm=0", "the gantry needs"),
-        ("gantry.axis=Z", "the gantry needs"),
+        ("gantry.drive_node=2", "a gantry needs"),
+        ("gantry.drive_node=127", "a gantry needs"),
+        ("gantry.skew_max_mm=0", "a gantry needs"),
+        ("gantry.axis=Z", "a gantry needs"),
         ("gantry.axis=A", "X, Y, Z or none is expected"),
-        ("axis.Y.drive_type=step", "the gantry needs"),
+        ("axis.Y.drive_type=step", "a gantry needs"),
     ):
         status, err = run("refused", "--set", option)
         t.check(status == 2 and said in err, option + ": refused", status, err)
@@ -111,6 +148,7 @@ def check_refusals():
 
 check_squaring()
 check_racking()
+check_two()
 check_outside()
 check_refusals()
 t.finish()

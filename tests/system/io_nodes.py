@@ -57,6 +57,36 @@ def stop(script, name):
     return status, err
 
 
+CHANGER = t.write("changer.ini", "[io 1]\nnode = 20\noutputs = tool_change T0 T1 T2 spindle flood\ninputs = tool_changed\n")
+CHANGES = t.write("changes.ngc", "G21 G90 F3000\nT5 M6\nM3 S1000\nG1 X5\nT2\nG1 X10\nM6\nM8\nG1 X0\nT3 M6\nM2\n")
+
+
+def steps_of(log):
+    levels = [data[:2] for _, data in frames(log, "214")]
+    return [data for i, data in enumerate(levels) if i == 0 or data != levels[i - 1]]
+
+
+def check_changer():
+    """The virtual node answers each output by its input: request and answer rise and fall before anything else is done."""
+    status, _, err = t.run("run", CHANGES, "--machine", CHANGER, "--bus-log", "changer.log", "--json", "changer.json")
+    t.check(status == 0, "tools are changed", err)
+    t.check(steps_of("changer.log") == ["00", "0B", "0A", "1A", "14", "05", "04", "24", "27", "26", "06"],
+            "the changer is asked for each tool, and let go, before the program goes on", steps_of("changer.log"))
+    t.write("deaf.inject", "power+0s io 20 report object=6000:01 value=00\n")
+    status, _, err = t.run("run", CHANGES, "--machine", CHANGER, "--inject", "deaf.inject", "--set", "machine.tool_change_s=3")
+    t.check(status == 1 and "the tool changer has not ended its answer to M6 within 3 s" in err, "one that does not answer is an alarm", err)
+    t.write("stuck.inject", "power+0s io 20 report object=6000:01 value=01\n")
+    status, _, err = t.run("run", CHANGES, "--machine", CHANGER, "--inject", "stuck.inject", "--set", "machine.tool_change_s=3",
+                           "--bus-log", "stuck.log")
+    t.check(status == 1 and "within 3 s" in err, "so is an answer that never falls", err)
+    t.check(all(int(step, 16) & 1 == 0 for step in steps_of("stuck.log")), "and nothing is asked of it", steps_of("stuck.log"))
+    status, _, err = t.run("compile", CHANGES, "-o", "changes.plan", "--machine", CHANGER, "--quiet")
+    if t.check(status == 0, "the program is compiled", err):
+        status, _, err = t.run("run", CHANGES, "--plan", "changes.plan", "--machine", CHANGER, "--bus-log", "planned.log")
+        t.check(status == 0 and steps_of("planned.log") == steps_of("changer.log"), "a compiled one changes tools likewise", err,
+                steps_of("planned.log"))
+
+
 def check_stops():
     for bit, word in ((5, "stop"), (7, "limit")):
         value = 0xE0 ^ 1 << bit
@@ -131,6 +161,7 @@ def check_service():
 
 
 check_outputs()
+check_changer()
 check_stops()
 check_digest()
 check_analogues()

@@ -100,17 +100,19 @@ static void gives_the_firmware_its_own_kind_of_frame(const char *interface)
     const struct link_config config = {.fd = true};
     struct link *a = open_link(interface, &config), *b = open_link(interface, &config);
     struct can_port port = link_get_port(b);
-    struct can_frame frame = {0};
+    struct can_frame frame[2] = {0};
     struct wire_frame others[] = {{.id = 1, .flags = WIRE_EXTENDED},
-                                  {.id = 2, .flags = WIRE_REMOTE},
+                                  {.id = 2, .flags = WIRE_REMOTE, .length = 1},
                                   {.id = 3, .flags = WIRE_FD, .length = 12},
                                   {.id = 4, .length = 8}};
     for (unsigned i = 0; i < 4; i++)
         CHECK(link_send(a, &others[i]));
-    while (link_wait(b, link_clock_ns() + WAIT_NS) == LINK_READY &&
-           !port.receive(port.context, &frame))
-        continue;
-    CHECK(frame.id == 4 && frame.length == 8);
+    for (unsigned i = 0; i < 2; i++)
+        while (!port.receive(port.context, &frame[i]) &&
+               link_wait(b, link_clock_ns() + WAIT_NS) == LINK_READY)
+            continue;
+    CHECK(frame[0].id == (CAN_REMOTE | 2) && frame[0].length == 1);
+    CHECK(frame[1].id == 4 && frame[1].length == 8);
     CHECK(link_get_counts(b)->received == 4);
     link_close(a);
     link_close(b);

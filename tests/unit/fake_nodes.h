@@ -39,6 +39,8 @@ struct fake_nodes {
     uint8_t mode[128]; /* shown as object 6061: what RPDO1 said */
     uint8_t mute;      /* this node says nothing; 0: none */
     unsigned resets[128], starts[128];
+    unsigned guards[128]; /* guarding frames */
+    unsigned toggles;     /* NMT_TOGGLE: answers to them do as they should */
 };
 
 static inline struct can_frame *fake_nodes_add(struct fake_nodes *nodes)
@@ -107,6 +109,14 @@ static inline void fake_nodes_answer(struct fake_nodes *nodes, const struct can_
                        object, is_upload ? value : 0);
 }
 
+static inline void fake_nodes_guard(struct fake_nodes *nodes, uint8_t node)
+{
+    struct can_frame *answer = fake_nodes_add(nodes);
+    nmt_write_heartbeat(answer, node, NMT_OPERATIONAL);
+    if (nodes->guards[node]++ % 2 == 1)
+        answer->data[0] |= (uint8_t)nodes->toggles;
+}
+
 /* A frame of the master. */
 static inline void fake_nodes_take(struct fake_nodes *nodes, const struct can_frame *frame)
 {
@@ -117,6 +127,8 @@ static inline void fake_nodes_take(struct fake_nodes *nodes, const struct can_fr
         nodes->starts[node] += frame->data[0] == NMT_START;
         if (frame->data[0] == NMT_RESET_COMMUNICATION && node != nodes->mute)
             nmt_write_heartbeat(fake_nodes_add(nodes), node, NMT_BOOTED);
+    } else if (nmt_is_guard(frame, node)) {
+        fake_nodes_guard(nodes, node);
     } else if (node != nodes->mute && (frame->id & 0x780) == SDO_REQUEST_FUNCTION) {
         fake_nodes_answer(nodes, frame);
     } else if ((frame->id & 0x780) == 0x200) {

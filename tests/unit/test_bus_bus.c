@@ -98,6 +98,19 @@ static void test_the_lowest_identifier_goes_first_whoever_asked_first(void)
     TEST_ASSERT_EQUAL_HEX16(0x300, seen.frame[3].id);
 }
 
+static void
+test_a_remote_frame_goes_behind_the_frame_it_asks_for_and_before_the_next_identifier(void)
+{
+    struct can_port first = bus_attach(&bus, NULL), second = bus_attach(&bus, NULL);
+    TEST_ASSERT_TRUE(send_frame(&first, 0x301, 0));
+    TEST_ASSERT_TRUE(send_frame(&first, CAN_REMOTE | 0x300, 1));
+    TEST_ASSERT_TRUE(send_frame(&second, 0x300, 1));
+    bus_run_until(&bus, 1000000);
+    TEST_ASSERT_EQUAL_HEX16(0x300, seen.frame[0].id);
+    TEST_ASSERT_EQUAL_HEX16(CAN_REMOTE | 0x300, seen.frame[1].id);
+    TEST_ASSERT_EQUAL_HEX16(0x301, seen.frame[2].id);
+}
+
 static void test_frames_of_one_identifier_keep_their_order(void)
 {
     struct can_port port = bus_attach(&bus, NULL);
@@ -278,6 +291,7 @@ int main(void)
     RUN_TEST(test_a_frame_ends_after_its_exact_length);
     RUN_TEST(test_all_other_ports_receive_and_the_sender_does_not);
     RUN_TEST(test_the_lowest_identifier_goes_first_whoever_asked_first);
+    RUN_TEST(test_a_remote_frame_goes_behind_the_frame_it_asks_for_and_before_the_next_identifier);
     RUN_TEST(test_frames_of_one_identifier_keep_their_order);
     RUN_TEST(test_a_frame_on_the_wire_is_not_overtaken);
     RUN_TEST(test_frames_follow_each_other_after_three_bits);

@@ -45,6 +45,15 @@ static void test_a_frame_without_data_and_small_numbers_keep_their_zeros(void)
     TEST_ASSERT_EQUAL_STRING("(0000000000.000001) vcan12 080#\n", read_back());
 }
 
+static void test_a_remote_frame_has_an_r_and_its_length(void)
+{
+    struct can_frame frame = {.id = CAN_REMOTE | 0x701, .length = 1};
+    candump_init(&dump, file, "can0");
+    candump_frame(&dump, &frame, 0);
+    TEST_ASSERT_TRUE(candump_flush(&dump));
+    TEST_ASSERT_EQUAL_STRING("(0000000000.000000) can0 701#R1\n", read_back());
+}
+
 static void test_an_overlong_interface_name_is_cut(void)
 {
     struct can_frame frame = {.id = 0x001};
@@ -100,6 +109,7 @@ int main(void)
     UNITY_BEGIN();
     RUN_TEST(test_a_frame_is_a_line_as_candump_writes_it);
     RUN_TEST(test_a_frame_without_data_and_small_numbers_keep_their_zeros);
+    RUN_TEST(test_a_remote_frame_has_an_r_and_its_length);
     RUN_TEST(test_an_overlong_interface_name_is_cut);
     RUN_TEST(test_many_lines_equal_those_of_printf);
     RUN_TEST(test_a_file_that_cannot_be_written_is_told);

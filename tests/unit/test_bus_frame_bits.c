@@ -61,10 +61,12 @@ static unsigned reference_bits(const struct can_frame *frame)
 {
     struct bit_stream stream = {.count = 0};
     put_bits(&stream, 0, 1);
-    put_bits(&stream, frame->id, 11);
-    put_bits(&stream, 0, 3);
+    bool is_remote = (frame->id & CAN_REMOTE) != 0;
+    put_bits(&stream, frame->id & 0x7FF, 11);
+    put_bits(&stream, is_remote, 1);
+    put_bits(&stream, 0, 2);
     put_bits(&stream, frame->length, 4);
-    for (unsigned i = 0; i < frame->length; i++)
+    for (unsigned i = 0; i < frame->length && !is_remote; i++)
         put_bits(&stream, frame->data[i], 8);
     put_bits(&stream, reference_checksum(&stream), 15);
     /* checksum delimiter, acknowledge and its delimiter, seven bits of end */
@@ -112,6 +114,16 @@ static void test_every_identifier_without_data_is_as_long_as_bit_by_bit(void)
     }
 }
 
+static void test_remote_frames_have_no_data_and_are_as_long_as_bit_by_bit(void)
+{
+    seed = 13;
+    for (unsigned i = 0; i < 20000; i++) {
+        struct can_frame frame = random_frame();
+        frame.id |= CAN_REMOTE;
+        TEST_ASSERT_EQUAL_UINT(reference_bits(&frame), frame_bits_count(&tables, &frame));
+    }
+}
+
 static void test_no_frame_is_shorter_than_unstuffed_or_longer_than_worst(void)
 {
     seed = 11;
@@ -137,6 +149,7 @@ int main(void)
 {
     UNITY_BEGIN();
     RUN_TEST(test_100000_random_frames_are_as_long_as_bit_by_bit);
+    RUN_TEST(test_remote_frames_have_no_data_and_are_as_long_as_bit_by_bit);
     RUN_TEST(test_every_identifier_without_data_is_as_long_as_bit_by_bit);
     RUN_TEST(test_no_frame_is_shorter_than_unstuffed_or_longer_than_worst);
     RUN_TEST(test_worst_lengths_are_those_of_the_analysis);

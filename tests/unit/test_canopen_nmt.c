@@ -87,6 +87,32 @@ static void test_what_is_no_heartbeat_is_refused(void)
     }
 }
 
+static void test_an_answer_to_guarding_is_a_heartbeat_whatever_its_toggle_bit(void)
+{
+    static const struct can_frame answer = {.id = 0x72A, .length = 1, .data = {0x85}};
+    enum nmt_state state;
+    uint8_t node;
+    TEST_ASSERT_TRUE(nmt_read_heartbeat(&answer, &node, &state));
+    TEST_ASSERT_EQUAL_INT(42, node);
+    TEST_ASSERT_EQUAL_INT(NMT_OPERATIONAL, state);
+}
+
+static void test_a_guarding_frame_is_remote_and_no_heartbeat(void)
+{
+    struct can_frame frame;
+    enum nmt_state state;
+    uint8_t node;
+    nmt_write_guard(&frame, 42);
+    TEST_ASSERT_TRUE(can_is_remote(&frame));
+    TEST_ASSERT_EQUAL_HEX16(0x72A, frame.id & CAN_ID_MASK);
+    TEST_ASSERT_EQUAL_UINT(0, can_data_length(&frame));
+    TEST_ASSERT_FALSE(nmt_read_heartbeat(&frame, &node, &state));
+    TEST_ASSERT_TRUE(nmt_is_guard(&frame, 42));
+    TEST_ASSERT_FALSE(nmt_is_guard(&frame, 43));
+    nmt_write_heartbeat(&frame, 42, NMT_OPERATIONAL);
+    TEST_ASSERT_FALSE(nmt_is_guard(&frame, 42));
+}
+
 static void test_commands_lead_to_their_states(void)
 {
     static const enum nmt_state expected[] = {NMT_OPERATIONAL, NMT_STOPPED, NMT_PREOPERATIONAL,
@@ -103,6 +129,8 @@ int main(void)
     RUN_TEST(test_what_is_no_command_is_refused);
     RUN_TEST(test_a_heartbeat_reads_back_and_bootup_is_state_0);
     RUN_TEST(test_what_is_no_heartbeat_is_refused);
+    RUN_TEST(test_an_answer_to_guarding_is_a_heartbeat_whatever_its_toggle_bit);
+    RUN_TEST(test_a_guarding_frame_is_remote_and_no_heartbeat);
     RUN_TEST(test_commands_lead_to_their_states);
     return UNITY_END();
 }

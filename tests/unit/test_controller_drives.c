@@ -10,7 +10,7 @@ static struct drives_config config;
 void setUp(void)
 {
     machine_set_default(&machine);
-    machine.gantry = (struct machine_gantry){
+    machine.gantry[0] = (struct machine_gantry){
         .axis = AXIS_Y, .drive_node = 9, .home_offset_mm = 2.5, .skew_max_mm = 0.5};
     machine.axis[AXIS_Y].home_offset_mm = 2;
     machine.axis[AXIS_Y].home_order = 1;
@@ -30,14 +30,15 @@ static void test_the_second_drive_of_a_gantry_is_the_last_and_like_the_first(voi
     TEST_ASSERT_EQUAL_DOUBLE(100000, config.axis[3].increments_per_mm);
     TEST_ASSERT_EQUAL_DOUBLE(2, config.axis[AXIS_Y].homing.offset_mm);
     TEST_ASSERT_EQUAL_DOUBLE(2.5, config.axis[3].homing.offset_mm);
-    TEST_ASSERT_EQUAL_DOUBLE(0.5, config.skew_max_mm);
-    machine.gantry.axis = AXIS_COUNT;
+    TEST_ASSERT_EQUAL_UINT(1, config.gantry_count);
+    TEST_ASSERT_EQUAL_DOUBLE(0.5, config.gantry[0].skew_max_mm);
+    machine.gantry[0].axis = AXIS_COUNT;
     controller_drives_config(&machine, &config);
     TEST_ASSERT_EQUAL_UINT(3, config.count);
-    TEST_ASSERT_EQUAL_DOUBLE(0, config.skew_max_mm);
+    TEST_ASSERT_EQUAL_UINT(0, config.gantry_count);
 }
 
-static uint8_t second_method(uint8_t method)
+static int8_t second_method(int8_t method)
 {
     machine.axis[AXIS_Y].home_method = method;
     controller_drives_config(&machine, &config);
@@ -53,10 +54,10 @@ static void test_a_reversed_second_drive_looks_for_its_home_on_the_same_side(voi
                                        30, 23, 24, 25, 26, 31, 32, 34, 33, 35, 36, 37};
 
     for (uint8_t method = 1; method <= 37; method++)
-        TEST_ASSERT_EQUAL_UINT(method, second_method(method));
-    machine.gantry.is_reversed = 1;
+        TEST_ASSERT_EQUAL_UINT(method, second_method((int8_t)method));
+    machine.gantry[0].is_reversed = 1;
     for (uint8_t method = 1; method <= 37; method++)
-        TEST_ASSERT_EQUAL_UINT(mirrored[method], second_method(method));
+        TEST_ASSERT_EQUAL_UINT(mirrored[method], second_method((int8_t)method));
     TEST_ASSERT_EQUAL_DOUBLE(-100000, config.axis[3].increments_per_mm);
 }
 

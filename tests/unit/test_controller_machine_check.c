@@ -114,28 +114,65 @@ static void test_io_nodes_follow_each_other_and_have_ids_of_their_own(void)
 
 static void expect_gantry_refused(void)
 {
-    expect(TAKT_ERROR_MACHINE_GANTRY,
-           "the gantry needs a CAN drive on X, Y or Z, a free node, skew_max_mm; 6 drives at most");
+    expect(TAKT_ERROR_MACHINE_GANTRY, "a gantry needs a CAN drive on X, Y or Z, a free node, "
+                                      "skew_max_mm; 6 drives at most, and no "
+                                      "gantry missing before it");
+}
+
+static void test_gantries_follow_each_other_on_axes_and_nodes_of_their_own(void)
+{
+    const struct machine_gantry y = {.axis = AXIS_Y, .drive_node = 9, .skew_max_mm = 1};
+    const struct machine_gantry x = {.axis = AXIS_X, .drive_node = 8, .skew_max_mm = 1};
+    const struct machine_gantry none = machine.gantry[0];
+
+    machine.cycle_us = 2000;
+    machine.gantry[0] = y;
+    machine.gantry[1] = x;
+    TEST_ASSERT_TRUE(machine_check(&machine, &wrong));
+    machine.gantry[1].axis = AXIS_Y;
+    expect_gantry_refused();
+    machine.gantry[1] = x;
+    machine.gantry[1].drive_node = 9;
+    expect_gantry_refused();
+    machine.gantry[1] = x;
+    machine.gantry[0] = none;
+    expect_gantry_refused();
+}
+
+static void test_a_home_of_the_makers_method_is_told_for_a_reversed_motor(void)
+{
+    machine.gantry[0] = (struct machine_gantry){.axis = AXIS_Y, .drive_node = 9, .skew_max_mm = 1};
+    machine.axis[AXIS_Y].home_method = -3;
+    TEST_ASSERT_TRUE(machine_check(&machine, &wrong));
+    machine.gantry[0].is_reversed = 1;
+    expect(TAKT_ERROR_MACHINE_GANTRY_HOME, "gantry of axis Y: the maker's home_method of the axis "
+                                           "and a reversed motor need a home_method in "
+                                           "[gantry]");
+    machine.gantry[0].home_method = -4;
+    TEST_ASSERT_TRUE(machine_check(&machine, &wrong));
+    machine.axis[AXIS_Z].home_method = 0;
+    expect(TAKT_ERROR_MACHINE_HOME_METHOD,
+           "axis Z: home_method is 1 ... 37, or below 0 a method of the drive's maker");
 }
 
 static void test_a_gantry_has_a_second_drive_on_can_and_an_alarm(void)
 {
     const struct machine_gantry good = {.axis = AXIS_Y, .drive_node = 9, .skew_max_mm = 1};
 
-    machine.gantry = good;
+    machine.gantry[0] = good;
     TEST_ASSERT_TRUE(machine_check(&machine, &wrong));
-    machine.gantry.skew_max_mm = 0;
+    machine.gantry[0].skew_max_mm = 0;
     expect_gantry_refused();
-    machine.gantry = good;
-    machine.gantry.drive_node = 2;
+    machine.gantry[0] = good;
+    machine.gantry[0].drive_node = 2;
     expect_gantry_refused();
-    machine.gantry = good;
+    machine.gantry[0] = good;
     machine.axis[AXIS_Y].drive_type = MACHINE_DRIVE_STEP;
     expect_gantry_refused();
-    machine.gantry = good;
-    machine.gantry.axis = AXIS_A;
+    machine.gantry[0] = good;
+    machine.gantry[0].axis = AXIS_A;
     expect_gantry_refused();
-    machine.gantry = good;
+    machine.gantry[0] = good;
     machine.io[0].node = 9;
     expect(TAKT_ERROR_MACHINE_IO_NODE, "io 1: another node on the bus has its id 9");
 }
@@ -144,6 +181,8 @@ int main(void)
 {
     UNITY_BEGIN();
     RUN_TEST(test_io_nodes_follow_each_other_and_have_ids_of_their_own);
+    RUN_TEST(test_gantries_follow_each_other_on_axes_and_nodes_of_their_own);
+    RUN_TEST(test_a_home_of_the_makers_method_is_told_for_a_reversed_motor);
     RUN_TEST(test_a_gantry_has_a_second_drive_on_can_and_an_alarm);
     RUN_TEST(test_a_travel_has_two_ends_and_zero_between_them);
     RUN_TEST(test_positions_fit_the_drives_32_bits);

@@ -343,23 +343,37 @@ static void test_a_drive_that_boots_slowly_is_reset_once(void)
     TEST_ASSERT_EQUAL_UINT(0, nodes.resets[3] - 1);
 }
 
-static void test_a_drive_that_has_been_set_up_is_told_nothing(void)
+/* Its target, and its node, which is the first; the others are as they are. */
+static void set_up_first(uint32_t target_id)
 {
-    static const uint32_t has[][2] = {
+    const uint32_t has[][2] = {
         {SDO_OBJECT(0x1400, 1), 0x201},      {SDO_OBJECT(0x1600, 0), 2},
         {SDO_OBJECT(0x1600, 1), 0x60400010}, {SDO_OBJECT(0x1600, 2), 0x60600008},
-        {SDO_OBJECT(0x1401, 1), 0x301},      {SDO_OBJECT(0x1401, 2), 1},
+        {SDO_OBJECT(0x1401, 1), target_id},  {SDO_OBJECT(0x1401, 2), 1},
         {SDO_OBJECT(0x1601, 0), 1},          {SDO_OBJECT(0x1601, 1), 0x607A0020},
         {SDO_OBJECT(0x1800, 1), 0x40000181}, {SDO_OBJECT(0x1800, 2), 1},
         {SDO_OBJECT(0x1A00, 0), 2},          {SDO_OBJECT(0x1A00, 1), 0x60410010},
         {SDO_OBJECT(0x1A00, 2), 0x60640020}};
-    config.count = 1;
     config.axis[0].keeps_settings = true;
     for (unsigned i = 0; i < sizeof has / sizeof has[0]; i++)
-        set_rule((struct fake_rule){.object = has[i][0], .value = has[i][1]});
+        set_rule((struct fake_rule){.node = 1, .object = has[i][0], .value = has[i][1]});
+}
+
+static void test_a_drive_that_has_been_set_up_is_told_nothing(void)
+{
+    config.count = 1;
+    set_up_first(0x301);
     run_start();
     TEST_ASSERT_EQUAL_INT(DRIVES_ENABLED, drives_get_state(&drives));
     TEST_ASSERT_EQUAL_UINT(0, nodes.written_count);
+}
+
+static void test_a_drive_that_would_take_the_target_of_another_is_refused(void)
+{
+    set_up_first(0x303);
+    assert_refused(TAKT_ERROR_DRIVE_SHARES,
+                   "the drive of axis X (node 1) takes the PDO 0303, which is meant for another "
+                   "drive");
 }
 
 static void test_a_request_without_an_answer_is_repeated_twice_and_no_more(void)
@@ -452,6 +466,7 @@ int main(void)
     RUN_TEST(test_scaling_is_checked_by_the_travel_of_a_turn);
     RUN_TEST(test_a_drive_that_boots_slowly_is_reset_once);
     RUN_TEST(test_a_drive_that_has_been_set_up_is_told_nothing);
+    RUN_TEST(test_a_drive_that_would_take_the_target_of_another_is_refused);
     RUN_TEST(test_a_request_without_an_answer_is_repeated_twice_and_no_more);
     RUN_TEST(test_a_drive_that_boots_while_it_is_configured_is_configured_again);
     RUN_TEST(test_a_drive_that_does_not_show_its_mode_is_refused);

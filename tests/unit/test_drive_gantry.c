@@ -14,7 +14,8 @@ static void add_second(double increments_per_mm, double skew_max_mm)
     config.axis[SECOND].homing.zero_mm_s = 2;
     config.axis[SECOND].homing.acceleration_mm_s2 = 500;
     config.count = 4;
-    config.skew_max_mm = skew_max_mm;
+    config.gantry_count = 1;
+    config.gantry[0] = (struct drives_gantry){1, SECOND, skew_max_mm};
 }
 
 static void test_both_drives_of_an_axis_are_enabled(void)

@@ -209,10 +209,6 @@ static void test_a_node_of_no_use_is_refused_with_the_reason(void)
     check_answer((struct fake_rule){.object = SDO_OBJECT(0x1000, 0), .value = 0x20192},
                  TAKT_ERROR_IO_TYPE,
                  "I/O node 20 is no CiA 401 node: the device type, object 1000, is 00020192");
-    check_answer(
-        (struct fake_rule){.object = SDO_OBJECT(0x1017, 0), .abort_code = SDO_ABORT_READ_ONLY},
-        TAKT_ERROR_IO_REFUSES,
-        "I/O node 20, object 1017:00, refuses with abort code 06010002: object can only be read");
     check_answer((struct fake_rule){.object = SDO_OBJECT(0x1600, 1), .silent = 3},
                  TAKT_ERROR_IO_UNANSWERED,
                  "I/O node 20, object 1600:01, does not answer within 10 ms");
@@ -220,6 +216,46 @@ static void test_a_node_of_no_use_is_refused_with_the_reason(void)
                  TAKT_ERROR_IO_UNMAPPED,
                  "I/O node 20, object 1A00:00, is 0009: what is wired is not in the first PDOs of "
                  "the node");
+}
+
+static void test_a_node_without_heartbeat_and_guarding_is_refused(void)
+{
+    set_rule((struct fake_rule){
+        .node = IO_NODE, .object = SDO_OBJECT(0x1017, 0), .abort_code = SDO_ABORT_NO_OBJECT});
+    set_rule((struct fake_rule){
+        .node = IO_NODE, .object = SDO_OBJECT(0x100C, 0), .abort_code = SDO_ABORT_READ_ONLY});
+    enable(&(const struct io_wiring){.output = {IO_FLOOD}, .input = {IO_STOP}});
+    TEST_ASSERT_EQUAL_INT(TAKT_ERROR_IO_REFUSES, drives_get_fault(&drives)->code);
+    assert_text(
+        "I/O node 20, object 100C:00, refuses with abort code 06010002: object can only be read");
+}
+
+static void enable_guarded(unsigned toggles)
+{
+    setUp();
+    levels = 1;
+    nodes.toggles = toggles;
+    set_rule((struct fake_rule){
+        .node = IO_NODE, .object = SDO_OBJECT(0x1017, 0), .abort_code = SDO_ABORT_READ_ONLY});
+    enable(&(const struct io_wiring){.output = {IO_FLOOD}, .input = {IO_STOP}});
+    TEST_ASSERT_EQUAL_INT(DRIVES_ENABLED, drives_get_state(&drives));
+    run(500);
+}
+
+static void test_a_node_without_a_heartbeat_is_guarded(void)
+{
+    enable_guarded(NMT_TOGGLE);
+    TEST_ASSERT_EQUAL_INT(DRIVES_ENABLED, drives_get_state(&drives));
+    TEST_ASSERT_GREATER_THAN_UINT(4, nodes.guards[IO_NODE]);
+    TEST_ASSERT_EQUAL_UINT(0, nodes.guards[1]);
+    assert_told(IO_NODE, SDO_OBJECT(0x100C, 0), 100);
+    assert_told(IO_NODE, SDO_OBJECT(0x100D, 0), 3);
+}
+
+static void test_an_answer_whose_toggle_bit_stays_is_none(void)
+{
+    enable_guarded(0);
+    TEST_ASSERT_EQUAL_INT(TAKT_ERROR_IO_HEARTBEAT, drives_get_fault(&drives)->code);
 }
 
 static void test_a_node_that_is_not_there_is_named(void)
@@ -346,6 +382,9 @@ int main(void)
     RUN_TEST(test_an_axis_can_be_driven_off_a_limit_switch);
     RUN_TEST(test_a_node_alone_is_started_too);
     RUN_TEST(test_a_node_of_no_use_is_refused_with_the_reason);
+    RUN_TEST(test_a_node_without_heartbeat_and_guarding_is_refused);
+    RUN_TEST(test_a_node_without_a_heartbeat_is_guarded);
+    RUN_TEST(test_an_answer_whose_toggle_bit_stays_is_none);
     RUN_TEST(test_a_node_that_is_not_there_is_named);
     RUN_TEST(test_what_a_node_may_refuse_costs_nothing_but_that);
     RUN_TEST(test_a_node_that_fails_in_operation_is_a_fault);

@@ -1,7 +1,13 @@
 /*
  * Layer setting services of a virtual drive: it is found, configured, and another node from the next reset on.
  */
+#define _POSIX_C_SOURCE 200809L /* fmemopen */
+
 #include "lone_drive.h"
+
+#include "drives/drive_store.h"
+
+#include <stdio.h>
 
 static struct lone_drive lone;
 
@@ -95,6 +101,78 @@ static void test_a_reset_of_the_node_brings_back_the_id_that_was_stored(void)
     TEST_ASSERT_NOT_NULL(lone_find(&lone, 0x709));
 }
 
+static char kept_text[4096];
+static bool keeps;
+
+static bool keep(void *context, const struct virtual_drive *drive)
+{
+    FILE *stream = fmemopen(context, sizeof kept_text, "w");
+    TEST_ASSERT_NOT_NULL(stream);
+    drive_store_write(stream, drive);
+    (void)fclose(stream);
+    return keeps;
+}
+
+static void switch_on(void)
+{
+    const struct can_port port = {.send = lone_send, .receive = lone_receive, .context = &lone};
+    struct drive_store_problem wrong;
+    virtual_drive_init(&lone.drive, &lone.config, NULL, &port);
+    TEST_ASSERT_TRUE_MESSAGE(drive_store_read(&lone.drive, kept_text, strlen(kept_text), &wrong),
+                             wrong.text);
+    virtual_drive_boot(&lone.drive);
+}
+
+static uint32_t store_node(uint8_t node, bool can_be_kept)
+{
+    keeps = can_be_kept;
+    virtual_drive_keep(&lone.drive, &(struct drive_keeper){keep, kept_text});
+    (void)lss(0x04, 1, 0);
+    (void)ask(0x11, node);
+    return ask(0x17, 0);
+}
+
+static void test_the_id_that_was_stored_is_there_at_the_next_power_on(void)
+{
+    TEST_ASSERT_EQUAL_UINT32(0, store_node(9, true));
+    TEST_ASSERT_EQUAL_STRING("# stored by node 5, object 1010\nnode 9\n", kept_text);
+    lone.sent_count = 0;
+    switch_on();
+    TEST_ASSERT_NOT_NULL(lone_find(&lone, 0x709));
+    lone_take(&lone, 0x609, 8, 0x40 | 0x1800 << 8 | 1 << 24, 0);
+    TEST_ASSERT_EQUAL_HEX32(0x40000189, little_endian_read32(lone_find(&lone, 0x589)->data + 4));
+}
+
+static void test_a_node_without_an_id_has_the_stored_one_at_the_next_power_on(void)
+{
+    start_nameless();
+    TEST_ASSERT_EQUAL_UINT32(0, store_node(LONE_NODE, true));
+    switch_on();
+    lone_nmt(&lone, NMT_START);
+    TEST_ASSERT_EQUAL_INT(NMT_OPERATIONAL, virtual_drive_get_nmt_state(&lone.drive));
+}
+
+static void test_an_id_that_cannot_be_kept_is_not_stored(void)
+{
+    TEST_ASSERT_EQUAL_UINT32(2, store_node(9, false));
+    lone_nmt(&lone, NMT_RESET_NODE);
+    TEST_ASSERT_NOT_NULL(lone_find(&lone, 0x705));
+}
+
+static void test_a_stored_id_that_is_none_is_refused(void)
+{
+    static const char *const texts[] = {"node 0\n", "node 128\n", "node 1234\n", "node 9x\n",
+                                        "node x9\n"};
+    struct drive_store_problem wrong;
+    for (unsigned i = 0; i < sizeof texts / sizeof texts[0]; i++) {
+        setUp();
+        TEST_ASSERT_FALSE_MESSAGE(drive_store_read(&lone.drive, texts[i], strlen(texts[i]), &wrong),
+                                  texts[i]);
+        TEST_ASSERT_EQUAL_UINT(1, wrong.line);
+        TEST_ASSERT_EQUAL_STRING("a node id is 1 ... 127, or 255: none", wrong.text);
+    }
+}
+
 static void test_a_node_without_an_id_says_nothing_but_by_lss(void)
 {
     start_nameless();
@@ -148,6 +226,10 @@ int main(void)
     RUN_TEST(test_a_node_is_selected_by_its_whole_identity_alone);
     RUN_TEST(test_a_new_node_id_is_in_force_from_the_next_reset_on);
     RUN_TEST(test_a_reset_of_the_node_brings_back_the_id_that_was_stored);
+    RUN_TEST(test_the_id_that_was_stored_is_there_at_the_next_power_on);
+    RUN_TEST(test_a_node_without_an_id_has_the_stored_one_at_the_next_power_on);
+    RUN_TEST(test_an_id_that_cannot_be_kept_is_not_stored);
+    RUN_TEST(test_a_stored_id_that_is_none_is_refused);
     RUN_TEST(test_a_node_without_an_id_says_nothing_but_by_lss);
     RUN_TEST(test_a_node_without_an_id_is_found_by_fastscan);
     RUN_TEST(test_a_node_is_identified_by_ranges_of_revision_and_serial_number);

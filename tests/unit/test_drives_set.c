@@ -242,7 +242,7 @@ static void test_after_homing_the_controller_knows_where_the_axes_are(void)
 {
     static const struct {
         double start_mm, home_mm;
-        uint8_t method;
+        int8_t method;
     } axes[DRIVES] = {{4.7, -12, 17}, {-3.3, 9, 18}, {1.1, 2.5, 20}};
     struct point actual;
     for (unsigned i = 0; i < DRIVES; i++) {

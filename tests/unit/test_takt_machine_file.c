@@ -205,7 +205,12 @@ static void test_a_gantry_and_io_nodes_that_are_written_read_as_the_same(void)
     FILE *file = fopen(path, "wb");
 
     TEST_ASSERT_NOT_NULL(file);
-    setup.machine.gantry = (struct machine_gantry){AXIS_Y, 9, 1, -99.4, 0.8};
+    setup.machine.gantry[0] = (struct machine_gantry){.axis = AXIS_Y,
+                                                      .drive_node = 9,
+                                                      .is_reversed = 1,
+                                                      .home_method = -3,
+                                                      .home_offset_mm = -99.4,
+                                                      .skew_max_mm = 0.8};
     setup.drive[MACHINE_SECOND_DRIVE].plant.inertia_kg_m2 = 0.125;
     setup.machine.io[0] =
         (struct io_wiring){20, {IO_FLOOD, IO_FREE, IO_MIST | IO_INVERTED}, {0}, {0x04, 0x10}};
@@ -215,11 +220,12 @@ static void test_a_gantry_and_io_nodes_that_are_written_read_as_the_same(void)
     machine_setup_set_default(&again);
     TEST_ASSERT_TRUE(machine_file_read(&again, path));
     TEST_ASSERT_EQUAL_MEMORY(setup.machine.io, again.machine.io, sizeof again.machine.io);
-    TEST_ASSERT_EQUAL_UINT(AXIS_Y, again.machine.gantry.axis);
-    TEST_ASSERT_EQUAL_UINT(9, again.machine.gantry.drive_node);
-    TEST_ASSERT_EQUAL_UINT(1, again.machine.gantry.is_reversed);
-    TEST_ASSERT_EQUAL_DOUBLE(-99.4, again.machine.gantry.home_offset_mm);
-    TEST_ASSERT_EQUAL_DOUBLE(0.8, again.machine.gantry.skew_max_mm);
+    TEST_ASSERT_EQUAL_UINT(AXIS_Y, again.machine.gantry[0].axis);
+    TEST_ASSERT_EQUAL_UINT(9, again.machine.gantry[0].drive_node);
+    TEST_ASSERT_EQUAL_UINT(1, again.machine.gantry[0].is_reversed);
+    TEST_ASSERT_EQUAL_INT(-3, again.machine.gantry[0].home_method);
+    TEST_ASSERT_EQUAL_DOUBLE(-99.4, again.machine.gantry[0].home_offset_mm);
+    TEST_ASSERT_EQUAL_DOUBLE(0.8, again.machine.gantry[0].skew_max_mm);
     TEST_ASSERT_EQUAL_DOUBLE(0.125, again.drive[MACHINE_SECOND_DRIVE].plant.inertia_kg_m2);
 }
 

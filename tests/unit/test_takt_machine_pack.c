@@ -17,9 +17,11 @@ void tearDown(void)
 {
 }
 
-/* In the setup. Keys of an I/O node: of the first. */
+/* In the setup. Keys of an I/O node, or of a gantry: of the first. */
 static size_t offset_of(const struct machine_key *key)
 {
+    if (key->section == SECTION_GANTRY)
+        return key->offset + offsetof(struct machine_setup, machine.gantry);
     return key->offset +
            (key->section == SECTION_IO ? offsetof(struct machine_setup, machine.io) : 0);
 }
@@ -91,8 +93,8 @@ static void test_every_value_a_file_may_have_may_be_stored(void)
 {
     for (size_t i = 0; i < machine_keys_count; i++) {
         const struct machine_key *key = &machine_keys[i];
-        const bool is_number =
-            key->type == KEY_DOUBLE || key->type == KEY_UINT32 || key->type == KEY_UINT8;
+        const bool is_number = key->type == KEY_DOUBLE || key->type == KEY_UINT32 ||
+                               key->type == KEY_UINT8 || key->type == KEY_INT8;
 
         if (!is_number || !is_of_machine(key))
             continue;

@@ -57,7 +57,10 @@ void read_candump(const uint8_t *data, size_t size)
         require(column <= size + 1);
 }
 
-/* The input as frames: identifier (2 bytes, with the cycles before it in the upper bits), length, data. */
+/*
+ * The input as frames: identifier (2 bytes, with the cycles before it in the upper bits), length (the highest bit: a remote
+ * frame), data.
+ */
 struct frames {
     const uint8_t *data;
     size_t size;
@@ -70,6 +73,8 @@ static bool next_frame(struct frames *f, struct can_frame *frame)
         return false;
     *frame = (struct can_frame){.id = (uint16_t)(f->data[0] | (f->data[1] & 7U) << 8),
                                 .length = (uint8_t)(f->data[2] % (CAN_DATA_MAX + 1U))};
+    if (f->data[2] & 0x80U)
+        frame->id |= CAN_REMOTE;
     f->cycles = f->data[1] >> 3;
     f->data += 3;
     f->size -= 3;
@@ -83,7 +88,7 @@ static bool next_frame(struct frames *f, struct can_frame *frame)
 static bool send_nowhere(void *context, const struct can_frame *frame)
 {
     (void)context;
-    require(frame->length <= CAN_DATA_MAX && frame->id < 0x800U);
+    require(frame->length <= CAN_DATA_MAX && (frame->id & ~CAN_REMOTE) <= CAN_ID_MASK);
     return true;
 }
 

@@ -2,15 +2,23 @@
  * What is stored: compiled programs, settings, flash, the state of a service. Where a checksum keeps damage out, it is
  * made right here, so that what comes behind it is reached: by the lowest bit of the first byte.
  */
+#define _POSIX_C_SOURCE 200809L /* open_memstream */
+
 #include "readers.h"
 
 #include "base/crc32.h"
+#include "canopen/concise_dcf.h"
+#include "canopen/sdo_client.h"
+#include "drives/drive_store.h"
+#include "drives/virtual_drive.h"
 #include "motion/handover.h"
 #include "replay/replay.h"
 #include "serve/state.h"
 #include "storage/settings.h"
 #include "storage/store.h"
 
+#include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 #define BYTES_MAX    65536U
@@ -152,6 +160,58 @@ void read_settings(const uint8_t *data, size_t size)
         seal_settings(length);
     if (settings_read(bytes(), length, &machine, &tables, &wrong))
         (void)settings_check_share(&machine, &tables, &scratch, &wrong);
+}
+
+static bool send_nowhere(void *context, const struct can_frame *frame)
+{
+    (void)context;
+    (void)frame;
+    return true;
+}
+
+/* A concise configuration that is good lies within its bytes, and has as many entries as it says. */
+void read_configuration(const uint8_t *data, size_t size)
+{
+    const struct concise_dcf dcf = {.bytes = data, .length = (uint32_t)size};
+    uint32_t at = CONCISE_DCF_FIRST, object, count = 0;
+    struct concise_dcf_entry entry;
+
+    if (!concise_dcf_is_well(&dcf, &object))
+        return;
+    while (concise_dcf_next(&dcf, &at, &entry)) {
+        require(entry.size > 0 && entry.size <= SDO_CLIENT_VALUE_MAX &&
+                entry.value + entry.size <= data + size);
+        (void)concise_dcf_has(&dcf, at, entry.object);
+        count++;
+    }
+    require(at == size &&
+            count == (size_t)(data[0] | data[1] << 8 | data[2] << 16) + ((size_t)data[3] << 24));
+}
+
+/* What a virtual drive has on its disk. One that takes it boots, and what it stores is taken again. */
+void read_drive_store(const uint8_t *data, size_t size)
+{
+    static struct virtual_drive drive, again;
+    static const struct can_port port = {.send = send_nowhere};
+    struct virtual_drive_config config = {.node = 5, .increments_per_mm = 1000, .cycle_us = 1000};
+    struct drive_store_problem wrong;
+    char *text = NULL;
+    size_t length = 0;
+    FILE *stream;
+
+    drive_plant_set_default(&config.plant);
+    virtual_drive_init(&drive, &config, NULL, &port);
+    if (!drive_store_read(&drive, (const char *)data, size, &wrong))
+        return;
+    virtual_drive_boot(&drive);
+    virtual_drive_step(&drive, 1000000);
+    stream = open_memstream(&text, &length);
+    require(stream != NULL);
+    drive_store_write(stream, &drive);
+    require(fclose(stream) == 0);
+    virtual_drive_init(&again, &config, NULL, &port);
+    require(drive_store_read(&again, text, length, &wrong));
+    free(text);
 }
 
 static bool erase(void *context, unsigned sector)

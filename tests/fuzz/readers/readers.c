@@ -30,6 +30,8 @@ static const struct reader {
     {"drives", NULL, read_frames_of_master},
     {"master", NULL, read_frames_of_drives},
     {"plan", NULL, read_plan},
+    {"configuration", NULL, read_configuration},
+    {"drive_store", NULL, read_drive_store},
     {"settings", NULL, read_settings},
     {"flash", NULL, read_flash},
     {"state", NULL, read_state},

@@ -42,6 +42,8 @@ void read_frames_of_master(const uint8_t *data, size_t size);
 
 /* What is stored. */
 void read_plan(const uint8_t *data, size_t size);
+void read_configuration(const uint8_t *data, size_t size);
+void read_drive_store(const uint8_t *data, size_t size);
 void read_settings(const uint8_t *data, size_t size);
 void read_flash(const uint8_t *data, size_t size);
 void read_state(const uint8_t *data, size_t size);

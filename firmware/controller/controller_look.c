@@ -1,0 +1,75 @@
+/*
+ * What the controller shows.
+ */
+#include "controller/controller.h"
+#include "controller/controller_steps.h"
+
+enum controller_state controller_get_state(const struct controller *c)
+{
+    return c->state;
+}
+
+const struct drives *controller_get_drives(const struct controller *c)
+{
+    return &c->drives;
+}
+
+const struct diagnostic *controller_get_fault(const struct controller *c)
+{
+    return &c->fault;
+}
+
+const struct cycle_record *controller_get_record(const struct controller *c)
+{
+    return c->has_record ? &c->record : NULL;
+}
+
+const struct diagnostic *controller_get_warning(const struct controller *c)
+{
+    return &c->warning;
+}
+
+const struct interpolator_errors *controller_get_interpolator_errors(const struct controller *c)
+{
+    return interpolator_get_errors(&c->interpolator);
+}
+
+struct correction *controller_get_correction(struct controller *c)
+{
+    return &c->correction;
+}
+
+void controller_get_actual(const struct controller *c, struct point *actual)
+{
+    drives_get_actual(&c->drives, actual);
+    if (steps_are_there(&c->steps)) {
+        steps_get_actual(&c->steps, actual);
+    }
+}
+
+uint32_t controller_get_answers(const struct controller *c, struct program_answer *last)
+{
+    *last = c->probe.taken;
+    return c->probe.answers;
+}
+
+bool controller_is_starved(const struct controller *c)
+{
+    return (c->replays && c->replay.waits) ||
+           (c->program_late && c->motion.has_ceiling && c->path.first == c->path.closed);
+}
+
+uint64_t controller_get_late(const struct controller *c)
+{
+    return c->motion.late;
+}
+
+const struct outputs *controller_get_outputs(const struct controller *c)
+{
+    return &c->outputs;
+}
+
+const struct block *controller_get_block(const struct controller *c)
+{
+    return c->has_record ? motion_block(&c->motion) : NULL;
+}

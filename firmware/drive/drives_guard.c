@@ -1,0 +1,81 @@
+/*
+ * Node guarding (CiA 301, 7.2.8.3.2.1): who has no heartbeat is asked for its state, once a period, by a remote frame of the
+ * heartbeat's identifier. By that it knows of us, too: it takes us for lost when nothing has come for its life time.
+ *
+ *     cycle    k            k + 1        ...  k + period
+ *              node 1 | RTR node 2 | RTR      node 1 | RTR
+ *                 answer       answer            answer, its toggle bit changed
+ */
+#include "drive/drives_private.h"
+
+#include <stddef.h>
+
+#define ANSWER_LENGTH 1
+
+uint32_t drives_guard_cycles(const struct drives *d)
+{
+    const uint32_t nodes = d->count + d->io_count;
+    return d->heartbeat_cycles > nodes ? d->heartbeat_cycles : nodes;
+}
+
+/* Rounded up: the node must not be told less than passes. */
+uint32_t drives_guard_ms(const struct drives *d)
+{
+    return (drives_guard_cycles(d) * d->cycle_us + 999) / 1000;
+}
+
+/* The first answer has toggle bit 0. */
+void drives_begin_guard(struct drives *d, struct drives_guard *guard)
+{
+    d->guards = d->guards || guard->is_on;
+    guard->toggle = NMT_TOGGLE;
+}
+
+bool drives_takes_beat(struct drives_guard *guard, const struct can_frame *frame)
+{
+    const uint8_t toggle = frame->data[0] & NMT_TOGGLE;
+    const bool counts = !guard->is_on || toggle != guard->toggle;
+    guard->toggle = toggle;
+    return counts;
+}
+
+/* Guard k, of the drives and behind them of the I/O nodes, and its node; NULL: it has not been started. */
+static const struct drives_guard *guard_of(const struct drives *d, unsigned k, uint8_t *node)
+{
+    const bool is_drive = k < d->count;
+    const unsigned io = k - d->count;
+    *node = is_drive ? d->node[k] : d->wiring[io].node;
+    if (!(is_drive ? d->axis[k].started : d->io[io].started))
+        return NULL;
+    return is_drive ? &d->axis[k].guard : &d->io[io].guard;
+}
+
+/* One that is refused is missed, as if it had got lost. */
+void drives_send_guard(struct drives *d, const struct can_port *port)
+{
+    const unsigned turn = d->guards ? d->cycle % drives_guard_cycles(d) : UINT32_MAX;
+    const struct drives_guard *guard = NULL;
+    struct can_frame frame;
+    uint8_t node;
+    if (turn < d->count + d->io_count)
+        guard = guard_of(d, turn, &node);
+    if (guard == NULL || !guard->is_on)
+        return;
+    nmt_write_guard(&frame, node);
+    (void)port->send(port->context, &frame);
+}
+
+bool drives_are_guarding(const struct drives *d)
+{
+    return d->guards;
+}
+
+uint32_t drives_guard_bits(const struct drives *d)
+{
+    bool is_any = false;
+    for (unsigned i = 0; i < d->count; i++)
+        is_any = is_any || d->axis[i].guard.is_on;
+    for (unsigned i = 0; i < d->io_count; i++)
+        is_any = is_any || d->io[i].guard.is_on;
+    return is_any ? drives_frame_bits(0) + drives_frame_bits(ANSWER_LENGTH) : 0;
+}

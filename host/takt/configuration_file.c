@@ -1,0 +1,60 @@
+#include "takt/configuration_file.h"
+
+#include "canopen/sdo.h"
+#include "canopen/sdo_client.h"
+#include "takt/message.h"
+#include "takt/text.h"
+
+/* A machine's; the machine has no more than their places. */
+static struct text texts[MACHINE_SETUP_DRIVES_MAX];
+static struct concise_dcf configurations[MACHINE_SETUP_DRIVES_MAX];
+
+static bool load(const char *path, unsigned i)
+{
+    struct concise_dcf *dcf = &configurations[i];
+    uint32_t object;
+
+    text_free(&texts[i]);
+    texts[i] = (struct text){0};
+    if (!text_read(&texts[i], path))
+        return false;
+    if (texts[i].length > UINT32_MAX) {
+        message_error(path, 0, 0, "this is too long");
+        return false;
+    }
+    *dcf = (struct concise_dcf){.bytes = (const uint8_t *)texts[i].bytes,
+                                .length = (uint32_t)texts[i].length};
+    if (concise_dcf_is_well(dcf, &object))
+        return true;
+    if (object != 0)
+        message_error(path, 0, 0, "the entry of object %04X:%02X has no value of 1 to %d bytes",
+                      (unsigned)sdo_index(object), (unsigned)sdo_sub(object), SDO_CLIENT_VALUE_MAX);
+    else
+        message_error(path, 0, 0,
+                      "this is no concise configuration (CiA 302, object 1F22): it has not as many "
+                      "entries as it says");
+    return false;
+}
+
+static bool load_for(const struct machine_setup *setup, unsigned i, const struct concise_dcf **dcf)
+{
+    if (setup->drive[i].dcf[0] == '\0')
+        return true;
+    *dcf = &configurations[i];
+    return load(setup->drive[i].dcf, i);
+}
+
+bool configuration_files_load(struct machine_setup *setup)
+{
+    struct machine *machine = &setup->machine;
+
+    for (unsigned i = 0; i < AXIS_COUNT; i++) {
+        if (!load_for(setup, i, &machine->axis[i].drive_dcf))
+            return false;
+    }
+    for (unsigned i = 0; i < MACHINE_GANTRIES_MAX; i++) {
+        if (!load_for(setup, MACHINE_SECOND_DRIVE + i, &machine->gantry[i].drive_dcf))
+            return false;
+    }
+    return true;
+}
