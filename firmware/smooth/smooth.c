@@ -1,6 +1,7 @@
 #include "smooth/smooth.h"
 
 #include "base/maths.h"
+#include "smooth/interval.h"
 #include "smooth/single.h"
 #include "smooth/straight.h"
 
@@ -36,16 +37,6 @@
 /* A curve goes on by this part of the tolerance, or of the way at nominal feed, in so many windows, or it never will. */
 #define STALL_PART    0.1
 #define STALL_WINDOWS 2
-
-/*
- * Nominal time between samples, as a part of the time that a way of the tolerance takes: cbrt(P/J) where jerk binds,
- * sqrt(P/A) where acceleration does, whichever is longer. Found on machines of P J^2/A^3 = 4e-4 ... 640: README.md.
- */
-#define INTERVAL_OF_JERK         0.7
-#define INTERVAL_OF_ACCELERATION 0.9
-
-/* A window is at least this part of the time in which the slowest axis reaches its velocity: README.md. */
-#define WINDOW_OF_RAMP 0.5
 
 /* What a microcontroller is ready to give for smoothing. */
 _Static_assert(sizeof(struct smooth) + sizeof(union smooth_scratch) <= 27UL * 1024UL,
@@ -87,51 +78,6 @@ bool smooth_has_room(const struct smooth *s)
     return !s->open || (!s->finished && route_has_room(&s->route));
 }
 
-/* Time in which the slowest axis reaches its velocity: V/A + A/J, or 2 sqrt(V/J) where A is not reached. */
-static double longest_ramp(const struct smooth_limits *limits)
-{
-    double longest = 0.0;
-
-    for (int i = 0; i < AXIS_COUNT; i++) {
-        const double v = limits->velocity_mm_s[i];
-        const double j = limits->jerk_mm_s3[i];
-        const double a = maths_min(limits->acceleration_mm_s2[i], maths_sqrt(v * j));
-
-        if ((limits->axes >> i & 1U) != 0) {
-            longest = maths_max(longest, v / a + a / j);
-        }
-    }
-    return longest;
-}
-
-/* Of the axis that crosses the tolerance soonest. */
-static double soonest_interval(const struct smooth_limits *limits, double tolerance_mm)
-{
-    double soonest = MATHS_INFINITY;
-
-    for (int i = 0; i < AXIS_COUNT; i++) {
-        if ((limits->axes >> i & 1U) != 0) {
-            const double p = tolerance_mm / smooth_weight(i);
-            const double jerk = INTERVAL_OF_JERK * maths_cbrt(p / limits->jerk_mm_s3[i]);
-            const double acceleration =
-                INTERVAL_OF_ACCELERATION * maths_sqrt(p / limits->acceleration_mm_s2[i]);
-
-            soonest = maths_min(soonest, maths_max(jerk, acceleration));
-        }
-    }
-    return soonest;
-}
-
-/* At least a cycle, and so long that no axis needs many windows to reach its velocity. */
-static double interval_of(const struct smooth *s, const struct smooth_limits *limits,
-                          double tolerance_mm)
-{
-    const unsigned samples = window_capacity(&s->route);
-    const double ramp_s = longest_ramp(&s->limits) * WINDOW_OF_RAMP / samples;
-
-    return maths_max(maths_max(s->limits.cycle_s, ramp_s), soonest_interval(limits, tolerance_mm));
-}
-
 /* How far merged lines may leave the programmed ends: G64 Q, but the tolerance is worth more to smoothing. */
 static double merged_within(const struct move *move)
 {
@@ -168,7 +114,8 @@ static void begin(struct smooth *s, const struct move *move)
 
     limit_chord(&limits, tolerance_mm);
     route_init(&s->route, &limits, tolerance_mm);
-    const double interval_s = interval_of(s, &limits, move->tolerance_mm);
+    const double interval_s =
+        interval_of(&s->limits, &limits, move->tolerance_mm, window_capacity(&s->route));
 
     s->open = true;
     s->ready = 0;

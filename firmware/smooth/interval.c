@@ -1,0 +1,56 @@
+#include "smooth/interval.h"
+
+#include "base/maths.h"
+
+/*
+ * Nominal time between samples, as a part of the time that a way of the tolerance takes: cbrt(P/J) where jerk binds,
+ * sqrt(P/A) where acceleration does, whichever is longer. Found on machines of P J^2/A^3 = 4e-4 ... 640: README.md.
+ */
+#define INTERVAL_OF_JERK         0.7
+#define INTERVAL_OF_ACCELERATION 0.9
+
+/* A window is at least this part of the time in which the slowest axis reaches its velocity: README.md. */
+#define WINDOW_OF_RAMP 0.5
+
+/* Time in which the slowest axis reaches its velocity: V/A + A/J, or 2 sqrt(V/J) where A is not reached. */
+static double longest_ramp(const struct smooth_limits *limits)
+{
+    double longest = 0.0;
+
+    for (int i = 0; i < AXIS_COUNT; i++) {
+        const double v = limits->velocity_mm_s[i];
+        const double j = limits->jerk_mm_s3[i];
+        const double a = maths_min(limits->acceleration_mm_s2[i], maths_sqrt(v * j));
+
+        if ((limits->axes >> i & 1U) != 0) {
+            longest = maths_max(longest, v / a + a / j);
+        }
+    }
+    return longest;
+}
+
+/* Of the axis that crosses the tolerance soonest. */
+static double soonest_interval(const struct smooth_limits *limits, double tolerance_mm)
+{
+    double soonest = MATHS_INFINITY;
+
+    for (int i = 0; i < AXIS_COUNT; i++) {
+        if ((limits->axes >> i & 1U) != 0) {
+            const double p = tolerance_mm / smooth_weight(i);
+            const double jerk = INTERVAL_OF_JERK * maths_cbrt(p / limits->jerk_mm_s3[i]);
+            const double acceleration =
+                INTERVAL_OF_ACCELERATION * maths_sqrt(p / limits->acceleration_mm_s2[i]);
+
+            soonest = maths_min(soonest, maths_max(jerk, acceleration));
+        }
+    }
+    return soonest;
+}
+
+double interval_of(const struct smooth_limits *machine, const struct smooth_limits *curve,
+                   double tolerance_mm, unsigned samples)
+{
+    const double ramp_s = longest_ramp(machine) * WINDOW_OF_RAMP / samples;
+
+    return maths_max(maths_max(machine->cycle_s, ramp_s), soonest_interval(curve, tolerance_mm));
+}
