@@ -36,12 +36,13 @@ static bool read_io_bit(const char *word, uint8_t *bit)
     const char *name = word + is_inverted;
 
     for (size_t i = 0; i < sizeof io_rows / sizeof io_rows[0]; i++) {
-        char *end;
+        char *end = NULL;
         unsigned long number = isdigit((unsigned char)name[name[0] != '\0'])
                                    ? strtoul(name + 1, &end, 10)
                                    : IO_BIT_COUNT;
 
-        if (name[0] == io_rows[i].letter && number < io_rows[i].count && *end == '\0') {
+        if (name[0] == io_rows[i].letter && number < io_rows[i].count && end != NULL &&
+            *end == '\0') {
             *bit = (uint8_t)(io_rows[i].first + number + (is_inverted ? IO_INVERTED : 0));
             return true;
         }

@@ -199,7 +199,9 @@ static void test_no_corner_is_cut_by_more_than_the_chord_error(void)
         slow.jerk_mm_s3[i] *= 1000.0;
     }
     for (unsigned i = 0; i < sizeof(sides_mm) / sizeof(sides_mm[0]); i++) {
-        for (double turn_rad = 3.0; turn_rad > 1e-3; turn_rad *= 0.5) {
+        double turn_rad = 3.0;
+
+        for (unsigned k = 0; k < 12; k++, turn_rad *= 0.5) {
             push_polygon(&slow, sides_mm[i], turn_rad, corner);
             TEST_ASSERT_TRUE(run_polygon(corner) <= CHORD_MM * (1.0 + 1e-9));
         }

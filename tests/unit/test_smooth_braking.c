@@ -13,6 +13,13 @@ void tearDown(void)
 {
 }
 
+static double grown(double from, double times, unsigned steps)
+{
+    for (unsigned i = 0; i < steps; i++)
+        from *= times;
+    return from;
+}
+
 static double braked(const struct braking_limits *l, double feed, double acceleration, double to)
 {
     return (double)braking_way(l, (float)feed, (float)acceleration, (float)to);
@@ -54,11 +61,13 @@ static double gone(const struct braking_limits *l, double feed, double accelerat
 
 static void test_braking_from_any_acceleration_is_that_of_the_motion_gone_in_steps(void)
 {
-    for (double j = 5e3; j < 1e6; j *= 3.7)
-        for (double a = 100.0; a < 5000.0; a *= 2.9)
-            for (double part = -0.3; part < 0.35; part += 0.3) {
+    for (unsigned i = 0; i < 5; i++)
+        for (unsigned k = 0; k < 4; k++)
+            for (int part = -1; part <= 1; part++) {
+                const double j = grown(5e3, 3.7, i);
+                const double a = grown(100.0, 2.9, k);
                 const struct braking_limits l = {(float)a, (float)j};
-                const double begin = part * maths_min(a, maths_sqrt(j * 40.0));
+                const double begin = 0.3 * part * maths_min(a, maths_sqrt(j * 40.0));
 
                 TEST_ASSERT_DOUBLE_WITHIN(0.05, gone(&l, 60.0, begin, 10.0),
                                           braked(&l, 60.0, begin, 10.0));
@@ -74,8 +83,10 @@ static void test_nothing_is_to_brake_for_a_feed_that_is_higher(void)
 
 static void test_a_higher_limit_never_takes_a_longer_way(void)
 {
-    for (float a = 100.0f; a < 5000.0f; a *= 2.0f)
-        for (float j = 1e3f; j < 1e6f; j *= 2.0f) {
+    for (unsigned i = 0; i < 6; i++)
+        for (unsigned k = 0; k < 10; k++) {
+            const float a = (float)grown(100.0, 2.0, i);
+            const float j = (float)grown(1e3, 2.0, k);
             const struct braking_limits less = {a, j};
             const struct braking_limits more = {2.0f * a, j};
             const struct braking_limits sharper = {a, 2.0f * j};
