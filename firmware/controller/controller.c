@@ -115,7 +115,8 @@ void controller_init(struct controller *c, const struct controller_config *confi
                        c->machine.spindle_at_speed_s);
     tool_changer_init(&c->changer, cycle_s(&c->machine), c->machine.tool_change_s);
     controller_lock_init(c);
-    controller_drives_config(&c->machine, &drives);
+    c->dcf = config->dcf;
+    controller_drives_config(&c->machine, c->dcf, &drives);
     drives_init(&c->drives, &drives);
     controller_steps_init(c, &config->step);
     (void)controller_cycle_is_enough(&c->machine, &c->warning);
