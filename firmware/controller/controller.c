@@ -438,6 +438,14 @@ static void follow_path(struct controller *c, const struct inputs *in)
     }
 }
 
+void controller_get_actual(const struct controller *c, struct point *actual)
+{
+    drives_get_actual(&c->drives, actual);
+    if (steps_are_there(&c->steps)) {
+        steps_get_actual(&c->steps, actual);
+    }
+}
+
 /* Where the axes are. */
 static struct controller_place place_of(const struct controller *c)
 {
