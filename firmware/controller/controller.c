@@ -115,7 +115,8 @@ void controller_init(struct controller *c, const struct controller_config *confi
                        c->machine.spindle_at_speed_s);
     tool_changer_init(&c->changer, cycle_s(&c->machine), c->machine.tool_change_s);
     controller_lock_init(c);
-    controller_drives_config(&c->machine, &drives);
+    c->dcf = config->dcf;
+    controller_drives_config(&c->machine, c->dcf, &drives);
     drives_init(&c->drives, &drives);
     controller_steps_init(c, &config->step);
     (void)controller_cycle_is_enough(&c->machine, &c->warning);
@@ -434,6 +435,14 @@ static void follow_path(struct controller *c, const struct inputs *in)
     case MOTION_STALLED:
         fail_stalled(c);
         break;
+    }
+}
+
+void controller_get_actual(const struct controller *c, struct point *actual)
+{
+    drives_get_actual(&c->drives, actual);
+    if (steps_are_there(&c->steps)) {
+        steps_get_actual(&c->steps, actual);
     }
 }
 

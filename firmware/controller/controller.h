@@ -39,9 +39,12 @@ struct controller_config {
     struct controller_reader *reader; /* never NULL; its alone. Must outlive the controller */
     struct source source;             /* text of the program; its context stays the caller's */
     struct can_port can;              /* the drives' bus */
-    struct step_port step;            /* pulses; not used by a machine without step drives */
-    const struct tool_table *tools;   /* NULL: empty. Must outlive the controller */
-    struct parameters *parameters; /* never NULL; read and written. Must outlive the controller */
+    const struct concise_dcf *
+        dcf; /* that drives are set up by: of MACHINE_NODES_MAX drives, the axes' and then the gantries' second
+                                      ones, without bytes where there is none. Must outlive the controller; NULL: no drive's */
+    struct step_port step;          /* pulses; not used by a machine without step drives */
+    const struct tool_table *tools; /* NULL: empty. Must outlive the controller */
+    struct parameters *parameters;  /* never NULL; read and written. Must outlive the controller */
     const struct correction_tables *correction; /* NULL: no tables; see correction_init */
     const struct replay_source *compiled; /* of the same program: replayed. NULL: planned here */
     const struct program_modes *modes;    /* the program goes on with; NULL: those it begins with */
@@ -126,7 +129,8 @@ void controller_motion_bound(const struct machine *machine, struct motion_bound 
 struct correction *controller_get_correction(struct controller *c);
 
 /* The drives that follow from a machine, which must outlive them: what controller_init itself uses. */
-void controller_drives_config(const struct machine *machine, struct drives_config *config);
+void controller_drives_config(const struct machine *machine, const struct concise_dcf *dcf,
+                              struct drives_config *config);
 
 /* The program configuration that follows from a machine: what controller_init itself uses. */
 void controller_program_config(const struct controller_config *config,

@@ -37,8 +37,7 @@ static void add_drive(struct drives_config *config, const struct machine *machin
     *drive = (struct drives_config_axis){
         .axis = (enum axis)i,
         .node = axis->drive_node,
-        .keeps_settings = axis->drive_is_set_up != 0 || axis->drive_dcf != NULL,
-        .dcf = axis->drive_dcf,
+        .keeps_settings = axis->drive_is_set_up != 0,
         .increments_per_mm = axis->increments_per_mm,
         .travel_per_turn_mm = axis->travel_per_turn_mm,
         .following_error_max_mm = axis->following_error_max_mm,
@@ -88,9 +87,6 @@ static void add_second(struct drives_config *config, const struct machine *machi
                                .skew_max_mm = gantry->skew_max_mm};
     add_drive(config, machine, gantry->axis);
     drive->node = gantry->drive_node;
-    drive->dcf = gantry->drive_dcf;
-    drive->keeps_settings =
-        machine->axis[gantry->axis].drive_is_set_up != 0 || gantry->drive_dcf != NULL;
     drive->identity.serial = 0;
     drive->homing.offset_mm = gantry->home_offset_mm;
     if (gantry->is_reversed != 0) {
@@ -102,7 +98,19 @@ static void add_second(struct drives_config *config, const struct machine *machi
     }
 }
 
-void controller_drives_config(const struct machine *machine, struct drives_config *config)
+/* The drive that was added last, by its configuration, if there is one: it is as if it had been set up before. */
+static void set_up_last(struct drives_config *config, const struct concise_dcf *dcf, unsigned i)
+{
+    struct drives_config_axis *drive = &config->axis[config->count - 1];
+
+    if (dcf != NULL && dcf[i].bytes != NULL) {
+        drive->dcf = &dcf[i];
+        drive->keeps_settings = true;
+    }
+}
+
+void controller_drives_config(const struct machine *machine, const struct concise_dcf *dcf,
+                              struct drives_config *config)
 {
     memset(config, 0, sizeof(*config));
     config->cycle_us = machine->cycle_us;
@@ -120,9 +128,11 @@ void controller_drives_config(const struct machine *machine, struct drives_confi
     for (unsigned i = 0; i < AXIS_COUNT; i++) {
         if (machine_axis_is_on_can(&machine->axis[i])) {
             add_drive(config, machine, i);
+            set_up_last(config, dcf, i);
         }
     }
     for (unsigned i = 0; i < machine_gantry_count(machine); i++) {
         add_second(config, machine, &machine->gantry[i]);
+        set_up_last(config, dcf, AXIS_COUNT + i);
     }
 }

@@ -2,7 +2,6 @@
  * What the controller shows.
  */
 #include "controller/controller.h"
-#include "controller/controller_steps.h"
 
 enum controller_state controller_get_state(const struct controller *c)
 {
@@ -37,14 +36,6 @@ const struct interpolator_errors *controller_get_interpolator_errors(const struc
 struct correction *controller_get_correction(struct controller *c)
 {
     return &c->correction;
-}
-
-void controller_get_actual(const struct controller *c, struct point *actual)
-{
-    drives_get_actual(&c->drives, actual);
-    if (steps_are_there(&c->steps)) {
-        steps_get_actual(&c->steps, actual);
-    }
 }
 
 uint32_t controller_get_answers(const struct controller *c, struct program_answer *last)

@@ -25,6 +25,7 @@
 struct controller {
     struct machine machine;
     struct can_port can;
+    const struct concise_dcf *dcf;
     enum controller_state state;
     struct diagnostic fault;
     struct diagnostic warning; /* TAKT_OK: none */

@@ -6,7 +6,6 @@
 #define TAKT_CONTROLLER_MACHINE_H
 
 #include "base/point.h"
-#include "canopen/concise_dcf.h"
 #include "correction/settings.h"
 #include "drive/io_wiring.h"
 #include "plan/limits.h"
@@ -32,8 +31,6 @@ struct machine_axis {
     int8_t home_method;      /* CiA 402, object 6098: 1 ... 37; below 0 its maker's; not 0 */
     uint8_t home_offset_is_position; /* 1: its drive takes 607C for the position at its home */
     uint32_t drive_type;             /* enum machine_drive_type */
-    const struct concise_dcf
-        *drive_dcf; /* its drive is set up by it; NULL: by nothing. Not owned */
 
     /* Object 1018 of its drive, checked at start. 0: whatever it is. */
     uint32_t drive_vendor;
@@ -64,11 +61,10 @@ struct machine_axis {
 
 /* An axis with two drives. */
 struct machine_gantry {
-    uint32_t axis;       /* AXIS_COUNT: there is none */
-    uint8_t drive_node;  /* of the second drive; everything else is as of the first, but for: */
-    uint8_t is_reversed; /* 1: its motor turns the other way than that of the first */
-    int8_t home_method;  /* of the second drive; 0: that of the first, for the same side */
-    const struct concise_dcf *drive_dcf;
+    uint32_t axis;         /* AXIS_COUNT: there is none */
+    uint8_t drive_node;    /* of the second drive; everything else is as of the first, but for: */
+    uint8_t is_reversed;   /* 1: its motor turns the other way than that of the first */
+    int8_t home_method;    /* of the second drive; 0: that of the first, for the same side */
     double home_offset_mm; /* machine coordinate of its own home */
     double skew_max_mm;    /* alarm when the two are farther apart; > 0 */
 };

@@ -87,7 +87,7 @@ void controller_recover(struct controller *c, const struct controller_config *co
 {
     struct drives_config drives;
 
-    controller_drives_config(&c->machine, &drives);
+    controller_drives_config(&c->machine, c->dcf, &drives);
     drives.homed = !home && drives_are_homed(&c->drives);
     drives_init(&c->drives, &drives);
     controller_steps_restart(c);

@@ -21,6 +21,7 @@ struct controller_config service_controller_config(const struct service *s)
         .reader = s->config.reader,
         .can = s->config.can,
         .step = s->config.step,
+        .dcf = s->config.dcf,
         .tools = &s->tools,
         .parameters = s->config.parameters,
         .correction = s->config.correction,

@@ -36,25 +36,17 @@ static bool load(const char *path, unsigned i)
     return false;
 }
 
-static bool load_for(const struct machine_setup *setup, unsigned i, const struct concise_dcf **dcf)
+bool configuration_files_load(const struct machine_setup *setup)
 {
-    if (setup->drive[i].dcf[0] == '\0')
-        return true;
-    *dcf = &configurations[i];
-    return load(setup->drive[i].dcf, i);
-}
-
-bool configuration_files_load(struct machine_setup *setup)
-{
-    struct machine *machine = &setup->machine;
-
-    for (unsigned i = 0; i < AXIS_COUNT; i++) {
-        if (!load_for(setup, i, &machine->axis[i].drive_dcf))
-            return false;
-    }
-    for (unsigned i = 0; i < MACHINE_GANTRIES_MAX; i++) {
-        if (!load_for(setup, MACHINE_SECOND_DRIVE + i, &machine->gantry[i].drive_dcf))
+    for (unsigned i = 0; i < MACHINE_SETUP_DRIVES_MAX; i++) {
+        configurations[i] = (struct concise_dcf){0};
+        if (setup->drive[i].dcf[0] != '\0' && !load(setup->drive[i].dcf, i))
             return false;
     }
     return true;
+}
+
+const struct concise_dcf *configuration_files_get(void)
+{
+    return configurations;
 }

@@ -7,7 +7,9 @@
 
 #include "takt/machine_setup.h"
 
-/* Reads them and hands them to the machine, for as long as the process lives. False after a message. */
-bool configuration_files_load(struct machine_setup *setup);
+/* Reads those of this machine. False after a message. */
+bool configuration_files_load(const struct machine_setup *setup);
+/* Those that have been read last, as a controller takes them. */
+const struct concise_dcf *configuration_files_get(void);
 
 #endif

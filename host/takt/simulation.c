@@ -1,6 +1,7 @@
 #include "takt/simulation.h"
 
 #include "takt/compiled.h"
+#include "takt/configuration_file.h"
 #include "takt/cutting_feed.h"
 #include "takt/inject_file.h"
 #include "takt/message.h"
@@ -40,6 +41,7 @@ static void start_controller(struct simulation *s, const struct session *session
     struct controller_config config = {
         .machine = &session->setup.machine,
         .can = port,
+        .dcf = configuration_files_get(),
         .step = field_get_step_port(&s->field),
         .tools = &session->tools.table,
         .correction = session->correction,
