@@ -31,14 +31,6 @@ void drives_begin_guard(struct drives *d, struct drives_guard *guard)
     guard->toggle = NMT_TOGGLE;
 }
 
-bool drives_takes_beat(struct drives_guard *guard, const struct can_frame *frame)
-{
-    const uint8_t toggle = frame->data[0] & NMT_TOGGLE;
-    const bool counts = !guard->is_on || toggle != guard->toggle;
-    guard->toggle = toggle;
-    return counts;
-}
-
 /* Guard k, of the drives and behind them of the I/O nodes, and its node; NULL: it has not been started. */
 static const struct drives_guard *guard_of(const struct drives *d, unsigned k, uint8_t *node)
 {
@@ -53,7 +45,7 @@ static const struct drives_guard *guard_of(const struct drives *d, unsigned k, u
 /* One that is refused is missed, as if it had got lost. */
 void drives_send_guard(struct drives *d, const struct can_port *port)
 {
-    const unsigned turn = d->guards ? d->cycle % drives_guard_cycles(d) : UINT32_MAX;
+    const unsigned turn = d->cycle % drives_guard_cycles(d);
     const struct drives_guard *guard = NULL;
     struct can_frame frame;
     uint8_t node;

@@ -149,7 +149,17 @@ static inline bool drives_guards_in_time(const struct drives *d, uint32_t life_m
 }
 void drives_begin_guard(struct drives *d, struct drives_guard *guard);
 /* A heartbeat counts; an answer of a guarded node does when its toggle bit has changed. */
-bool drives_takes_beat(struct drives_guard *guard, const struct can_frame *frame);
+static inline bool drives_takes_beat(struct drives_guard *guard, const struct can_frame *frame)
+{
+    const uint8_t toggle = frame->data[0] & NMT_TOGGLE;
+
+    if (!guard->is_on)
+        return true;
+    const bool counts = toggle != guard->toggle;
+
+    guard->toggle = toggle;
+    return counts;
+}
 void drives_send_guard(struct drives *d, const struct can_port *port);
 /* Of a question and its answer at worst; 0: nobody is guarded. */
 uint32_t drives_guard_bits(const struct drives *d);

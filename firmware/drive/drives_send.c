@@ -239,7 +239,8 @@ static void send_quick_stop(struct drives *d, const struct can_port *port)
 void drives_send(struct drives *d, const struct can_port *port, const struct point *setpoint)
 {
     send_heartbeat(d, port);
-    drives_send_guard(d, port);
+    if (d->guards)
+        drives_send_guard(d, port);
     switch (d->state) {
     case DRIVES_STARTING:
         send_starting(d, port);
