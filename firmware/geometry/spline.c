@@ -17,6 +17,7 @@ static void set_axis(struct curve *c, int i, const struct point control[4], doub
     const double c3 = control[3].at[i];
 
     c->start.at[i] = c->end.at[i] = c0;
+    c->slope.at[i] = c->spline.square.at[i] = c->spline.cube.at[i] = 0.0;
     if (c0 == c1 && c1 == c2 && c2 == c3) {
         return;
     }
@@ -41,9 +42,10 @@ void curve_set_spline(struct curve *c, const struct point control[4], double len
 {
     const double inverse_mm = 1.0 / length_mm;
 
-    memset(c, 0, sizeof(*c));
     c->kind = CURVE_SPLINE;
+    c->rotary = false;
     c->length_mm = length_mm;
+    c->spline.moves = 0;
     for (int i = 0; i < AXIS_COUNT; i++) {
         set_axis(c, i, control, inverse_mm);
     }

@@ -572,10 +572,11 @@ static bool is_arc(const uint8_t *record, const struct block *b)
 
 bool record_begin_curve(const uint8_t *record, struct block *b)
 {
-    const struct point start = b->curve.start;
     const bool arc = is_arc(record, b);
 
     if (arc) {
+        const struct point start = b->curve.start;
+
         curve_begin_arc(&b->curve, &start, &b->move.end, b->move.plane, b->move.centre_mm);
     }
     return arc;
@@ -584,12 +585,12 @@ bool record_begin_curve(const uint8_t *record, struct block *b)
 /* Motions of a spline's and involutes' shape have their curves already. */
 void record_finish(const uint8_t *record, struct block *b)
 {
-    const struct point start = b->curve.start;
-
     if (is_arc(record, b)) {
         (void)curve_end_arc(&b->curve, b->move.kind == MOVE_ARC_CW, b->move.turns);
-    } else if (move_is_motion(&b->move) && (record[AT_FLAGS] & FLAG_SPLINE) == 0 &&
+    } else if ((record[AT_FLAGS] & FLAG_SPLINE) == 0 && move_is_motion(&b->move) &&
                !move_is_involute(&b->move)) {
+        const struct point start = b->curve.start;
+
         (void)move_curve(&b->move, &start, &b->curve);
     }
 }
