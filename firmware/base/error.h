@@ -261,11 +261,9 @@
     X(MACHINE_IO, "%w is wired wrongly, or has no node before it: the first is io 1")              \
     X(MACHINE_IO_NODE, "%w: another node on the bus has its id %v")                                \
     X(MACHINE_GANTRY,                                                                              \
-      "a gantry needs a CAN drive on X, Y or Z, a free node, skew_max_mm; %v drives at most, and " \
-      "no gantry missing before it")                                                               \
+      "a gantry needs X, Y or Z on CAN, a free node, skew_max_mm, no gap; %v drives at most")      \
     X(MACHINE_GANTRY_HOME,                                                                         \
-      "gantry of axis %w: the maker's home_method of the axis and a reversed motor need a "        \
-      "home_method in [gantry]")                                                                   \
+      "gantry of axis %w: a maker's home_method and a reversed motor need one in [gantry], too")   \
     X(MACHINE_FORM, "'%w' of this machine is for comparison: this image has only its default")     \
     X(SETTINGS_ABSENT, "no settings are stored: make them with takt machine --pack and load them") \
     X(SETTINGS_KIND, "these are no settings of this version")                                      \

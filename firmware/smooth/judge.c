@@ -28,7 +28,7 @@
 #define CHANGE_MOST 64.0f
 
 /* Places looked at in a piece. */
-#define PLACES 4
+#define PLACES 8
 
 /* A corner is passed so many pieces from where its place is, at most. */
 #define CORNER_PIECES 3

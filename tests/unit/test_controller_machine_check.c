@@ -114,9 +114,8 @@ static void test_io_nodes_follow_each_other_and_have_ids_of_their_own(void)
 
 static void expect_gantry_refused(void)
 {
-    expect(TAKT_ERROR_MACHINE_GANTRY, "a gantry needs a CAN drive on X, Y or Z, a free node, "
-                                      "skew_max_mm; 6 drives at most, and no "
-                                      "gantry missing before it");
+    expect(TAKT_ERROR_MACHINE_GANTRY, "a gantry needs X, Y or Z on CAN, a free node, skew_max_mm, "
+                                      "no gap; 6 drives at most");
 }
 
 static void test_gantries_follow_each_other_on_axes_and_nodes_of_their_own(void)
@@ -145,9 +144,8 @@ static void test_a_home_of_the_makers_method_is_told_for_a_reversed_motor(void)
     machine.axis[AXIS_Y].home_method = -3;
     TEST_ASSERT_TRUE(machine_check(&machine, &wrong));
     machine.gantry[0].is_reversed = 1;
-    expect(TAKT_ERROR_MACHINE_GANTRY_HOME, "gantry of axis Y: the maker's home_method of the axis "
-                                           "and a reversed motor need a home_method in "
-                                           "[gantry]");
+    expect(TAKT_ERROR_MACHINE_GANTRY_HOME, "gantry of axis Y: a maker's home_method and a reversed "
+                                           "motor need one in [gantry], too");
     machine.gantry[0].home_method = -4;
     TEST_ASSERT_TRUE(machine_check(&machine, &wrong));
     machine.axis[AXIS_Z].home_method = 0;

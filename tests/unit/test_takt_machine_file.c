@@ -46,7 +46,9 @@ static void expect_same_values(void)
 
     for (size_t k = 0; k < machine_keys_count; k++) {
         const struct machine_key *key = &machine_keys[k];
-        const unsigned places = key->section == SECTION_IO ? IO_NODES_MAX : AXIS_COUNT;
+        const unsigned places = key->section == SECTION_IO       ? IO_NODES_MAX
+                                : key->section == SECTION_GANTRY ? MACHINE_GANTRIES_MAX
+                                                                 : AXIS_COUNT;
 
         for (unsigned i = 0; i < places; i++) {
             struct machine_place place = {key->section, i};
