@@ -37,7 +37,7 @@
 #define BEHIND_PIECES 4
 
 /* Part of what the order of the route leaves, which the curve between the places looked at does not need. */
-#define ORDER_PART 0.3
+#define ORDER_PART 0.4
 
 /* Corners of lines that turn less are within the tube anyway. */
 #define CORNER_MIN 0.005f
