@@ -8,8 +8,11 @@
 #define LIMIT 0.999f
 
 /* Parts of its acceleration that an axis at its highest velocity is left for changes of rate (override, hold). */
-#define CHANGE_LEAST     0.06
-#define CHANGE_MOST_PART 0.2
+#define LEFT_LEAST 0.06
+#define LEFT_MOST  0.5
+
+/* Part of the pieces before the lead point that are known on the average: README.md. */
+#define KNOWN_PART 0.7
 
 /* Parts of the jerk that beginning to change the rate may need, and changing it in a bend: the curve needs the rest. */
 #define ROUNDING_PART 0.3
@@ -78,17 +81,24 @@ void judge_need(const struct window *w, const struct route *r, unsigned piece,
     need->feed_mm_s = feed_of(r, need, route_element(r, w->element[piece + 1])->rotary);
 }
 
+/* The highest acceleration that an axis reaches on its way to V: A, or sqrt(V J) where that is less. */
+static double reached(const struct smooth_limits *limits, int axis)
+{
+    return maths_min(limits->acceleration_mm_s2[axis],
+                     maths_sqrt(limits->velocity_mm_s[axis] * limits->jerk_mm_s3[axis]));
+}
+
 /*
  * The lead point comes to rest from the full rate over the pieces that it knows, n of d s: r' = 1/(2 n d). Less would make it
- * slow before the end of what is known, over and over; more is not worth what it takes from the curve.
+ * slow before the end of what is known, over and over.
  */
 static double change_of_axis_at_rest(const struct smooth_limits *limits, double interval_s,
                                      int axis)
 {
-    const double most = limits->acceleration_mm_s2[axis] / limits->velocity_mm_s[axis];
-    const double needed = 1.0 / (2.0 * SMOOTH_AHEAD_PIECES * interval_s);
+    const double most = reached(limits, axis) / limits->velocity_mm_s[axis];
+    const double needed = 1.0 / (2.0 * KNOWN_PART * SMOOTH_AHEAD_PIECES * interval_s);
 
-    return maths_clamp(needed, CHANGE_LEAST * most, CHANGE_MOST_PART * most);
+    return maths_clamp(needed, LEFT_LEAST * most, LEFT_MOST * most);
 }
 
 /*
@@ -104,7 +114,7 @@ void judge_change(const struct smooth_limits *limits, double interval_s,
     change->by = MATHS_INFINITY;
     for (int i = 0; i < AXIS_COUNT; i++) {
         if ((limits->axes >> i & 1U) != 0) {
-            const double ramp_s = limits->acceleration_mm_s2[i] / limits->jerk_mm_s3[i];
+            const double ramp_s = reached(limits, i) / limits->jerk_mm_s3[i];
 
             change->by = maths_min(change->by, change_of_axis_at_rest(limits, interval_s, i));
             rounding_s = maths_max(rounding_s, ramp_s);
@@ -117,14 +127,6 @@ void judge_change(const struct smooth_limits *limits, double interval_s,
         change->by = maths_min(change->by, most * change->rounding_s);
     }
     change->rounded = change->by / change->rounding_s;
-}
-
-void judge_leave(const struct judge_change *change, struct route_slots *slots)
-{
-    for (unsigned i = 0; i < slots->count; i++) {
-        slots->left[i] =
-            1.0f - (float)change->by * slots->velocity_mm_s[i] / slots->acceleration_mm_s2[i];
-    }
 }
 
 /*

@@ -31,8 +31,6 @@ struct judge_change {
 /* What a machine's axes are left for changes of rate, where a piece takes so long. */
 void judge_change(const struct smooth_limits *limits, double interval_s,
                   struct judge_change *change);
-/* And what they are left for the curve: sets the slots' part. */
-void judge_leave(const struct judge_change *change, struct route_slots *slots);
 void judge_need(const struct window *w, const struct route *r, unsigned piece,
                 struct judge_need *need);
 /*

@@ -85,6 +85,19 @@ static double merged_within(const struct move *move)
 }
 
 /*
+ * Between -V and V an axis comes to sqrt(2 V J) at most, rising and falling by J: what it could do beyond that is of no use, and
+ * nothing is to depend on it.
+ */
+static void limit_reached(struct smooth_limits *limits)
+{
+    for (int i = 0; i < AXIS_COUNT; i++) {
+        limits->acceleration_mm_s2[i] =
+            maths_min(limits->acceleration_mm_s2[i],
+                      maths_sqrt(2.0 * limits->velocity_mm_s[i] * limits->jerk_mm_s3[i]));
+    }
+}
+
+/*
  * A chord of one cycle leaves the curve by A cycle^2/8 at most: where that is much of the tolerance, less acceleration is
  * used.
  */
@@ -112,6 +125,7 @@ static void begin(struct smooth *s, const struct move *move)
     const double tolerance_mm = move->tolerance_mm - merged_within(move);
     struct smooth_limits limits = s->limits;
 
+    limit_reached(&limits);
     limit_chord(&limits, tolerance_mm);
     route_init(&s->route, &limits, tolerance_mm);
     const double interval_s =
@@ -131,7 +145,8 @@ static void begin(struct smooth *s, const struct move *move)
     s->mark_mm = 0.0;
     s->idle = 0;
     judge_change(&limits, interval_s, &s->change);
-    judge_leave(&s->change, &s->route.slots);
+    s->route.slots.change_per_s = (float)s->change.by;
+    s->route.slots.rounded_per_s2 = (float)s->change.rounded;
     s->merge.open = false;
     window_init(&s->window, &s->route, interval_s);
 }
