@@ -231,24 +231,63 @@ static float dot_of(const struct route *r, const float a[], const float b[])
     return dot;
 }
 
-/* Does all of the piece go the way from its first control point to its last? */
-static bool goes_on(const struct route *r, const struct steps *s)
+/* Square of the sine of the largest angle between a piece and the way from its first control point to its last; 1: a right one. */
+static float turn_square(const struct route *r, const struct steps *s)
 {
-    return dot_of(r, s->step[0], s->way) > 0.0f && dot_of(r, s->step[1], s->way) > 0.0f &&
-           dot_of(r, s->step[2], s->way) > 0.0f;
+    const float way = dot_of(r, s->way, s->way);
+    float most = 0.0f;
+
+    for (unsigned k = 0; k < 3; k++) {
+        const float along = dot_of(r, s->step[k], s->way);
+        const float both = dot_of(r, s->step[k], s->step[k]) * way;
+
+        if (along < 0.0f) {
+            return 1.0f;
+        }
+        most = both > 0.0f ? single_max(most, 1.0f - along * along / both) : most;
+    }
+    return most;
+}
+
+/* Square of c_0 - 2 c_1 + c_2 at a sample, over all axes, in which mm and degrees count alike: the second derivative. */
+static float bend_square(const struct window *w, const struct route *r, unsigned sample)
+{
+    float square = 0.0f;
+
+    for (unsigned i = 0; i < r->slots.count; i++) {
+        const int32_t bend =
+            window_x(w, i, sample - 1) - 2 * window_x(w, i, sample) + window_x(w, i, sample + 1);
+        const float weighted = w->weighted_unit_mm[i] * (float)bend;
+
+        square += weighted * weighted;
+    }
+    return square;
+}
+
+/* The most of that on a piece and its neighbours, which a line between two setpoints may reach into. */
+static float bend_around(const struct window *w, const struct route *r, unsigned piece)
+{
+    const unsigned end = piece + 5 < w->count ? piece + 4 : w->count - 1;
+    float most = 0.0f;
+
+    for (unsigned i = piece > 0 ? piece : 1; i < end; i++) {
+        most = single_max(most, bend_square(w, r, i));
+    }
+    return single_sqrt(most);
 }
 
 /*
- * The most of c_0 - 2 c_1 + c_2, over all axes, in which mm and degrees count alike: the second derivative, which is largest at
- * one of the ends. What lies along the way takes no place off the line, unless it turns back.
+ * The most across a piece; it is largest at one of the ends. What lies along the piece takes no place off the line; what lies along the way from its first control point to its last does
+ * so where the piece turns from that.
  */
-static float bend_of(const struct window *w, const struct route *r, unsigned piece)
+static float bend_across(const struct window *w, const struct route *r, unsigned piece)
 {
     struct steps s;
     float most = 0.0f;
 
     steps_of(w, r, piece, &s);
-    const float way = goes_on(r, &s) ? dot_of(r, s.way, s.way) : SINGLE_INFINITY;
+    const float way = dot_of(r, s.way, s.way);
+    const float turn = single_sqrt(turn_square(r, &s));
 
     for (unsigned k = 0; k < 2; k++) {
         float bend[SMOOTH_SLOTS_MAX];
@@ -256,26 +295,31 @@ static float bend_of(const struct window *w, const struct route *r, unsigned pie
         for (unsigned i = 0; i < r->slots.count; i++) {
             bend[i] = s.step[k + 1][i] - s.step[k][i];
         }
-        const float along = dot_of(r, bend, s.way);
+        const float square = dot_of(r, bend, bend);
+        const float along =
+            way > 0.0f ? single_abs(dot_of(r, bend, s.way)) / single_sqrt(way) : 0.0f;
+        const float across = single_sqrt(single_max(0.0f, square - along * along));
 
-        most = single_max(most, dot_of(r, bend, bend) - along * along / way);
+        most = single_max(most, across + turn * along);
     }
-    return single_sqrt(most);
+    return most;
 }
 
 /* How many places of a piece are looked at, and how near they must be. */
 struct look {
     unsigned places;
     float within_mm;
+    float corner_mm; /* how near chords between them must be to corners */
 };
 
 /*
  * Between two places that are h of a piece apart the curve leaves their chord by |x''| h^2/8 at most. So many are looked at
- * that this takes no more than the part that is not judged.
+ * that this takes no more than the part that is not judged. The lines through setpoints, a cycle apart, leave corners by
+ * |x''| cycle^2/8 more.
  */
 static struct look look_of(const struct window *w, const struct route *r, unsigned piece)
 {
-    const float bend = bend_of(w, r, piece);
+    const float bend = bend_across(w, r, piece);
     const float tolerance_mm = (float)r->tolerance_mm;
     const float spare_mm = (1.0f - JUDGED) * tolerance_mm;
     struct look look = {.places = 1};
@@ -287,6 +331,7 @@ static struct look look_of(const struct window *w, const struct route *r, unsign
     const float off = bend / (8.0f * (float)(look.places * look.places));
 
     look.within_mm = single_min(JUDGED * tolerance_mm, tolerance_mm - off);
+    look.corner_mm = look.within_mm - bend_around(w, r, piece) * r->chord_per_bend;
     return look;
 }
 
@@ -337,12 +382,13 @@ static unsigned follow(const struct window *w, const struct route *r, unsigned p
                        struct order *order)
 {
     const struct look look = look_of(w, r, piece);
-    struct order_chord chord = {.within_mm = look.within_mm, .believed_mm = w->at_mm[piece + 2]};
+    struct order_chord chord = {.within_mm = look.within_mm,
+                                .corner_mm = look.corner_mm,
+                                .believed_mm = w->at_mm[piece + 2]};
     struct window_spot a;
     float weight[4];
     unsigned k = 1;
 
-    chord.corner_mm = chord.within_mm - (float)r->chord_mm;
     window_weights(0.0f, weight);
     window_spot(w, r, piece, weight, &a);
     for (; k <= look.places && order->count > 0; k++) {

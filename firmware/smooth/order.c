@@ -178,7 +178,8 @@ void order_start(struct order *o, double at_mm, uint32_t element)
 
 /*
  * Link after link: it is come to where the curve could be beside it before, or has passed its start. What of it lies within
- * the tolerance of the chord's end can be come to then; and its own end, where that is passed after its start.
+ * the tolerance of the chord's end can be come to then; and its own end, where that is passed after its start. To have come to
+ * the end of a link is not to have passed it.
  */
 void order_go(struct order *o, const struct route *r, const struct order_chord *chord)
 {
@@ -190,9 +191,6 @@ void order_go(struct order *o, const struct route *r, const struct order_chord *
 
     o->count = 0;
     for (unsigned i = 0; i < LINKS_MAX && l.element < r->count; i++) {
-        while (next < before.count && before.span[next].last_mm < l.at_mm) {
-            next++;
-        }
         if (!(part < NOWHERE)) {
             if (next == before.count) {
                 break;
@@ -209,6 +207,9 @@ void order_go(struct order *o, const struct route *r, const struct order_chord *
         }
         add_link(o, r, chord, &l);
         part = pass_end(r, chord, &l, part);
+        while (next < before.count && before.span[next].last_mm <= l.end_mm) {
+            next++;
+        }
         l.at_mm = l.end_mm;
         l.element += l.end_mm == route_end_of(r, l.element) ? 1 : 0;
     }

@@ -518,7 +518,7 @@ void relax_window(struct relax *x, struct window *w, const struct route *r, doub
     const float tolerance = (float)tolerance_mm;
     struct relax_pass pass = {.over = 1.0f, .calm = 1.0f, .weight = 1.0f};
 
-    pass.corner_most = 1.0f - (float)r->chord_mm / tolerance;
+    pass.corner_most = 1.0f - r->chord_mm / tolerance;
     begin(x, w, r, tolerance);
     bands_build(x, w, r, pass.weight);
     project(x, w, r, tolerance, &pass);

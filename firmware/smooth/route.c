@@ -35,7 +35,7 @@ static void set_slots(struct route_slots *s, const struct smooth_limits *limits)
 
 void route_init(struct route *r, const struct smooth_limits *limits, double tolerance_mm)
 {
-    r->chord_mm = limits->chord_mm;
+    r->chord_mm = (float)limits->chord_mm;
     set_slots(&r->slots, limits);
     r->tolerance_mm = tolerance_mm;
     r->first = 0;

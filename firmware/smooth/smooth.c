@@ -32,7 +32,10 @@
 #define NEARER 0.95f
 
 /* Part of the tolerance that the chords between setpoints may take, for each axis. */
-#define CHORD_PART 0.1
+#define CHORD_PART 0.25
+
+/* Of the acceleration that a corner within the tolerance comes to by jerk alone, cbrt(P J^2). */
+#define CORNER_PART 1.5
 
 /* A curve goes on by this part of the tolerance, or of the way at nominal feed, in so many windows, or it never will. */
 #define STALL_PART    0.1
@@ -99,7 +102,7 @@ static void limit_reached(struct smooth_limits *limits)
 
 /*
  * A chord of one cycle leaves the curve by A cycle^2/8 at most: where that is much of the tolerance, less acceleration is
- * used.
+ * used. At a corner there is no more than jerk leaves time for.
  */
 static void limit_chord(struct smooth_limits *limits, double tolerance_mm)
 {
@@ -112,8 +115,11 @@ static void limit_chord(struct smooth_limits *limits, double tolerance_mm)
         limits->acceleration_mm_s2[i] =
             maths_min(limits->acceleration_mm_s2[i], CHORD_PART * tolerance_mm / (weight * t));
         if ((limits->axes >> i & 1U) != 0) {
-            square +=
-                limits->acceleration_mm_s2[i] * limits->acceleration_mm_s2[i] * weight * weight;
+            const double j = limits->jerk_mm_s3[i] * weight;
+            const double a = maths_min(limits->acceleration_mm_s2[i] * weight,
+                                       CORNER_PART * maths_cbrt(tolerance_mm * j * j));
+
+            square += a * a;
         }
     }
     limits->chord_mm = maths_sqrt(square) * t;
@@ -130,6 +136,8 @@ static void begin(struct smooth *s, const struct move *move)
     route_init(&s->route, &limits, tolerance_mm);
     const double interval_s =
         interval_of(&s->limits, &limits, move->tolerance_mm, window_capacity(&s->route));
+    s->route.chord_per_bend =
+        (float)(limits.cycle_s * limits.cycle_s / (8.0 * interval_s * interval_s));
 
     s->open = true;
     s->ready = 0;

@@ -176,6 +176,22 @@ static void test_a_corner_is_passed_nearer_where_chords_leave_the_curve(void)
     TEST_ASSERT_TRUE(order_reaches(&order, 1.01));
 }
 
+/* The end of a line is within the tolerance of a chord that does not come near enough to the corner there. */
+static void test_a_corner_is_not_passed_by_what_only_comes_to_its_place(void)
+{
+    struct order_chord chord = {.within_mm = 0.1f, .corner_mm = 0.05f, .way = {0.93f}};
+
+    line_to(1.0, 0.0);
+    line_to(1.0, 1.0);
+    order_go(&order, &route, &chord);
+    TEST_ASSERT_TRUE(order_reaches(&order, 1.0));
+    chord.from[0] = 0.93;
+    chord.way[0] = 0.0f;
+    chord.way[1] = 0.09f;
+    order_go(&order, &route, &chord);
+    TEST_ASSERT_FALSE(order_reaches(&order, 1.01));
+}
+
 /* A raster finer than the tolerance has more stretches than are kept: one of those that are kept leads on. */
 static void test_of_many_stretches_enough_are_kept(void)
 {
@@ -208,6 +224,7 @@ int main(void)
     RUN_TEST(test_a_stroke_back_is_left_out_up_to_two_tolerances);
     RUN_TEST(test_a_full_circle_is_left_out_up_to_a_diameter_of_the_tolerance);
     RUN_TEST(test_a_corner_is_passed_nearer_where_chords_leave_the_curve);
+    RUN_TEST(test_a_corner_is_not_passed_by_what_only_comes_to_its_place);
     RUN_TEST(test_of_many_stretches_enough_are_kept);
     RUN_TEST(test_the_place_to_rest_at_is_one_that_can_have_been_come_to);
     return UNITY_END();
