@@ -279,7 +279,7 @@ static unsigned wanted(const struct smooth *s)
 
 static void judged(const struct smooth *s, struct judge_verdict *v)
 {
-    judge_pieces(&s->window, &s->route, wanted(s), &s->order, v);
+    judge_pieces(&s->window, &s->route, wanted(s), kept_most(s), &s->order, v);
 }
 
 /* Do so many pieces come to the end of the chain? */
@@ -419,9 +419,13 @@ static void slow_down(struct smooth *s, union smooth_scratch *scratch, struct ju
 }
 
 /* The order goes on to the end of what is handed on; where the axes went back to the route it begins there. */
-static void follow_ready(struct smooth *s)
+static void follow_ready(struct smooth *s, const struct judge_verdict *v)
 {
-    judge_order(&s->window, &s->route, s->ready, &s->order);
+    if (s->ready == v->followed && !s->stops) {
+        s->order = v->order;
+    } else {
+        judge_order(&s->window, &s->route, s->ready, &s->order);
+    }
     if (s->order.count == 0) {
         order_start(&s->order, s->window.at_mm[s->ready + 1], s->window.element[s->ready + 1]);
     }
@@ -450,7 +454,7 @@ static void smooth_window(struct smooth *s, union smooth_scratch *scratch)
     if (s->ready == 0 || (s->proved == 0 && !is_end(s, good)) || stands_still(s)) {
         fall_back(s);
     }
-    follow_ready(s);
+    follow_ready(s, &v);
 }
 
 /* Control point of a piece; exactly the programmed end where it is that. */
