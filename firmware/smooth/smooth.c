@@ -2,6 +2,7 @@
 
 #include "base/maths.h"
 #include "smooth/interval.h"
+#include "smooth/nominal.h"
 #include "smooth/single.h"
 #include "smooth/straight.h"
 
@@ -33,6 +34,9 @@
 
 /* Part of the tolerance that the chords between setpoints may take, for each axis. */
 #define CHORD_PART 0.1
+
+/* Where it does not, so much of the tolerance is used from there on. */
+#define NARROWER 0.25
 
 /* A curve goes on by this part of the tolerance, or of the way at nominal feed, in so many windows, or it never will. */
 #define STALL_PART    0.1
@@ -119,6 +123,18 @@ static void limit_chord(struct smooth_limits *limits, double tolerance_mm)
     limits->chord_mm = maths_sqrt(square) * t;
 }
 
+/* The time between samples, and what depends on it; the window is empty. */
+static void set_interval(struct smooth *s, const struct smooth_limits *limits, double tolerance_mm)
+{
+    const double interval_s =
+        interval_of(&s->limits, limits, tolerance_mm, window_capacity(&s->route));
+
+    judge_change(limits, interval_s, &s->change);
+    s->route.slots.change_per_s = (float)s->change.by;
+    s->route.slots.rounded_per_s2 = (float)s->change.rounded;
+    window_init(&s->window, &s->route, interval_s);
+}
+
 /* What merging may use of the tolerance is not there for smoothing. */
 static void begin(struct smooth *s, const struct move *move)
 {
@@ -128,14 +144,13 @@ static void begin(struct smooth *s, const struct move *move)
     limit_reached(&limits);
     limit_chord(&limits, tolerance_mm);
     route_init(&s->route, &limits, tolerance_mm);
-    const double interval_s =
-        interval_of(&s->limits, &limits, move->tolerance_mm, window_capacity(&s->route));
-
+    set_interval(s, &limits, move->tolerance_mm);
     s->open = true;
     s->ready = 0;
     s->taken = 0;
     s->proved = 0;
     s->stops = false;
+    s->narrows = false;
     s->starts = true;
     s->standing = 0;
     order_start(&s->order, 0.0, 0);
@@ -144,11 +159,27 @@ static void begin(struct smooth *s, const struct move *move)
     s->tried = 0;
     s->mark_mm = 0.0;
     s->idle = 0;
-    judge_change(&limits, interval_s, &s->change);
-    s->route.slots.change_per_s = (float)s->change.by;
-    s->route.slots.rounded_per_s2 = (float)s->change.rounded;
     s->merge.open = false;
-    window_init(&s->window, &s->route, interval_s);
+}
+
+/*
+ * Where parts of the route lie within the tolerance of each other, a curve may find no way on between them: it goes on nearer
+ * to the route, as long as chords take no more of that. The axes stand.
+ */
+static void narrow(struct smooth *s)
+{
+    const double tolerance_mm = NARROWER * s->route.tolerance_mm;
+    struct smooth_limits limits = s->limits;
+
+    limit_reached(&limits);
+    limit_chord(&limits, tolerance_mm);
+    if (limits.chord_mm < s->route.chord_mm) {
+        return;
+    }
+    s->route.tolerance_mm = tolerance_mm;
+    nominal_again(&s->route);
+    set_interval(s, &limits, tolerance_mm);
+    s->window.count = SMOOTH_FIXED;
 }
 
 /* The newest line will not grow any more. */
@@ -353,27 +384,32 @@ static void fall_back(struct smooth *s)
     }
 }
 
-/* How far the curve should go on in so many pieces: a tolerance, or at nominal feed, or to the end of what is known. */
+/* How far the curve should go on in so many pieces: a part of a tolerance, or at nominal feed, or to the end of what is known. */
 static double way_expected(const struct smooth *s, unsigned pieces)
 {
     const struct window *w = &s->window;
     const double feed_mm_s = (double)route_element(&s->route, w->element[s->ready])->feed_mm_s;
     const double way_mm = maths_min(s->route.tolerance_mm, pieces * w->interval_s * feed_mm_s);
 
-    return maths_min(way_mm, route_end(&s->route) - s->mark_mm);
+    return STALL_PART * maths_min(way_mm, route_end(&s->route) - s->mark_mm);
 }
 
 /*
  * Does the curve stand where it is? Slowed down again and again before a place that it cannot pass, it keeps every limit
  * and the tolerance there for ever.
  */
-static bool stands_still(struct smooth *s)
+static bool stands_still(struct smooth *s, const struct judge_verdict *v)
 {
     const unsigned pieces = STALL_WINDOWS * kept_most(s);
     const double at_mm = s->window.at_mm[s->ready];
+    const double ahead_mm = s->window.at_mm[v->whole[v->good]];
+
+    if (v->good >= kept_most(s) && ahead_mm <= s->mark_mm + way_expected(s, kept_most(s))) {
+        return true;
+    }
 
     s->idle += s->ready;
-    if (at_mm > s->mark_mm + STALL_PART * way_expected(s, pieces)) {
+    if (at_mm > s->mark_mm + way_expected(s, pieces)) {
         s->mark_mm = at_mm;
         s->idle = 0;
     }
@@ -451,7 +487,8 @@ static void smooth_window(struct smooth *s, union smooth_scratch *scratch)
 
     s->ready = v.whole[kept(s, good)];
     s->proved = good - s->ready;
-    if (s->ready == 0 || (s->proved == 0 && !is_end(s, good)) || stands_still(s)) {
+    s->narrows = stands_still(s, &v);
+    if (s->ready == 0 || (s->proved == 0 && !is_end(s, good)) || s->narrows) {
         fall_back(s);
     }
     follow_ready(s, &v);
@@ -549,6 +586,10 @@ static void drop_taken(struct smooth *s)
         s->stops = false;
         s->starts = true;
         s->proved = 0;
+    }
+    if (s->narrows) {
+        narrow(s);
+        s->narrows = false;
     }
     if (s->window.count > 0) {
         route_forget(&s->route, s->window.at_mm[0]);
