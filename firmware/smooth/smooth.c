@@ -32,9 +32,6 @@
 /* Of what it left the tolerance by before, a slower piece leaves it by so much at most, or slower is no help. */
 #define NEARER 0.95f
 
-/* Part of the tolerance that the chords between setpoints may take, for each axis. */
-#define CHORD_PART 0.1
-
 /* Where it does not, so much of the tolerance is used from there on. */
 #define NARROWER 0.25
 
@@ -88,41 +85,6 @@ static double merged_within(const struct move *move)
     return maths_min(move->merge_mm, MERGED * move->tolerance_mm);
 }
 
-/*
- * Between -V and V an axis comes to sqrt(2 V J) at most, rising and falling by J: what it could do beyond that is of no use, and
- * nothing is to depend on it.
- */
-static void limit_reached(struct smooth_limits *limits)
-{
-    for (int i = 0; i < AXIS_COUNT; i++) {
-        limits->acceleration_mm_s2[i] =
-            maths_min(limits->acceleration_mm_s2[i],
-                      maths_sqrt(2.0 * limits->velocity_mm_s[i] * limits->jerk_mm_s3[i]));
-    }
-}
-
-/*
- * A chord of one cycle leaves the curve by A cycle^2/8 at most: where that is much of the tolerance, less acceleration is
- * used.
- */
-static void limit_chord(struct smooth_limits *limits, double tolerance_mm)
-{
-    const double t = limits->cycle_s * limits->cycle_s / 8.0;
-    double square = 0.0;
-
-    for (int i = 0; i < AXIS_COUNT; i++) {
-        const double weight = smooth_weight(i);
-
-        limits->acceleration_mm_s2[i] =
-            maths_min(limits->acceleration_mm_s2[i], CHORD_PART * tolerance_mm / (weight * t));
-        if ((limits->axes >> i & 1U) != 0) {
-            square +=
-                limits->acceleration_mm_s2[i] * limits->acceleration_mm_s2[i] * weight * weight;
-        }
-    }
-    limits->chord_mm = maths_sqrt(square) * t;
-}
-
 /* The time between samples, and what depends on it; the window is empty. */
 static void set_interval(struct smooth *s, const struct smooth_limits *limits, double tolerance_mm)
 {
@@ -141,8 +103,7 @@ static void begin(struct smooth *s, const struct move *move)
     const double tolerance_mm = move->tolerance_mm - merged_within(move);
     struct smooth_limits limits = s->limits;
 
-    limit_reached(&limits);
-    limit_chord(&limits, tolerance_mm);
+    smooth_limit(&limits, tolerance_mm);
     route_init(&s->route, &limits, tolerance_mm);
     set_interval(s, &limits, move->tolerance_mm);
     s->open = true;
@@ -171,8 +132,7 @@ static void narrow(struct smooth *s)
     const double tolerance_mm = NARROWER * s->route.tolerance_mm;
     struct smooth_limits limits = s->limits;
 
-    limit_reached(&limits);
-    limit_chord(&limits, tolerance_mm);
+    smooth_limit(&limits, tolerance_mm);
     if (limits.chord_mm < s->route.chord_mm) {
         return;
     }
