@@ -416,7 +416,7 @@ void judge_order(const struct window *w, const struct route *r, unsigned count, 
     }
 }
 
-void judge_pieces(const struct window *w, const struct route *r, unsigned count,
+void judge_pieces(const struct window *w, const struct route *r, unsigned count, unsigned keep,
                   const struct order *order, struct judge_verdict *v)
 {
     struct order o = *order;
@@ -424,6 +424,8 @@ void judge_pieces(const struct window *w, const struct route *r, unsigned count,
     v->good = 0;
     v->whole[0] = 0;
     v->beyond_mm = 0.0f;
+    v->followed = 0;
+    v->order = o;
     while (v->good < count) {
         const unsigned bad = follow(w, r, v->good, &o);
         const bool whole = order_reaches(&o, w->at_mm[v->good + 2]);
@@ -437,5 +439,9 @@ void judge_pieces(const struct window *w, const struct route *r, unsigned count,
         }
         v->good++;
         v->whole[v->good] = (unsigned char)(whole ? v->good : v->whole[v->good - 1]);
+        if (whole && v->good <= keep) {
+            v->followed = v->good;
+            v->order = o;
+        }
     }
 }

@@ -48,10 +48,12 @@ struct judge_verdict {
         beyond_mm; /* how far the next piece leaves the tolerance; 0 or less if it does not, but breaks the order */
     /* of so many pieces those after which the curve can have come as far as it is thought to be: no corner is left out */
     unsigned char whole[SMOOTH_SAMPLES_MAX];
+    unsigned followed;  /* the last of those of the pieces that were to be kept, */
+    struct order order; /* and what can have been come to there */
 };
 
-/* Of the first count pieces. order: what can have been come to where they begin. */
-void judge_pieces(const struct window *w, const struct route *r, unsigned count,
+/* Of the first count pieces, of which so many are to be kept. order: what can have been come to where they begin. */
+void judge_pieces(const struct window *w, const struct route *r, unsigned count, unsigned keep,
                   const struct order *order, struct judge_verdict *v);
 /* The order after the first count pieces. */
 void judge_order(const struct window *w, const struct route *r, unsigned count,

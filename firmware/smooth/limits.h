@@ -46,4 +46,7 @@ static inline double smooth_weight(int axis)
     return axis < AXIS_LINEAR_COUNT ? 1.0 : SMOOTH_RAD_WEIGHT;
 }
 
+/* What of a machine's limits is of use for a curve within a tolerance; sets chord_mm. */
+void smooth_limit(struct smooth_limits *limits, double tolerance_mm);
+
 #endif

@@ -33,11 +33,16 @@ static void set_slots(struct route_slots *s, const struct smooth_limits *limits)
     s->groups = (s->count + SMOOTH_LANES - 1) / SMOOTH_LANES;
 }
 
-void route_init(struct route *r, const struct smooth_limits *limits, double tolerance_mm)
+void route_limit(struct route *r, const struct smooth_limits *limits, double tolerance_mm)
 {
     r->chord_mm = (float)limits->chord_mm;
     set_slots(&r->slots, limits);
     r->tolerance_mm = tolerance_mm;
+}
+
+void route_init(struct route *r, const struct smooth_limits *limits, double tolerance_mm)
+{
+    route_limit(r, limits, tolerance_mm);
     r->first = 0;
     r->count = 0;
     r->bent_first = 0;

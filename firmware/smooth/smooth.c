@@ -2,6 +2,7 @@
 
 #include "base/maths.h"
 #include "smooth/interval.h"
+#include "smooth/nominal.h"
 #include "smooth/single.h"
 #include "smooth/straight.h"
 
@@ -31,11 +32,8 @@
 /* Of what it left the tolerance by before, a slower piece leaves it by so much at most, or slower is no help. */
 #define NEARER 0.95f
 
-/* Part of the tolerance that the chords between setpoints may take, for each axis. */
-#define CHORD_PART 0.25
-
-/* Of the acceleration that a corner within the tolerance comes to by jerk alone, cbrt(P J^2). */
-#define CORNER_PART 1.5
+/* Where a curve finds no way on, so much of the tolerance is used from there on. */
+#define NARROWER 0.25
 
 /* A curve goes on by this part of the tolerance, or of the way at nominal feed, in so many windows, or it never will. */
 #define STALL_PART    0.1
@@ -87,42 +85,18 @@ static double merged_within(const struct move *move)
     return maths_min(move->merge_mm, MERGED * move->tolerance_mm);
 }
 
-/*
- * Between -V and V an axis comes to sqrt(2 V J) at most, rising and falling by J: what it could do beyond that is of no use, and
- * nothing is to depend on it.
- */
-static void limit_reached(struct smooth_limits *limits)
+/* The time between samples, and what depends on it; the window is empty. */
+static void set_interval(struct smooth *s, const struct smooth_limits *limits, double tolerance_mm)
 {
-    for (int i = 0; i < AXIS_COUNT; i++) {
-        limits->acceleration_mm_s2[i] =
-            maths_min(limits->acceleration_mm_s2[i],
-                      maths_sqrt(2.0 * limits->velocity_mm_s[i] * limits->jerk_mm_s3[i]));
-    }
-}
+    const double interval_s =
+        interval_of(&s->limits, limits, tolerance_mm, window_capacity(&s->route));
 
-/*
- * A chord of one cycle leaves the curve by A cycle^2/8 at most: where that is much of the tolerance, less acceleration is
- * used. At a corner there is no more than jerk leaves time for.
- */
-static void limit_chord(struct smooth_limits *limits, double tolerance_mm)
-{
-    const double t = limits->cycle_s * limits->cycle_s / 8.0;
-    double square = 0.0;
-
-    for (int i = 0; i < AXIS_COUNT; i++) {
-        const double weight = smooth_weight(i);
-
-        limits->acceleration_mm_s2[i] =
-            maths_min(limits->acceleration_mm_s2[i], CHORD_PART * tolerance_mm / (weight * t));
-        if ((limits->axes >> i & 1U) != 0) {
-            const double j = limits->jerk_mm_s3[i] * weight;
-            const double a = maths_min(limits->acceleration_mm_s2[i] * weight,
-                                       CORNER_PART * maths_cbrt(tolerance_mm * j * j));
-
-            square += a * a;
-        }
-    }
-    limits->chord_mm = maths_sqrt(square) * t;
+    judge_change(limits, interval_s, &s->change);
+    s->route.slots.change_per_s = (float)s->change.by;
+    s->route.slots.rounded_per_s2 = (float)s->change.rounded;
+    s->route.chord_per_bend =
+        (float)(limits->cycle_s * limits->cycle_s / (8.0 * interval_s * interval_s));
+    window_init(&s->window, &s->route, interval_s);
 }
 
 /* What merging may use of the tolerance is not there for smoothing. */
@@ -131,19 +105,15 @@ static void begin(struct smooth *s, const struct move *move)
     const double tolerance_mm = move->tolerance_mm - merged_within(move);
     struct smooth_limits limits = s->limits;
 
-    limit_reached(&limits);
-    limit_chord(&limits, tolerance_mm);
+    smooth_limit(&limits, tolerance_mm);
     route_init(&s->route, &limits, tolerance_mm);
-    const double interval_s =
-        interval_of(&s->limits, &limits, move->tolerance_mm, window_capacity(&s->route));
-    s->route.chord_per_bend =
-        (float)(limits.cycle_s * limits.cycle_s / (8.0 * interval_s * interval_s));
-
+    set_interval(s, &limits, move->tolerance_mm);
     s->open = true;
     s->ready = 0;
     s->taken = 0;
     s->proved = 0;
     s->stops = false;
+    s->narrows = false;
     s->starts = true;
     s->standing = 0;
     order_start(&s->order, 0.0, 0);
@@ -152,11 +122,23 @@ static void begin(struct smooth *s, const struct move *move)
     s->tried = 0;
     s->mark_mm = 0.0;
     s->idle = 0;
-    judge_change(&limits, interval_s, &s->change);
-    s->route.slots.change_per_s = (float)s->change.by;
-    s->route.slots.rounded_per_s2 = (float)s->change.rounded;
     s->merge.open = false;
-    window_init(&s->window, &s->route, interval_s);
+}
+
+/*
+ * Where parts of the route lie within the tolerance of each other, a curve may find no way on between them: it goes on nearer
+ * to the route. The axes stand.
+ */
+static void narrow(struct smooth *s)
+{
+    const double tolerance_mm = NARROWER * s->route.tolerance_mm;
+    struct smooth_limits limits = s->limits;
+
+    smooth_limit(&limits, tolerance_mm);
+    route_limit(&s->route, &limits, tolerance_mm);
+    nominal_again(&s->route);
+    set_interval(s, &limits, tolerance_mm);
+    s->window.count = SMOOTH_FIXED;
 }
 
 /* The newest line will not grow any more. */
@@ -287,7 +269,7 @@ static unsigned wanted(const struct smooth *s)
 
 static void judged(const struct smooth *s, struct judge_verdict *v)
 {
-    judge_pieces(&s->window, &s->route, wanted(s), &s->order, v);
+    judge_pieces(&s->window, &s->route, wanted(s), kept_most(s), &s->order, v);
 }
 
 /* Do so many pieces come to the end of the chain? */
@@ -361,27 +343,32 @@ static void fall_back(struct smooth *s)
     }
 }
 
-/* How far the curve should go on in so many pieces: a tolerance, or at nominal feed, or to the end of what is known. */
+/* How far the curve should go on in so many pieces: a part of a tolerance, or at nominal feed, or to the end of what is known. */
 static double way_expected(const struct smooth *s, unsigned pieces)
 {
     const struct window *w = &s->window;
     const double feed_mm_s = (double)route_element(&s->route, w->element[s->ready])->feed_mm_s;
     const double way_mm = maths_min(s->route.tolerance_mm, pieces * w->interval_s * feed_mm_s);
 
-    return maths_min(way_mm, route_end(&s->route) - s->mark_mm);
+    return STALL_PART * maths_min(way_mm, route_end(&s->route) - s->mark_mm);
 }
 
 /*
  * Does the curve stand where it is? Slowed down again and again before a place that it cannot pass, it keeps every limit
  * and the tolerance there for ever.
  */
-static bool stands_still(struct smooth *s)
+static bool stands_still(struct smooth *s, const struct judge_verdict *v)
 {
     const unsigned pieces = STALL_WINDOWS * kept_most(s);
     const double at_mm = s->window.at_mm[s->ready];
+    const double ahead_mm = s->window.at_mm[v->whole[v->good]];
+
+    if (v->good >= kept_most(s) && ahead_mm <= s->mark_mm + way_expected(s, kept_most(s))) {
+        return true;
+    }
 
     s->idle += s->ready;
-    if (at_mm > s->mark_mm + STALL_PART * way_expected(s, pieces)) {
+    if (at_mm > s->mark_mm + way_expected(s, pieces)) {
         s->mark_mm = at_mm;
         s->idle = 0;
     }
@@ -427,9 +414,13 @@ static void slow_down(struct smooth *s, union smooth_scratch *scratch, struct ju
 }
 
 /* The order goes on to the end of what is handed on; where the axes went back to the route it begins there. */
-static void follow_ready(struct smooth *s)
+static void follow_ready(struct smooth *s, const struct judge_verdict *v)
 {
-    judge_order(&s->window, &s->route, s->ready, &s->order);
+    if (s->ready == v->followed && !s->stops) {
+        s->order = v->order;
+    } else {
+        judge_order(&s->window, &s->route, s->ready, &s->order);
+    }
     if (s->order.count == 0) {
         order_start(&s->order, s->window.at_mm[s->ready + 1], s->window.element[s->ready + 1]);
     }
@@ -455,10 +446,11 @@ static void smooth_window(struct smooth *s, union smooth_scratch *scratch)
 
     s->ready = v.whole[kept(s, good)];
     s->proved = good - s->ready;
-    if (s->ready == 0 || (s->proved == 0 && !is_end(s, good)) || stands_still(s)) {
+    s->narrows = stands_still(s, &v);
+    if (s->ready == 0 || (s->proved == 0 && !is_end(s, good)) || s->narrows) {
         fall_back(s);
     }
-    follow_ready(s);
+    follow_ready(s, &v);
 }
 
 /* Control point of a piece; exactly the programmed end where it is that. */
@@ -553,6 +545,10 @@ static void drop_taken(struct smooth *s)
         s->stops = false;
         s->starts = true;
         s->proved = 0;
+    }
+    if (s->narrows) {
+        narrow(s);
+        s->narrows = false;
     }
     if (s->window.count > 0) {
         route_forget(&s->route, s->window.at_mm[0]);

@@ -81,6 +81,7 @@ struct smooth {
     bool leaves;       /* after those the chain goes on; else they end it, or a part of it */
     struct smooth_piece stand;
     bool stops;     /* the last of the ready ones is a stop */
+    bool narrows;   /* and from there on less of the tolerance is used */
     bool ends;      /* the window's end is that of the chain */
     bool open;      /* a chain has begun and not been taken to its end */
     bool finished;  /* nothing follows in this chain */
