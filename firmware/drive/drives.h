@@ -56,6 +56,9 @@ struct drives_config_axis {
         dcf; /* it is set up by this, see drives_dcf.c. Must outlive the drives; NULL: by nothing */
     double
         increments_per_mm; /* position units of the drive per mm or rad; < 0: it turns the other way */
+    double
+        velocity_units_per_mm_s; /* of 60FF and 6099, and accelerations per mm/s2; 0: increments_per_mm */
+    double max_acceleration_mm_s2; /* of its setpoints */
     double travel_per_turn_mm;     /* of its motor, to check increments_per_mm by; 0: not checked */
     double following_error_max_mm; /* alarm beyond; 0: not watched */
     struct drives_identity identity;
@@ -79,6 +82,7 @@ struct drives_config {
     bool homed; /* all axes have been homed since power-on: they are not homed again */
     uint32_t cycle_us;
     uint32_t bitrate;             /* of the bus, bit/s */
+    double position_gain_per_s;   /* of drives that follow by velocity: drives_velocity.c; > 0 */
     uint8_t controller_node;      /* our own node id, for the heartbeat; none of the drives' */
     uint16_t heartbeat_ms;        /* period, of the drives and our own; 0: no heartbeats */
     uint32_t boot_timeout_cycles; /* that a drive takes to boot at most; it is reset twice */
@@ -132,6 +136,9 @@ enum drives_given_up {
     DRIVES_NO_TOUCH_PROBE,  /* it latches no position (60B8): a probing move has that of a cycle */
     DRIVES_NO_SCALING, /* it does not tell its scaling (6092, 608F): increments_per_mm is believed */
     DRIVES_GUARDED, /* it has no heartbeat (1017), and is asked for its state instead (100C, 100D) */
+    DRIVES_NO_POSITION, /* it follows velocities: the position loop is ours */
+    DRIVES_NO_RAMPS,    /* its ramps to a velocity (6083, 6084) are as they are set up */
+    DRIVES_NO_TYPE,     /* it names no profile (1000): it is taken for a drive */
     DRIVES_GIVEN_UP_COUNT
 };
 

@@ -84,9 +84,9 @@ struct drives_axis {
     uint8_t mode;         /* that the drive is to be in */
     uint16_t command;     /* controlword beside what the state asks for: CIA402_START_HOMING or 0 */
     uint16_t controlword; /* last sent */
-    int32_t target_inc;
-    double lag_mm; /* following error of the last report before a fault */
-    bool lost;     /* after a fault: its setpoints lead nowhere */
+    int32_t target_inc;   /* or velocity, where it follows that */
+    double lag_mm;        /* following error of the last report before a fault */
+    bool lost;            /* after a fault: its setpoints lead nowhere */
     bool homed;
     bool homing_seen;    /* the statusword has shown that homing is under way */
     int32_t braking_inc; /* where it was when its rest was looked at last, or squaring began */
@@ -103,8 +103,8 @@ struct drives_axis {
     struct drives_guard guard;
     bool is_paired;      /* its target shares a frame with that of its neighbour */
     uint8_t follow_mode; /* in which it follows targets */
-    uint8_t modes;       /* object 6502, of the modes 1 ... 8 */
     uint8_t told_mode;   /* by SDO */
+    uint16_t modes;      /* object 6502 */
     uint16_t bits;       /* of its frames in a cycle, at worst */
     uint32_t given_up;   /* bits: enum drives_given_up */
 };
@@ -133,6 +133,7 @@ struct drives {
     unsigned count;
     uint8_t node[AXIS_COUNT];
     uint32_t cycle_us;
+    double position_gain_per_s;
     uint8_t controller_node;
     uint16_t heartbeat_ms;
     uint32_t heartbeat_cycles;      /* period */
