@@ -138,7 +138,7 @@ enum drives_given_up {
     DRIVES_GUARDED, /* it has no heartbeat (1017), and is asked for its state instead (100C, 100D) */
     DRIVES_NO_POSITION, /* it follows velocities: the position loop is ours */
     DRIVES_NO_RAMPS,    /* its ramps to a velocity (6083, 6084) are as they are set up */
-    DRIVES_NO_TYPE,     /* it names no profile (1000): it is taken for a drive */
+    DRIVES_NO_TYPE,     /* its type (1000) is not that of a drive: it is taken for one */
     DRIVES_GIVEN_UP_COUNT
 };
 

@@ -16,10 +16,6 @@
 #define UINT32_LIMIT 4294967295.0
 #define INT32_LIMIT  2147483647.0
 
-/* Of device profiles. */
-#define PROFILE_FIRST 400
-#define PROFILE_LAST  499
-
 void drives_give_up(struct drives *d, unsigned index, enum drives_given_up what)
 {
     d->axis[index].given_up |= 1u << what;
@@ -54,16 +50,12 @@ bool drives_next_ask(struct drives *d, struct drives_step *step)
     return true;
 }
 
-/* The profile that a node names: of a drive, of anything else (CiA 400 to 499), or of nothing; then it is tried. */
+/* Of another type it is a drive all the same, if it tells modes or names no profile: see take_modes. */
 static void take_type(struct drives *d, const struct drives_answer *answer)
 {
-    const uint32_t profile = answer->value & OBJECT_DEVICE_PROFILE_MASK;
     const bool is_told = answer->abort_code == SDO_ABORT_NONE;
-    if (is_told && profile == OBJECT_DEVICE_PROFILE_402)
-        return;
-    if (is_told && profile >= PROFILE_FIRST && profile <= PROFILE_LAST)
-        drives_raise(d, d->at_axis, TAKT_ERROR_DRIVE_TYPE, answer->value, NULL);
-    else
+    d->read[0] = is_told ? answer->value : 0;
+    if ((d->read[0] & OBJECT_DEVICE_PROFILE_MASK) != OBJECT_DEVICE_PROFILE_402)
         drives_give_up(d, d->at_axis, DRIVES_NO_TYPE);
 }
 
@@ -90,7 +82,14 @@ static uint16_t mode_bit(unsigned mode)
     return (uint16_t)(1u << (mode - 1));
 }
 
-/* The best mode it has; one that does not tell is tried in cyclic synchronous position. */
+/* Device profiles are CiA 400 to 499. */
+static bool is_something_else(uint32_t type)
+{
+    const uint32_t profile = type & OBJECT_DEVICE_PROFILE_MASK;
+    return profile >= 400 && profile <= 499 && profile != OBJECT_DEVICE_PROFILE_402;
+}
+
+/* The best mode it has; one that does not tell is tried in cyclic synchronous position, unless it is something else. */
 static void take_modes(struct drives *d, const struct drives_answer *answer)
 {
     struct drives_axis *axis = &d->axis[d->at_axis];
@@ -99,6 +98,8 @@ static void take_modes(struct drives *d, const struct drives_answer *answer)
     if (answer->abort_code != SDO_ABORT_NONE || answer->value == 0) {
         axis->modes = mode_bit(CIA402_MODE_CYCLIC_SYNC_POSITION) | mode_bit(CIA402_MODE_HOMING);
         drives_give_up(d, d->at_axis, DRIVES_NO_MODES);
+        if (is_something_else(d->read[0]))
+            drives_raise(d, d->at_axis, TAKT_ERROR_DRIVE_TYPE, d->read[0], NULL);
     }
     axis->follow_mode = drives_mode_after(axis, CIA402_MODE_NONE);
     if (axis->follow_mode == CIA402_MODE_NONE)

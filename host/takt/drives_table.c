@@ -45,7 +45,7 @@ static const struct {
     [DRIVES_NO_POSITION] = {"position", "6502",
                             "a mode of velocity: the controller closes the position loop"},
     [DRIVES_NO_RAMPS] = {"ramps", "6083 6084", "the drive goes to a velocity as it is set up"},
-    [DRIVES_NO_TYPE] = {"type", "1000", "names no device profile: the node is taken for a drive"},
+    [DRIVES_NO_TYPE] = {"type", "1000", "the type is not that of a drive: it is taken for one"},
     [DRIVES_GUARDED] = {"guarded", "1017", "no heartbeat: the drive is asked for its state (100C)"},
 };
 

@@ -197,7 +197,7 @@ def no_target_position(sheet, _):
 
 def no_type(sheet, draw):
     """As data sheets have it that were made in haste."""
-    sheet["1000"]["DefaultValue"] = draw.choice(["0", "4", "0x92010200", "0x00220811", "0x0002FFFF"])
+    sheet["1000"]["DefaultValue"] = draw.choice(["0", "4", "0x92010200", "0x000F0191", "0x0002FFFF"])
 
 
 def no_modes(sheet, _):
@@ -260,7 +260,7 @@ HABITS = {
     "cyclic velocity only": (velocity_only, {"position"}),
     "profile velocity only": (profile_velocity_only, {"position"}),
     "no target position in a PDO": (no_target_position, {"pair", "position"}),
-    "1000 names no profile": (no_type, {"type"}),
+    "1000 of another type": (no_type, {"type"}),
     "6502 absent": (no_modes, {"modes"}),
     "6061 absent": (no_mode_display, {"mode_display"}),
     "identifiers read-only": (fixed_identifiers, {"pair"}),
@@ -272,7 +272,7 @@ HABITS = {
 
 
 # Habits of PDOs: a drive has one of them.
-OF_PDOS = ("one entry a PDO", "one entry in the first PDOs", "fixed mapping", "fixed mapping without a mode", "6060 not mappable", "6040 not mappable",
+OF_PDOS = ("no target position in a PDO", "one entry a PDO", "one entry in the first PDOs", "fixed mapping", "fixed mapping without a mode", "6060 not mappable", "6040 not mappable",
            "identifiers read-only", "two PDOs", "one PDO")
 
 

@@ -169,7 +169,7 @@ def random_machine(seed):
     return "".join(lines), count, cycle_us, habits
 
 
-REMEDIES = ("cycle_us", "maker's tool", "_timeout_ms", "set-up")
+REMEDIES = ("cycle_us", "drive_node", "maker's tool", "_timeout_ms", "set-up")
 outcomes = {}
 for seed in range(FIRST, FIRST + NUMBER):
     machine, count, cycle_us, habits = random_machine(seed)

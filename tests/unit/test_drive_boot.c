@@ -157,6 +157,8 @@ static void test_pdos_that_are_not_used_are_switched_off(void)
 
 static void test_a_node_of_another_profile_is_refused(void)
 {
+    set_rule((struct fake_rule){
+        .node = 3, .object = SDO_OBJECT(0x6502, 0), .abort_code = SDO_ABORT_NO_OBJECT});
     set_rule((struct fake_rule){.node = 3, .object = SDO_OBJECT(0x1000, 0), .value = 0x00030191});
     assert_refused(
         TAKT_ERROR_DRIVE_TYPE,
@@ -186,9 +188,9 @@ static void test_the_drive_the_machine_file_names_is_taken(void)
     TEST_ASSERT_EQUAL_INT(DRIVES_ENABLED, drives_get_state(&drives));
 }
 
-static void test_a_node_that_names_no_profile_is_taken_for_a_drive(void)
+static void test_a_node_of_another_type_that_tells_modes_is_taken_for_a_drive(void)
 {
-    static const uint32_t types[] = {0, 4, 0x92010200, 0x00220811, 0x0002FFFF};
+    static const uint32_t types[] = {0, 4, 0x92010200, 0x000F0191, 0x0002FFFF};
     for (unsigned i = 0; i < sizeof types / sizeof types[0]; i++) {
         setUp();
         set_rule((struct fake_rule){.node = 2, .object = SDO_OBJECT(0x1000, 0), .value = types[i]});
@@ -465,7 +467,7 @@ int main(void)
     RUN_TEST(test_a_node_of_another_profile_is_refused);
     RUN_TEST(test_another_drive_than_the_machine_file_names_is_refused);
     RUN_TEST(test_the_drive_the_machine_file_names_is_taken);
-    RUN_TEST(test_a_node_that_names_no_profile_is_taken_for_a_drive);
+    RUN_TEST(test_a_node_of_another_type_that_tells_modes_is_taken_for_a_drive);
     RUN_TEST(test_a_drive_that_cannot_follow_targets_is_refused);
     RUN_TEST(test_what_a_drive_may_lack_is_passed_over);
     RUN_TEST(test_a_refusal_is_told_with_object_code_and_meaning);
