@@ -98,6 +98,13 @@ void drives_table_write_text(FILE *stream, const struct drives_table *table)
     }
 }
 
+void drives_table_write_bits(FILE *stream, uint32_t given_up)
+{
+    for (unsigned row = 0; row < DRIVES_GIVEN_UP_COUNT; row++)
+        if (given_up >> row & 1)
+            (void)fprintf(stream, "  %-15s %s\n", rows[row].object, rows[row].follows);
+}
+
 bool drives_table_tell(const struct drives *drives, bool is_quiet)
 {
     struct drives_table table;
