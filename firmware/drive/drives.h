@@ -56,13 +56,13 @@ struct drives_config_axis {
         dcf; /* it is set up by this, see drives_dcf.c. Must outlive the drives; NULL: by nothing */
     double
         increments_per_mm; /* position units of the drive per mm or rad; < 0: it turns the other way */
-    double
-        velocity_units_per_mm_s; /* of 60FF and 6099, and accelerations per mm/s2; 0: increments_per_mm */
-    double max_acceleration_mm_s2; /* of its setpoints */
     double travel_per_turn_mm;     /* of its motor, to check increments_per_mm by; 0: not checked */
     double following_error_max_mm; /* alarm beyond; 0: not watched */
     struct drives_identity identity;
     struct drives_homing homing;
+    double
+        velocity_units_per_mm_s; /* of 60FF and 6099, and accelerations per mm/s2; 0: increments_per_mm */
+    double max_acceleration_mm_s2; /* of its setpoints */
 };
 
 /* Two drives of one axis: indices of struct drives_config.axis. */
@@ -183,7 +183,10 @@ static inline void drives_get_actual(const struct drives *d, struct point *actua
 bool drives_have_probe(const struct drives *d);
 void drives_arm_probe(struct drives *d, bool falls);
 void drives_read_probe(struct drives *d);
-bool drives_probe_is_busy(const struct drives *d);
+static inline bool drives_probe_is_busy(const struct drives *d)
+{
+    return d->probing & (DRIVES_PROBE_ARMS | DRIVES_PROBE_READS) && d->state == DRIVES_ENABLED;
+}
 /* They have been armed: in some cycles there was a request by SDO. */
 bool drives_have_probed(const struct drives *d);
 void drives_get_latched(const struct drives *d, struct point *at);

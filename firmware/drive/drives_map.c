@@ -496,6 +496,7 @@ static void take_mode(struct drives *d)
     if (!drives_is_by_velocity(axis))
         return;
     drives_give_up(d, d->at_axis, DRIVES_NO_POSITION);
+    d->steers = true;
     check_watch(d);
 }
 

@@ -214,17 +214,23 @@ static void steer(struct drives *d, unsigned i)
     drives_steer(d, i, drives_sent(d, 0)[i] - drives_sent(d, 1)[i], is_new ? lag_mm : 0);
 }
 
+static void steer_all(struct drives *d)
+{
+    for (unsigned i = 0; i < d->count; i++)
+        if (drives_is_by_velocity(&d->axis[i]))
+            steer(d, i);
+}
+
 static void send_operation(struct drives *d, const struct can_port *port,
                            const struct point *setpoint)
 {
     double *sent_mm = d->sent_mm[d->cycle & (DRIVES_HISTORY - 1)];
     for (unsigned i = 0; i < d->count; i++) {
         sent_mm[i] = setpoint->at[d->axis[i].config.axis];
-        if (drives_is_by_velocity(&d->axis[i]))
-            steer(d, i);
-        else
-            set_target(d, i, sent_mm[i]);
+        set_target(d, i, sent_mm[i]);
     }
+    if (d->steers)
+        steer_all(d);
     if (d->state == DRIVES_STOPPING)
         drives_watch_stop(d);
     if (d->state == DRIVES_ENABLED || d->state == DRIVES_STOPPING)

@@ -129,11 +129,14 @@ struct drives_io {
     struct drives_guard guard;
 };
 
+/* Bits of struct drives.probing, beside those of drives_probe.c. */
+#define DRIVES_PROBE_ARMS  1
+#define DRIVES_PROBE_READS 2
+
 struct drives {
     unsigned count;
     uint8_t node[AXIS_COUNT];
     uint32_t cycle_us;
-    double position_gain_per_s;
     uint8_t controller_node;
     uint16_t heartbeat_ms;
     uint32_t heartbeat_cycles;      /* period */
@@ -173,6 +176,7 @@ struct drives {
     bool is_stale;      /* the request under way is of a configuration that has been begun again */
     bool is_telling;    /* a controlword or a mode is being written */
     bool homed;         /* no axis is left to be homed */
+    bool steers;        /* some follow velocities */
     bool guards;        /* nodes that have been started are guarded */
     uint8_t probing;    /* bits, drives_probe.c */
     uint8_t home_order; /* axes of this order are being homed; 0: not yet */
@@ -190,6 +194,7 @@ struct drives {
     unsigned fault_axis;  /* index into axis of what the fault is about */
     uint32_t stop_cycles; /* spent in DRIVES_STOPPING or DRIVES_BRAKING */
     uint32_t rest_cycles; /* setpoints have not changed for */
+    double position_gain_per_s;
 };
 
 #endif
