@@ -67,9 +67,10 @@ struct smooth {
     struct smooth_head head;
     struct merge merge; /* the newest line, not on the route yet */
     struct judge_change change;
+    struct order
+        order; /* where the pieces that are ready end; before there are any, where the window begins */
     struct move move;  /* of the piece taken last */
     unsigned proved;   /* pieces at the window's beginning that keep the tolerance, as they were */
-    double behind_mm;  /* place on the route that has been left for good (judge.h) */
     double known_mm;   /* end of the route when the window was filled */
     double tried_mm;   /* place its last sample had when the route was not known far enough yet, */
     uint32_t tried;    /* and the element there */
@@ -96,6 +97,11 @@ bool smooth_has_room(const struct smooth *s);
 /* Appends a motion. Needs room and smooth_joins(). */
 void smooth_push(struct smooth *s, const struct move *move, uint32_t number,
                  const struct curve *curve);
+/*
+ * Is all of the chain so far one programmed line? If nothing follows there is nothing to smooth: no curve is shorter, and what
+ * plans lines from rest to rest is quicker. It may be forgotten then.
+ */
+bool smooth_is_line(const struct smooth *s);
 /* Nothing follows in this chain: it ends at rest. */
 void smooth_finish(struct smooth *s);
 /*
