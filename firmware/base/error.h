@@ -191,6 +191,8 @@
     X(DRIVE_REFUSES, "the drive of axis %w refuses with abort code %x: %m")                        \
     X(DRIVE_UNANSWERED, "the drive of axis %w does not answer within %v ms")                       \
     X(DRIVE_UNMAPPED, "the drive of axis %w is in no PDO of every SYNC and refuses: %x, %m")       \
+    X(DRIVE_UNWATCHED,                                                                             \
+      "the drive of axis %w follows velocities, and would go on if the controller fell silent")    \
     X(DRIVE_PERIOD, "the drive of axis %w keeps 60C2, %v us between targets; cycle_us is %l")      \
     X(DRIVE_SCALING,                                                                               \
       "the drive of axis %w counts %v units in a turn of its motor; increments_per_mm says %l")    \

@@ -13,6 +13,7 @@
 
 #include "canopen/pdo.h"
 
+#include <stdbool.h>
 #include <stdint.h>
 
 /* Objects, as they are mapped into PDOs. */
@@ -26,6 +27,7 @@
 #define CIA402_TARGET_POSITION  PDO_MAPPED(0x607A, 0, 32)
 #define CIA402_INTERPOLATION    PDO_MAPPED(0x60C1, 1, 32)
 #define CIA402_FOLLOWING_ERROR  PDO_MAPPED(0x60F4, 0, 32)
+#define CIA402_TARGET_VELOCITY  PDO_MAPPED(0x60FF, 0, 32)
 
 /* Objects that are not mapped. Unit of lengths: increments; of times: s. */
 #define CIA402_QUICK_STOP_OPTION    0x605A
@@ -35,6 +37,8 @@
 #define CIA402_FAULT_OPTION         0x605E
 #define CIA402_CONNECTION_OPTION    0x6007 /* what to do when the connection is lost */
 #define CIA402_HOME_OFFSET          0x607C
+#define CIA402_PROFILE_ACCELERATION 0x6083
+#define CIA402_PROFILE_DECELERATION 0x6084
 #define CIA402_ENCODER_RESOLUTION   0x608F /* 1: increments in 2: turns of the motor */
 #define CIA402_GEAR_RATIO           0x6091 /* 1: turns of the motor are 2: turns of the shaft */
 #define CIA402_FEED_CONSTANT        0x6092 /* 1: increments in 2: turns of the shaft */
@@ -75,6 +79,12 @@
 #define CIA402_MODE_CYCLIC_SYNC_POSITION  8
 #define CIA402_MODE_CYCLIC_SYNC_VELOCITY  9
 #define CIA402_MODE_CYCLIC_SYNC_TORQUE    10
+
+/* Its targets are velocities. */
+static inline bool cia402_is_velocity(unsigned mode)
+{
+    return mode == CIA402_MODE_CYCLIC_SYNC_VELOCITY || mode == CIA402_MODE_PROFILE_VELOCITY;
+}
 
 enum cia402_state {
     CIA402_NOT_READY,

@@ -29,6 +29,28 @@ static void set_homing(struct drives_homing *homing, const struct machine *machi
     };
 }
 
+/*
+ * K = 1 / (4 T) of the position loop that is closed here (drive/drives_velocity.c). T is what a setpoint takes to the
+ * report of its position, less the half of a cycle that it is held for, and the drive's own delay: it has to follow
+ * setpoints whose acceleration is there after A/J, so that is the most that it can be. The same for all axes, for then a
+ * straight path stays one.
+ */
+static double position_gain_per_s(const struct machine *machine)
+{
+    const double loop_s = 1e-6 * (double)machine->cycle_us * (DRIVES_LATENCY_CYCLES - 0.5);
+    double slowest_s = 0;
+
+    for (unsigned i = 0; i < AXIS_COUNT; i++) {
+        const struct machine_axis *axis = &machine->axis[i];
+
+        if (machine_axis_is_on_can(axis)) {
+            slowest_s = maths_max(slowest_s, axis->max_acceleration_mm_s2 / axis->max_jerk_mm_s3);
+        }
+    }
+    return machine->position_gain_per_s > 0 ? machine->position_gain_per_s
+                                            : 0.25 / (loop_s + slowest_s);
+}
+
 static void add_drive(struct drives_config *config, const struct machine *machine, unsigned i)
 {
     const struct machine_axis *axis = &machine->axis[i];
@@ -39,6 +61,8 @@ static void add_drive(struct drives_config *config, const struct machine *machin
         .node = axis->drive_node,
         .keeps_settings = axis->drive_is_set_up != 0,
         .increments_per_mm = axis->increments_per_mm,
+        .velocity_units_per_mm_s = axis->velocity_units_per_mm_s,
+        .max_acceleration_mm_s2 = axis->max_acceleration_mm_s2,
         .travel_per_turn_mm = axis->travel_per_turn_mm,
         .following_error_max_mm = axis->following_error_max_mm,
         .identity = {axis->drive_vendor, axis->drive_product, axis->drive_revision,
@@ -125,6 +149,7 @@ void controller_drives_config(const struct machine *machine, const struct concis
     config->brake_timeout_cycles = cycles_in(machine, BRAKE_TIMEOUT_S);
     config->io_count = machine_io_count(machine);
     config->wiring = machine->io;
+    config->position_gain_per_s = position_gain_per_s(machine);
     for (unsigned i = 0; i < AXIS_COUNT; i++) {
         if (machine_axis_is_on_can(&machine->axis[i])) {
             add_drive(config, machine, i);

@@ -47,6 +47,8 @@ struct machine_axis {
         increments_per_mm; /* drive position units per mm (per rad); < 0: the motor turns the other way */
     double
         travel_per_turn_mm; /* of its motor: increments_per_mm is checked by what the drive tells; 0: it is not */
+    double
+        velocity_units_per_mm_s; /* of its drive, and of accelerations per mm/s2; 0: increments_per_mm */
     double following_error_max_mm; /* alarm beyond this lag; 0: not watched */
 
     double steps_per_mm;     /* step drive: > 0 */
@@ -100,7 +102,9 @@ struct machine {
         heartbeat_ms; /* period of all heartbeats on the bus, up to 20,000; 0: there are none */
     uint32_t boot_timeout_ms; /* a drive boots within, after a reset */
     uint32_t sdo_timeout_ms;  /* a drive answers a request within */
-    uint8_t controller_node;  /* the controller's own node id, 1 ... 127, of no drive */
+    double
+        position_gain_per_s; /* of drives that follow by velocity; 0: by the limits of the axes */
+    uint8_t controller_node; /* the controller's own node id, 1 ... 127, of no drive */
     struct machine_gantry gantry[MACHINE_GANTRIES_MAX]; /* from the first on */
     struct io_wiring io[IO_NODES_MAX]; /* I/O nodes on the bus, from the first on */
     struct correction_settings correction;

@@ -39,6 +39,22 @@ static void take_times(struct drives *d, const struct drives_config *config)
     d->brake_timeout_cycles = config->brake_timeout_cycles;
 }
 
+/* Velocities get the sign of positions. */
+static void take_config(struct drives *d, unsigned index, const struct drives_config_axis *config)
+{
+    struct drives_config_axis *own = &d->axis[index].config;
+    const double units = config->velocity_units_per_mm_s;
+    assert(config->node >= NODE_MIN && config->node <= NODE_MAX);
+    *own = *config;
+    d->node[index] = config->node;
+    if (units == 0)
+        own->velocity_units_per_mm_s = config->increments_per_mm;
+    else
+        own->velocity_units_per_mm_s = config->increments_per_mm < 0 ? -units : units;
+    if (own->following_error_max_mm <= 0)
+        own->following_error_max_mm = MATHS_INFINITY; /* not watched */
+}
+
 static void check_load(struct drives *d, const struct drives_config *config)
 {
     struct drives_load load;
@@ -58,16 +74,12 @@ void drives_init(struct drives *d, const struct drives_config *config)
     d->controller_node = config->controller_node;
     d->bitrate = config->bitrate;
     d->homed = config->homed;
+    d->position_gain_per_s = config->position_gain_per_s;
     take_times(d, config);
     drives_io_init(d, config);
     drives_gantry_init(d, config);
-    for (unsigned i = 0; i < d->count; i++) {
-        assert(config->axis[i].node >= NODE_MIN && config->axis[i].node <= NODE_MAX);
-        d->axis[i].config = config->axis[i];
-        d->node[i] = config->axis[i].node;
-        if (d->axis[i].config.following_error_max_mm <= 0)
-            d->axis[i].config.following_error_max_mm = MATHS_INFINITY; /* not watched */
-    }
+    for (unsigned i = 0; i < d->count; i++)
+        take_config(d, i, &config->axis[i]);
     for (unsigned i = 0; i < d->count; i++)
         init_axis(d, i);
     if (d->count == 0 && d->io_count == 0)

@@ -60,6 +60,9 @@ struct drives_config_axis {
     double following_error_max_mm; /* alarm beyond; 0: not watched */
     struct drives_identity identity;
     struct drives_homing homing;
+    double
+        velocity_units_per_mm_s; /* of 60FF and 6099, and accelerations per mm/s2; 0: increments_per_mm */
+    double max_acceleration_mm_s2; /* of its setpoints */
 };
 
 /* Two drives of one axis: indices of struct drives_config.axis. */
@@ -79,6 +82,7 @@ struct drives_config {
     bool homed; /* all axes have been homed since power-on: they are not homed again */
     uint32_t cycle_us;
     uint32_t bitrate;             /* of the bus, bit/s */
+    double position_gain_per_s;   /* of drives that follow by velocity: drives_velocity.c; > 0 */
     uint8_t controller_node;      /* our own node id, for the heartbeat; none of the drives' */
     uint16_t heartbeat_ms;        /* period, of the drives and our own; 0: no heartbeats */
     uint32_t boot_timeout_cycles; /* that a drive takes to boot at most; it is reset twice */
@@ -132,6 +136,9 @@ enum drives_given_up {
     DRIVES_NO_TOUCH_PROBE,  /* it latches no position (60B8): a probing move has that of a cycle */
     DRIVES_NO_SCALING, /* it does not tell its scaling (6092, 608F): increments_per_mm is believed */
     DRIVES_GUARDED, /* it has no heartbeat (1017), and is asked for its state instead (100C, 100D) */
+    DRIVES_NO_POSITION, /* it follows velocities: the position loop is ours */
+    DRIVES_NO_RAMPS,    /* its ramps to a velocity (6083, 6084) are as they are set up */
+    DRIVES_NO_TYPE,     /* its type (1000) is not that of a drive: it is taken for one */
     DRIVES_GIVEN_UP_COUNT
 };
 
@@ -176,7 +183,10 @@ static inline void drives_get_actual(const struct drives *d, struct point *actua
 bool drives_have_probe(const struct drives *d);
 void drives_arm_probe(struct drives *d, bool falls);
 void drives_read_probe(struct drives *d);
-bool drives_probe_is_busy(const struct drives *d);
+static inline bool drives_probe_is_busy(const struct drives *d)
+{
+    return d->probing & (DRIVES_PROBE_ARMS | DRIVES_PROBE_READS) && d->state == DRIVES_ENABLED;
+}
 /* They have been armed: in some cycles there was a request by SDO. */
 bool drives_have_probed(const struct drives *d);
 void drives_get_latched(const struct drives *d, struct point *at);

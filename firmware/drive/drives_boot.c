@@ -50,12 +50,13 @@ bool drives_next_ask(struct drives *d, struct drives_step *step)
     return true;
 }
 
+/* Of another type it is a drive all the same, if it tells modes or names no profile: see take_modes. */
 static void take_type(struct drives *d, const struct drives_answer *answer)
 {
-    if (answer->abort_code != SDO_ABORT_NONE)
-        raise_refusal(d, asked[0], answer->abort_code);
-    else if ((answer->value & OBJECT_DEVICE_PROFILE_MASK) != OBJECT_DEVICE_PROFILE_402)
-        drives_raise(d, d->at_axis, TAKT_ERROR_DRIVE_TYPE, answer->value, NULL);
+    const bool is_told = answer->abort_code == SDO_ABORT_NONE;
+    d->read[0] = is_told ? answer->value : 0;
+    if ((d->read[0] & OBJECT_DEVICE_PROFILE_MASK) != OBJECT_DEVICE_PROFILE_402)
+        drives_give_up(d, d->at_axis, DRIVES_NO_TYPE);
 }
 
 static void take_identity(struct drives *d, const struct drives_answer *answer)
@@ -76,26 +77,33 @@ static void take_identity(struct drives *d, const struct drives_answer *answer)
         drives_raise(d, d->at_axis, TAKT_ERROR_DRIVE_IDENTITY, answer->value, texts[part]);
 }
 
-static uint8_t mode_bit(unsigned mode)
+static uint16_t mode_bit(unsigned mode)
 {
-    return (uint8_t)(1u << (mode - 1));
+    return (uint16_t)(1u << (mode - 1));
 }
 
-/* Cyclic synchronous position, else interpolated position; a drive that does not tell is tried. */
+/* Device profiles are CiA 400 to 499. */
+static bool is_something_else(uint32_t type)
+{
+    const uint32_t profile = type & OBJECT_DEVICE_PROFILE_MASK;
+    return profile >= 400 && profile <= 499 && profile != OBJECT_DEVICE_PROFILE_402;
+}
+
+/* The best mode it has; one that does not tell is tried in cyclic synchronous position, unless it is something else. */
 static void take_modes(struct drives *d, const struct drives_answer *answer)
 {
     struct drives_axis *axis = &d->axis[d->at_axis];
     const char *missing = NULL;
-    axis->modes = (uint8_t)answer->value;
-    axis->follow_mode = CIA402_MODE_CYCLIC_SYNC_POSITION;
+    axis->modes = (uint16_t)answer->value;
     if (answer->abort_code != SDO_ABORT_NONE || answer->value == 0) {
-        axis->modes = 0xFF;
+        axis->modes = mode_bit(CIA402_MODE_CYCLIC_SYNC_POSITION) | mode_bit(CIA402_MODE_HOMING);
         drives_give_up(d, d->at_axis, DRIVES_NO_MODES);
+        if (is_something_else(d->read[0]))
+            drives_raise(d, d->at_axis, TAKT_ERROR_DRIVE_TYPE, d->read[0], NULL);
     }
-    if (!(axis->modes & mode_bit(CIA402_MODE_CYCLIC_SYNC_POSITION)))
-        axis->follow_mode = CIA402_MODE_INTERPOLATED_POSITION;
-    if (!(axis->modes & mode_bit(axis->follow_mode)))
-        missing = "cyclic synchronous position";
+    axis->follow_mode = drives_mode_after(axis, CIA402_MODE_NONE);
+    if (axis->follow_mode == CIA402_MODE_NONE)
+        missing = "cyclic position or velocity";
     else if (axis->config.homing.order != 0 && !(axis->modes & mode_bit(CIA402_MODE_HOMING)))
         missing = "homing";
     if (missing != NULL)
@@ -156,7 +164,7 @@ void drives_take_ask(struct drives *d, const struct drives_answer *answer)
 
 #define REQUIRED  DRIVES_GIVEN_UP_COUNT
 #define NOTHING   (DRIVES_GIVEN_UP_COUNT + 1)
-#define SET_PLAIN 10 /* from here on: only where the axis is homed */
+#define SET_PLAIN 12 /* from here on: only where the axis is homed */
 
 struct setting {
     uint16_t index;
@@ -169,6 +177,7 @@ struct setting {
 #define SET_LIFE      3
 #define SET_PERIOD    5
 #define SET_EXPONENT  6
+#define SET_RAMPS     10 /* up and down: only of profile velocity */
 static const struct setting settings[] = {
     {OBJECT_PRODUCER_HEARTBEAT, 0, 2, DRIVES_NO_HEARTBEAT},
     {OBJECT_CONSUMER_HEARTBEAT, 1, 4, DRIVES_NO_WATCH},
@@ -180,6 +189,8 @@ static const struct setting settings[] = {
     {CIA402_CONNECTION_OPTION, 0, 2, DRIVES_NO_STOP_OPTION},
     {CIA402_QUICK_STOP_OPTION, 0, 2, DRIVES_NO_STOP_OPTION},
     {CIA402_FAULT_OPTION, 0, 2, DRIVES_NO_STOP_OPTION},
+    {CIA402_PROFILE_ACCELERATION, 0, 4, DRIVES_NO_RAMPS},
+    {CIA402_PROFILE_DECELERATION, 0, 4, DRIVES_NO_RAMPS},
     {CIA402_HOMING_METHOD, 0, 1, REQUIRED},
     {CIA402_HOMING_SPEEDS, 1, 4, DRIVES_NO_HOMING_SPEED},
     {CIA402_HOMING_SPEEDS, 2, 4, DRIVES_NO_HOMING_SPEED},
@@ -202,11 +213,20 @@ static void split_period(uint32_t cycle_us, uint32_t *value, int *exponent)
     }
 }
 
-/* increments = round(value * increments_per_mm) of a velocity or an acceleration. */
-static uint32_t increments_of(const struct drives_config_axis *config, double value_mm)
+/* units = round(value * velocity_units_per_mm_s) of a velocity or an acceleration. */
+static uint32_t velocity_of(const struct drives_config_axis *config, double value_mm_s)
 {
-    double increments = maths_round(value_mm * maths_abs(config->increments_per_mm));
-    return (uint32_t)maths_clamp(increments, 0, UINT32_LIMIT);
+    double units = maths_round(value_mm_s * maths_abs(config->velocity_units_per_mm_s));
+    return (uint32_t)maths_clamp(units, 0, UINT32_LIMIT);
+}
+
+/*
+ * Ramps of profile velocity: twice as steep as setpoints are, so that they do not round these off, and leave as much to
+ * the position loop.
+ */
+static uint32_t ramp_of(const struct drives_config_axis *config)
+{
+    return velocity_of(config, 2 * config->max_acceleration_mm_s2);
 }
 
 /*
@@ -240,10 +260,12 @@ static uint32_t value_of(const struct drives *d, unsigned number)
                                CIA402_CONNECTION_QUICK_STOP,
                                CIA402_OPTION_QUICK_STOP_RAMP,
                                CIA402_OPTION_QUICK_STOP_RAMP,
+                               ramp_of(config),
+                               ramp_of(config),
                                (uint8_t)homing->method,
-                               increments_of(config, homing->velocity_mm_s),
-                               increments_of(config, homing->zero_mm_s),
-                               increments_of(config, homing->acceleration_mm_s2),
+                               velocity_of(config, homing->velocity_mm_s),
+                               velocity_of(config, homing->zero_mm_s),
+                               velocity_of(config, homing->acceleration_mm_s2),
                                home_offset_of(config)};
     static_assert(sizeof values / sizeof values[0] == SET_COUNT, "a value of every setting");
     return values[number];
@@ -261,6 +283,8 @@ bool drives_next_set(struct drives *d, struct drives_step *step)
     const struct drives_axis *axis = &d->axis[d->at_axis];
     if (d->at_step == SET_GUARD && !is_mute(d))
         d->at_step = SET_LIFE + 1;
+    if (d->at_step == SET_RAMPS && axis->follow_mode != CIA402_MODE_PROFILE_VELOCITY)
+        d->at_step = SET_PLAIN;
     if (d->at_step == (axis->config.homing.order != 0 ? SET_COUNT : SET_PLAIN))
         return false;
     const struct setting *setting = &settings[d->at_step];
@@ -271,14 +295,24 @@ bool drives_next_set(struct drives *d, struct drives_step *step)
     return true;
 }
 
+/* Ramps that round setpoints off let the axis lag behind. */
+static bool is_too_slow(const struct drives *d, const struct drives_answer *answer)
+{
+    const struct drives_config_axis *config = &d->axis[d->at_axis].config;
+    return settings[d->at_step].given_up == DRIVES_NO_RAMPS &&
+           answer->abort_code == SDO_ABORT_NONE &&
+           answer->value < velocity_of(config, config->max_acceleration_mm_s2);
+}
+
 /* The drive has this value, and ours is another, or it could not be read. */
 static void miss(struct drives *d, const struct drives_answer *answer)
 {
     const struct setting *setting = &settings[d->at_step];
     bool is_absent = sdo_says_absent(answer->abort_code);
+    bool is_required = setting->given_up == REQUIRED || is_too_slow(d, answer);
     if (setting->given_up == NOTHING)
         return;
-    if (setting->given_up != REQUIRED)
+    if (!is_required)
         drives_give_up(d, d->at_axis, (enum drives_given_up)setting->given_up);
     else if (!is_absent || value_of(d, d->at_step) != 0)
         raise_refusal(d, SDO_OBJECT(setting->index, setting->sub),
@@ -319,7 +353,8 @@ static void check_period(struct drives *d)
         period_us /= 10;
     for (; exponent > -6; exponent--)
         period_us *= 10;
-    if (period_us <= 0 || maths_abs(period_us - d->cycle_us) <= 0.5)
+    bool is_used = d->axis[d->at_axis].follow_mode != CIA402_MODE_PROFILE_VELOCITY;
+    if (!is_used || period_us <= 0 || maths_abs(period_us - d->cycle_us) <= 0.5)
         return;
     drives_raise(d, d->at_axis, TAKT_ERROR_DRIVE_PERIOD, period_us, NULL);
     diagnostic_set_limit(&d->fault, d->cycle_us);

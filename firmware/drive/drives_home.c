@@ -33,7 +33,7 @@ static uint8_t next_order(const struct drives *d)
 static void select_mode(struct drives_axis *axis, bool is_homing)
 {
     if (axis->mode == CIA402_MODE_HOMING)
-        axis->target_inc = axis->actual_inc;
+        drives_rest(axis);
     axis->mode = is_homing ? CIA402_MODE_HOMING : axis->follow_mode;
     axis->command = 0;
 }

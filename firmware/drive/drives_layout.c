@@ -6,8 +6,10 @@
 
 uint32_t drives_target_of(const struct drives_axis *axis)
 {
-    return axis->follow_mode == CIA402_MODE_CYCLIC_SYNC_POSITION ? CIA402_TARGET_POSITION
-                                                                 : CIA402_INTERPOLATION;
+    if (drives_is_by_velocity(axis))
+        return CIA402_TARGET_VELOCITY;
+    return axis->follow_mode == CIA402_MODE_INTERPOLATED_POSITION ? CIA402_INTERPOLATION
+                                                                  : CIA402_TARGET_POSITION;
 }
 
 /* Byte at which an object begins. */

@@ -462,18 +462,42 @@ static bool raise_unmapped(struct drives *d, uint32_t object)
     return false;
 }
 
-/* An interpolating drive may have its other target mapped. True: it has been begun anew. */
-static bool try_interpolation(struct drives *d)
+/* The target of another mode may have found a place. True: it is told everything anew, for that mode. */
+static bool try_next_mode(struct drives *d)
 {
     struct drives_axis *axis = &d->axis[d->at_axis];
-    const unsigned interpolates = 1u << (CIA402_MODE_INTERPOLATED_POSITION - 1);
-    if (axis->follow_mode != CIA402_MODE_CYCLIC_SYNC_POSITION || !(axis->modes & interpolates) ||
-        drives_has_given_up(axis, DRIVES_NO_MODES))
+    const uint8_t next = drives_mode_after(axis, axis->follow_mode);
+    if (next == CIA402_MODE_NONE)
         return false;
-    axis->follow_mode = CIA402_MODE_INTERPOLATED_POSITION;
+    axis->follow_mode = next;
     drives_forget_pdos(axis);
     d->mapping.pass = d->mapping.step = 0;
+    d->at_part = DRIVES_SET;
+    d->at_step = 0;
     return true;
+}
+
+/* With a target that is a velocity a drive that watches nobody would go on for ever. */
+static void check_watch(struct drives *d)
+{
+    const struct drives_axis *axis = &d->axis[d->at_axis];
+    if (d->heartbeat_ms > 0 && !drives_has_given_up(axis, DRIVES_NO_WATCH))
+        return;
+    drives_raise_object(d, d->at_axis, SDO_OBJECT(OBJECT_CONSUMER_HEARTBEAT, 1),
+                        TAKT_ERROR_DRIVE_UNWATCHED, 0, NULL);
+}
+
+/* A mode that costs something. */
+static void take_mode(struct drives *d)
+{
+    const struct drives_axis *axis = &d->axis[d->at_axis];
+    if (axis->follow_mode == CIA402_MODE_INTERPOLATED_POSITION)
+        drives_give_up(d, d->at_axis, DRIVES_NO_CSP);
+    if (!drives_is_by_velocity(axis))
+        return;
+    drives_give_up(d, d->at_axis, DRIVES_NO_POSITION);
+    d->steers = true;
+    check_watch(d);
 }
 
 /* Its target is where a pair has it: halves of one frame (target_pdo.h). */
@@ -505,15 +529,14 @@ static bool finish(struct drives *d)
         return false;
     }
     if (axis->target_frame.length == 0)
-        return try_interpolation(d) || raise_unmapped(d, drives_target_of(axis));
+        return try_next_mode(d) || raise_unmapped(d, drives_target_of(axis));
     if (axis->status_id == NO_TPDO)
         return raise_unmapped(d, CIA402_STATUSWORD);
     if (axis->position_id == NO_TPDO)
         return raise_unmapped(d, CIA402_POSITION_ACTUAL);
     if (axis->status_id != axis->position_id)
         drives_give_up(d, d->at_axis, DRIVES_NO_ONE_REPORT);
-    if (axis->follow_mode != CIA402_MODE_CYCLIC_SYNC_POSITION)
-        drives_give_up(d, d->at_axis, DRIVES_NO_CSP);
+    take_mode(d);
     if (axis->control_frame.length == 0)
         drives_give_up(d, d->at_axis, DRIVES_NO_CONTROL_PDO);
     if (axis->control_frame.mode == DRIVES_NOWHERE && axis->target_frame.mode == DRIVES_NOWHERE)

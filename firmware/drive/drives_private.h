@@ -165,6 +165,19 @@ void drives_send_guard(struct drives *d, const struct can_port *port);
 uint32_t drives_guard_bits(const struct drives *d);
 
 bool drives_send_nmt(const struct can_port *port, enum nmt_command command, uint8_t node);
+/*
+ * Drives that follow by velocity, drives_velocity.c. The target of a drive that stays where it is; and of one on its way:
+ * what the setpoint moves in this cycle, and what the position lags behind its setpoint.
+ */
+static inline bool drives_is_by_velocity(const struct drives_axis *axis)
+{
+    return cia402_is_velocity(axis->follow_mode);
+}
+void drives_rest(struct drives_axis *axis);
+void drives_steer(struct drives *d, unsigned index, double step_mm, double lag_mm);
+/* The next mode in which a drive may follow targets after this one, CIA402_MODE_NONE before the first; none: that. */
+uint8_t drives_mode_after(const struct drives_axis *axis, uint8_t mode);
+
 /* One request, of the client that all nodes share. */
 void drives_ask(struct drives *d, uint8_t node, const struct drives_step *step);
 

@@ -12,8 +12,8 @@
 #include "drive/drives_private.h"
 
 /* Bits of struct drives.probing. */
-#define PROBE_ARMS  1
-#define PROBE_READS 2
+#define PROBE_ARMS  DRIVES_PROBE_ARMS
+#define PROBE_READS DRIVES_PROBE_READS
 #define PROBE_FALLS 4 /* the other edge is looked for */
 #define PROBE_USED  8
 
@@ -56,11 +56,6 @@ void drives_arm_probe(struct drives *d, bool falls)
 void drives_read_probe(struct drives *d)
 {
     begin(d, PROBE_READS | (d->probing & (PROBE_USED | PROBE_FALLS)));
-}
-
-bool drives_probe_is_busy(const struct drives *d)
-{
-    return d->probing & (PROBE_ARMS | PROBE_READS) && d->state == DRIVES_ENABLED;
 }
 
 void drives_get_latched(const struct drives *d, struct point *at)

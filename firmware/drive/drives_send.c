@@ -153,7 +153,7 @@ static void send_enabling(struct drives *d, const struct can_port *port)
         send_controlword(turn, port, drives_controlword(turn), false);
     for (unsigned i = 0; i < d->count; i++)
         if (!drives_axis_is_enabled(&d->axis[i]) || d->axis[i].mode == CIA402_MODE_HOMING)
-            d->axis[i].target_inc = d->axis[i].actual_inc;
+            drives_rest(&d->axis[i]);
     send_targets(d, port);
 }
 
@@ -205,6 +205,22 @@ static inline void set_target(struct drives *d, unsigned index, double set_mm)
         drives_raise(d, index, TAKT_ERROR_DRIVE_RANGE, drives_axis_shown(axis, set_mm), NULL);
 }
 
+/* The lag is that of the setpoint to which the last report belongs; without a report in this cycle it is not known. */
+static void steer(struct drives *d, unsigned i)
+{
+    const struct drives_axis *axis = &d->axis[i];
+    const bool is_new = drives_silent_cycles(d, axis) == 0;
+    const double lag_mm = drives_sent(d, DRIVES_LATENCY_CYCLES)[i] - axis->actual_mm;
+    drives_steer(d, i, drives_sent(d, 0)[i] - drives_sent(d, 1)[i], is_new ? lag_mm : 0);
+}
+
+static void steer_all(struct drives *d)
+{
+    for (unsigned i = 0; i < d->count; i++)
+        if (drives_is_by_velocity(&d->axis[i]))
+            steer(d, i);
+}
+
 static void send_operation(struct drives *d, const struct can_port *port,
                            const struct point *setpoint)
 {
@@ -213,6 +229,8 @@ static void send_operation(struct drives *d, const struct can_port *port,
         sent_mm[i] = setpoint->at[d->axis[i].config.axis];
         set_target(d, i, sent_mm[i]);
     }
+    if (d->steers)
+        steer_all(d);
     if (d->state == DRIVES_STOPPING)
         drives_watch_stop(d);
     if (d->state == DRIVES_ENABLED || d->state == DRIVES_STOPPING)

@@ -51,6 +51,12 @@ void drives_check_skew(struct drives *d)
     }
 }
 
+/* Where it has been told to stay, or stays. */
+static int32_t stands_inc(const struct drives_axis *axis)
+{
+    return drives_is_by_velocity(axis) ? axis->actual_inc : axis->target_inc;
+}
+
 void drives_begin_square(struct drives *d)
 {
     if (d->gantry_count == 0) {
@@ -60,7 +66,7 @@ void drives_begin_square(struct drives *d)
     drives_enter_phase(d, DRIVES_SQUARE);
     for (unsigned i = 0; i < d->gantry_count; i++) {
         struct drives_axis *second = &d->axis[d->gantry[i].second];
-        second->braking_inc = second->target_inc;
+        second->braking_inc = stands_inc(second);
     }
 }
 
@@ -77,24 +83,41 @@ static double square_cycles(const struct drives *d, const struct drives_axis *se
     return 1e6 / d->cycle_us * maths_max(by_velocity_s, by_acceleration_s);
 }
 
-static void move_second(struct drives_axis *second, double way_inc, double u)
+/* u of so many cycles after the beginning. */
+static double part_of_way(double cycles, double whole_cycles)
 {
-    const double part = u * u * u * (10 + u * (6 * u - 15));
-    second->target_inc = (int32_t)maths_round(second->braking_inc + part * way_inc);
+    const double u = cycles < whole_cycles ? maths_max(cycles, 0) / whole_cycles : 1;
+    return u * u * u * (10 + u * (6 * u - 15));
+}
+
+/* To where it is in this cycle of a way that takes so many. */
+static void move_second(struct drives *d, unsigned index, double way_inc, double cycles)
+{
+    struct drives_axis *second = &d->axis[index];
+    const double now_inc = part_of_way(d->phase_cycles, cycles) * way_inc;
+    const double before_inc = part_of_way((double)d->phase_cycles - 1, cycles) * way_inc;
+    const double shown_inc =
+        part_of_way((double)d->phase_cycles - DRIVES_LATENCY_CYCLES, cycles) * way_inc;
+    const double lag_inc = second->braking_inc + shown_inc - second->actual_inc;
+    const double scale = second->config.increments_per_mm;
+    if (drives_is_by_velocity(second))
+        drives_steer(d, index, (now_inc - before_inc) / scale, lag_inc / scale);
+    else
+        second->target_inc = (int32_t)maths_round(second->braking_inc + now_inc);
 }
 
 /* A cycle of one of them; true: it is square. */
 static bool square(struct drives *d, const struct drives_gantry *gantry)
 {
     const struct drives_axis *first = &d->axis[gantry->first];
-    struct drives_axis *second = &d->axis[gantry->second];
-    const double goal_mm = first->target_inc / first->config.increments_per_mm;
+    const struct drives_axis *second = &d->axis[gantry->second];
+    const double goal_mm = stands_inc(first) / first->config.increments_per_mm;
     const double way_inc = goal_mm * second->config.increments_per_mm - second->braking_inc;
     const double way_mm = maths_abs(way_inc / second->config.increments_per_mm);
     const double cycles = square_cycles(d, second, way_mm);
     check_skew(d, gantry, way_mm);
     if (d->state == DRIVES_STARTING)
-        move_second(second, way_inc, d->phase_cycles < cycles ? d->phase_cycles / cycles : 1);
+        move_second(d, gantry->second, way_inc, cycles);
     return d->phase_cycles >= cycles + DRIVES_LATENCY_CYCLES;
 }
 

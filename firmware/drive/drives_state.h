@@ -84,9 +84,9 @@ struct drives_axis {
     uint8_t mode;         /* that the drive is to be in */
     uint16_t command;     /* controlword beside what the state asks for: CIA402_START_HOMING or 0 */
     uint16_t controlword; /* last sent */
-    int32_t target_inc;
-    double lag_mm; /* following error of the last report before a fault */
-    bool lost;     /* after a fault: its setpoints lead nowhere */
+    int32_t target_inc;   /* or velocity, where it follows that */
+    double lag_mm;        /* following error of the last report before a fault */
+    bool lost;            /* after a fault: its setpoints lead nowhere */
     bool homed;
     bool homing_seen;    /* the statusword has shown that homing is under way */
     int32_t braking_inc; /* where it was when its rest was looked at last, or squaring began */
@@ -103,8 +103,8 @@ struct drives_axis {
     struct drives_guard guard;
     bool is_paired;      /* its target shares a frame with that of its neighbour */
     uint8_t follow_mode; /* in which it follows targets */
-    uint8_t modes;       /* object 6502, of the modes 1 ... 8 */
     uint8_t told_mode;   /* by SDO */
+    uint16_t modes;      /* object 6502 */
     uint16_t bits;       /* of its frames in a cycle, at worst */
     uint32_t given_up;   /* bits: enum drives_given_up */
 };
@@ -128,6 +128,10 @@ struct drives_io {
     bool is_mute; /* it has no heartbeat */
     struct drives_guard guard;
 };
+
+/* Bits of struct drives.probing, beside those of drives_probe.c. */
+#define DRIVES_PROBE_ARMS  1
+#define DRIVES_PROBE_READS 2
 
 struct drives {
     unsigned count;
@@ -172,6 +176,7 @@ struct drives {
     bool is_stale;      /* the request under way is of a configuration that has been begun again */
     bool is_telling;    /* a controlword or a mode is being written */
     bool homed;         /* no axis is left to be homed */
+    bool steers;        /* some follow velocities */
     bool guards;        /* nodes that have been started are guarded */
     uint8_t probing;    /* bits, drives_probe.c */
     uint8_t home_order; /* axes of this order are being homed; 0: not yet */
@@ -189,6 +194,7 @@ struct drives {
     unsigned fault_axis;  /* index into axis of what the fault is about */
     uint32_t stop_cycles; /* spent in DRIVES_STOPPING or DRIVES_BRAKING */
     uint32_t rest_cycles; /* setpoints have not changed for */
+    double position_gain_per_s;
 };
 
 #endif

@@ -22,6 +22,7 @@
 /* Numbers of records that are no fields. */
 #define RECORD_VOLUME 200U
 #define RECORD_AXES   201U
+#define RECORD_DCF    202U /* in place of the axis: which drive's */
 
 /* ---- writing ---- */
 
@@ -87,19 +88,29 @@ static void write_tables(struct writer *w, const struct correction_tables *table
         settings_axes_put(&tables->axes, to);
 }
 
+static void write_dcf(struct writer *w, uint16_t drive, const struct concise_dcf *dcf)
+{
+    uint8_t *to;
+
+    if (dcf->bytes != NULL && (to = begin_record(w, RECORD_DCF, drive, dcf->length)) != NULL)
+        memcpy(to, dcf->bytes, dcf->length);
+}
+
 static uint32_t crc_of(const uint8_t *bytes, size_t size)
 {
     return crc32_add(CRC32_START, bytes + HEAD_VERSION, size - HEAD_VERSION);
 }
 
 size_t settings_pack(const struct machine *machine, const struct correction_tables *tables,
-                     uint8_t *bytes, size_t room)
+                     const struct concise_dcf *dcf, uint8_t *bytes, size_t room)
 {
     struct writer w = {bytes, SETTINGS_HEAD_BYTES, room, room < SETTINGS_HEAD_BYTES};
 
     write_machine(&w, machine);
     if (tables != NULL)
         write_tables(&w, tables);
+    for (uint16_t i = 0; dcf != NULL && i < MACHINE_NODES_MAX; i++)
+        write_dcf(&w, i, &dcf[i]);
     if (w.is_full)
         return 0;
     little_put32(bytes, MARK);
@@ -117,6 +128,7 @@ struct reader {
     uint32_t record; /* how many have been read */
     struct machine *machine;
     struct correction_tables *tables;
+    struct concise_dcf *dcf;
     const uint8_t *volume, *axes; /* NULL: none; taken when the machine is known */
     uint32_t volume_size, axes_size;
     struct diagnostic *wrong;
@@ -162,6 +174,19 @@ static bool read_field(struct reader *r, const struct settings_field *field, uin
     return true;
 }
 
+/* Stays where it is. */
+static bool read_dcf(struct reader *r, uint16_t drive, const uint8_t *value, uint32_t size)
+{
+    const struct concise_dcf dcf = {.bytes = value, .length = size};
+    uint32_t object;
+
+    if (drive >= MACHINE_NODES_MAX || !concise_dcf_is_well(&dcf, &object))
+        return refuse(r, TAKT_ERROR_SETTINGS_SHAPE, r->record);
+    if (r->dcf != NULL)
+        r->dcf[drive] = dcf;
+    return true;
+}
+
 static bool read_value(struct reader *r, uint32_t label, const uint8_t *value, uint32_t size)
 {
     const uint16_t number = (uint16_t)label;
@@ -169,6 +194,8 @@ static bool read_value(struct reader *r, uint32_t label, const uint8_t *value, u
 
     if (field != NULL)
         return read_field(r, field, (uint16_t)(label >> 16), value, size);
+    if (number == RECORD_DCF)
+        return read_dcf(r, (uint16_t)(label >> 16), value, size);
     if (number == RECORD_VOLUME) {
         r->volume = value;
         r->volume_size = size;
@@ -275,16 +302,20 @@ static void forget_axes(struct machine *machine)
 }
 
 bool settings_read(const uint8_t *bytes, size_t size, struct machine *machine,
-                   struct correction_tables *tables, struct diagnostic *wrong)
+                   struct correction_tables *tables, struct concise_dcf *dcf,
+                   struct diagnostic *wrong)
 {
     struct reader r = {.bytes = bytes,
                        .size = size,
                        .at = SETTINGS_HEAD_BYTES,
                        .machine = machine,
                        .tables = tables,
+                       .dcf = dcf,
                        .wrong = wrong};
 
     memset(tables, 0, sizeof *tables);
+    if (dcf != NULL)
+        memset(dcf, 0, MACHINE_NODES_MAX * sizeof *dcf);
     machine_set_default(machine);
     forget_axes(machine);
     if (!check_head(&r))

@@ -12,6 +12,7 @@
 #define TAKT_STORAGE_SETTINGS_H
 
 #include "base/error.h"
+#include "canopen/concise_dcf.h"
 #include "controller/machine.h"
 #include "correction/correction.h"
 #include "correction/tables.h"
@@ -27,18 +28,21 @@
 #define SETTINGS_BYTES_MIN 8192U
 
 /*
- * Writes settings to bytes, room of them; tables: NULL: none. Returns their size; 0: they do not fit.
+ * Writes settings to bytes, room of them; tables: NULL: none; dcf: of MACHINE_NODES_MAX drives, as of struct
+ * controller_config; NULL: none. Returns their size; 0: they do not fit.
  */
 size_t settings_pack(const struct machine *machine, const struct correction_tables *tables,
-                     uint8_t *bytes, size_t room);
+                     const struct concise_dcf *dcf, uint8_t *bytes, size_t room);
 
 /*
- * Reads and checks all of it: checksum, records, ranges, the machine as a whole, the tables. bytes: at a multiple of 8;
- * *tables points into them afterwards, so they must outlive it. False: *wrong says why, and neither holds anything of
+ * Reads and checks all of it: checksum, records, ranges, the machine as a whole, the tables, configurations of drives. bytes:
+ * at a multiple of 8; *tables and dcf, of MACHINE_NODES_MAX drives, point into them afterwards, so they must outlive these;
+ * dcf: NULL: they are checked alone. False: *wrong says why, and neither holds anything of
  * use.
  */
 bool settings_read(const uint8_t *bytes, size_t size, struct machine *machine,
-                   struct correction_tables *tables, struct diagnostic *wrong);
+                   struct correction_tables *tables, struct concise_dcf *dcf,
+                   struct diagnostic *wrong);
 
 /*
  * Do the corrections leave the axes enough to move? *scratch is overwritten. False: *wrong says which axis.

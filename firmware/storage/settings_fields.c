@@ -65,6 +65,7 @@ const struct settings_field settings_fields[] = {
     COUNT(24, spindle_encoder_counts, 0, 16777216),
     ABOVE(25, thread_tolerance_mm, 0, 100),
     ABOVE(26, tool_change_s, 0, 3600),
+    FROM(27, position_gain_per_s, 0, 1e4),
     COUNT(30, can_bitrate, 10000, 1000000),
     COUNT(31, heartbeat_ms, 0, 20000),
     ROW(32, false, SETTINGS_U8, offsetof(struct machine, controller_node), 1, 1, 127, false, "controller_node"),
@@ -122,6 +123,7 @@ const struct settings_field settings_fields[] = {
     OF_AXIS(123, SETTINGS_U8, home_offset_is_position, 0, 1, false),
     OF_AXIS(124, SETTINGS_DOUBLE, travel_per_turn_mm, 0, 1e6, false),
     OF_AXIS(125, SETTINGS_U8, drive_is_set_up, 0, 1, false),
+    OF_AXIS(126, SETTINGS_DOUBLE, velocity_units_per_mm_s, 0, 1e11, false),
 };
 /* clang-format on */
 

@@ -77,6 +77,7 @@ static void init_service(struct embedded *e)
         .reader = &e->config.core->reader,
         .parameters = &e->config.core->parameters,
         .correction = config->correction,
+        .dcf = config->dcf,
         .programs = {text_queue_open, text_queue_adopt, &e->config.core->queue},
         .plans = plan_queue_get_plans(&e->config.core->plan),
     };

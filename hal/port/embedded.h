@@ -63,6 +63,7 @@ struct embedded_config {
     struct tool *tools; /* tools_count of them, read and written; the caller's */
     size_t tools_count;
     const struct correction_tables *correction; /* NULL: none */
+    const struct concise_dcf *dcf;              /* as of struct controller_config */
     struct embedded_port port;
     struct panel_store settings; /* where settings are brought to; begin is NULL: nowhere */
     uint8_t unit;                /* of the panel's line, 1 ... 247 */

@@ -68,7 +68,7 @@ static bool prepare(void *context)
     if (bytes == NULL)
         return refuse(u, "the settings are not complete");
     u->why = NULL;
-    return settings_read(bytes, u->store->coming, &machine, u->port.borrow(u->port.context),
+    return settings_read(bytes, u->store->coming, &machine, u->port.borrow(u->port.context), NULL,
                          &u->wrong) ||
            log_refusal(u);
 }

@@ -53,6 +53,7 @@ static struct board {
     struct store store;
     struct settings_upload upload;
     struct correction_tables tables;
+    struct concise_dcf dcf[MACHINE_NODES_MAX];
     struct tool tools[TOOLS_MAX];
     struct findings found;
     volatile uint32_t ticks; /* control cycles since the start, whether anything moves or not */
@@ -248,7 +249,7 @@ static bool read_settings(struct machine *machine)
         diagnostic_set(wrong, TAKT_ERROR_SETTINGS_ABSENT, 0, 0, "", 0, 0);
         return false;
     }
-    return settings_read(bytes, size, machine, &board.tables, wrong) &&
+    return settings_read(bytes, size, machine, &board.tables, board.dcf, wrong) &&
            settings_check_share(machine, &board.tables,
                                 &board.embedded.service.controller.correction, wrong);
 }
@@ -264,6 +265,7 @@ static void open_settings(struct machine *machine)
         return;
     machine_set_default(machine);
     memset(&board.tables, 0, sizeof board.tables);
+    memset(board.dcf, 0, sizeof board.dcf);
 }
 
 static unsigned list_nodes(const struct machine *machine, uint8_t nodes[AXIS_COUNT])
@@ -341,6 +343,7 @@ static void open_embedded(const struct machine *machine)
         .tools = board.tools,
         .tools_count = TOOLS_MAX,
         .correction = &board.tables,
+        .dcf = board.dcf,
         .port = {.lock = cortex_lock,
                  .unlock = cortex_unlock,
                  .now_us = now_us,

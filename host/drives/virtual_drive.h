@@ -30,6 +30,7 @@ struct virtual_drive_config {
     uint8_t node; /* 1 ... 127 */
     double
         increments_per_mm; /* position units of the drive per mm or rad; < 0: its motor turns the other way */
+    double velocity_units_per_mm_s; /* its units of velocity; 0: position units in a second */
     uint32_t cycle_us; /* between two targets at power-on (object 60C2); 0: a millisecond */
     uint32_t boot_us;  /* from a reset to the boot-up message */
     uint32_t sdo_us;   /* from a request to its answer */

@@ -213,14 +213,14 @@ void virtual_drive_interrupt_homing(struct virtual_drive *drive)
 
 static double speed_mm_s(const struct virtual_drive *drive, unsigned i)
 {
-    return drive->objects.settings.homing_velocity[i] / virtual_drive_scale(drive);
+    return drive->objects.settings.homing_velocity[i] / virtual_drive_velocity_scale(drive);
 }
 
 static void run_towards(struct virtual_drive *drive, int8_t direction, double velocity_mm_s,
                         uint32_t cycle_ns)
 {
     double acceleration_mm_s2 =
-        drive->objects.settings.homing_acceleration / virtual_drive_scale(drive);
+        drive->objects.settings.homing_acceleration / virtual_drive_velocity_scale(drive);
     virtual_drive_run_at(drive, direction * virtual_drive_sign(drive) * velocity_mm_s,
                          acceleration_mm_s2, cycle_ns);
 }

@@ -32,7 +32,7 @@ double virtual_drive_actual_mm(const struct virtual_drive *drive)
 
 static double least_mm(const struct virtual_drive *drive, uint32_t a, uint32_t b)
 {
-    return (a < b ? a : b) / virtual_drive_scale(drive);
+    return (a < b ? a : b) / virtual_drive_velocity_scale(drive);
 }
 
 double virtual_drive_profile_acceleration_mm_s2(const struct virtual_drive *drive)
@@ -55,7 +55,8 @@ double virtual_drive_motor_velocity_max_mm_s(const struct virtual_drive *drive)
 
 double virtual_drive_profile_velocity_max_mm_s(const struct virtual_drive *drive)
 {
-    return maths_min(drive->objects.settings.max_profile_velocity / virtual_drive_scale(drive),
+    return maths_min(drive->objects.settings.max_profile_velocity /
+                         virtual_drive_velocity_scale(drive),
                      virtual_drive_motor_velocity_max_mm_s(drive));
 }
 /*
@@ -162,7 +163,7 @@ static void run_profile(struct virtual_drive *drive, double target_mm, const str
 static struct ramps profile_ramps(const struct virtual_drive *drive)
 {
     const struct drive_settings *s = &drive->objects.settings;
-    double per_mm = virtual_drive_scale(drive);
+    double per_mm = virtual_drive_velocity_scale(drive);
     double velocity_mm_s =
         maths_min(s->profile_velocity / per_mm, virtual_drive_profile_velocity_max_mm_s(drive));
     double end_mm_s = drive->setpoints.has_next ? s->end_velocity / per_mm : 0;
@@ -295,9 +296,9 @@ void virtual_drive_set_offsets(struct virtual_drive *drive)
 {
     const struct drive_process *p = &drive->objects.process;
     struct drive_plant *plant = &drive->plant;
-    plant->velocity_offset_mm_s =
-        p->velocity_offset ? drive->velocity_sign * p->velocity_offset / virtual_drive_scale(drive)
-                           : 0;
+    plant->velocity_offset_mm_s = p->velocity_offset ? drive->velocity_sign * p->velocity_offset /
+                                                           virtual_drive_velocity_scale(drive)
+                                                     : 0;
     plant->torque_offset_mm_s2 = p->torque_offset ? drive->torque_sign * p->torque_offset /
                                                         TORQUE_PER_RATED * plant->mm_s2_per_rated
                                                   : 0;
@@ -433,7 +434,8 @@ static uint16_t position_status(const struct virtual_drive *drive)
 /* Bit 12: it stands (606F). */
 static uint16_t velocity_status(const struct virtual_drive *drive)
 {
-    double threshold_mm_s = drive->objects.settings.velocity_threshold / virtual_drive_scale(drive);
+    double threshold_mm_s =
+        drive->objects.settings.velocity_threshold / virtual_drive_velocity_scale(drive);
     bool stands = maths_abs(drive->plant.measured_velocity_mm_s) <= threshold_mm_s;
     bool is_reached = drive->is_halted ? drive->velocity_mm_s == 0 : drive->setpoints.is_reached;
     return (uint16_t)((is_reached ? STATUS_REACHED : 0) | (stands ? STATUS_BIT_12 : 0));

@@ -33,7 +33,7 @@ static void refresh_rest(struct virtual_drive *drive)
     struct drive_process *p = &drive->objects.process;
     p->demand_position = virtual_drive_increments(drive, plant->command_mm - drive->origin_mm);
     p->actual_internal = signed_round(plant->measured_mm * plant->encoder_steps_per_mm);
-    double velocity_per_mm = drive->velocity_sign * virtual_drive_scale(drive);
+    double velocity_per_mm = drive->velocity_sign * virtual_drive_velocity_scale(drive);
     p->actual_velocity = signed_round(plant->measured_velocity_mm_s * velocity_per_mm);
     p->demand_velocity = signed_round(plant->command_velocity_mm_s * velocity_per_mm);
     p->actual_torque = torque(drive);

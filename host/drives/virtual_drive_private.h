@@ -54,10 +54,16 @@ static inline double virtual_drive_sign(const struct virtual_drive *drive)
 {
     return drive->config.increments_per_mm < 0 ? -1 : 1;
 }
-/* Position units per mm of what has no sign: velocities, accelerations, windows. */
+/* Position units per mm of what has no sign: windows. */
 static inline double virtual_drive_scale(const struct virtual_drive *drive)
 {
     return drive->increments_per_mm < 0 ? -drive->increments_per_mm : drive->increments_per_mm;
+}
+/* Velocity units per mm/s, and units of acceleration per mm/s2. */
+static inline double virtual_drive_velocity_scale(const struct virtual_drive *drive)
+{
+    const double units = drive->config.velocity_units_per_mm_s;
+    return units > 0 ? units : virtual_drive_scale(drive);
 }
 
 /* Object 1013, by the drive's own clock. */

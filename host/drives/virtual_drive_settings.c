@@ -27,10 +27,20 @@
 #define DEFAULT_CYCLE_US              1000
 #define TORQUE_PER_RATED              1000.0
 
-static uint32_t unsigned_increments(const struct virtual_drive *drive, double value)
+static uint32_t unsigned_round(double value)
 {
-    double increments = maths_round(value * virtual_drive_scale(drive));
-    return (uint32_t)maths_clamp(increments, 0, (double)UINT32_MAX);
+    return (uint32_t)maths_clamp(maths_round(value), 0, (double)UINT32_MAX);
+}
+
+static uint32_t unsigned_increments(const struct virtual_drive *drive, double value_mm)
+{
+    return unsigned_round(value_mm * virtual_drive_scale(drive));
+}
+
+/* Of a velocity or an acceleration. */
+static uint32_t unsigned_velocity(const struct virtual_drive *drive, double value_mm_s)
+{
+    return unsigned_round(value_mm_s * virtual_drive_velocity_scale(drive));
 }
 
 /* The period as 60C2 tells it: the fewest microseconds that fit, exactly where they do. */
@@ -83,21 +93,20 @@ void virtual_drive_init_objects(struct virtual_drive *drive)
             : NOT_WATCHED;
     o->settings.following_timeout_ms = (uint16_t)plant->following_error_timeout_ms;
     o->settings.quick_stop_deceleration =
-        unsigned_increments(drive, plant->quick_stop_deceleration_mm_s2);
+        unsigned_velocity(drive, plant->quick_stop_deceleration_mm_s2);
     o->settings.position_window =
         unsigned_increments(drive, DEFAULT_POSITION_WINDOW_TURNS * turn_mm);
-    o->settings.max_profile_velocity = unsigned_increments(drive, DEFAULT_MAX_TURNS_S * turn_mm);
-    o->settings.profile_velocity = unsigned_increments(drive, DEFAULT_PROFILE_TURNS_S * turn_mm);
-    o->settings.profile_acceleration =
-        unsigned_increments(drive, DEFAULT_PROFILE_TURNS_S2 * turn_mm);
+    o->settings.max_profile_velocity = unsigned_velocity(drive, DEFAULT_MAX_TURNS_S * turn_mm);
+    o->settings.profile_velocity = unsigned_velocity(drive, DEFAULT_PROFILE_TURNS_S * turn_mm);
+    o->settings.profile_acceleration = unsigned_velocity(drive, DEFAULT_PROFILE_TURNS_S2 * turn_mm);
     o->settings.profile_deceleration = o->settings.profile_acceleration;
-    o->settings.homing_velocity[0] = unsigned_increments(drive, DEFAULT_HOMING_TURNS_S * turn_mm);
+    o->settings.homing_velocity[0] = unsigned_velocity(drive, DEFAULT_HOMING_TURNS_S * turn_mm);
     o->settings.homing_velocity[1] =
-        unsigned_increments(drive, DEFAULT_HOMING_SLOW_TURNS_S * turn_mm);
-    o->settings.homing_acceleration = unsigned_increments(drive, DEFAULT_HOMING_TURNS_S2 * turn_mm);
+        unsigned_velocity(drive, DEFAULT_HOMING_SLOW_TURNS_S * turn_mm);
+    o->settings.homing_acceleration = unsigned_velocity(drive, DEFAULT_HOMING_TURNS_S2 * turn_mm);
     o->settings.feed_increments = unsigned_increments(drive, turn_mm);
     o->settings.velocity_window = o->settings.velocity_threshold = (uint16_t)maths_min(
-        unsigned_increments(drive, DEFAULT_VELOCITY_TURNS_S * turn_mm), UINT16_MAX);
+        unsigned_velocity(drive, DEFAULT_VELOCITY_TURNS_S * turn_mm), UINT16_MAX);
     o->settings.max_torque = (uint16_t)maths_clamp(
         maths_round(TORQUE_PER_RATED * plant->torque_max_nm / plant->torque_rated_nm), 0,
         UINT16_MAX);
@@ -134,11 +143,11 @@ static void rescale(struct virtual_drive *drive)
 
 /* A value of the machine that its object could not hold is used as long as nobody has changed it. */
 static double in_mm(const struct virtual_drive *drive, uint32_t value, uint32_t initial,
-                    double machine)
+                    double machine, double per_mm)
 {
     bool is_initial = value == initial && maths_abs(drive->increments_per_mm) ==
                                               maths_abs(drive->config.increments_per_mm);
-    return is_initial ? machine : value / virtual_drive_scale(drive);
+    return is_initial ? machine : value / per_mm;
 }
 
 /* period = 60C2:01 10^60C2:02 seconds */
@@ -177,15 +186,17 @@ void virtual_drive_derive(struct virtual_drive *drive)
     const struct drive_settings *initial = &drive->initial.settings;
     const struct drive_plant_config *plant = &drive->config.plant;
     rescale(drive);
+    const double per_mm_s = virtual_drive_velocity_scale(drive);
     drive->interpolation_ns = interpolation_ns(s);
     drive->following_window_mm = 0;
     if (s->following_window != NOT_WATCHED)
-        drive->following_window_mm = in_mm(drive, s->following_window, initial->following_window,
-                                           plant->following_error_window_mm);
-    drive->quick_stop_mm_s2 =
-        maths_min(in_mm(drive, s->quick_stop_deceleration, initial->quick_stop_deceleration,
-                        plant->quick_stop_deceleration_mm_s2),
-                  in_mm(drive, s->max_deceleration, initial->max_deceleration, MATHS_INFINITY));
+        drive->following_window_mm =
+            in_mm(drive, s->following_window, initial->following_window,
+                  plant->following_error_window_mm, virtual_drive_scale(drive));
+    drive->quick_stop_mm_s2 = maths_min(
+        in_mm(drive, s->quick_stop_deceleration, initial->quick_stop_deceleration,
+              plant->quick_stop_deceleration_mm_s2, per_mm_s),
+        in_mm(drive, s->max_deceleration, initial->max_deceleration, MATHS_INFINITY, per_mm_s));
     derive_signs(drive);
     virtual_drive_derive_torque(drive);
 }

@@ -12,7 +12,7 @@
 static double target_velocity_mm_s(const struct virtual_drive *drive)
 {
     return drive->velocity_sign * drive->objects.process.target_velocity /
-           virtual_drive_scale(drive);
+           virtual_drive_velocity_scale(drive);
 }
 
 /* As far as the limit lets it: an internal limit. */
@@ -33,7 +33,7 @@ static void turn(struct virtual_drive *drive, double velocity_mm_s, uint32_t cyc
 static void check_velocity(struct virtual_drive *drive, double target_mm_s, uint32_t cycle_ns)
 {
     const struct drive_settings *s = &drive->objects.settings;
-    double window_mm_s = s->velocity_window / virtual_drive_scale(drive);
+    double window_mm_s = s->velocity_window / virtual_drive_velocity_scale(drive);
     bool is_inside = maths_abs(target_mm_s - drive->plant.measured_velocity_mm_s) <= window_mm_s;
     virtual_drive_note_reached(drive, is_inside, s->velocity_window_ms, cycle_ns);
 }

@@ -72,6 +72,7 @@ static bool use_axis(struct drives_command *command, struct virtual_drive_config
         if (!axis->present || axis->drive_node != drive->node)
             continue;
         drive->increments_per_mm = axis->increments_per_mm;
+        drive->velocity_units_per_mm_s = axis->velocity_units_per_mm_s;
         if (!data_sheet_set_drive(drive, &command->setup.drive[i], &command->sheet[i]))
             return false;
     }

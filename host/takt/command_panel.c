@@ -1,6 +1,7 @@
 #define _POSIX_C_SOURCE 200809L
 
 #include "takt/command.h"
+#include "takt/drives_table.h"
 #include "takt/interrupt.h"
 #include "takt/message.h"
 #include "takt/panel_line.h"
@@ -9,6 +10,7 @@
 #include "takt/suggest.h"
 
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 #include <time.h>
 
@@ -63,6 +65,8 @@ static bool show(struct panel_line *line, enum panel_id id)
         return false;
     (void)printf("%s = %s%s%s\n", panel_text(row)->name, text,
                  panel_text(row)->unit[0] != '\0' ? " " : "", panel_text(row)->unit);
+    if (id == REGISTER_DRIVES_GIVEN_UP)
+        drives_table_write_bits(stdout, (uint32_t)strtoul(text, NULL, 10));
     return true;
 }
 

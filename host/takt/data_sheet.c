@@ -42,6 +42,7 @@ static bool add_drive(struct virtual_drives_config *config, const struct machine
     *drive = (struct virtual_drive_config){
         .node = gantry != NULL ? gantry->drive_node : axis->drive_node,
         .increments_per_mm = is_reversed ? -axis->increments_per_mm : axis->increments_per_mm,
+        .velocity_units_per_mm_s = axis->velocity_units_per_mm_s,
         .cycle_us = machine->cycle_us,
     };
     return data_sheet_set_drive(drive, &setup->drive[index], sheet);

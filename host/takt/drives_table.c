@@ -42,6 +42,10 @@ static const struct {
                                "no touch probe: a probing move has the position of a cycle"},
     [DRIVES_NO_SCALING] = {"scaling", "608F 6091 6092",
                            "is not told: increments_per_mm is believed"},
+    [DRIVES_NO_POSITION] = {"position", "6502",
+                            "a mode of velocity: the controller closes the position loop"},
+    [DRIVES_NO_RAMPS] = {"ramps", "6083 6084", "the drive goes to a velocity as it is set up"},
+    [DRIVES_NO_TYPE] = {"type", "1000", "the type is not that of a drive: it is taken for one"},
     [DRIVES_GUARDED] = {"guarded", "1017", "no heartbeat: the drive is asked for its state (100C)"},
 };
 
@@ -92,6 +96,13 @@ void drives_table_write_text(FILE *stream, const struct drives_table *table)
         write_row(stream, table, row, head);
         head = "";
     }
+}
+
+void drives_table_write_bits(FILE *stream, uint32_t given_up)
+{
+    for (unsigned row = 0; row < DRIVES_GIVEN_UP_COUNT; row++)
+        if (given_up >> row & 1)
+            (void)fprintf(stream, "  %-15s %s\n", rows[row].object, rows[row].follows);
 }
 
 bool drives_table_tell(const struct drives *drives, bool is_quiet)
@@ -153,13 +164,16 @@ const char *drives_table_remedy(const struct diagnostic *fault)
         return "look at the set-up of the drive, objects 6060 and 6502";
     case TAKT_ERROR_DRIVE_REFUSES:
         return "set it up with the maker's tool; homing is home_order, home_method and "
-               "home_offset_mm";
+               "home_offset_mm, ramps (6083, 6084) must not be slower than max_acceleration_mm_s2";
     case TAKT_ERROR_DRIVE_UNMAPPED:
         return "map it with the maker's tool into a PDO that is valid and of transmission type 1, "
                "and store that";
     case TAKT_ERROR_DRIVE_SHARES:
         return "give each drive a PDO with an identifier of its own with the maker's tool, or "
                "drive_is_set_up = 0";
+    case TAKT_ERROR_DRIVE_UNWATCHED:
+        return "set up its consumer heartbeat (1016) or guarding (100C and 100D) with the maker's "
+               "tool; heartbeat_ms in [bus] must not be 0";
     case TAKT_ERROR_DRIVE_PERIOD:
         return "set cycle_us in [machine] to that time, or 60C2 with the maker's tool";
     case TAKT_ERROR_DRIVE_SCALING:

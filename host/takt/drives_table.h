@@ -25,6 +25,9 @@ bool drives_table_has(const struct drives_table *table, enum drives_given_up wha
 /* A row for everything that has been given up, nothing if nothing has. */
 void drives_table_write_text(FILE *stream, const struct drives_table *table);
 
+/* The same of bits of enum drives_given_up alone, whichever drives' they are. */
+void drives_table_write_bits(FILE *stream, uint32_t given_up);
+
 /* To standard error, once the drives are enabled. False: they are not yet. */
 bool drives_table_tell(const struct drives *drives, bool is_quiet);
 void drives_table_add_json(cJSON *root, const struct drives_table *table,

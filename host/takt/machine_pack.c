@@ -2,6 +2,7 @@
 
 #include "storage/settings.h"
 #include "storage/store.h"
+#include "takt/configuration_file.h"
 #include "takt/correction_file.h"
 #include "takt/machine_file.h"
 #include "takt/message.h"
@@ -42,15 +43,6 @@ static void report(const char *path, const struct correction_tables *tables, siz
                      tables != NULL ? tables->axes.count : 0);
 }
 
-static bool has_configuration(const struct machine_setup *setup)
-{
-    bool has = false;
-
-    for (unsigned i = 0; i < MACHINE_SETUP_DRIVES_MAX; i++)
-        has = has || setup->drive[i].dcf[0] != '\0';
-    return has;
-}
-
 enum command_status machine_pack_write(const struct machine_setup *setup, const char *path,
                                        bool is_sector)
 {
@@ -59,14 +51,12 @@ enum command_status machine_pack_write(const struct machine_setup *setup, const 
     enum command_status status = STATUS_ENVIRONMENT;
     size_t size;
 
-    if (has_configuration(setup)) {
-        message_command_error("a target keeps no configurations of drives (dcf): have the drives "
-                              "store them, and say drive_is_set_up = 1");
+    if (!configuration_files_load(setup))
         return STATUS_INPUT;
-    }
     if (!correction_file_load(&tables, setup))
         return STATUS_INPUT;
-    size = settings_pack(&setup->machine, tables, packed.bytes, sizeof packed.bytes);
+    size = settings_pack(&setup->machine, tables, configuration_files_get(), packed.bytes,
+                         sizeof packed.bytes);
     if (size == 0) {
         message_command_error("the settings take more than %u bytes", BYTES_MAX);
         status = STATUS_INPUT;
@@ -103,6 +93,20 @@ static void print_tables(const struct correction_tables *tables)
     }
 }
 
+static void print_configurations(const struct machine *machine, const struct concise_dcf *dcf)
+{
+    uint8_t node[MACHINE_NODES_MAX];
+
+    for (unsigned i = 0; i < AXIS_COUNT; i++)
+        node[i] = machine->axis[i].drive_node;
+    for (unsigned i = 0; i < MACHINE_GANTRIES_MAX; i++)
+        node[AXIS_COUNT + i] = machine->gantry[i].drive_node;
+    for (unsigned i = 0; i < MACHINE_NODES_MAX; i++)
+        if (dcf[i].bytes != NULL)
+            (void)printf("# with a configuration of node %u (%u bytes)\n", (unsigned)node[i],
+                         (unsigned)dcf[i].length);
+}
+
 static bool begins_with_head(const struct text *text)
 {
     return text->length > STORE_HEAD_BYTES && memcmp(text->bytes, "TKS1", 4) == 0;
@@ -127,16 +131,18 @@ static enum command_status print_settings(const char *path, const uint8_t *bytes
 {
     static struct correction_tables tables;
     static struct machine_setup setup;
+    struct concise_dcf dcf[MACHINE_NODES_MAX];
     struct diagnostic wrong;
     char text[DIAGNOSTIC_TEXT_MAX];
 
     machine_setup_set_default(&setup);
-    if (!settings_read(bytes, size, &setup.machine, &tables, &wrong)) {
+    if (!settings_read(bytes, size, &setup.machine, &tables, dcf, &wrong)) {
         (void)diagnostic_text(&wrong, text);
         message_error(path, 0, 0, "%s", text);
         return STATUS_INPUT;
     }
     print_tables(&tables);
+    print_configurations(&setup.machine, dcf);
     machine_file_write(stdout, &setup);
     return STATUS_DONE;
 }

@@ -16,6 +16,15 @@ static bool has_steps(const struct machine *machine)
     return false;
 }
 
+static bool has_configurations(const struct machine_setup *setup)
+{
+    bool has = false;
+
+    for (unsigned i = 0; i < MACHINE_SETUP_DRIVES_MAX; i++)
+        has = has || setup->drive[i].dcf[0] != '\0';
+    return has;
+}
+
 enum command_status target_setup_check(const struct session *session)
 {
     const struct options *options = session->options;
@@ -30,6 +39,9 @@ enum command_status target_setup_check(const struct session *session)
     else if (has_steps(&session->setup.machine))
         message_command_error("--target: the image drives axes over CAN alone, and this machine "
                               "has step drives");
+    else if (has_configurations(&session->setup))
+        message_command_error("--target: the image is not handed configurations of drives (dcf); "
+                              "a board has them in its settings (takt machine --pack)");
     else
         return STATUS_DONE;
     return STATUS_INPUT;

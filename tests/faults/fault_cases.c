@@ -177,7 +177,7 @@ const struct fault_case fault_cases[] = {
             "the drive of axis Y (node 2) has not booted within 6 s"),
     REFUSED("the drive of Z is another one", "power drive 3 report object=1018:02 value=403", DRIVE_IDENTITY,
             "axis Z (node 3) has another drive than the machine file says: its product code, object 1018:02, is 0403"),
-    REFUSED("the node of Z is no drive", "power drive 3 report object=1000 value=30191", DRIVE_TYPE,
+    REFUSED("the node of Z is no drive", "power drive 3 report object=1000 value=30191\npower drive 3 report object=6502 value=0\n", DRIVE_TYPE,
             "axis Z (node 3) has no CiA 402 drive: the device type, object 1000, is 00030191"),
     GOES_ON("the drive of X refuses a mapping", "power drive 1 sdo_abort object=1A00:01 code=06040041", 0.001),
     REFUSED("the drive of X answers no request", "power drive 1 mute what=sdo", DRIVE_UNANSWERED,

@@ -19,8 +19,9 @@ VARIABLES = [
     (0x100C, U16, RW, 0), (0x100D, U8, RW, 0), (0x1017, U16, RW, 0), (0x603F, U16, RO, 0), (0x6040, U16, RW, 0), (0x6041, U16, RO, 0x0250),
     (0x6060, I8, RW, 0), (0x6061, I8, RO, 0), (0x6064, I32, RO, 0), (0x607A, I32, RW, 0),
     (0x60F4, I32, RO, 0), (0x6502, U32, RO, 0xA0), (0x605A, I16, RW, 2), (0x607C, I32, RW, 0),
-    (0x6098, I8, RW, 0), (0x609A, U32, RW, 0),
+    (0x6083, U32, RW, 0), (0x6084, U32, RW, 0), (0x6098, I8, RW, 0), (0x609A, U32, RW, 0), (0x60FF, I32, RW, 0),
 ]
+TARGETS = {3: 0x60FF, 7: 0x60C1, 8: 0x607A, 9: 0x60FF}  # of modes
 RECORDS = [
     (0x1016, [(1, U32, RW, 0)]),
     (0x1018, [(1, U32, RO, VENDOR), (2, U32, RO, PRODUCT), (3, U32, RO, 1), (4, U32, RO, 99)]),
@@ -40,10 +41,12 @@ def variable(index, sub, kind, access, default):
 
 
 class Habits:
-    """What a drive does otherwise than takt's own. Objects are indices, or (index, sub-index)."""
+    """What a drive does otherwise than takt's own. Objects are indices, or (index, sub-index). With a sheet, the path of an EDS,
+    its objects, access, limits, dummies and PDOs are those of that."""
 
     def __init__(self, absent=(), read_only=(), not_mappable=(), limits=(), entries=8, maps=None, dummies=True, pdos=2,
-                 modes=0xA0, boots_after=0.0, code=0x06090030):
+                 modes=0xA0, boots_after=0.0, code=0x06090030, sheet=None):
+        self.sheet = sheet
         self.absent, self.read_only, self.not_mappable = set(absent), set(read_only), set(not_mappable)
         self.limits = dict(limits)  # highest value of an object
         self.entries, self.maps, self.dummies, self.pdos = entries, maps, dummies, pdos
@@ -73,7 +76,26 @@ def process_data(node, habits):
     return records
 
 
+def check_by_sheet(objects, index, subindex, value):
+    """What the data sheet says of a value; access is the library's."""
+    entry = objects[index][subindex] if isinstance(objects[index], (od.ODRecord, od.ODArray)) else objects[index]
+    is_mapping = (0x1600 <= index < 0x1800 or 0x1A00 <= index < 0x1C00) and subindex > 0
+    is_signed = entry.data_type in od.SIGNED_TYPES
+    if not is_signed and not (entry.min or 0) <= value <= (0xFFFFFFFF if entry.max is None else entry.max):
+        raise canopen.SdoAbortedError(0x06090030)
+    if not is_mapping or value == 0:
+        return
+    mapped, sub = value >> 16, value >> 8 & 0xFF
+    if mapped not in objects:
+        raise canopen.SdoAbortedError(0x06040041 if mapped < 0x1000 else 0x06020000)
+    found = objects[mapped][sub] if isinstance(objects[mapped], (od.ODRecord, od.ODArray)) else objects[mapped]
+    if mapped >= 0x1000 and not found.pdo_mappable:
+        raise canopen.SdoAbortedError(0x06040041)
+
+
 def dictionary(node, habits):
+    if habits.sheet is not None:
+        return canopen.import_od(habits.sheet, node)
     result = od.ObjectDictionary()
     for index, kind, access, default in VARIABLES:
         if habits.has(index, 0) and (index != 0x0007 or habits.dummies):
@@ -122,6 +144,7 @@ class Drive:
         self.network, self.number = network, number
         self.state, self.mode, self.controlword = "off", 0, 0
         self.at = self.goal = at
+        self.velocity = 0  # increments per second
         self.home_at = None  # increments the home has on the motor's own scale
         self.targets = []  # latched, in order
         self.homed_after, self.is_homed, self.homing_syncs = 5, False, 0
@@ -140,6 +163,8 @@ class Drive:
     def on_write(self, index, subindex, od, data):  # names of the library
         """What may not be written, or not to this value. Mode and controlword act at once."""
         value, habits = int.from_bytes(data, "little"), self.habits
+        if habits.sheet is not None:
+            check_by_sheet(self.node.object_dictionary, index, subindex, value)
         is_entry = (0x1600 <= index < 0x1800 or 0x1A00 <= index < 0x1C00) and subindex > 0
         if index in habits.read_only or (index, subindex) in habits.read_only:
             raise canopen.SdoAbortedError(0x06010002)
@@ -207,7 +232,7 @@ class Drive:
             self.set_mode(values[0x6060])
         if 0x6040 in values:
             self.set_control(values[0x6040])
-        target = values.get(0x607A if self.mode != 7 else 0x60C1)
+        target = values.get(TARGETS.get(self.mode))
         if target is not None and (self.mode != 7 or self.controlword & 0x10):
             self.pending = target
 
@@ -257,13 +282,27 @@ class Drive:
         if self.mode == 6:
             self.home()
             return
+        if TARGETS.get(self.mode) == 0x60FF:
+            self.turn()
+        else:
+            self.follow()
+        if self.fail_at and len(self.targets) == self.fail_at[0]:
+            self.state = "fault"
+            self.node.emcy.send(self.fail_at[1], 0x01)
+
+    def follow(self):
         self.at = self.goal
         if self.pending is not None:
             self.goal, self.pending = self.pending, None
             self.targets.append(self.goal)
-        if self.fail_at and len(self.targets) == self.fail_at[0]:
-            self.state = "fault"
-            self.node.emcy.send(self.fail_at[1], 0x01)
+
+    def turn(self):
+        """At its velocity from SYNC to SYNC, a millisecond."""
+        self.goal += self.velocity * 1e-3
+        self.at = round(self.goal)
+        if self.pending is not None:
+            self.velocity, self.pending = self.pending, None
+            self.targets.append(self.at)
 
     def home(self):
         if self.homing_syncs == 0:

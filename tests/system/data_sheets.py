@@ -174,6 +174,32 @@ def interpolated_only(sheet, _):
     sheet["6502"]["DefaultValue"] = "0x61"
 
 
+def velocity_only(sheet, _):
+    sheet["6502"]["DefaultValue"] = "0x120"
+
+
+def profile_velocity_only(sheet, _):
+    sheet["6502"]["DefaultValue"] = "0x25"
+
+
+def own_ramps(sheet, _):
+    """Of 50 turns/s2, as takt's own has them."""
+    profile_velocity_only(sheet, None)
+    set_access(sheet, "ro", "6083", "6084")
+
+
+def no_target_position(sheet, _):
+    """Its modes say more than can be mapped."""
+    sheet["607A"]["PDOMapping"] = sheet["60C1sub1"]["PDOMapping"] = "0"
+    for index in ("1601", "1602", "1603"):
+        map_default(sheet, index, [])
+
+
+def no_type(sheet, draw):
+    """As data sheets have it that were made in haste."""
+    sheet["1000"]["DefaultValue"] = draw.choice(["0", "4", "0x92010200", "0x000F0191", "0x0002FFFF"])
+
+
 def no_modes(sheet, _):
     drop(sheet, "6502")
 
@@ -231,6 +257,10 @@ HABITS = {
     "6060 not mappable": (mode_not_mappable, {"mode_pdo"}),
     "6040 not mappable": (control_not_mappable, {"mode_pdo", "control_pdo"}),
     "interpolated position only": (interpolated_only, {"csp"}),
+    "cyclic velocity only": (velocity_only, {"position"}),
+    "profile velocity only": (profile_velocity_only, {"position"}),
+    "no target position in a PDO": (no_target_position, {"pair", "position"}),
+    "1000 of another type": (no_type, {"type"}),
     "6502 absent": (no_modes, {"modes"}),
     "6061 absent": (no_mode_display, {"mode_display"}),
     "identifiers read-only": (fixed_identifiers, {"pair"}),
@@ -242,7 +272,7 @@ HABITS = {
 
 
 # Habits of PDOs: a drive has one of them.
-OF_PDOS = ("one entry a PDO", "one entry in the first PDOs", "fixed mapping", "fixed mapping without a mode", "6060 not mappable", "6040 not mappable",
+OF_PDOS = ("no target position in a PDO", "one entry a PDO", "one entry in the first PDOs", "fixed mapping", "fixed mapping without a mode", "6060 not mappable", "6040 not mappable",
            "identifiers read-only", "two PDOs", "one PDO")
 
 

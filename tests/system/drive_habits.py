@@ -87,12 +87,26 @@ refused("another time between targets", "60C2", "10000 us", "cycle_us", "drive.2
 refused("wrong scaling", "increments_per_mm", "1000000 units", "axis.Y.travel_per_turn_mm=5")
 refused("a drive that cannot follow", "6502", "set-up", "drive.1.eds=" + sheet_of(
     1, lambda sheet, _: sheet["6502"].update(DefaultValue="0x21")))
+refused("ramps that are too slow", "6083", "maker's tool", *all_drives(sheet_of(1, data_sheets.own_ramps)))
+refused("a drive of velocity that watches nobody", "1016", "maker's tool", *all_drives(
+    sheet_of(1, data_sheets.velocity_only, data_sheets.nobody_watched)))
+refused("a drive of velocity without heartbeats", "heartbeat_ms", "bus.heartbeat_ms=0", *all_drives(sheet_of(1, data_sheets.velocity_only)))
 refused("a drive that is slower than allowed", "boot_timeout_ms", "drive.3.boot_time_ms=20000")
 refused("a drive that answers later than allowed", "_timeout_ms", "drive.3.sdo_time_ms=15000")
 refused("frames that do not fit into a cycle", "1075 of 1000 bits", "cycle_us", "axis.A.drive_node=4", *(
     f"drive.{node}.eds=" + sheet_of(node, data_sheets.no_dummies) for node in (1, 2, 3, 4)))
 status, err, _ = run(POCKET, "drive.1.eds=" + t.write("nothing.eds", "[6040]\nDataType=6\n"))
 t.check(status == 2 and "nothing.eds" in err and "[1000]" in err, "what is no data sheet is told so", err)
+
+# Velocities: in units of their own; of motors that turn the other way; where the ramps are the drive's, and steep enough.
+VELOCITY = all_drives(sheet_of(1, data_sheets.velocity_only))
+runs("velocities in rpm", {"position"}, *VELOCITY, *(f"axis.{axis}.velocity_units_per_mm_s=6" for axis in "XYZ"))
+runs("velocities of motors that turn the other way", {"position"}, *VELOCITY, *(
+    f"axis.{axis}.increments_per_mm=-20000" for axis in "XYZ"))
+status, err, summary = run(POCKET, *all_drives(sheet_of(1, data_sheets.own_ramps)), *(
+    f"axis.{axis}.max_acceleration_mm_s2=400" for axis in "XYZ"))
+if t.check(status == 0, "ramps of the drive's own that are steep enough will do", err):
+    t.check("ramps" in summary["drives"][0]["given_up"], "and are told")
 
 # Drives of a sheet on a bus are what they are inside; without object 1006 SYNC is their clock all the same.
 for name in ("nothing optional", "one entry a PDO", "interpolated position only"):
@@ -155,7 +169,7 @@ def random_machine(seed):
     return "".join(lines), count, cycle_us, habits
 
 
-REMEDIES = ("cycle_us", "maker's tool", "_timeout_ms", "set-up")
+REMEDIES = ("cycle_us", "drive_node", "maker's tool", "_timeout_ms", "set-up")
 outcomes = {}
 for seed in range(FIRST, FIRST + NUMBER):
     machine, count, cycle_us, habits = random_machine(seed)

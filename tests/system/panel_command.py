@@ -2,6 +2,7 @@
 
 import os
 
+import data_sheets
 import panel_client as p
 import takt_test as t
 
@@ -57,6 +58,18 @@ status, _, err = t.run("panel", "read", "STATE", "--connect", "127.0.0.1:1", "--
 t.check(status == 3 and "no panel at 127.0.0.1:1" in err, "where no panel is: status 3", status, err)
 status, _, err = t.run("panel", "read", "STATE", "--connect", "nowhere")
 t.check(status == 2 and "HOST:PORT" in err, "a place that is none", status, err)
+service.stop()
+
+# What is given up is told in words.
+t.check(t.run("drives", "--nodes", "1", "--eds", "own.eds")[0] == 0, "our own data sheet is written")
+sheet = data_sheets.read("own.eds")
+data_sheets.velocity_only(sheet, None)
+data_sheets.no_event_timer(sheet, None)
+service = p.Service("--listen", "127.0.0.1:0", "--set", "drive.1.eds=" + data_sheets.write("velocity.eds", sheet))
+service.client().wait_for("STATE", p.IDLE)
+PLACE = "--connect", f"127.0.0.1:{service.port}"
+check_says(["read", "DRIVES_GIVEN_UP"], "\n  1801:05         the error code is told once, when it changes\n"
+           "  6502            a mode of velocity: the controller closes the position loop\n")
 service.stop()
 line.close()
 

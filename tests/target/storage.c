@@ -66,7 +66,7 @@ static bool tell_found(const char *path)
     if (file < 0)
         return false;
     if (!store_get(&board.store, &bytes, &size) ||
-        !settings_read(bytes, size, &board.machine, &board.tables, &wrong))
+        !settings_read(bytes, size, &board.machine, &board.tables, NULL, &wrong))
         return true;
     return semihosting_write(file, bytes, size);
 }

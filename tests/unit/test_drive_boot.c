@@ -157,6 +157,8 @@ static void test_pdos_that_are_not_used_are_switched_off(void)
 
 static void test_a_node_of_another_profile_is_refused(void)
 {
+    set_rule((struct fake_rule){
+        .node = 3, .object = SDO_OBJECT(0x6502, 0), .abort_code = SDO_ABORT_NO_OBJECT});
     set_rule((struct fake_rule){.node = 3, .object = SDO_OBJECT(0x1000, 0), .value = 0x00030191});
     assert_refused(
         TAKT_ERROR_DRIVE_TYPE,
@@ -186,11 +188,23 @@ static void test_the_drive_the_machine_file_names_is_taken(void)
     TEST_ASSERT_EQUAL_INT(DRIVES_ENABLED, drives_get_state(&drives));
 }
 
+static void test_a_node_of_another_type_that_tells_modes_is_taken_for_a_drive(void)
+{
+    static const uint32_t types[] = {0, 4, 0x92010200, 0x000F0191, 0x0002FFFF};
+    for (unsigned i = 0; i < sizeof types / sizeof types[0]; i++) {
+        setUp();
+        set_rule((struct fake_rule){.node = 2, .object = SDO_OBJECT(0x1000, 0), .value = types[i]});
+        run_start();
+        TEST_ASSERT_EQUAL_INT(DRIVES_ENABLED, drives_get_state(&drives));
+        TEST_ASSERT_EQUAL_HEX32(1U << DRIVES_NO_TYPE, drives_get_given_up(&drives, AXIS_Y));
+    }
+}
+
 static void test_a_drive_that_cannot_follow_targets_is_refused(void)
 {
     set_rule((struct fake_rule){.object = SDO_OBJECT(0x6502, 0), .value = 0x21});
     assert_refused(TAKT_ERROR_DRIVE_MODES,
-                   "the drive of axis X (node 1) has no cyclic synchronous position mode: the "
+                   "the drive of axis X (node 1) has no cyclic position or velocity mode: the "
                    "modes, object 6502, are 0021");
 }
 
@@ -209,10 +223,11 @@ static void test_what_a_drive_may_lack_is_passed_over(void)
 
 static void test_a_refusal_is_told_with_object_code_and_meaning(void)
 {
+    config.axis[1].identity.vendor = 0x11;
     set_rule((struct fake_rule){
-        .node = 2, .object = SDO_OBJECT(0x1000, 0), .abort_code = SDO_ABORT_GENERAL});
+        .node = 2, .object = SDO_OBJECT(0x1018, 1), .abort_code = SDO_ABORT_GENERAL});
     assert_refused(TAKT_ERROR_DRIVE_REFUSES,
-                   "the drive of axis Y (node 2), object 1000:00, refuses with abort code "
+                   "the drive of axis Y (node 2), object 1018:01, refuses with abort code "
                    "08000000: general error");
 }
 
@@ -452,6 +467,7 @@ int main(void)
     RUN_TEST(test_a_node_of_another_profile_is_refused);
     RUN_TEST(test_another_drive_than_the_machine_file_names_is_refused);
     RUN_TEST(test_the_drive_the_machine_file_names_is_taken);
+    RUN_TEST(test_a_node_of_another_type_that_tells_modes_is_taken_for_a_drive);
     RUN_TEST(test_a_drive_that_cannot_follow_targets_is_refused);
     RUN_TEST(test_what_a_drive_may_lack_is_passed_over);
     RUN_TEST(test_a_refusal_is_told_with_object_code_and_meaning);

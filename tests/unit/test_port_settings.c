@@ -111,7 +111,7 @@ static void pack(uint32_t cycle_us)
 
     machine_set_default(&machine);
     machine.cycle_us = cycle_us;
-    size = (uint32_t)settings_pack(&machine, NULL, settings, sizeof settings);
+    size = (uint32_t)settings_pack(&machine, NULL, NULL, settings, sizeof settings);
 }
 
 void setUp(void)
@@ -197,7 +197,7 @@ static void expect_cycle(uint32_t cycle_us)
 
     start();
     TEST_ASSERT_TRUE(store_get(&store, &bytes, &length));
-    TEST_ASSERT_TRUE(settings_read(bytes, length, &machine, &tables, &wrong));
+    TEST_ASSERT_TRUE(settings_read(bytes, length, &machine, &tables, NULL, &wrong));
     TEST_ASSERT_EQUAL(cycle_us, machine.cycle_us);
 }
 

@@ -12,6 +12,7 @@
 
 static struct machine machine, found;
 static struct correction_tables tables, found_tables;
+static struct concise_dcf dcf[MACHINE_NODES_MAX], found_dcf[MACHINE_NODES_MAX];
 static struct table table;
 static struct diagnostic wrong;
 static uint64_t memory[ROOM / 8];
@@ -36,6 +37,7 @@ void setUp(void)
     machine_set_default(&machine);
     machine.cycle_us = 2000;
     memset(&tables, 0, sizeof tables);
+    memset(dcf, 0, sizeof dcf);
     memset(&wrong, 0, sizeof wrong);
 }
 
@@ -46,7 +48,7 @@ void tearDown(void)
 static void pack(void)
 {
     memset(memory, 0xA5, sizeof memory);
-    size = settings_pack(&machine, &tables, bytes(), ROOM);
+    size = settings_pack(&machine, &tables, dcf, bytes(), ROOM);
     TEST_ASSERT_GREATER_THAN(SETTINGS_HEAD_BYTES, size);
 }
 
@@ -61,7 +63,7 @@ static void seal(void)
 
 static bool read_back(void)
 {
-    return settings_read(bytes(), size, &found, &found_tables, &wrong);
+    return settings_read(bytes(), size, &found, &found_tables, found_dcf, &wrong);
 }
 
 static void expect_refusal(enum takt_error code)
@@ -205,8 +207,8 @@ static void test_a_room_that_is_too_small_is_refused(void)
     make_volume(3);
     pack();
     for (size_t room = 0; room < size; room += 8)
-        TEST_ASSERT_EQUAL(0, settings_pack(&machine, &tables, bytes(), room));
-    TEST_ASSERT_EQUAL(size, settings_pack(&machine, &tables, bytes(), size));
+        TEST_ASSERT_EQUAL(0, settings_pack(&machine, &tables, dcf, bytes(), room));
+    TEST_ASSERT_EQUAL(size, settings_pack(&machine, &tables, dcf, bytes(), size));
 }
 
 static void test_every_bit_that_is_wrong_is_found(void)
@@ -362,6 +364,29 @@ static void test_corrections_that_leave_too_little_of_an_axis_are_refused(void)
     TEST_ASSERT_EQUAL(TAKT_ERROR_SETTINGS_SHARE, wrong.code);
 }
 
+/* One entry, 1017:00 = 100. */
+static const uint8_t configuration[] = {1, 0, 0, 0, 0x17, 0x10, 0, 2, 0, 0, 0, 100, 0};
+
+static void test_configurations_of_drives_are_read_in_place(void)
+{
+    dcf[1] = dcf[MACHINE_NODES_MAX - 1] = (struct concise_dcf){configuration, sizeof configuration};
+    pack();
+    TEST_ASSERT_TRUE(read_back());
+    TEST_ASSERT_NULL(found_dcf[0].bytes);
+    for (unsigned i = 1; i < MACHINE_NODES_MAX; i += MACHINE_NODES_MAX - 2) {
+        TEST_ASSERT_EQUAL_UINT(sizeof configuration, found_dcf[i].length);
+        TEST_ASSERT_EQUAL_MEMORY(configuration, found_dcf[i].bytes, sizeof configuration);
+        TEST_ASSERT_TRUE(found_dcf[i].bytes > bytes() && found_dcf[i].bytes < bytes() + size);
+    }
+}
+
+static void test_a_configuration_that_cannot_be_gone_through_is_refused(void)
+{
+    dcf[0] = (struct concise_dcf){configuration, sizeof configuration - 1};
+    pack();
+    expect_refusal(TAKT_ERROR_SETTINGS_SHAPE);
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -378,5 +403,7 @@ int main(void)
     RUN_TEST(test_a_machine_that_cannot_work_is_refused);
     RUN_TEST(test_tables_that_break_the_machines_rules_are_refused);
     RUN_TEST(test_corrections_that_leave_too_little_of_an_axis_are_refused);
+    RUN_TEST(test_configurations_of_drives_are_read_in_place);
+    RUN_TEST(test_a_configuration_that_cannot_be_gone_through_is_refused);
     return UNITY_END();
 }

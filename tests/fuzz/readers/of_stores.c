@@ -149,6 +149,7 @@ void read_settings(const uint8_t *data, size_t size)
 {
     static struct machine machine;
     static struct correction_tables tables;
+    static struct concise_dcf dcf[MACHINE_NODES_MAX];
     static struct correction scratch;
     struct diagnostic wrong;
     size_t length;
@@ -158,7 +159,7 @@ void read_settings(const uint8_t *data, size_t size)
     length = take_bytes(data + 1, size - 1);
     if ((data[0] & 1U) && length >= 16)
         seal_settings(length);
-    if (settings_read(bytes(), length, &machine, &tables, &wrong))
+    if (settings_read(bytes(), length, &machine, &tables, dcf, &wrong))
         (void)settings_check_share(&machine, &tables, &scratch, &wrong);
 }
 
