@@ -33,7 +33,7 @@ struct making {
 
 void compiled_limits(const struct session *s, const struct point *start, struct plan_limits *limits)
 {
-    static struct correction correction;
+    static _Thread_local struct correction correction;
 
     controller_plan_limits(&s->setup.machine, limits);
     correction_init(&correction, &s->setup.machine.correction, limits->axes, limits->cycle_s,
@@ -102,7 +102,7 @@ static enum compile_result add_moves(struct making *m)
 /* Size and CRC-32 of the program's text, which is what a controller knows of it. */
 static void set_text(const struct session *s, struct compile_config *config)
 {
-    static struct program_text_reader reader;
+    static _Thread_local struct program_text_reader reader;
     struct source source;
     char bytes[PROGRAM_TEXT_PIECE];
     long length;
@@ -207,7 +207,7 @@ static size_t read_stream(void *context, uint8_t *bytes, size_t size)
 
 static uint64_t digest_of(const struct session *s)
 {
-    static struct session_reading reading;
+    static _Thread_local struct session_reading reading;
     struct program_config config;
     struct source source;
     struct diagnostic error;
@@ -245,7 +245,7 @@ static bool fits_machine(const struct compiled *c, const struct session *s,
 /* Every record's checksum, before anything moves. */
 static bool is_whole(const struct compiled *c)
 {
-    static struct intake intake;
+    static _Thread_local struct intake intake;
     struct diagnostic why;
 
     intake_open(&intake, &c->source);
