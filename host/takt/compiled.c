@@ -13,11 +13,16 @@
 #include "takt/message.h"
 #include "takt/progress.h"
 #include "takt/stopwatch.h"
+#include "takt/text.h"
 
 #include <errno.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
+
+/* --ceiling, per cent. */
+#define CEILING_MIN 100
+#define CEILING_MAX 120
 
 /* tolerance_part: of the tolerance that is used; 0: nothing is optimised. */
 struct attempt {
@@ -30,6 +35,18 @@ struct making {
     struct compile compile;
     struct progress progress;
 };
+
+bool compiled_read_ceiling(const struct options *options, uint32_t *percent)
+{
+    const double given = options->ceiling;
+
+    *percent = given > 0 ? (uint32_t)given : CEILING_MIN;
+    if (given == 0 || (given >= CEILING_MIN && given <= CEILING_MAX && given == (double)*percent))
+        return true;
+    message_command_error("--ceiling %g must be a whole number from %d to %d per cent", given,
+                          CEILING_MIN, CEILING_MAX);
+    return false;
+}
 
 void compiled_limits(const struct session *s, const struct point *start, struct plan_limits *limits)
 {
@@ -291,10 +308,20 @@ static enum command_status check_file(const struct compiled *c, const struct ses
     return STATUS_INPUT;
 }
 
+/* NULL: errno says why. A text in memory is only read: fmemopen takes no const. */
+static FILE *open_stream(const char *path)
+{
+    const struct text_held *held = text_find_held(path);
+
+    if (held == NULL)
+        return fopen(path, "rb");
+    return fmemopen((void *)(uintptr_t)held->bytes, held->length, "rb");
+}
+
 static enum command_status open_file(struct compiled *c, const struct session *s, const char *path)
 {
     c->name = path;
-    c->stream = fopen(path, "rb");
+    c->stream = open_stream(path);
     if (c->stream == NULL) {
         message_command_error("%s cannot be opened: %s", path, strerror(errno));
         return STATUS_INPUT;
