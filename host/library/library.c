@@ -2,6 +2,8 @@
 
 #include "library/library_private.h"
 
+#include "report/asset.h"
+
 #include "takt/canon_write.h"
 #include "takt/machine_file.h"
 #include "takt/message.h"
@@ -148,6 +150,12 @@ void takt_close(struct takt_job *job)
     free(job->argv);
     free(job->text);
     free(job);
+}
+
+const unsigned char *takt_get_plotting(size_t *length)
+{
+    *length = asset_plotly.size;
+    return asset_plotly.bytes;
 }
 
 void takt_free(void *memory)

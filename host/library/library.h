@@ -117,4 +117,7 @@ const double *takt_get_column(const struct takt_job *job, unsigned column);
 double *takt_take_column(struct takt_job *job, unsigned column);
 void takt_free(void *memory);
 
+/* The plotting library of reports (JavaScript), for other pages; length 0: built without. */
+const unsigned char *takt_get_plotting(size_t *length);
+
 #endif
