@@ -26,3 +26,18 @@ def command():
 
     call.path = path
     return call
+
+
+def pytest_addoption(parser):
+    parser.addoption("--long", action="store_true", help="also what takes minutes")
+
+
+def pytest_configure(config):
+    config.addinivalue_line("markers", "long: takes minutes; run with --long")
+
+
+def pytest_collection_modifyitems(config, items):
+    if not config.getoption("--long"):
+        for item in items:
+            if "long" in item.keywords:
+                item.add_marker(pytest.mark.skip(reason="--long"))

@@ -14,7 +14,7 @@ from .scenario import Scenario, Timed, crashed, execute_batch
 from .store import Store
 
 #: Scenarios of a task: so many that sending one costs little beside running it.
-BATCH = 32
+BATCH = 64
 #: Tasks in the scheduler's hands per worker: one to run, others to have at hand.
 AHEAD = 3
 #: Workers that a scenario may end before it is given up.

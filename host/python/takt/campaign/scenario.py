@@ -2,18 +2,24 @@
 
 from __future__ import annotations
 
+import functools
 import hashlib
 import json
 import shlex
 import time
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass, replace
+from dataclasses import dataclass, fields, replace
 from pathlib import Path
 from typing import Any
 
 from .. import run
 from .._library import Library
 from ..errors import Error
+
+
+@functools.lru_cache(maxsize=1024)
+def _digest(text: str) -> str:
+    return hashlib.sha256(text.encode("utf-8", "surrogateescape")).hexdigest()
 
 
 @dataclass(frozen=True)
@@ -31,19 +37,23 @@ class Scenario:
     plan: str = "board"
     until: float = 0.0  #: s; 0: to the end
 
-    @property
+    @functools.cached_property
     def identity(self) -> str:
         """SHA-256 of the inputs: the same scenario for every takt."""
-        return hashlib.sha256(json.dumps(asdict(self), sort_keys=True).encode()).hexdigest()
+        texts = [_digest(text) for text in (self.program, self.machine, self.overrides, self.faults)]
+        return _digest(json.dumps([*texts, self.sets, self.plan, self.until]))
 
     def key(self, takt_digest: str) -> str:
         """SHA-256 of the inputs and of takt: what a result is kept under."""
-        return hashlib.sha256((self.identity + takt_digest).encode()).hexdigest()
+        return _digest(self.identity + takt_digest)
+
+    def __reduce__(self) -> tuple[type[Scenario], tuple[Any, ...]]:
+        return Scenario, tuple(getattr(self, f.name) for f in fields(self))
 
     def options(self) -> dict[str, Any]:
         """The arguments of :func:`takt.run`."""
         return {
-            "program": self.program.encode(),
+            "program": self.program.encode("utf-8", "surrogateescape"),
             "machine": self.machine or None,
             "set": dict(s.split("=", 1) for s in self.sets),
             "overrides": self.overrides or None,
@@ -58,7 +68,7 @@ class Scenario:
         files = {"program.ngc": self.program, "machine.ini": self.machine, "override": self.overrides, "inject": self.faults}
         for name, text in files.items():
             if text:
-                (folder / name).write_text(text, encoding="utf-8")
+                (folder / name).write_text(text, encoding="utf-8", errors="surrogateescape")
         words = ["takt", "run", str(folder / "program.ngc")]
         for option, name in (("--machine", "machine.ini"), ("--override", "override"), ("--inject", "inject")):
             if files[name]:
