@@ -21,6 +21,15 @@ AHEAD = 3
 DEATHS = 3
 
 
+#: Of Dask's own: what its workers do all the time beside the tasks, and how many deaths of workers a task survives.
+QUIET = {
+    "distributed.scheduler.allowed-failures": DEATHS,
+    "distributed.scheduler.active-memory-manager.start": False,
+    "distributed.worker.profile.enabled": False,
+    "distributed.admin.tick.interval": "500ms",
+}
+
+
 @dataclass
 class Costs:
     """Processor time, s."""
@@ -147,7 +156,7 @@ def connect(scheduler: str | None, workers: int) -> Any:
     import dask
     from dask.distributed import Client, LocalCluster
 
-    dask.config.set({"distributed.scheduler.allowed-failures": DEATHS})
+    dask.config.set(QUIET)
     if scheduler is not None:
         return Client(scheduler, timeout="60s")
     cluster = LocalCluster(
