@@ -28,24 +28,37 @@ static const char *copy_of(const char *text)
     return strdup(text != NULL ? text : "");
 }
 
+/* free() takes no const: what is freed here was allocated here. */
+static void free_const(const char *text)
+{
+    free((void *)(uintptr_t)text);
+}
+
+static void free_message(const struct takt_message *m)
+{
+    free_const(m->file);
+    free_const(m->text);
+    free_const(m->cure);
+}
+
+/* One that there is no memory for is lost; what it is about has its status all the same. */
 static void hear(void *listener, const struct message *m)
 {
     struct takt_job *job = listener;
     struct takt_message *messages =
         realloc(job->messages, (job->message_count + 1) * sizeof *messages);
+    const struct takt_message heard = {.kind = m->kind, /* a word of the program's own */
+                                       .file = copy_of(m->file),
+                                       .line = m->line,
+                                       .column = m->column,
+                                       .text = copy_of(m->text),
+                                       .cure = copy_of(m->cure)};
 
-    if (messages == NULL) {
-        job->deaf = true;
-        return;
-    }
-    job->messages = messages;
-    messages[job->message_count++] =
-        (struct takt_message){.kind = m->kind, /* a word of the program's own */
-                              .file = copy_of(m->file),
-                              .line = m->line,
-                              .column = m->column,
-                              .text = copy_of(m->text),
-                              .cure = copy_of(m->cure)};
+    job->messages = messages != NULL ? messages : job->messages;
+    if (messages != NULL && heard.file != NULL && heard.text != NULL && heard.cure != NULL)
+        messages[job->message_count++] = heard;
+    else
+        free_message(&heard);
 }
 
 void library_enter(struct takt_job *job)
@@ -123,22 +136,13 @@ struct takt_job *takt_open(int argc, const char *const *argv, const struct takt_
     return NULL;
 }
 
-/* free() takes no const: what is freed here was allocated here. */
-static void free_const(const char *text)
-{
-    free((void *)(uintptr_t)text);
-}
-
 void takt_close(struct takt_job *job)
 {
     if (job == NULL)
         return;
     library_close_run(job);
-    for (unsigned i = 0; i < job->message_count; i++) {
-        free_const(job->messages[i].file);
-        free_const(job->messages[i].text);
-        free_const(job->messages[i].cure);
-    }
+    for (unsigned i = 0; i < job->message_count; i++)
+        free_message(&job->messages[i]);
     for (unsigned i = 0; i < job->text_count; i++) {
         free_const(job->texts[i].name);
         free_const(job->texts[i].bytes);

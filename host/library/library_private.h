@@ -20,7 +20,6 @@ struct takt_job {
     struct options options;
     struct takt_message *messages; /* owned, as their texts are */
     unsigned message_count;
-    bool deaf;  /* a message could not be kept: out of memory */
     char *text; /* owned; NULL: none */
     size_t text_length;
     struct run run;

@@ -15,7 +15,7 @@ ENVIRONMENT = 3
 
 
 def _text(cdata: Any) -> str:
-    return ffi.string(cdata).decode("utf-8", "replace")
+    return str(ffi.string(cdata).decode("utf-8", "replace"))
 
 
 class Job:

@@ -49,6 +49,7 @@ class Machine(MutableMapping[str, Value]):
     def __init__(
         self, base: str | Path | Machine | None = None, changes: Mapping[str, Value] | None = None
     ) -> None:
+        self._text: str
         if isinstance(base, Machine):
             self._text = base._text
         elif isinstance(base, str) and "\n" in base:

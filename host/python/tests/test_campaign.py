@@ -150,7 +150,7 @@ def test_comparison_tells_what_became_worse(spec, tmp_path, capsys):
 
 @pytest.mark.long
 def test_a_campaign_killed_three_times_is_the_undisturbed_one(spec, tmp_path):
-    spec.write_text(SPEC.replace("seeds = 2", "seeds = 60").replace("samples = 2", "samples = 10"))
+    spec.write_text(SPEC.replace("seeds = 2", "seeds = 20").replace("samples = 2", "samples = 10"))
     words = [sys.executable, "-m", "takt.campaign", str(spec), "--workers", "2", "--batch", "4", "--no-report", "-o"]
     subprocess.run([*words, tmp_path / "a"], check=True)
     for _ in range(3):
@@ -168,7 +168,7 @@ def test_a_campaign_killed_three_times_is_the_undisturbed_one(spec, tmp_path):
 @pytest.mark.long
 def test_workers_may_die(spec, tmp_path):
     """A scheduler and four workers as processes of their own; two are killed while they work."""
-    spec.write_text(SPEC.replace("seeds = 2", "seeds = 60").replace("samples = 2", "samples = 10"))
+    spec.write_text(SPEC.replace("seeds = 2", "seeds = 20").replace("samples = 2", "samples = 10"))
     folder = Path(tmp_path)
     scheduler_file = folder / "scheduler.json"
     dask = [sys.executable, "-m", "distributed.cli.dask_scheduler", "--port", "0", "--no-dashboard"]

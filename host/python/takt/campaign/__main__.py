@@ -16,7 +16,7 @@ from pathlib import Path
 from typing import Any
 
 from .. import load
-from .compare import Change, compare, worse_of
+from .compare import Change, Judge, compare, difference_of, worse_of
 from .engine import BATCH, Costs, run_missing
 from .report import campaign_page, comparison_page, worst, write_runs
 from .scenario import Scenario, execute, is_bad
@@ -38,6 +38,7 @@ def _parser(command: str) -> argparse.ArgumentParser:
         parser.add_argument("before", type=Path)
         parser.add_argument("after", type=Path)
         parser.add_argument("--html", type=Path, help="write the comparison as a page")
+        parser.add_argument("--same", action="store_true", help="every setpoint is to be as it was: any difference is worse")
         parser.add_argument("--shrink", type=int, default=1, metavar="N", help="shrink the first N (1)")
         return parser
     parser.add_argument("spec", type=Path)
@@ -125,14 +126,14 @@ def _shrink(given: argparse.Namespace) -> int:
     return 0
 
 
-def _still_worse(change: Change, before: str, after: str) -> Callable[[Scenario], bool]:
+def _still_worse(change: Change, judge: Judge, before: str, after: str) -> Callable[[Scenario], bool]:
     """The same thing as in the change became worse."""
     libraries = load(before), load(after)
     kind = change.worse[0].split()[0]
 
     def fails(s: Scenario) -> bool:
         old, new = (execute(s, library) for library in libraries)
-        return any(what.startswith(kind) for what in worse_of(old, new, bool(s.faults)))
+        return any(what.startswith(kind) for what in judge(old, new, bool(s.faults)))
 
     return fails
 
@@ -140,7 +141,8 @@ def _still_worse(change: Change, before: str, after: str) -> Callable[[Scenario]
 def _compare(given: argparse.Namespace) -> int:
     import json
 
-    changes, common = compare(given.before, given.after)
+    judge = difference_of if given.same else worse_of
+    changes, common = compare(given.before, given.after, judge)
     worse = [c for c in changes if c.worse]
     for c in worse[:SHOWN]:
         print(f"worse: scenario {c.after['number']} ({c.after['program']}): {'; '.join(c.worse)}")
@@ -151,7 +153,7 @@ def _compare(given: argparse.Namespace) -> int:
     notes = [json.loads((folder / "campaign.json").read_text()) for folder in (given.before, given.after)]
     scenarios = _scenarios(Path(notes[1]["spec"])) if worse and given.shrink else {}
     for c in worse[: given.shrink]:
-        fails = _still_worse(c, notes[0]["library"], notes[1]["library"])
+        fails = _still_worse(c, judge, notes[0]["library"], notes[1]["library"])
         _report_small(shrink(scenarios[c.after["identity"]], fails), given.after / "shrunk" / c.after["key"][:16])
     return 1 if worse else 0
 

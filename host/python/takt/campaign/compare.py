@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -15,6 +15,8 @@ TIME_PART = 1e-3
 #: A limit is used more when it is by more than this part of it, and is nearly reached.
 LIMIT_PART = 1e-3
 LIMIT_NEAR = 1 - 1e-3
+#: Rows before and after, and whether the scenario has faults.
+Judge = Callable[[Mapping[str, Any], Mapping[str, Any], bool], tuple[str, ...]]
 RATIOS = ("velocity_ratio", "acceleration_ratio", "jerk_ratio")
 
 
@@ -28,7 +30,7 @@ class Change:
 
 
 def worse_of(before: Mapping[str, Any], after: Mapping[str, Any], has_faults: bool) -> tuple[str, ...]:
-    """What became worse of a scenario."""
+    """What became worse of a scenario. The first word says of which kind it is."""
     if is_bad(after, has_faults) and not is_bad(before, has_faults):
         return (f"fails: {after['failed'] or after['text']}",)
     if is_bad(before, has_faults):
@@ -44,12 +46,18 @@ def worse_of(before: Mapping[str, Any], after: Mapping[str, Any], has_faults: bo
     return tuple(said)
 
 
-def compare(before: Path, after: Path) -> tuple[list[Change], int]:
+def difference_of(before: Mapping[str, Any], after: Mapping[str, Any], has_faults: bool) -> tuple[str, ...]:
+    """What became worse, else that it is not the same: of a change that is to leave every setpoint as it was."""
+    differs = before["digest"] != after["digest"] or before["outcome"] != after["outcome"]
+    return worse_of(before, after, has_faults) or (("differs: other setpoints",) if differs else ())
+
+
+def compare(before: Path, after: Path, judge: Judge = worse_of) -> tuple[list[Change], int]:
     """All scenarios that differ, the worse ones first; and how many both campaigns have."""
     old = {row["identity"]: row for row in results(before)}
     common = [(old[row["identity"]], row) for row in results(after) if row["identity"] in old]
     changes = [
-        Change(b, a, worse_of(b, a, a["has_faults"]))
+        Change(b, a, judge(b, a, a["has_faults"]))
         for b, a in common
         if b["digest"] != a["digest"] or b["outcome"] != a["outcome"] or b["failed"] != a["failed"]
     ]

@@ -193,4 +193,5 @@ def execute_batch(batch: list[Scenario], takt_digest: str, library_path: str | N
 
 def without_lines(scenario: Scenario, part: str, kept: list[str]) -> Scenario:
     """The scenario with other lines in ``program``, ``overrides`` or ``faults``."""
-    return replace(scenario, **{part: "".join(line + "\n" for line in kept)})
+    changed: dict[str, Any] = {part: "".join(line + "\n" for line in kept)}
+    return replace(scenario, **changed)
