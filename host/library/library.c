@@ -31,7 +31,10 @@ static const char *copy_of(const char *text)
 /* free() takes no const: what is freed here was allocated here. */
 static void free_const(const char *text)
 {
-    free((void *)(uintptr_t)text);
+    char *own;
+
+    memcpy(&own, &text, sizeof own);
+    free(own);
 }
 
 static void free_message(const struct takt_message *m)
@@ -126,9 +129,9 @@ static bool copy_texts(struct takt_job *job, const struct takt_text *texts, unsi
 struct takt_job *takt_open(int argc, const char *const *argv, const struct takt_text *texts,
                            unsigned count)
 {
-    struct takt_job *job = calloc(1, sizeof *job);
+    struct takt_job *job = argc > 0 ? calloc(1, sizeof *job) : NULL;
 
-    if (job == NULL || argc < 1)
+    if (job == NULL)
         return NULL;
     if (copy_words(job, argc, argv) && copy_texts(job, texts, count))
         return job;
@@ -144,8 +147,8 @@ void takt_close(struct takt_job *job)
     for (unsigned i = 0; i < job->message_count; i++)
         free_message(&job->messages[i]);
     for (unsigned i = 0; i < job->text_count; i++) {
-        free_const(job->texts[i].name);
-        free_const(job->texts[i].bytes);
+        free(job->texts[i].name);
+        free(job->texts[i].bytes);
     }
     for (int i = 0; i < job->argc; i++)
         free(job->argv[i]);

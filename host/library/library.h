@@ -67,7 +67,7 @@ struct takt_job;
 
 const char *takt_library_version(void);
 
-/* argv[0] names the command. Everything is copied. NULL: out of memory. */
+/* argv[0] names the command. Everything is copied. NULL: out of memory, or no word. */
 struct takt_job *takt_open(int argc, const char *const *argv, const struct takt_text *texts,
                            unsigned count);
 void takt_close(struct takt_job *job);

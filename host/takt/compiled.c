@@ -308,14 +308,14 @@ static enum command_status check_file(const struct compiled *c, const struct ses
     return STATUS_INPUT;
 }
 
-/* NULL: errno says why. A text in memory is only read: fmemopen takes no const. */
+/* NULL: errno says why. A text in memory is only read. */
 static FILE *open_stream(const char *path)
 {
     const struct text_held *held = text_find_held(path);
 
     if (held == NULL)
         return fopen(path, "rb");
-    return fmemopen((void *)(uintptr_t)held->bytes, held->length, "rb");
+    return fmemopen(held->bytes, held->length, "rb");
 }
 
 static enum command_status open_file(struct compiled *c, const struct session *s, const char *path)

@@ -16,8 +16,8 @@ struct text {
 
 /* A text that is in memory, and the name it is read by in place of a path. Both are the caller's. */
 struct text_held {
-    const char *name;
-    const char *bytes;
+    char *name;
+    char *bytes;
     size_t length;
 };
 
