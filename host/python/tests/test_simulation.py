@@ -107,7 +107,7 @@ def test_a_simulation_that_is_finished_early_is_interrupted():
 
 def test_many_stand_side_by_side():
     sims = [takt.Simulation(SHORT, machine={"axis.X.max_jerk_mm_s3": 10000.0 + i}) for i in range(20)]
-    while any([sim.step(37) for sim in sims])  # all of them, not only up to the first:
+    while any([sim.step(37) for sim in sims]):  # all of them, not only up to the first
         pass
     alone = [takt.run(SHORT, machine={"axis.X.max_jerk_mm_s3": 10000.0 + i}).digest for i in range(20)]
     assert [sim.finish().digest for sim in sims] == alone
