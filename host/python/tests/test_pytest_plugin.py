@@ -1,6 +1,14 @@
 """The plug-in: a broken limit fails a test."""
 
+import pytest
+
 GOOD = "G21 G90\nG1 F3000 X20\nM2\n"
+
+
+@pytest.fixture(autouse=True)
+def by_name(monkeypatch):
+    """The plug-in is loaded once, by its name, installed or not."""
+    monkeypatch.setenv("PYTEST_DISABLE_PLUGIN_AUTOLOAD", "1")
 
 
 def run(pytester, text):
