@@ -12,7 +12,7 @@
 
 __attribute__((format(printf, 1, 2))) static const char *wrong(const char *format, ...)
 {
-    static char text[200];
+    static _Thread_local char text[200];
     va_list arguments;
 
     va_start(arguments, format);

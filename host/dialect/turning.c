@@ -65,7 +65,7 @@ static bool has_number(const struct line *l, double number)
 /* Side of the profile's compensation: 41, 42 or 0. */
 static unsigned copy_profile(struct translator *t, double from, double to, unsigned label)
 {
-    static struct line l;
+    static _Thread_local struct line l;
     const char *at = t->source;
     unsigned side = 0;
     bool inside = false;

@@ -171,7 +171,7 @@ static enum command_status draw(const struct comparison *c, const char *path)
         .radius_mm = c->spiral.radius_mm,
         .limit = limits_of(&c->session.setup.machine),
     };
-    static struct output_file file;
+    static _Thread_local struct output_file file;
     bool good = output_file_open(&file, path);
 
     if (good) {

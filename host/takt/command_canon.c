@@ -1,34 +1,8 @@
-#include "takt/canon.h"
+#include "takt/canon_write.h"
 #include "takt/command.h"
-#include "takt/interrupt.h"
 #include "takt/session.h"
 
 #include <stdio.h>
-
-static enum command_status print_moves(const struct session *session)
-{
-    static struct session_reading reading;
-    struct program_config config;
-    struct source source;
-    struct diagnostic diagnostic;
-    struct point at;
-    struct move move;
-
-    session_begin_reading(session, &reading, &config, &source);
-    program_open(&reading.program, &config, &source);
-    offset_open(&reading.offset, &config);
-    at = config.start;
-    while (offset_next(&reading.offset, &reading.program, &move, &diagnostic) == PROGRAM_MOVE &&
-           !interrupt_asked()) {
-        char text[CANON_TEXT_MAX];
-
-        (void)canon_format(&move, config.axes, &at, text);
-        (void)printf("%s\n", text);
-        if (move_is_motion(&move))
-            at = move.end;
-    }
-    return interrupt_asked() ? STATUS_INTERRUPTED : STATUS_DONE;
-}
 
 static enum command_status command_canon_execute(const struct options *options)
 {
@@ -39,7 +13,7 @@ static enum command_status command_canon_execute(const struct options *options)
     if (status == STATUS_DONE)
         status = session_check(&session, 1, &totals);
     if (status == STATUS_DONE)
-        status = print_moves(&session);
+        status = canon_write(stdout, &session);
     session_close(&session);
     return status;
 }

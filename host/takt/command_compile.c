@@ -6,22 +6,6 @@
 
 #include <string.h>
 
-#define CEILING_MIN 100
-#define CEILING_MAX 120
-
-/* False after a message. */
-static bool read_ceiling(const struct options *options, uint32_t *percent)
-{
-    const double given = options->ceiling;
-
-    *percent = given > 0 ? (uint32_t)given : CEILING_MIN;
-    if (given == 0 || (given >= CEILING_MIN && given <= CEILING_MAX && given == (double)*percent))
-        return true;
-    message_command_error("--ceiling %g must be a whole number from %d to %d per cent", given,
-                          CEILING_MIN, CEILING_MAX);
-    return false;
-}
-
 /* False after a message: it has to be a file that can be written at its beginning again. */
 static bool check_output(const struct options *options)
 {
@@ -74,7 +58,7 @@ static enum command_status command_compile_execute(const struct options *options
     uint32_t ceiling = 0;
     enum command_status status;
 
-    if (!read_ceiling(options, &ceiling) || !check_output(options))
+    if (!compiled_read_ceiling(options, &ceiling) || !check_output(options))
         return STATUS_INPUT;
     status = session_open(&session, options);
     session.runs = true;

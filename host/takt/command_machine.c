@@ -1,4 +1,5 @@
 #include "takt/command.h"
+#include "takt/configuration_file.h"
 #include "takt/machine_file.h"
 #include "takt/machine_pack.h"
 #include "takt/message.h"
@@ -24,6 +25,16 @@ static bool check(const struct options *options)
     return false;
 }
 
+/* Those its drives name are there, and good. */
+static bool has_configurations(const struct machine_setup *setup)
+{
+    struct configuration_files files;
+    const bool good = configuration_files_load(&files, setup);
+
+    configuration_files_free(&files);
+    return good;
+}
+
 static enum command_status command_machine_execute(const struct options *options)
 {
     static struct machine_setup setup;
@@ -34,7 +45,7 @@ static enum command_status command_machine_execute(const struct options *options
     if (options->pack.unpack)
         return machine_pack_print(options->operand[0]);
     given.machine = options->operand[0];
-    if (!machine_file_load(&setup, &given))
+    if (!machine_file_load(&setup, &given) || !has_configurations(&setup))
         return STATUS_INPUT;
     if (options->pack.pack)
         return machine_pack_write(&setup, options->output, options->pack.sector);

@@ -1,105 +1,43 @@
 #include "takt/command.h"
-#include "takt/compiled.h"
 #include "takt/compiled_judge.h"
 #include "takt/drives_table.h"
-#include "takt/ending.h"
 #include "takt/error_map.h"
 #include "takt/interrupt.h"
-#include "takt/judge.h"
 #include "takt/message.h"
 #include "takt/progress.h"
+#include "takt/run.h"
 #include "takt/run_outputs.h"
-#include "takt/session.h"
-#include "takt/simulation.h"
 #include "takt/stopwatch.h"
-#include "takt/summary.h"
-#include "takt/target_setup.h"
 
 #include <stdlib.h>
-#include <string.h>
 
 /* Cycles between two looks at failed writes and the progress bar. */
 #define RUN_LOOK_CYCLES 1024
 
-struct run {
-    struct session session;
-    struct session_totals totals;
-    struct session_reading reading[2]; /* the judge's */
-    struct judge judge;
-    struct compiled compiled;
-    uint32_t answers; /* of the run that the judge has been told */
-    struct simulation *simulation;
+struct run_command {
+    struct run run;
     struct run_outputs outputs;
     struct progress progress;
-    struct ending ending;
-    bool has_told_drives;    /* what they do without */
-    struct diagnostic fault; /* before its end */
-    enum command_status cut; /* not STATUS_DONE: the run ends before its time, with this status */
-    uint64_t until_cycles;   /* program cycles after which to stop; UINT64_MAX: the program's end */
-    uint64_t wall_ns;
+    bool has_told_drives; /* what they do without */
 };
 
-static void prepare_judge(struct run *run)
+/* Writing is not the run's time. */
+static void write_cycle(void *context, const struct cycle_record *record, const struct block *block)
 {
-    const struct machine *machine = &run->session.setup.machine;
-    struct program_config config;
-    struct source source;
+    struct run_command *c = context;
+    uint64_t start_ns = stopwatch_now_ns();
 
-    session_begin_reading(&run->session, &run->reading[0], &config, &source);
-    judge_init(&run->judge, machine, &config, &source);
-    session_begin_reading(&run->session, &run->reading[1], &config, &source);
-    judge_follow(&run->judge, machine, &config, &source, run->session.compiled != NULL);
+    run_outputs_add(&c->outputs, record, block);
+    c->run.wall_ns -= stopwatch_now_ns() - start_ns;
 }
 
-static void set_until(struct run *run)
+static void show_progress(struct run_command *c)
 {
-    double cycle_s = 1e-6 * (double)run->session.setup.machine.cycle_us;
-    double cycles = run->session.options->until_s / cycle_s;
+    const struct judge_figures *figures = &c->run.judge.figures;
+    double motions = c->run.totals.last > 0 ? (double)c->run.totals.last : 1;
 
-    /* Half a cycle of room: 0.1 s are 100 cycles of 1 ms, whatever the division's last bit says. */
-    run->until_cycles =
-        run->session.options->until_s > 0 && cycles < 1e18 ? (uint64_t)(cycles + 0.5) : UINT64_MAX;
-}
-
-/* At most one in a cycle. */
-static void tell_answers(struct run *run)
-{
-    struct program_answer answer;
-    uint32_t answers = controller_get_answers(&run->simulation->controller, &answer);
-
-    if (answers != run->answers)
-        judge_answer(&run->judge, &answer);
-    run->answers = answers;
-}
-
-/* One cycle of the world and of everybody who watches it. False: interrupted, or the bus is gone. */
-static bool run_cycle(struct run *run)
-{
-    const struct cycle_record *record;
-    const struct block *block;
-    bool good = simulation_step(run->simulation);
-
-    tell_answers(run);
-    record = simulation_get_record(run->simulation);
-    block = controller_get_block(&run->simulation->controller);
-    if (record != NULL && block != NULL) /* a target may differ, which is told */
-        good = judge_add(&run->judge, record, block) && good;
-    if (run->outputs.each_cycle) {
-        uint64_t start_ns = stopwatch_now_ns();
-
-        run_outputs_add(&run->outputs, record, block);
-        run->wall_ns -= stopwatch_now_ns() - start_ns; /* writing is not the run's time */
-    }
-    return good;
-}
-
-static void show_progress(struct run *run)
-{
-    const struct judge_figures *figures = &run->judge.figures;
-    double motions = run->totals.last > 0 ? (double)run->totals.last : 1;
-
-    progress_show(&run->progress, (double)figures->blocks / motions,
-                  (double)figures->cycles * 1e-6 * (double)run->session.setup.machine.cycle_us);
+    progress_show(&c->progress, (double)figures->blocks / motions,
+                  (double)figures->cycles * 1e-6 * (double)c->run.session.setup.machine.cycle_us);
 }
 
 static bool is_bus_lost(const struct run *run)
@@ -107,135 +45,86 @@ static bool is_bus_lost(const struct run *run)
     return field_get_problem(&run->simulation->field) != NULL;
 }
 
-/* Runs to the program's end, a fault, --until or a signal. False: a file cannot be written, or the bus is gone. */
 /* Drives on a bus outside are others' drives: what they do without is told before they have done it, not after. */
-static void tell_drives(struct run *run)
+static void tell_drives(struct run_command *c)
 {
-    const struct drives *drives = controller_get_drives(&run->simulation->controller);
+    const struct drives *drives = controller_get_drives(&c->run.simulation->controller);
 
-    run->has_told_drives = run->simulation->field.link == NULL ||
-                           drives_table_tell(drives, run->session.options->quiet);
+    c->has_told_drives = c->run.simulation->field.link == NULL ||
+                         drives_table_tell(drives, c->run.session.options->quiet);
 }
 
-static bool run_loop(struct run *run)
+/* False: a file cannot be written. */
+static bool look(struct run_command *c)
 {
-    const struct controller *controller = &run->simulation->controller;
+    if (c->run.simulation->cycles % RUN_LOOK_CYCLES != 0)
+        return true;
+    show_progress(c);
+    return !run_outputs_failed(&c->outputs);
+}
+
+/* Runs to the program's end, a fault, --until or a signal. False: a file cannot be written, or the bus is gone. */
+static bool run_loop(struct run_command *c)
+{
     uint64_t start_ns = stopwatch_now_ns();
     bool good = true;
 
-    while (controller_get_state(controller) < CONTROLLER_COMPLETED && good && !interrupt_asked()) {
-        good = run_cycle(run);
-        if (!run->has_told_drives)
-            tell_drives(run);
-        if (run->judge.figures.cycles >= run->until_cycles)
-            break;
-        if (run->simulation->cycles % RUN_LOOK_CYCLES == 0) {
-            good = good && !run_outputs_failed(&run->outputs);
-            show_progress(run);
-        }
+    while (!run_is_over(&c->run) && good && !interrupt_asked()) {
+        good = run_cycle(&c->run);
+        if (!c->has_told_drives)
+            tell_drives(c);
+        good = good && look(c);
     }
-    run->wall_ns += stopwatch_now_ns() - start_ns;
-    progress_end(&run->progress);
+    c->run.wall_ns += stopwatch_now_ns() - start_ns;
+    progress_end(&c->progress);
     return good;
 }
 
-/* The way to rest of a run that is cut short is part of it: trace and judge see it. */
-static void end_cycle(struct run *run)
-{
-    if (run->cut != STATUS_DONE) {
-        (void)run_cycle(run);
-        return;
-    }
-    (void)simulation_step(run->simulation);
-    if (run->outputs.each_cycle)
-        run_outputs_add(&run->outputs, NULL, NULL);
-}
-
-/* Drives of a target are the target's: they end with its process. */
-static void end_drives(struct run *run)
-{
-    struct controller *controller = &run->simulation->controller;
-
-    if (run->simulation->has_target)
-        return;
-    run->ending.stays_on = run->session.setup.drives_stay_on != 0;
-    ending_ask(&run->ending, controller, ENDING_ON_PATH);
-    while (!is_bus_lost(run) && !ending_is_over(&run->ending, controller)) {
-        end_cycle(run);
-        ending_ask(&run->ending, controller, ending_by_signals());
-    }
-}
-
-static enum summary_outcome outcome_of(const struct run *run)
-{
-    enum controller_state state = controller_get_state(&run->simulation->controller);
-
-    if (run->cut != STATUS_DONE)
-        return OUTCOME_INTERRUPTED;
-    if (state == CONTROLLER_FAULTED)
-        return OUTCOME_FAULTED;
-    return state == CONTROLLER_COMPLETED ? OUTCOME_COMPLETED : OUTCOME_STOPPED;
-}
-
 /* A fault is about a line of the program, or about the machine. */
-static void report_fault(const struct run *run, const char *text)
+static void report_fault(const struct run *run)
 {
     if (run->fault.line > 0)
         message_program_error(&run->session.program, &run->fault);
     else
-        message_command_error("%s", text);
+        message_command_error("%s", run->summary.fault);
 }
 
-/* A run that is cut short comes to rest first, so that the summary counts the way there. */
-static void sum_up(struct run *run, struct summary *summary)
+/* What the report shows beside the cycles. */
+static void set_report(struct run_command *c)
 {
-    struct summary_source source = {
-        .session = &run->session,
-        .totals = &run->totals,
-        .simulation = run->simulation,
-        .judge = &run->judge,
-        .outcome = outcome_of(run),
-        .interrupted = run->cut,
-        .wall_time_s = 1e-9 * (double)run->wall_ns,
-    };
+    const struct run *run = &c->run;
 
-    run->fault = *controller_get_fault(&run->simulation->controller);
-    if (run->cut != STATUS_DONE)
-        end_drives(run);
-    judge_finish(&run->judge, source.outcome == OUTCOME_COMPLETED);
-    summary_set(summary, &source);
-    if (run->cut == STATUS_DONE)
-        end_drives(run);
-    summary->bus_frames = field_get_frames(&run->simulation->field);
-}
-
-static enum command_status finish(struct run *run)
-{
-    static struct summary summary;
-    FILE *stream = run_outputs_use_stdout(&run->outputs) ? stderr : stdout;
-
-    sum_up(run, &summary);
-    run->session.parameters.values = run->simulation->parameters;
-    if (summary.outcome != OUTCOME_COMPLETED)
-        run_outputs_drop(&run->outputs,
-                         RUN_PARAMETERS); /* the program is read ahead of what has been done */
-    if (run->session.options->report != NULL)
-        run_outputs_set_map(&run->outputs, error_map_json(&run->session, run->simulation));
-    if (run->session.options->report != NULL && run->session.compiled != NULL)
-        run_outputs_set_shares(&run->outputs,
+    if (run->session.options->report == NULL)
+        return;
+    run_outputs_set_map(&c->outputs, error_map_json(&run->session, run->simulation));
+    if (run->session.compiled != NULL)
+        run_outputs_set_shares(&c->outputs,
                                compiled_shares_json(&run->session, run->compiled.stream));
+}
+
+static enum command_status finish(struct run_command *c, enum command_status cut)
+{
+    FILE *stream = run_outputs_use_stdout(&c->outputs) ? stderr : stdout;
+    struct run *run = &c->run;
+
+    run_finish(run, cut);
+    run->session.parameters.values = run->simulation->parameters;
+    if (run->summary.outcome != OUTCOME_COMPLETED)
+        run_outputs_drop(&c->outputs,
+                         RUN_PARAMETERS); /* the program is read ahead of what has been done */
+    set_report(c);
     if (!announcer_finish(&run->simulation->announcer) ||
-        !run_outputs_commit(&run->outputs, &summary, &run->session.parameters))
+        !run_outputs_commit(&c->outputs, &run->summary, &run->session.parameters))
         return STATUS_ENVIRONMENT;
-    if (summary.outcome == OUTCOME_FAULTED)
-        report_fault(run, summary.fault);
+    if (run->summary.outcome == OUTCOME_FAULTED)
+        report_fault(run);
     if (is_bus_lost(run))
         message_command_error("%s", field_get_problem(&run->simulation->field));
     if (!run->session.options->quiet) {
-        summary_write_text(stream, &summary);
-        run_outputs_list(&run->outputs, stream);
+        summary_write_text(stream, &run->summary);
+        run_outputs_list(&c->outputs, stream);
     }
-    return summary_status(&summary);
+    return summary_status(&run->summary);
 }
 
 /* What nothing can be kept for. */
@@ -258,83 +147,50 @@ static enum command_status cut_by_signal(const struct run *run)
     return (enum command_status)interrupt_status();
 }
 
-static enum command_status simulate(struct run *run)
+static enum command_status simulate(struct run_command *c)
 {
-    enum command_status status = simulation_open(&run->session, &run->simulation);
+    struct run *run = &c->run;
+    enum command_status cut;
 
-    if (status != STATUS_DONE)
-        return status;
-    if (!run_outputs_open(&run->outputs, &run->session, run->simulation))
+    if (!run_outputs_open(&c->outputs, &run->session, run->simulation))
         return STATUS_ENVIRONMENT;
-    prepare_judge(run);
-    set_until(run);
-    progress_start(&run->progress, !run->session.options->quiet);
-    run->cut = run_loop(run) ? cut_by_signal(run) : STATUS_ENVIRONMENT;
-    if (run->cut != STATUS_ENVIRONMENT || is_bus_lost(run))
-        return finish(run);
-    end_drives(run);
+    if (c->outputs.each_cycle)
+        run->watcher = (struct run_watcher){write_cycle, c};
+    progress_start(&c->progress, !run->session.options->quiet);
+    cut = run_loop(c) ? cut_by_signal(run) : STATUS_ENVIRONMENT;
+    if (cut != STATUS_ENVIRONMENT || is_bus_lost(run))
+        return finish(c, cut);
+    run->cut = cut;
+    run_end_drives(run);
     return tell_why(run);
 }
 
-/* Who plans: the controller as it runs, or takt before it. */
-static enum command_status plan(struct run *run, const struct options *options)
+static enum command_status execute(struct run_command *c, const struct options *options)
 {
-    const char *how = options->plan;
-    enum command_status status;
+    enum command_status status = run_open(&c->run, options);
 
-    if (how == NULL || strcmp(how, "board") == 0)
-        return STATUS_DONE;
-    if (options->override_method != NULL)
-        message_command_warning("--override-method %s is not used: what is planned ahead of the "
-                                "run changes its rate in its own way",
-                                options->override_method);
-    status = compiled_open(&run->compiled, &run->session, &run->totals,
-                           strcmp(how, "ahead") == 0 ? NULL : how);
-    run->session.compiled = &run->compiled;
-    return status;
-}
-
-static enum command_status execute(struct run *run, const struct options *options)
-{
-    struct field_options field = {
-        .bus = options->bus,
-        .drives = options->drives,
-        .is_paced = options->realtime,
-        .has_script = options->inject != NULL,
-    };
-    enum command_status status =
-        field_check_options(&field) ? session_open(&run->session, options) : STATUS_INPUT;
-
-    run->session.runs = true;
-    if (status == STATUS_DONE)
-        status = target_setup_check(&run->session);
-    if (status == STATUS_DONE && !run_outputs_plan(&run->outputs, &run->session))
+    if (status == STATUS_DONE && !run_outputs_plan(&c->outputs, &c->run.session))
         status = STATUS_INPUT;
     if (status == STATUS_DONE)
-        status = session_check(&run->session, 1, &run->totals);
+        status = run_prepare(&c->run);
     if (status == STATUS_DONE)
-        status = plan(run, options);
-    if (status == STATUS_DONE)
-        status = simulate(run);
-    run_outputs_close(&run->outputs);
-    simulation_close(run->simulation);
-    judge_free(&run->judge);
-    compiled_close(&run->compiled);
-    session_close(&run->session);
+        status = simulate(c);
+    run_outputs_close(&c->outputs);
+    run_close(&c->run);
     return status;
 }
 
 static enum command_status command_run_execute(const struct options *options)
 {
-    struct run *run = calloc(1, sizeof *run);
+    struct run_command *c = calloc(1, sizeof *c);
     enum command_status status;
 
-    if (run == NULL) {
+    if (c == NULL) {
         message_command_error("out of memory");
         return STATUS_ENVIRONMENT;
     }
-    status = execute(run, options);
-    free(run);
+    status = execute(c, options);
+    free(c);
     return status;
 }
 

@@ -13,11 +13,16 @@
 #include "takt/message.h"
 #include "takt/progress.h"
 #include "takt/stopwatch.h"
+#include "takt/text.h"
 
 #include <errno.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
+
+/* --ceiling, per cent. */
+#define CEILING_MIN 100
+#define CEILING_MAX 120
 
 /* tolerance_part: of the tolerance that is used; 0: nothing is optimised. */
 struct attempt {
@@ -31,9 +36,21 @@ struct making {
     struct progress progress;
 };
 
+bool compiled_read_ceiling(const struct options *options, uint32_t *percent)
+{
+    const double given = options->ceiling;
+
+    *percent = given > 0 ? (uint32_t)given : CEILING_MIN;
+    if (given == 0 || (given >= CEILING_MIN && given <= CEILING_MAX && given == (double)*percent))
+        return true;
+    message_command_error("--ceiling %g must be a whole number from %d to %d per cent", given,
+                          CEILING_MIN, CEILING_MAX);
+    return false;
+}
+
 void compiled_limits(const struct session *s, const struct point *start, struct plan_limits *limits)
 {
-    static struct correction correction;
+    static _Thread_local struct correction correction;
 
     controller_plan_limits(&s->setup.machine, limits);
     correction_init(&correction, &s->setup.machine.correction, limits->axes, limits->cycle_s,
@@ -102,7 +119,7 @@ static enum compile_result add_moves(struct making *m)
 /* Size and CRC-32 of the program's text, which is what a controller knows of it. */
 static void set_text(const struct session *s, struct compile_config *config)
 {
-    static struct program_text_reader reader;
+    static _Thread_local struct program_text_reader reader;
     struct source source;
     char bytes[PROGRAM_TEXT_PIECE];
     long length;
@@ -207,7 +224,7 @@ static size_t read_stream(void *context, uint8_t *bytes, size_t size)
 
 static uint64_t digest_of(const struct session *s)
 {
-    static struct session_reading reading;
+    static _Thread_local struct session_reading reading;
     struct program_config config;
     struct source source;
     struct diagnostic error;
@@ -245,7 +262,7 @@ static bool fits_machine(const struct compiled *c, const struct session *s,
 /* Every record's checksum, before anything moves. */
 static bool is_whole(const struct compiled *c)
 {
-    static struct intake intake;
+    static _Thread_local struct intake intake;
     struct diagnostic why;
 
     intake_open(&intake, &c->source);
@@ -291,10 +308,20 @@ static enum command_status check_file(const struct compiled *c, const struct ses
     return STATUS_INPUT;
 }
 
+/* NULL: errno says why. A text in memory is only read. */
+static FILE *open_stream(const char *path)
+{
+    const struct text_held *held = text_find_held(path);
+
+    if (held == NULL)
+        return fopen(path, "rb");
+    return fmemopen(held->bytes, held->length, "rb");
+}
+
 static enum command_status open_file(struct compiled *c, const struct session *s, const char *path)
 {
     c->name = path;
-    c->stream = fopen(path, "rb");
+    c->stream = open_stream(path);
     if (c->stream == NULL) {
         message_command_error("%s cannot be opened: %s", path, strerror(errno));
         return STATUS_INPUT;

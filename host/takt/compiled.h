@@ -29,6 +29,9 @@ struct compiled_figures {
     uint32_t why_line; /* of this line; 0: of the whole */
 };
 
+/* What --ceiling says, per cent. False after a message. */
+bool compiled_read_ceiling(const struct options *options, uint32_t *percent);
+
 /*
  * Compiles the session's program into an open file, and judges what is there: STATUS_DONE; else after a message. What is
  * in the file then is worth nothing.

@@ -3,27 +3,19 @@
 #include "canopen/sdo.h"
 #include "canopen/sdo_client.h"
 #include "takt/message.h"
-#include "takt/text.h"
 
-/* A machine's; the machine has no more than their places. */
-static struct text texts[MACHINE_SETUP_DRIVES_MAX];
-static struct concise_dcf configurations[MACHINE_SETUP_DRIVES_MAX];
-
-static bool load(const char *path, unsigned i)
+static bool load(struct text *text, struct concise_dcf *dcf, const char *path)
 {
-    struct concise_dcf *dcf = &configurations[i];
     uint32_t object;
 
-    text_free(&texts[i]);
-    texts[i] = (struct text){0};
-    if (!text_read(&texts[i], path))
+    if (!text_read(text, path))
         return false;
-    if (texts[i].length > UINT32_MAX) {
+    if (text->length > UINT32_MAX) {
         message_error(path, 0, 0, "this is too long");
         return false;
     }
-    *dcf = (struct concise_dcf){.bytes = (const uint8_t *)texts[i].bytes,
-                                .length = (uint32_t)texts[i].length};
+    *dcf = (struct concise_dcf){.bytes = (const uint8_t *)text->bytes,
+                                .length = (uint32_t)text->length};
     if (concise_dcf_is_well(dcf, &object))
         return true;
     if (object != 0)
@@ -36,17 +28,19 @@ static bool load(const char *path, unsigned i)
     return false;
 }
 
-bool configuration_files_load(const struct machine_setup *setup)
+bool configuration_files_load(struct configuration_files *files, const struct machine_setup *setup)
 {
+    *files = (struct configuration_files){0};
     for (unsigned i = 0; i < MACHINE_SETUP_DRIVES_MAX; i++) {
-        configurations[i] = (struct concise_dcf){0};
-        if (setup->drive[i].dcf[0] != '\0' && !load(setup->drive[i].dcf, i))
+        if (setup->drive[i].dcf[0] != '\0' &&
+            !load(&files->text[i], &files->dcf[i], setup->drive[i].dcf))
             return false;
     }
     return true;
 }
 
-const struct concise_dcf *configuration_files_get(void)
+void configuration_files_free(struct configuration_files *files)
 {
-    return configurations;
+    for (unsigned i = 0; i < MACHINE_SETUP_DRIVES_MAX; i++)
+        text_free(&files->text[i]);
 }

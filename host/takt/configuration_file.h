@@ -5,11 +5,18 @@
 #ifndef TAKT_HOST_CONFIGURATION_FILE_H
 #define TAKT_HOST_CONFIGURATION_FILE_H
 
+#include "canopen/concise_dcf.h"
 #include "takt/machine_setup.h"
+#include "takt/text.h"
 
-/* Reads those of this machine. False after a message. */
-bool configuration_files_load(const struct machine_setup *setup);
-/* Those that have been read last, as a controller takes them. */
-const struct concise_dcf *configuration_files_get(void);
+/* A machine's; it has no more drives than there are places. All zero: none. */
+struct configuration_files {
+    struct text text[MACHINE_SETUP_DRIVES_MAX];
+    struct concise_dcf dcf[MACHINE_SETUP_DRIVES_MAX]; /* as a controller takes them */
+};
+
+/* Reads those of this machine. False after a message; they are to be freed in either case. */
+bool configuration_files_load(struct configuration_files *files, const struct machine_setup *setup);
+void configuration_files_free(struct configuration_files *files);
 
 #endif

@@ -83,7 +83,7 @@ static void store_path(const struct drive_service *service, const struct virtual
 /* A message says so when it fails; the drive tells its master. */
 static bool keep_stored(void *context, const struct virtual_drive *drive)
 {
-    static struct output_file file;
+    static _Thread_local struct output_file file;
     char path[OUTPUT_PATH_MAX];
 
     store_path(context, drive, path);

@@ -57,14 +57,14 @@ bool field_check_options(const struct field_options *options)
 }
 
 /* Faults of the bus whose time counts from this anchor. */
-static bool add_faults(struct field *field, enum inject_anchor anchor, uint64_t anchor_ns)
+static bool add_faults(struct field *field, const struct inject *script, enum inject_anchor anchor,
+                       uint64_t anchor_ns)
 {
     uint8_t nodes[VIRTUAL_DRIVES_MAX];
 
     for (unsigned i = 0; i < field->drives.count; i++)
         nodes[i] = field->drives.drive[i].config.node;
-    return inject_bus_add(&field->bus, field->script, anchor, anchor_ns, nodes,
-                          field->drives.count);
+    return inject_bus_add(&field->bus, script, anchor, anchor_ns, nodes, field->drives.count);
 }
 
 static bool start_faults(struct field *field)
@@ -72,7 +72,7 @@ static bool start_faults(struct field *field)
     if (field->script == NULL)
         return true;
     virtual_drives_inject(&field->drives, field->script);
-    return add_faults(field, INJECT_POWER, 0);
+    return add_faults(field, field->script, INJECT_POWER, 0);
 }
 
 static void add_enabled_faults(struct field *field)
@@ -82,7 +82,20 @@ static void add_enabled_faults(struct field *field)
     if (enabled_ns == INJECT_ALWAYS)
         return;
     field->has_enabled_faults = true;
-    (void)add_faults(field, INJECT_ENABLED, enabled_ns);
+    (void)add_faults(field, field->script, INJECT_ENABLED, enabled_ns);
+}
+
+bool field_add_faults(struct field *field, const struct inject *script, unsigned first)
+{
+    const uint64_t enabled_ns = virtual_drives_get_clock(&field->drives)->enabled_ns;
+    struct inject added = {.count = script->count - first};
+
+    for (unsigned i = 0; i < added.count; i++)
+        added.fault[i] = script->fault[first + i];
+    field->script = script;
+    virtual_drives_inject(&field->drives, script);
+    return add_faults(field, &added, INJECT_POWER, 0) &&
+           (!field->has_enabled_faults || add_faults(field, &added, INJECT_ENABLED, enabled_ns));
 }
 
 static bool open_inside(struct field *field, const struct machine_setup *setup)

@@ -77,6 +77,12 @@ void field_close(struct field *field);
 /* The controller's drives: it knows which frames are their answers. They must stay. */
 void field_watch_drives(struct field *field, const struct drives *drives);
 
+/*
+ * Faults that join those of the script while drives inside run; first: the first new one of it. The script must stay. False
+ * after a message: the bus can hold no more.
+ */
+bool field_add_faults(struct field *field, const struct inject *script, unsigned first);
+
 /* The controller's bus. */
 struct can_port field_get_port(struct field *field);
 /* Its step drives. */

@@ -62,7 +62,7 @@ static void write(char text[HINT_MAX], const char *hint)
 /* Codes of the line, such as "G0 and G28". */
 static unsigned list_codes(const char *line, size_t length, char *text, size_t size)
 {
-    static struct line l;
+    static _Thread_local struct line l;
     unsigned count = 0;
     size_t used = 0;
 
@@ -91,7 +91,7 @@ static void write_shared(const char *line, size_t length, char text[HINT_MAX])
 static void write_missing(const struct diagnostic *d, const char *line, size_t length, size_t at,
                           char text[HINT_MAX])
 {
-    static struct line l;
+    static _Thread_local struct line l;
 
     if (!line_read(&l, line, length))
         return;

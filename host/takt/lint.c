@@ -178,7 +178,7 @@ static void note_line(void *listener, const struct program *p)
 
 static enum command_status look_at_moves(struct lint *l)
 {
-    static struct session_reading reading;
+    static _Thread_local struct session_reading reading;
     const unsigned of_mills = 1U << AXIS_X | 1U << AXIS_Y | 1U << AXIS_Z;
     struct program_config config;
     struct source source;
@@ -202,7 +202,7 @@ static enum command_status look_at_moves(struct lint *l)
 /* A line that does something when it is executed; O-words and what they stand for are none. */
 static bool has_words(const char *bytes, size_t length)
 {
-    static struct line line;
+    static _Thread_local struct line line;
 
     if (!line_read(&line, bytes, length))
         return true;
@@ -315,7 +315,7 @@ static enum command_status look_at_feeds(struct lint *l)
 
 static uint32_t count_lines(const struct session *s)
 {
-    static struct program_text_reader reader;
+    static _Thread_local struct program_text_reader reader;
     struct source source;
     char bytes[4096];
     uint32_t lines = 1;
@@ -331,7 +331,7 @@ static uint32_t count_lines(const struct session *s)
 
 enum command_status lint_program(const struct session *s, double stock_top_mm, unsigned *findings)
 {
-    static struct lint l;
+    static _Thread_local struct lint l;
     enum command_status status;
 
     l = (struct lint){.session = s, .stock_top_mm = stock_top_mm, .lines = count_lines(s)};

@@ -1,6 +1,5 @@
 #include "takt/machine_file.h"
 
-#include "takt/configuration_file.h"
 #include "takt/machine_keys.h"
 #include "takt/message.h"
 #include "takt/text.h"
@@ -392,7 +391,7 @@ bool machine_file_load(struct machine_setup *setup, const struct options *option
         return false;
     wrong = machine_setup_check(setup);
     if (wrong == NULL)
-        return configuration_files_load(setup);
+        return true;
     if (options->machine != NULL)
         message_error(options->machine, 0, 0, "%s", wrong);
     else

@@ -91,7 +91,7 @@ bool machine_io_read(uint8_t field[IO_BITS_MAX], const char *value, bool is_outp
 /* "P31", "flood". */
 static const char *io_name(unsigned kind)
 {
-    static char text[4];
+    static _Thread_local char text[4];
 
     for (size_t i = 0; i < sizeof io_rows / sizeof io_rows[0]; i++) {
         const unsigned number = kind - io_rows[i].first;

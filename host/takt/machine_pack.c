@@ -46,7 +46,7 @@ static void report(const char *path, const struct correction_tables *tables, siz
 enum command_status machine_pack_write(const struct machine_setup *setup, const char *path,
                                        bool is_sector)
 {
-    static struct packed packed;
+    static _Thread_local struct packed packed;
     struct correction_tables *tables;
     enum command_status status = STATUS_ENVIRONMENT;
     size_t size;
@@ -129,8 +129,8 @@ static bool skip_head(const struct text *text, const uint8_t **bytes, size_t *si
 
 static enum command_status print_settings(const char *path, const uint8_t *bytes, size_t size)
 {
-    static struct correction_tables tables;
-    static struct machine_setup setup;
+    static _Thread_local struct correction_tables tables;
+    static _Thread_local struct machine_setup setup;
     struct concise_dcf dcf[MACHINE_NODES_MAX];
     struct diagnostic wrong;
     char text[DIAGNOSTIC_TEXT_MAX];

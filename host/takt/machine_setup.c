@@ -67,7 +67,7 @@ void machine_setup_set_default(struct machine_setup *setup)
 
 __attribute__((format(printf, 1, 2))) static const char *problem(const char *format, ...)
 {
-    static char text[256];
+    static _Thread_local char text[256];
     va_list arguments;
 
     va_start(arguments, format);

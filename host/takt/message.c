@@ -15,9 +15,9 @@
 /* Length of a message that is not of a program. */
 #define MESSAGE_TEXT_MAX 8192
 
-static char message_command[32] = "takt";
+static _Thread_local char message_command[32] = "takt";
 
-static struct {
+static _Thread_local struct {
     void (*hear)(void *listener, const struct message *m);
     void *listener;
 } message_listener;
@@ -102,7 +102,7 @@ void message_command_note(const char *format, ...)
 
 const char *message_did_you_mean(const char *prefix, const char *word)
 {
-    static char text[96];
+    static _Thread_local char text[96];
 
     if (word == NULL)
         return "";

@@ -22,7 +22,7 @@ struct message {
     const char *cure; /* lines that say what to do; "" for none */
 };
 
-/* From now on messages go to hear instead of stderr; NULL: to stderr again. */
+/* From now on messages of this thread go to hear instead of stderr; NULL: to stderr again. */
 void message_listen(void (*hear)(void *listener, const struct message *m), void *listener);
 
 /* The sub-command, for messages about the command line. */

@@ -25,7 +25,7 @@ struct planner {
 static void reserve_for_correction(const struct session *s, const struct point *start,
                                    struct plan_limits *limits)
 {
-    static struct correction correction;
+    static _Thread_local struct correction correction;
 
     correction_init(&correction, &s->setup.machine.correction, limits->axes, limits->cycle_s,
                     s->correction, start);

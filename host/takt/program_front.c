@@ -40,7 +40,7 @@ static struct dialect_guess scan_end(struct scan *s)
 static struct dialect_guess guess_bytes(const char *bytes, size_t length,
                                         const struct dialect_codes *codes)
 {
-    static struct scan s;
+    static _Thread_local struct scan s;
 
     s = (struct scan){.codes = codes};
     for (size_t i = 0; i < length; i++)
@@ -52,8 +52,8 @@ static struct dialect_guess guess_bytes(const char *bytes, size_t length,
 static struct dialect_guess guess_text(const struct program_text *text,
                                        const struct dialect_codes *codes, bool *calls)
 {
-    static struct program_text_reader reader;
-    static struct scan s;
+    static _Thread_local struct program_text_reader reader;
+    static _Thread_local struct scan s;
     struct source source;
     char piece[4096];
     long got;
@@ -140,7 +140,7 @@ static void note_oword(struct joint *j, const char *name, const char *behind)
 
 static void note_line(struct joint *j, const char *bytes, size_t length)
 {
-    static struct line l;
+    static _Thread_local struct line l;
     char name[LINE_LABEL_MAX];
     const char *behind;
 
@@ -227,7 +227,7 @@ static void tell_notes(const char *name, enum dialect dialect, const struct dial
 static bool translate(const struct joint *j, const char *name, enum dialect dialect,
                       const struct text *found, struct dialect_text *bytes)
 {
-    static struct dialect_result result;
+    static _Thread_local struct dialect_result result;
     const bool good =
         dialect_translate(dialect, j->front->codes, found->bytes, found->length, &result);
 

@@ -38,7 +38,7 @@ static bool open_file(struct program_text *text, const char *path)
 bool program_text_open(struct program_text *text, const char *path)
 {
     *text = (struct program_text){0};
-    if (strcmp(path, "-") != 0 && open_file(text, path))
+    if (strcmp(path, "-") != 0 && text_find_held(path) == NULL && open_file(text, path))
         return true;
     if (!text_read(&text->whole, path))
         return false;
@@ -248,8 +248,8 @@ static size_t found_line(const struct text *text, uint32_t line, size_t first, c
 size_t program_text_line(const struct program_text *text, uint32_t line, size_t first, char *bytes,
                          size_t size)
 {
-    static struct program_text_reader reader;
-    static struct line_search search;
+    static _Thread_local struct program_text_reader reader;
+    static _Thread_local struct line_search search;
 
     if (text->pieces > 0) {
         const struct program_piece *piece = piece_of(text, line);

@@ -3,7 +3,6 @@
 #include "takt/serving.h"
 
 #include "base/crc32.h"
-#include "takt/configuration_file.h"
 #include "takt/cutting_feed.h"
 #include "takt/drives_table.h"
 #include "takt/message.h"
@@ -58,7 +57,7 @@ static void open_service(struct serving *s)
     const struct service_config config = {
         .machine = &s->session.setup.machine,
         .can = field_get_port(&s->field),
-        .dcf = configuration_files_get(),
+        .dcf = s->session.configurations.dcf,
         .step = field_get_step_port(&s->field),
         .tools = s->session.tools.tools,
         .tools_count = s->session.tools.table.count,

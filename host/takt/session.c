@@ -38,7 +38,8 @@ enum command_status session_open_machine(struct session *s, const struct options
 {
     *s = (struct session){.options = options};
     parameters_clear(&s->parameters.values);
-    return machine_file_load(&s->setup, options) && open_tables(s) &&
+    return machine_file_load(&s->setup, options) &&
+                   configuration_files_load(&s->configurations, &s->setup) && open_tables(s) &&
                    correction_file_load(&s->correction, &s->setup)
                ? STATUS_DONE
                : STATUS_INPUT;
@@ -84,6 +85,7 @@ void session_close(struct session *s)
 {
     program_text_close(&s->program);
     tool_file_close(&s->tools);
+    configuration_files_free(&s->configurations);
     free(s->correction);
     s->correction = NULL;
 }

@@ -10,6 +10,7 @@
 #include "offset/offset.h"
 #include "program/program.h"
 #include "takt/command.h"
+#include "takt/configuration_file.h"
 #include "takt/machine_setup.h"
 #include "takt/options.h"
 #include "takt/parameter_file.h"
@@ -24,6 +25,7 @@ struct compiled;
 struct session {
     const struct options *options;
     struct machine_setup setup;
+    struct configuration_files configurations; /* of its drives */
     struct program_text program;
     struct tool_file tools;
     bool guesses_tools;         /* --tools auto: by what the program says */

@@ -1,7 +1,6 @@
 #include "takt/simulation.h"
 
 #include "takt/compiled.h"
-#include "takt/configuration_file.h"
 #include "takt/cutting_feed.h"
 #include "takt/inject_file.h"
 #include "takt/message.h"
@@ -41,7 +40,7 @@ static void start_controller(struct simulation *s, const struct session *session
     struct controller_config config = {
         .machine = &session->setup.machine,
         .can = port,
-        .dcf = configuration_files_get(),
+        .dcf = session->configurations.dcf,
         .step = field_get_step_port(&s->field),
         .tools = &session->tools.table,
         .correction = session->correction,
@@ -79,14 +78,23 @@ static enum command_status start_controllers(struct simulation *s, const struct 
     return status;
 }
 
+/* The nodes that faults may name. */
+static unsigned list_nodes(const struct machine *machine,
+                           uint8_t nodes[MACHINE_NODES_MAX + IO_NODES_MAX])
+{
+    unsigned count = machine_drive_nodes(machine, nodes);
+
+    for (unsigned i = 0; i < machine_io_count(machine); i++)
+        nodes[count++] = machine->io[i].node;
+    return count;
+}
+
 static enum command_status load_faults(struct simulation *s, const struct session *session)
 {
     const char *path = session->options->inject;
     uint8_t nodes[MACHINE_NODES_MAX + IO_NODES_MAX];
-    unsigned count = machine_drive_nodes(&session->setup.machine, nodes);
+    const unsigned count = list_nodes(&session->setup.machine, nodes);
 
-    for (unsigned i = 0; i < machine_io_count(&session->setup.machine); i++)
-        nodes[count++] = session->setup.machine.io[i].node;
     if (path == NULL || (inject_file_load(&s->script, path) &&
                          inject_file_check_nodes(&s->script, path, nodes, count)))
         return STATUS_DONE;
@@ -158,6 +166,40 @@ void simulation_close(struct simulation *s)
     field_close(&s->field);
     free_overrides(s);
     free(s);
+}
+
+bool simulation_set_overrides(struct simulation *s, double feed_percent, double rapid_percent)
+{
+    if (!(feed_percent >= 0 && feed_percent <= FEED_PERCENT_MAX && rapid_percent >= 0 &&
+          rapid_percent <= RAPID_PERCENT_MAX))
+        return false;
+    s->feed_override.percent = feed_percent;
+    s->rapid_override.percent = rapid_percent;
+    return true;
+}
+
+bool simulation_add_faults(struct simulation *s, const char *name, const char *bytes, size_t length)
+{
+    uint8_t nodes[MACHINE_NODES_MAX + IO_NODES_MAX];
+    const unsigned count = list_nodes(&s->controller.machine, nodes);
+    const unsigned first = s->script.count;
+    struct inject_error error;
+    struct inject added;
+
+    if (!inject_read(&added, bytes, length, &error)) {
+        message_error(name, error.line, error.column, "%s", error.text);
+        return false;
+    }
+    if (!inject_file_check_nodes(&added, name, nodes, count))
+        return false;
+    if (added.count > INJECT_FAULTS_MAX - first) {
+        message_error(name, 0, 0, "with those before there are more than %d faults",
+                      INJECT_FAULTS_MAX);
+        return false;
+    }
+    for (unsigned i = 0; i < added.count; i++)
+        s->script.fault[s->script.count++] = added.fault[i];
+    return field_add_faults(&s->field, &s->script, first);
 }
 
 static void measured_cycle(struct simulation *s)

@@ -61,6 +61,13 @@ void simulation_close(struct simulation *s); /* NULL: nothing */
  */
 bool simulation_step(struct simulation *s);
 
+/* The operator turns an override, until the next row of its file. Per cent within the panel's range; else false. */
+bool simulation_set_overrides(struct simulation *s, double feed_percent, double rapid_percent);
+
+/* Faults join those of --inject: the text of a script, and its name for messages. False after a message: none has. */
+bool simulation_add_faults(struct simulation *s, const char *name, const char *bytes,
+                           size_t length);
+
 /* What the last cycle did, on the target if there is one; NULL: it was none of the program. */
 const struct cycle_record *simulation_get_record(const struct simulation *s);
 

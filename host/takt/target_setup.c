@@ -83,7 +83,7 @@ static bool add_tables(struct target_table *tables, unsigned *count,
 enum command_status target_setup_open(struct target *target, const struct session *session,
                                       const struct can_port *bus)
 {
-    static struct program_text_reader reader;
+    static _Thread_local struct program_text_reader reader;
     struct target_table tables[TARGET_TABLES_MAX] = {{0}};
     struct target_config config = {
         .name = session->options->target,

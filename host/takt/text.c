@@ -41,7 +41,38 @@ static bool text_fill(struct text *text, FILE *file)
     }
 }
 
-bool text_read(struct text *text, const char *path)
+static _Thread_local const struct text_held *text_held;
+static _Thread_local unsigned text_held_count;
+
+void text_hold(const struct text_held *held, unsigned count)
+{
+    text_held = held;
+    text_held_count = count;
+}
+
+const struct text_held *text_find_held(const char *name)
+{
+    for (unsigned i = 0; i < text_held_count; i++) {
+        if (strcmp(name, text_held[i].name) == 0)
+            return &text_held[i];
+    }
+    return NULL;
+}
+
+static bool text_copy(struct text *text, const struct text_held *held)
+{
+    *text = (struct text){.name = held->name, .bytes = malloc(held->length + 1)};
+    if (text->bytes == NULL) {
+        message_command_error("out of memory");
+        return false;
+    }
+    memcpy(text->bytes, held->bytes, held->length);
+    text->bytes[held->length] = '\0';
+    text->length = held->length;
+    return true;
+}
+
+static bool text_load(struct text *text, const char *path)
 {
     bool standard = strcmp(path, "-") == 0;
     FILE *file = standard ? stdin : fopen(path, "rb");
@@ -60,6 +91,13 @@ bool text_read(struct text *text, const char *path)
     if (!standard)
         (void)fclose(file);
     return good;
+}
+
+bool text_read(struct text *text, const char *path)
+{
+    const struct text_held *held = text_find_held(path);
+
+    return held != NULL ? text_copy(text, held) : text_load(text, path);
 }
 
 void text_free(struct text *text)

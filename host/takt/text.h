@@ -14,6 +14,18 @@ struct text {
     size_t length;
 };
 
+/* A text that is in memory, and the name it is read by in place of a path. Both are the caller's. */
+struct text_held {
+    char *name;
+    char *bytes;
+    size_t length;
+};
+
+/* From now on this thread finds texts by these names in memory instead of on disk; count 0: none. They must stay. */
+void text_hold(const struct text_held *held, unsigned count);
+/* NULL: it is a path. */
+const struct text_held *text_find_held(const char *name);
+
 /* Reads path, "-" for standard input. False after a message: it cannot be opened or read. */
 bool text_read(struct text *text, const char *path);
 void text_free(struct text *text);

@@ -83,8 +83,8 @@ static void read_line(struct guess *g, const char *bytes, size_t length)
 
 static void read_lines(struct guess *g, const struct program_text *text)
 {
-    static struct program_text_reader reader;
-    static char line[LINE_MAX_BYTES + 1];
+    static _Thread_local struct program_text_reader reader;
+    static _Thread_local char line[LINE_MAX_BYTES + 1];
     struct source source;
     size_t length = 0;
     char byte;
@@ -103,7 +103,7 @@ static void read_lines(struct guess *g, const struct program_text *text)
 
 bool tool_guess(struct tool_file *file, const struct program_text *text)
 {
-    static struct guess g;
+    static _Thread_local struct guess g;
     unsigned unknown = 0;
 
     g = (struct guess){.file = file};

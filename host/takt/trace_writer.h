@@ -6,6 +6,7 @@
 
 #include "base/point.h"
 #include "motion/cycle_record.h"
+#include "takt/trace_row.h"
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -18,6 +19,7 @@ struct trace_writer {
     FILE *stream; /* the caller's */
     bool failed;
     unsigned axes; /* bit i set: column of axis i */
+    struct trace_column column[TRACE_ROW_COLUMNS];
     double cycle_s;
     size_t used;
     char buffer[TRACE_BUFFER_SIZE];

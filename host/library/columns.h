@@ -1,0 +1,26 @@
+/*
+ * A trace in memory, column by column.
+ */
+#ifndef TAKT_LIBRARY_COLUMNS_H
+#define TAKT_LIBRARY_COLUMNS_H
+
+#include "takt/trace_row.h"
+
+#include <stdbool.h>
+#include <stdint.h>
+
+struct columns {
+    unsigned axes; /* bit i set: those of axis i */
+    double cycle_s;
+    unsigned count;
+    struct trace_column column[TRACE_ROW_COLUMNS];
+    double *value[TRACE_ROW_COLUMNS];
+    uint64_t rows, room;
+    bool failed; /* out of memory: rows are missing */
+};
+
+void columns_init(struct columns *c, unsigned axes, double cycle_s);
+void columns_add(struct columns *c, const struct cycle_record *record);
+void columns_free(struct columns *c);
+
+#endif
