@@ -31,6 +31,7 @@ struct option_bore {
 /* For `takt serve` and `takt panel`. */
 struct option_panel {
     const char *listen, *connect; /* HOST:PORT */
+    const char *http;             /* HOST:PORT, or off; NULL: the default */
     const char *serial;           /* PATH, or PATH,BAUD,PARITY */
     const char *program;
     const char *store;

@@ -251,9 +251,10 @@ class Service:
 
 
 def serve(*options):
-    """Without a state, unless the options name one: tests do not see what others have left."""
+    """Without state and page, unless the options name them: tests do not see what others have left."""
     state = [] if "--state" in options else ["--state", "none"]
-    return Service("--listen", "127.0.0.1:0", *state, *options)
+    page = [] if "--http" in options else ["--http", "off"]
+    return Service("--listen", "127.0.0.1:0", *state, *page, *options)
 
 
 STARTING, IDLE, RUNNING, MDI, JOGGING, HOMING, HELD, STOPPING, ALARM, EMERGENCY = range(10)
