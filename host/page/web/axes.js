@@ -9,7 +9,6 @@ const KINDS = [["velocity", "/s"], ["accel.", "/s²"], ["jerk", "/s³"], ["lag",
 const COLOURS = ["x", "y", "z"];
 
 let charts = [];
-let due = false;
 
 function chart(axis, kind) {
   const canvas = make("canvas"), number = make("b");
@@ -28,9 +27,11 @@ function build() {
 
 const short = (number) => (number >= 1e4 ? number.toFixed(0) : number.toPrecision(4));
 
+// The number shown is the largest of the last seconds, as the strip has it.
 function draw() {
-  due = false;
+  if ($("pane-axes").hidden) return;
   for (const c of charts) {
+    c.most = c.strip.values.reduce((peak, v) => Math.max(peak, Math.abs(v)), 0);
     c.strip.draw(c.limit, COLOURS[c.axis.i % 3]);
     const part = c.limit ? ` · ${(100 * c.most / c.limit).toFixed(1)} %` : "";
     setText(c.number, `${short(c.most)} ${c.unit}${part}`);
@@ -38,16 +39,12 @@ function draw() {
   }
 }
 
-// The number shown is the largest of the last seconds, as the strip has it.
 function add(frame) {
-  for (const c of charts) {
-    c.strip.add(frame.x[c.axis.i][c.kind]);
-    c.most = c.strip.values.reduce((peak, v) => Math.max(peak, Math.abs(v)), 0);
-  }
-  if (!due && !$("pane-axes").hidden) { due = true; requestAnimationFrame(draw); }
+  for (const c of charts) c.strip.add(frame.x[c.axis.i][c.kind]);
 }
 
 export function startAxes() {
   hear("hello", build);
-  hear("frame", (frame) => { if (charts.length) add(frame); });
+  hear("frame", add);
+  hear("draw", draw);
 }

@@ -130,7 +130,7 @@ export function startBus() {
   hear("bus", showBus);
   hear("objects", showObjects);
   hear("values", showValues);
-  hear("frame", showStates);
+  hear("draw", showStates);
 }
 
 // The dictionary is read as long as it is looked at.

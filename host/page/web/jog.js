@@ -138,7 +138,7 @@ function show(frame) {
 
 export function startJog() {
   hear("hello", buildPad);
-  hear("frame", show);
+  hear("draw", show);
   hear("lost", () => { if (jog) clearInterval(jog.timer); jog = null; clearInterval(claimed); claimed = 0; });
   listenToKeys();
   $("claim").onclick = () => claim(!claimed);

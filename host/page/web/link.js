@@ -7,7 +7,8 @@ let last = 0;
 
 export const link = { open: false, bytes: 0 };
 
-// hear(name, function): name is a key of a message ("hello", "tables"), "frame", "open" or "lost".
+// hear(name, function): name is a key of a message ("hello", "tables"), "open", "lost", "frame": each, or "draw": the last
+// one before the screen is drawn, so that a slow screen falls behind in pictures and not in time.
 export function hear(name, listener) {
   listeners.set(name, [...(listeners.get(name) || []), listener]);
 }
@@ -16,8 +17,22 @@ function tell(name, value) {
   for (const listener of listeners.get(name) || []) listener(value);
 }
 
+let newest = null;
+
+function draw() {
+  const frame = newest;
+  newest = null;
+  tell("draw", frame);
+}
+
+function takeFrame(frame) {
+  if (!newest) requestAnimationFrame(draw);
+  newest = frame;
+  tell("frame", frame);
+}
+
 function take(message) {
-  if ("n" in message) return tell("frame", message);
+  if ("n" in message) return takeFrame(message);
   if (!("reply" in message)) {
     for (const name of Object.keys(message)) if (listeners.has(name)) return tell(name, message);
     return undefined;

@@ -138,6 +138,6 @@ export function startProgramPane() {
   $("text").addEventListener("scroll", () => showText(false));
   $("text").addEventListener("click", (event) => { if (event.target.dataset.n) $("fromline").value = event.target.dataset.n; });
   new ResizeObserver(() => showText(true)).observe($("text"));
-  hear("frame", show);
+  hear("draw", show);
   hear("lost", () => { known = ""; });
 }

@@ -1,8 +1,9 @@
 // Work offsets and tools as tables, touch-off, and the alarms that have been.
 
 import { hear, write } from "./link.js";
-import { ALARMS, SYSTEMS, counts, axisValue, machine, toCounts } from "./state.js";
+import { ALARMS, SYSTEMS, counts, machine, toCounts } from "./state.js";
 import { $, make, setText, told } from "./dom.js";
+import { runLine } from "./jog.js";
 
 let tables = null, alarm = "";
 
@@ -20,11 +21,14 @@ function setOffset(system, axis, number) {
   return told(write(["WORK_SYSTEM", system], [`WORK_OFFSET_${axis.letter}`, toCounts("WORK_OFFSET_X", number)]), `${SYSTEMS[system - 1]} ${axis.letter}`);
 }
 
-// So that the work position becomes this: the offset takes up the difference to what it is now.
-function touchOff(axis, number) {
-  const system = counts("SYSTEM"), now = tables.systems[system - 1][axis.i];
-  return setOffset(system, axis, now + axisValue("WORK_POSITION", axis) - number);
+// mm or degrees as a line of a program says them with the modes that are active: G20, and diameters of G7.
+function word(axis, number) {
+  const modes = counts("MODES"), inches = modes & 8 && !axis.rotary ? 25.4 : 1, diameter = modes & 4096 && axis.letter === "X" ? 2 : 1;
+  return axis.letter + (number * diameter / inches).toFixed(6);
 }
+
+// By a line, since only the controller knows at one moment where the axis is and what the offset was.
+const touchOff = (axis, number) => runLine(`G10 L20 P${counts("SYSTEM")} ${word(axis, number)}`);
 
 function touchRow() {
   const axis = make("select", { ariaLabel: "axis" }, ...machine.axes.map((a) => make("option", { textContent: a.letter, value: a.letter })));
@@ -50,12 +54,8 @@ function setTool(tool, name, number) {
   return told(write(["TOOL_SELECT", tool], [name, toCounts(name, number)]), `tool ${tool}`);
 }
 
-// The length that makes the machine position of Z the work position that is given.
-function touchTool(tool, number) {
-  const axis = machine.axes.find((a) => a.letter === "Z");
-  const offset = tables.systems[counts("SYSTEM") - 1][2];
-  return setTool(tool, "TOOL_OFFSET_Z", axisValue("POSITION", axis) - offset - number);
-}
+// The length that makes the work position of Z what is given.
+const touchTool = (tool, number) => runLine(`G10 L10 P${tool} ${word(machine.axes.find((a) => a.letter === "Z"), number)}`);
 
 function toolRow(tool) {
   const [number, ...rest] = tool;

@@ -175,7 +175,6 @@ function draw() {
     strokeActive(context, at, ratio);
     drawTool(context, at, ratio);
   }
-  requestAnimationFrame(draw);
 }
 
 // Lengthened by every frame; when it is too long its older half keeps every second point.
@@ -255,5 +254,5 @@ export function startView() {
   $("viewbuttons").addEventListener("click", (event) => { if (event.target.dataset.view) press(event.target.dataset.view); });
   matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => { stale = true; });
   new ResizeObserver(() => { fitted = false; }).observe(canvas);
-  requestAnimationFrame(draw);
+  hear("draw", draw);
 }
