@@ -18,6 +18,7 @@ static const struct command *const commands[] = {
     &command_convert,
     &command_canon,
     &command_trace,
+    &command_view,
     &command_machine,
     &command_serve,
     &command_panel,

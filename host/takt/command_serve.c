@@ -5,7 +5,6 @@
 #include <inttypes.h>
 #include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
 
 /* Upper ends of the classes of lateness that are printed, us. */
 static const unsigned late_us[] = {10, 20, 50, 100, 200, 500, 1000, 2000, 5000, 10000};
@@ -14,15 +13,10 @@ static const unsigned late_us[] = {10, 20, 50, 100, 200, 500, 1000, 2000, 5000, 
 
 static void print_page(const struct serving *s)
 {
-    const char *host = s->options.http;
-    const char *brackets = strchr(host, ':') != NULL ? "[]" : "";
-
     if (s->page.server != NULL)
-        (void)printf("page on http://%.1s%s%s:%u/\n", brackets, host,
-                     brackets[0] != '\0' ? "]" : "",
-                     (unsigned)page_server_get_port(s->page.server));
+        serving_page_print(s->options.http, s->page.server);
     else if (s->page.problem != NULL)
-        (void)printf("no page on %s: %s\n", host, s->page.problem);
+        (void)printf("no page: %s\n", s->page.problem);
 }
 
 static void print_ready(const struct serving *s)

@@ -91,6 +91,7 @@ struct options {
     double until_s;         /* 0: to the end */
     const char *to_dialect; /* of `takt convert` */
     const char *stock_top;  /* of `takt lint`, mm */
+    double speed;           /* of `takt view`; 0: 1 */
     double tolerance;       /* of `takt trace`; 0: equal. Of `takt bore`, mm; 0: its default */
     const char *output;     /* -o is short for --output */
     struct option_bore bore;

@@ -61,17 +61,22 @@ static void set_drives(struct page_setup *setup, const struct field *field,
     }
 }
 
-static void set_up(struct serving *s)
+void serving_page_set_up(struct page_setup *setup, const struct machine *machine)
 {
-    struct page_setup *setup = &s->page.setup;
-    const struct machine *machine = &s->session.setup.machine;
-
     (void)snprintf(setup->machine, sizeof setup->machine, "%s", machine->name);
     (void)snprintf(setup->version, sizeof setup->version, "%s", TAKT_VERSION);
     setup->cycle_us = machine->cycle_us;
     setup->bitrate = machine->can_bitrate;
     set_axes(setup, machine);
-    set_drives(setup, &s->field, machine);
+}
+
+void serving_page_print(const char *host, const struct page_server *server)
+{
+    const bool is_ipv6 = strchr(host, ':') != NULL;
+
+    (void)printf("page on http://%s%s%s:%u/\n", is_ipv6 ? "[" : "", host, is_ipv6 ? "]" : "",
+                 (unsigned)page_server_get_port(server));
+    (void)fflush(stdout);
 }
 
 /* ---- the program ---- */
@@ -339,7 +344,8 @@ enum command_status serving_page_open(struct serving *s)
         return STATUS_INPUT;
     if (config.address == NULL)
         return STATUS_DONE;
-    set_up(s);
+    serving_page_set_up(&s->page.setup, &s->session.setup.machine);
+    set_drives(&s->page.setup, &s->field, &s->session.setup.machine);
     if (s->field.link == NULL)
         virtual_drives_inject(&s->field.drives, &s->page.faults);
     s->page.server = page_server_open(&config, &problem);

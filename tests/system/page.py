@@ -248,9 +248,29 @@ def check_strangers(service, client):
     t.check(client.digest() == digest, "and its setpoints are those of takt run", client.digest())
 
 
+def check_view():
+    """A trace played back: faster, with the peaks of the run; nothing else is taken."""
+    t.run("run", t.write("program.ngc", PROGRAM), "--trace", "program.csv", "--quiet")
+    columns = t.read_trace("program.csv")
+    viewer = p.Service("program.csv", "program.ngc", "--http", "127.0.0.1:0", "--speed", "20", command="view")
+    page = w.Page(viewer.port)
+    page.wait_for("STATE", p.IDLE)
+    t.check(abs(page.value("POSITION_Z") - columns["set_Z_mm"][-1]) < 1e-3, "it comes to the end of the trace", page.value("POSITION_Z"))
+    peaks = run(page)
+    most = t.peaks(columns["set_X_mm"], 0.001)
+    t.check(all(abs(a - b) <= 1e-4 * b for a, b in zip(peaks[0], most)), "with the peaks of the run", peaks[0], most)
+    t.check(page.write(["MDI_START", 1]) == "not in this state" and page.write(["MODE", 2]) == "not in this state", "there is nothing to move")
+    t.check(page.upload(PROGRAM) == "the value is out of range", "nor to load")
+    status, _, _ = w.get(viewer.port, "/path")
+    t.check(status == 200, "its way is there")
+    page.close()
+    t.check(viewer.stop()[0] == 0, "a signal ends it")
+    for bad in (b"", b"cycle,time_s\n", b"cycle,time_s\n0,0\n1,0\n", b"cycle,time_s\n0,x\n"):
+        status, _, err = t.run("view", t.write("bad.csv", bad), "--http", "127.0.0.1:0")
+        t.check(status == 2 and "bad.csv" in err, f"{bad} is refused", status, err)
+
+
 service = w.serve()
-if service.page_port is None:
-    t.skip("this takt is built without libwebsockets")
 client = service.client()
 client.wait_for("STATE", p.IDLE)
 check_files(service.page_port)
@@ -276,4 +296,5 @@ t.check(page.write(["FEED_HOLD", 1]) == "", "but not to hold")
 t.check(page.write(["PASSWORD", 4711]) == "" and page.write(["FEED_OVERRIDE", 500]) == "", "the right one unlocks")
 page.close()
 locked.stop()
+check_view()
 t.finish()

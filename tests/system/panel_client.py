@@ -237,7 +237,7 @@ class Service:
         atexit.register(self.process.kill)
         self.ready = self.process.stdout.readline()
         assert self.ready, self.process.communicate()[1]
-        self.port = int(self.ready.rsplit(":", 1)[1]) if ":" in self.ready else None
+        self.port = int(self.ready.rsplit(":", 1)[1].strip("/\n")) if ":" in self.ready else None
 
     def client(self):
         return Client(self.port)
