@@ -8,8 +8,11 @@
 #define LIMIT 0.999f
 
 /* Parts of its acceleration that an axis at its highest velocity is left for changes of rate (override, hold). */
-#define CHANGE_LEAST     0.06
-#define CHANGE_MOST_PART 0.2
+#define LEFT_LEAST 0.06
+#define LEFT_MOST  0.5
+
+/* Part of the pieces before the lead point that are known on the average: README.md. */
+#define KNOWN_PART 0.7
 
 /* Parts of the jerk that beginning to change the rate may need, and changing it in a bend: the curve needs the rest. */
 #define ROUNDING_PART 0.3
@@ -29,18 +32,6 @@
 
 /* Places looked at in a piece. */
 #define PLACES 8
-
-/* A corner is passed so many pieces from where its place is, at most. */
-#define CORNER_PIECES 3
-
-/* Pieces of the curve handed on that tell how much of the route is behind it. */
-#define BEHIND_PIECES 4
-
-/* Part of what the order of the route leaves, which the curve between the places looked at does not need. */
-#define ORDER_PART 0.4
-
-/* Corners of lines that turn less are within the tube anyway. */
-#define CORNER_MIN 0.005f
 
 static float larger(float a, float b)
 {
@@ -90,17 +81,24 @@ void judge_need(const struct window *w, const struct route *r, unsigned piece,
     need->feed_mm_s = feed_of(r, need, route_element(r, w->element[piece + 1])->rotary);
 }
 
+/* The highest acceleration that an axis reaches on its way to V: A, or sqrt(V J) where that is less. */
+static double reached(const struct smooth_limits *limits, int axis)
+{
+    return maths_min(limits->acceleration_mm_s2[axis],
+                     maths_sqrt(limits->velocity_mm_s[axis] * limits->jerk_mm_s3[axis]));
+}
+
 /*
  * The lead point comes to rest from the full rate over the pieces that it knows, n of d s: r' = 1/(2 n d). Less would make it
- * slow before the end of what is known, over and over; more is not worth what it takes from the curve.
+ * slow before the end of what is known, over and over.
  */
 static double change_of_axis_at_rest(const struct smooth_limits *limits, double interval_s,
                                      int axis)
 {
-    const double most = limits->acceleration_mm_s2[axis] / limits->velocity_mm_s[axis];
-    const double needed = 1.0 / (2.0 * SMOOTH_AHEAD_PIECES * interval_s);
+    const double most = reached(limits, axis) / limits->velocity_mm_s[axis];
+    const double needed = 1.0 / (2.0 * KNOWN_PART * SMOOTH_AHEAD_PIECES * interval_s);
 
-    return maths_clamp(needed, CHANGE_LEAST * most, CHANGE_MOST_PART * most);
+    return maths_clamp(needed, LEFT_LEAST * most, LEFT_MOST * most);
 }
 
 /*
@@ -116,7 +114,7 @@ void judge_change(const struct smooth_limits *limits, double interval_s,
     change->by = MATHS_INFINITY;
     for (int i = 0; i < AXIS_COUNT; i++) {
         if ((limits->axes >> i & 1U) != 0) {
-            const double ramp_s = limits->acceleration_mm_s2[i] / limits->jerk_mm_s3[i];
+            const double ramp_s = reached(limits, i) / limits->jerk_mm_s3[i];
 
             change->by = maths_min(change->by, change_of_axis_at_rest(limits, interval_s, i));
             rounding_s = maths_max(rounding_s, ramp_s);
@@ -129,14 +127,6 @@ void judge_change(const struct smooth_limits *limits, double interval_s,
         change->by = maths_min(change->by, most * change->rounding_s);
     }
     change->rounded = change->by / change->rounding_s;
-}
-
-void judge_leave(const struct judge_change *change, struct route_slots *slots)
-{
-    for (unsigned i = 0; i < slots->count; i++) {
-        slots->left[i] =
-            1.0f - (float)change->by * slots->velocity_mm_s[i] / slots->acceleration_mm_s2[i];
-    }
 }
 
 /*
@@ -253,22 +243,6 @@ static float within_of(const struct window *w, const struct route *r, unsigned p
     return single_min(JUDGED * tolerance_mm, tolerance_mm - off);
 }
 
-/*
- * The curve follows the route in order within P where places s that do not fall can be found within P of it. Beside a foot at
- * s_f, d away, those are s_f - h ... s_f + h, h^2 = P^2 - d^2. None may lie before the beginning of an earlier one; of a
- * part of them, since only some places are looked at. By how much one does:
- */
-static float out_of_order(const struct route *r, const struct route_foot *foot, double *behind_mm)
-{
-    const double d = (double)foot->distance_mm;
-    const double half_mm =
-        ORDER_PART * maths_sqrt(maths_max(0.0, r->tolerance_mm * r->tolerance_mm - d * d));
-    const float before_mm = (float)(*behind_mm - foot->at_mm - half_mm);
-
-    *behind_mm = maths_max(*behind_mm, foot->at_mm - half_mm);
-    return before_mm;
-}
-
 /* The place on the route beside one of the curve. */
 static void find_foot(const struct window *w, const struct route *r, unsigned piece,
                       const float weight[4], struct route_foot *foot)
@@ -288,128 +262,87 @@ static void find_foot(const struct window *w, const struct route *r, unsigned pi
     route_foot(r, p, from, to, foot);
 }
 
-/* Is a chord between the places looked at in a piece near enough to the corner? */
-static bool piece_passes_corner(const struct window *w, const struct route *r, unsigned piece,
-                                uint32_t element)
+/* How far a place of a piece leaves the tolerance; 0 or less: not at all. */
+static float beyond_of(const struct window *w, const struct route *r, unsigned piece,
+                       const float weight[4])
 {
-    const float within = within_of(w, r, piece) - (float)r->chord_mm;
-    struct window_spot a;
-    struct window_spot b;
-    float weight[4];
+    struct route_foot foot;
 
-    if (within < 0.0f) {
-        return false;
+    find_foot(w, r, piece, weight, &foot);
+    return foot.distance_mm - within_of(w, r, piece);
+}
+
+/* From one place looked at to the next one. */
+static void set_chord(const struct window *w, const struct route *r, const struct window_spot *from,
+                      const struct window_spot *to, struct order_chord *chord)
+{
+    window_place(w, r, from, chord->from);
+    for (unsigned i = 0; i < r->slots.count; i++) {
+        chord->way[i] = w->weighted_unit_mm[i] * (float)(to->at[i] - from->at[i]);
     }
+}
+
+/* The order along a piece; its first place from which there is no way on, or PLACES + 1. */
+static unsigned follow(const struct window *w, const struct route *r, unsigned piece,
+                       struct order *order)
+{
+    struct order_chord chord = {.within_mm = within_of(w, r, piece),
+                                .believed_mm = w->at_mm[piece + 2]};
+    struct window_spot a;
+    float weight[4];
+    unsigned k = 1;
+
+    chord.corner_mm = chord.within_mm - (float)r->chord_mm;
     window_weights(0.0f, weight);
     window_spot(w, r, piece, weight, &a);
-    for (unsigned k = 1; k <= PLACES; k++) {
+    for (; k <= PLACES && order->count > 0; k++) {
+        struct window_spot b;
+
         window_weights((float)k / PLACES, weight);
         window_spot(w, r, piece, weight, &b);
-        if (window_chord_square(w, r, element, &a, &b) <= within * within) {
-            return true;
-        }
+        set_chord(w, r, &a, &b, &chord);
+        order_go(order, r, &chord);
         a = b;
     }
-    return false;
+    return order->count > 0 ? k : k - 1;
 }
 
-/* The piece beside the corner mostly does; else one of its neighbours may, of the first count. */
-static bool passes_corner(const struct window *w, const struct route *r, unsigned piece,
-                          uint32_t element, unsigned count)
+/* The end of the route must have been come to in order. */
+static bool is_end(const struct window *w, unsigned piece)
 {
-    const unsigned first = piece > CORNER_PIECES ? piece - CORNER_PIECES : 0;
-    const unsigned end = piece + CORNER_PIECES < count ? piece + CORNER_PIECES + 1 : count;
+    return w->at_end && piece + 4 == w->count;
+}
 
-    if (piece_passes_corner(w, r, piece, element)) {
-        return true;
+void judge_order(const struct window *w, const struct route *r, unsigned count, struct order *order)
+{
+    for (unsigned i = 0; i < count && order->count > 0; i++) {
+        (void)follow(w, r, i, order);
     }
-    for (unsigned i = first; i < end; i++) {
-        if (i != piece && piece_passes_corner(w, r, i, element)) {
-            return true;
+}
+
+void judge_pieces(const struct window *w, const struct route *r, unsigned count,
+                  const struct order *order, struct judge_verdict *v)
+{
+    struct order o = *order;
+
+    v->good = 0;
+    v->whole[0] = 0;
+    v->beyond_mm = 0.0f;
+    while (v->good < count) {
+        const unsigned bad = follow(w, r, v->good, &o);
+        const bool whole = order_reaches(&o, w->at_mm[v->good + 2]);
+
+        if (bad <= PLACES) {
+            float weight[4];
+
+            window_weights((float)bad / PLACES, weight);
+            v->beyond_mm = beyond_of(w, r, v->good, weight);
+            return;
         }
-    }
-    return false;
-}
-
-/* Can the curve leave the element's start aside? A bend of a few tolerances it can cut short within the tube. */
-static bool is_corner(const struct route *r, uint32_t element)
-{
-    const struct route_element *e = route_element(r, element);
-
-    return route_turn(r, element) > CORNER_MIN || e->bent || route_element(r, element - 1)->bent;
-}
-
-/* Do the first count pieces pass the corners beside one of them? */
-static bool passes_corners(const struct window *w, const struct route *r, unsigned piece,
-                           unsigned count)
-{
-    for (uint32_t e = w->element[piece + 1] + 1; e <= w->element[piece + 2]; e++) {
-        if (is_corner(r, e) && !passes_corner(w, r, piece, e, count)) {
-            return false;
+        if (is_end(w, v->good) && !whole) {
+            return;
         }
+        v->good++;
+        v->whole[v->good] = (unsigned char)(whole ? v->good : v->whole[v->good - 1]);
     }
-    return true;
-}
-
-/* How far the piece leaves the tolerance, or the order, at the first place that does; 0 or less: none does. */
-static float beyond_of(const struct window *w, const struct route *r, unsigned piece,
-                       double *behind_mm)
-{
-    const float within_mm = within_of(w, r, piece);
-    float beyond_mm = 0.0f;
-
-    for (unsigned k = 1; k <= PLACES && !(beyond_mm > 0.0f); k++) {
-        struct route_foot foot;
-        float weight[4];
-
-        window_weights((float)k / PLACES, weight);
-        find_foot(w, r, piece, weight, &foot);
-        beyond_mm = single_max(foot.distance_mm - within_mm, out_of_order(r, &foot, behind_mm));
-    }
-    return beyond_mm;
-}
-
-double judge_behind(const struct window *w, const struct route *r, unsigned count)
-{
-    double behind_mm = 0.0;
-
-    for (unsigned i = count > BEHIND_PIECES ? count - BEHIND_PIECES : 0; i < count; i++) {
-        (void)beyond_of(w, r, i, &behind_mm);
-    }
-    return behind_mm;
-}
-
-unsigned judge_pieces(const struct window *w, const struct route *r, unsigned count,
-                      double behind_mm, float *beyond_mm)
-{
-    unsigned good = 0;
-
-    *beyond_mm = 0.0f;
-    while (good < count) {
-        *beyond_mm = beyond_of(w, r, good, &behind_mm);
-        if (*beyond_mm > 0.0f || !passes_corners(w, r, good, w->count - 3)) {
-            return good;
-        }
-        good++;
-    }
-    return good;
-}
-
-/* Only the last of them can have left a corner to what follows. */
-static bool leaves_corner(const struct window *w, const struct route *r, unsigned count)
-{
-    for (unsigned i = 1; i <= CORNER_PIECES && i <= count; i++) {
-        if (!passes_corners(w, r, count - i, count)) {
-            return true;
-        }
-    }
-    return false;
-}
-
-unsigned judge_whole(const struct window *w, const struct route *r, unsigned count)
-{
-    while (count > 0 && leaves_corner(w, r, count)) {
-        count--;
-    }
-    return count;
 }

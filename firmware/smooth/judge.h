@@ -4,6 +4,7 @@
 #ifndef TAKT_SMOOTH_JUDGE_H
 #define TAKT_SMOOTH_JUDGE_H
 
+#include "smooth/order.h"
 #include "smooth/window.h"
 
 /* Most of |dx/du|, |d2x/du2|, |d3x/du3| on a piece, u in s of nominal time; by slot. */
@@ -30,8 +31,6 @@ struct judge_change {
 /* What a machine's axes are left for changes of rate, where a piece takes so long. */
 void judge_change(const struct smooth_limits *limits, double interval_s,
                   struct judge_change *change);
-/* And what they are left for the curve: sets the slots' part. */
-void judge_leave(const struct judge_change *change, struct route_slots *slots);
 void judge_need(const struct window *w, const struct route *r, unsigned piece,
                 struct judge_need *need);
 /*
@@ -42,16 +41,20 @@ float judge_change_on(const struct judge_need *need, const struct route *r,
                       const struct judge_change *change, float rate);
 void judge_rate(const struct judge_need *need, const struct route *r, uint32_t element,
                 const struct judge_change *change, struct judge_rate *rate);
-/* Place on the route that has been left for good after the first count pieces, or 0. */
-double judge_behind(const struct window *w, const struct route *r, unsigned count);
-/*
- * Pieces from the first one on, count at most, that keep the tolerance, pass their corners within it and follow the route in
- * order. behind_mm: this far it has been left already. beyond_mm: how far the next piece leaves the tolerance or goes back;
- * 0 or less if it does not.
- */
-unsigned judge_pieces(const struct window *w, const struct route *r, unsigned count,
-                      double behind_mm, float *beyond_mm);
-/* Of the first count of these, those that pass every corner beside them without the pieces behind, which may change. */
-unsigned judge_whole(const struct window *w, const struct route *r, unsigned count);
+/* What is said of a window's pieces. */
+struct judge_verdict {
+    unsigned good; /* pieces from the first one on that keep the tolerance in order */
+    float
+        beyond_mm; /* how far the next piece leaves the tolerance; 0 or less if it does not, but breaks the order */
+    /* of so many pieces those after which the curve can have come as far as it is thought to be: no corner is left out */
+    unsigned char whole[SMOOTH_SAMPLES_MAX];
+};
+
+/* Of the first count pieces. order: what can have been come to where they begin. */
+void judge_pieces(const struct window *w, const struct route *r, unsigned count,
+                  const struct order *order, struct judge_verdict *v);
+/* The order after the first count pieces. */
+void judge_order(const struct window *w, const struct route *r, unsigned count,
+                 struct order *order);
 
 #endif

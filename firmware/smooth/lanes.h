@@ -32,6 +32,13 @@ static inline float lanes_sum(lanes x)
     return (x[0] + x[1]) + (x[2] + x[3]);
 }
 
+static inline lanes lanes_size(lanes x)
+{
+    static const lanes_int size = {INT32_MAX, INT32_MAX, INT32_MAX, INT32_MAX};
+
+    return (lanes)((lanes_int)x & size);
+}
+
 /* Into -most ... most; NaN gives -most. */
 static inline lanes lanes_clamp(lanes x, lanes most)
 {

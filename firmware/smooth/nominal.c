@@ -2,11 +2,8 @@
 
 #include "smooth/single.h"
 
-/* Part of the axes' acceleration for the nominal feed along the path; smoothing needs the rest to round its ramps. */
+/* Part of the axes' acceleration and jerk for the nominal feed along the path; smoothing needs the rest to round its ramps. */
 #define ALONG 0.95f
-
-/* Likewise of their jerk: at a corner one axis slows down while another speeds up, and the path does both at once. */
-#define ALONG_JERK 1.9f
 
 /* Part of the axes' limits for the curvature of arcs. */
 #define BENT 0.9f
@@ -66,7 +63,7 @@ static float jerk_of(const struct curve_bounds *b, const struct route_slots *slo
             jerk = single_min(jerk, slots->jerk_mm_s3[i] / first);
         }
     }
-    return ALONG_JERK * jerk;
+    return ALONG * jerk;
 }
 
 /* a = sqrt(A^2 - (x_ss v^2)^2) / |x_s| */

@@ -84,10 +84,8 @@ static void set_rows(struct relax_scale *s, const struct route *r, unsigned grou
     for (unsigned i = first; i < first + SMOOTH_LANES && i < r->slots.count; i++) {
         const float per_near = tolerance_mm / r->slots.weight[i];
 
-        s->bend_most[group][i - first] =
-            r->slots.left[i] * r->slots.acceleration_mm_s2[i] * d * d / per_near;
-        s->twist_most[group][i - first] =
-            r->slots.left[i] * r->slots.jerk_mm_s3[i] * d * d * d / per_near;
+        s->bend_most[group][i - first] = r->slots.acceleration_mm_s2[i] * d * d / per_near;
+        s->twist_most[group][i - first] = r->slots.jerk_mm_s3[i] * d * d * d / per_near;
         widen(&bend, 1.0f / s->bend_most[group][i - first]);
         widen(&twist, 1.0f / s->twist_most[group][i - first]);
     }
@@ -101,7 +99,11 @@ static void set_rows(struct relax_scale *s, const struct route *r, unsigned grou
 static void set_scale(struct relax_scale *s, const struct window *w, const struct route *r,
                       float tolerance_mm)
 {
+    const float d = (float)w->interval_s;
+
     memset(s, 0, sizeof(*s));
+    s->change = r->slots.change_per_s * d;
+    s->rounded = r->slots.rounded_per_s2 * d * d;
     for (unsigned i = 0; i < r->slots.count; i++) {
         s->near_per_unit[i / SMOOTH_LANES][i % SMOOTH_LANES] =
             w->weighted_unit_mm[i] / tolerance_mm;
@@ -109,7 +111,7 @@ static void set_scale(struct relax_scale *s, const struct window *w, const struc
             tolerance_mm / w->weighted_unit_mm[i];
     }
     for (unsigned g = 0; g < r->slots.groups; g++) {
-        set_rows(s, r, g, tolerance_mm, (float)w->interval_s);
+        set_rows(s, r, g, tolerance_mm, d);
     }
 }
 
@@ -257,6 +259,12 @@ static inline lanes near_of(lanes *near, lanes now, float weight)
     return e;
 }
 
+/* What a change of rate leaves of what an axis may, half of it at least. */
+static inline lanes left_of(lanes all, lanes change)
+{
+    return all - lanes_clamp(change, 0.5f * all);
+}
+
 /*
  * K' R (z - u - K c) of all rows but corners. A third difference is that of two second ones, and (1 4 1)/6 is a sixth of
  * (1 -2 1) more than the sample itself: so what all rows of a sample ask for is first put together as second differences.
@@ -275,8 +283,11 @@ static void gather(struct relax *x, const struct window *w, const struct relax_p
     const float twist_per_near = x->scale.twist_per_near[group];
     const lanes bend_per_unit = bend_per_near * x->scale.near_per_unit[group];
     const lanes twist_per_unit = twist_per_near * x->scale.near_per_unit[group];
-    const lanes bend_most = x->scale.bend_most[group];
-    const lanes twist_most = x->scale.twist_most[group];
+    const lanes bend_all = x->scale.bend_most[group];
+    const lanes twist_all = x->scale.twist_most[group];
+    const lanes bend_change = 0.5f * x->scale.change * bend_per_unit;
+    const lanes twist_first = 0.5f * x->scale.rounded * twist_per_unit;
+    const lanes twist_bend = 3.0f * x->scale.change * twist_per_unit;
     lanes_int b0 = c[0] - 2 * c[1] + c[2];
     lanes before = {
         0.0f}; /* twist, bow and near of the sample before, bow of the one before that */
@@ -286,7 +297,12 @@ static void gather(struct relax *x, const struct window *w, const struct relax_p
 
     for (unsigned i = 1; i + 2 < w->count; i++) {
         const lanes_int b1 = c[i] - 2 * c[i + 1] + c[i + 2];
-        const lanes b = into_box(&now, lanes_of(b0) * bend_per_unit, bend_most, &bend[i]);
+        const lanes way = lanes_size(lanes_of(c[i + 1] - c[i - 1]));
+        const lanes bow0 = lanes_of(b0);
+        const lanes bend_most = left_of(bend_all, bend_change * way);
+        const lanes twist_most =
+            left_of(twist_all, twist_first * way + twist_bend * lanes_size(bow0));
+        const lanes b = into_box(&now, bow0 * bend_per_unit, bend_most, &bend[i]);
         const lanes t = into_box(&now, lanes_of(b1 - b0) * twist_per_unit, twist_most, &twist[i]);
         const lanes e = near_of(&near[i], step[i], now.weight);
         const lanes after = twist_per_near * t;

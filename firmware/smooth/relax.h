@@ -38,6 +38,8 @@ struct relax_scale {
     float twist_per_near[SMOOTH_GROUPS_MAX];
     lanes bend_most[SMOOTH_GROUPS_MAX]; /* the boxes, in those */
     lanes twist_most[SMOOTH_GROUPS_MAX];
+    float change; /* of the rate, in an interval (judge.h) */
+    float rounded;
 };
 
 /* Working memory; holds nothing between calls. */

@@ -26,7 +26,8 @@ struct route_slots {
     float velocity_mm_s[SMOOTH_SLOTS_MAX];
     float acceleration_mm_s2[SMOOTH_SLOTS_MAX];
     float jerk_mm_s3[SMOOTH_SLOTS_MAX];
-    float left[SMOOTH_SLOTS_MAX]; /* part of both that changes of rate leave the curve (judge.h) */
+    float change_per_s;   /* how fast the rate may change on every piece (judge.h), */
+    float rounded_per_s2; /* and begin to */
 };
 
 /* What a curve has that a line between the same two points does not have; its slope is found from those. */

@@ -85,6 +85,19 @@ static double merged_within(const struct move *move)
 }
 
 /*
+ * Between -V and V an axis comes to sqrt(2 V J) at most, rising and falling by J: what it could do beyond that is of no use, and
+ * nothing is to depend on it.
+ */
+static void limit_reached(struct smooth_limits *limits)
+{
+    for (int i = 0; i < AXIS_COUNT; i++) {
+        limits->acceleration_mm_s2[i] =
+            maths_min(limits->acceleration_mm_s2[i],
+                      maths_sqrt(2.0 * limits->velocity_mm_s[i] * limits->jerk_mm_s3[i]));
+    }
+}
+
+/*
  * A chord of one cycle leaves the curve by A cycle^2/8 at most: where that is much of the tolerance, less acceleration is
  * used.
  */
@@ -112,6 +125,7 @@ static void begin(struct smooth *s, const struct move *move)
     const double tolerance_mm = move->tolerance_mm - merged_within(move);
     struct smooth_limits limits = s->limits;
 
+    limit_reached(&limits);
     limit_chord(&limits, tolerance_mm);
     route_init(&s->route, &limits, tolerance_mm);
     const double interval_s =
@@ -124,14 +138,15 @@ static void begin(struct smooth *s, const struct move *move)
     s->stops = false;
     s->starts = true;
     s->standing = 0;
-    s->behind_mm = 0.0;
+    order_start(&s->order, 0.0, 0);
     s->known_mm = 0.0;
     s->tried_mm = 0.0;
     s->tried = 0;
     s->mark_mm = 0.0;
     s->idle = 0;
     judge_change(&limits, interval_s, &s->change);
-    judge_leave(&s->change, &s->route.slots);
+    s->route.slots.change_per_s = (float)s->change.by;
+    s->route.slots.rounded_per_s2 = (float)s->change.rounded;
     s->merge.open = false;
     window_init(&s->window, &s->route, interval_s);
 }
@@ -256,18 +271,15 @@ static unsigned wanted(const struct smooth *s)
     return s->window.at_end || pieces < enough ? pieces : enough;
 }
 
-/* The pieces that keep it, and by how much the next one does not. */
-struct verdict {
-    unsigned good;
-    float beyond_mm;
-};
-
-static struct verdict judged(const struct smooth *s)
+static void judged(const struct smooth *s, struct judge_verdict *v)
 {
-    struct verdict v;
+    judge_pieces(&s->window, &s->route, wanted(s), &s->order, v);
+}
 
-    v.good = judge_pieces(&s->window, &s->route, wanted(s), s->behind_mm, &v.beyond_mm);
-    return v;
+/* Do so many pieces come to the end of the chain? */
+static bool is_end(const struct smooth *s, unsigned pieces)
+{
+    return s->finished && s->window.at_end && pieces == s->window.count - 3;
 }
 
 /* Pieces to keep when so many from the first on are good. */
@@ -276,9 +288,9 @@ static unsigned kept(const struct smooth *s, unsigned good)
     const struct window *w = &s->window;
 
     if (w->at_end && !s->finished) {
-        return (good + BLIND_PART - 1) / BLIND_PART;
+        return good / BLIND_PART;
     }
-    if (w->at_end && good == w->count - 3) {
+    if (is_end(s, good)) {
         return good;
     }
     if (good >= kept_most(s) + MARGIN) {
@@ -363,40 +375,50 @@ static bool stands_still(struct smooth *s)
 }
 
 /* The curve as it is, timed once more: where it does not keep the tolerance so, it stays as it was. */
-static unsigned time_last(struct smooth *s, union smooth_scratch *scratch, unsigned good)
+static void time_last(struct smooth *s, union smooth_scratch *scratch, struct judge_verdict *v)
 {
+    struct judge_verdict again;
+
     timing_again(&scratch->timing, &s->window, &s->route);
     window_extend(&s->window, &s->route);
     window_locate(&s->window, &s->route);
-    const unsigned again = judged(s).good;
-
-    if (again >= wanted(s)) {
-        return again;
+    judged(s, &again);
+    if (again.good >= wanted(s)) {
+        *v = again;
+        return;
     }
     s->window = scratch->timing.window;
-    return good;
 }
 
 /*
  * Where a piece leaves the tolerance, it is slowed down: the slower, the nearer the samples are to each other and the curve to
- * them. Where that brings it no nearer the curve would only come there later and later.
+ * them. Where that brings it no nearer the curve would only come there later and later. A corner that was left out is
+ * noticed some way behind it: it is slow where all was whole.
  */
-static unsigned slow_down(struct smooth *s, union smooth_scratch *scratch)
+static void slow_down(struct smooth *s, union smooth_scratch *scratch, struct judge_verdict *v)
 {
-    struct verdict v = judged(s);
     float before_mm = SINGLE_INFINITY;
 
-    for (unsigned i = 0; i < ATTEMPTS && v.good < wanted(s); i++) {
-        if (v.beyond_mm > NEARER * before_mm) {
+    judged(s, v);
+    for (unsigned i = 0; i < ATTEMPTS && v->good < wanted(s); i++) {
+        if (v->beyond_mm > NEARER * before_mm) {
             break;
         }
-        before_mm = v.beyond_mm > 0.0f ? v.beyond_mm : SINGLE_INFINITY;
-        timing_slow(&scratch->timing, &s->window, &s->route, v.good);
+        before_mm = v->beyond_mm > 0.0f ? v->beyond_mm : SINGLE_INFINITY;
+        timing_slow(&scratch->timing, &s->window, &s->route, v->whole[v->good]);
         window_extend(&s->window, &s->route);
         relax_and_locate(s, scratch);
-        v = judged(s);
+        judged(s, v);
     }
-    return v.good;
+}
+
+/* The order goes on to the end of what is handed on; where the axes went back to the route it begins there. */
+static void follow_ready(struct smooth *s)
+{
+    judge_order(&s->window, &s->route, s->ready, &s->order);
+    if (s->order.count == 0) {
+        order_start(&s->order, s->window.at_mm[s->ready + 1], s->window.element[s->ready + 1]);
+    }
 }
 
 /* What comes well before a piece that leaves the tolerance is kept, the rest is tried again with the next window. */
@@ -404,6 +426,7 @@ static void smooth_window(struct smooth *s, union smooth_scratch *scratch)
 {
     const bool goes_on = s->head.proved > 0;
     const unsigned rounds = goes_on ? ROUNDS : ROUNDS_FIRST;
+    struct judge_verdict v;
 
     for (unsigned i = 0; i < rounds; i++) {
         relax_and_locate(s, scratch);
@@ -411,16 +434,17 @@ static void smooth_window(struct smooth *s, union smooth_scratch *scratch)
         window_extend(&s->window, &s->route);
     }
     relax_and_locate(s, scratch);
-    unsigned good = slow_down(s, scratch);
-
-    good = time_last(s, scratch, good);
+    slow_down(s, scratch, &v);
+    time_last(s, scratch, &v);
     s->ends = s->finished && s->window.at_end;
-    good = judge_whole(&s->window, &s->route, good);
-    s->ready = judge_whole(&s->window, &s->route, kept(s, good));
+    const unsigned good = v.whole[v.good];
+
+    s->ready = v.whole[kept(s, good)];
     s->proved = good - s->ready;
-    if (s->ready == 0 || stands_still(s)) {
+    if (s->ready == 0 || (s->proved == 0 && !is_end(s, good)) || stands_still(s)) {
         fall_back(s);
     }
+    follow_ready(s);
 }
 
 /* Control point of a piece; exactly the programmed end where it is that. */
@@ -507,14 +531,11 @@ static void take_standing(struct smooth *s, struct smooth_piece *piece)
 /* Pieces that have been taken leave the window, elements that they have passed the route. */
 static void drop_taken(struct smooth *s)
 {
-    if (s->taken > 0) {
-        s->behind_mm = judge_behind(&s->window, &s->route, s->taken);
-    }
     window_drop(&s->window, &s->route, s->taken);
     s->taken = 0;
     s->ready = 0;
     if (s->stops) {
-        window_rest(&s->window, &s->route);
+        window_rest(&s->window, &s->route, &s->order);
         s->stops = false;
         s->starts = true;
         s->proved = 0;

@@ -67,9 +67,10 @@ struct smooth {
     struct smooth_head head;
     struct merge merge; /* the newest line, not on the route yet */
     struct judge_change change;
+    struct order
+        order; /* where the pieces that are ready end; before there are any, where the window begins */
     struct move move;  /* of the piece taken last */
     unsigned proved;   /* pieces at the window's beginning that keep the tolerance, as they were */
-    double behind_mm;  /* place on the route that has been left for good (judge.h) */
     double known_mm;   /* end of the route when the window was filled */
     double tried_mm;   /* place its last sample had when the route was not known far enough yet, */
     uint32_t tried;    /* and the element there */

@@ -5,9 +5,6 @@
 /* A bent element counts as straight where it leaves its tangent by no more than this part of the tolerance. */
 #define STRAIGHT_PART 0.02f
 
-/* A place to rest at is this part of the tolerance from the route at most. */
-#define INSIDE 0.9f
-
 /* The end of the element, or as far as it is straight, or as an interval at its feed goes. */
 static double next_rest(const struct window *w, const struct route *r, uint32_t element)
 {
@@ -35,52 +32,15 @@ static void find_next_rest(const struct window *w, const struct route *r, double
     window_nearest(w, r, p, spot);
 }
 
-/*
- * The place of the third sample, or where it is inside the tolerance: control points lie outside of the curve where it bends,
- * which is inside, but the curve comes to the one that it stops at.
- */
-static void rest_inside(const struct window *w, const struct route *r, struct window_spot *spot)
-{
-    const unsigned last = SMOOTH_FIXED - 1;
-    struct route_foot foot = {.element = w->element[last], .at_mm = w->at_mm[last]};
-    const float most_mm = INSIDE * (float)r->tolerance_mm;
-    double from;
-    double to;
-    double p[AXIS_COUNT];
-
-    window_reach(w, last, &from, &to);
-    window_sample(w, r, last, p);
-    route_foot(r, p, from, to, &foot);
-    if (foot.distance_mm > most_mm) {
-        const float part = 1.0f - most_mm / foot.distance_mm;
-
-        for (unsigned k = 0; k < r->slots.count; k++) {
-            p[k] += (double)(part * foot.off[k] / r->slots.weight[k]);
-        }
-    }
-    window_nearest(w, r, p, spot);
-}
-
-/*
- * From rest straight on, and to rest again. In motion to rest right here: before the next corner, which the curve may not
- * have passed yet, and to which it goes then.
- */
+/* From rest straight on, and to rest again. */
 unsigned straight_on(struct window *w, const struct route *r)
 {
     const unsigned last = SMOOTH_FIXED - 1;
     double at = w->at_mm[last];
     struct window_spot spot;
 
-    if (w->at_mm[0] == at) {
-        w->element[SMOOTH_FIXED] = w->element[last];
-        find_next_rest(w, r, &at, &w->element[SMOOTH_FIXED], &spot);
-    } else {
-        at = maths_min(at, route_end_of(r, w->element[1]));
-        w->at_mm[last] = at;
-        w->element[last] = w->element[1];
-        w->element[SMOOTH_FIXED] = w->element[1];
-        rest_inside(w, r, &spot);
-    }
+    w->element[SMOOTH_FIXED] = w->element[last];
+    find_next_rest(w, r, &at, &w->element[SMOOTH_FIXED], &spot);
     w->count = 2 * SMOOTH_FIXED;
     w->at_end = false;
     for (unsigned i = SMOOTH_FIXED; i < w->count; i++) {

@@ -7,7 +7,7 @@
 
 /*
  * Makes the window's samples anew behind its first SMOOTH_FIXED: from rest to the route, where the curve is beside it, or
- * along it as far as it is straight, and to rest; in motion to rest at once. Returns the pieces that do it.
+ * along it as far as it is straight, and to rest. Returns the pieces that do it.
  */
 unsigned straight_on(struct window *w, const struct route *r);
 

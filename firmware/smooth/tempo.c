@@ -5,10 +5,11 @@
  *     x' b'/2 + x'' b                        within A d^2
  *     r (x' b''/2 + 3/2 x'' b' + x''' b)     within J d^3
  *
- * at both ends of each piece: rows of the three coefficients of b there (Verscheure et al. 2009 have the first row; the
- * second is theirs differentiated once more). Least time, the sum of 1/sqrt(b), is found by a barrier method (Boyd and
- * Vandenberghe 2004, 11.3): Newton's steps on  sum 1/sqrt(b) - mu sum log(slack)  while mu falls. What is exceeded to begin
- * with may stay so far off but no farther, and is drawn inside. So every iteration keeps what the one before kept.
+ * less what a change of rate needs there (judge.h), at both ends of each piece: rows of the three coefficients of b
+ * (Verscheure et al. 2009 have the first row; the second is theirs differentiated once more). Least time, the sum of
+ * 1/sqrt(b), is found by a barrier method (Boyd and Vandenberghe 2004, 11.3): Newton's steps on
+ * sum 1/sqrt(b) - mu sum log(slack)  while mu falls. What is exceeded to begin with may stay so far off but no farther, and is
+ * drawn inside. So every iteration keeps what the one before kept.
  */
 #include "smooth/tempo.h"
 
@@ -42,21 +43,18 @@
 #define TWIST_PART 0.95f
 #define TWIST_BEND 0.5f
 
-/* What an axis needs, in parts of what it may, and how that hangs on the three coefficients. */
+/* What an axis needs and what it has for that, in parts of what it may; how the need hangs on the three coefficients. */
 struct row {
     lanes value;
+    lanes most;
     lanes by[3];
 };
 
+/* Changes of rate leave this part of what an axis may at least: judge.c has bounds of its own. */
+#define LEFT_LEAST 0.5f
+
 /* An acceleration at a piece's start, a jerk there and one at its end. */
 #define ROWS 3
-
-static inline lanes absolute(lanes x)
-{
-    static const lanes_int size = {INT32_MAX, INT32_MAX, INT32_MAX, INT32_MAX};
-
-    return (lanes)((lanes_int)x & size);
-}
 
 static inline lanes all(float x)
 {
@@ -69,10 +67,27 @@ static inline lanes choose(lanes_int mask, lanes yes, lanes no)
     return (lanes)(((lanes_int)yes & mask) | ((lanes_int)no & ~mask));
 }
 
-/* 1, or a little more than what is near it or beyond. */
-static inline lanes limit_of(lanes size)
+/* What a change of rate leaves, or a little more than what is near it or beyond. */
+static inline lanes limit_of(lanes size, lanes most)
 {
-    return choose(size > NEAR, FARTHER * size, all(1.0f));
+    return choose(size > NEAR * most, FARTHER * size, most);
+}
+
+/* What a change of rate that needs a part leaves, of 1 or more, for the curve: 1 at most. */
+static inline lanes left_by(lanes part, lanes of)
+{
+    const lanes left = of - part;
+    const lanes least = choose(left > LEFT_LEAST, left, all(LEFT_LEAST));
+
+    return choose(least < 1.0f, least, all(1.0f));
+}
+
+/* J - x' r r'' - 3 r' |x' b'/2 + x'' b| */
+static inline lanes jerk_left(const struct tempo *p, unsigned group, lanes way, lanes bend)
+{
+    const lanes needed = p->rounded * lanes_size(way) + 3.0f * p->change * lanes_size(bend);
+
+    return left_by(p->twist_per_unit[group] * needed, p->twist_all[group]);
 }
 
 static void rows_of(const struct tempo *p, const struct window *w, unsigned group, unsigned piece,
@@ -100,19 +115,24 @@ static void rows_of(const struct tempo *p, const struct window *w, unsigned grou
     const lanes j1 = rate1 * p->twist_per_unit[group];
     const lanes half0 = 0.5f * first0;
     const lanes half1 = 0.5f * first1;
+    const lanes bend0 = slope0 * half0 + energy0 * second0;
+    const lanes bend1 = slope1 * half1 + energy1 * second1;
 
-    row[0].value = a * (slope0 * half0 + energy0 * second0);
+    row[0].value = a * bend0;
+    row[0].most = left_by(p->change * rate0 * a * lanes_size(first0), all(1.0f));
     row[0].by[0] = a * (0.5f * second0 - half0);
     row[0].by[1] = a * (0.5f * second0 + half0);
     row[0].by[2] = 0.0f * a;
 
     /* d rate / d energy = 1/2 / rate: half of that for each of the two coefficients */
+    row[1].most = jerk_left(p, group, rate0 * first0, bend0);
     row[1].value = j0 * (bow * first0 + 1.5f * slope0 * second0 + energy0 * third);
     const lanes faster0 = row[1].value * (0.25f / energy0);
     row[1].by[0] = j0 * (half0 - 1.5f * second0 + 0.5f * third) + faster0;
     row[1].by[1] = j0 * (1.5f * second0 - first0 + 0.5f * third) + faster0;
     row[1].by[2] = j0 * half0;
 
+    row[2].most = jerk_left(p, group, rate1 * first1, bend1);
     row[2].value = j1 * (bow * first1 + 1.5f * slope1 * second1 + energy1 * third);
     const lanes faster1 = row[2].value * (0.25f / energy1);
     row[2].by[0] = j1 * half1;
@@ -132,9 +152,9 @@ struct sums {
  */
 static void add_row(struct sums *s, const struct row *row, float weight)
 {
-    const lanes size = absolute(row->value);
-    const lanes most = limit_of(size);
-    const lanes strength = choose(size > 1.0f, all(single_max(DRAWN, weight)), all(weight));
+    const lanes size = lanes_size(row->value);
+    const lanes most = limit_of(size, row->most);
+    const lanes strength = choose(size > row->most, all(single_max(DRAWN, weight)), all(weight));
     const lanes above = 1.0f / (most - row->value);
     const lanes below = 1.0f / (most + row->value);
     const lanes pull = strength * (below - above);
@@ -258,7 +278,7 @@ static void solve(struct tempo *p)
 static float part_of_row(const struct row *row, const float step[3], float t)
 {
     const lanes change = row->by[0] * step[0] + row->by[1] * step[1] + row->by[2] * step[2];
-    const lanes most = limit_of(absolute(row->value));
+    const lanes most = limit_of(lanes_size(row->value), row->most);
 
     for (unsigned k = 0; k < SMOOTH_LANES; k++) {
         const float room = change[k] > 0.0f ? most[k] - row->value[k] : most[k] + row->value[k];
@@ -333,16 +353,21 @@ static void set_scale(struct tempo *p, const struct window *w, const struct rout
 {
     const float d = (float)w->interval_s;
 
+    p->change = r->slots.change_per_s * d;
+    p->rounded = r->slots.rounded_per_s2 * d * d;
     memset(p->bend_per_unit, 0, sizeof p->bend_per_unit);
     memset(p->twist_per_unit, 0, sizeof p->twist_per_unit);
+    memset(p->twist_all, 0, sizeof p->twist_all);
     for (unsigned i = 0; i < r->slots.count; i++) {
         const float unit = (float)w->unit_mm[i];
-        const float bend = r->slots.left[i] * r->slots.acceleration_mm_s2[i] * d * d;
-        const float twist = TWIST_PART * r->slots.left[i] * r->slots.jerk_mm_s3[i] * d * d * d;
+        const float bend = r->slots.acceleration_mm_s2[i] * d * d;
+        const float twist = TWIST_PART * r->slots.jerk_mm_s3[i] * d * d * d;
 
         p->bend_per_unit[i / SMOOTH_LANES][i % SMOOTH_LANES] = unit / bend;
         p->twist_per_unit[i / SMOOTH_LANES][i % SMOOTH_LANES] =
             unit / single_min(twist, TWIST_BEND * bend);
+        p->twist_all[i / SMOOTH_LANES][i % SMOOTH_LANES] =
+            twist / single_min(twist, TWIST_BEND * bend);
     }
 }
 

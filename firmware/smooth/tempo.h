@@ -16,11 +16,14 @@
 struct tempo {
     unsigned pieces;
     float energy[TEMPO_MAX];
-    float most[TEMPO_MAX];                  /* of it: velocity, programmed feed */
-    float step[TEMPO_MAX];                  /* of one iteration */
-    float band[3][TEMPO_MAX];               /* its matrix: the diagonal, and what is beside it */
-    lanes bend_per_unit[SMOOTH_GROUPS_MAX]; /* differences in the curve's part of A and J */
+    float most[TEMPO_MAX];    /* of it: velocity, programmed feed */
+    float step[TEMPO_MAX];    /* of one iteration */
+    float band[3][TEMPO_MAX]; /* its matrix: the diagonal, and what is beside it */
+    float change;             /* of the rate, in an interval (judge.h) */
+    float rounded;
+    lanes bend_per_unit[SMOOTH_GROUPS_MAX]; /* differences in A and J */
     lanes twist_per_unit[SMOOTH_GROUPS_MAX];
+    lanes twist_all[SMOOTH_GROUPS_MAX]; /* J, where the curve's part of it is less */
 };
 
 /* The best that is found. It begins as the window does, at rate 1; unless the path ends there, it ends so too. */

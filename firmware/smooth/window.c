@@ -139,12 +139,13 @@ void window_start(struct window *w, const struct route *r)
 
 /*
  * The spline at sample 1 is x[1] + (x[0] - 2 x[1] + x[2])/6, exactly x[1] where it rests already: the new origin. Its place
- * is on the element of sample 1 at most: nobody has looked whether the corner behind that has been passed.
+ * is one that it can have come to in order, so that it can go to the route there and on along it; at a corner on the element
+ * before.
  */
-void window_rest(struct window *w, const struct route *r)
+void window_rest(struct window *w, const struct route *r, const struct order *order)
 {
     const double on = w->at_mm[1] + (w->at_mm[0] - 2.0 * w->at_mm[1] + w->at_mm[2]) / 6.0;
-    const double at = maths_min(on, route_end_of(r, w->element[1]));
+    const double at = order_place(order, maths_min(on, route_end_of(r, w->element[1])));
     const uint32_t found = route_find(r, at, w->element[1]);
     const uint32_t element = found < w->element[1] ? found : w->element[1];
     double p[3][AXIS_COUNT];

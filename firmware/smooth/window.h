@@ -13,6 +13,7 @@
 #ifndef TAKT_SMOOTH_WINDOW_H
 #define TAKT_SMOOTH_WINDOW_H
 
+#include "smooth/order.h"
 #include "smooth/route.h"
 
 #include <stdbool.h>
@@ -52,7 +53,7 @@ void window_init(struct window *w, const struct route *r, double interval_s);
 /* Begins at rest at the start of the route. */
 void window_start(struct window *w, const struct route *r);
 /* Begins anew at rest where the curve has come to: at the end of its first three samples. */
-void window_rest(struct window *w, const struct route *r);
+void window_rest(struct window *w, const struct route *r, const struct order *order);
 /* Appends samples at the nominal feed until the window is full or the route's end is in it. */
 void window_extend(struct window *w, const struct route *r);
 /* Drops the oldest samples. */

@@ -62,22 +62,30 @@ static void test_a_change_is_rounded_over_the_time_that_the_acceleration_takes(v
 {
     set_machine(100.0, 1000.0, 50000.0);
     TEST_ASSERT_DOUBLE_WITHIN(1e-15, 0.02, change.rounding_s);
-    TEST_ASSERT_DOUBLE_WITHIN(1e-15, 0.6, change.by);
-    TEST_ASSERT_DOUBLE_WITHIN(1e-12, 30.0, change.rounded);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-12, change.by / 0.02, change.rounded);
 }
 
-/* V r' V/A of the acceleration: 6 % at least, 20 % at most, and between what a stop over 256 pieces needs. */
-static void test_shorter_pieces_leave_more_for_changes_up_to_a_fifth(void)
+/* V r'/A of the acceleration: 6 % at least, half at most, and between what a stop over 0.7 of 256 pieces needs. */
+static void test_shorter_pieces_leave_more_for_changes_up_to_half(void)
 {
     set_machine(100.0, 250.0, 50000.0);
     judge_change(&limits, 20e-3, &change);
     TEST_ASSERT_DOUBLE_WITHIN(1e-12, 0.06 * 2.5, change.by);
     judge_change(&limits, 6e-3, &change);
-    TEST_ASSERT_DOUBLE_WITHIN(1e-12, 1.0 / (2.0 * 256.0 * 6e-3), change.by);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-12, 1.0 / (2.0 * 0.7 * 256.0 * 6e-3), change.by);
     judge_change(&limits, 1e-3, &change);
-    TEST_ASSERT_DOUBLE_WITHIN(1e-12, 0.2 * 2.5, change.by);
-    judge_leave(&change, &route.slots);
-    TEST_ASSERT_FLOAT_WITHIN(1e-6f, 0.8f, route.slots.left[0]);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-12, 0.5 * 2.5, change.by);
+}
+
+/* V J/A^2 = 1/16: the axis comes to sqrt(V J), a quarter of A, at most. */
+static void test_acceleration_that_jerk_leaves_no_time_for_counts_for_nothing(void)
+{
+    set_machine(100.0, 1000.0, 10000.0);
+    const struct judge_change reached = change;
+
+    set_machine(100.0, 4000.0, 10000.0);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-12, reached.by, change.by);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-12, reached.rounding_s, change.rounding_s);
 }
 
 static void test_a_straight_piece_at_its_limits_keeps_nearly_the_nominal_rate(void)
@@ -140,7 +148,8 @@ int main(void)
 {
     UNITY_BEGIN();
     RUN_TEST(test_a_change_is_rounded_over_the_time_that_the_acceleration_takes);
-    RUN_TEST(test_shorter_pieces_leave_more_for_changes_up_to_a_fifth);
+    RUN_TEST(test_shorter_pieces_leave_more_for_changes_up_to_half);
+    RUN_TEST(test_acceleration_that_jerk_leaves_no_time_for_counts_for_nothing);
     RUN_TEST(test_a_straight_piece_at_its_limits_keeps_nearly_the_nominal_rate);
     RUN_TEST(test_no_machine_makes_a_curve_stand_that_needs_half_its_limits);
     RUN_TEST(test_the_rate_is_never_nothing);

@@ -1,0 +1,225 @@
+#include "smooth/order.h"
+
+#include "smooth/single.h"
+
+/* A bent element is gone along in lines that leave it by this part of the tolerance at most. */
+#define BENT_OFF 0.01f
+
+/* A line as long as its arc leaves its tangent stays within a quarter of that of it; half of it, lest the bend grows. */
+#define BENT_LEAVES (2.0f * BENT_OFF)
+
+/* Lines of the route beside one chord, at most: what lies farther on is come to with the next ones. */
+#define LINKS_MAX 256
+
+/* Corners of lines that turn less are within the tube anyway. */
+#define CORNER_MIN 0.005f
+
+/* Not there. */
+#define NOWHERE SINGLE_INFINITY
+
+/* A straight part of the route, beside a chord. */
+struct link {
+    uint32_t element;
+    double at_mm, end_mm;
+    float start[SMOOTH_SLOTS_MAX]; /* from the chord's beginning, weighted */
+    float way[SMOOTH_SLOTS_MAX];
+    float within_mm;
+    bool ends; /* the route goes on from its end; else all that is near lies before it */
+};
+
+/* Parts of a line; first > last: none. */
+struct parts {
+    float first, last;
+};
+
+/* Where a line is within a distance of a point: |f - g| <= sqrt((within^2 - d^2) / way^2), g the foot, d away. */
+static struct parts near_point(const struct route *r, const float start[], const float way[],
+                               const float point[], float within_mm)
+{
+    float dot = 0.0f;
+    float square = 0.0f;
+    float off_square = 0.0f;
+
+    for (unsigned i = 0; i < r->slots.count; i++) {
+        dot += (point[i] - start[i]) * way[i];
+        square += way[i] * way[i];
+    }
+    const float foot = square > 0.0f ? dot / square : 0.0f;
+
+    for (unsigned i = 0; i < r->slots.count; i++) {
+        const float off = point[i] - start[i] - foot * way[i];
+
+        off_square += off * off;
+    }
+    const float room = within_mm * within_mm - off_square;
+
+    if (room < 0.0f || within_mm < 0.0f) {
+        return (struct parts){NOWHERE, 0.0f};
+    }
+    const float half = square > 0.0f ? single_sqrt(room / square) : 1.0f;
+
+    return (struct parts){single_max(foot - half, 0.0f), single_min(foot + half, 1.0f)};
+}
+
+static float length_of(const struct route *r, const float way[])
+{
+    float square = 0.0f;
+
+    for (unsigned i = 0; i < r->slots.count; i++) {
+        square += way[i] * way[i];
+    }
+    return single_sqrt(square);
+}
+
+/* Of a line as far as anything on it can be near the chord, of a bend as far as it is straight. */
+static double link_end(const struct route *r, const struct order_chord *chord, struct link *l,
+                       float chord_mm)
+{
+    const double end_mm = route_end_of(r, l->element);
+    const float tolerance_mm = (float)r->tolerance_mm;
+    const bool bent = route_element(r, l->element)->bent;
+    const float reach_mm = bent
+                               ? route_straight(r, l->element, l->at_mm, BENT_LEAVES * tolerance_mm)
+                               : chord_mm + 3.0f * tolerance_mm;
+
+    l->within_mm = chord->within_mm - (bent ? BENT_OFF * tolerance_mm : 0.0f);
+    l->ends = bent || l->at_mm + (double)reach_mm >= end_mm;
+    return l->at_mm + (double)reach_mm >= end_mm ? end_mm : l->at_mm + (double)reach_mm;
+}
+
+/* The route from at_mm on. */
+static void set_link(const struct route *r, const struct order_chord *chord, float chord_mm,
+                     struct link *l)
+{
+    double from[AXIS_COUNT];
+    double to[AXIS_COUNT];
+    uint32_t hint = l->element;
+
+    l->end_mm = link_end(r, chord, l, chord_mm);
+    route_point(r, l->at_mm, &hint, from);
+    route_point(r, l->end_mm, &hint, to);
+    for (unsigned i = 0; i < r->slots.count; i++) {
+        l->start[i] = r->slots.weight[i] * (float)(from[i] - chord->from[i]);
+        l->way[i] = r->slots.weight[i] * (float)(to[i] - from[i]);
+    }
+}
+
+/* Can the curve leave the start of an element aside? A bend of a few tolerances it can cut short within the tube. */
+static bool is_corner(const struct route *r, uint32_t element)
+{
+    return element < r->count &&
+           (route_turn(r, element) > CORNER_MIN || route_element(r, element)->bent ||
+            route_element(r, element - 1)->bent);
+}
+
+/* From which part of the chord on the route beyond a link is come to, when the link is from a part on. */
+static float pass_end(const struct route *r, const struct order_chord *chord, const struct link *l,
+                      float part)
+{
+    static const float here[SMOOTH_SLOTS_MAX];
+    const bool corner = l->end_mm == route_end_of(r, l->element) && is_corner(r, l->element + 1);
+    float end[SMOOTH_SLOTS_MAX];
+
+    if (!l->ends) {
+        return NOWHERE;
+    }
+    for (unsigned i = 0; i < r->slots.count; i++) {
+        end[i] = l->start[i] + l->way[i];
+    }
+    const struct parts near =
+        near_point(r, here, chord->way, end, corner ? chord->corner_mm : l->within_mm);
+
+    part = single_max(part, near.first);
+    return part <= near.last ? part : NOWHERE;
+}
+
+/* Where there are too many, the lowest goes, unless the next lies beyond the place thought to be beside the curve. */
+static void add_span(struct order *o, double first_mm, double last_mm, double believed_mm)
+{
+    if (o->count > 0 && o->span[o->count - 1].last_mm == first_mm) {
+        o->span[o->count - 1].last_mm = last_mm;
+        return;
+    }
+    if (o->count == ORDER_SPANS) {
+        if (o->span[1].first_mm > believed_mm) {
+            return;
+        }
+        o->count--;
+        for (unsigned i = 0; i < o->count; i++) {
+            o->span[i] = o->span[i + 1];
+        }
+    }
+    o->span[o->count].first_mm = first_mm;
+    o->span[o->count].last_mm = last_mm;
+    o->count++;
+}
+
+/* Of a link the places near the end of the chord. */
+static void add_link(struct order *o, const struct route *r, const struct order_chord *chord,
+                     const struct link *l)
+{
+    const struct parts near = near_point(r, l->start, l->way, chord->way, l->within_mm);
+    const double way_mm = l->end_mm - l->at_mm;
+
+    if (near.first <= near.last) {
+        add_span(o, l->at_mm + (double)near.first * way_mm,
+                 near.last < 1.0f ? l->at_mm + (double)near.last * way_mm : l->end_mm,
+                 chord->believed_mm);
+    }
+}
+
+void order_start(struct order *o, double at_mm, uint32_t element)
+{
+    o->count = 1;
+    o->element = element;
+    o->span[0].first_mm = at_mm;
+    o->span[0].last_mm = at_mm;
+}
+
+/*
+ * Link after link: it is come to where the curve could be beside it before, or has passed its start. What of it lies within
+ * the tolerance of the chord's end can be come to then; and its own end, where that is passed after its start.
+ */
+void order_go(struct order *o, const struct route *r, const struct order_chord *chord)
+{
+    const struct order before = *o;
+    const float chord_mm = length_of(r, chord->way);
+    struct link l = {.element = before.element, .at_mm = route_element(r, r->first)->start_mm};
+    float part = NOWHERE;
+    unsigned next = 0;
+
+    o->count = 0;
+    for (unsigned i = 0; i < LINKS_MAX && l.element < r->count; i++) {
+        while (next < before.count && before.span[next].last_mm < l.at_mm) {
+            next++;
+        }
+        if (!(part < NOWHERE)) {
+            if (next == before.count) {
+                break;
+            }
+            l.at_mm = maths_max(l.at_mm, before.span[next].first_mm);
+            l.element = route_find(r, l.at_mm, l.element);
+        }
+        set_link(r, chord, chord_mm, &l);
+        if (next < before.count && before.span[next].first_mm <= l.end_mm) {
+            part = 0.0f;
+        }
+        if (o->count == 0) {
+            o->element = l.element;
+        }
+        add_link(o, r, chord, &l);
+        part = pass_end(r, chord, &l, part);
+        l.at_mm = l.end_mm;
+        l.element += l.end_mm == route_end_of(r, l.element) ? 1 : 0;
+    }
+}
+
+double order_place(const struct order *o, double at_mm)
+{
+    unsigned i = o->count - 1;
+
+    while (i > 0 && o->span[i].first_mm > at_mm) {
+        i--;
+    }
+    return maths_clamp(at_mm, o->span[i].first_mm, o->span[i].last_mm);
+}
