@@ -70,12 +70,13 @@ static const char *write_number(struct page_client *client, enum panel_id id, do
 static const char *write_text(struct page_client *client, enum panel_id id, const char *text)
 {
     const struct panel_register *row = &panel_registers[id];
+    const size_t length = strlen(text), room = (size_t)row->words * 2;
     uint8_t data[PANEL_MDI_MAX] = {0};
 
-    if (row->form != PANEL_TEXT || (size_t)row->words * 2 > sizeof data ||
-        strlen(text) > (size_t)row->words * 2)
+    if (row->form != PANEL_TEXT || room > sizeof data || length > room)
         return "the text is too long";
-    memcpy(data, text, strlen(text));
+    for (size_t i = 0; i < length; i++)
+        data[i] = (uint8_t)text[i];
     return write_words(client, row->table, row->address, row->words, data);
 }
 

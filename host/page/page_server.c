@@ -31,6 +31,7 @@
 /* A request must be whole so long after its first byte. */
 #define REQUEST_S 5
 
+#define US_PER_MS    1000
 #define RECEIVED_MAX 16384
 #define HEADER_MAX   512
 #define ADDRESS_MAX  63
@@ -192,7 +193,7 @@ static void greet(struct page_server *server, struct session *s)
     queue_text(s, text);
     page_data_describe_path(&server->data, text);
     queue_text(s, text);
-    lws_set_timer_usecs(s->wsi, PAGE_TICK_MS * 1000);
+    lws_set_timer_usecs(s->wsi, (lws_usec_t)PAGE_TICK_MS * US_PER_MS);
 }
 
 /* -1: all places are taken. */
@@ -232,7 +233,7 @@ static void tick(struct page_server *server, struct session *s)
 {
     const double now = now_ms(CLOCK_MONOTONIC);
 
-    lws_set_timer_usecs(s->wsi, PAGE_TICK_MS * 1000);
+    lws_set_timer_usecs(s->wsi, (lws_usec_t)PAGE_TICK_MS * US_PER_MS);
     if (now < (double)server->ticked_ms + PAGE_TICK_MS - 1)
         return;
     server->ticked_ms = (uint64_t)now;

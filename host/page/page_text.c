@@ -59,19 +59,19 @@ static void add_bytes(struct page_text *text, const char *bytes, size_t length)
 
 void page_text_add(struct page_text *text, const char *format, ...)
 {
-    va_list arguments, again;
+    va_list arguments;
     int length;
 
     va_start(arguments, format);
-    va_copy(again, arguments);
     length = vsnprintf(NULL, 0, format, arguments);
-    if (length > 0 && !text->has_failed && make_room(text, (size_t)length)) {
-        (void)vsnprintf(text->room + PAGE_TEXT_HEAD + text->length, (size_t)length + 1, format,
-                        again);
-        text->length += (size_t)length;
-    }
-    va_end(again);
     va_end(arguments);
+    if (length <= 0 || text->has_failed || !make_room(text, (size_t)length))
+        return;
+    va_start(arguments, format);
+    (void)vsnprintf(text->room + PAGE_TEXT_HEAD + text->length, (size_t)length + 1, format,
+                    arguments);
+    va_end(arguments);
+    text->length += (size_t)length;
 }
 
 /* Bytes of the character that begins here, 0: it is none (RFC 3629, overlong forms and surrogates left to the reader). */

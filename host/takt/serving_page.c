@@ -101,17 +101,16 @@ struct drawing {
 static bool draw_move(struct page_path *path, const struct move *move, const struct point *at)
 {
     struct curve curve;
-    double chords;
+    unsigned chords = 1;
 
     if (!move_curve(move, at, &curve))
         return true;
-    chords = curve.kind == CURVE_LINE
-                 ? 1
-                 : maths_clamp(maths_floor(curve.length_mm / CHORD_MM), CHORDS_MIN, CHORDS_MAX);
-    for (double i = 1; i <= chords; i++) {
+    if (curve.kind != CURVE_LINE)
+        chords = (unsigned)maths_clamp(curve.length_mm / CHORD_MM, CHORDS_MIN, CHORDS_MAX);
+    for (unsigned i = 1; i <= chords; i++) {
         struct point point;
 
-        curve_point(&curve, curve.length_mm * i / chords, &point);
+        curve_point(&curve, curve.length_mm * (double)i / (double)chords, &point);
         if (!page_path_add(path, &point, move->line, move->kind == MOVE_RAPID))
             return false;
     }

@@ -70,10 +70,9 @@ static void read_row(const struct trace_reader *r, const struct columns *c, stru
 static struct view_row *add_row(struct viewing *v)
 {
     const size_t room = v->room > 0 ? 2 * v->room : ROWS_FIRST;
-    struct view_row *row = v->row;
 
     if (v->count == v->room) {
-        row = realloc(v->row, room * sizeof *row);
+        struct view_row *row = realloc(v->row, room * sizeof *row);
         if (row == NULL) {
             message_command_error("out of memory");
             return NULL;
@@ -209,8 +208,8 @@ void viewing_cycle(struct viewing *v, struct page_link *link)
     if (v->state != PANEL_RUNNING)
         return;
     to = v->at + step < last ? v->at + step : last;
-    for (double next = maths_floor(v->at) + 1; next <= to; next++) {
-        v->at = next;
+    for (size_t next = (size_t)v->at + 1; next <= (size_t)to; next++) {
+        v->at = (double)next;
         put_row(v, link);
     }
     v->at = to;
