@@ -74,6 +74,7 @@ static bool copy_program(struct page_data *data)
 
 static void start_drawing(struct page_data *data)
 {
+    data->is_stale = false;
     data->path_crc = data->snapshot.value[REGISTER_PROGRAM_CRC];
     data->path_size = data->snapshot.value[REGISTER_PROGRAM_SIZE];
     if (!copy_program(data))
@@ -107,12 +108,13 @@ static void show_path(struct page_data *data)
     data->listener.tell_all(data->listener.context, &data->other);
 }
 
-/* The way is drawn anew for another program, and when offsets or tools have changed. */
+/* The way is drawn anew for another program, and, between two runs, when offsets or tools have changed. */
 static void keep_path(struct page_data *data)
 {
     const uint32_t *value = data->snapshot.value;
     const bool is_other = value[REGISTER_PROGRAM_CRC] != data->path_crc ||
-                          value[REGISTER_PROGRAM_SIZE] != data->path_size;
+                          value[REGISTER_PROGRAM_SIZE] != data->path_size ||
+                          (data->is_stale && value[REGISTER_STATE] == PANEL_IDLE);
 
     if (data->is_drawing && atomic_load(&data->is_drawn))
         show_path(data);
@@ -134,7 +136,7 @@ static void take_tables(struct page_data *data, const struct page_job *job)
     }
     if (strcmp(page_text_get(&data->other), page_text_get(&data->tables)) == 0)
         return;
-    data->path_crc = data->path_size = 0;
+    data->is_stale = true;
     page_text_clear(&data->tables);
     page_text_add(&data->tables, "%s", page_text_get(&data->other));
     data->listener.tell_all(data->listener.context, &data->tables);
@@ -236,6 +238,14 @@ bool page_data_command(struct page_data *data, const struct page_command *comman
         return false;
     data->command[data->commands++] = *command;
     return true;
+}
+
+void page_data_forget(struct page_data *data, unsigned page)
+{
+    for (unsigned i = 0; i < data->commands; i++) {
+        if (data->command[i].page == page)
+            data->command[i].page = PANEL_HOST_PAGES;
+    }
 }
 
 void page_data_greet(const struct page_data *data, struct page_text *text)

@@ -45,6 +45,7 @@ struct page_data {
     int drive;               /* whose objects were read last */
     struct page_text tables; /* as told last */
 
+    bool is_stale;   /* the tables have changed since the way was drawn */
     bool has_tables; /* have been read for the program that is to be drawn */
     bool is_drawing;
     atomic_bool is_drawn;
@@ -63,6 +64,8 @@ void page_data_tick(struct page_data *data, double time_ms);
 
 /* False: there are too many already. */
 bool page_data_command(struct page_data *data, const struct page_command *command);
+/* A page has gone: nobody is told what comes of its orders. */
+void page_data_forget(struct page_data *data, unsigned page);
 /* A page has come: what it should know at once, beside the hello. */
 void page_data_greet(const struct page_data *data, struct page_text *text);
 void page_data_describe_path(const struct page_data *data, struct page_text *text);

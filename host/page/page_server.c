@@ -117,7 +117,7 @@ static void tell_one(void *context, unsigned page, const struct page_text *text)
 {
     struct page_server *server = context;
 
-    if (server->session[page] != NULL)
+    if (page < PANEL_HOST_PAGES && server->session[page] != NULL)
         queue_text(server->session[page], text);
 }
 
@@ -222,6 +222,7 @@ static void leave(struct page_server *server, struct session *s)
     if (!s->is_open)
         return;
     server->session[s->client.number] = NULL;
+    page_data_forget(&server->data, s->client.number);
     page_client_close(&s->client);
     for (unsigned i = 0; i < s->queued; i++)
         free(s->queue[i].bytes);
@@ -466,8 +467,11 @@ static const char *listen_there(struct page_server *server)
 
 static void *run(void *context)
 {
+    const struct sched_param last = {.sched_priority = 0};
     struct page_server *server = context;
 
+    /* The first place in the queue for the processor is the control thread's alone; it has been passed on. */
+    (void)pthread_setschedparam(pthread_self(), SCHED_OTHER, &last);
     while (!atomic_load(&server->is_to_end) && lws_service(server->context, 0) >= 0) {
     }
     return NULL;

@@ -16,7 +16,7 @@ const camera = { yaw: SIDES.iso[0], pitch: SIDES.iso[1], scale: 1, x: 0, y: 0 };
 let points = new Float32Array(0), lines = new Uint32Array(0);
 let firstOf = new Map();
 let trail = [];
-let stale = true, fitted = false;
+let stale = true, fitted = false, drawn = "";
 
 // Rows of the turn about z by yaw, then about the screen's x by pitch: across and up on the screen.
 function axesOfScreen() {
@@ -186,7 +186,7 @@ function lengthen(more) {
   if (trail.length > 3 * TRAIL_MAX) trail = trail.filter((_, i) => i > trail.length / 2 || Math.floor(i / 3) % 2);
 }
 
-async function load({ path: [size, , count, problem] }) {
+async function load({ path: [size, crc, count, problem] }) {
   const bytes = size ? await (await fetch("/path")).arrayBuffer() : new ArrayBuffer(0);
   points = new Float32Array(bytes);
   const words = new Uint32Array(bytes);
@@ -194,9 +194,9 @@ async function load({ path: [size, , count, problem] }) {
   for (let i = 0; i < points.length; i += STRIDE) points[i + 4] = words[i + 4];
   firstOf = new Map();
   lines.forEach((line, i) => { if (!firstOf.has(line)) firstOf.set(line, i); });
-  trail = [];
   stale = true;
-  fitted = false;
+  if (drawn !== `${size} ${crc}`) [trail, fitted] = [[], false];
+  drawn = `${size} ${crc}`;
   canvas.dataset.points = count;
   setText($("viewnote"), problem);
 }
