@@ -328,6 +328,26 @@ static bool joins_chain(const struct path *p, const struct move *move)
            (smooth_takes(move, &curve) && smooth_joins(&p->smooth, move));
 }
 
+/*
+ * Nothing follows in the chain. One line from rest to rest is planned like an exact one: nothing is quicker. There was room
+ * for it when it came, and nothing has been appended since.
+ */
+static void finish_chain(struct path *p)
+{
+    if (!smooth_is_line(&p->smooth)) {
+        smooth_finish(&p->smooth);
+        return;
+    }
+    const struct move move = p->smooth.merge.move;
+    const struct curve line = p->smooth.merge.curve;
+
+    smooth_reset(&p->smooth);
+    close_newest(p);
+    p->end = line.start;
+    push_motion(p, &move, &line);
+    close_newest(p);
+}
+
 void path_push(struct path *p, const struct move *move)
 {
     assert(path_has_room(p) && !p->finished);
@@ -335,7 +355,7 @@ void path_push(struct path *p, const struct move *move)
         push_move(p, move);
         return;
     }
-    smooth_finish(&p->smooth);
+    finish_chain(p);
     p->has_next = true;
     p->split = *move;
     path_go_on(p);
@@ -344,7 +364,7 @@ void path_push(struct path *p, const struct move *move)
 void path_finish(struct path *p)
 {
     p->finished = true;
-    smooth_finish(&p->smooth);
+    finish_chain(p);
     path_go_on(p);
 }
 

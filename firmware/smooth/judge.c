@@ -30,8 +30,8 @@
 /* A rate does not change faster than this times what it may change by on every piece. */
 #define CHANGE_MOST 64.0f
 
-/* Places looked at in a piece. */
-#define PLACES 8
+/* Places looked at in a piece, at most. */
+#define PLACES_MAX 8
 
 static float larger(float a, float b)
 {
@@ -204,43 +204,90 @@ float judge_change_on(const struct judge_need *need, const struct route *r,
     return by;
 }
 
-/*
- * The part of c_0 - 2 c_1 + c_2 across the way from the piece's first control point to its last, over all axes, in which mm
- * and degrees count alike: what lies along it takes no place off the line.
- */
-static float bend_across(const struct window *w, const struct route *r, unsigned piece,
-                         unsigned sample)
+/* From one of a piece's control points to the next, weighted, and from its first one to its last. */
+struct steps {
+    float step[3][SMOOTH_SLOTS_MAX];
+    float way[SMOOTH_SLOTS_MAX];
+};
+
+static void steps_of(const struct window *w, const struct route *r, unsigned piece, struct steps *s)
 {
-    float square = 0.0f;
+    for (unsigned i = 0; i < r->slots.count; i++) {
+        for (unsigned k = 0; k < 3; k++) {
+            s->step[k][i] = w->weighted_unit_mm[i] *
+                            (float)(window_x(w, i, piece + k + 1) - window_x(w, i, piece + k));
+        }
+        s->way[i] = s->step[0][i] + s->step[1][i] + s->step[2][i];
+    }
+}
+
+static float dot_of(const struct route *r, const float a[], const float b[])
+{
     float dot = 0.0f;
-    float way = 0.0f;
 
     for (unsigned i = 0; i < r->slots.count; i++) {
-        const int32_t step0 = window_x(w, i, sample) - window_x(w, i, sample - 1);
-        const int32_t step1 = window_x(w, i, sample + 1) - window_x(w, i, sample);
-        const float bend = w->weighted_unit_mm[i] * (float)(step1 - step0);
-        const float along =
-            w->weighted_unit_mm[i] * (float)(window_x(w, i, piece + 3) - window_x(w, i, piece));
-
-        square += bend * bend;
-        dot += bend * along;
-        way += along * along;
+        dot += a[i] * b[i];
     }
-    return single_sqrt(single_max(0.0f, way > 0.0f ? square - dot * dot / way : square));
+    return dot;
+}
+
+/* Does all of the piece go the way from its first control point to its last? */
+static bool goes_on(const struct route *r, const struct steps *s)
+{
+    return dot_of(r, s->step[0], s->way) > 0.0f && dot_of(r, s->step[1], s->way) > 0.0f &&
+           dot_of(r, s->step[2], s->way) > 0.0f;
 }
 
 /*
- * How near places looked at must be. Between two that are h of a piece apart the curve leaves their chord by |x''| h^2/8 at
- * most, and the second derivative of a piece is largest at one of its ends.
+ * The most of c_0 - 2 c_1 + c_2, over all axes, in which mm and degrees count alike: the second derivative, which is largest at
+ * one of the ends. What lies along the way takes no place off the line, unless it turns back.
  */
-static float within_of(const struct window *w, const struct route *r, unsigned piece)
+static float bend_of(const struct window *w, const struct route *r, unsigned piece)
 {
-    const float bend =
-        single_max(bend_across(w, r, piece, piece + 1), bend_across(w, r, piece, piece + 2));
-    const float off = bend / (8.0f * PLACES * PLACES);
-    const float tolerance_mm = (float)r->tolerance_mm;
+    struct steps s;
+    float most = 0.0f;
 
-    return single_min(JUDGED * tolerance_mm, tolerance_mm - off);
+    steps_of(w, r, piece, &s);
+    const float way = goes_on(r, &s) ? dot_of(r, s.way, s.way) : SINGLE_INFINITY;
+
+    for (unsigned k = 0; k < 2; k++) {
+        float bend[SMOOTH_SLOTS_MAX];
+
+        for (unsigned i = 0; i < r->slots.count; i++) {
+            bend[i] = s.step[k + 1][i] - s.step[k][i];
+        }
+        const float along = dot_of(r, bend, s.way);
+
+        most = single_max(most, dot_of(r, bend, bend) - along * along / way);
+    }
+    return single_sqrt(most);
+}
+
+/* How many places of a piece are looked at, and how near they must be. */
+struct look {
+    unsigned places;
+    float within_mm;
+};
+
+/*
+ * Between two places that are h of a piece apart the curve leaves their chord by |x''| h^2/8 at most. So many are looked at
+ * that this takes no more than the part that is not judged.
+ */
+static struct look look_of(const struct window *w, const struct route *r, unsigned piece)
+{
+    const float bend = bend_of(w, r, piece);
+    const float tolerance_mm = (float)r->tolerance_mm;
+    const float spare_mm = (1.0f - JUDGED) * tolerance_mm;
+    struct look look = {.places = 1};
+
+    while (look.places < PLACES_MAX &&
+           bend > 8.0f * spare_mm * (float)(look.places * look.places)) {
+        look.places++;
+    }
+    const float off = bend / (8.0f * (float)(look.places * look.places));
+
+    look.within_mm = single_min(JUDGED * tolerance_mm, tolerance_mm - off);
+    return look;
 }
 
 /* The place on the route beside one of the curve. */
@@ -264,12 +311,15 @@ static void find_foot(const struct window *w, const struct route *r, unsigned pi
 
 /* How far a place of a piece leaves the tolerance; 0 or less: not at all. */
 static float beyond_of(const struct window *w, const struct route *r, unsigned piece,
-                       const float weight[4])
+                       unsigned place)
 {
+    const struct look look = look_of(w, r, piece);
     struct route_foot foot;
+    float weight[4];
 
+    window_weights((float)place / (float)look.places, weight);
     find_foot(w, r, piece, weight, &foot);
-    return foot.distance_mm - within_of(w, r, piece);
+    return foot.distance_mm - look.within_mm;
 }
 
 /* From one place looked at to the next one. */
@@ -282,12 +332,12 @@ static void set_chord(const struct window *w, const struct route *r, const struc
     }
 }
 
-/* The order along a piece; its first place from which there is no way on, or PLACES + 1. */
+/* The order along a piece; its first place from which there is no way on, or 0. */
 static unsigned follow(const struct window *w, const struct route *r, unsigned piece,
                        struct order *order)
 {
-    struct order_chord chord = {.within_mm = within_of(w, r, piece),
-                                .believed_mm = w->at_mm[piece + 2]};
+    const struct look look = look_of(w, r, piece);
+    struct order_chord chord = {.within_mm = look.within_mm, .believed_mm = w->at_mm[piece + 2]};
     struct window_spot a;
     float weight[4];
     unsigned k = 1;
@@ -295,16 +345,16 @@ static unsigned follow(const struct window *w, const struct route *r, unsigned p
     chord.corner_mm = chord.within_mm - (float)r->chord_mm;
     window_weights(0.0f, weight);
     window_spot(w, r, piece, weight, &a);
-    for (; k <= PLACES && order->count > 0; k++) {
+    for (; k <= look.places && order->count > 0; k++) {
         struct window_spot b;
 
-        window_weights((float)k / PLACES, weight);
+        window_weights((float)k / (float)look.places, weight);
         window_spot(w, r, piece, weight, &b);
         set_chord(w, r, &a, &b, &chord);
         order_go(order, r, &chord);
         a = b;
     }
-    return order->count > 0 ? k : k - 1;
+    return order->count > 0 ? 0 : k - 1;
 }
 
 /* The end of the route must have been come to in order. */
@@ -332,11 +382,8 @@ void judge_pieces(const struct window *w, const struct route *r, unsigned count,
         const unsigned bad = follow(w, r, v->good, &o);
         const bool whole = order_reaches(&o, w->at_mm[v->good + 2]);
 
-        if (bad <= PLACES) {
-            float weight[4];
-
-            window_weights((float)bad / PLACES, weight);
-            v->beyond_mm = beyond_of(w, r, v->good, weight);
+        if (bad > 0) {
+            v->beyond_mm = beyond_of(w, r, v->good, bad);
             return;
         }
         if (is_end(w, v->good) && !whole) {

@@ -174,6 +174,12 @@ void smooth_push(struct smooth *s, const struct move *move, uint32_t number,
     merge_open(&s->merge, move, number, curve);
 }
 
+bool smooth_is_line(const struct smooth *s)
+{
+    return s->open && !s->finished && s->merge.open && s->merge.curve.kind == CURVE_LINE &&
+           s->merge.points == 0 && s->route.count == 0;
+}
+
 void smooth_finish(struct smooth *s)
 {
     if (s->open) {

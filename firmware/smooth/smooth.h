@@ -97,6 +97,11 @@ bool smooth_has_room(const struct smooth *s);
 /* Appends a motion. Needs room and smooth_joins(). */
 void smooth_push(struct smooth *s, const struct move *move, uint32_t number,
                  const struct curve *curve);
+/*
+ * Is all of the chain so far one programmed line? If nothing follows there is nothing to smooth: no curve is shorter, and what
+ * plans lines from rest to rest is quicker. It may be forgotten then.
+ */
+bool smooth_is_line(const struct smooth *s);
 /* Nothing follows in this chain: it ends at rest. */
 void smooth_finish(struct smooth *s);
 /*

@@ -26,5 +26,6 @@ hunt("exact paths hold on any machine", "30", "1", "--exact")
 hunt("smoothed paths hold their limits", "12", "1", "--machines", "builtin", "--kinds", KINDS)
 for seed in ("80010", "80068", "80072", "80078", "80086"):
     hunt(f"strokes and loops of a few tolerances are not left out: {seed}", "1", seed, "--operator", "--kinds", KINDS)
+hunt("a straight line is as quick within a tolerance as exact", "6", "93301", "--family", "stops", "--kinds", "slow,back,endless")
 hunt("corners of exact paths are not cut where a cycle is long", "1", "40033", "--exact")
 t.finish()

@@ -85,14 +85,12 @@ M2
 """
 
 
-def through(name, text, most_s, known):
-    """known: the checks that do not hold yet, since a bend of a few tolerances is left out, and what they come to."""
+def through(name, text, most_s):
     t.write(name, text)
     status, out, err = t.run("run", name, "--json", "s.json", "--quiet", "--until", str(most_s))
     summary = t.load_json("s.json")
     broken = {check["name"]: check["value"] for check in summary["checks"] if not check["held"]}
-    t.check(status == (1 if known else 0) and set(broken) == set(known), name + ": every other check is held", broken, out, err)
-    t.check(all(broken[check] <= known[check] for check in broken), name + ": what is left out does not grow", broken)
+    t.check(status == 0 and not broken, name + ": every check is held, no bend of a few tolerances is left out", broken, out, err)
     t.check(summary["outcome"] == "completed", name + ": the program comes to its end", summary["outcome"], summary["program_time_s"])
 
 
@@ -115,6 +113,6 @@ def stiff_and_soft():
 
 
 stiff_and_soft()
-through("loops.ngc", LOOPS, 60, {"path": 0.09, "smoothed_path": 1.05, "smoothed_corner": 1.65})
-through("bends.ngc", BENDS, 60, {"path": 0.004, "smoothed_path": 1.02})
+through("loops.ngc", LOOPS, 60)
+through("bends.ngc", BENDS, 60)
 t.finish()

@@ -117,18 +117,24 @@ static void test_a_restart_forgets_all_blocks(void)
     TEST_ASSERT_EQUAL_UINT64(path_units(3.0), path_at(&path, path.first)->start);
 }
 
-/* Both ceilings are in use: what smoothing would compute in is one of them. */
-static void test_motions_are_smoothed_as_soon_as_there_is_a_place_for_it(void)
+static void push_blend(double x, double y)
 {
     const struct move line = {.kind = MOVE_FEED,
                               .path = PATH_BLEND,
                               .tolerance_mm = 0.01,
                               .feed_mm_s = 50.0,
                               .turns = 1,
-                              .end = {{10.0}}};
+                              .end = {{x, y}}};
 
-    path.spare = PATH_NO_SPARE;
     path_push(&path, &line);
+}
+
+/* Both ceilings are in use: what smoothing would compute in is one of them. */
+static void test_motions_are_smoothed_as_soon_as_there_is_a_place_for_it(void)
+{
+    path.spare = PATH_NO_SPARE;
+    push_blend(10.0, 0.0);
+    push_blend(10.0, 10.0);
     path_finish(&path);
     path_go_on(&path);
     TEST_ASSERT_EQUAL(0, path.pushed);
@@ -136,6 +142,20 @@ static void test_motions_are_smoothed_as_soon_as_there_is_a_place_for_it(void)
     path_go_on(&path);
     TEST_ASSERT_GREATER_THAN(1, path.pushed);
     TEST_ASSERT_EQUAL(path.pushed, path.closed);
+}
+
+/* Smoothed, it would be a curve of many pieces, slower than the line; before and behind it the axes stand. */
+static void test_one_line_within_a_tolerance_is_planned_like_an_exact_one(void)
+{
+    path.spare = 1;
+    push(MOVE_FEED, 10.0, 0.0);
+    push_blend(20.0, 0.0);
+    push(MOVE_FEED, 30.0, 0.0);
+    TEST_ASSERT_EQUAL(3, path.pushed);
+    TEST_ASSERT_EQUAL(2, path.closed);
+    path_finish(&path);
+    TEST_ASSERT_EQUAL(3, path.pushed);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-12, 10.0, path_length(&path, 1));
 }
 
 int main(void)
@@ -149,5 +169,6 @@ int main(void)
     RUN_TEST(test_room_is_bounded_by_what_must_be_kept);
     RUN_TEST(test_a_restart_forgets_all_blocks);
     RUN_TEST(test_motions_are_smoothed_as_soon_as_there_is_a_place_for_it);
+    RUN_TEST(test_one_line_within_a_tolerance_is_planned_like_an_exact_one);
     return UNITY_END();
 }
