@@ -47,6 +47,7 @@ setup_need_for_host() {
     setup_need libinih-dev pkg-config --exists inih
     setup_need libcjson-dev pkg-config --exists libcjson
     setup_need libmodbus-dev pkg-config --exists libmodbus
+    setup_need libwebsockets-dev pkg-config --exists libwebsockets
     setup_need ca-certificates test -e /etc/ssl/certs/ca-certificates.crt
 }
 

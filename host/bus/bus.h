@@ -148,6 +148,9 @@ void bus_run_until(struct bus *bus, uint64_t time_ns);
 /* Adds a fault; copied. False: there are BUS_FAULTS_MAX already. */
 bool bus_add_fault(struct bus *bus, const struct bus_fault *fault);
 
+/* Every fault that has not ended ends now. */
+void bus_end_faults(struct bus *bus);
+
 /* State of a port's controller, by order of bus_attach. */
 enum bus_confinement bus_get_confinement(const struct bus *bus, unsigned port);
 

@@ -56,6 +56,16 @@ bool bus_add_fault(struct bus *bus, const struct bus_fault *fault)
     return true;
 }
 
+void bus_end_faults(struct bus *bus)
+{
+    for (unsigned i = 0; i < bus->fault_count; i++) {
+        struct bus_fault *fault = &bus->fault[i].fault;
+
+        if (end_of(fault) > bus->now_ns)
+            fault->until_ns = bus->now_ns > 0 ? bus->now_ns : 1;
+    }
+}
+
 enum bus_confinement bus_get_confinement(const struct bus *bus, unsigned port)
 {
     const struct bus_port *p = &bus->port[port];

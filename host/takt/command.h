@@ -36,6 +36,7 @@ extern const struct command command_canon;
 extern const struct command command_lsp;
 extern const struct command command_convert;
 extern const struct command command_trace;
+extern const struct command command_view;
 extern const struct command command_machine;
 extern const struct command command_cycle_frequency;
 extern const struct command command_precision;

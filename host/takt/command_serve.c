@@ -11,6 +11,14 @@ static const unsigned late_us[] = {10, 20, 50, 100, 200, 500, 1000, 2000, 5000, 
 
 #define LATE_CLASSES (sizeof late_us / sizeof late_us[0])
 
+static void print_page(const struct serving *s)
+{
+    if (s->page.server != NULL)
+        serving_page_print(s->options.http, s->page.server);
+    else if (s->page.problem != NULL)
+        (void)printf("no page: %s\n", s->page.problem);
+}
+
 static void print_ready(const struct serving *s)
 {
     const struct server_config *config = &s->server.config;
@@ -19,6 +27,7 @@ static void print_ready(const struct serving *s)
         (void)printf("panel on %s:%u\n", config->address, (unsigned)server_get_port(&s->server));
     if (config->serial >= 0)
         (void)printf("panel on %s, unit %u\n", s->options.serial.path, (unsigned)config->unit);
+    print_page(s);
     (void)fflush(stdout);
 }
 
@@ -79,6 +88,8 @@ static const struct option_row rows[] = {
     OPTIONS_DRIVEN,
     {"listen", OPTION_TEXT, offsetof(struct options, panel.listen), "HOST:PORT",
      "Modbus TCP of the panel (default 127.0.0.1:1502; port 0: any)"},
+    {"http", OPTION_TEXT, offsetof(struct options, panel.http), "HOST:PORT|off",
+     "page in the browser (default 127.0.0.1:8080; port 0: any)"},
     {"serial", OPTION_TEXT, offsetof(struct options, panel.serial), "PATH[,BAUD[,PARITY]]",
      "Modbus RTU of the panel too (default 19200, even)"},
     {"unit", OPTION_NUMBER, offsetof(struct options, panel.unit), "N",
@@ -119,7 +130,9 @@ const struct command command_serve = {
             "virtual drives and\n"
             "spindle, and the panel on 127.0.0.1:1502 for any number of clients. `takt panel list` "
             "lists its registers.\n"
-            "The section [panel] of the machine file says who may connect, and sets a password.\n"
+            "A browser shows and drives the machine at http://127.0.0.1:8080/.\n"
+            "The section [panel] of the machine file says who may connect to both, and sets a "
+            "password.\n"
             "\n"
             "Its state is kept in $XDG_STATE_HOME/takt/MACHINE, by default "
             "~/.local/state/takt/MACHINE: never older than a\n"

@@ -31,6 +31,7 @@ struct option_bore {
 /* For `takt serve` and `takt panel`. */
 struct option_panel {
     const char *listen, *connect; /* HOST:PORT */
+    const char *http;             /* HOST:PORT, or off; NULL: the default */
     const char *serial;           /* PATH, or PATH,BAUD,PARITY */
     const char *program;
     const char *store;
@@ -90,6 +91,7 @@ struct options {
     double until_s;         /* 0: to the end */
     const char *to_dialect; /* of `takt convert` */
     const char *stock_top;  /* of `takt lint`, mm */
+    double speed;           /* of `takt view`; 0: 1 */
     double tolerance;       /* of `takt trace`; 0: equal. Of `takt bore`, mm; 0: its default */
     const char *output;     /* -o is short for --output */
     struct option_bore bore;

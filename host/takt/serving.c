@@ -150,11 +150,14 @@ enum command_status serving_open(struct serving *s, const struct options *option
     cycle_cost_init(&s->cost);
     open_service(s);
     status = open_server(s);
+    if (status == STATUS_DONE)
+        status = serving_page_open(s);
     return status == STATUS_DONE ? serving_state_start(&s->state) : status;
 }
 
 void serving_close(struct serving *s)
 {
+    serving_page_close(s);
     if (s->has_server)
         server_close(&s->server);
     if (s->has_exchange)
@@ -231,6 +234,7 @@ static void serve_cycle(struct serving *s)
     tell_drives(s);
     service_look(&s->service, exchange_next_snapshot(&s->exchange));
     exchange_publish(&s->exchange);
+    serving_page_cycle(s);
     if (order != NULL)
         exchange_answer(&s->exchange, verdict);
 }

@@ -20,6 +20,7 @@
 #include "takt/ending.h"
 #include "takt/field.h"
 #include "takt/serving_options.h"
+#include "takt/serving_page.h"
 #include "takt/serving_spindle.h"
 #include "takt/serving_state.h"
 #include "takt/session.h"
@@ -41,6 +42,7 @@ struct serving {
     struct exchange exchange;
     struct panel_host panel;
     struct server server;
+    struct serving_page page;
     struct cycle_cost cost;
     struct bus_log bus_log;
     struct ending ending;

@@ -14,6 +14,8 @@
 
 #define ALLOW_ENTRY_MAX 63
 
+#define HTTP_DEFAULT "127.0.0.1:8080"
+
 /* "192.168.1.0/24,::1" */
 static bool read_allowed(struct allow_list *allowed, const char *text)
 {
@@ -110,18 +112,19 @@ static bool is_private(const char *host)
 }
 
 /* Whoever reaches the panel moves the machine: beyond this computer somebody has to say that this is meant. */
-static bool check_access(const struct session *session, const struct server_config *config)
+static bool check_access(const struct session *session, const char *address,
+                         const struct allow_list *allowed)
 {
     static const char open[] = "anybody who reaches %s can move the machine: set panel.allow or "
                                "panel.password%s";
 
-    if (config->address == NULL || config->allowed.count > 0 ||
-        session->setup.panel.password != 0 || is_private(config->address))
+    if (address == NULL || allowed->count > 0 || session->setup.panel.password != 0 ||
+        is_private(address))
         return true;
     if (session->options->panel.insecure)
-        message_command_warning(open, config->address, "");
+        message_command_warning(open, address, "");
     else
-        message_command_error(open, config->address, ", or say --insecure");
+        message_command_error(open, address, ", or say --insecure");
     return session->options->panel.insecure;
 }
 
@@ -151,7 +154,24 @@ bool serving_options_read(struct serving_options *options, const struct session 
     if (!read_address(options, session, config) ||
         !serving_options_unit(panel->unit, &config->unit) ||
         !read_allowed(&config->allowed, session->setup.panel.allow) ||
-        !check_access(session, config))
+        !check_access(session, config->address, &config->allowed))
         return false;
     return open_serial(options, panel->serial, config);
+}
+
+bool serving_options_read_page(struct serving_options *options, const struct session *session,
+                               struct page_server_config *config)
+{
+    const char *given = session->options->panel.http;
+
+    config->address = NULL;
+    if (given != NULL && strcmp(given, "off") == 0)
+        return true;
+    (void)snprintf(options->http, sizeof options->http, "%s", given != NULL ? given : HTTP_DEFAULT);
+    if (!serving_options_split(options->http, &config->address, &config->port)) {
+        message_command_error("--http %s: HOST:PORT or off is expected", given);
+        return false;
+    }
+    return read_allowed(&config->allowed, session->setup.panel.allow) &&
+           check_access(session, config->address, &config->allowed);
 }

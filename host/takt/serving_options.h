@@ -4,6 +4,7 @@
 #ifndef TAKT_HOST_SERVING_OPTIONS_H
 #define TAKT_HOST_SERVING_OPTIONS_H
 
+#include "page/page_server.h"
 #include "serve/serial_line.h"
 #include "serve/server.h"
 #include "takt/session.h"
@@ -12,6 +13,7 @@
 
 struct serving_options {
     char address[MACHINE_SETUP_PATH_MAX + 1];
+    char http[MACHINE_SETUP_PATH_MAX + 1];
     struct allow_list allowed;
     struct serial_settings serial;
 };
@@ -19,6 +21,10 @@ struct serving_options {
 /* Fills the parts of *config that options decide, the serial line opened. options must stay. False after a message. */
 bool serving_options_read(struct serving_options *options, const struct session *session,
                           struct server_config *config);
+
+/* The same of the page in the browser, --http; address NULL: there is none. */
+bool serving_options_read_page(struct serving_options *options, const struct session *session,
+                               struct page_server_config *config);
 
 /* HOST:PORT or [HOST]:PORT apart, in *text. False: it is neither. */
 bool serving_options_split(char *text, const char **host, const char **port);

@@ -5,7 +5,7 @@ import re
 
 import takt_test as t
 
-COMMANDS = "run", "plan", "check", "lint", "lsp", "convert", "canon", "trace", "machine", "serve", "panel", "bore", "drives", "cycle-frequency", "precision"
+COMMANDS = "run", "plan", "check", "lint", "lsp", "convert", "canon", "trace", "view", "machine", "serve", "panel", "bore", "drives", "cycle-frequency", "precision"
 PROGRAM = t.write("part.ngc", "F600\nG1 X10\nG2 X20 I5\nG4 P0.5\nG0 Z5\nM2\n")
 
 status, out, _ = t.run("help")

@@ -327,7 +327,7 @@ class Moment:
     def start(self):
         log = ["--bus-log", self.path("bus.log")]
         if self.command == "serve":
-            command = ["serve", "--listen", "127.0.0.1:0", "--state", "none", "--program", PROGRAM_PATH, *log]
+            command = ["serve", "--listen", "127.0.0.1:0", "--http", "off", "--state", "none", "--program", PROGRAM_PATH, *log]
         else:
             trace = "-" if isinstance(self.field, Alone) else self.path("trace.csv")
             command = ["run", PROGRAM_PATH, "--quiet", "--trace", trace, "--json", self.path("summary.json"), *log]

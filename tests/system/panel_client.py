@@ -237,7 +237,7 @@ class Service:
         atexit.register(self.process.kill)
         self.ready = self.process.stdout.readline()
         assert self.ready, self.process.communicate()[1]
-        self.port = int(self.ready.rsplit(":", 1)[1]) if ":" in self.ready else None
+        self.port = int(self.ready.rsplit(":", 1)[1].strip("/\n")) if ":" in self.ready else None
 
     def client(self):
         return Client(self.port)
@@ -251,9 +251,10 @@ class Service:
 
 
 def serve(*options):
-    """Without a state, unless the options name one: tests do not see what others have left."""
+    """Without state and page, unless the options name them: tests do not see what others have left."""
     state = [] if "--state" in options else ["--state", "none"]
-    return Service("--listen", "127.0.0.1:0", *state, *options)
+    page = [] if "--http" in options else ["--http", "off"]
+    return Service("--listen", "127.0.0.1:0", *state, *page, *options)
 
 
 STARTING, IDLE, RUNNING, MDI, JOGGING, HOMING, HELD, STOPPING, ALARM, EMERGENCY = range(10)

@@ -109,6 +109,23 @@ static void test_a_fault_strikes_only_in_its_time_and_only_its_senders(void)
     TEST_ASSERT_EQUAL_UINT64(2, bus.counts.dropped);
 }
 
+static void test_faults_that_are_ended_strike_no_more(void)
+{
+    add_fault((struct bus_fault){.kind = BUS_FAULT_DROP, .count = BUS_FAULT_ALWAYS});
+    add_fault((struct bus_fault){.kind = BUS_FAULT_BUS_OFF, .ports = 1u << 2});
+    for (unsigned i = 0; i < 3; i++)
+        send_at(i * UINT64_C(1000000), 0, 0x100 + i);
+    run_to(3000000);
+    TEST_ASSERT_EQUAL_UINT64(3, bus.counts.dropped);
+    TEST_ASSERT_EQUAL(BUS_OFF, bus_get_confinement(&bus, 2));
+    bus_end_faults(&bus);
+    send_at(4000000, 0, 0x103);
+    run_to(5000000);
+    TEST_ASSERT_EQUAL_UINT64(3, bus.counts.dropped);
+    TEST_ASSERT_EQUAL(BUS_ACTIVE, bus_get_confinement(&bus, 2));
+    TEST_ASSERT_EQUAL_UINT(1, heard[1].count);
+}
+
 static void test_a_share_of_the_frames_is_drawn_from_the_seed_and_no_other(void)
 {
     uint64_t dropped[2];
@@ -308,6 +325,7 @@ int main(void)
     RUN_TEST(test_a_dropped_frame_holds_the_bus_and_reaches_nobody);
     RUN_TEST(test_so_many_frames_are_struck_after_so_many_have_passed);
     RUN_TEST(test_a_fault_strikes_only_in_its_time_and_only_its_senders);
+    RUN_TEST(test_faults_that_are_ended_strike_no_more);
     RUN_TEST(test_a_share_of_the_frames_is_drawn_from_the_seed_and_no_other);
     RUN_TEST(test_a_corrupted_frame_is_broken_off_and_sent_again);
     RUN_TEST(test_error_counters_rise_and_fall_as_the_standard_says);
