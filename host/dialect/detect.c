@@ -118,7 +118,7 @@ static bool look_at_line(struct look *k)
 
 static void look_at_code(struct look *k, struct line_word *w)
 {
-    static const uint16_t fanuc[] = {541, 650, 660, 661};
+    static const uint16_t fanuc[] = {434, 541, 650, 660, 661, 682};
     const int number = line_code(w);
 
     if (number < 0)
@@ -128,6 +128,8 @@ static void look_at_code(struct look *k, struct line_word *w)
         if (w->letter == 'g' && number == fanuc[i])
             note(k, BIT(DIALECT_FANUC) | BIT(DIALECT_HAAS), w);
     }
+    if (w->letter == 'g' && (number == 120 || number == 130) && line_find(&k->line, 'i', 0) != NULL)
+        note(k, BIT(DIALECT_HAAS), w);
     if (w->letter == 'g' && number == 1540)
         note(k, BIT(DIALECT_HAAS), w);
     if (w->letter == 'g' && number == 500 && line_find(&k->line, 's', 0) == NULL)

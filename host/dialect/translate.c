@@ -435,6 +435,7 @@ static void translate_foreign(struct translator *t)
         bracket_assignment(&t->line);
         if (t->survey.lathe)
             turning_translate(t);
+        pocket_translate(t);
         flow_translate(t);
     }
     codes_translate(t);
@@ -446,6 +447,7 @@ static void translate_foreign(struct translator *t)
         translate_dwell(t);
     if (is(t, MACROS)) {
         translate_system(t);
+        upright_translate(t);
         translate_lathe(t);
     }
     translate_speed_limit(t);
@@ -524,7 +526,8 @@ static void survey_line(struct translator *t, const char *bytes, size_t length)
     if (!line_read(l, bytes, length))
         return;
     flow_survey(&t->survey, l);
-    t->survey.lathe = t->survey.lathe ||
+    t->survey.rotary = t->survey.rotary || upright_turns(l);
+    t->survey.lathe = t->survey.lathe || turning_tells(l) ||
                       (line_find_code(l, 'g', 500) != NULL && line_find(l, 's', 0) != NULL) ||
                       (line_find_code(l, 'g', 280) != NULL && line_find(l, 'u', 0) != NULL);
 }

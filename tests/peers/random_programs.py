@@ -1,7 +1,8 @@
 """Random part programs of which most are right: a mill with six axes or a lathe, every line from one random stream.
 
 What the tables of differences from LinuxCNC name on purpose is left out: a change of the feed mode without a new F, feed per
-revolution without a spindle, spirals with G93, tapping and arcs across a rotated plane, G28 in one.
+revolution without a spindle, spirals with G93, tapping and arcs across a rotated plane, G28 in one, compensation in G19, of
+spirals, round corners of less than 2.9 degrees, or where a contour comes back to where it has been, turning cycles in inches.
 """
 import math
 import random
@@ -25,6 +26,7 @@ class Writer:
         self.rotated = False
         self.label = 100
         self.heading = 0.0
+        self.inch = False
 
     # -- numbers --
 
@@ -297,6 +299,8 @@ class Writer:
         self.line("G1 X30")
 
     def turning(self):
+        if self.inch:
+            return
         self.line("G8 G90 G40 G80")
         self.incremental = False
         self.label += 1
@@ -367,7 +371,8 @@ class Writer:
 
     def lathe(self):
         self.plane = "G18"
-        self.line(self.random.choice(("G21", "G20")) + " G18 G90 G94 F200 S800 M3")
+        self.inch = self.chance(0.5)
+        self.line(("G20" if self.inch else "G21") + " G18 G90 G94 F200 S800 M3")
         self.settle_lathe()
         makers = [self.lathe_straight] * 6 + [self.modes] + [
             self.distance, self.centre, self.choose_feed_mode, self.lathe_mode, self.lathe_spindle, self.lathe_tool,

@@ -57,6 +57,21 @@ t.check(status == 2 and err.startswith("macro.nc:5:1: error: "), "the dialect ca
 status, found, err = moves("macro.nc", "--dialect", "fanoc")
 t.check(status == 2 and "known are auto, linuxcnc, grbl, fanuc" in err, "one that is not known", err)
 
+# A loop that one line becomes has the number of this line in every round.
+t.write("pocket.nc", "G0 X1\nG13 I2. K5. Q2. F200\nX9\nM30\n")
+status, out, err = t.run("canon", "pocket.nc")
+lines = [tuple(line.split()[:3]) for line in out.splitlines()]
+t.check(lines == [("1", "rapid", "X1.000000"), ("2", "arc_ccw", "X3.000000"), ("2", "arc_ccw", "X3.000000"),
+                  ("2", "feed", "X5.000000"), ("2", "arc_ccw", "X5.000000"), ("2", "feed", "X6.000000"),
+                  ("2", "arc_ccw", "X6.000000"), ("2", "arc_ccw", "X1.000000"), ("2", "feed", "X1.000000"),
+                  ("3", "feed", "X9.000000"), ("4", "end")], "a round pocket", lines, err)
+
+# What moves something and is known elsewhere is no unknown word, and nobody is told to leave it out.
+t.write("tilted.nc", "G68.2 X0 Y0 J30.\nG43.4 H1\nG1 B5\n")
+status, found, err = moves("tilted.nc")
+t.check(status == 2 and "tilted.nc:1:1: error: 'G68.2' is not supported: a tilted plane\n" in err and "ignore" not in err,
+        "a tilted plane", err)
+
 # Errors stand where they are in the program as it was found.
 t.write("wrong.nc", "G54.1 P1\nIF[#1 EQ 0] THEN  G0 X1 Q3\nM30\n")
 status, found, err = moves("wrong.nc")

@@ -85,6 +85,7 @@ static void open_program(const struct source *source, struct program_config *con
                                       .axes = 0x3fU,
                                       .tools = &tool_table,
                                       .spindle_max_rpm = 24000.0,
+                                      .repeats_max = 2000,
                                       .spindle_encoder = true};
     for (unsigned axis = 0; axis < AXIS_COUNT; axis++) {
         config->travel_min[axis] = -TRAVEL_MM;
