@@ -5,6 +5,7 @@
 #include "dialect/dialect.h"
 #include "dialect/difference.h"
 #include "dialect/line.h"
+#include "dialect/translate.h"
 
 #include <math.h>
 #include <string.h>
@@ -108,6 +109,10 @@ static bool look_at_line(struct look *k)
 
     if (c == '$' || (strchr("?!~", c) != NULL && c != '\0') || remark) {
         note(k, BIT(DIALECT_GRBL), NULL);
+        return true;
+    }
+    if (siemens_tells(&k->line)) {
+        note(k, BIT(DIALECT_SIEMENS), NULL);
         return true;
     }
     if (c == ':' ||
@@ -405,8 +410,8 @@ void dialect_guess_line(struct dialect_detector *d, const char *bytes, size_t le
 
 struct dialect_guess dialect_guess_end(const struct dialect_detector *d)
 {
-    static const enum dialect order[] = {DIALECT_MARLIN, DIALECT_HAAS, DIALECT_FANUC, DIALECT_MACH3,
-                                         DIALECT_GRBL};
+    static const enum dialect order[] = {DIALECT_SIEMENS, DIALECT_MARLIN, DIALECT_HAAS,
+                                         DIALECT_FANUC,   DIALECT_MACH3,  DIALECT_GRBL};
     const struct dialect_arcs *arcs = &d->arcs;
     struct dialect_guess guess = {
         .absolute = arcs->absolute > 1 && arcs->relative == 0 && !arcs->said && !d->linuxcnc,

@@ -61,8 +61,13 @@ void flow_note_label(struct translator *t, size_t offset)
 {
     const struct line_word *w = t->line.words > 0 ? &t->line.word[0] : NULL;
 
-    if (!t->survey.jumps || w == NULL || w->letter != 'n' || !w->is_number)
-        return;
+    t->line_offset = offset;
+    if (t->survey.jumps && w != NULL && w->letter == 'n' && w->is_number)
+        flow_label(t, line_whole(w->value));
+}
+
+void flow_label(struct translator *t, uint32_t number)
+{
     if (t->labels == t->label_room) {
         const size_t room = 2 * t->label_room + 256;
         struct label *grown = realloc(t->label, room * sizeof *grown);
@@ -73,8 +78,7 @@ void flow_note_label(struct translator *t, size_t offset)
         t->label = grown;
         t->label_room = room;
     }
-    t->label[t->labels++] =
-        (struct label){t->program, line_whole(w->value), t->number, offset, t->depth};
+    t->label[t->labels++] = (struct label){t->program, number, t->number, t->line_offset, t->depth};
 }
 
 /* The number behind GOTO is a word without a letter: digits among what is left of the line. */
@@ -88,7 +92,7 @@ static bool read_target(const struct line *l, const struct line_word *w, uint32_
 }
 
 /* Where it is filled in is a place in behind, until the line is put out. */
-static void add_jump(struct translator *t, uint32_t number)
+void flow_go_to(struct translator *t, uint32_t number)
 {
     if (t->jumps < TRANSLATE_JUMPS_MAX)
         t->jump[t->jumps++] =
@@ -163,7 +167,7 @@ static void take_goto(struct translator *t, unsigned at)
     if (!read_target(&t->line, &t->line.word[at], &number))
         return;
     line_read(&t->line, "", 0);
-    add_jump(t, number);
+    flow_go_to(t, number);
 }
 
 static void take_alarm(struct translator *t);

@@ -50,6 +50,7 @@ static bool is(const struct translator *t, unsigned dialects)
 #define GRBL        (1U << DIALECT_GRBL)
 #define MARLIN      (1U << DIALECT_MARLIN)
 #define MACROS      (1U << DIALECT_FANUC | 1U << DIALECT_HAAS)
+#define SIEMENS     (1U << DIALECT_SIEMENS)
 #define NOT_FOREIGN (1U << DIALECT_LINUXCNC)
 
 /* ---- whole lines ---- */
@@ -428,6 +429,8 @@ static void translate_extruder(struct translator *t)
 
 static void translate_foreign(struct translator *t)
 {
+    if (is(t, SIEMENS))
+        siemens_translate(t);
     translate_start(t);
     translate_numbers(t);
     names_translate(t);
@@ -558,6 +561,8 @@ bool dialect_translate(enum dialect dialect, const struct dialect_codes *codes, 
     if (t->survey.lathe)
         t->across = 'j';
     each_line(t, bytes, length, translate_line);
+    if (is(t, SIEMENS))
+        siemens_finish(t);
     (void)flow_finish(t);
     dialect_text_free(&t->before);
     dialect_text_free(&t->behind);

@@ -67,6 +67,12 @@ struct translator {
     uint32_t program;               /* number of O1000 lines so far */
     uint32_t macro;                 /* the current program is called by G65; 0: it is not */
     char modal_call[FLOW_CALL_MAX]; /* G66; empty: none */
+    /* Siemens: names that are jumped to, open blocks, the subprogram it is in */
+    unsigned names, blocks, nested;
+    char name[TRANSLATE_PROGRAMS_MAX][32];
+    uint32_t block[TRANSLATE_LINES_MAX];
+    char subprogram[32];
+    size_t line_offset; /* of the current line, in the text */
     struct turned profile[TRANSLATE_LINES_MAX];
     unsigned profiles;
     double skip_from, skip_to; /* blocks to be passed over; 0: none */
@@ -112,11 +118,20 @@ void upright_translate(struct translator *t);
 /* G12 and G13. */
 void pocket_translate(struct translator *t);
 
+/* What Siemens' controllers say in words. */
+void siemens_translate(struct translator *t);
+void siemens_finish(struct translator *t);
+/* Only programs for them have such a line. */
+bool siemens_tells(const struct line *l);
+
 /* WHILE, DO, END, IF, GOTO, G65, G66 and what goes with them. */
 void flow_survey(struct survey *s, struct line *l);
 void flow_translate(struct translator *t);
 /* The line begins at this place of the text. */
 void flow_note_label(struct translator *t, size_t offset);
+/* The same for a number, or a name that has been given one. */
+void flow_label(struct translator *t, uint32_t number);
+void flow_go_to(struct translator *t, uint32_t number);
 /* Fills in where jumps go. False: one has no target; the result says which. */
 bool flow_finish(struct translator *t);
 

@@ -333,8 +333,8 @@ void turning_translate(struct translator *t)
         take_finish(t, p->value, q->value);
     else if (line_find_code(l, 'g', 750) != NULL)
         take_groove(t);
-    else if (line_find_code(l, 'g', 760) != NULL && p == NULL)
-        take_thread(t);
-    else if (line_find_code(l, 'g', 760) != NULL)
+    else if (line_find_code(l, 'g', 760) != NULL && p != NULL)
         take_thread_pair(t, p);
+    else if (line_find_code(l, 'g', 760) != NULL)
+        take_thread(t);
 }

@@ -78,6 +78,9 @@ static void test_only_what_linuxcnc_cannot_read_tells_of_another_dialect(void)
         {"# mill\nG0 X1", DIALECT_GRBL, 1},
         {"G1 X1.5e-17", DIALECT_GRBL, 1},
         {"G2 X1 I1 J0 K0", DIALECT_GRBL, 1},
+        {"G0 X1\nG2 X2 CR=5", DIALECT_SIEMENS, 2},
+        {"N10 R1 = 5", DIALECT_SIEMENS, 1},
+        {"G0 X1\n#<CR>=5 (CR=5)", DIALECT_LINUXCNC, 0},
         {"G0 X1\nG28 X", DIALECT_MARLIN, 2},
         {"G54.1 P2", DIALECT_FANUC, 1},
         {"WHILE [#1 LT 3] DO1", DIALECT_FANUC, 1},
@@ -361,6 +364,41 @@ static void test_round_pockets_become_arcs(void)
            "|G1 G91\n");
 }
 
+static void test_words_and_values_of_siemens(void)
+{
+    expect(DIALECT_SIEMENS, "N10 G1 X=R1+2*(R2-1) Y-2 CR=5 TURN=2 F=R3 ;x=1\n",
+           "G1 X[#101+2*[#102-1]] Y-2 R[5] P[1+2] F[#103] ;x=1\n");
+    expect(DIALECT_SIEMENS, "R1=5 R2=SIN(R1)/-3\n", "#101=[5]\n|#102=[SIN[#101]/[0-3]]\n");
+    expect(DIALECT_SIEMENS, "G2 X=IC(5) I=AC(7)\nG91 X=AC(1)\n",
+           "G2 X[#<_x>+[5]] I[0-#<_x>+[7]] \nG91 X[[1]] \n");
+    expect(DIALECT_SIEMENS, "T1 M6\nD1\nD0\nSOFT G642 SUPA\nG71 M17\n",
+           "T1 M6 \nG43 \nG49 \n G64  G53 \nG21 M2  \n");
+    expect(DIALECT_SIEMENS, "X=$P_EP[X]\nTRAORI\n", "X=$P_EP[X]\no<traori> call\n");
+}
+
+static void test_flow_of_siemens(void)
+{
+    expect(DIALECT_SIEMENS, "IF R1==2\nX1\nELSE\nX2\nENDIF\n",
+           "o98000001 if [#101 EQ 2]\nX1 \no98000001 else\nX2 \no98000001 endif\n");
+    expect(DIALECT_SIEMENS, "FOR R1=1 TO R2\nENDFOR\n",
+           "#101=[[1]-1]\n|o99000001 while [#101 LT [#102]]\n|#101=[#101+1]\n"
+           "o99000001 endwhile\n");
+    expect(DIALECT_SIEMENS, "REPEAT\nUNTIL R1>1\n",
+           "o99000001 do\no99000001 while [1-[#101 GT 1]]\n");
+    expect(DIALECT_SIEMENS, "GOTOF END\nX1\nEND: M30\n",
+           "o00000035 goto [00000003] [00]\nX1 \nM30 \n");
+    expect(DIALECT_SIEMENS, "L10 P2\nM30\n%_N_L10_SPF\nX1\nM17\n",
+           "o<l10> call\n|o<l10> call\nM30 \no<l10> sub\nX1 \no<l10> return\n|o<l10> endsub\n");
+}
+
+static void test_orders_of_siemens(void)
+{
+    expect(DIALECT_SIEMENS, "MSG(\"a (b)\")\nTRANS X1\nTRANS\n",
+           "(msg,a [b])\nG52 X1 \nG52 X0 Y0 Z0\n");
+    expect(DIALECT_SIEMENS, "MCALL CYCLE82(50,0,2,-9,,1)\nG0 X1\nMCALL\n",
+           "G0 Z[50]\n   X1  G98 G82 R[[0]+[2]] Z[[[0-9]]] P[[1]]\nG80 G0\n");
+}
+
 static void test_a_byte_order_mark_is_no_part_of_the_program(void)
 {
     TEST_ASSERT_TRUE(guess("\xef\xbb\xbfG0 X1").translates);
@@ -408,6 +446,9 @@ int main(void)
     RUN_TEST(test_threads_of_two_lines_become_one);
     RUN_TEST(test_the_tip_is_led_by_g43_where_nothing_turns);
     RUN_TEST(test_round_pockets_become_arcs);
+    RUN_TEST(test_words_and_values_of_siemens);
+    RUN_TEST(test_flow_of_siemens);
+    RUN_TEST(test_orders_of_siemens);
     RUN_TEST(test_a_byte_order_mark_is_no_part_of_the_program);
     return UNITY_END();
 }
