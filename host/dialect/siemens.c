@@ -97,6 +97,23 @@ static void bracketed(struct scan *s)
     s->failed = s->failed || !scan_take(s, ")");
 }
 
+static bool is_variable(const struct translator *t, const char *name)
+{
+    for (unsigned i = 0; i < t->variables; i++) {
+        if (strcmp(t->variable[i], name) == 0)
+            return true;
+    }
+    return false;
+}
+
+static void put_variable(struct scan *s, const char *name)
+{
+    scan_put(s, "#<_def_");
+    for (; *name != '\0'; name++)
+        scan_put(s, "%c", line_lower(*name));
+    scan_put(s, ">");
+}
+
 void scan_operand(struct scan *s, const char *name)
 {
     static const char *const functions[][2] = {
@@ -106,6 +123,10 @@ void scan_operand(struct scan *s, const char *name)
     char *end;
     const unsigned long number = strtoul(name + 1, &end, 10);
 
+    if (is_variable(s->t, name)) {
+        put_variable(s, name);
+        return;
+    }
     if (name[0] == 'R' && scan_is_digit(name[1]) && *end == '\0' && number < 900) {
         scan_put(s, "#%lu", R_FIRST + number);
         return;
@@ -195,13 +216,14 @@ void scan_brackets(struct scan *s)
 static void axis_value(struct scan *s, char letter, const char *way)
 {
     static const char axes[] = "XYZABC";
+    static const char centres[] = "IJK";
     const char low = (char)tolower((unsigned char)letter);
-    const char *centre = strchr("IJK", letter);
+    const char *centre = strchr(centres, letter);
     const bool relative = strcmp(way, "IC") == 0;
 
     scan_put(s, "%c[", letter);
     if (centre != NULL && !relative)
-        scan_put(s, "0-#<_%c>+", "xyz"[letter - 'I']);
+        scan_put(s, "0-#<_%c>+", "xyz"[centre - centres]);
     else if (centre == NULL && strchr(axes, letter) == NULL)
         s->failed = true;
     else if (relative != s->t->incremental && centre == NULL)
@@ -224,7 +246,7 @@ static const char *letter_of(const char *name)
 }
 
 /* R1=5 R2=R1 come one after the other: a line of its own for each, behind words that stand before it. */
-static void assign(struct scan *s, const char *name)
+void scan_assign(struct scan *s, const char *name)
 {
     struct translator *t = s->t;
     const size_t before = s->length;
@@ -246,8 +268,8 @@ static void assigned_word(struct scan *s, const char *name)
     const char *before;
     char way[NAME_MAX_];
 
-    if (name[0] == 'R' && scan_is_digit(name[1])) {
-        assign(s, name);
+    if ((name[0] == 'R' && scan_is_digit(name[1])) || is_variable(s->t, name)) {
+        scan_assign(s, name);
         return;
     }
     if (letter == NULL) {

@@ -28,12 +28,14 @@ bool scan_take(struct scan *s, const char *text);
 /* Letters, then letters and digits; in upper case. False: there is none, and nothing is read. */
 bool scan_name(struct scan *s, char name[NAME_MAX_]);
 
-/* R12, a function, or a constant. */
+/* R12, a variable, a function, or a constant. */
 void scan_operand(struct scan *s, const char *name);
 /* A value, as [value]. */
 void scan_brackets(struct scan *s);
 /* A word that is alone in saying something; false: it is none. */
 bool scan_keyword(struct scan *s, const char *name);
+/* NAME = has been passed; NAME is R12 or a variable. */
+void scan_assign(struct scan *s, const char *name);
 /* The words of the rest of the line. */
 void scan_words(struct scan *s);
 

@@ -377,20 +377,45 @@ static bool take_cycle(struct scan *s, const char *name)
     return true;
 }
 
-/* With MCALL a place is a hole. */
+/* With MCALL a place is a hole, also one that a rotary axis leads to: the cycle itself has no words for it. */
 static void drill_there(struct scan *s)
 {
     struct translator *t = s->t;
     struct line l;
+    bool turns = false;
 
     if (t->modal_call[0] == '\0' || !line_read(&l, s->out, s->length) || !line_has_axis(&l))
         return;
     for (unsigned i = 0; i < l.words; i++) {
+        turns = turns || strchr("abc", l.word[i].letter) != NULL;
         if (line_code(&l.word[i]) == 0 || line_code(&l.word[i]) == 10)
             line_blank(&l, &l.word[i]);
     }
     s->length = 0;
-    scan_put(s, "%s %s", l.text, t->modal_call);
+    if (turns) {
+        scan_put(s, "G0 %s", l.text);
+        translate_add(&t->behind, "%s X#<_x> Y#<_y>", t->modal_call);
+    } else {
+        scan_put(s, "%s %s", l.text, t->modal_call);
+    }
+}
+
+/* DEF REAL A=1, B */
+static void take_definitions(struct scan *s)
+{
+    struct translator *t = s->t;
+    char name[NAME_MAX_];
+
+    s->failed = s->failed || !scan_name(s, name);
+    do {
+        s->failed = s->failed || !scan_name(s, name) || t->variables == TRANSLATE_PROGRAMS_MAX;
+        if (s->failed)
+            return;
+        memcpy(t->variable[t->variables++], name, sizeof name);
+        if (scan_take(s, "="))
+            scan_assign(s, name);
+    } while (scan_take(s, ","));
+    clear(t);
 }
 
 /* ---- a line ---- */
@@ -423,6 +448,10 @@ static bool take_order(struct scan *s, char *name)
         return true;
     if (strcmp(name, "MSG") == 0) {
         take_text(s);
+        return true;
+    }
+    if (strcmp(name, "DEF") == 0) {
+        take_definitions(s);
         return true;
     }
     if (strcmp(name, "PROC") == 0 && scan_name(s, name)) {

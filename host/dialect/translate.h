@@ -67,9 +67,9 @@ struct translator {
     uint32_t program;               /* number of O1000 lines so far */
     uint32_t macro;                 /* the current program is called by G65; 0: it is not */
     char modal_call[FLOW_CALL_MAX]; /* G66; empty: none */
-    /* Siemens: names that are jumped to, open blocks, the subprogram it is in */
-    unsigned names, blocks, nested;
-    char name[TRANSLATE_PROGRAMS_MAX][32];
+    /* Siemens: names that are jumped to, those of variables (DEF), open blocks, the subprogram it is in */
+    unsigned names, variables, blocks, nested;
+    char name[TRANSLATE_PROGRAMS_MAX][32], variable[TRANSLATE_PROGRAMS_MAX][32];
     uint32_t block[TRANSLATE_LINES_MAX];
     char subprogram[32];
     size_t line_offset; /* of the current line, in the text */

@@ -369,6 +369,8 @@ static void test_words_and_values_of_siemens(void)
     expect(DIALECT_SIEMENS, "N10 G1 X=R1+2*(R2-1) Y-2 CR=5 TURN=2 F=R3 ;x=1\n",
            "G1 X[#101+2*[#102-1]] Y-2 R[5] P[1+2] F[#103] ;x=1\n");
     expect(DIALECT_SIEMENS, "R1=5 R2=SIN(R1)/-3\n", "#101=[5]\n|#102=[SIN[#101]/[0-3]]\n");
+    expect(DIALECT_SIEMENS, "DEF REAL TOP=2, LOW\nLOW=TOP-1\nZ=LOW\n",
+           "#<_def_top>=[2]\n#<_def_low>=[#<_def_top>-1]\nZ[#<_def_low>] \n");
     expect(DIALECT_SIEMENS, "G2 X=IC(5) I=AC(7)\nG91 X=AC(1)\n",
            "G2 X[#<_x>+[5]] I[0-#<_x>+[7]] \nG91 X[[1]] \n");
     expect(DIALECT_SIEMENS, "T1 M6\nD1\nD0\nSOFT G642 SUPA\nG71 M17\n",
