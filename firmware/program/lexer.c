@@ -164,6 +164,7 @@ enum lexer_result lexer_next_line(struct program_lexer *l, struct diagnostic *er
         return LEXER_END;
     }
     if (c == LEXER_GOES_ON && l->line > 0) {
+        l->line_offset++; /* who comes back to it reads a line, with its number */
         c = next_byte(l);
     } else {
         l->line++;

@@ -5,6 +5,7 @@
 #include "dialect/dialect.h"
 #include "dialect/difference.h"
 #include "dialect/line.h"
+#include "dialect/translate.h"
 
 #include <math.h>
 #include <string.h>
@@ -110,6 +111,10 @@ static bool look_at_line(struct look *k)
         note(k, BIT(DIALECT_GRBL), NULL);
         return true;
     }
+    if (siemens_tells(&k->line)) {
+        note(k, BIT(DIALECT_SIEMENS), NULL);
+        return true;
+    }
     if (c == ':' ||
         (line_lower(c) == 'o' && k->line.words > 0 && k->line.word[0].kind == WORD_BARE))
         note(k, BIT(DIALECT_FANUC), NULL);
@@ -118,7 +123,7 @@ static bool look_at_line(struct look *k)
 
 static void look_at_code(struct look *k, struct line_word *w)
 {
-    static const uint16_t fanuc[] = {541, 650, 660, 661};
+    static const uint16_t fanuc[] = {434, 541, 650, 660, 661, 682};
     const int number = line_code(w);
 
     if (number < 0)
@@ -128,6 +133,8 @@ static void look_at_code(struct look *k, struct line_word *w)
         if (w->letter == 'g' && number == fanuc[i])
             note(k, BIT(DIALECT_FANUC) | BIT(DIALECT_HAAS), w);
     }
+    if (w->letter == 'g' && (number == 120 || number == 130) && line_find(&k->line, 'i', 0) != NULL)
+        note(k, BIT(DIALECT_HAAS), w);
     if (w->letter == 'g' && number == 1540)
         note(k, BIT(DIALECT_HAAS), w);
     if (w->letter == 'g' && number == 500 && line_find(&k->line, 's', 0) == NULL)
@@ -403,8 +410,8 @@ void dialect_guess_line(struct dialect_detector *d, const char *bytes, size_t le
 
 struct dialect_guess dialect_guess_end(const struct dialect_detector *d)
 {
-    static const enum dialect order[] = {DIALECT_MARLIN, DIALECT_HAAS, DIALECT_FANUC, DIALECT_MACH3,
-                                         DIALECT_GRBL};
+    static const enum dialect order[] = {DIALECT_SIEMENS, DIALECT_MARLIN, DIALECT_HAAS,
+                                         DIALECT_FANUC,   DIALECT_MACH3,  DIALECT_GRBL};
     const struct dialect_arcs *arcs = &d->arcs;
     struct dialect_guess guess = {
         .absolute = arcs->absolute > 1 && arcs->relative == 0 && !arcs->said && !d->linuxcnc,

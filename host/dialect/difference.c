@@ -7,6 +7,7 @@
 #define HAAS     (1U << DIALECT_HAAS)
 #define MACH3    (1U << DIALECT_MACH3)
 #define MARLIN   (1U << DIALECT_MARLIN)
+#define SIEMENS  (1U << DIALECT_SIEMENS)
 #define INDUSTRY (FANUC | HAAS | MACH3)
 
 /* One code, or several in a row. */
@@ -56,6 +57,23 @@ static const struct difference rows[] = {
     CODES(HAAS, 'm', 800, 810, DIFFERENCE_DROP, "automatic door"),
     CODES(HAAS, 'm', 830, 840, DIFFERENCE_DROP, "air blast"),
     CODES(MACH3, 'm', 400, 410, DIFFERENCE_DROP, "gear"),
+    /* Siemens: inches by other numbers, offsets beyond G57, stops at corners and what else shapes a path */
+    CODE(SIEMENS, 'g', 700, DIFFERENCE_REPLACE, "G20"),
+    CODE(SIEMENS, 'g', 7000, DIFFERENCE_REPLACE, "G20"),
+    CODE(SIEMENS, 'g', 710, DIFFERENCE_REPLACE, "G21"),
+    CODE(SIEMENS, 'g', 7100, DIFFERENCE_REPLACE, "G21"),
+    CODE(SIEMENS, 'g', 600, DIFFERENCE_REPLACE, "G61.1"),
+    CODES(SIEMENS, 'g', 6410, 6450, DIFFERENCE_REPLACE, "G64"),
+    CODES(SIEMENS, 'g', 6010, 6030, DIFFERENCE_QUIET, "when an exact stop is reached"),
+    CODE(SIEMENS, 'g', 90, DIFFERENCE_DROP, "exact stop of one block"),
+    CODE(SIEMENS, 'g', 5050, DIFFERENCE_REPLACE, "G58"),
+    CODE(SIEMENS, 'g', 5060, DIFFERENCE_REPLACE, "G59"),
+    CODE(SIEMENS, 'g', 5070, DIFFERENCE_REPLACE, "G59.1"),
+    CODE(SIEMENS, 'g', 5080, DIFFERENCE_REPLACE, "G59.2"),
+    CODE(SIEMENS, 'g', 5090, DIFFERENCE_REPLACE, "G59.3"),
+    CODES(SIEMENS, 'g', 4500, 4510, DIFFERENCE_QUIET, "outer corners of compensation"),
+    CODES(SIEMENS, 'g', 4600, 4620, DIFFERENCE_QUIET, "crossings in compensation"),
+    CODE(SIEMENS, 'm', 170, DIFFERENCE_REPLACE, "M2"),
     /* printers: what is left is the way of the nozzle */
     CODES(MARLIN, 'g', 290, 300, DIFFERENCE_LINE, "probing of the bed"),
     CODE(MARLIN, 'g', 50, DIFFERENCE_LINE, "spline"),

@@ -5,6 +5,7 @@
  *     IF [a] THEN x               o9200nnnn if [a] / x / o9200nnnn endif
  *     GOTO 10                     o<place> goto [line] [loops]: filled in when all lines have their places
  *     G65 P1000 A1 B2             o1000 call [1] [2] ...; O1000 ... M99 is then o1000 sub ... o1000 endsub
+ *     G66 P1000 A1 ... G67        the same call behind each line that moves
  */
 #include "dialect/translate.h"
 
@@ -42,7 +43,8 @@ void flow_survey(struct survey *s, struct line *l)
 
     if (first != NULL && first->letter == 'o' && first->is_number)
         remember(s->program, &s->programs, first->value);
-    if (p != NULL && p->is_number && line_find_code(l, 'g', 650) != NULL)
+    if (p != NULL && p->is_number &&
+        (line_find_code(l, 'g', 650) != NULL || line_find_code(l, 'g', 660) != NULL))
         remember(s->macro, &s->macros, p->value);
     for (unsigned i = 0; i < l->words; i++)
         s->jumps = s->jumps || line_is_keyword(l, &l->word[i], "goto");
@@ -59,8 +61,13 @@ void flow_note_label(struct translator *t, size_t offset)
 {
     const struct line_word *w = t->line.words > 0 ? &t->line.word[0] : NULL;
 
-    if (!t->survey.jumps || w == NULL || w->letter != 'n' || !w->is_number)
-        return;
+    t->line_offset = offset;
+    if (t->survey.jumps && w != NULL && w->letter == 'n' && w->is_number)
+        flow_label(t, line_whole(w->value));
+}
+
+void flow_label(struct translator *t, uint32_t number)
+{
     if (t->labels == t->label_room) {
         const size_t room = 2 * t->label_room + 256;
         struct label *grown = realloc(t->label, room * sizeof *grown);
@@ -71,8 +78,7 @@ void flow_note_label(struct translator *t, size_t offset)
         t->label = grown;
         t->label_room = room;
     }
-    t->label[t->labels++] =
-        (struct label){t->program, line_whole(w->value), t->number, offset, t->depth};
+    t->label[t->labels++] = (struct label){t->program, number, t->number, t->line_offset, t->depth};
 }
 
 /* The number behind GOTO is a word without a letter: digits among what is left of the line. */
@@ -86,7 +92,7 @@ static bool read_target(const struct line *l, const struct line_word *w, uint32_
 }
 
 /* Where it is filled in is a place in behind, until the line is put out. */
-static void add_jump(struct translator *t, uint32_t number)
+void flow_go_to(struct translator *t, uint32_t number)
 {
     if (t->jumps < TRANSLATE_JUMPS_MAX)
         t->jump[t->jumps++] =
@@ -161,7 +167,7 @@ static void take_goto(struct translator *t, unsigned at)
     if (!read_target(&t->line, &t->line.word[at], &number))
         return;
     line_read(&t->line, "", 0);
-    add_jump(t, number);
+    flow_go_to(t, number);
 }
 
 static void take_alarm(struct translator *t);
@@ -230,26 +236,17 @@ static unsigned argument_of(char letter)
     return at != NULL && letter != '.' ? (unsigned)(at - letters) + 1 : 0;
 }
 
-static void call(struct translator *t, uint32_t program, char arguments[ARGUMENTS][48])
+static void write_call(char text[FLOW_CALL_MAX], uint32_t program, char arguments[ARGUMENTS][48])
 {
-    char text[ARGUMENTS * 52];
-    size_t length = 0;
+    size_t length = (size_t)snprintf(text, FLOW_CALL_MAX, "o%u call", (unsigned)program);
 
     for (unsigned i = 0; i < ARGUMENTS; i++)
-        length += (size_t)snprintf(text + length, sizeof text - length, " [%s]", arguments[i]);
-    translate_add(&t->behind, "o%u call%s", (unsigned)program, text);
-    line_read(&t->line, "", 0);
+        length += (size_t)snprintf(text + length, FLOW_CALL_MAX - length, " [%s]", arguments[i]);
 }
 
-/* G65 P1000 A1 B2 */
-static void take_macro_call(struct translator *t)
+/* A to Z of the line; what is not given is 0. */
+static void read_arguments(const struct line *l, char arguments[ARGUMENTS][48])
 {
-    struct line *l = &t->line;
-    const struct line_word *p = line_find(l, 'p', 0);
-    char arguments[ARGUMENTS][48];
-
-    if (line_find_code(l, 'g', 650) == NULL || p == NULL || !p->is_number)
-        return;
     for (unsigned i = 0; i < ARGUMENTS; i++)
         (void)snprintf(arguments[i], sizeof arguments[i], "0");
     for (unsigned i = 0; i < l->words; i++) {
@@ -260,7 +257,35 @@ static void take_macro_call(struct translator *t)
             (void)snprintf(arguments[number - 1], sizeof arguments[0], "%.*s",
                            (int)(w->end - w->value_begin), &l->text[w->value_begin]);
     }
-    call(t, line_whole(p->value), arguments);
+}
+
+/* G65 P1000 A1 B2, and G66, which calls from the next line on. */
+static void take_macro_call(struct translator *t)
+{
+    struct line *l = &t->line;
+    const struct line_word *p = line_find(l, 'p', 0);
+    const bool once = line_find_code(l, 'g', 650) != NULL;
+    char arguments[ARGUMENTS][48];
+    char text[FLOW_CALL_MAX];
+
+    if ((!once && line_find_code(l, 'g', 660) == NULL) || p == NULL || !p->is_number)
+        return;
+    read_arguments(l, arguments);
+    write_call(text, line_whole(p->value), arguments);
+    if (once)
+        translate_add(&t->behind, "%s", text);
+    else
+        memcpy(t->modal_call, text, sizeof text);
+    (void)line_read(l, "", 0);
+}
+
+/* Between G66 and G67; the macro itself moves without calling itself. */
+static void take_modal_call(struct translator *t)
+{
+    if (line_find_code(&t->line, 'g', 670) != NULL)
+        t->modal_call[0] = '\0';
+    else if (t->modal_call[0] != '\0' && t->macro == 0 && line_has_axis(&t->line))
+        translate_add(&t->behind, "%s", t->modal_call);
 }
 
 /* M98 of a program that G65 calls too: it sees its caller's parameters. */
@@ -269,6 +294,7 @@ static void take_sub_call(struct translator *t)
     struct line *l = &t->line;
     struct line_word *p = line_find(l, 'p', 0);
     char arguments[ARGUMENTS][48];
+    char call[FLOW_CALL_MAX];
     char text[32];
 
     if (line_find_code(l, 'm', 980) == NULL || p == NULL || !p->is_number)
@@ -278,7 +304,9 @@ static void take_sub_call(struct translator *t)
     if (has(t->survey.macro, t->survey.macros, number)) {
         for (unsigned i = 0; i < ARGUMENTS; i++)
             (void)snprintf(arguments[i], sizeof arguments[i], "#%u", i + 1);
-        call(t, number, arguments);
+        write_call(call, number, arguments);
+        translate_add(&t->behind, "%s", call);
+        (void)line_read(l, "", 0);
     } else if (number > 9999 && line_find(l, 'l', 0) == NULL &&
                !has(t->survey.program, t->survey.programs, number) &&
                has(t->survey.program, t->survey.programs, number % 10000)) {
@@ -335,6 +363,7 @@ void flow_translate(struct translator *t)
     unsigned at;
 
     take_program(t);
+    take_modal_call(t);
     take_macro_call(t);
     take_sub_call(t);
     if (has_keyword(l, "if", &at))

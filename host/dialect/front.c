@@ -10,7 +10,7 @@
 static const char *const names[DIALECT_COUNT + 1] = {
     [DIALECT_LINUXCNC] = "linuxcnc", [DIALECT_GRBL] = "grbl",   [DIALECT_FANUC] = "fanuc",
     [DIALECT_HAAS] = "haas",         [DIALECT_MACH3] = "mach3", [DIALECT_MARLIN] = "marlin",
-    [DIALECT_AUTO] = "auto",
+    [DIALECT_SIEMENS] = "siemens",   [DIALECT_AUTO] = "auto",
 };
 
 const char *dialect_name(enum dialect dialect)

@@ -50,6 +50,7 @@ static bool is(const struct translator *t, unsigned dialects)
 #define GRBL        (1U << DIALECT_GRBL)
 #define MARLIN      (1U << DIALECT_MARLIN)
 #define MACROS      (1U << DIALECT_FANUC | 1U << DIALECT_HAAS)
+#define SIEMENS     (1U << DIALECT_SIEMENS)
 #define NOT_FOREIGN (1U << DIALECT_LINUXCNC)
 
 /* ---- whole lines ---- */
@@ -428,6 +429,8 @@ static void translate_extruder(struct translator *t)
 
 static void translate_foreign(struct translator *t)
 {
+    if (is(t, SIEMENS))
+        siemens_translate(t);
     translate_start(t);
     translate_numbers(t);
     names_translate(t);
@@ -435,6 +438,7 @@ static void translate_foreign(struct translator *t)
         bracket_assignment(&t->line);
         if (t->survey.lathe)
             turning_translate(t);
+        pocket_translate(t);
         flow_translate(t);
     }
     codes_translate(t);
@@ -446,6 +450,7 @@ static void translate_foreign(struct translator *t)
         translate_dwell(t);
     if (is(t, MACROS)) {
         translate_system(t);
+        upright_translate(t);
         translate_lathe(t);
     }
     translate_speed_limit(t);
@@ -524,7 +529,8 @@ static void survey_line(struct translator *t, const char *bytes, size_t length)
     if (!line_read(l, bytes, length))
         return;
     flow_survey(&t->survey, l);
-    t->survey.lathe = t->survey.lathe ||
+    t->survey.rotary = t->survey.rotary || upright_turns(l);
+    t->survey.lathe = t->survey.lathe || turning_tells(l) ||
                       (line_find_code(l, 'g', 500) != NULL && line_find(l, 's', 0) != NULL) ||
                       (line_find_code(l, 'g', 280) != NULL && line_find(l, 'u', 0) != NULL);
 }
@@ -555,6 +561,8 @@ bool dialect_translate(enum dialect dialect, const struct dialect_codes *codes, 
     if (t->survey.lathe)
         t->across = 'j';
     each_line(t, bytes, length, translate_line);
+    if (is(t, SIEMENS))
+        siemens_finish(t);
     (void)flow_finish(t);
     dialect_text_free(&t->before);
     dialect_text_free(&t->behind);

@@ -10,6 +10,8 @@
 #define TRANSLATE_PROGRAMS_MAX 128
 #define TRANSLATE_JUMPS_MAX    1024
 #define TRANSLATE_LINES_MAX    16
+/* A call with all of its arguments. */
+#define FLOW_CALL_MAX 1408
 
 /* A line with a number N that a jump can go to. */
 struct label {
@@ -34,6 +36,7 @@ struct turned {
 /* What has been seen of the whole text before. */
 struct survey {
     bool lathe;
+    bool rotary; /* it has words of rotary axes */
     unsigned programs, macros;
     uint32_t program[TRANSLATE_PROGRAMS_MAX]; /* O1000 */
     uint32_t macro[TRANSLATE_PROGRAMS_MAX];   /* called by G65 */
@@ -58,16 +61,24 @@ struct translator {
     bool has_tool;       /* there has been a T */
     bool begun;          /* a line with words has passed */
     struct dialect_detector detector;
-    bool absolute;        /* centres of arcs are, and G90.1 has to say so */
-    bool feed_given;      /* the F that the machine file declares has been put in */
-    char speed_limit[24]; /* G50 S */
-    uint32_t program;     /* number of O1000 lines so far */
-    uint32_t macro;       /* the current program is called by G65; 0: it is not */
+    bool absolute;                  /* centres of arcs are, and G90.1 has to say so */
+    bool feed_given;                /* the F that the machine file declares has been put in */
+    char speed_limit[24];           /* G50 S */
+    uint32_t program;               /* number of O1000 lines so far */
+    uint32_t macro;                 /* the current program is called by G65; 0: it is not */
+    char modal_call[FLOW_CALL_MAX]; /* G66; empty: none */
+    /* Siemens: names that are jumped to, those of variables (DEF), open blocks, the subprogram it is in */
+    unsigned names, variables, blocks, nested;
+    char name[TRANSLATE_PROGRAMS_MAX][32], variable[TRANSLATE_PROGRAMS_MAX][32];
+    uint32_t block[TRANSLATE_LINES_MAX];
+    char subprogram[32];
+    size_t line_offset; /* of the current line, in the text */
     struct turned profile[TRANSLATE_LINES_MAX];
     unsigned profiles;
     double skip_from, skip_to; /* blocks to be passed over; 0: none */
     bool skipping;
     char depth_of_cut[48], way_back[48]; /* G71 U R */
+    uint32_t thread_form;                /* P of the first line of G76 */
     unsigned depth;                      /* open loops */
     unsigned labels, jumps;
     struct label *label;
@@ -96,12 +107,31 @@ void codes_translate(struct translator *t);
 
 /* G70, G71, G72, G75 and G76 of lathes. */
 void turning_translate(struct translator *t);
+/* Only programs for lathes have such a line. */
+bool turning_tells(struct line *l);
 
-/* WHILE, DO, END, IF, GOTO, G65 and what goes with them. */
+/* Has a line a rotary axis? */
+bool upright_turns(struct line *l);
+/* G43.4, G53.1 and G68.2 of a program that has none. */
+void upright_translate(struct translator *t);
+
+/* G12 and G13. */
+void pocket_translate(struct translator *t);
+
+/* What Siemens' controllers say in words. */
+void siemens_translate(struct translator *t);
+void siemens_finish(struct translator *t);
+/* Only programs for them have such a line. */
+bool siemens_tells(const struct line *l);
+
+/* WHILE, DO, END, IF, GOTO, G65, G66 and what goes with them. */
 void flow_survey(struct survey *s, struct line *l);
 void flow_translate(struct translator *t);
 /* The line begins at this place of the text. */
 void flow_note_label(struct translator *t, size_t offset);
+/* The same for a number, or a name that has been given one. */
+void flow_label(struct translator *t, uint32_t number);
+void flow_go_to(struct translator *t, uint32_t number);
 /* Fills in where jumps go. False: one has no target; the result says which. */
 bool flow_finish(struct translator *t);
 

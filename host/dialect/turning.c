@@ -7,8 +7,10 @@
  *     G70 P10 Q20                         G42 / G70 Q93000010 / G40, if the profile has G42
  *     G75 X0. I1.                         steps of 1 down to X0, a little back after each
  *     G76 X8. Z-20. K1.2 D0.4 F1.5        G76 P1.5 Z-20 I... J0.8 K2.4 R2
+ *     G76 P020560 Q100 R50                2 finishing cuts, run-out over half a turn, flanks of 60 degrees
+ *     G76 X8. Z-20. P1200 Q400 F1.5       the same thread, K and D in thousandths
  *
- * The two-line forms (G71 U2. R0.5 before) are read too.
+ * The two-line forms of G71 and G72 (G71 U2. R0.5 before) are read too.
  */
 #include "dialect/translate.h"
 
@@ -204,22 +206,91 @@ static void take_groove(struct translator *t)
     go_back(t);
 }
 
+/* A value of whole thousandths, in inches ten-thousandths, if it is written without a point. */
+static void thousandths(struct line *l, char letter, char *text, size_t size)
+{
+    const struct line_word *w = line_find(l, letter, 0);
+
+    if (w != NULL && w->is_number && !w->has_point)
+        (void)snprintf(text, size, "%.0f*[0.001-0.0009*#<_imperial>]", w->value);
+    else
+        expression(l, letter, "", text, size);
+}
+
+/* Of X or Z, or of the distances U and W to them. */
+static void reach(struct line *l, char letter, char by, const char *from, char *text, size_t size)
+{
+    char value[48];
+
+    expression(l, by, "", value, sizeof value);
+    if (value[0] != '\0')
+        (void)snprintf(text, size, "%s+[%s]", from, value);
+    else
+        expression(l, letter, "", text, size);
+}
+
+/* Diameters: the ground X, the height of the thread and its first cut. */
+struct thread {
+    char x[80], z[80], height[64], first[64], pitch[48];
+    double finishing; /* cuts at full depth */
+    double run_out;   /* turns of the spindle */
+    double angle_deg; /* between the flanks */
+};
+
+static void put_thread(struct translator *t, const struct thread *h)
+{
+    char out[64] = "";
+
+    if (h->x[0] == '\0' || h->z[0] == '\0' || h->height[0] == '\0' || h->first[0] == '\0' ||
+        h->pitch[0] == '\0')
+        return;
+    if (h->run_out > 0.0)
+        (void)snprintf(out, sizeof out, " E[%.1f*[%.40s]] L2", h->run_out, h->pitch);
+    (void)line_read(&t->line, "", 0);
+    translate_add(&t->behind,
+                  "G76 P[%s] Z[%s] I[[%s]+2*[%s]-2*#<_x>] J[2*[%s]] K[2*[%s]] R2 Q[%.4f] H%.0f%s",
+                  h->pitch, h->z, h->x, h->height, h->first, h->height, 0.5 * h->angle_deg,
+                  h->finishing > 1.0 ? h->finishing - 1.0 : 0.0, out);
+}
+
 /* K is the height of the thread, D the first cut, both of the radius; X the diameter at its ground. */
 static void take_thread(struct translator *t)
 {
-    static const char letters[] = "xzkdfa";
-    char text[6][48];
+    struct line *l = &t->line;
+    const struct line_word *a = line_find(l, 'a', 0);
+    struct thread h = {.angle_deg = a != NULL && a->is_number ? a->value : 0.0};
 
-    for (unsigned i = 0; i < 6; i++)
-        expression(&t->line, letters[i], i == 5 ? "0" : "", text[i], sizeof text[i]);
-    for (unsigned i = 0; i < 5; i++) {
-        if (text[i][0] == '\0')
-            return;
+    expression(l, 'x', "", h.x, sizeof h.x);
+    expression(l, 'z', "", h.z, sizeof h.z);
+    expression(l, 'k', "", h.height, sizeof h.height);
+    expression(l, 'd', "", h.first, sizeof h.first);
+    expression(l, 'f', "", h.pitch, sizeof h.pitch);
+    put_thread(t, &h);
+}
+
+/* The first line: P is three numbers of two digits. The second: P is the height, Q the first cut; R would be a cone. */
+static void take_thread_pair(struct translator *t, const struct line_word *p)
+{
+    struct line *l = &t->line;
+    const struct line_word *cone = line_find(l, 'r', 0);
+    const uint32_t form = t->thread_form;
+    struct thread h = {.finishing = form / 10000 % 100,
+                       .run_out = 0.1 * (form / 100 % 100),
+                       .angle_deg = form % 100};
+
+    if (!line_has_axis(l) && line_find(l, 'u', 0) == NULL && line_find(l, 'w', 0) == NULL) {
+        t->thread_form = p->is_number ? line_whole(p->value) : 0;
+        leave_feed(t);
+        return;
     }
-    (void)line_read(&t->line, "", 0);
-    translate_add(&t->behind,
-                  "G76 P[%s] Z[%s] I[[%s]+2*[%s]-2*#<_x>] J[2*[%s]] K[2*[%s]] R2 Q[[%s]/2]",
-                  text[4], text[1], text[0], text[2], text[3], text[2], text[5]);
+    if (cone != NULL && (!cone->is_number || cone->value != 0.0))
+        return;
+    reach(l, 'x', 'u', "2*#<_x>", h.x, sizeof h.x);
+    reach(l, 'z', 'w', "#<_z>", h.z, sizeof h.z);
+    thousandths(l, 'p', h.height, sizeof h.height);
+    thousandths(l, 'q', h.first, sizeof h.first);
+    expression(l, 'f', "", h.pitch, sizeof h.pitch);
+    put_thread(t, &h);
 }
 
 static bool is_passed_over(struct translator *t)
@@ -230,6 +301,14 @@ static bool is_passed_over(struct translator *t)
     t->skip_to = t->skipping ? t->skip_to : 0.0;
     (void)line_read(&t->line, "", 0);
     return true;
+}
+
+bool turning_tells(struct line *l)
+{
+    const bool paired = line_find(l, 'p', 0) != NULL && line_find(l, 'q', 0) != NULL;
+
+    return paired && (line_find_code(l, 'g', 710) != NULL || line_find_code(l, 'g', 720) != NULL ||
+                      (line_find_code(l, 'g', 760) != NULL && !line_has_axis(l)));
 }
 
 void turning_translate(struct translator *t)
@@ -254,6 +333,8 @@ void turning_translate(struct translator *t)
         take_finish(t, p->value, q->value);
     else if (line_find_code(l, 'g', 750) != NULL)
         take_groove(t);
-    else if (line_find_code(l, 'g', 760) != NULL && p == NULL)
+    else if (line_find_code(l, 'g', 760) != NULL && p != NULL)
+        take_thread_pair(t, p);
+    else if (line_find_code(l, 'g', 760) != NULL)
         take_thread(t);
 }

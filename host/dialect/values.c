@@ -61,9 +61,21 @@ static void name_translate(struct translator *t, size_t at)
         (void)line_replace(l, &whole, text);
 }
 
+/* #0 is what has no value; here everything has one, 0 before it is given. */
+static void nothing_translate(struct translator *t, size_t at)
+{
+    struct line_word whole = {.begin = (uint16_t)at, .end = (uint16_t)(at + 2)};
+    const char behind = t->line.text[at + 2];
+
+    if ((behind < '0' || behind > '9') && behind != '.' && !line_is_assigned(&t->line, at + 2))
+        (void)line_replace(&t->line, &whole, "[0]");
+}
+
 void names_translate(struct translator *t)
 {
     for (size_t at = 0; at < t->line.length && strchr("(;", t->line.text[at]) == NULL; at++) {
+        if (t->line.text[at] == '#' && t->line.text[at + 1] == '0')
+            nothing_translate(t, at);
         if (t->line.text[at] == '#' && line_name_length(&t->line, at + 1) > 0)
             name_translate(t, at);
     }

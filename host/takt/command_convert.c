@@ -12,7 +12,7 @@ static bool read_dialect(const char *name, enum dialect *dialect)
     const unsigned found = name != NULL ? dialect_find(name) : DIALECT_COUNT;
 
     *dialect = (enum dialect)found;
-    if (found < DIALECT_COUNT && found != DIALECT_MARLIN)
+    if (found < DIALECT_COUNT && found != DIALECT_MARLIN && found != DIALECT_SIEMENS)
         return true;
     message_command_error("--to %s: known are linuxcnc, grbl, fanuc, haas and mach3",
                           name != NULL ? name : "DIALECT is needed");

@@ -35,6 +35,7 @@ static const unsigned abilities[DIALECT_COUNT] = {
     [DIALECT_HAAS] = CAN_TOOL | CAN_REVOLUTION | HAS_NUMBER,
     [DIALECT_MACH3] = CAN_TOOL | CAN_REVOLUTION | HAS_CENTRE_MODE,
     [DIALECT_MARLIN] = 0,
+    [DIALECT_SIEMENS] = 0,
 };
 
 static bool can(const struct convert *c, unsigned what)

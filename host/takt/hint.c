@@ -45,6 +45,53 @@ static const struct hint hints[] = {
     {TAKT_ERROR_SPINDLE_NO_ENCODER, "encoder_counts in [spindle] of the machine file"},
 };
 
+/* Codes of other controllers that move something: to leave them out would cut something else. */
+static const struct {
+    const char *word;
+    const char *meaning;
+    const char *cure;
+} moving[] = {
+    {"G12", "a round pocket (Haas)", "G12 I5. F200 is read with --dialect haas"},
+    {"G13", "a round pocket (Haas)", "G13 I5. F200 is read with --dialect haas"},
+    {"G12.1", "a face cut by turning C", "C and X of one path are not calculated here"},
+    {"G112", "a face cut by turning C", "C and X of one path are not calculated here"},
+    {"G7.1", "a path on a cylinder", "C and Z of one path are not calculated here"},
+    {"G107", "a path on a cylinder", "C and Z of one path are not calculated here"},
+    {"G16", "polar coordinates", "@10 ^30 is 10 from the origin at 30 degrees"},
+    {"G32", "a thread in one cut", "G33 Z-20 K1.5 cuts it"},
+    {"G34", "a thread of changing pitch", "G33 has one pitch"},
+    {"G43.4", "the tool's tip led while rotary axes turn",
+     "write the program with a postprocessor for this machine"},
+    {"G43.5", "the tool's tip led while rotary axes turn",
+     "write the program with a postprocessor for this machine"},
+    {"G51", "a scaled program", "the program that makes programs scales them"},
+    {"G51.1", "a mirrored program", "the program that makes programs mirrors them"},
+    {"G53.1", "the tool turned upright on a tilted plane",
+     "write the program with a postprocessor for this machine"},
+    {"G68", "a turned program", "G10 L2 P1 R30 turns G54 by 30 degrees, R0 back"},
+    {"G68.2", "a tilted plane", "write the program with a postprocessor for this machine"},
+    {"G150", "a pocket of any shape (Haas)", "the program that makes programs has pockets"},
+    {"M97", "a call of a line of this program (Haas)", "M98 P1000 calls O1000"},
+};
+
+const char *hint_meaning(const struct diagnostic *d)
+{
+    for (size_t i = 0; i < sizeof moving / sizeof moving[0]; i++) {
+        if (d->code == TAKT_ERROR_WORD_UNKNOWN && strcmp(moving[i].word, d->word) == 0)
+            return moving[i].meaning;
+    }
+    return NULL;
+}
+
+static const char *cure_of(const char *word)
+{
+    for (size_t i = 0; i < sizeof moving / sizeof moving[0]; i++) {
+        if (strcmp(moving[i].word, word) == 0)
+            return moving[i].cure;
+    }
+    return NULL;
+}
+
 static const char *find(enum takt_error code)
 {
     for (size_t i = 0; i < sizeof hints / sizeof hints[0]; i++) {
@@ -141,7 +188,9 @@ static void write_code(const struct diagnostic *d, char text[HINT_MAX])
 {
     struct dialect_code code;
 
-    if (dialect_code_read(&code, d->word, "ignore") == NULL)
+    if (cure_of(d->word) != NULL)
+        write(text, cure_of(d->word));
+    else if (dialect_code_read(&code, d->word, "ignore") == NULL)
         (void)snprintf(text, HINT_MAX,
                        "    if this machine can do without it, add to the machine file, or as "
                        "--set codes.%s=ignore:\n"

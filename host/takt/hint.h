@@ -17,4 +17,7 @@
 void hint_write(const struct diagnostic *d, const char *line, size_t length, size_t at,
                 char text[HINT_MAX]);
 
+/* What an unknown word is elsewhere, if that is known; else NULL. */
+const char *hint_meaning(const struct diagnostic *d);
+
 #endif

@@ -187,8 +187,12 @@ static void message_diagnostic(const char *kind, const struct program_text *prog
     uint32_t line = diagnostic->line;
     const char *name = program_text_place(program, &line);
     const uint32_t column = message_column(program, diagnostic);
+    const char *meaning = hint_meaning(diagnostic);
 
-    diagnostic_text(diagnostic, text);
+    if (meaning != NULL)
+        (void)snprintf(text, sizeof text, "'%s' is not supported: %s", diagnostic->word, meaning);
+    else
+        diagnostic_text(diagnostic, text);
     /* Column 0 is the whole line, which begins at 1. */
     message_tell(
         &(struct message){kind, name, line, line > 0 && column == 0 ? 1 : column, text, cure});

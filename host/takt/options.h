@@ -171,7 +171,7 @@ struct option_row {
          "parameters, LinuxCNC's .var"},                                                           \
         {"dialect", OPTION_TEXT, offsetof(struct options, dialect), "NAME",                        \
          "what the program is written for: auto (default), linuxcnc, grbl, fanuc, haas, mach3, "   \
-         "marlin"},                                                                                \
+         "marlin, siemens"},                                                                       \
         {"subroutines", OPTION_LIST, offsetof(struct options, subroutines), "FOLDER",              \
          "where files of subroutines are, beside the program's own folder"},                       \
         {"from-line", OPTION_LINE, offsetof(struct options, from_line), "N",                       \

@@ -54,7 +54,8 @@ static bool prepare_program(struct session *s)
 
     if (found > DIALECT_AUTO) {
         message_command_error(
-            "--dialect %s: known are auto, linuxcnc, grbl, fanuc, haas, mach3 and marlin", dialect);
+            "--dialect %s: known are auto, linuxcnc, grbl, fanuc, haas, mach3, marlin and siemens",
+            dialect);
         return false;
     }
     front.dialect = (enum dialect)found;

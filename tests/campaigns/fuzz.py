@@ -21,6 +21,7 @@ HANGS_S = 30
 
 # Files of the repository that a reader knows.
 FILES = {
+    "dialects": ("tests/golden/*.ngc", "tests/programs/*.ngc", "tests/fuzz/seeds/editor/*"),
     "machine": ("host/examples/*.ini", "tests/golden/*.ini"),
     "tools": ("tests/golden/*.tbl", "host/examples/*.tbl"),
     "parameters": ("tests/golden/*.var",),

@@ -1,7 +1,8 @@
 """Random part programs of which most are right: a mill with six axes or a lathe, every line from one random stream.
 
 What the tables of differences from LinuxCNC name on purpose is left out: a change of the feed mode without a new F, feed per
-revolution without a spindle, spirals with G93, tapping and arcs across a rotated plane, G28 in one.
+revolution without a spindle, spirals with G93, tapping and arcs across a rotated plane, G28 in one, compensation in G19, of
+spirals, round corners of less than 2.9 degrees, or where a contour comes back to where it has been, turning cycles in inches.
 """
 import math
 import random
@@ -24,6 +25,8 @@ class Writer:
         self.feed_mode = "G94"
         self.rotated = False
         self.label = 100
+        self.heading = 0.0
+        self.inch = False
 
     # -- numbers --
 
@@ -224,7 +227,95 @@ class Writer:
             self.line(f"{label} call [{self.number(self.between(0.0, 9.0))}]")
         self.settle()
 
+    # -- compensation --
+
+    def corner(self):
+        """The direction behind a corner that is one for both: not below 2.9 degrees, nor nearly a way back."""
+        self.heading += self.random.choice((-1.0, 1.0)) * self.between(math.radians(3.0), math.radians(120.0))
+        return self.heading
+
+    def contour_line(self, first, second, least=4.0):
+        """A line behind the corner: its word, and places along it."""
+        length, angle = self.between(least, 30.0), self.corner()
+        start = self.at[first], self.at[second]
+        end = start[0] + length * math.cos(angle), start[1] + length * math.sin(angle)
+        places = [tuple(s + (e - s) * i / 30.0 for s, e in zip(start, end)) for i in range(31)]
+        return "G1 ", {first: end[0], second: end[1]}, "", places
+
+    def contour_arc(self, first, second):
+        """One or two quarters of a circle, which have no decimals more than its radius: see `cutter_arc_decimals`."""
+        quarters, left, radius = self.random.randint(1, 2), self.chance(0.5), self.between(4.0, 20.0)
+        begin = self.corner() + (-0.5 if left else 0.5) * math.pi
+        sweep = (0.5 if left else -0.5) * math.pi * quarters
+        i, j = round(-radius * math.cos(begin), 4), round(-radius * math.sin(begin), 4)
+        back = (i, j) if quarters == 2 else (j, -i) if left else (-j, i)
+        centre = self.at[first] + i, self.at[second] + j
+        angles = [begin + sweep * k / 30.0 for k in range(31)]
+        places = [(centre[0] + radius * math.cos(a), centre[1] + radius * math.sin(a)) for a in angles]
+        self.heading += sweep
+        words = "".join(f" {letter}{value:.4f}" for letter, value in zip(PLANES[self.plane][2], (i, j)))
+        return "G3 " if left else "G2 ", {first: centre[0] + back[0], second: centre[1] + back[1]}, words, places
+
+    def contour(self, orientation=""):
+        """
+        G41.1 or G42.1 round a few lines and arcs, as far as they do not come back to where they have been: nobody looks
+        for that. LinuxCNC refuses many that turn too sharply.
+        """
+        if self.plane == "G19" or (self.plane == "G18" and self.rotated):
+            return
+        first, second = PLANES[self.plane][0]
+        radius = self.between(0.1, 3.0)
+        self.line("G91.1 G80 G40")
+        self.centre_absolute = False
+        self.line(f"{self.random.choice(('G41.1', 'G42.1'))} D{self.number(radius)}{orientation}")
+        self.heading = self.between(-math.pi, math.pi)
+        gone = []
+        for piece in range(self.random.randint(2, 7)):
+            make = self.contour_line if piece == 0 else self.random.choice((self.contour_line, self.contour_arc))
+            code, targets, words, places = make(first, second, *((8.0,) if piece == 0 else ()))
+            if any(math.dist(a, b) < 2.5 * radius + 1.0 for old in gone[:-1] for a in old for b in places):
+                break
+            gone.append(places)
+            self.line(code + self.go(targets) + words + self.feed(needed=piece == 0))
+        self.line("G40")
+        code, targets, _, _ = self.contour_line(first, second)
+        self.line(code + self.go(targets) + self.feed())
+        self.settle()
+
     # -- lathe --
+
+    def lathe_contour(self):
+        self.contour(self.random.choice(("", " L0", *(f" L{n}" for n in range(1, 10)))))
+
+    def profile(self):
+        """A subroutine of a profile that begins at Z 0, goes one way in Z, and ends across it."""
+        x, z = self.between(2.0, 6.0), 0.0
+        self.line(f"G0 X{x:.4f}")
+        self.line("G1 Z0")
+        for _ in range(self.random.randint(2, 7)):
+            by_x, by_z = self.random.choice(((0.0, 1.0), (1.0, 0.0), (1.0, 1.0)))
+            x, z = x + by_x * self.between(0.2, 3.0), z - by_z * self.between(0.5, 6.0)
+            self.line(f"G1 X{x:.4f} Z{z:.4f}")
+        self.line("G1 X30")
+
+    def turning(self):
+        if self.inch:
+            return
+        self.line("G8 G90 G40 G80")
+        self.incremental = False
+        self.label += 1
+        self.line(f"O{self.label} sub")
+        self.profile()
+        self.line(f"O{self.label} endsub")
+        self.line("G0 " + self.go({"X": 30.0, "Z": self.between(0.5, 4.0)}))
+        allowance = self.random.choice(("0", f"{self.between(0.05, 0.6):.3f}"))
+        if self.chance(0.25):
+            words = f"G70 Q{self.label} D{allowance} E{float(allowance) / 3:.3f} P{self.random.randint(1, 3)}"
+        else:
+            words = f"{self.random.choice(('G71', 'G71.1', 'G71.2', 'G72', 'G72.1', 'G72.2'))} Q{self.label} D{allowance}"
+            words += f" I{self.between(0.3, 3.0):.3f} R{self.between(0.1, 1.0):.3f}"
+        self.line(words)
+        self.settle_lathe()
 
     def lathe_mode(self):
         self.line(self.random.choice(("G7", "G8")))
@@ -274,17 +365,18 @@ class Writer:
         self.settle()
         makers = [self.straight] * 8 + [self.arc] * 8 + [self.modes] * 2 + [
             self.distance, self.centre, self.choose_plane, self.choose_feed_mode, self.system, self.offset, self.cycle,
-            self.machine, self.reference, lambda: self.block_of("plain"), lambda: self.block_of("polar")]
+            self.machine, self.reference, self.contour, lambda: self.block_of("plain"), lambda: self.block_of("polar")]
         for _ in range(self.random.randint(5, 40)):
             self.random.choice(makers)()
 
     def lathe(self):
         self.plane = "G18"
-        self.line(self.random.choice(("G21", "G20")) + " G18 G90 G94 F200 S800 M3")
+        self.inch = self.chance(0.5)
+        self.line(("G20" if self.inch else "G21") + " G18 G90 G94 F200 S800 M3")
         self.settle_lathe()
         makers = [self.lathe_straight] * 6 + [self.modes] + [
             self.distance, self.centre, self.choose_feed_mode, self.lathe_mode, self.lathe_spindle, self.lathe_tool,
-            self.lathe_thread, self.lathe_cycle]
+            self.lathe_thread, self.lathe_cycle, self.lathe_contour, self.turning]
         for _ in range(self.random.randint(5, 40)):
             self.random.choice(makers)()
 

@@ -57,6 +57,21 @@ t.check(status == 2 and err.startswith("macro.nc:5:1: error: "), "the dialect ca
 status, found, err = moves("macro.nc", "--dialect", "fanoc")
 t.check(status == 2 and "known are auto, linuxcnc, grbl, fanuc" in err, "one that is not known", err)
 
+# A loop that one line becomes has the number of this line in every round.
+t.write("pocket.nc", "G0 X1\nG13 I2. K5. Q2. F200\nX9\nM30\n")
+status, out, err = t.run("canon", "pocket.nc")
+lines = [tuple(line.split()[:3]) for line in out.splitlines()]
+t.check(lines == [("1", "rapid", "X1.000000"), ("2", "arc_ccw", "X3.000000"), ("2", "arc_ccw", "X3.000000"),
+                  ("2", "feed", "X5.000000"), ("2", "arc_ccw", "X5.000000"), ("2", "feed", "X6.000000"),
+                  ("2", "arc_ccw", "X6.000000"), ("2", "arc_ccw", "X1.000000"), ("2", "feed", "X1.000000"),
+                  ("3", "feed", "X9.000000"), ("4", "end")], "a round pocket", lines, err)
+
+# What moves something and is known elsewhere is no unknown word, and nobody is told to leave it out.
+t.write("tilted.nc", "G68.2 X0 Y0 J30.\nG43.4 H1\nG1 B5\n")
+status, found, err = moves("tilted.nc")
+t.check(status == 2 and "tilted.nc:1:1: error: 'G68.2' is not supported: a tilted plane\n" in err and "ignore" not in err,
+        "a tilted plane", err)
+
 # Errors stand where they are in the program as it was found.
 t.write("wrong.nc", "G54.1 P1\nIF[#1 EQ 0] THEN  G0 X1 Q3\nM30\n")
 status, found, err = moves("wrong.nc")
@@ -64,6 +79,43 @@ t.check(status == 2 and "wrong.nc:2:25: error: no code on this line uses the wor
 t.write("jump.nc", "G0 X1\nGOTO 7\nM30\n")
 status, found, err = moves("jump.nc")
 t.check(status == 2 and "jump.nc:2:1: error: GOTO 7: " in err, "a jump to nowhere", err)
+
+# Siemens: words with '=', parameters, flow, subprograms and cycles.
+t.write("part.mpf", """\
+%_N_PART_MPF
+N10 G17 G71 G90 G64 SOFT
+N20 R1=5 R2=R1*2
+MSG("rough")
+G0 X=R1 Y=R2 Z5
+G1 Z-1 F=R1*100
+G2 X=R1+15 Y10 CR=10
+IF R1>4 GOTOF SKIP
+X99
+SKIP: G0 X=IC(5)
+FOR R5=1 TO 2
+X=30+R5
+ENDFOR
+MCALL CYCLE81(50,0,2,-10)
+Y1
+MCALL
+L100 P2
+M30
+%_N_L100_SPF
+Z=IC(1)
+M17
+""")
+status, out, err = t.run("canon", "part.mpf")
+found = [tuple(line.split()[:5]) for line in out.splitlines()]
+t.check(status == 0 and found == [
+    ("5", "rapid", "X5.000000", "Y10.000000", "Z5.000000"), ("6", "feed", "X5.000000", "Y10.000000", "Z-1.000000"),
+    ("7", "arc_cw", "X20.000000", "Y10.000000", "Z-1.000000"), ("10", "rapid", "X25.000000", "Y10.000000", "Z-1.000000"),
+    ("12", "rapid", "X31.000000", "Y10.000000", "Z-1.000000"), ("12", "rapid", "X32.000000", "Y10.000000", "Z-1.000000"),
+    ("14", "rapid", "X32.000000", "Y10.000000", "Z50.000000"), ("15", "rapid", "X32.000000", "Y1.000000", "Z50.000000"),
+    ("15", "rapid", "X32.000000", "Y1.000000", "Z2.000000"), ("15", "feed", "X32.000000", "Y1.000000", "Z-10.000000"),
+    ("15", "rapid", "X32.000000", "Y1.000000", "Z50.000000"), ("16", "rapid", "X32.000000", "Y1.000000", "Z50.000000"),
+    ("20", "rapid", "X32.000000", "Y1.000000", "Z51.000000"), ("20", "rapid", "X32.000000", "Y1.000000", "Z52.000000"),
+    ("18", "end")], "a program for Siemens", found, err)
+t.check("part.mpf is read as siemens, since line 1 has '%_N_PART_MPF'" in err, "and why it is one", err)
 
 # A printer's program is the way of its nozzle.
 t.write("print.gcode", "M104 S200\nG28 X0 Y0\nG92 E0\nG1 X5 E1.5 F600\nM104 S0\n")

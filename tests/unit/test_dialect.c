@@ -3,6 +3,7 @@
 
 #include "unity.h"
 
+#include <stdio.h>
 #include <string.h>
 
 static struct dialect_result result;
@@ -77,6 +78,9 @@ static void test_only_what_linuxcnc_cannot_read_tells_of_another_dialect(void)
         {"# mill\nG0 X1", DIALECT_GRBL, 1},
         {"G1 X1.5e-17", DIALECT_GRBL, 1},
         {"G2 X1 I1 J0 K0", DIALECT_GRBL, 1},
+        {"G0 X1\nG2 X2 CR=5", DIALECT_SIEMENS, 2},
+        {"N10 R1 = 5", DIALECT_SIEMENS, 1},
+        {"G0 X1\n#<CR>=5 (CR=5)", DIALECT_LINUXCNC, 0},
         {"G0 X1\nG28 X", DIALECT_MARLIN, 2},
         {"G54.1 P2", DIALECT_FANUC, 1},
         {"WHILE [#1 LT 3] DO1", DIALECT_FANUC, 1},
@@ -311,6 +315,92 @@ static void test_profiles_of_fanuc_become_subroutines(void)
            "|G42\n|G70 Q93000010\n|G40\n|G0 X#<_turning_x>\n|Z#<_turning_z>\n");
 }
 
+#define NO_ARGUMENTS " [0] [0] [0] [0] [0] [0] [0] [0] [0] [0] [0] [0] [0] [0] [0] [0] [0]"
+
+static void test_modal_macros_are_called_behind_each_line_that_moves(void)
+{
+    static const char call[] = "o8 call" NO_ARGUMENTS NO_ARGUMENTS;
+    char becomes[1024];
+
+    (void)snprintf(
+        becomes, sizeof becomes,
+        "\nX1.\n|%.*s [0] [0] [0] [5.]\nM8\nG28 X0\n|%.*s [0] [0] [0] [5.]\n   \nX2.\nM30\n",
+        7 + 4 * 22, call, 7 + 4 * 22, call);
+    expect(DIALECT_FANUC, "G66 P8 Z5.\nX1.\nM8\nG28 X0\nG67\nX2.\nM30\n", becomes);
+}
+
+static void test_what_has_no_value_is_nothing(void)
+{
+    expect(DIALECT_FANUC, "#1=#0\nIF[#1 EQ #0] THEN #2=#01\n",
+           "#1=[0]\no92000002 if [#1 EQ [0]]\n| #2=#01\n|o92000002 endif\n");
+}
+
+static void test_threads_of_two_lines_become_one(void)
+{
+    expect(DIALECT_FANUC, "G76 P020560 Q100 R.05\nG76 X8.5 Z-20. P1200 Q400 F1.5\n",
+           "G18 G7\n"
+           "G76 P[1.5] Z[-20.] I[[8.5]+2*[1200*[0.001-0.0009*#<_imperial>]]-2*#<_x>] "
+           "J[2*[400*[0.001-0.0009*#<_imperial>]]] K[2*[1200*[0.001-0.0009*#<_imperial>]]] R2 "
+           "Q[30.0000] H1 E[0.5*[1.5]] L2\n");
+}
+
+static void test_the_tip_is_led_by_g43_where_nothing_turns(void)
+{
+    expect(DIALECT_FANUC, "G68.2 X0 Y0 Z0 I0 J0 K0\nG53.1\nG43.4 H1\nX1\n",
+           "\n     \nG43   H1\nX1\n");
+    expect(DIALECT_FANUC, "G43.4 H1\nA1\n", "G43.4 H1\nA1\n");
+    expect(DIALECT_FANUC, "G68.2 X0 Y0 J1\n", "G68.2 X0 Y0 J1\n");
+}
+
+static void test_round_pockets_become_arcs(void)
+{
+    expect(DIALECT_HAAS, "G91\nG12 Z-1 I5. D1 F9\n",
+           "G91\nF9\n|G1 Z-1\n|#<_pocket>=[[5.]-#5410/2] #<_pocket_last>=[[5.]-#5410/2]\n"
+           "|G91 G91.1 G2 X#<_pocket> Y0 I[#<_pocket>/2] J0\n|G2 I[-#<_pocket>] J0\n"
+           "|o96000002 while [#<_pocket> LT #<_pocket_last>]\n|#<_pocket_was>=#<_pocket>\n"
+           "|#<_pocket>=[#<_pocket>+[0]]\n|o97000002 if [#<_pocket> GT #<_pocket_last>]\n"
+           "|#<_pocket>=#<_pocket_last>\n|o97000002 endif\n|G1 X[#<_pocket>-#<_pocket_was>]\n"
+           "|G2 I[-#<_pocket>] J0\n|o96000002 endwhile\n|G2 X[-#<_pocket>] Y0 I[-#<_pocket>/2] J0\n"
+           "|G1 G91\n");
+}
+
+static void test_words_and_values_of_siemens(void)
+{
+    expect(DIALECT_SIEMENS, "N10 G1 X=R1+2*(R2-1) Y-2 CR=5 TURN=2 F=R3 ;x=1\n",
+           "G1 X[#101+2*[#102-1]] Y-2 R[5] P[1+2] F[#103] ;x=1\n");
+    expect(DIALECT_SIEMENS, "R1=5 R2=SIN(R1)/-3\n", "#101=[5]\n|#102=[SIN[#101]/[0-3]]\n");
+    expect(DIALECT_SIEMENS, "DEF REAL TOP=2, LOW\nLOW=TOP-1\nZ=LOW\n",
+           "#<_def_top>=[2]\n#<_def_low>=[#<_def_top>-1]\nZ[#<_def_low>] \n");
+    expect(DIALECT_SIEMENS, "G2 X=IC(5) I=AC(7)\nG91 X=AC(1)\n",
+           "G2 X[#<_x>+[5]] I[0-#<_x>+[7]] \nG91 X[[1]] \n");
+    expect(DIALECT_SIEMENS, "T1 M6\nD1\nD0\nSOFT G642 SUPA\nG71 M17\n",
+           "T1 M6 \nG43 \nG49 \n G64  G53 \nG21 M2  \n");
+    expect(DIALECT_SIEMENS, "X=$P_EP[X]\nTRAORI\n", "X=$P_EP[X]\no<traori> call\n");
+}
+
+static void test_flow_of_siemens(void)
+{
+    expect(DIALECT_SIEMENS, "IF R1==2\nX1\nELSE\nX2\nENDIF\n",
+           "o98000001 if [#101 EQ 2]\nX1 \no98000001 else\nX2 \no98000001 endif\n");
+    expect(DIALECT_SIEMENS, "FOR R1=1 TO R2\nENDFOR\n",
+           "#101=[[1]-1]\n|o99000001 while [#101 LT [#102]]\n|#101=[#101+1]\n"
+           "o99000001 endwhile\n");
+    expect(DIALECT_SIEMENS, "REPEAT\nUNTIL R1>1\n",
+           "o99000001 do\no99000001 while [1-[#101 GT 1]]\n");
+    expect(DIALECT_SIEMENS, "GOTOF END\nX1\nEND: M30\n",
+           "o00000035 goto [00000003] [00]\nX1 \nM30 \n");
+    expect(DIALECT_SIEMENS, "L10 P2\nM30\n%_N_L10_SPF\nX1\nM17\n",
+           "o<l10> call\n|o<l10> call\nM30 \no<l10> sub\nX1 \no<l10> return\n|o<l10> endsub\n");
+}
+
+static void test_orders_of_siemens(void)
+{
+    expect(DIALECT_SIEMENS, "MSG(\"a (b)\")\nTRANS X1\nTRANS\n",
+           "(msg,a [b])\nG52 X1 \nG52 X0 Y0 Z0\n");
+    expect(DIALECT_SIEMENS, "MCALL CYCLE82(50,0,2,-9,,1)\nG0 X1\nMCALL\n",
+           "G0 Z[50]\n   X1  G98 G82 R[[0]+[2]] Z[[[0-9]]] P[[1]]\nG80 G0\n");
+}
+
 static void test_a_byte_order_mark_is_no_part_of_the_program(void)
 {
     TEST_ASSERT_TRUE(guess("\xef\xbb\xbfG0 X1").translates);
@@ -353,6 +443,14 @@ int main(void)
     RUN_TEST(test_axis_words_before_a_motion_move_at_rapid);
     RUN_TEST(test_words_that_mean_nothing_are_left_out);
     RUN_TEST(test_profiles_of_fanuc_become_subroutines);
+    RUN_TEST(test_modal_macros_are_called_behind_each_line_that_moves);
+    RUN_TEST(test_what_has_no_value_is_nothing);
+    RUN_TEST(test_threads_of_two_lines_become_one);
+    RUN_TEST(test_the_tip_is_led_by_g43_where_nothing_turns);
+    RUN_TEST(test_round_pockets_become_arcs);
+    RUN_TEST(test_words_and_values_of_siemens);
+    RUN_TEST(test_flow_of_siemens);
+    RUN_TEST(test_orders_of_siemens);
     RUN_TEST(test_a_byte_order_mark_is_no_part_of_the_program);
     return UNITY_END();
 }

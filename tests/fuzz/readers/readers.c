@@ -27,6 +27,7 @@ static const struct reader {
     {"slcan", NULL, read_slcan},
     {"socketcand", NULL, read_socketcand},
     {"editor", NULL, read_editor},
+    {"dialects", NULL, read_dialects},
     {"drives", NULL, read_frames_of_master},
     {"master", NULL, read_frames_of_drives},
     {"plan", NULL, read_plan},

@@ -37,6 +37,7 @@ void read_slcan(const uint8_t *data, size_t size);
 void read_socketcand(const uint8_t *data, size_t size);
 void read_candump(const uint8_t *data, size_t size);
 void read_editor(const uint8_t *data, size_t size);
+void read_dialects(const uint8_t *data, size_t size);
 void read_frames_of_drives(const uint8_t *data, size_t size);
 void read_frames_of_master(const uint8_t *data, size_t size);
 

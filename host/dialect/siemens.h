@@ -1,0 +1,42 @@
+/*
+ * A line of Siemens' language as it is read and written; values and words of it (siemens.c).
+ */
+#ifndef TAKT_HOST_DIALECT_SIEMENS_H
+#define TAKT_HOST_DIALECT_SIEMENS_H
+
+#include "dialect/translate.h"
+
+#define NAME_MAX_ 32
+
+struct scan {
+    struct translator *t;
+    const char *at;
+    char out[LINE_MAX_BYTES + 1];
+    size_t length;
+    bool failed; /* it is left as it was, for the interpreter to say what is wrong */
+};
+
+static inline bool scan_is_digit(char c)
+{
+    return c >= '0' && c <= '9';
+}
+
+__attribute__((format(printf, 2, 3))) void scan_put(struct scan *s, const char *format, ...);
+void scan_skip(struct scan *s);
+/* A text that stands here is passed. */
+bool scan_take(struct scan *s, const char *text);
+/* Letters, then letters and digits; in upper case. False: there is none, and nothing is read. */
+bool scan_name(struct scan *s, char name[NAME_MAX_]);
+
+/* R12, a variable, a function, or a constant. */
+void scan_operand(struct scan *s, const char *name);
+/* A value, as [value]. */
+void scan_brackets(struct scan *s);
+/* A word that is alone in saying something; false: it is none. */
+bool scan_keyword(struct scan *s, const char *name);
+/* NAME = has been passed; NAME is R12 or a variable. */
+void scan_assign(struct scan *s, const char *name);
+/* The words of the rest of the line. */
+void scan_words(struct scan *s);
+
+#endif

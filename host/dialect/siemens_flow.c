@@ -1,0 +1,523 @@
+/*
+ * Flow, subprograms and orders of Siemens' language (siemens.c).
+ */
+#include "dialect/output.h"
+#include "dialect/siemens.h"
+
+#include <ctype.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define BLOCK_LABEL  98000000U
+#define REPEAT_LABEL 99000000U
+/* Jumps go to names: their numbers begin behind those of blocks. */
+#define NAME_NUMBER 100000000U
+
+/* ---- flow ---- */
+
+static uint32_t number_of(struct translator *t, const char *name)
+{
+    for (unsigned i = 0; i < t->names; i++) {
+        if (strcmp(t->name[i], name) == 0)
+            return NAME_NUMBER + i;
+    }
+    if (t->names == TRANSLATE_PROGRAMS_MAX)
+        return NAME_NUMBER + TRANSLATE_PROGRAMS_MAX;
+    (void)snprintf(t->name[t->names], sizeof t->name[0], "%s", name);
+    return NAME_NUMBER + t->names++;
+}
+
+static void clear(struct translator *t)
+{
+    (void)line_read(&t->line, "", 0);
+}
+
+static bool is_end(const struct scan *s)
+{
+    return *s->at == '\0' || *s->at == ';';
+}
+
+static bool take_jump(struct scan *s, const char *name)
+{
+    char target[NAME_MAX_];
+
+    if (strcmp(name, "GOTOF") != 0 && strcmp(name, "GOTOB") != 0 && strcmp(name, "GOTO") != 0)
+        return false;
+    s->failed = s->failed || !scan_name(s, target);
+    if (s->failed)
+        return true;
+    clear(s->t);
+    const bool numbered = target[0] == 'N' && scan_is_digit(target[1]);
+
+    flow_go_to(s->t, numbered ? (uint32_t)strtoul(target + 1, NULL, 10) : number_of(s->t, target));
+    return true;
+}
+
+static uint32_t open_block(struct translator *t, uint32_t first)
+{
+    const uint32_t label = first + t->number % 1000000U;
+
+    if (t->blocks < TRANSLATE_LINES_MAX)
+        t->block[t->blocks++] = label;
+    return label;
+}
+
+static uint32_t close_block(struct translator *t)
+{
+    return t->blocks > 0 ? t->block[--t->blocks] : 0;
+}
+
+static void take_if(struct scan *s)
+{
+    struct translator *t = s->t;
+    char name[NAME_MAX_];
+    const char *before;
+
+    scan_brackets(s);
+    before = s->at;
+    const bool jumps = scan_name(s, name) && strncmp(name, "GOTO", 4) == 0;
+
+    if (s->failed)
+        return;
+    clear(t);
+    if (!jumps) {
+        s->at = before;
+        translate_add(&t->before, "o%u if %s", (unsigned)open_block(t, BLOCK_LABEL), s->out);
+        return;
+    }
+    translate_add(&t->behind, "o%u if %s", (unsigned)(BLOCK_LABEL + t->number % 1000000U), s->out);
+    (void)take_jump(s, name);
+    translate_add(&t->behind, "o%u endif", (unsigned)(BLOCK_LABEL + t->number % 1000000U));
+}
+
+static void take_for(struct scan *s)
+{
+    struct translator *t = s->t;
+    char name[NAME_MAX_];
+    char variable[NAME_MAX_];
+
+    s->failed = s->failed || !scan_name(s, name) || !scan_take(s, "=");
+    scan_operand(s, name);
+    (void)snprintf(variable, sizeof variable, "%.31s", s->out);
+    s->length = 0;
+    scan_brackets(s);
+    s->failed = s->failed || !scan_name(s, name) || strcmp(name, "TO") != 0;
+    if (s->failed)
+        return;
+    translate_add(&t->before, "%s=[%s-1]", variable, s->out);
+    s->length = 0;
+    scan_brackets(s);
+    translate_add(&t->before, "o%u while [%s LT %s]", (unsigned)open_block(t, REPEAT_LABEL),
+                  variable, s->out);
+    translate_add(&t->before, "%s=[%s+1]", variable, variable);
+    t->depth++;
+    clear(t);
+}
+
+static void take_loop(struct scan *s, const char *condition)
+{
+    struct translator *t = s->t;
+
+    t->depth++;
+    translate_add(&t->before, "o%u while %s", (unsigned)open_block(t, REPEAT_LABEL), condition);
+    clear(t);
+}
+
+static void end_loop(struct scan *s)
+{
+    struct translator *t = s->t;
+
+    t->depth -= t->depth > 0 ? 1 : 0;
+    translate_add(&t->behind, "o%u endwhile", (unsigned)close_block(t));
+    clear(t);
+}
+
+/* REPEAT ... UNTIL a */
+static void take_until(struct scan *s)
+{
+    struct translator *t = s->t;
+
+    scan_brackets(s);
+    if (s->failed)
+        return;
+    t->depth -= t->depth > 0 ? 1 : 0;
+    translate_add(&t->behind, "o%u while [1-%s]", (unsigned)close_block(t), s->out);
+    clear(t);
+}
+
+static bool take_flow(struct scan *s, const char *name)
+{
+    struct translator *t = s->t;
+
+    if (take_jump(s, name))
+        return true;
+    if (strcmp(name, "IF") == 0) {
+        take_if(s);
+    } else if (strcmp(name, "FOR") == 0) {
+        take_for(s);
+    } else if (strcmp(name, "WHILE") == 0) {
+        scan_brackets(s);
+        if (!s->failed)
+            take_loop(s, s->out);
+    } else if (strcmp(name, "LOOP") == 0) {
+        take_loop(s, "[1]");
+    } else if (strcmp(name, "ENDFOR") == 0 || strcmp(name, "ENDWHILE") == 0 ||
+               strcmp(name, "ENDLOOP") == 0) {
+        end_loop(s);
+    } else if (strcmp(name, "REPEAT") == 0 && is_end(s)) {
+        t->depth++;
+        translate_add(&t->before, "o%u do", (unsigned)open_block(t, REPEAT_LABEL));
+        clear(t);
+    } else if (strcmp(name, "UNTIL") == 0) {
+        take_until(s);
+    } else if (strcmp(name, "ELSE") == 0 && t->blocks > 0) {
+        translate_add(&t->behind, "o%u else", (unsigned)t->block[t->blocks - 1]);
+        clear(t);
+    } else if (strcmp(name, "ENDIF") == 0) {
+        translate_add(&t->behind, "o%u endif", (unsigned)close_block(t));
+        clear(t);
+    } else {
+        return false;
+    }
+    return true;
+}
+
+/* ---- subprograms ---- */
+
+static void end_subprogram(struct translator *t)
+{
+    if (t->subprogram[0] != '\0')
+        translate_add(&t->before, "o<%s> endsub", t->subprogram);
+    t->subprogram[0] = '\0';
+}
+
+static void lower(char *text)
+{
+    for (; *text != '\0'; text++)
+        *text = line_lower(*text);
+}
+
+static void begin_subprogram(struct translator *t, const char *name)
+{
+    end_subprogram(t);
+    (void)snprintf(t->subprogram, sizeof t->subprogram, "%.31s", name);
+    lower(t->subprogram);
+    translate_add(&t->before, "o<%s> sub", t->subprogram);
+}
+
+/* %_N_L100_SPF, and the same of a main program. */
+static bool take_section(struct translator *t, const char *text)
+{
+    char name[NAME_MAX_];
+    struct scan s = {.t = t, .at = text + 4};
+
+    if (strncmp(text, "%_N_", 4) != 0 || !scan_name(&s, name))
+        return false;
+    const size_t length = strlen(name);
+
+    end_subprogram(t);
+    if (length > 4 && strcmp(&name[length - 4], "_SPF") == 0) {
+        name[length - 4] = '\0';
+        begin_subprogram(t, name);
+    }
+    clear(t);
+    return true;
+}
+
+/* L100 P2, NAME, NAME(): the whole line. */
+static bool take_call(struct scan *s, char *name)
+{
+    struct translator *t = s->t;
+    unsigned times = 1;
+    char count[NAME_MAX_];
+
+    if (scan_keyword(s, name) || (scan_is_digit(name[1]) && name[0] != 'L')) {
+        s->length = 0;
+        return false;
+    }
+    (void)scan_take(s, "()");
+    if (name[0] == 'L' && scan_name(s, count) && count[0] == 'P')
+        times = (unsigned)strtoul(count + 1, NULL, 10);
+    scan_skip(s);
+    if (!is_end(s) || name[1] == '\0' || times == 0 || times > 9999)
+        return false;
+    lower(name);
+    clear(t);
+    for (unsigned i = 0; i < times && i < TRANSLATE_PROGRAMS_MAX; i++)
+        translate_add(&t->behind, "o<%s> call", name);
+    return true;
+}
+
+static bool take_return(struct scan *s, const char *name)
+{
+    struct translator *t = s->t;
+
+    if (t->subprogram[0] == '\0' || (strcmp(name, "M17") != 0 && strcmp(name, "RET") != 0))
+        return false;
+    clear(t);
+    translate_add(&t->behind, "o<%s> return", t->subprogram);
+    return true;
+}
+
+/* ---- orders ---- */
+
+/* MSG("text"); without a text it takes the last one away. */
+static void take_text(struct scan *s)
+{
+    const char *begin = strchr(s->at, '"');
+    const char *end = begin != NULL ? strchr(begin + 1, '"') : NULL;
+
+    clear(s->t);
+    if (end == NULL)
+        return;
+    (void)snprintf(s->out, sizeof s->out, "%.*s", (int)(end - begin - 1), begin + 1);
+    for (char *c = s->out; *c != '\0'; c++)
+        *c = (char)(*c == '(' ? '[' : *c == ')' ? ']' : *c);
+    translate_add(&s->t->behind, "(msg,%.200s)", s->out);
+}
+
+/* TRANS without axes takes all away. */
+static void take_shift(struct scan *s)
+{
+    scan_put(s, "G52 ");
+    scan_skip(s);
+    if (is_end(s))
+        scan_put(s, "X0 Y0 Z0");
+    scan_words(s);
+}
+
+/* The arguments of a cycle, as expressions; how many. */
+static unsigned take_arguments(struct scan *s, char argument[8][48])
+{
+    unsigned count = 0;
+
+    s->failed = s->failed || !scan_take(s, "(");
+    while (!s->failed && count < 8 && !scan_take(s, ")")) {
+        s->length = 0;
+        scan_skip(s);
+        scan_put(s, "%s", "");
+        if (*s->at != ',' && *s->at != ')')
+            scan_brackets(s);
+        s->out[s->length] = '\0';
+        (void)snprintf(argument[count++], 48, "%.47s", s->out);
+        (void)scan_take(s, ",");
+    }
+    s->length = 0;
+    return count;
+}
+
+/* Return height, reference, safety above it, depth, depth below the reference; then a dwell, or the first peck and the rest. */
+static void drill(struct scan *s, const char *name, char text[FLOW_CALL_MAX])
+{
+    char a[8][48] = {"", "", "", "", "", "", "", ""};
+    const unsigned count = take_arguments(s, a);
+    const bool relative = a[3][0] == '\0';
+    const char *dwell = count > 5 && a[5][0] != '\0' ? a[5] : "0";
+
+    s->failed = s->failed || count < 4 || a[0][0] == '\0' || a[1][0] == '\0' ||
+                (relative && a[4][0] == '\0');
+    if (s->failed)
+        return;
+    if (a[2][0] == '\0')
+        (void)snprintf(a[2], sizeof a[2], "0");
+    const int at =
+        snprintf(text, FLOW_CALL_MAX, "G98 G%s R[%s+%s] Z[%s%s%s]",
+                 strcmp(name, "CYCLE83") == 0   ? "83"
+                 : strcmp(name, "CYCLE82") == 0 ? "82"
+                                                : "81",
+                 a[1], a[2], relative ? a[1] : "", relative ? "-" : "", relative ? a[4] : a[3]);
+
+    if (strcmp(name, "CYCLE82") == 0)
+        (void)snprintf(text + at, FLOW_CALL_MAX - (size_t)at, " P[%s]", dwell);
+    /* pecks are as deep as the first one: an absolute depth, or one below the reference */
+    if (strcmp(name, "CYCLE83") == 0 && a[5][0] != '\0')
+        (void)snprintf(text + at, FLOW_CALL_MAX - (size_t)at, " Q[ABS[%s-%s]]", a[1], a[5]);
+    else if (strcmp(name, "CYCLE83") == 0)
+        (void)snprintf(text + at, FLOW_CALL_MAX - (size_t)at, " Q[ABS[%s]]", a[6]);
+    translate_add(&s->t->behind, "G0 Z%s", a[0]);
+}
+
+static bool is_drilling(const char *name)
+{
+    return strcmp(name, "CYCLE81") == 0 || strcmp(name, "CYCLE82") == 0 ||
+           strcmp(name, "CYCLE83") == 0;
+}
+
+/* Here and now, at X and Y where the tool is; or at every place from the next line on (MCALL). */
+static bool take_cycle(struct scan *s, const char *name)
+{
+    struct translator *t = s->t;
+    char cycle[NAME_MAX_];
+    char text[FLOW_CALL_MAX];
+    const bool modal = strcmp(name, "MCALL") == 0;
+
+    if (modal && is_end(s)) {
+        clear(t);
+        if (t->modal_call[0] != '\0')
+            translate_add(&t->behind, "G80 G0");
+        t->modal_call[0] = '\0';
+        return true;
+    }
+    (void)snprintf(cycle, sizeof cycle, "%s", name);
+    if (modal && !scan_name(s, cycle))
+        return false;
+    if (!is_drilling(cycle))
+        return false;
+    drill(s, cycle, text);
+    if (s->failed)
+        return true;
+    clear(t);
+    if (modal)
+        memcpy(t->modal_call, text, sizeof text);
+    else
+        translate_add(&t->behind, "%s X#<_x> Y#<_y>", text);
+    if (!modal)
+        translate_add(&t->behind, "G80 G0");
+    return true;
+}
+
+/* With MCALL a place is a hole, also one that a rotary axis leads to: the cycle itself has no words for it. */
+static void drill_there(struct scan *s)
+{
+    struct translator *t = s->t;
+    struct line l;
+    bool turns = false;
+
+    if (t->modal_call[0] == '\0' || !line_read(&l, s->out, s->length) || !line_has_axis(&l))
+        return;
+    for (unsigned i = 0; i < l.words; i++) {
+        turns = turns || strchr("abc", l.word[i].letter) != NULL;
+        if (line_code(&l.word[i]) == 0 || line_code(&l.word[i]) == 10)
+            line_blank(&l, &l.word[i]);
+    }
+    s->length = 0;
+    if (turns) {
+        scan_put(s, "G0 %s", l.text);
+        translate_add(&t->behind, "%s X#<_x> Y#<_y>", t->modal_call);
+    } else {
+        scan_put(s, "%s %s", l.text, t->modal_call);
+    }
+}
+
+/* DEF REAL A=1, B */
+static void take_definitions(struct scan *s)
+{
+    struct translator *t = s->t;
+    char name[NAME_MAX_];
+
+    s->failed = s->failed || !scan_name(s, name);
+    do {
+        s->failed = s->failed || !scan_name(s, name) || t->variables == TRANSLATE_PROGRAMS_MAX;
+        if (s->failed)
+            return;
+        memcpy(t->variable[t->variables++], name, sizeof name);
+        if (scan_take(s, "="))
+            scan_assign(s, name);
+    } while (scan_take(s, ","));
+    clear(t);
+}
+
+/* ---- a line ---- */
+
+/* N100, and NAME: where jumps go to. */
+static bool take_label(struct scan *s)
+{
+    const char *before = s->at;
+    char name[NAME_MAX_];
+
+    if (!scan_name(s, name))
+        return false;
+    if (*s->at == ':' && s->at[1] != '=') {
+        s->at++;
+        flow_label(s->t, number_of(s->t, name));
+        return true;
+    }
+    if (name[0] == 'N' && scan_is_digit(name[1]) &&
+        strspn(name + 1, "0123456789") == strlen(name + 1)) {
+        flow_label(s->t, (uint32_t)strtoul(name + 1, NULL, 10));
+        return true;
+    }
+    s->at = before;
+    return false;
+}
+
+static bool take_order(struct scan *s, char *name)
+{
+    if (take_flow(s, name) || take_return(s, name) || take_cycle(s, name))
+        return true;
+    if (strcmp(name, "MSG") == 0) {
+        take_text(s);
+        return true;
+    }
+    if (strcmp(name, "DEF") == 0) {
+        take_definitions(s);
+        return true;
+    }
+    if (strcmp(name, "PROC") == 0 && scan_name(s, name)) {
+        if (s->t->subprogram[0] == '\0')
+            begin_subprogram(s->t, name);
+        clear(s->t);
+        return true;
+    }
+    return *s->at != '=' && strcmp(name, "TRANS") != 0 && take_call(s, name);
+}
+
+void siemens_translate(struct translator *t)
+{
+    static struct line found;
+    struct scan s = {.t = t, .at = found.text};
+    const char *before;
+    char name[NAME_MAX_];
+
+    found = t->line;
+    if (take_section(t, found.text))
+        return;
+    if (*s.at == '/')
+        scan_put(&s, "%c", *s.at++);
+    while (take_label(&s))
+        ;
+    before = s.at;
+    if (scan_name(&s, name)) {
+        if (take_order(&s, name)) {
+            if (s.failed)
+                t->line = found;
+            return;
+        }
+        if (strcmp(name, "TRANS") != 0)
+            s.at = before;
+        else
+            take_shift(&s);
+    }
+    scan_words(&s);
+    if (!s.failed)
+        drill_there(&s);
+    if (!s.failed)
+        (void)line_read(&t->line, s.out, s.length);
+}
+
+void siemens_finish(struct translator *t)
+{
+    end_subprogram(t);
+    output_add(&t->result->text, t->before.bytes, t->before.length);
+}
+
+bool siemens_tells(const struct line *l)
+{
+    const size_t length = strcspn(l->text, ";");
+    char text[256];
+
+    (void)snprintf(text, sizeof text, "%.*s", length < 255 ? (int)length : 255, l->text);
+    for (char *c = text; *c != '\0'; c++)
+        *c = (char)toupper((unsigned char)*c);
+    const char *at = text;
+
+    if (*at == 'N' && scan_is_digit(at[1]))
+        at += 1 + strspn(at + 1, "0123456789 ");
+    const bool parameter =
+        at[0] == 'R' && scan_is_digit(at[1]) && at[1 + strspn(at + 1, "0123456789 ")] == '=';
+
+    return parameter || strncmp(text, "%_N_", 4) == 0 || strncmp(at, "MCALL", 5) == 0 ||
+           strncmp(at, "MSG(", 4) == 0 ||
+           (strchr(text, '(') == NULL && strchr(text, '#') == NULL && strstr(text, "CR=") != NULL);
+}
