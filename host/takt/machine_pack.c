@@ -47,16 +47,16 @@ enum command_status machine_pack_write(const struct machine_setup *setup, const 
                                        bool is_sector)
 {
     static _Thread_local struct packed packed;
-    struct correction_tables *tables;
+    struct configuration_files files;
+    struct correction_tables *tables = NULL;
     enum command_status status = STATUS_ENVIRONMENT;
     size_t size;
 
-    if (!configuration_files_load(setup))
+    if (!configuration_files_load(&files, setup) || !correction_file_load(&tables, setup)) {
+        configuration_files_free(&files);
         return STATUS_INPUT;
-    if (!correction_file_load(&tables, setup))
-        return STATUS_INPUT;
-    size = settings_pack(&setup->machine, tables, configuration_files_get(), packed.bytes,
-                         sizeof packed.bytes);
+    }
+    size = settings_pack(&setup->machine, tables, files.dcf, packed.bytes, sizeof packed.bytes);
     if (size == 0) {
         message_command_error("the settings take more than %u bytes", BYTES_MAX);
         status = STATUS_INPUT;
@@ -68,6 +68,7 @@ enum command_status machine_pack_write(const struct machine_setup *setup, const 
         }
     }
     free(tables);
+    configuration_files_free(&files);
     return status;
 }
 
