@@ -32,13 +32,6 @@
 /* Of what it left the tolerance by before, a slower piece leaves it by so much at most, or slower is no help. */
 #define NEARER 0.95f
 
-/* Where a curve finds no way on, so much of the tolerance is used from there on. */
-#define NARROWER 0.25
-
-/* A curve goes on by this part of the tolerance, or of the way at nominal feed, in so many windows, or it never will. */
-#define STALL_PART    0.1
-#define STALL_WINDOWS 2
-
 /* What a microcontroller is ready to give for smoothing. */
 _Static_assert(sizeof(struct smooth) + sizeof(union smooth_scratch) <= 27UL * 1024UL,
                "too much memory");
@@ -113,25 +106,20 @@ static void begin(struct smooth *s, const struct move *move)
     s->taken = 0;
     s->proved = 0;
     s->stops = false;
-    s->narrows = false;
+    s->anew_mm = 0.0;
     s->starts = true;
     s->standing = 0;
     order_start(&s->order, 0.0, 0);
     s->known_mm = 0.0;
     s->tried_mm = 0.0;
     s->tried = 0;
-    s->mark_mm = 0.0;
-    s->idle = 0;
+    stall_start(&s->stall, tolerance_mm);
     s->merge.open = false;
 }
 
-/*
- * Where parts of the route lie within the tolerance of each other, a curve may find no way on between them: it goes on nearer
- * to the route. The axes stand.
- */
-static void narrow(struct smooth *s)
+/* Another tolerance from here on, where the axes stand. */
+static void begin_anew(struct smooth *s, double tolerance_mm)
 {
-    const double tolerance_mm = NARROWER * s->route.tolerance_mm;
     struct smooth_limits limits = s->limits;
 
     smooth_limit(&limits, tolerance_mm);
@@ -326,7 +314,6 @@ static void fall_back(struct smooth *s)
     s->ready = h->proved;
     s->proved = 0;
     s->stops = true;
-    s->idle = 0;
     if (s->ready == 0) {
         s->ready = straight_on(w, &s->route);
         return;
@@ -341,38 +328,6 @@ static void fall_back(struct smooth *s)
             w->x[g * w->capacity + i] = h->x[g * most + i];
         }
     }
-}
-
-/* How far the curve should go on in so many pieces: a part of a tolerance, or at nominal feed, or to the end of what is known. */
-static double way_expected(const struct smooth *s, unsigned pieces)
-{
-    const struct window *w = &s->window;
-    const double feed_mm_s = (double)route_element(&s->route, w->element[s->ready])->feed_mm_s;
-    const double way_mm = maths_min(s->route.tolerance_mm, pieces * w->interval_s * feed_mm_s);
-
-    return STALL_PART * maths_min(way_mm, route_end(&s->route) - s->mark_mm);
-}
-
-/*
- * Does the curve stand where it is? Slowed down again and again before a place that it cannot pass, it keeps every limit
- * and the tolerance there for ever.
- */
-static bool stands_still(struct smooth *s, const struct judge_verdict *v)
-{
-    const unsigned pieces = STALL_WINDOWS * kept_most(s);
-    const double at_mm = s->window.at_mm[s->ready];
-    const double ahead_mm = s->window.at_mm[v->whole[v->good]];
-
-    if (v->good >= kept_most(s) && ahead_mm <= s->mark_mm + way_expected(s, kept_most(s))) {
-        return true;
-    }
-
-    s->idle += s->ready;
-    if (at_mm > s->mark_mm + way_expected(s, pieces)) {
-        s->mark_mm = at_mm;
-        s->idle = 0;
-    }
-    return s->idle > pieces;
 }
 
 /* The curve as it is, timed once more: where it does not keep the tolerance so, it stays as it was. */
@@ -426,6 +381,20 @@ static void follow_ready(struct smooth *s, const struct judge_verdict *v)
     }
 }
 
+/* Must the axes rest where what was proved last ends: because no way on has been found, or for another tolerance? */
+static bool does_not_go_on(struct smooth *s, const struct judge_verdict *v)
+{
+    const unsigned whole = v->whole[v->good];
+    const struct stall_window now = {
+        .ready = s->ready, .most = kept_most(s), .good = v->good, .whole = whole};
+    const bool stands = stall_stands(&s->stall, &s->window, &s->route, &now);
+
+    s->anew_mm = stands || s->head.proved > 0
+                     ? stall_tolerance(&s->stall, &s->window, &s->route, s->ready, stands)
+                     : 0.0;
+    return s->ready == 0 || (s->proved == 0 && !is_end(s, whole)) || stands || s->anew_mm > 0.0;
+}
+
 /* What comes well before a piece that leaves the tolerance is kept, the rest is tried again with the next window. */
 static void smooth_window(struct smooth *s, union smooth_scratch *scratch)
 {
@@ -446,8 +415,7 @@ static void smooth_window(struct smooth *s, union smooth_scratch *scratch)
 
     s->ready = v.whole[kept(s, good)];
     s->proved = good - s->ready;
-    s->narrows = stands_still(s, &v);
-    if (s->ready == 0 || (s->proved == 0 && !is_end(s, good)) || s->narrows) {
+    if (does_not_go_on(s, &v)) {
         fall_back(s);
     }
     follow_ready(s, &v);
@@ -546,9 +514,9 @@ static void drop_taken(struct smooth *s)
         s->starts = true;
         s->proved = 0;
     }
-    if (s->narrows) {
-        narrow(s);
-        s->narrows = false;
+    if (s->anew_mm > 0.0) {
+        begin_anew(s, s->anew_mm);
+        s->anew_mm = 0.0;
     }
     if (s->window.count > 0) {
         route_forget(&s->route, s->window.at_mm[0]);

@@ -10,6 +10,7 @@
 #include "smooth/merge.h"
 #include "smooth/relax.h"
 #include "smooth/route.h"
+#include "smooth/stall.h"
 #include "smooth/timing.h"
 #include "smooth/window.h"
 
@@ -69,19 +70,18 @@ struct smooth {
     struct judge_change change;
     struct order
         order; /* where the pieces that are ready end; before there are any, where the window begins */
-    struct move move;  /* of the piece taken last */
-    unsigned proved;   /* pieces at the window's beginning that keep the tolerance, as they were */
-    double known_mm;   /* end of the route when the window was filled */
-    double tried_mm;   /* place its last sample had when the route was not known far enough yet, */
-    uint32_t tried;    /* and the element there */
-    double mark_mm;    /* place on the route that the curve had come to when it went on last, */
-    unsigned idle;     /* and pieces kept since then */
+    struct move move; /* of the piece taken last */
+    unsigned proved;  /* pieces at the window's beginning that keep the tolerance, as they were */
+    double known_mm;  /* end of the route when the window was filled */
+    double tried_mm;  /* place its last sample had when the route was not known far enough yet, */
+    uint32_t tried;   /* and the element there */
+    double anew_mm;   /* tolerance that is used from the next rest on; 0: the same */
+    struct stall stall;
     unsigned standing; /* pieces that are still to come, in which the axes stand */
     bool starts;       /* the next piece begins at rest */
     bool leaves;       /* after those the chain goes on; else they end it, or a part of it */
     struct smooth_piece stand;
     bool stops;     /* the last of the ready ones is a stop */
-    bool narrows;   /* and from there on less of the tolerance is used */
     bool ends;      /* the window's end is that of the chain */
     bool open;      /* a chain has begun and not been taken to its end */
     bool finished;  /* nothing follows in this chain */
