@@ -173,8 +173,8 @@ static const char *commit_upload(struct page_client *client)
 
 static const char *read_fault(const char *words, struct page_command *command)
 {
-    static struct inject script;
-    static struct inject_error error;
+    static _Thread_local struct inject script;
+    static _Thread_local struct inject_error error;
     char text[INJECT_ERROR_TEXT_MAX + 1];
 
     (void)snprintf(text, sizeof text, "power %s\n", words);
