@@ -465,7 +465,7 @@ static bool take_order(struct scan *s, char *name)
 
 void siemens_translate(struct translator *t)
 {
-    static struct line found;
+    static _Thread_local struct line found;
     struct scan s = {.t = t, .at = found.text};
     const char *before;
     char name[NAME_MAX_];
