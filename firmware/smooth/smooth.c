@@ -144,6 +144,7 @@ void smooth_push(struct smooth *s, const struct move *move, uint32_t number,
     assert(smooth_has_room(s) && smooth_joins(s, move));
     if (!s->open) {
         begin(s, move);
+        s->number = number;
     }
     if (merge_take(&s->merge, move, number, curve, merged_within(move))) {
         return;
@@ -435,6 +436,13 @@ static void set_control(const struct smooth *s, unsigned i, struct point *contro
     }
 }
 
+/* From rest the curve may begin a motion before the one in which it came to rest: what is told of it goes on only. */
+static uint32_t newest(struct smooth *s, uint32_t number)
+{
+    s->number = (int32_t)(number - s->number) > 0 ? number : s->number;
+    return s->number;
+}
+
 static void set_piece(struct smooth *s, struct smooth_piece *piece)
 {
     const struct window *w = &s->window;
@@ -445,7 +453,7 @@ static void set_piece(struct smooth *s, struct smooth_piece *piece)
 
     route_move(&s->route, element, &s->move);
     piece->move = &s->move;
-    piece->number = route_element(&s->route, element)->number;
+    piece->number = newest(s, route_element(&s->route, element)->number);
     piece->rotary = route_element(&s->route, element)->rotary;
     piece->interval_s = w->interval_s;
     for (unsigned k = 0; k < 4; k++) {
