@@ -11,7 +11,7 @@
  *
  * Tolerance of a place: P of its motion, or ORDER_MM where it must be exact (how exact is measured apart, from the true
  * curve), and what a piece is off its arc. Between two setpoints the axes do not go straight: with second differences d a
- * curve is off its chord by d / 8, a joint passed in an exact path by d / 2 at most; ends of motions may be off a step by
+ * curve is off its chord by d / 8, a joint passed in an exact path by half a step at most; ends of motions may be off a step by
  * that.
  *
  * What takes more than so much WORK (pieces looked at beside a step) is not judged, and told: unjudged.

@@ -49,19 +49,35 @@ static struct span from_on(struct span s, double first)
     return (struct span){fmax(s.first, first), s.last};
 }
 
-/* How far the end of a piece may be from step k (from row k - 1 to row k). */
+/* The longer one of the steps before and after that to row k. */
+static double beside_step(const struct judge *j, size_t k)
+{
+    double before[AXES_MAX], after[AXES_MAX];
+
+    step_of(j, k > 0 ? k - 1 : 0, before);
+    step_of(j, k + 1, after);
+    return fmax(length_of(before, 0, j->axes), length_of(after, 0, j->axes));
+}
+
+/*
+ * How far the end of a piece may be from step k (from row k - 1 to row k). On an exact path it is gone through on the way from
+ * one setpoint to the next: half of that way from the nearer one at most. As long as that are the steps beside it; or there, where
+ * one joint alone is passed, differ so much.
+ */
 static double end_within(const struct judge *j, size_t piece, size_t k, double factor)
 {
     const struct piece *p = &j->piece[piece];
     const struct motion *m = &j->motion[p->motion];
-    double within_mm = p->tolerance_mm;
     const double bend_mm = fmax(j->bend[k > 0 ? k - 1 : 0], j->bend[k]);
+    double within_mm = p->tolerance_mm;
 
     if (p->ends && m->stops)
         return 4 * ROUNDING * factor;
     if (piece + 1 < j->pieces)
         within_mm = fmin(within_mm, j->piece[piece + 1].tolerance_mm);
-    return within_mm * factor + bend_mm / (m->tolerance_mm > 0 ? 8 : 2);
+    if (m->tolerance_mm > 0)
+        return within_mm * factor + bend_mm / 8;
+    return within_mm * factor + fmax(bend_mm, beside_step(j, k)) / 2;
 }
 
 /* Most that the step goes along any of the pieces it may be on. */
