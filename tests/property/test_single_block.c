@@ -13,7 +13,7 @@
 #include "plan/path.h"
 #include "property_arguments.h"
 #include "random_schedule.h"
-#include "second_judge.h"
+#include "support/second_judge.h"
 
 #include <stdio.h>
 #include <string.h>

@@ -1,4 +1,4 @@
-#include "second_judge.h"
+#include "support/second_judge.h"
 
 #include "base/maths.h"
 #include "bench/hunting/hunt_walk.h"
