@@ -552,6 +552,7 @@ static void drop_taken(struct smooth *s)
     s->ready = 0;
     if (s->stops) {
         window_rest(&s->window, &s->route, &s->order);
+        stall_rest(&s->stall, s->window.at_mm[0]);
         s->stops = false;
         s->starts = true;
         s->proved = 0;

@@ -30,6 +30,11 @@ struct stall_window {
 };
 
 void stall_start(struct stall *s, double tolerance_mm);
+/* It begins anew from rest at this place, which may lie before those that it was thought to have come to. */
+static inline void stall_rest(struct stall *s, double at_mm)
+{
+    s->mark_mm = at_mm < s->mark_mm ? at_mm : s->mark_mm;
+}
 /* Is a curve with such a tolerance near a place where it stood? */
 static inline bool stall_is_near(const struct stall *s, double tolerance_mm)
 {
