@@ -299,6 +299,9 @@ static bool try_step(struct hold *h, const struct path *path, const struct lead 
     if (here.rate == 0.0f && !(w > 0.0f)) {
         return false;
     }
+    if (place.rate + place.change + 0.5 * by < -REST_PART * h->top) {
+        return false; /* it would come to rest before the end of the cycle, and go back */
+    }
     advance(&place, by, 1.0);
     const struct hold_trial next = {(float)place.at, (float)place.rate, (float)place.change};
 
@@ -439,7 +442,7 @@ static void look_ahead(struct hold *h, const struct path *path, bool anew)
     read_pieces(h, path);
 }
 
-/* The last three places lie on u + r t + q t^2/2. Where that turns back within the last cycle, they are nearly at rest. */
+/* The last three places lie on u + r t + q t^2/2. Where that has turned back already the axes are as good as at rest. */
 bool hold_begin(struct hold *h, const struct path *path, const struct lead *l, double at,
                 const double way[2], bool anew)
 {
@@ -453,5 +456,5 @@ bool hold_begin(struct hold *h, const struct path *path, const struct lead *l, d
     h->stops = true;
     h->top = maths_max(h->place.rate, (double)top_rate(h, path, h->block));
     pass_clear(h, path);
-    return h->place.rate >= 0.0 && find_step(h, path, l, true);
+    return h->place.rate > 0.0 && find_step(h, path, l, true);
 }
