@@ -9,7 +9,7 @@ find_program(CMAKE_RANLIB NAMES llvm-ranlib-14 llvm-ranlib REQUIRED)
 
 set(TAKT_WASM ON)
 # One thread: what is a thread's own is the module's.
-set(CMAKE_C_FLAGS_INIT "--target=wasm32-wasi --sysroot=/usr -mbulk-memory -ffunction-sections -fdata-sections \
+set(CMAKE_C_FLAGS_INIT "--target=wasm32-wasi --sysroot=/usr -mbulk-memory -msimd128 -ffunction-sections -fdata-sections \
 -D_Thread_local= -D_WASI_EMULATED_SIGNAL -D_WASI_EMULATED_MMAN -isystem ${CMAKE_CURRENT_LIST_DIR}/posix \
 -include ${CMAKE_CURRENT_LIST_DIR}/posix/posix.h")
 

@@ -4,7 +4,7 @@
 const at = (id) => document.getElementById(id);
 const EXAMPLE = "G21 G90 G64 P0.02 F3000\nG0 Z2\nG0 X0 Y0\nG1 Z-1 F600\nF3000\n#1=0\no1 while [#1 lt 360]\n  G1 X[20+[20+6*SIN[9*#1]]*COS[#1]] Y[20+[20+6*SIN[9*#1]]*SIN[#1]]\n  #1=[#1+3]\no1 endwhile\nG0 Z2\nM2\n";
 const PROGRAMS = /\.(ngc|nc|gcode|g|tap|cnc|mpf|txt)$/i;
-const takt = { files: {}, program: null, worker: null, result: null, url: null };
+const takt = { files: {}, program: null, worker: null, result: null, url: null, warm: false };
 window.takt = takt;
 
 function element(tag, attributes, ...children) {
@@ -22,6 +22,17 @@ async function unpack(id) {
 
 const compiled = unpack("module").then((bytes) => WebAssembly.compile(bytes));
 const workerUrl = URL.createObjectURL(new Blob([at("worker").textContent], { type: "text/javascript" }));
+
+/* The browser makes machine code of what runs often. So the example runs once while a file is waited for. */
+compiled.then((module) => {
+  const warming = new Worker(workerUrl);
+  warming.onmessage = ({ data }) => {
+    if (data.progress) return;
+    warming.terminate();
+    takt.warm = true;
+  };
+  warming.postMessage({ id: 0, module, words: ["run", "example.ngc"], files: { "example.ngc": EXAMPLE }, report: true });
+});
 
 /* ---- files ---- */
 
@@ -120,7 +131,8 @@ function showAxes(axes) {
 
 async function keepReport(report) {
   const plotting = at("plotting").textContent.trim() ? new TextDecoder().decode(await unpack("plotting")) : "";
-  const whole = plotting ? report.replace("<script></script>", () => `<script>${plotting}</script>`) : report;
+  const [open, close] = ["<script>", "<" + "/script>"];
+  const whole = plotting ? report.replace(open + close, () => open + plotting + close) : report;
   if (takt.url) URL.revokeObjectURL(takt.url);
   takt.url = at("save").href = URL.createObjectURL(new Blob([whole], { type: "text/html" }));
   at("report").hidden = true;
