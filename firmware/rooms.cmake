@@ -9,9 +9,8 @@
 # so it would make the last bit depend on the processor.
 add_library(takt_flags INTERFACE)
 target_compile_options(takt_flags INTERFACE -ffp-contract=off -fno-math-errno)
-# -fexcess-precision=fast: GCC for s390 else computes floats as doubles under -std=c11, though the processor need not; where
-# it must, base/bits.h refuses it.
-if(CMAKE_C_COMPILER_ID STREQUAL GNU)
+# GCC for s390 else computes floats as doubles under -std=c11, though the processor need not.
+if(CMAKE_C_COMPILER_ID STREQUAL GNU AND CMAKE_SYSTEM_PROCESSOR MATCHES "^s390")
   target_compile_options(takt_flags INTERFACE -fexcess-precision=fast)
 endif()
 if(TAKT_WARNINGS)
