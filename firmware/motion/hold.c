@@ -241,14 +241,14 @@ static bool axes_can(const struct hold *h, uint32_t block, float f, float g, con
     return true;
 }
 
-/* From one state to another by w, on pieces that are known. */
+/* From one state to another by w, on pieces that are known, and not back. */
 static bool can_go(const struct hold *h, const struct trial *a, const struct trial *b, float w)
 {
     const uint32_t first = (uint32_t)a->at;
     const uint32_t last = (uint32_t)b->at;
     const struct part p = part_of(a, b, w);
 
-    if (last >= h->end - h->block) {
+    if (b->at < a->at || last >= h->end - h->block) {
         return false;
     }
     for (uint32_t i = first; i <= last; i++) {
@@ -548,7 +548,7 @@ static void look_ahead(struct hold *h, const struct path *path, bool anew)
     read_pieces(h, path);
 }
 
-/* The last three places lie on u + r t + q t^2/2. */
+/* The last three places lie on u + r t + q t^2/2. Where that turns back within the last cycle, they are nearly at rest. */
 bool hold_begin(struct hold *h, const struct path *path, const struct lead *l, double at,
                 const double way[2], bool anew)
 {
@@ -560,5 +560,5 @@ bool hold_begin(struct hold *h, const struct path *path, const struct lead *l, d
     h->stops = true;
     h->top = maths_max(h->place.rate, (double)top_rate(h, path, h->block));
     pass_clear(h, path);
-    return find_step(h, path, l, true);
+    return h->place.rate >= 0.0 && find_step(h, path, l, true);
 }

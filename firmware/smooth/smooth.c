@@ -104,6 +104,7 @@ static void begin(struct smooth *s, const struct move *move)
     s->open = true;
     s->ready = 0;
     s->taken = 0;
+    s->told = 0;
     s->proved = 0;
     s->stops = false;
     s->anew_mm = 0.0;
@@ -435,17 +436,25 @@ static void set_control(const struct smooth *s, unsigned i, struct point *contro
     }
 }
 
+/* After a stop the curve goes on from where it can have come to, which may be before where it was thought to be. */
+static uint32_t latest_told(struct smooth *s, uint32_t element)
+{
+    s->told = element < s->told ? s->told : element;
+    return s->told;
+}
+
 static void set_piece(struct smooth *s, struct smooth_piece *piece)
 {
     const struct window *w = &s->window;
     const unsigned i = s->taken;
     const uint32_t element = w->element[i + 1];
+    const uint32_t told = latest_told(s, element);
     struct judge_need need;
     struct judge_rate rate;
 
-    route_move(&s->route, element, &s->move);
+    route_move(&s->route, told, &s->move);
     piece->move = &s->move;
-    piece->number = route_element(&s->route, element)->number;
+    piece->number = route_element(&s->route, told)->number;
     piece->rotary = route_element(&s->route, element)->rotary;
     piece->interval_s = w->interval_s;
     for (unsigned k = 0; k < 4; k++) {

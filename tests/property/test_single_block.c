@@ -409,6 +409,8 @@ static void test_rare_programs_keep_the_limits(void)
     /* switched off before a joint of less acceleration, too late to land on it or to rest there */
     TEST_ASSERT_TRUE(check_program(372, false, SINGLE_SWITCHED));
     TEST_ASSERT_TRUE(check_program(2044, false, SINGLE_SWITCHED));
+    /* the curve went on from a stop before where it was thought to be: its motions were told in another order */
+    TEST_ASSERT_TRUE(check_program(285, true, SINGLE_SWITCHED));
     /* a motion of blocks of less and less acceleration, and a joint behind, was passed */
     first_seed = 204;
     programs = 5;
