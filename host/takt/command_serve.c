@@ -28,6 +28,7 @@ static void print_ready(const struct serving *s)
     if (config->serial >= 0)
         (void)printf("panel on %s, unit %u\n", s->options.serial.path, (unsigned)config->unit);
     print_page(s);
+    serving_console_print(s);
     (void)fflush(stdout);
 }
 
@@ -90,6 +91,8 @@ static const struct option_row rows[] = {
      "Modbus TCP of the panel (default 127.0.0.1:1502; port 0: any)"},
     {"http", OPTION_TEXT, offsetof(struct options, panel.http), "HOST:PORT|off",
      "page in the browser (default 127.0.0.1:8080; port 0: any)"},
+    {"grbl", OPTION_TEXT, offsetof(struct options, panel.grbl), "tcp:HOST:PORT|pty:LINK",
+     "Grbl 1.1's interface for one sender: on a socket, or a pseudo terminal that LINK names"},
     {"serial", OPTION_TEXT, offsetof(struct options, panel.serial), "PATH[,BAUD[,PARITY]]",
      "Modbus RTU of the panel too (default 19200, even)"},
     {"unit", OPTION_NUMBER, offsetof(struct options, panel.unit), "N",
