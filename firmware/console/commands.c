@@ -2,6 +2,7 @@
  * Lines that begin with '$'.
  */
 #include "base/decimal.h"
+#include "console/characters.h"
 #include "console/console_private.h"
 
 #include <string.h>
@@ -10,7 +11,7 @@
 static bool is_command(const char *text, const char *name)
 {
     for (; *name != '\0'; name++, text++) {
-        if (*text != *name && !(*text >= 'a' && *text <= 'z' && *text - 'a' + 'A' == *name))
+        if (characters_upper(*text) != *name)
             return false;
     }
     return true;
@@ -18,7 +19,7 @@ static bool is_command(const char *text, const char *name)
 
 static bool is_exactly(const char *text, const char *name)
 {
-    return is_command(text, name) && text[strlen(name) + strspn(text + strlen(name), " ")] == '\0';
+    return is_command(text, name) && characters_are_blank(text + characters_length(name));
 }
 
 static enum console_result answer(struct console *c, enum console_error error)
@@ -35,11 +36,11 @@ static bool waits_for_rest(struct console *c, const struct panel_snapshot *now)
 {
     const enum panel_state state = console_state(now);
 
-    if (!atomic_load(&c->config.lines->active))
+    if (!lines_are_read(c->config.lines))
         return state == PANEL_STOPPING || state == PANEL_STARTING;
     if (now->value[REGISTER_FEED] != 0)
         return false;
-    atomic_store(&c->config.lines->ends, true);
+    lines_finish(c->config.lines);
     return true;
 }
 
@@ -129,7 +130,7 @@ static enum console_result sleep(struct console *c, const struct panel_snapshot 
 static enum console_result password(struct console *c, const char *digits)
 {
     double value;
-    const size_t length = decimal_read(digits, strlen(digits), &value);
+    const size_t length = decimal_read(digits, characters_length(digits), &value);
     enum panel_refusal refusal;
 
     if (length == 0 || digits[length] != '\0' || value > UINT32_MAX)

@@ -1,5 +1,6 @@
 #include "console/console.h"
 
+#include "console/characters.h"
 #include "console/console_private.h"
 
 #include <string.h>
@@ -25,8 +26,8 @@ bool console_is_waiting(const struct console *c)
 {
     char text[LINES_LENGTH_MAX + 1];
 
-    return c->pending > 0 || c->resets || c->resumes || c->is_settling || atomic_load(&c->config.lines->active) ||
-           lines_look(c->config.lines, text) != 0;
+    return c->pending > 0 || c->resets || c->resumes || c->is_settling ||
+           lines_are_read(c->config.lines) || lines_look(c->config.lines, text) != 0;
 }
 
 /* ---- replies ---- */
@@ -105,15 +106,10 @@ enum console_result console_refuse(struct console *c, enum panel_refusal refusal
 
 /* ---- lines ---- */
 
-static bool is_blank(const char *text)
-{
-    return text[strspn(text, " \t")] == '\0';
-}
-
 /* The first character that says something; that of a command is '$'. */
 static const char *command_of(const char *text)
 {
-    text += strspn(text, " \t");
+    text = characters_skip_spaces(text);
     return *text == '$' ? text + 1 : NULL;
 }
 
@@ -121,7 +117,7 @@ static const char *command_of(const char *text)
 static bool is_probing(const char *text)
 {
     for (; *text != '\0'; text++) {
-        if ((*text == 'G' || *text == 'g') && strncmp(text + 1, "38", 2) == 0)
+        if (characters_upper(text[0]) == 'G' && text[1] == '3' && text[2] == '8')
             return true;
     }
     return false;
@@ -208,19 +204,19 @@ static enum console_result check_line(struct console *c, const char *text)
 /* Without a program that reads it one is started. PANEL_REFUSAL_NONE: the line may be released. */
 static enum panel_refusal prepare_program(struct console *c, enum panel_state state)
 {
-    if (atomic_load(&c->config.lines->active))
-        return atomic_load(&c->config.lines->ends) ? PANEL_REFUSAL_BUSY : PANEL_REFUSAL_NONE;
+    if (lines_are_read(c->config.lines))
+        return lines_are_finished(c->config.lines) ? PANEL_REFUSAL_BUSY : PANEL_REFUSAL_NONE;
     return state == PANEL_IDLE ? start_program(c) : PANEL_REFUSAL_BUSY;
 }
 
 /* CONSOLE_WAITS: also when it has been released, to *released. */
-static enum console_result program_line(struct console *c, const char *text,
-                                        enum panel_state state, bool *released)
+static enum console_result program_line(struct console *c, const char *text, enum panel_state state,
+                                        bool *released)
 {
-    const bool active = atomic_load(&c->config.lines->active);
+    const bool active = lines_are_read(c->config.lines);
     enum panel_refusal refusal;
 
-    if (!active && is_blank(text))
+    if (!active && characters_are_blank(text))
         return answer_here(c, CONSOLE_OK);
     if (c->is_checking)
         return check_line(c, text);
@@ -279,8 +275,8 @@ static bool take_line(struct console *c, const struct panel_snapshot *now)
 /* The program of the lines has ended; those it has not read are the console's again. Given up or failed, nothing that was to follow goes on by itself. */
 static void follow_program(struct console *c, const struct panel_snapshot *now)
 {
-    const bool active = atomic_load(&c->config.lines->active);
-    const enum takt_error cause = (enum takt_error)atomic_load(&c->config.lines->cause);
+    const bool active = lines_are_read(c->config.lines);
+    const enum takt_error cause = lines_get_cause(c->config.lines);
 
     if (c->was_active && !active) {
         collect(c);
@@ -318,8 +314,7 @@ static void follow_alarm(struct console *c, const struct panel_snapshot *now)
 /* All has come to rest. */
 static void follow_reset(struct console *c, const struct panel_snapshot *now)
 {
-    if (!c->resets || atomic_load(&c->config.lines->active) ||
-        console_state(now) == PANEL_STOPPING)
+    if (!c->resets || lines_are_read(c->config.lines) || console_state(now) == PANEL_STOPPING)
         return;
     c->resets = c->homes = c->resumes = c->is_asleep = c->is_checking = c->is_door = false;
     c->pending = 0;
@@ -332,7 +327,8 @@ static void follow_reset(struct console *c, const struct panel_snapshot *now)
 static void follow_resume(struct console *c, const struct panel_snapshot *now)
 {
     c->is_door = c->is_door && console_state(now) == PANEL_HELD;
-    if (!c->resumes || (now->value[REGISTER_SPINDLE_STATUS] & 1U) == 0)
+    if (!c->resumes || (int32_t)(now->value[REGISTER_CYCLES] - c->turned) < 0 ||
+        (now->value[REGISTER_SPINDLE_STATUS] & 1U) == 0)
         return;
     c->resumes = false;
     if (console_state(now) == PANEL_HELD)
@@ -366,6 +362,7 @@ void console_step(struct console *c)
     follow_jog(c, &now);
     while (!c->resets && take_line(c, &now))
         c->config.port.look(c->config.port.context, &now);
+    collect(c);
 }
 
 /* ---- bytes ---- */
@@ -393,7 +390,7 @@ void console_take(struct console *c, uint8_t byte)
 void console_enter(struct console *c)
 {
     c->has_return = false;
-    if (atomic_load(&c->config.lines->active)) {
+    if (lines_are_read(c->config.lines)) {
         (void)console_take_realtime(c, 0x18);
         return;
     }

@@ -58,6 +58,7 @@ struct console {
     struct console_config config;
     struct reply reply;
     uint32_t pending; /* lines of a program whose answer is to come */
+    uint32_t turned;  /* register CYCLES from which on it is known whether the spindle turns */
     uint32_t settled; /* register CYCLES from which on snapshots know that the program has ended */
     bool is_settling; /* until then */
     bool was_active;  /* the program of the lines ran */

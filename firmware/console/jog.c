@@ -4,12 +4,13 @@
  */
 #include "base/decimal.h"
 #include "base/maths.h"
+#include "console/characters.h"
 #include "console/console_private.h"
 
 #include <string.h>
 
-#define MM_PER_INCH  25.4
-#define MM_PER_COUNT 0.001
+#define MM_PER_INCH     25.4
+#define MM_PER_COUNT    0.001
 #define DEGREES_PER_RAD (180.0 / MATHS_PI)
 
 /* Bits of register MODES. */
@@ -67,10 +68,10 @@ static enum console_error take_axis(struct jog *j, const struct machine *machine
 static enum console_error take_word(struct jog *j, const struct machine *machine, char letter,
                                     double value)
 {
-    const char *axis = strchr(AXIS_LETTERS, letter);
-
-    if (axis != NULL)
-        return take_axis(j, machine, (unsigned)(axis - AXIS_LETTERS), value);
+    for (unsigned i = 0; i < AXIS_COUNT; i++) {
+        if (letter == AXIS_LETTERS[i])
+            return take_axis(j, machine, i, value);
+    }
     if (letter == 'F' && value <= 0.0)
         return CONSOLE_NEGATIVE;
     if (letter == 'F')
@@ -89,27 +90,24 @@ static bool read_number(const char **text, double *value)
     size_t length;
 
     *text += **text == '-' || **text == '+';
-    length = decimal_read(*text, strlen(*text), value);
+    length = decimal_read(*text, characters_length(*text), value);
     *text += length;
     *value = negative ? -*value : *value;
     return length > 0;
 }
 
-static enum console_error read_words(struct jog *j, const struct machine *machine,
-                                     const char *text)
+static enum console_error read_words(struct jog *j, const struct machine *machine, const char *text)
 {
     enum console_error error = CONSOLE_OK;
 
-    for (text += strspn(text, " \t"); *text != '\0' && error == CONSOLE_OK;
-         text += strspn(text, " \t")) {
-        char letter = *text++;
+    for (text = characters_skip_spaces(text); *text != '\0' && error == CONSOLE_OK;
+         text = characters_skip_spaces(text)) {
+        const char letter = characters_upper(*text++);
         double value;
 
-        if (letter >= 'a' && letter <= 'z')
-            letter = (char)(letter - 'a' + 'A');
         if (letter < 'A' || letter > 'Z')
             return CONSOLE_NO_LETTER;
-        text += strspn(text, " \t");
+        text = characters_skip_spaces(text);
         if (!read_number(&text, &value))
             return CONSOLE_BAD_NUMBER;
         error = take_word(j, machine, letter, value);
@@ -183,8 +181,8 @@ static bool follows(struct console *c, const struct panel_snapshot *now)
 {
     const enum panel_state state = console_state(now);
 
-    if (atomic_load(&c->config.lines->active) && now->value[REGISTER_FEED] == 0) {
-        atomic_store(&c->config.lines->ends, true);
+    if (lines_are_read(c->config.lines) && now->value[REGISTER_FEED] == 0) {
+        lines_finish(c->config.lines);
         return true;
     }
     return state == PANEL_JOGGING || state == PANEL_STOPPING || state == PANEL_STARTING;

@@ -6,6 +6,28 @@
 /* A line takes its mark and its end besides its characters. */
 #define EMPTY_LINE 2U
 
+/* Between threads, or a background and what interrupts it: what was written before is there when the new value is seen. */
+
+static uint32_t get_place(const uint32_t *place)
+{
+    return __atomic_load_n(place, __ATOMIC_ACQUIRE);
+}
+
+static void set_place(uint32_t *place, uint32_t value)
+{
+    __atomic_store_n(place, value, __ATOMIC_RELEASE);
+}
+
+static bool get_flag(const bool *flag)
+{
+    return __atomic_load_n(flag, __ATOMIC_ACQUIRE);
+}
+
+static void set_flag(bool *flag, bool value)
+{
+    __atomic_store_n(flag, value, __ATOMIC_RELEASE);
+}
+
 void lines_init(struct lines *l, uint8_t *byte, uint32_t size)
 {
     assert((size & (size - 1)) == 0);
@@ -92,15 +114,15 @@ void lines_clear(struct lines *l)
 {
     l->written = l->at = l->collected = 0;
     l->is_long = false;
-    atomic_store(&l->released, 0);
-    atomic_store(&l->read, 0);
-    atomic_store(&l->ends, false);
-    atomic_store(&l->has_why, false);
+    set_place(&l->released, 0);
+    set_place(&l->read, 0);
+    set_flag(&l->ends, false);
+    set_flag(&l->has_why, false);
 }
 
 uint8_t lines_look(const struct lines *l, char *text)
 {
-    const uint32_t at = atomic_load(&l->released);
+    const uint32_t at = get_place(&l->released);
 
     if (at == l->written)
         return 0;
@@ -110,26 +132,26 @@ uint8_t lines_look(const struct lines *l, char *text)
 
 void lines_release(struct lines *l)
 {
-    atomic_store(&l->released, end_of(l, atomic_load(&l->released)));
+    set_place(&l->released, end_of(l, get_place(&l->released)));
 }
 
 /* A program passes over it; without one there is nobody else who would. */
 void lines_skip(struct lines *l)
 {
-    *place(l, atomic_load(&l->released)) = LINES_OWN;
+    *place(l, get_place(&l->released)) = LINES_OWN;
     lines_release(l);
-    if (!atomic_load(&l->active))
-        atomic_store(&l->read, atomic_load(&l->released));
+    if (!get_flag(&l->active))
+        set_place(&l->read, get_place(&l->released));
 }
 
 void lines_take_back(struct lines *l)
 {
-    atomic_store(&l->released, atomic_load(&l->read));
+    set_place(&l->released, get_place(&l->read));
 }
 
 bool lines_collect(struct lines *l, char *text, uint8_t *answer)
 {
-    while (l->collected != atomic_load(&l->read)) {
+    while (l->collected != get_place(&l->read)) {
         *answer = *place(l, l->collected);
         copy_line(l, l->collected, text);
         l->last = l->collected;
@@ -143,10 +165,30 @@ bool lines_collect(struct lines *l, char *text, uint8_t *answer)
 void lines_take_why(struct lines *l, struct diagnostic *why)
 {
     why->code = TAKT_OK;
-    if (!atomic_load(&l->has_why) || l->why_at != l->last)
+    if (!get_flag(&l->has_why) || l->why_at != l->last)
         return;
     *why = l->why;
-    atomic_store(&l->has_why, false);
+    set_flag(&l->has_why, false);
+}
+
+bool lines_are_read(const struct lines *l)
+{
+    return get_flag(&l->active);
+}
+
+void lines_finish(struct lines *l)
+{
+    set_flag(&l->ends, true);
+}
+
+bool lines_are_finished(const struct lines *l)
+{
+    return get_flag(&l->ends);
+}
+
+enum takt_error lines_get_cause(const struct lines *l)
+{
+    return (enum takt_error)(int32_t)get_place(&l->cause);
 }
 
 /* ---- program ---- */
@@ -154,20 +196,20 @@ void lines_take_why(struct lines *l, struct diagnostic *why)
 /* The line handed out is done: its answer, then the place, so that the console finds the one when it sees the other. */
 static void finish_handed(struct lines *l)
 {
-    *place(l, atomic_load(&l->read)) = l->answer;
+    *place(l, get_place(&l->read)) = l->answer;
     l->is_handed = false;
-    atomic_store(&l->read, l->end);
+    set_place(&l->read, l->end);
 }
 
 /* The next line for the program; what the console has answered is passed over. False: there is none. */
 static bool hand_out(struct lines *l)
 {
-    const uint32_t released = atomic_load(&l->released);
-    uint32_t at = atomic_load(&l->read);
+    const uint32_t released = get_place(&l->released);
+    uint32_t at = get_place(&l->read);
 
     while (at != released && *place(l, at) == LINES_OWN)
         at = end_of(l, at);
-    atomic_store(&l->read, at);
+    set_place(&l->read, at);
     if (at == released)
         return false;
     l->is_handed = true;
@@ -185,7 +227,7 @@ static long read_line(void *context, char *buffer, size_t size)
     if (l->is_handed && l->out == l->end)
         finish_handed(l);
     if (!l->is_handed && !hand_out(l))
-        return atomic_load(&l->ends) ? SOURCE_END : SOURCE_LATER;
+        return get_flag(&l->ends) ? SOURCE_END : SOURCE_LATER;
     for (; count < size && l->out != l->end; l->out++)
         buffer[count++] = (char)*place(l, l->out);
     return (long)count;
@@ -194,9 +236,9 @@ static long read_line(void *context, char *buffer, size_t size)
 void lines_open(struct lines *l, struct source *source)
 {
     l->is_handed = false;
-    atomic_store(&l->ends, false);
-    atomic_store(&l->cause, TAKT_OK);
-    atomic_store(&l->active, true);
+    set_flag(&l->ends, false);
+    set_place(&l->cause, (uint32_t)TAKT_OK);
+    set_flag(&l->active, true);
     *source = (struct source){.read = read_line, .context = l};
 }
 
@@ -205,11 +247,11 @@ void lines_refuse(struct lines *l, uint8_t answer, const struct diagnostic *why)
     if (!l->is_handed || l->answer != 0)
         return;
     l->answer = answer;
-    if (atomic_load(&l->has_why))
+    if (get_flag(&l->has_why))
         return;
     l->why = *why;
-    l->why_at = atomic_load(&l->read);
-    atomic_store(&l->has_why, true);
+    l->why_at = get_place(&l->read);
+    set_flag(&l->has_why, true);
 }
 
 void lines_end(struct lines *l, uint8_t answer, enum takt_error cause)
@@ -218,6 +260,6 @@ void lines_end(struct lines *l, uint8_t answer, enum takt_error cause)
         l->answer = l->answer != 0 ? l->answer : answer;
         finish_handed(l);
     }
-    atomic_store(&l->cause, (int)cause);
-    atomic_store(&l->active, false);
+    set_place(&l->cause, (uint32_t)cause);
+    set_flag(&l->active, false);
 }

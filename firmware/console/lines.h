@@ -17,7 +17,6 @@
 #include "base/error.h"
 #include "program/source.h"
 
-#include <stdatomic.h>
 #include <stdbool.h>
 #include <stdint.h>
 
@@ -41,19 +40,19 @@ struct lines {
     uint32_t collected;
     uint32_t last; /* the line collected last */
     bool is_long;  /* the line that comes */
-    /* Between the two. */
-    atomic_uint released; /* the program may read as far as this */
-    atomic_uint read;     /* it has done with all before this */
-    atomic_bool active;   /* a program reads */
-    atomic_bool ends;     /* what is released is all there is */
-    atomic_bool has_why;  /* why has been filled, and not been taken */
-    uint32_t why_at;      /* the line that it is of */
+    /* Between the two: read and written as a whole, in order. */
+    uint32_t released; /* the program may read as far as this */
+    uint32_t read;     /* it has done with all before this */
+    bool active;       /* a program reads */
+    bool ends;         /* what is released is all there is */
+    bool has_why;      /* why has been filled, and not been taken */
+    uint32_t why_at;   /* the line that it is of */
     struct diagnostic why;
     /* The program's. */
     bool is_handed;    /* the line at read has been handed out, up to out */
     uint32_t out, end; /* and ends here */
     uint8_t answer;    /* of it */
-    atomic_int cause;  /* enum takt_error: why the program failed; TAKT_OK: it did not */
+    uint32_t cause;    /* enum takt_error: why the program failed; TAKT_OK: it did not */
 };
 
 void lines_init(struct lines *l, uint8_t *byte, uint32_t size);
@@ -78,6 +77,14 @@ void lines_take_back(struct lines *l);
 bool lines_collect(struct lines *l, char *text, uint8_t *answer);
 /* Why the line collected last has been refused; TAKT_OK: not known. */
 void lines_take_why(struct lines *l, struct diagnostic *why);
+
+/* A program reads the lines. */
+bool lines_are_read(const struct lines *l);
+/* No more are released: the program ends when it has read those that are. */
+void lines_finish(struct lines *l);
+bool lines_are_finished(const struct lines *l);
+/* Why the last program has failed; TAKT_OK: it has not. */
+enum takt_error lines_get_cause(const struct lines *l);
 
 /* ---- program ---- */
 

@@ -5,7 +5,8 @@
 
 /* Control characters and those above ASCII. */
 enum realtime {
-    REALTIME_STATUS_HAL = 0x80, /* these as grblHAL has them, for lines on which '?' '~' '!' are text */
+    REALTIME_STATUS_HAL =
+        0x80, /* these as grblHAL has them, for lines on which '?' '~' '!' are text */
     REALTIME_START_HAL = 0x81,
     REALTIME_HOLD_HAL = 0x82,
     REALTIME_MODES = 0x83,
@@ -25,8 +26,11 @@ enum realtime {
 };
 
 /* Overrides in counts of their registers: 0.1 %. */
-#define WHOLE         1000
+#define WHOLE          1000
 #define OVERRIDE_LEAST 100
+
+/* What is known of the spindle is older than what it is told by less than this, and a snapshot by one more. */
+#define FEEDBACK_CYCLES 5
 
 /* What the bytes of a group of five do: to 100 %, and so many counts more. */
 static const int steps[] = {0, 100, -100, 10, -10};
@@ -90,6 +94,7 @@ static void resume(struct console *c)
         (void)console_order(c, REGISTER_RESUME, 1);
     else
         c->resumes = console_order(c, REGISTER_SPINDLE_STOP, 0) == PANEL_REFUSAL_NONE;
+    c->turned = now.value[REGISTER_CYCLES] + FEEDBACK_CYCLES;
 }
 
 /* Held, with the spindle off. */
@@ -124,7 +129,7 @@ static void reset(struct console *c)
     if (console_state(&now) != PANEL_ALARM && console_state(&now) != PANEL_EMERGENCY)
         refusal = c->config.port.order(c->config.port.context, &order);
     c->resets = true;
-    if (refusal == PANEL_REFUSAL_NONE || !atomic_load(&c->config.lines->active))
+    if (refusal == PANEL_REFUSAL_NONE || !lines_are_read(c->config.lines))
         return;
     c->resets = false;
     hold(c);

@@ -312,14 +312,10 @@ void console_report_offsets(struct console *c)
         const char *name;
         enum console_fact fact;
     } rows[] = {
-        {"G54", CONSOLE_FACT_SYSTEM},
-        {"G55", CONSOLE_FACT_SYSTEM + 1},
-        {"G56", CONSOLE_FACT_SYSTEM + 2},
-        {"G57", CONSOLE_FACT_SYSTEM + 3},
-        {"G58", CONSOLE_FACT_SYSTEM + 4},
-        {"G59", CONSOLE_FACT_SYSTEM + 5},
-        {"G28", CONSOLE_FACT_REFERENCE_1},
-        {"G30", CONSOLE_FACT_REFERENCE_2},
+        {"G54", CONSOLE_FACT_SYSTEM},      {"G55", CONSOLE_FACT_SYSTEM + 1},
+        {"G56", CONSOLE_FACT_SYSTEM + 2},  {"G57", CONSOLE_FACT_SYSTEM + 3},
+        {"G58", CONSOLE_FACT_SYSTEM + 4},  {"G59", CONSOLE_FACT_SYSTEM + 5},
+        {"G28", CONSOLE_FACT_REFERENCE_1}, {"G30", CONSOLE_FACT_REFERENCE_2},
         {"G92", CONSOLE_FACT_AXIS_OFFSET},
     };
 

@@ -4,15 +4,21 @@
  */
 #include "base/decimal.h"
 #include "base/maths.h"
+#include "console/characters.h"
 #include "console/console_private.h"
-
-#include <string.h>
 
 #define S_PER_MIN       60.0
 #define DEGREES_PER_RAD (180.0 / MATHS_PI)
 
 /* Of a group, one for each axis. */
-enum { SETTING_MASK = 10, SETTING_INCHES = 13, SETTING_STEPS = 100, SETTING_RATE = 110, SETTING_ACCELERATION = 120, SETTING_TRAVEL = 130 };
+enum {
+    SETTING_MASK = 10,
+    SETTING_INCHES = 13,
+    SETTING_STEPS = 100,
+    SETTING_RATE = 110,
+    SETTING_ACCELERATION = 120,
+    SETTING_TRAVEL = 130
+};
 
 /* Millionths of it may be lost on the way through a sender. */
 #define SAME 1e-3
@@ -222,17 +228,16 @@ static enum console_error set(struct console *c, unsigned number, double value)
 enum console_error console_set(struct console *c, const char *text)
 {
     double number, value;
-    size_t length = decimal_read(text, strlen(text), &number);
+    size_t length = decimal_read(text, characters_length(text), &number);
     enum console_error error;
 
-    if (length == 0 || text[length] != '=' || number > UINT16_MAX ||
-        number != maths_floor(number))
+    if (length == 0 || text[length] != '=' || number > UINT16_MAX || number != maths_floor(number))
         return CONSOLE_UNKNOWN_COMMAND;
     text += length + 1;
     if (*text == '-')
         return CONSOLE_NEGATIVE;
-    length = decimal_read(text, strlen(text), &value);
-    if (length == 0 || text[length + strspn(text + length, " ")] != '\0')
+    length = decimal_read(text, characters_length(text), &value);
+    if (length == 0 || !characters_are_blank(text + length))
         return CONSOLE_BAD_NUMBER;
     error = set(c, (unsigned)number, value);
     if (error != CONSOLE_OK)

@@ -51,7 +51,7 @@ struct controller_config {
     void (*say)(void *listener, const struct program *p); /* as of struct program_config */
     /* Hears of every line that is wrong. True: it is left out and the text goes on. NULL: it ends the program. */
     bool (*refuse)(void *listener, const struct diagnostic *why);
-    void *listener; /* of both */
+    void *listener;     /* of both */
     bool exact_path;    /* every G64 is treated as G61 */
     bool block_delete;  /* skip lines that begin with '/' */
     bool keeps_outputs; /* the end of the program leaves spindle and coolant as they are */

@@ -209,8 +209,7 @@ static void look_at_terminal(struct console_server *s)
 {
     struct pollfd file = {.fd = s->terminal, .events = POLLIN};
 
-    if (s->terminal < 0 || s->sender >= 0 || poll(&file, 1, 0) < 0 ||
-        (file.revents & POLLHUP) != 0)
+    if (s->terminal < 0 || s->sender >= 0 || poll(&file, 1, 0) < 0 || (file.revents & POLLHUP) != 0)
         return;
     set_raw(s->terminal);
     begin_sender(s, s->terminal);

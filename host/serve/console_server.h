@@ -40,10 +40,10 @@ struct console_server {
     uint8_t text[CONSOLE_SERVER_TEXT];
     char output[CONSOLE_SERVER_OUTPUT];
     size_t output_size;
-    int listener; /* of TCP; -1 */
-    int terminal; /* the master of a pseudo terminal; -1 */
-    int sender;   /* whoever is there; -1: nobody */
-    int wake[2];  /* a pipe: written to when the thread is to end */
+    int listener;   /* of TCP; -1 */
+    int terminal;   /* the master of a pseudo terminal; -1 */
+    int sender;     /* whoever is there; -1: nobody */
+    int wake[2];    /* a pipe: written to when the thread is to end */
     bool overflows; /* the sender does not read */
     pthread_t thread;
     bool is_running;

@@ -5,8 +5,8 @@
 #define TAKT_HOST_SERVING_OPTIONS_H
 
 #include "page/page_server.h"
-#include "serve/serial_line.h"
 #include "serve/console_server.h"
+#include "serve/serial_line.h"
 #include "serve/server.h"
 #include "takt/session.h"
 
