@@ -179,7 +179,10 @@ static enum panel_refusal start_program(struct console *c)
         .text = PANEL_ORDER_LINES,
     };
 
-    return c->config.port.order(c->config.port.context, &start);
+    const enum panel_refusal refusal = c->config.port.order(c->config.port.context, &start);
+
+    c->was_active = refusal == PANEL_REFUSAL_NONE;
+    return refusal;
 }
 
 static enum console_result answer_here(struct console *c, enum console_error error)

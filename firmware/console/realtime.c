@@ -129,6 +129,7 @@ static void reset(struct console *c)
     if (console_state(&now) != PANEL_ALARM && console_state(&now) != PANEL_EMERGENCY)
         refusal = c->config.port.order(c->config.port.context, &order);
     c->resets = true;
+    c->has_return = false;
     if (refusal == PANEL_REFUSAL_NONE || !lines_are_read(c->config.lines))
         return;
     c->resets = false;

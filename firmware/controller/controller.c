@@ -223,9 +223,10 @@ static bool can_read(struct controller *c)
 }
 
 /* A text that comes slowly begins to be driven when as much of it is there as is ever looked at. */
-static bool waits_for_text(const struct controller *c)
+static bool waits_for_text(struct controller *c)
 {
-    return c->program_late && !c->motion.has_ceiling && !c->program_begins;
+    return c->program_late && !c->motion.has_ceiling &&
+           (!c->program_begins || motion_ahead(&c->motion) == 0);
 }
 
 /* Reads more only when the look-ahead has become shorter by this part of it: a ceiling is then made for many blocks. */

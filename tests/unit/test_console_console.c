@@ -86,6 +86,26 @@ static void test_a_sender_that_stalls_finds_the_axes_at_rest_and_they_go_on(void
     expect_limits_kept();
 }
 
+/* Each line comes when the axes have come to rest, or nearly, and none as late as an end. */
+static void test_a_sender_that_is_slow_is_waited_for_between_lines(void)
+{
+    static const char *const slow[] = {
+        "F3000\n", "(text alone)\n", "G1 X0.5\n", "X1\n",       "X1.5\n", "M8\n", "X2\n",
+        "X3 Y1\n", "X4\n",           "M9\n",      "G4 P0.02\n", "X5\n",   "X6\n", "X7\n",
+        "X8\n",    "X9\n",           "X10\n",     "X11\n",      "M5\n",   "M2\n"};
+
+    forget();
+    for (unsigned i = 0; i < sizeof slow / sizeof slow[0]; i++) {
+        give(slow[i]);
+        steps(90);
+    }
+    await(20);
+    settle();
+    TEST_ASSERT_EQUAL_UINT(20, count_of("ok\r\n"));
+    TEST_ASSERT_EQUAL_DOUBLE(11.0, place(AXIS_X));
+    expect_limits_kept();
+}
+
 static void test_a_wrong_line_is_refused_alone(void)
 {
     forget();
@@ -366,6 +386,7 @@ int main(void)
     RUN_TEST(test_streamed_text_gives_the_setpoints_of_the_same_text_in_a_file);
     RUN_TEST(test_simple_streaming_gives_the_same_setpoints_too);
     RUN_TEST(test_a_sender_that_stalls_finds_the_axes_at_rest_and_they_go_on);
+    RUN_TEST(test_a_sender_that_is_slow_is_waited_for_between_lines);
     RUN_TEST(test_a_wrong_line_is_refused_alone);
     RUN_TEST(test_a_line_beyond_the_travel_stops_all_until_it_is_unlocked);
     RUN_TEST(test_a_hold_stops_on_the_path_and_a_start_goes_on);
