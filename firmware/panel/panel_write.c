@@ -263,6 +263,12 @@ static enum panel_refusal begin_plan(struct panel_request *r)
                : PANEL_REFUSAL_VALUE;
 }
 
+/* Something is under way that may be reading the program. */
+static bool is_busy(enum panel_state state)
+{
+    return state >= PANEL_RUNNING && state <= PANEL_STOPPING;
+}
+
 /* The program before is gone as soon as the first byte of this one may come. */
 static enum panel_refusal begin_stream(struct panel_request *r)
 {
@@ -273,6 +279,8 @@ static enum panel_refusal begin_stream(struct panel_request *r)
         return begin_plan(r);
     if (panel->config.store.begin_stream == NULL || mailbox->upload_size == 0)
         return PANEL_REFUSAL_VALUE;
+    if (is_busy(r->state))
+        return PANEL_REFUSAL_STATE;
     panel_turn_upload(panel, PANEL_UPLOAD_PROGRAM);
     if (!panel_upload_stream(&panel->upload, &panel->config.store, mailbox->upload_size,
                              mailbox->upload_crc))
