@@ -160,6 +160,17 @@ static void take_move(struct controller *c, struct move *move)
     c->program_ended = move->kind == MOVE_END;
 }
 
+/* A line is wrong, and has changed nothing. */
+static bool leaves_out_line(struct controller *c)
+{
+    if (c->refuse == NULL || c->reader->program.phase == PROGRAM_ENDED ||
+        !c->refuse(c->reader->program.config.listener, &c->program_error)) {
+        return false;
+    }
+    c->program_error.code = TAKT_OK;
+    return true;
+}
+
 /* One move from the program onto the path. */
 static void read_move(struct controller *c)
 {
@@ -175,8 +186,10 @@ static void read_move(struct controller *c)
     case PROGRAM_LATER:
         c->program_late = true;
         break;
-    case PROGRAM_END:
     case PROGRAM_ERROR:
+        c->program_ended = !leaves_out_line(c);
+        break;
+    case PROGRAM_END:
         c->program_ended = true;
         break;
     }
@@ -210,9 +223,10 @@ static bool can_read(struct controller *c)
 }
 
 /* A text that comes slowly begins to be driven when as much of it is there as is ever looked at. */
-static bool waits_for_text(const struct controller *c)
+static bool waits_for_text(struct controller *c)
 {
-    return c->program_late && !c->motion.has_ceiling;
+    return c->program_late && !c->motion.has_ceiling &&
+           (!c->program_begins || motion_ahead(&c->motion) == 0);
 }
 
 /* Reads more only when the look-ahead has become shorter by this part of it: a ceiling is then made for many blocks. */

@@ -49,7 +49,9 @@ struct controller_config {
     const struct replay_source *compiled; /* of the same program: replayed. NULL: planned here */
     const struct program_modes *modes;    /* the program goes on with; NULL: those it begins with */
     void (*say)(void *listener, const struct program *p); /* as of struct program_config */
-    void *listener;
+    /* Hears of every line that is wrong. True: it is left out and the text goes on. NULL: it ends the program. */
+    bool (*refuse)(void *listener, const struct diagnostic *why);
+    void *listener;     /* of both */
     bool exact_path;    /* every G64 is treated as G61 */
     bool block_delete;  /* skip lines that begin with '/' */
     bool keeps_outputs; /* the end of the program leaves spindle and coolant as they are */
@@ -87,6 +89,10 @@ void controller_get_actual(const struct controller *c, struct point *actual);
 uint32_t controller_get_answers(const struct controller *c, struct program_answer *last);
 /* The axes rest because the text of the program, which is still coming, has not come in time; they go on by themselves. */
 bool controller_is_starved(const struct controller *c);
+/* What is there of a text that comes slowly is driven now. */
+void controller_begin(struct controller *c);
+/* Flood, or else mist. */
+void controller_set_coolant(struct controller *c, bool flood, bool on);
 /* Exchanges with the background that it was too late for: the axes then stop at the end of the known path. */
 uint64_t controller_get_late(const struct controller *c);
 /* The machine's outputs as the last cycle left them. Valid until the next cycle. */

@@ -32,7 +32,9 @@ struct controller {
     bool keeps_outputs;        /* the end of the program leaves spindle and coolant as they are */
     bool program_waits;        /* for an answer: what it asked (G38, M66) is being done */
     bool program_late;         /* its next line has not come yet */
-    bool program_ended;        /* nothing more comes from the program: its end or an error in it */
+    bool program_begins;       /* though its text comes slowly: what is there is driven */
+    bool (*refuse)(void *listener, const struct diagnostic *why); /* as of the configuration */
+    bool program_ended; /* nothing more comes from the program: its end or an error in it */
     bool has_record;
     struct diagnostic
         program_error; /* TAKT_OK: none. Reported when everything before it has been done */

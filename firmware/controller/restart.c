@@ -24,6 +24,8 @@ void controller_start_program(struct controller *c, const struct controller_conf
     c->keeps_outputs = config->keeps_outputs;
     c->program_waits = false;
     c->program_late = false;
+    c->program_begins = false;
+    c->refuse = config->refuse;
     c->program_ended = false;
     c->program_error.code = TAKT_OK;
     c->has_record = false;
@@ -45,6 +47,19 @@ void controller_quieten(struct controller *c)
     c->outputs.spindle_orient = false;
     c->outputs.mist = false;
     c->outputs.flood = false;
+}
+
+void controller_begin(struct controller *c)
+{
+    c->program_begins = true;
+}
+
+void controller_set_coolant(struct controller *c, bool flood, bool on)
+{
+    if (flood)
+        c->outputs.flood = on;
+    else
+        c->outputs.mist = on;
 }
 
 bool controller_passed_stop(const struct controller *c, bool *optional)

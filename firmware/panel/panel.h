@@ -56,6 +56,12 @@ void panel_client_enter(struct panel_client *client, struct panel *panel);
 /* Control that it has claimed is left to the watchdog. */
 void panel_client_leave(struct panel_client *client);
 
+/* An order as this client's, by the rules of a write. PANEL_REFUSAL_NONE: it is done. */
+enum panel_refusal panel_client_order(struct panel_client *client, const struct panel_order *order);
+
+/* The client writes PASSWORD. */
+enum panel_refusal panel_client_unlock(struct panel_client *client, uint32_t password);
+
 /* The registers as this client sees them. */
 struct modbus_map panel_client_map(struct panel_client *client);
 

@@ -222,8 +222,6 @@ static enum panel_refusal give_order(struct panel_request *r)
 {
     const struct panel_port *port = &r->client->panel->config.port;
 
-    memcpy(r->order.mdi, r->mailbox.mdi, PANEL_MDI_MAX);
-    r->order.mdi[PANEL_MDI_MAX] = '\0';
     return refusal_of(port->order(port->context, &r->order));
 }
 
@@ -265,6 +263,12 @@ static enum panel_refusal begin_plan(struct panel_request *r)
                : PANEL_REFUSAL_VALUE;
 }
 
+/* Something is under way that may be reading the program. */
+static bool is_busy(enum panel_state state)
+{
+    return state >= PANEL_RUNNING && state <= PANEL_STOPPING;
+}
+
 /* The program before is gone as soon as the first byte of this one may come. */
 static enum panel_refusal begin_stream(struct panel_request *r)
 {
@@ -275,6 +279,8 @@ static enum panel_refusal begin_stream(struct panel_request *r)
         return begin_plan(r);
     if (panel->config.store.begin_stream == NULL || mailbox->upload_size == 0)
         return PANEL_REFUSAL_VALUE;
+    if (is_busy(r->state))
+        return PANEL_REFUSAL_STATE;
     panel_turn_upload(panel, PANEL_UPLOAD_PROGRAM);
     if (!panel_upload_stream(&panel->upload, &panel->config.store, mailbox->upload_size,
                              mailbox->upload_crc))
@@ -394,6 +400,16 @@ static __attribute__((noinline)) void look_at_state(struct panel_request *r)
     r->has_owner = snapshot.value[REGISTER_WATCHDOG] != 0;
 }
 
+/* All that it asks for is known. */
+static enum panel_refusal decide(struct panel_request *r)
+{
+    enum panel_refusal refusal = check_rights(r);
+
+    if (refusal == PANEL_REFUSAL_NONE)
+        refusal = check_states(r);
+    return refusal == PANEL_REFUSAL_NONE ? carry_out(r) : refusal;
+}
+
 static enum panel_refusal serve(struct panel_request *r, const struct written *w)
 {
     enum panel_refusal refusal;
@@ -401,11 +417,9 @@ static enum panel_refusal serve(struct panel_request *r, const struct written *w
     look_at_state(r);
     r->mailbox = r->client->panel->mailbox;
     refusal = refusal_of_rows(take_rows(r, w));
-    if (refusal == PANEL_REFUSAL_NONE)
-        refusal = check_rights(r);
-    if (refusal == PANEL_REFUSAL_NONE)
-        refusal = check_states(r);
-    return refusal == PANEL_REFUSAL_NONE ? carry_out(r) : refusal;
+    memcpy(r->order.mdi, r->mailbox.mdi, PANEL_MDI_MAX);
+    r->order.mdi[PANEL_MDI_MAX] = '\0';
+    return refusal == PANEL_REFUSAL_NONE ? decide(r) : refusal;
 }
 
 static enum modbus_exception exception_of(enum panel_refusal refusal)
@@ -425,6 +439,35 @@ static enum modbus_exception exception_of(enum panel_refusal refusal)
         break;
     }
     return MODBUS_BUSY;
+}
+
+static enum panel_refusal serve_here(struct panel_request *r)
+{
+    const struct panel_port *port = &r->client->panel->config.port;
+    enum panel_refusal refusal;
+
+    look_at_state(r);
+    r->mailbox = r->client->panel->mailbox;
+    refusal = decide(r);
+    if (refusal != PANEL_REFUSAL_NONE)
+        r->client->refusal = refusal;
+    if (r->client->panel->owner == r->client)
+        port->alive(port->context);
+    return refusal;
+}
+
+enum panel_refusal panel_client_order(struct panel_client *client, const struct panel_order *order)
+{
+    struct panel_request request = {.client = client, .order = *order};
+
+    return serve_here(&request);
+}
+
+enum panel_refusal panel_client_unlock(struct panel_client *client, uint32_t password)
+{
+    struct panel_request request = {.client = client, .has_password = true, .password = password};
+
+    return serve_here(&request);
 }
 
 enum modbus_exception panel_write(void *context, enum modbus_table table, uint16_t address,

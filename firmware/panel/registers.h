@@ -196,7 +196,11 @@ enum panel_form {
     PANEL_COIL(ROW, CORRECTION_AXIS_TABLES, 18, PANEL_ANY, "1: likewise, axis tables") \
     PANEL_COIL(ROW, CORRECTION_VOLUME, 19, PANEL_ANY, "1: likewise, volume table") \
     PANEL_COIL(ROW, CORRECTION_THERMAL, 20, PANEL_ANY, "1: likewise, thermal growth") \
-    PANEL_COIL(ROW, CORRECTION_WEAR, 21, PANEL_ANY, "1: likewise, tool wear and length")
+    PANEL_COIL(ROW, CORRECTION_WEAR, 21, PANEL_ANY, "1: likewise, tool wear and length") \
+    PANEL_COIL(ROW, FLOOD, 22, PANEL_ANY, "1: flood coolant on, 0: off, until the program says otherwise") \
+    PANEL_COIL(ROW, MIST, 23, PANEL_ANY, "1: mist coolant likewise") \
+    PANEL_COIL(ROW, SPINDLE_STOP, 24, PANEL_WHEN_HELD, \
+        "1: the spindle stands while the program is held; 0 and at speed again, before RESUME")
 
 #define PANEL_INPUT_ROWS(ROW) \
     PANEL_SHOW16(ROW, VERSION, 0, "", 0, "of this table") \
@@ -255,6 +259,7 @@ enum panel_form {
     PANEL_SHOW_AXES(ROW, AXIS_FEED, 128, "mm/min", "velocity of the setpoint") \
     PANEL_SHOW32(ROW, CUT_LINE, 140, "", 0, "line of the program that runs, or at which the last one was cut short, by a power cut too; 0: it came to its end") \
     PANEL_SHOW32(ROW, DRIVES_GIVEN_UP, 142, "", 0, "bit i: what a drive does not have and is driven without, enum drives_given_up (firmware/drive)") \
+    PANEL_SHOW16(ROW, PROBE, 144, "", 0, "1: the probe has contact") \
     ROW(ALARM_TEXT, MODBUS_INPUTS, 200, PANEL_TEXT, PANEL_ALARM_TEXT_MAX / 2, "", 0, 0, 0, PANEL_NEVER, \
         "what is wrong, as text") \
     ROW(UPLOAD_TEXT, MODBUS_INPUTS, 300, PANEL_TEXT, PANEL_ALARM_TEXT_MAX / 2, "", 0, 0, 0, PANEL_NEVER, \

@@ -26,6 +26,13 @@ static inline int64_t panel_value(const struct panel_snapshot *snapshot, enum pa
 /* More than one request can write: registers of a table that are an order, by the test of the room. */
 #define PANEL_ORDER_MAX 48
 
+/* What MDI_START starts. */
+enum panel_order_text {
+    PANEL_ORDER_MDI,  /* the line of the order */
+    PANEL_ORDER_JOG,  /* likewise, as a jog */
+    PANEL_ORDER_LINES /* the lines of the console, as they come */
+};
+
 /* What one request wants changed: all of it, or nothing. */
 struct panel_order {
     unsigned count;
@@ -33,6 +40,7 @@ struct panel_order {
         enum panel_id id;
         int64_t value;
     } item[PANEL_ORDER_MAX];
+    enum panel_order_text text;
     char mdi[PANEL_MDI_MAX + 1]; /* with MDI_START: the line, ends with a zero */
 };
 

@@ -23,6 +23,8 @@ static void begin_job(struct service *s, enum service_job job)
     s->rest_cycles = 0;
     s->has_starved = false;
     s->held_block = 0;
+    s->streams = false;
+    s->settings.spindle_stop = false;
     s->digest = FNV_START;
 }
 
@@ -59,6 +61,8 @@ void service_end_job(struct service *s, enum panel_outcome outcome)
 {
     if (s->job == SERVICE_MDI && outcome == PANEL_OUTCOME_COMPLETED)
         keep_modes(s);
+    if (s->streams)
+        service_end_lines(s, outcome);
     if (s->job == SERVICE_PROGRAM) {
         service_forget_plan(s);
         s->cut_line = outcome == PANEL_OUTCOME_COMPLETED ? 0 : s->controller.record.line;
@@ -72,6 +76,7 @@ void service_end_job(struct service *s, enum panel_outcome outcome)
     s->finds_home = false;
     s->hold = PANEL_HOLD_NONE;
     s->giving_up = false;
+    s->settings.spindle_stop = false;
 }
 
 void service_give_up(struct service *s)
@@ -114,15 +119,28 @@ bool service_start_program(struct service *s)
     return true;
 }
 
+/* The text is the source of the configuration. */
+static void start_with(struct service *s, struct controller_config *config, enum service_job job)
+{
+    config->keeps_outputs = true;
+    config->modes = s->has_modes && job == SERVICE_MDI ? &s->modes : NULL;
+    controller_start_program(&s->controller, config, &s->at);
+    begin_job(s, job);
+}
+
 static void start_text(struct service *s, enum service_job job)
 {
     struct controller_config config = service_controller_config(s);
 
-    config.keeps_outputs = true;
-    config.modes = s->has_modes && job == SERVICE_MDI ? &s->modes : NULL;
     source_open_text(&config.source, &s->source_text, s->text, s->text_length);
-    controller_start_program(&s->controller, &config, &s->at);
-    begin_job(s, job);
+    start_with(s, &config, job);
+}
+
+void service_start_text_of(struct service *s, const struct controller_config *config)
+{
+    struct controller_config copy = *config;
+
+    start_with(s, &copy, SERVICE_MDI);
 }
 
 static void add_character(struct service *s, char c)
@@ -142,6 +160,13 @@ void service_start_mdi(struct service *s, const char *line)
     s->text_length = 0;
     add_text(s, line);
     start_text(s, SERVICE_MDI);
+}
+
+void service_start_jog_line(struct service *s, const char *line)
+{
+    s->text_length = 0;
+    add_text(s, line);
+    start_text(s, SERVICE_JOG);
 }
 
 static void add_word(struct service *s, char letter, double value)

@@ -170,6 +170,9 @@ static void look_at_outputs(const struct service *s, uint32_t *value)
         (spindle->at_speed ? 1 : 0) | (spindle->tripped ? 2 : 0) | (spindle->silent ? 4 : 0);
     value[REGISTER_TOOL] = outputs.tool;
     value[REGISTER_COOLANT] = (outputs.mist ? 1 : 0) | (outputs.flood ? 2 : 0);
+    value[REGISTER_FLOOD] = outputs.flood;
+    value[REGISTER_MIST] = outputs.mist;
+    value[REGISTER_SPINDLE_STOP] = s->settings.spindle_stop;
     value[REGISTER_DIGITAL_OUTPUTS] = outputs.digital;
 }
 
@@ -203,6 +206,7 @@ static void look_at_state(const struct service *s, uint32_t *value)
     value[REGISTER_MDI_START] = s->job == SERVICE_MDI;
     value[REGISTER_JOG_PLUS] = s->job == SERVICE_JOG && !s->jog_is_negative;
     value[REGISTER_JOG_MINUS] = s->job == SERVICE_JOG && s->jog_is_negative;
+    value[REGISTER_PROBE] = s->inputs.probe_contact;
     value[REGISTER_HOME] = s->job == SERVICE_HOME;
 }
 

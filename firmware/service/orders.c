@@ -32,7 +32,8 @@ static bool may_go_on(const struct service *s)
     const struct spindle_feedback *spindle = &s->inputs.spindle;
     const bool is_back = !spindle->silent && !spindle->tripped && spindle->at_speed;
 
-    return s->alarm == PANEL_ALARM_NONE && (s->hold != PANEL_HOLD_SPINDLE || is_back);
+    return s->alarm == PANEL_ALARM_NONE && !s->settings.spindle_stop &&
+           (s->hold != PANEL_HOLD_SPINDLE || is_back);
 }
 
 static enum panel_verdict verdict_on(bool allowed)
@@ -202,6 +203,10 @@ static bool set_switch(struct service *s, enum panel_id id, bool on)
         settings->block_delete = on;
     } else if (id == REGISTER_EMERGENCY_STOP) {
         set_emergency(s, on);
+    } else if (is_between(id, REGISTER_FLOOD, REGISTER_MIST)) {
+        controller_set_coolant(&s->controller, id == REGISTER_FLOOD, on);
+    } else if (id == REGISTER_SPINDLE_STOP) {
+        settings->spindle_stop = on;
     } else if (is_between(id, REGISTER_CORRECTION_MATRIX, REGISTER_CORRECTION_WEAR)) {
         switch_correction(s, id - REGISTER_CORRECTION_MATRIX, on);
     } else if (is_between(id, REGISTER_JOG_PLUS, REGISTER_JOG_MINUS)) {
@@ -212,8 +217,19 @@ static bool set_switch(struct service *s, enum panel_id id, bool on)
     return true;
 }
 
+static bool start_text(struct service *s, const struct panel_order *order)
+{
+    if (order->text == PANEL_ORDER_LINES)
+        return service_start_lines(s);
+    if (order->text == PANEL_ORDER_JOG)
+        service_start_jog_line(s, order->mdi);
+    else
+        service_start_mdi(s, order->mdi);
+    return true;
+}
+
 /* Coils that do something when 1 is written. */
-static bool push_button(struct service *s, enum panel_id id, const char *mdi)
+static bool push_button(struct service *s, enum panel_id id, const struct panel_order *order)
 {
     if (id == REGISTER_RESUME || (id == REGISTER_CYCLE_START && s->job != SERVICE_NOTHING))
         go_on(s);
@@ -226,7 +242,7 @@ static bool push_button(struct service *s, enum panel_id id, const char *mdi)
     else if (id == REGISTER_ACKNOWLEDGE)
         acknowledge(s);
     else if (id == REGISTER_MDI_START)
-        service_start_mdi(s, mdi);
+        return start_text(s, order);
     else if (id == REGISTER_HOME)
         service_start_home(s);
     return true;
@@ -343,13 +359,14 @@ static bool set_holding(struct service *s, enum panel_id id, int64_t value)
     return true;
 }
 
-static bool do_item(struct service *s, const struct panel_order_item *item, const char *mdi)
+static bool do_item(struct service *s, const struct panel_order_item *item,
+                    const struct panel_order *order)
 {
     if (panel_registers[item->id].form != PANEL_BIT)
         return set_setting(&s->settings, item->id, item->value) ||
                set_holding(s, item->id, item->value);
     return set_switch(s, item->id, item->value != 0) || item->value == 0 ||
-           push_button(s, item->id, mdi);
+           push_button(s, item->id, order);
 }
 
 /* Two buttons at once that start or end something: no order says which is meant first. */
@@ -395,7 +412,7 @@ enum panel_verdict service_order(struct service *s, const struct panel_order *or
         return verdict;
     }
     for (unsigned i = 0; i < order->count; i++) {
-        if (!do_item(s, &order->item[i], order->mdi))
+        if (!do_item(s, &order->item[i], order))
             return PANEL_WRONG_STATE;
     }
     if (s->settings.watchdog_ms != before.watchdog_ms)

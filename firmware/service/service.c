@@ -295,6 +295,8 @@ struct outputs service_get_outputs(const struct service *s)
 {
     struct outputs outputs = *controller_get_outputs(&s->controller);
 
+    if (s->settings.spindle_stop)
+        outputs.spindle_speed_rpm = 0.0;
     outputs.spindle_speed_rpm *= 0.001 * (double)s->settings.spindle_override;
     return outputs;
 }

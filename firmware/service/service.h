@@ -13,6 +13,7 @@
 #ifndef TAKT_SERVICE_SERVICE_H
 #define TAKT_SERVICE_SERVICE_H
 
+#include "console/console.h"
 #include "controller/controller.h"
 #include "controller/restart.h"
 #include "panel/snapshot.h"
@@ -44,6 +45,20 @@ struct service_plans {
     void *context; /* owned by whoever made it */
 };
 
+/*
+ * Lines of a console: a program whose text comes while it runs, as many lines as there are. read and refuse are called by the
+ * background, between two cycles or not; the rest between two cycles.
+ */
+struct service_lines {
+    /* A source of the lines that come; when it is asked for the next one, the last one has been taken. NULL: no console. */
+    void (*open)(void *context, struct source *source);
+    /* The line handed out last is wrong; it has changed nothing, and those after it go on. */
+    void (*refuse)(void *context, const struct diagnostic *why);
+    /* Nothing reads any more. why: TAKT_OK: all that was read has been done. */
+    void (*end)(void *context, enum takt_error why);
+    void *context; /* owned by whoever made it */
+};
+
 struct service_config {
     const struct machine *machine;    /* copied */
     struct controller_reader *reader; /* its alone; must outlive the service */
@@ -56,6 +71,7 @@ struct service_config {
     const struct correction_tables *correction; /* NULL: none; must outlive the service */
     struct service_programs programs;
     struct service_plans plans;
+    struct service_lines lines;
     bool exact_path; /* every G64 is treated as G61 */
 };
 
@@ -104,6 +120,8 @@ void service_lose_bus(struct service *s);
 enum panel_state service_get_state(const struct service *s);
 
 void service_set_health(struct service *s, const struct service_health *health);
+/* What a console asks for. */
+void service_tell(const struct service *s, enum console_fact fact, double value[AXIS_COUNT]);
 void service_look(const struct service *s, struct panel_snapshot *snapshot);
 
 #endif

@@ -9,6 +9,14 @@
 /* service_jobs.c: starting and ending what runs. False: there is no program, or it would leave the travel. */
 bool service_start_program(struct service *s);
 void service_start_mdi(struct service *s, const char *line);
+/* The line as a jog: it is given up by a hold. */
+void service_start_jog_line(struct service *s, const char *line);
+/* An MDI line or more, of a source; config: of service_controller_config, with it. */
+void service_start_text_of(struct service *s, const struct controller_config *config);
+/* lines.c: the lines of a console, as they come. False: there is no console. */
+bool service_start_lines(struct service *s);
+/* They have ended with the job. */
+void service_end_lines(struct service *s, enum panel_outcome outcome);
 bool service_jog_is_possible(const struct service *s, bool negative);
 void service_start_jog(struct service *s, bool negative);
 /* Homing: first the drives, then the way to machine zero. */

@@ -23,6 +23,7 @@ struct service_settings {
     uint32_t watchdog_ms; /* 0: no panel is in control */
     uint32_t start_line;  /* of the next program; 0: its beginning */
     bool single_block, optional_stop, block_delete;
+    bool spindle_stop;        /* in a hold */
     unsigned corrections;     /* bit i: layer i of the position correction is on */
     int32_t rise[AXIS_COUNT]; /* 0.001 K, of each axis since calibration */
 };
@@ -69,6 +70,13 @@ struct service {
     struct program_modes modes; /* that the last line has left */
     bool has_modes;             /* and the next one goes on with */
     struct source_text source_text;
+
+    struct source lines;  /* of a console, while they run */
+    bool streams;         /* they do */
+    bool streams_to_end;  /* they come to an end, since nothing more comes */
+    bool has_line;        /* one has been handed out, and the next not been asked for */
+    uint32_t asked_cycle; /* since when the next line has been waited for */
+    uint32_t begun_cycle;
 };
 
 #endif

@@ -46,8 +46,13 @@ const struct panel_order *exchange_take_order(struct exchange *exchange)
 {
     unsigned asked = STAGE_ASKED;
 
-    return atomic_compare_exchange_strong(&exchange->stage, &asked, STAGE_TAKEN) ? &exchange->order
-                                                                                 : NULL;
+    if (!atomic_compare_exchange_strong(&exchange->stage, &asked, STAGE_TAKEN))
+        return NULL;
+    if (exchange->task == NULL)
+        return &exchange->order;
+    exchange->task(exchange->task_context);
+    exchange_answer(exchange, PANEL_DONE);
+    return NULL;
 }
 
 void exchange_answer(struct exchange *exchange, enum panel_verdict verdict)
@@ -87,12 +92,11 @@ static bool wait_for_answer(struct exchange *exchange)
     return true;
 }
 
-static enum panel_verdict give_order(void *context, const struct panel_order *order)
+/* What is asked stands there. */
+static enum panel_verdict ask(struct exchange *exchange)
 {
-    struct exchange *exchange = context;
     unsigned asked = STAGE_ASKED;
 
-    exchange->order = *order;
     atomic_store(&exchange->stage, STAGE_ASKED);
     if (wait_for_answer(exchange))
         return exchange->verdict;
@@ -102,6 +106,22 @@ static enum panel_verdict give_order(void *context, const struct panel_order *or
     while (sem_wait(&exchange->answered) != 0) {
     }
     return exchange->verdict;
+}
+
+static enum panel_verdict give_order(void *context, const struct panel_order *order)
+{
+    struct exchange *exchange = context;
+
+    exchange->order = *order;
+    exchange->task = NULL;
+    return ask(exchange);
+}
+
+bool exchange_ask(struct exchange *exchange, void (*task)(void *context), void *context)
+{
+    exchange->task = task;
+    exchange->task_context = context;
+    return ask(exchange) == PANEL_DONE;
 }
 
 static void hear(void *context)

@@ -24,6 +24,8 @@ struct exchange {
     atomic_uint between;
 
     struct panel_order order;
+    void (*task)(void *context); /* asked instead of an order; NULL: an order is */
+    void *task_context;
     enum panel_verdict verdict;
     atomic_uint stage;
     sem_t answered;
@@ -37,11 +39,14 @@ void exchange_close(struct exchange *exchange);
 /* Control thread. The snapshot to fill, followed by exchange_publish. */
 struct panel_snapshot *exchange_next_snapshot(struct exchange *exchange);
 void exchange_publish(struct exchange *exchange);
-/* Control thread. An order, to be answered once a snapshot that shows it is published; NULL: there is none. */
+/* Control thread. Does the task that has been asked for. An order, to be answered once a snapshot that shows it is published; NULL: there is none. */
 const struct panel_order *exchange_take_order(struct exchange *exchange);
 void exchange_answer(struct exchange *exchange, enum panel_verdict verdict);
 /* Control thread. The panel in control has been heard since the last call. */
 bool exchange_take_alive(struct exchange *exchange);
+
+/* Panel thread: has the control thread do something short, between two cycles. False: it has not. */
+bool exchange_ask(struct exchange *exchange, void (*task)(void *context), void *context);
 
 /* Panel thread: what a panel stands on. */
 struct panel_port exchange_get_port(struct exchange *exchange);

@@ -90,6 +90,36 @@ void panel_host_leave_page(struct panel_host *host, unsigned page)
     leave(host, SERVER_PLACES + page);
 }
 
+void panel_host_enter_console(struct panel_host *host)
+{
+    (void)enter(host, PANEL_HOST_CONSOLE);
+}
+
+void panel_host_leave_console(struct panel_host *host)
+{
+    leave(host, PANEL_HOST_CONSOLE);
+}
+
+enum panel_refusal panel_host_order(struct panel_host *host, const struct panel_order *order)
+{
+    enum panel_refusal refusal;
+
+    panel_host_lock(host);
+    refusal = panel_client_order(&host->seat[PANEL_HOST_CONSOLE].client, order);
+    panel_host_unlock(host);
+    return refusal;
+}
+
+enum panel_refusal panel_host_give_password(struct panel_host *host, uint32_t password)
+{
+    enum panel_refusal refusal;
+
+    panel_host_lock(host);
+    refusal = panel_client_unlock(&host->seat[PANEL_HOST_CONSOLE].client, password);
+    panel_host_unlock(host);
+    return refusal;
+}
+
 void panel_host_lock(struct panel_host *host)
 {
     (void)pthread_mutex_lock(&host->lock);

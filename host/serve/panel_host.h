@@ -12,8 +12,9 @@
 
 #define PANEL_HOST_PAGES 64
 
-/* Pages come behind the places of the server. */
-#define PANEL_HOST_SEATS (SERVER_PLACES + PANEL_HOST_PAGES)
+/* Pages come behind the places of the server, then the console. */
+#define PANEL_HOST_CONSOLE (SERVER_PLACES + PANEL_HOST_PAGES)
+#define PANEL_HOST_SEATS   (PANEL_HOST_CONSOLE + 1)
 
 struct panel_seat {
     struct panel_host *host;
@@ -34,6 +35,12 @@ struct server_host panel_host_get(struct panel_host *host);
 /* For pages, 0 ... PANEL_HOST_PAGES - 1: the registers as this one sees them. */
 struct modbus_map panel_host_enter_page(struct panel_host *host, unsigned page);
 void panel_host_leave_page(struct panel_host *host, unsigned page);
+
+/* For the console. */
+void panel_host_enter_console(struct panel_host *host);
+void panel_host_leave_console(struct panel_host *host);
+enum panel_refusal panel_host_order(struct panel_host *host, const struct panel_order *order);
+enum panel_refusal panel_host_give_password(struct panel_host *host, uint32_t password);
 
 /* What runs between these two is not interrupted by another server's requests. */
 void panel_host_lock(struct panel_host *host);

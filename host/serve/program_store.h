@@ -2,7 +2,8 @@
  * The program of the service, and the one that is on its way in. In memory; with a path also in a file, which is
  * replaced at once or not at all.
  *
- * The panel's thread brings the new one, the control thread adopts it between two cycles, while the panel waits.
+ * The panel's thread brings the new one, the control thread adopts it between two cycles, while the panel waits. A program
+ * that is streamed is adopted before its text has come, and read as far as it has, in whole lines.
  */
 #ifndef TAKT_SERVE_PROGRAM_STORE_H
 #define TAKT_SERVE_PROGRAM_STORE_H
@@ -10,10 +11,19 @@
 #include "panel/upload.h"
 #include "program/source.h"
 
+#include <stdatomic.h>
 #include <stdbool.h>
 #include <stddef.h>
 
 #define PROGRAM_STORE_PATH_MAX 4096
+
+/* Of a streamed program. */
+enum program_stream {
+    PROGRAM_STREAM_NONE, /* it is no stream */
+    PROGRAM_STREAM_COMING,
+    PROGRAM_STREAM_WHOLE,
+    PROGRAM_STREAM_WRONG /* given up, or not what was announced */
+};
 
 struct program_store {
     char *program; /* what runs; owned, NULL: none */
@@ -23,6 +33,10 @@ struct program_store {
     const char *path; /* NULL: in memory alone */
     char aside[PROGRAM_STORE_PATH_MAX + 16];
     struct source_text text; /* of the program being read */
+    char *stream; /* the text being streamed: that which is staged, or runs; NULL: none is */
+    size_t stream_size;
+    atomic_uint has_come; /* whole lines of it, bytes; all, at its end */
+    atomic_uint coming;   /* enum program_stream */
 };
 
 /* path stays the caller's. False: it is too long. */
@@ -34,6 +48,9 @@ bool program_store_set(struct program_store *store, const char *bytes, size_t si
 
 /* Panel thread. */
 struct panel_store program_store_get_staging(struct program_store *store);
+
+/* What there is of the program; while it is streamed, what has come. False: there is none. */
+bool program_store_get(const struct program_store *store, const char **text, size_t *size);
 
 /* Control thread. */
 bool program_store_read(void *store, struct source *source);

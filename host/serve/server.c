@@ -46,12 +46,11 @@ static bool bind_listener(int file, const struct addrinfo *address)
            fcntl(file, F_SETFL, O_NONBLOCK) == 0 && fcntl(file, F_SETFD, FD_CLOEXEC) == 0;
 }
 
-/* -1: *problem says why. */
-static int open_listener(const struct server_config *config, const char **problem)
+int server_listen(const char *address, const char *port, const char **problem)
 {
     const struct addrinfo wanted = {.ai_socktype = SOCK_STREAM, .ai_flags = AI_PASSIVE};
     struct addrinfo *found = NULL;
-    const int failed = getaddrinfo(config->address, config->port, &wanted, &found);
+    const int failed = getaddrinfo(address, port, &wanted, &found);
     int file;
 
     if (failed != 0) {
@@ -69,12 +68,12 @@ static int open_listener(const struct server_config *config, const char **proble
     return file;
 }
 
-static uint16_t port_of(int file)
+uint16_t server_port_of(int listener)
 {
     struct sockaddr_storage address;
     socklen_t size = sizeof address;
 
-    if (getsockname(file, (struct sockaddr *)&address, &size) != 0)
+    if (getsockname(listener, (struct sockaddr *)&address, &size) != 0)
         return 0;
     return ntohs(address.ss_family == AF_INET6 ? ((const struct sockaddr_in6 *)&address)->sin6_port
                                                : ((const struct sockaddr_in *)&address)->sin_port);
@@ -102,8 +101,8 @@ bool server_open(struct server *server, const struct server_config *config, cons
     }
     if (config->address == NULL)
         return true;
-    server->listener = open_listener(config, problem);
-    server->port = server->listener >= 0 ? port_of(server->listener) : 0;
+    server->listener = server_listen(config->address, config->port, problem);
+    server->port = server->listener >= 0 ? server_port_of(server->listener) : 0;
     return server->listener >= 0;
 }
 

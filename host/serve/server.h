@@ -67,6 +67,10 @@ bool server_start(struct server *server);
 /* Ends the thread and closes everything. */
 void server_close(struct server *server);
 
+/* A socket that listens, without waiting; -1: *problem says why, until the next call. */
+int server_listen(const char *address, const char *port, const char **problem);
+uint16_t server_port_of(int listener);
+
 uint16_t server_get_port(const struct server *server);
 
 #endif

@@ -28,6 +28,7 @@ static void print_ready(const struct serving *s)
     if (config->serial >= 0)
         (void)printf("panel on %s, unit %u\n", s->options.serial.path, (unsigned)config->unit);
     print_page(s);
+    serving_console_print(s);
     (void)fflush(stdout);
 }
 
@@ -90,6 +91,8 @@ static const struct option_row rows[] = {
      "Modbus TCP of the panel (default 127.0.0.1:1502; port 0: any)"},
     {"http", OPTION_TEXT, offsetof(struct options, panel.http), "HOST:PORT|off",
      "page in the browser (default 127.0.0.1:8080; port 0: any)"},
+    {"grbl", OPTION_TEXT, offsetof(struct options, panel.grbl), "tcp:HOST:PORT|pty:LINK",
+     "Grbl 1.1's interface for one sender: on a socket, or a pseudo terminal that LINK names"},
     {"serial", OPTION_TEXT, offsetof(struct options, panel.serial), "PATH[,BAUD[,PARITY]]",
      "Modbus RTU of the panel too (default 19200, even)"},
     {"unit", OPTION_NUMBER, offsetof(struct options, panel.unit), "N",
@@ -126,36 +129,43 @@ const struct command command_serve = {
     .name = "serve",
     .usage = "[options]",
     .summary = "the controller as a service, with the operator's panel on Modbus",
-    .help = "Runs in real time until SIGTERM or Ctrl-C. Without options: the built-in machine with "
-            "virtual drives and\n"
-            "spindle, and the panel on 127.0.0.1:1502 for any number of clients. `takt panel list` "
-            "lists its registers.\n"
-            "A browser shows and drives the machine at http://127.0.0.1:8080/.\n"
-            "The section [panel] of the machine file says who may connect to both, and sets a "
-            "password.\n"
-            "\n"
-            "Its state is kept in $XDG_STATE_HOME/takt/MACHINE, by default "
-            "~/.local/state/takt/MACHINE: never older than a\n"
-            "second, and whole after a power cut. Tools and parameters of a file count again when "
-            "the file has changed.\n"
-            "\n"
-            "SIGTERM, SIGHUP and Ctrl-C end it in order: the axes come to rest on their path, the "
-            "drives brake and go off\n"
-            "(drives_stay_on of [bus]: stay switched on), spindle and coolant stop. That is status "
-            "0. A second one brakes at\n"
-            "once: status 130 (Ctrl-C), 143 (SIGTERM), 129 (SIGHUP). A bus log that cannot be "
-            "written ends it, too: status 3.\n"
-            "A bus that is lost is an alarm; it is looked for, and RESET enables the drives "
-            "again.\n"
-            "\n"
-            "At its end it prints how late control cycles began.\n"
-            "\n"
-            "Examples:\n"
-            "  takt serve\n"
-            "  takt serve --program part.ngc --machine mill.ini\n"
-            "  takt serve --spindle 127.0.0.1:1503        (takt drives --spindle 127.0.0.1:1503)\n"
-            "  takt serve --listen 0.0.0.0:1502 --set panel.allow=192.168.1.0/24 --store "
-            "program.ngc\n",
+    .help =
+        "Runs in real time until SIGTERM or Ctrl-C. Without options: the built-in machine with "
+        "virtual drives and\n"
+        "spindle, and the panel on 127.0.0.1:1502 for any number of clients. `takt panel list` "
+        "lists its registers.\n"
+        "A browser shows and drives the machine at http://127.0.0.1:8080/.\n"
+        "--grbl: senders made for Grbl 1.1 (CNCjs, UGS, bCNC) drive it as well, by the same rules; "
+        "text they stream runs\n"
+        "with the setpoints of the same text in a file (host/docs/grbl.md).\n"
+        "The section [panel] of the machine file says who may connect to both, and sets a "
+        "password.\n"
+        "\n"
+        "Its state is kept in $XDG_STATE_HOME/takt/MACHINE, by default "
+        "~/.local/state/takt/MACHINE: never older than a\n"
+        "second, and whole after a power cut. Tools and parameters of a file count again when "
+        "the file has changed.\n"
+        "\n"
+        "SIGTERM, SIGHUP and Ctrl-C end it in order: the axes come to rest on their path, the "
+        "drives brake and go off\n"
+        "(drives_stay_on of [bus]: stay switched on), spindle and coolant stop. That is status "
+        "0. A second one brakes at\n"
+        "once: status 130 (Ctrl-C), 143 (SIGTERM), 129 (SIGHUP). A bus log that cannot be "
+        "written ends it, too: status 3.\n"
+        "A bus that is lost is an alarm; it is looked for, and RESET enables the drives "
+        "again.\n"
+        "\n"
+        "At its end it prints how late control cycles began.\n"
+        "\n"
+        "Examples:\n"
+        "  takt serve\n"
+        "  takt serve --program part.ngc --machine mill.ini\n"
+        "  takt serve --grbl tcp:127.0.0.1:2300\n"
+        "  takt serve --grbl pty:/tmp/ttyGRBL          (a serial port for senders that know no "
+        "other)\n"
+        "  takt serve --spindle 127.0.0.1:1503        (takt drives --spindle 127.0.0.1:1503)\n"
+        "  takt serve --listen 0.0.0.0:1502 --set panel.allow=192.168.1.0/24 --store "
+        "program.ngc\n",
     .options = rows,
     .operands_min = 0,
     .operands_max = 0,

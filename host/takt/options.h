@@ -32,6 +32,7 @@ struct option_bore {
 struct option_panel {
     const char *listen, *connect; /* HOST:PORT */
     const char *http;             /* HOST:PORT, or off; NULL: the default */
+    const char *grbl;             /* tcp:HOST:PORT or pty:LINK; NULL: no console */
     const char *serial;           /* PATH, or PATH,BAUD,PARITY */
     const char *program;
     const char *store;

@@ -66,6 +66,7 @@ static void open_service(struct serving *s)
         .correction = s->session.correction,
         .programs = {program_store_read, program_store_adopt, &s->store},
         .plans = plan_queue_get_plans(&s->plan),
+        .lines = serving_console_get_lines(s),
         .exact_path = s->session.options->exact_path,
     };
 
@@ -152,11 +153,14 @@ enum command_status serving_open(struct serving *s, const struct options *option
     status = open_server(s);
     if (status == STATUS_DONE)
         status = serving_page_open(s);
+    if (status == STATUS_DONE)
+        status = serving_console_open(s);
     return status == STATUS_DONE ? serving_state_start(&s->state) : status;
 }
 
 void serving_close(struct serving *s)
 {
+    serving_console_close(s);
     serving_page_close(s);
     if (s->has_server)
         server_close(&s->server);
@@ -269,7 +273,7 @@ static enum command_status how_it_ended(struct serving *s)
 
 enum command_status serving_run(struct serving *s)
 {
-    if (!server_start(&s->server)) {
+    if (!server_start(&s->server) || !serving_console_start(s)) {
         message_command_error("no thread for the panel");
         return STATUS_ENVIRONMENT;
     }

@@ -19,6 +19,7 @@
 #include "takt/cycle_cost.h"
 #include "takt/ending.h"
 #include "takt/field.h"
+#include "takt/serving_console.h"
 #include "takt/serving_options.h"
 #include "takt/serving_page.h"
 #include "takt/serving_spindle.h"
@@ -43,6 +44,7 @@ struct serving {
     struct panel_host panel;
     struct server server;
     struct serving_page page;
+    struct serving_console console;
     struct cycle_cost cost;
     struct bus_log bus_log;
     struct ending ending;

@@ -175,3 +175,24 @@ bool serving_options_read_page(struct serving_options *options, const struct ses
     return read_allowed(&config->allowed, session->setup.panel.allow) &&
            check_access(session, config->address, &config->allowed);
 }
+
+bool serving_options_read_console(struct serving_options *options, const struct session *session,
+                                  struct console_server_config *config)
+{
+    static const char tcp[] = "tcp:", pty[] = "pty:";
+    const char *given = session->options->panel.grbl;
+
+    config->address = NULL;
+    (void)snprintf(options->grbl, sizeof options->grbl, "%s", given);
+    if (strncmp(given, pty, sizeof pty - 1) == 0 && given[sizeof pty - 1] != '\0') {
+        config->link = options->grbl + sizeof pty - 1;
+        return true;
+    }
+    if (strncmp(given, tcp, sizeof tcp - 1) != 0 ||
+        !serving_options_split(options->grbl + sizeof tcp - 1, &config->address, &config->port)) {
+        message_command_error("--grbl %s: tcp:HOST:PORT or pty:LINK is expected", given);
+        return false;
+    }
+    return read_allowed(&config->allowed, session->setup.panel.allow) &&
+           check_access(session, config->address, &config->allowed);
+}

@@ -85,9 +85,7 @@ static bool get_program(void *context, const char **text, size_t *size)
 {
     const struct serving *s = context;
 
-    *text = s->store.program;
-    *size = s->store.size;
-    return *text != NULL;
+    return program_store_get(&s->store, text, size);
 }
 
 struct drawing {

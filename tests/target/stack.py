@@ -27,6 +27,7 @@ CALLS = (
     (r"answer_.*|modbus_answer", r"panel_read|panel_write"),
     (r".*_layers?|exchange_tables|correction_.*", LAYER),
     (r"comment_run", r"say"),  # nobody listens on a target
+    (r"controller_background", r"refuse_line"),
     (r"decimal_read", r"wide_.*"),
     (r"embedded_.*|hear|order|log_.*|serve_line|refuse|forward|lock|unlock", PORT),
     (r"expression_.*|read_.*", OPERATORS),
@@ -34,9 +35,10 @@ CALLS = (
     (r"findings_next", r"find_.*"),
     (r"lexer_.*", r"seek|text_seek|read_bytes|text_read"),
     (r"flow_.*", r"take_(do|else|elseif|endif|endrepeat|endwhile|if|repeat|while)|calls_.*|leave_round"),
-    (r"give_order|panel_(?!look).*", STORE),
+    (r"give_order|decide|panel_(?!look).*", STORE),
     (r"panel_look", r"look|hear"),
     (r"predefined_.*", r"get_.*"),
+    (r"refuse_line", r"lines_refuse"),  # nobody has a console on a target
     (r"replay_read|intake_.*", r"take|is_lost"),
     (r"run_line|run_step.*", CODES),
     (r"send_.*", r"send"),

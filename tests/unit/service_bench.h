@@ -24,6 +24,7 @@ static struct parameters parameters;
 static struct tool tools[1];
 static struct machine machine;
 static const struct correction_tables *correction; /* NULL: none */
+static struct service_lines service_lines;         /* of a console; all NULL: none */
 static struct inputs world;
 static struct source_text program_text;
 static const char *program, *staged;
@@ -71,6 +72,7 @@ static void bench_start(void)
         .parameters = &parameters,
         .correction = correction,
         .programs = {bench_open, bench_adopt, NULL},
+        .lines = service_lines,
     };
 
     service_init(&service, &config);
@@ -103,19 +105,19 @@ static inline void bench_set_up(void)
     bench_start();
 }
 
-static enum panel_verdict order(enum panel_id id, int64_t value)
+static inline enum panel_verdict order(enum panel_id id, int64_t value)
 {
     const struct panel_order one = {.count = 1, .item = {{id, value}}};
 
     return service_order(&service, &one);
 }
 
-static void must(enum panel_id id, int64_t value)
+static inline void must(enum panel_id id, int64_t value)
 {
     TEST_ASSERT_EQUAL_INT_MESSAGE(PANEL_DONE, order(id, value), panel_texts[id].name);
 }
 
-static int64_t shown(enum panel_id id)
+static inline int64_t shown(enum panel_id id)
 {
     static struct panel_snapshot snapshot;
 
@@ -131,7 +133,7 @@ static inline const char *alarm_text(void)
     return snapshot.alarm_text;
 }
 
-static void load(const char *text)
+static inline void load(const char *text)
 {
     const struct panel_order commit = {
         .count = 3,

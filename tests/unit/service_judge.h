@@ -47,13 +47,13 @@ static void judged_cycle(void)
         judge_axis(judged[i], service.controller.record.set.at[i]);
 }
 
-static void judged_cycles(unsigned count)
+static inline void judged_cycles(unsigned count)
 {
     for (unsigned i = 0; i < count; i++)
         judged_cycle();
 }
 
-static void judged_wait_for(enum panel_state state)
+static inline void judged_wait_for(enum panel_state state)
 {
     for (unsigned i = 0; i < BENCH_CYCLES_MAX && service_get_state(&service) != state; i++)
         judged_cycle();
@@ -61,7 +61,7 @@ static void judged_wait_for(enum panel_state state)
 }
 
 /* And the axes have moved. */
-static void expect_limits_kept(void)
+static inline void expect_limits_kept(void)
 {
     TEST_ASSERT_TRUE(most_velocity <= 100.0 * 1.0001);
     TEST_ASSERT_TRUE(most_acceleration <= 1000.0 * 1.0001);

@@ -229,6 +229,53 @@ static void test_an_order_that_nobody_takes_is_given_up(void)
     exchange_close(&exchange);
 }
 
+static void test_a_program_that_is_streamed_is_read_as_far_as_it_has_come(void)
+{
+    static struct program_store store;
+    const struct panel_store staging = program_store_get_staging(&store);
+    static const char text[] = "G0 X1\nG0 X2\nM2";
+    const uint8_t *bytes = (const uint8_t *)text;
+    char buffer[64];
+    struct source source;
+
+    TEST_ASSERT_TRUE(program_store_open(&store, "streamed.ngc"));
+    TEST_ASSERT_TRUE(staging.begin_stream(staging.context, sizeof text - 1));
+    program_store_adopt(&store);
+    TEST_ASSERT_TRUE(program_store_read(&store, &source));
+    TEST_ASSERT_EQUAL_INT(SOURCE_LATER, source.read(source.context, buffer, sizeof buffer));
+    TEST_ASSERT_TRUE(staging.write(staging.context, 0, bytes, 8));
+    TEST_ASSERT_EQUAL_INT(6, source.read(source.context, buffer, sizeof buffer));
+    TEST_ASSERT_EQUAL_INT(SOURCE_LATER, source.read(source.context, buffer, sizeof buffer));
+    TEST_ASSERT_TRUE(staging.write(staging.context, 8, bytes + 8, sizeof text - 9));
+    TEST_ASSERT_EQUAL_INT(6, source.read(source.context, buffer, sizeof buffer));
+    TEST_ASSERT_EQUAL_INT(SOURCE_LATER, source.read(source.context, buffer, sizeof buffer));
+    staging.end_stream(staging.context, true);
+    TEST_ASSERT_EQUAL_INT(2, source.read(source.context, buffer, sizeof buffer));
+    TEST_ASSERT_EQUAL_INT(SOURCE_END, source.read(source.context, buffer, sizeof buffer));
+    TEST_ASSERT_TRUE(source.seek(source.context, 6));
+    TEST_ASSERT_EQUAL_INT(8, source.read(source.context, buffer, sizeof buffer));
+    TEST_ASSERT_TRUE(staging.begin(staging.context, 4));
+    TEST_ASSERT_TRUE(program_store_read(&store, &source));
+    program_store_close(&store);
+    TEST_ASSERT_EQUAL_INT(0, remove("streamed.ngc"));
+}
+
+static void test_a_stream_that_is_given_up_cannot_be_read(void)
+{
+    static struct program_store store;
+    const struct panel_store staging = program_store_get_staging(&store);
+    char buffer[64];
+    struct source source;
+
+    TEST_ASSERT_TRUE(program_store_open(&store, NULL));
+    TEST_ASSERT_TRUE(staging.begin_stream(staging.context, 10));
+    program_store_adopt(&store);
+    TEST_ASSERT_TRUE(program_store_read(&store, &source));
+    staging.end_stream(staging.context, false);
+    TEST_ASSERT_EQUAL_INT(SOURCE_ERROR, source.read(source.context, buffer, sizeof buffer));
+    program_store_close(&store);
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -241,5 +288,7 @@ int main(void)
     RUN_TEST(test_a_folder_that_is_not_there_stores_nothing);
     RUN_TEST(test_an_order_is_answered_when_a_snapshot_shows_it);
     RUN_TEST(test_an_order_that_nobody_takes_is_given_up);
+    RUN_TEST(test_a_program_that_is_streamed_is_read_as_far_as_it_has_come);
+    RUN_TEST(test_a_stream_that_is_given_up_cannot_be_read);
     return UNITY_END();
 }

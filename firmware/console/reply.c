@@ -1,0 +1,53 @@
+#include "console/reply.h"
+
+#include "base/decimal.h"
+
+/* Of 64 bits, with sign and point. */
+#define DIGITS_MAX 24
+
+void reply_send(struct reply *r)
+{
+    if (r->length > 0)
+        r->write(r->context, r->text, r->length);
+    r->length = 0;
+}
+
+static void put(struct reply *r, char c)
+{
+    if (r->length == sizeof r->text)
+        reply_send(r);
+    r->text[r->length++] = c;
+}
+
+void reply_text(struct reply *r, const char *text)
+{
+    for (; *text != '\0'; text++)
+        put(r, *text);
+}
+
+void reply_counts(struct reply *r, int64_t counts, unsigned decimals)
+{
+    char digits[DIGITS_MAX];
+    uint64_t rest = counts < 0 ? (uint64_t)-counts : (uint64_t)counts;
+    unsigned length = 0;
+
+    do {
+        digits[length++] = (char)('0' + rest % 10U);
+        rest /= 10U;
+        if (length == decimals)
+            digits[length++] = '.';
+    } while (rest > 0 || length <= decimals + (decimals > 0));
+    if (counts < 0)
+        put(r, '-');
+    while (length > 0)
+        put(r, digits[--length]);
+}
+
+void reply_number(struct reply *r, double value, unsigned decimals)
+{
+    char digits[DECIMAL_TEXT_MAX];
+    const size_t length = decimal_write(digits, value, decimals);
+
+    for (size_t i = 0; i < length; i++)
+        put(r, digits[i]);
+}

@@ -1,0 +1,135 @@
+"""The console of takt serve as senders of Grbl see it: connect, home, jog, stream, override, hold, reset. With an argument, so
+many short lines at 115200 baud through a pseudo terminal: how long they take beside the program."""
+
+import json
+import math
+import sys
+import time
+
+import grbl_sender as g
+import panel_client as p
+import takt_test as t
+
+BAUD = 115200
+
+
+def wave(count, step_mm=0.1):
+    """Short lines in three axes, at a feed of 50 mm/s."""
+    lines = ["G21 G90 G17 G64 P0.01", "G0 Z2", "G1 F3000"]
+    for i in range(1, count + 1):
+        x, y = step_mm * i % 400, 5 * math.sin(0.02 * i)
+        lines.append(f"X{x:.3f} Y{y:.3f}")
+    return "\n".join(lines + ["M2"]) + "\n"
+
+
+def run_file(text):
+    """Digest and time of the same text in a file."""
+    t.write("part.ngc", text)
+    status, out, err = t.run("run", "part.ngc", "--quiet", "--json", "-")
+    t.check(status == 0, "the program runs", err)
+    summary = json.loads(out)
+    return summary["setpoint_digest"], summary["program_time_s"]
+
+
+def stream_and_compare(sender, client, text, window, claim):
+    digest, _ = run_file(text)
+    sender.wait_for("Idle")
+    t.check(sender.stream(text, window) == [], f"{claim}: every line is good")
+    sender.wait_for("Idle")
+    t.check(client.digest() == digest, f"{claim}: the setpoints are those of takt run", client.digest(), digest)
+
+
+def a_session(sender, client):
+    sender.wait_for("Idle")
+    t.check(sender.ask("$H") == "ok" and sender.status()[0] == "Idle", "homing is answered when it is done")
+    t.check(sender.ask("$J=G91 G21 X10 F6000") == "ok", "a jog is taken")
+    sender.wait_for("Idle")
+    t.check(sender.status()[1]["MPos"].startswith("10.000,"), "a jog ends where it says")
+    sender.ask("$J=G91 X400 F600")
+    sender.realtime(b"\x85")
+    sender.wait_for("Idle")
+    t.check(float(sender.status()[1]["MPos"].split(",")[0]) < 60, "a jog is cancelled")
+    sender.realtime(b"\x91")
+    t.check(sender.status()[1]["Ov"] == "110,100,100", "the feed override is raised")
+    t.check(client.get("FEED_OVERRIDE") == 110, "and the panel's is the same")
+    sender.realtime(b"\x90")
+    t.check(sender.ask("G1 X0 F3000") == "ok", "a line is taken")
+    sender.wait_for("Run")
+    sender.realtime(b"!")
+    sender.wait_for("Hold")
+    sender.realtime(b"~")
+    sender.wait_for("Idle")
+    t.check(sender.ask("G5 X") == "error:2", "a wrong line is an error")
+    sender.ask("G1 X100 F600")
+    sender.wait_for("Run")
+    sender.realtime(g.RESET)
+    sender.expect("Grbl 1.1h ['$' for help]")
+    t.check(sender.status()[0] == "Idle", "a reset leads to rest")
+    t.check(sender.ask("$C") == "ok" and sender.status()[0] == "Check", "lines can be checked")
+    t.check(sender.ask("G1 X9 F600") == "ok" and sender.ask("G1 X") == "error:2", "and are answered")
+    t.check(sender.ask("G1 X900") == "error:15", "and beyond the travel too")
+    sender.ask("$C")
+    t.check(sender.status()[0] == "Idle", "without motion")
+
+
+def another_in_control(sender, client):
+    client.put("WATCHDOG", 60000)
+    t.check(sender.ask("G0 X1") == "error:9", "who is not in control moves nothing")
+    client.put("WATCHDOG", 0)
+    t.check(sender.ask("G0 X0") == "ok", "and may again when nobody is")
+    sender.wait_for("Idle")
+
+
+def on_a_socket():
+    service, port = g.serve("tcp:127.0.0.1:0")
+    client = service.client()
+    sender = g.Sender(g.Socket(port))
+    second = g.Socket(port)
+    t.check(b"another sender" in second.read(), "there is one sender at a time")
+    second.close()
+    a_session(sender, client)
+    another_in_control(sender, client)
+    sender.ask("G0 X0 Y0 Z0")
+    stream_and_compare(sender, client, wave(600), g.WINDOW, "counting characters")
+    sender.ask("G0 X0 Y0 Z0")
+    stream_and_compare(sender, client, wave(300), 0, "line by line")
+    sender.close()
+    again = g.Sender(g.Socket(port))
+    t.check(again.ask("G0 X0") == "ok", "the next sender is welcome")
+    again.close()
+    status, _, err, _ = service.stop()
+    t.check(status == 0, "the service ends in order", err)
+
+
+def on_a_terminal():
+    service, link = g.serve("pty:./line")
+    sender = g.Sender(g.Terminal(link))
+    stream_and_compare(sender, service.client(), wave(200), g.WINDOW, "on a terminal")
+    sender.close()
+    status, _, err, _ = service.stop()
+    t.check(status == 0, "the service ends in order with a terminal too", err)
+
+
+def at_the_speed_of_a_line(count):
+    text = wave(count)
+    digest, program_s = run_file(text)
+    service, link = g.serve("pty:./line")
+    sender = g.Sender(g.Terminal(link, BAUD))
+    sender.wait_for("Idle")
+    began = time.monotonic()
+    t.check(sender.stream(text) == [], "every line is good")
+    sender.wait_for("Idle")
+    took_s = time.monotonic() - began
+    print(f"{count} lines, {len(text)} bytes at {BAUD} baud: {took_s:.2f} s, program {program_s:.2f} s, ratio {took_s / program_s:.4f}, "
+          f"the line alone {len(text) * 10 / BAUD:.2f} s, digest {'equal' if service.client().digest() == digest else 'other'}")
+    t.check(service.client().digest() == digest, "the setpoints are those of takt run")
+    t.check(took_s <= 1.02 * max(program_s, len(text) * 10 / BAUD) + 0.1, "they take as long as the program, or as the line")
+    service.stop()
+
+
+if len(sys.argv) > 1:
+    at_the_speed_of_a_line(int(sys.argv[1]))
+else:
+    on_a_socket()
+    on_a_terminal()
+t.finish()
