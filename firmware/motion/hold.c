@@ -241,14 +241,14 @@ static bool axes_can(const struct hold *h, uint32_t block, float f, float g, con
     return true;
 }
 
-/* From one state to another by w, on pieces that are known. */
+/* From one state to another by w, on pieces that are known, and not back. */
 static bool can_go(const struct hold *h, const struct trial *a, const struct trial *b, float w)
 {
     const uint32_t first = (uint32_t)a->at;
     const uint32_t last = (uint32_t)b->at;
     const struct part p = part_of(a, b, w);
 
-    if (last >= h->end - h->block) {
+    if (b->at < a->at || last >= h->end - h->block) {
         return false;
     }
     for (uint32_t i = first; i <= last; i++) {
@@ -428,9 +428,6 @@ static bool try_step(struct hold *h, const struct path *path, const struct lead 
     if (here.rate == 0.0f && !(w > 0.0f)) {
         return false;
     }
-    if (place.rate + place.change + 0.5 * by < -REST_PART * h->top) {
-        return false; /* it would come to rest before the end of the cycle, and go back */
-    }
     advance(&place, by, 1.0);
     const struct trial next = {(float)place.at, (float)place.rate, (float)place.change};
 
@@ -551,7 +548,7 @@ static void look_ahead(struct hold *h, const struct path *path, bool anew)
     read_pieces(h, path);
 }
 
-/* The last three places lie on u + r t + q t^2/2. Where that has turned back already the axes are as good as at rest. */
+/* The last three places lie on u + r t + q t^2/2. Where that turns back within the last cycle, they are nearly at rest. */
 bool hold_begin(struct hold *h, const struct path *path, const struct lead *l, double at,
                 const double way[2], bool anew)
 {
@@ -563,5 +560,5 @@ bool hold_begin(struct hold *h, const struct path *path, const struct lead *l, d
     h->stops = true;
     h->top = maths_max(h->place.rate, (double)top_rate(h, path, h->block));
     pass_clear(h, path);
-    return h->place.rate > 0.0 && find_step(h, path, l, true);
+    return h->place.rate >= 0.0 && find_step(h, path, l, true);
 }

@@ -123,6 +123,7 @@ static void begin(struct smooth *s, const struct move *move)
     s->open = true;
     s->ready = 0;
     s->taken = 0;
+    s->told = 0;
     s->proved = 0;
     s->stops = false;
     s->anew_mm = 0.0;
@@ -163,7 +164,6 @@ void smooth_push(struct smooth *s, const struct move *move, uint32_t number,
     assert(smooth_has_room(s) && smooth_joins(s, move));
     if (!s->open) {
         begin(s, move);
-        s->number = number;
     }
     if (merge_take(&s->merge, move, number, curve, merged_within(move))) {
         return;
@@ -470,11 +470,11 @@ static void set_control(const struct smooth *s, unsigned i, struct point *contro
     }
 }
 
-/* From rest the curve may begin a motion before the one in which it came to rest: what is told of it goes on only. */
-static uint32_t newest(struct smooth *s, uint32_t number)
+/* After a stop the curve goes on from where it can have come to, which may be before where it was thought to be. */
+static uint32_t latest_told(struct smooth *s, uint32_t element)
 {
-    s->number = (int32_t)(number - s->number) > 0 ? number : s->number;
-    return s->number;
+    s->told = element < s->told ? s->told : element;
+    return s->told;
 }
 
 static void set_piece(struct smooth *s, struct smooth_piece *piece)
@@ -482,12 +482,13 @@ static void set_piece(struct smooth *s, struct smooth_piece *piece)
     const struct window *w = &s->window;
     const unsigned i = s->taken;
     const uint32_t element = w->element[i + 1];
+    const uint32_t told = latest_told(s, element);
     struct judge_need need;
     struct judge_rate rate;
 
-    route_move(&s->route, element, &s->move);
+    route_move(&s->route, told, &s->move);
     piece->move = &s->move;
-    piece->number = newest(s, route_element(&s->route, element)->number);
+    piece->number = route_element(&s->route, told)->number;
     piece->rotary = route_element(&s->route, element)->rotary;
     piece->interval_s = w->interval_s;
     for (unsigned k = 0; k < 4; k++) {
