@@ -299,9 +299,6 @@ static bool try_step(struct hold *h, const struct path *path, const struct lead 
     if (here.rate == 0.0f && !(w > 0.0f)) {
         return false;
     }
-    if (place.rate + place.change + 0.5 * by < -REST_PART * h->top) {
-        return false; /* it would come to rest before the end of the cycle, and go back */
-    }
     advance(&place, by, 1.0);
     const struct hold_trial next = {(float)place.at, (float)place.rate, (float)place.change};
 
