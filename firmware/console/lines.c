@@ -13,9 +13,10 @@ static uint32_t get_place(const uint32_t *place)
     return __atomic_load_n(place, __ATOMIC_ACQUIRE);
 }
 
-static void set_place(uint32_t *place, uint32_t value)
+static void set_place(volatile uint32_t *place, uint32_t value)
 {
-    __atomic_store_n(place, value, __ATOMIC_RELEASE);
+    __atomic_thread_fence(__ATOMIC_RELEASE);
+    *place = value;
 }
 
 static bool get_flag(const bool *flag)
@@ -23,9 +24,10 @@ static bool get_flag(const bool *flag)
     return __atomic_load_n(flag, __ATOMIC_ACQUIRE);
 }
 
-static void set_flag(bool *flag, bool value)
+static void set_flag(volatile bool *flag, bool value)
 {
-    __atomic_store_n(flag, value, __ATOMIC_RELEASE);
+    __atomic_thread_fence(__ATOMIC_RELEASE);
+    *flag = value;
 }
 
 void lines_init(struct lines *l, uint8_t *byte, uint32_t size)
