@@ -1,10 +1,9 @@
-# cmake --install: the firmware as libraries for somebody else's image, found by find_package(takt).
+# cmake --install: the firmware as libraries for somebody else's image, found by find_package(takt) or pkg-config.
 #
 #     find_package(takt REQUIRED)
 #     target_link_libraries(machine PRIVATE takt::port)      and #include <takt.h>
 #
-# Installed from a preset of the processor the image is for: host, m4f, m7, stm32f405. tests/target/embedder is an
-# example.
+# Installed from a preset of the processor the image is for: host, m4f, m7, stm32f405. host/examples/embedding has examples.
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 
@@ -14,23 +13,50 @@ if(sizes)
   target_compile_definitions(takt_base INTERFACE ${sizes})
 endif()
 
+# takt.h stands above the folders of the rooms, installed or not.
+file(CREATE_LINK ${CMAKE_CURRENT_SOURCE_DIR}/hal/port/takt.h ${CMAKE_BINARY_DIR}/rooms/port/takt.h SYMBOLIC)
+
+option(TAKT_INSTALL "Install the firmware's libraries" ${PROJECT_IS_TOP_LEVEL})
+if(NOT TAKT_INSTALL)
+  return()
+endif()
+
 set(installed takt_flags)
+set(archives "")
 get_property(rooms GLOBAL PROPERTY TAKT_ROOMS)
 foreach(room IN LISTS rooms)
   get_target_property(folder takt_${room} SOURCE_DIR)
   if(folder MATCHES "^${CMAKE_CURRENT_SOURCE_DIR}/firmware/" OR room STREQUAL hal OR room STREQUAL port)
     list(APPEND installed takt_${room})
     set_target_properties(takt_${room} PROPERTIES EXPORT_NAME ${room})
-    install(DIRECTORY ${folder}/ DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/takt/${room}
-      FILES_MATCHING PATTERN "*.h" PATTERN port EXCLUDE PATTERN mps2 EXCLUDE PATTERN remote EXCLUDE
-      PATTERN stm32f405 EXCLUDE PATTERN toolchain EXCLUDE PATTERN host EXCLUDE)
+    file(GLOB headers ${folder}/*.h)
+    list(FILTER headers EXCLUDE REGEX "/takt\\.h$")
+    install(FILES ${headers} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/takt/${room})
+    get_target_property(type takt_${room} TYPE)
+    if(type STREQUAL STATIC_LIBRARY)
+      string(PREPEND archives " -ltakt_${room}")
+    endif()
   endif()
 endforeach()
-install(DIRECTORY ${CMAKE_CURRENT_SOURCE_DIR}/hal/port/ DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/takt/port
-  FILES_MATCHING PATTERN "*.h")
 install(FILES ${CMAKE_CURRENT_SOURCE_DIR}/hal/port/takt.h DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/takt)
 
 install(TARGETS ${installed} EXPORT takt ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR}/takt)
 install(EXPORT takt NAMESPACE takt:: FILE taktConfig.cmake DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/takt)
-write_basic_package_version_file(${CMAKE_BINARY_DIR}/taktConfigVersion.cmake COMPATIBILITY SameMinorVersion)
-install(FILES ${CMAKE_BINARY_DIR}/taktConfigVersion.cmake DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/takt)
+write_basic_package_version_file(${CMAKE_CURRENT_BINARY_DIR}/taktConfigVersion.cmake COMPATIBILITY SameMinorVersion)
+install(FILES ${CMAKE_CURRENT_BINARY_DIR}/taktConfigVersion.cmake DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/takt)
+
+# For builds by other means. The archives stand in the order in which one calls the next; hal/port calls them all.
+set(definitions "")
+if(sizes)
+  list(TRANSFORM sizes PREPEND " -D" OUTPUT_VARIABLE definitions)
+endif()
+string(REPLACE ";" "" definitions "${definitions}")
+file(RELATIVE_PATH up /${CMAKE_INSTALL_LIBDIR}/pkgconfig /)
+file(WRITE ${CMAKE_CURRENT_BINARY_DIR}/takt.pc "prefix=\${pcfiledir}/${up}
+Name: takt
+Description: ${PROJECT_DESCRIPTION}
+Version: ${PROJECT_VERSION}
+Cflags: -I\${prefix}/${CMAKE_INSTALL_INCLUDEDIR}/takt${definitions}
+Libs: -L\${prefix}/${CMAKE_INSTALL_LIBDIR}/takt -Wl,--start-group${archives} -Wl,--end-group
+")
+install(FILES ${CMAKE_CURRENT_BINARY_DIR}/takt.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig)

@@ -8,11 +8,17 @@
 # Flags of every target. -ffp-contract=off: a fused multiply-add rounds once where two operations round twice,
 # so it would make the last bit depend on the processor.
 add_library(takt_flags INTERFACE)
-target_compile_options(takt_flags INTERFACE
-  -Wall -Wextra -Wpedantic -Wconversion -Wsign-conversion -Wshadow -Wdouble-promotion -Wundef
-  -Wstrict-prototypes -Wmissing-prototypes -Wold-style-definition -Wcast-qual -Wpointer-arith
-  -Wformat=2 -Wvla -Wswitch-enum -Werror
-  -ffp-contract=off -fno-math-errno)
+target_compile_options(takt_flags INTERFACE -ffp-contract=off -fno-math-errno)
+# GCC for s390 else computes floats as doubles under -std=c11, though the processor need not.
+if(CMAKE_C_COMPILER_ID STREQUAL GNU AND CMAKE_SYSTEM_PROCESSOR MATCHES "^s390")
+  target_compile_options(takt_flags INTERFACE -fexcess-precision=fast)
+endif()
+if(TAKT_WARNINGS)
+  target_compile_options(takt_flags INTERFACE
+    -Wall -Wextra -Wpedantic -Wconversion -Wsign-conversion -Wshadow -Wdouble-promotion -Wundef
+    -Wstrict-prototypes -Wmissing-prototypes -Wold-style-definition -Wcast-qual -Wpointer-arith
+    -Wformat=2 -Wvla -Wswitch-enum -Werror)
+endif()
 if(TAKT_SANITIZE)
   target_compile_options(takt_flags INTERFACE
     -fsanitize=address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer)
@@ -42,4 +48,5 @@ function(takt_room name)
     target_include_directories(takt_${name} INTERFACE $<BUILD_INTERFACE:${doors}> $<INSTALL_INTERFACE:include/takt>)
     target_link_libraries(takt_${name} INTERFACE ${before})
   endif()
+  add_library(takt::${name} ALIAS takt_${name})
 endfunction()

@@ -59,6 +59,13 @@ setup_need_for_target() {
     setup_need qemu-system-arm command -v qemu-system-arm
 }
 
+setup_need_for_riscv() {
+    setup_need gcc-riscv64-unknown-elf command -v riscv64-unknown-elf-gcc
+    setup_need picolibc-riscv64-unknown-elf riscv64-unknown-elf-gcc --specs=picolibc.specs -E -x c /dev/null
+    setup_need python3 command -v python3
+    setup_need qemu-system-misc command -v qemu-system-riscv64
+}
+
 # setup_as_root COMMAND...
 setup_as_root() {
     if [[ $(id -u) == 0 ]]; then

@@ -35,6 +35,12 @@ struct hold_state {
     double change;
 };
 
+/* How it goes on if nothing better is found: the change goes by -ease to -peak, if that is not 0, and by ease to 0. */
+struct hold_ending {
+    double ease;
+    double peak;
+};
+
 struct hold {
     unsigned axes; /* those of the machine, one after the other */
     uint8_t axis[AXIS_COUNT];
@@ -48,8 +54,8 @@ struct hold {
     float per_mm_s; /* pieces a cycle for mm/s of path */
     uint32_t clear; /* blocks from the first to before this one are fast enough for the rate */
     struct hold_state place;
-    double moved;      /* pieces, in the last cycle */
-    double ease;       /* by which its change can be brought to 0 from here: |w| */
+    double moved; /* pieces, in the last cycle */
+    struct hold_ending ending;
     float step;        /* the hardest w that was found last, in parts of the hardest the axes can */
     unsigned turn;     /* counts cycles */
     unsigned refusals; /* of the lead point, in this cycle */

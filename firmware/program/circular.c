@@ -79,9 +79,6 @@ bool circular_centre(struct program *p, enum axis first, enum axis second, doubl
     const enum axis axis[2] = {first, second};
     double word_mm[2];
 
-    if (m->turn.degrees != 0.0 && m->plane != PLANE_XY) {
-        return report_error_code(p, TAKT_ERROR_ARC_TILTED, STEP_MOTION, m->turn.degrees);
-    }
     if (!centre_word(p, first, &word_mm[0]) || !centre_word(p, second, &word_mm[1])) {
         return false;
     }
@@ -166,6 +163,9 @@ bool circular_check_axes(struct program *p, enum axis first, enum axis second)
         const bool first_missing = (p->config.axes & (1U << first)) == 0;
 
         return missing(p, TAKT_ERROR_AXIS_MISSING, &AXIS_LETTERS[first_missing ? first : second]);
+    }
+    if (p->modes.turn.degrees != 0.0 && p->modes.plane != PLANE_XY) {
+        return report_error_code(p, TAKT_ERROR_ARC_TILTED, STEP_MOTION, p->modes.turn.degrees);
     }
     if (p->modes.cutter_left) {
         return report_error_code(p, TAKT_ERROR_CUTTER_EXIT_ARC, STEP_MOTION, 0.0);

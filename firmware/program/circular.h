@@ -14,7 +14,10 @@ bool circular_centre(struct program *p, enum axis first, enum axis second, doubl
 double circular_slack_mm(const struct program *p);
 bool circular_check_plane(struct program *p, enum axis first, enum axis second);
 
-/* Of splines too: the machine has the axes of the plane, and no compensation has just ended. */
+/*
+ * Of splines too: the machine has the axes of the plane, which is not turned out of them by a rotated system, and no
+ * compensation has just ended.
+ */
 bool circular_check_axes(struct program *p, enum axis first, enum axis second);
 
 /* G2, G3; argument: MOVE_ARC_CW or MOVE_ARC_CCW */

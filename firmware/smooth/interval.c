@@ -13,7 +13,7 @@
 #define WINDOW_OF_RAMP 0.5
 
 /* Time in which the slowest axis reaches its velocity: V/A + A/J, or 2 sqrt(V/J) where A is not reached. */
-static double longest_ramp(const struct smooth_limits *limits)
+static double longest_ramp(const struct smooth_limits *limits, unsigned axes)
 {
     double longest = 0.0;
 
@@ -22,7 +22,7 @@ static double longest_ramp(const struct smooth_limits *limits)
         const double j = limits->jerk_mm_s3[i];
         const double a = maths_min(limits->acceleration_mm_s2[i], maths_sqrt(v * j));
 
-        if ((limits->axes >> i & 1U) != 0) {
+        if ((axes >> i & 1U) != 0) {
             longest = maths_max(longest, v / a + a / j);
         }
     }
@@ -30,27 +30,24 @@ static double longest_ramp(const struct smooth_limits *limits)
 }
 
 /* Of the axis that crosses the tolerance soonest. */
-static double soonest_interval(const struct smooth_limits *limits, double tolerance_mm)
+double interval_of_tolerance(const struct smooth_limits *curve, unsigned axes, double tolerance_mm)
 {
     double soonest = MATHS_INFINITY;
 
     for (int i = 0; i < AXIS_COUNT; i++) {
-        if ((limits->axes >> i & 1U) != 0) {
+        if ((axes >> i & 1U) != 0) {
             const double p = tolerance_mm / smooth_weight(i);
-            const double jerk = INTERVAL_OF_JERK * maths_cbrt(p / limits->jerk_mm_s3[i]);
+            const double jerk = INTERVAL_OF_JERK * maths_cbrt(p / curve->jerk_mm_s3[i]);
             const double acceleration =
-                INTERVAL_OF_ACCELERATION * maths_sqrt(p / limits->acceleration_mm_s2[i]);
+                INTERVAL_OF_ACCELERATION * maths_sqrt(p / curve->acceleration_mm_s2[i]);
 
             soonest = maths_min(soonest, maths_max(jerk, acceleration));
         }
     }
-    return soonest;
+    return maths_max(curve->cycle_s, soonest);
 }
 
-double interval_of(const struct smooth_limits *machine, const struct smooth_limits *curve,
-                   double tolerance_mm, unsigned samples)
+double interval_of_ramps(const struct smooth_limits *machine, unsigned axes, unsigned samples)
 {
-    const double ramp_s = longest_ramp(machine) * WINDOW_OF_RAMP / samples;
-
-    return maths_max(maths_max(machine->cycle_s, ramp_s), soonest_interval(curve, tolerance_mm));
+    return longest_ramp(machine, axes) * WINDOW_OF_RAMP / samples;
 }

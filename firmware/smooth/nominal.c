@@ -83,8 +83,18 @@ static float along_of(const struct curve_bounds *b, const struct route_slots *sl
     return ALONG * along;
 }
 
-void nominal_set(struct route_element *e, const struct curve *curve, float per_mm,
-                 const struct route *r)
+/* Axes that move, by bit. */
+static unsigned moved_by(const struct curve_bounds *b)
+{
+    unsigned axes = 0;
+
+    for (unsigned i = 0; i < AXIS_COUNT; i++) {
+        axes |= b->first[i] > 0.0 ? 1U << i : 0U;
+    }
+    return axes;
+}
+
+void nominal_set(struct route_element *e, const struct curve *curve, float per_mm, struct route *r)
 {
     struct curve_bounds b;
 
@@ -94,6 +104,7 @@ void nominal_set(struct route_element *e, const struct curve *curve, float per_m
     e->feed_mm_s = per_mm * feed;
     e->along.acceleration = per_mm * along_of(&b, &r->slots, feed);
     e->along.jerk = per_mm * jerk_of(&b, &r->slots);
+    r->moved |= moved_by(&b);
 }
 
 /*

@@ -7,9 +7,8 @@
 
 #include "smooth/route.h"
 
-/* Feed and acceleration of one element by its programmed feed and its curvature. */
-void nominal_set(struct route_element *e, const struct curve *curve, float per_mm,
-                 const struct route *r);
+/* Feed and acceleration of one element by its programmed feed and its curvature; the axes that it moves. */
+void nominal_set(struct route_element *e, const struct curve *curve, float per_mm, struct route *r);
 /* The corner before the newest element, the corners that now have more behind them, and the energies of all. */
 void nominal_update(struct route *r);
 

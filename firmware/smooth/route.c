@@ -43,6 +43,7 @@ void route_limit(struct route *r, const struct smooth_limits *limits, double tol
 void route_init(struct route *r, const struct smooth_limits *limits, double tolerance_mm)
 {
     route_limit(r, limits, tolerance_mm);
+    r->moved = 0;
     r->first = 0;
     r->count = 0;
     r->bent_first = 0;

@@ -78,17 +78,36 @@ static double merged_within(const struct move *move)
     return maths_min(move->merge_mm, MERGED * move->tolerance_mm);
 }
 
-/* The time between samples, and what depends on it; the window is empty. */
-static void set_interval(struct smooth *s, const struct smooth_limits *limits, double tolerance_mm)
+/*
+ * Near a place where the curve stood no axis comes far. Elsewhere none is to need many windows for its ramps.
+ */
+static double interval_for(const struct smooth *s, double tolerance_mm)
 {
-    const double interval_s =
-        interval_of(&s->limits, limits, tolerance_mm, window_capacity(&s->route));
+    struct smooth_limits limits = s->limits;
 
-    judge_change(limits, interval_s, &s->change);
+    smooth_limit(&limits, s->route.tolerance_mm);
+    const double interval_s = interval_of_tolerance(&limits, s->route.moved, tolerance_mm);
+
+    if (stall_is_near(&s->stall, s->route.tolerance_mm)) {
+        return interval_s;
+    }
+    return maths_max(interval_s,
+                     interval_of_ramps(&s->limits, s->route.moved, window_capacity(&s->route)));
+}
+
+/* The time between samples, and what depends on it; the window is empty. */
+static void set_interval(struct smooth *s, double tolerance_mm)
+{
+    const double interval_s = interval_for(s, tolerance_mm);
+    struct smooth_limits limits = s->limits;
+
+    smooth_limit(&limits, s->route.tolerance_mm);
+    s->moved = s->route.moved;
+    judge_change(&limits, interval_s, &s->change);
     s->route.slots.change_per_s = (float)s->change.by;
     s->route.slots.rounded_per_s2 = (float)s->change.rounded;
     s->route.chord_per_bend =
-        (float)(limits->cycle_s * limits->cycle_s / (8.0 * interval_s * interval_s));
+        (float)(limits.cycle_s * limits.cycle_s / (8.0 * interval_s * interval_s));
     window_init(&s->window, &s->route, interval_s);
 }
 
@@ -100,10 +119,11 @@ static void begin(struct smooth *s, const struct move *move)
 
     smooth_limit(&limits, tolerance_mm);
     route_init(&s->route, &limits, tolerance_mm);
-    set_interval(s, &limits, move->tolerance_mm);
+    s->window.count = 0;
     s->open = true;
     s->ready = 0;
     s->taken = 0;
+    s->told = 0;
     s->proved = 0;
     s->stops = false;
     s->anew_mm = 0.0;
@@ -125,7 +145,7 @@ static void begin_anew(struct smooth *s, double tolerance_mm)
     smooth_limit(&limits, tolerance_mm);
     route_limit(&s->route, &limits, tolerance_mm);
     nominal_again(&s->route);
-    set_interval(s, &limits, tolerance_mm);
+    set_interval(s, tolerance_mm);
     s->window.count = SMOOTH_FIXED;
 }
 
@@ -212,6 +232,7 @@ static bool fill(struct smooth *s)
         return false;
     }
     if (w->count == 0) {
+        set_interval(s, s->merge.move.tolerance_mm);
         window_start(w, &s->route);
     }
     forget_end(s);
@@ -381,18 +402,32 @@ static void follow_ready(struct smooth *s, const struct judge_verdict *v)
     }
 }
 
+/* Has an axis begun to move whose ramps are longer? */
+static bool needs_other_interval(struct smooth *s)
+{
+    if (s->moved == s->route.moved) {
+        return false;
+    }
+    s->moved = s->route.moved;
+    return interval_for(s, s->route.tolerance_mm) > s->window.interval_s;
+}
+
 /* Must the axes rest where what was proved last ends: because no way on has been found, or for another tolerance? */
 static bool does_not_go_on(struct smooth *s, const struct judge_verdict *v)
 {
     const unsigned whole = v->whole[v->good];
+    const bool rests = s->ready == 0 || (s->proved == 0 && !is_end(s, whole));
     const struct stall_window now = {
-        .ready = s->ready, .most = kept_most(s), .good = v->good, .whole = whole};
+        .rests = rests, .ready = s->ready, .most = kept_most(s), .good = v->good, .whole = whole};
     const bool stands = stall_stands(&s->stall, &s->window, &s->route, &now);
 
     s->anew_mm = stands || s->head.proved > 0
                      ? stall_tolerance(&s->stall, &s->window, &s->route, s->ready, stands)
                      : 0.0;
-    return s->ready == 0 || (s->proved == 0 && !is_end(s, whole)) || stands || s->anew_mm > 0.0;
+    if (s->anew_mm == 0.0 && needs_other_interval(s)) {
+        s->anew_mm = s->route.tolerance_mm;
+    }
+    return rests || stands || s->anew_mm > 0.0;
 }
 
 /* What comes well before a piece that leaves the tolerance is kept, the rest is tried again with the next window. */
@@ -435,17 +470,25 @@ static void set_control(const struct smooth *s, unsigned i, struct point *contro
     }
 }
 
+/* After a stop the curve goes on from where it can have come to, which may be before where it was thought to be. */
+static uint32_t latest_told(struct smooth *s, uint32_t element)
+{
+    s->told = element < s->told ? s->told : element;
+    return s->told;
+}
+
 static void set_piece(struct smooth *s, struct smooth_piece *piece)
 {
     const struct window *w = &s->window;
     const unsigned i = s->taken;
     const uint32_t element = w->element[i + 1];
+    const uint32_t told = latest_told(s, element);
     struct judge_need need;
     struct judge_rate rate;
 
-    route_move(&s->route, element, &s->move);
+    route_move(&s->route, told, &s->move);
     piece->move = &s->move;
-    piece->number = route_element(&s->route, element)->number;
+    piece->number = route_element(&s->route, told)->number;
     piece->rotary = route_element(&s->route, element)->rotary;
     piece->interval_s = w->interval_s;
     for (unsigned k = 0; k < 4; k++) {
@@ -510,6 +553,7 @@ static void drop_taken(struct smooth *s)
     s->ready = 0;
     if (s->stops) {
         window_rest(&s->window, &s->route, &s->order);
+        stall_rest(&s->stall, s->window.at_mm[0]);
         s->stops = false;
         s->starts = true;
         s->proved = 0;

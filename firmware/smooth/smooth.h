@@ -70,7 +70,9 @@ struct smooth {
     struct judge_change change;
     struct order
         order; /* where the pieces that are ready end; before there are any, where the window begins */
-    struct move move; /* of the piece taken last */
+    struct move move; /* of the piece taken last, */
+    uint32_t told;    /* and its element: the latest one of the pieces taken */
+    unsigned moved;   /* axes for which the interval was chosen, by bit */
     unsigned proved;  /* pieces at the window's beginning that keep the tolerance, as they were */
     double known_mm;  /* end of the route when the window was filled */
     double tried_mm;  /* place its last sample had when the route was not known far enough yet, */

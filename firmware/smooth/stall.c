@@ -6,6 +6,9 @@
 #define STALL_PART    0.1
 #define STALL_WINDOWS 2
 
+/* From rest it goes to the route, and then on along it: where it comes to rest more often without having gone on, it never will. */
+#define STALL_RESTS 2
+
 /* Where it does not, so much of the tolerance is used, but no less than that part of all of it, for so many tolerances. */
 #define NARROWER   0.25
 #define NARROWEST  (1.0 / 64.0)
@@ -26,6 +29,17 @@ static double way_expected(const struct stall *s, const struct window *w, const 
     return STALL_PART * maths_min(way_mm, route_end(r) - s->mark_mm);
 }
 
+/* Does it come to rest again and again where it is? */
+static bool rests_again(struct stall *s, const struct route *r, double at_mm)
+{
+    if (at_mm > s->rest_mm + STALL_PART * r->tolerance_mm) {
+        s->rest_mm = at_mm;
+        s->rests = 0;
+    }
+    s->rests++;
+    return s->rests > STALL_RESTS;
+}
+
 bool stall_stands(struct stall *s, const struct window *w, const struct route *r,
                   const struct stall_window *now)
 {
@@ -34,6 +48,9 @@ bool stall_stands(struct stall *s, const struct window *w, const struct route *r
 
     if (now->good >= now->most &&
         w->at_mm[now->whole] <= s->mark_mm + way_expected(s, w, r, now->ready, now->most)) {
+        return true;
+    }
+    if (now->rests && rests_again(s, r, at_mm)) {
         return true;
     }
     s->idle += now->ready;
@@ -52,8 +69,9 @@ double stall_tolerance(struct stall *s, const struct window *w, const struct rou
 
     if (stands) {
         s->idle = 0;
+        s->rests = 0;
         s->narrow_mm = at_mm + NARROW_FOR * s->all_mm;
         return narrower_mm >= NARROWEST * s->all_mm ? narrower_mm : 0.0;
     }
-    return r->tolerance_mm < s->all_mm && at_mm > s->narrow_mm ? s->all_mm : 0.0;
+    return stall_is_near(s, r->tolerance_mm) && at_mm > s->narrow_mm ? s->all_mm : 0.0;
 }

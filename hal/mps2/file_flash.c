@@ -1,6 +1,6 @@
 #include "mps2/file_flash.h"
 
-#include "mps2/semihosting.h"
+#include "semihosting/semihosting.h"
 
 #include <string.h>
 

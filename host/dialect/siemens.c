@@ -145,14 +145,14 @@ void scan_operand(struct scan *s, const char *name)
     s->failed = true;
 }
 
-static void operand(struct scan *s)
+void scan_single(struct scan *s)
 {
     char name[NAME_MAX_];
 
     scan_skip(s);
     if (*s->at == '-' || *s->at == '+') {
         scan_put(s, *s->at++ == '-' ? "[0-" : "[");
-        operand(s);
+        scan_single(s);
         scan_put(s, "]");
     } else if (*s->at == '(') {
         bracketed(s);
@@ -198,7 +198,7 @@ static void value(struct scan *s)
     }
     s->t->nested++;
     do {
-        operand(s);
+        scan_single(s);
     } while (!s->failed && operator(s));
     s->t->nested--;
 }
@@ -261,6 +261,34 @@ void scan_assign(struct scan *s, const char *name)
     s->out[before] = '\0';
 }
 
+/* T="DRILL 8": which number this tool has is said by the machine file, as TOOL_DRILL_8. */
+static void named_tool(struct scan *s)
+{
+    const struct dialect_codes *codes = s->t->codes;
+    const char *end = strchr(++s->at, '"');
+    char name[64];
+
+    s->failed = s->failed || end == NULL || end == s->at || end - s->at > 50;
+    if (s->failed)
+        return;
+    (void)snprintf(name, sizeof name, "TOOL_%.*s", (int)(end - s->at), s->at);
+    const bool number = strspn(name + 5, "0123456789") == strlen(name + 5);
+
+    for (char *c = name; *c != '\0'; c++)
+        *c = (char)(isalnum((unsigned char)*c) ? toupper((unsigned char)*c) : '_');
+    s->at = end + 1;
+    for (unsigned i = 0; i < codes->values; i++) {
+        if (strcmp(codes->value[i].name, name) == 0) {
+            scan_put(s, "T[%.0f]", codes->value[i].value);
+            return;
+        }
+    }
+    if (number)
+        scan_put(s, "T%s", name + 5);
+    else
+        scan_put(s, "T#<%s>", name);
+}
+
 /* NAME = value */
 static void assigned_word(struct scan *s, const char *name)
 {
@@ -277,6 +305,10 @@ static void assigned_word(struct scan *s, const char *name)
         return;
     }
     scan_skip(s);
+    if (strcmp(name, "T") == 0 && *s->at == '"') {
+        named_tool(s);
+        return;
+    }
     before = s->at;
     if (scan_name(s, way) && (strcmp(way, "AC") == 0 || strcmp(way, "IC") == 0)) {
         axis_value(s, letter[0], way);
@@ -391,7 +423,7 @@ static void word(struct scan *s)
     }
     if (scan_take(s, "=")) {
         assigned_word(s, name);
-    } else if (!take_edge(s, name) && !scan_keyword(s, name)) {
+    } else if (!take_edge(s, name) && !siemens_call(s, name) && !scan_keyword(s, name)) {
         const bool plain = name[1] == '\0' || scan_is_digit(name[1]);
 
         s->failed = s->failed || !plain;

@@ -30,12 +30,15 @@ bool scan_name(struct scan *s, char name[NAME_MAX_]);
 
 /* R12, a variable, a function, or a constant. */
 void scan_operand(struct scan *s, const char *name);
-/* A value, as [value]. */
+/* A value, as [value]; one without operators. */
 void scan_brackets(struct scan *s);
+void scan_single(struct scan *s);
 /* A word that is alone in saying something; false: it is none. */
 bool scan_keyword(struct scan *s, const char *name);
 /* NAME = has been passed; NAME is R12 or a variable. */
 void scan_assign(struct scan *s, const char *name);
+/* L100, which a line may have beside other words: it is called behind them. False: NAME is none. */
+bool siemens_call(struct scan *s, char *name);
 /* The words of the rest of the line. */
 void scan_words(struct scan *s);
 

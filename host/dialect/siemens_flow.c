@@ -13,6 +13,8 @@
 #define REPEAT_LABEL 99000000U
 /* Jumps go to names: their numbers begin behind those of blocks. */
 #define NAME_NUMBER 100000000U
+/* Of a cycle or a subprogram. */
+#define ARGUMENTS 20
 
 /* ---- flow ---- */
 
@@ -146,6 +148,34 @@ static void take_until(struct scan *s)
     clear(t);
 }
 
+/* CASE(a) OF 1 GOTOF B 2 GOTOF C DEFAULT GOTOF D */
+static void take_case(struct scan *s)
+{
+    struct translator *t = s->t;
+    const unsigned label = BLOCK_LABEL + t->number % 1000000U;
+    char asked[LINE_MAX_BYTES + 1];
+    char name[NAME_MAX_];
+
+    scan_brackets(s);
+    (void)snprintf(asked, sizeof asked, "%s", s->out);
+    s->failed = s->failed || !scan_name(s, name) || strcmp(name, "OF") != 0;
+    for (scan_skip(s); !s->failed && !is_end(s); scan_skip(s)) {
+        const char *before = s->at;
+        const bool rest = scan_name(s, name) && strcmp(name, "DEFAULT") == 0;
+
+        s->at = rest ? s->at : before;
+        s->length = 0;
+        if (!rest)
+            scan_single(s);
+        if (s->failed)
+            return;
+        translate_add(&t->behind, "o%u if [%s EQ %s]", label, rest ? "0" : asked,
+                      rest ? "0" : s->out);
+        s->failed = !scan_name(s, name) || !take_jump(s, name);
+        translate_add(&t->behind, "o%u endif", label);
+    }
+}
+
 static bool take_flow(struct scan *s, const char *name)
 {
     struct translator *t = s->t;
@@ -154,6 +184,8 @@ static bool take_flow(struct scan *s, const char *name)
         return true;
     if (strcmp(name, "IF") == 0) {
         take_if(s);
+    } else if (strcmp(name, "CASE") == 0) {
+        take_case(s);
     } else if (strcmp(name, "FOR") == 0) {
         take_for(s);
     } else if (strcmp(name, "WHILE") == 0) {
@@ -181,6 +213,28 @@ static bool take_flow(struct scan *s, const char *name)
         return false;
     }
     return true;
+}
+
+/* ---- arguments ---- */
+
+/* ( 1, , R2+3 ) as expressions, those that are left out empty; how many. */
+static unsigned take_arguments(struct scan *s, char argument[ARGUMENTS][48])
+{
+    unsigned count = 0;
+
+    s->failed = s->failed || !scan_take(s, "(");
+    while (!s->failed && count < ARGUMENTS && !scan_take(s, ")")) {
+        s->length = 0;
+        scan_skip(s);
+        scan_put(s, "%s", "");
+        if (*s->at != ',' && *s->at != ')')
+            scan_brackets(s);
+        s->out[s->length] = '\0';
+        (void)snprintf(argument[count++], 48, "%.47s", s->out);
+        (void)scan_take(s, ",");
+    }
+    s->length = 0;
+    return count;
 }
 
 /* ---- subprograms ---- */
@@ -225,27 +279,61 @@ static bool take_section(struct translator *t, const char *text)
     return true;
 }
 
-/* L100 P2, NAME, NAME(): the whole line. */
+/* L100 P2; arguments that are left out are 0. */
+static void put_calls(struct scan *s, char *name, char argument[ARGUMENTS][48], unsigned arguments)
+{
+    unsigned times = 1;
+    char text[FLOW_CALL_MAX];
+    char count[NAME_MAX_];
+    const char *before = s->at;
+    size_t length;
+
+    if (name[0] == 'L' && scan_name(s, count) && count[0] == 'P' && scan_is_digit(count[1]))
+        times = (unsigned)strtoul(count + 1, NULL, 10);
+    else
+        s->at = before;
+    s->failed = s->failed || times == 0 || times > 9999;
+    lower(name);
+    length = (size_t)snprintf(text, sizeof text, "o<%s> call", name);
+    for (unsigned i = 0; i < arguments; i++)
+        length += (size_t)snprintf(text + length, sizeof text - length, " [%s]",
+                                   argument[i][0] != '\0' ? argument[i] : "0");
+    for (unsigned i = 0; i < times && i < TRANSLATE_PROGRAMS_MAX && !s->failed; i++)
+        translate_add(&s->t->behind, "%s", text);
+}
+
+bool siemens_call(struct scan *s, char *name)
+{
+    if (name[0] != 'L' || !scan_is_digit(name[1]) ||
+        strspn(name + 1, "0123456789") != strlen(name + 1))
+        return false;
+    put_calls(s, name, NULL, 0);
+    return true;
+}
+
+/* L100 P2, NAME, NAME(1, 2): the whole line. */
 static bool take_call(struct scan *s, char *name)
 {
     struct translator *t = s->t;
-    unsigned times = 1;
-    char count[NAME_MAX_];
+    char argument[ARGUMENTS][48] = {{0}};
+    unsigned arguments = 0;
 
     if (scan_keyword(s, name) || (scan_is_digit(name[1]) && name[0] != 'L')) {
         s->length = 0;
         return false;
     }
-    (void)scan_take(s, "()");
-    if (name[0] == 'L' && scan_name(s, count) && count[0] == 'P')
-        times = (unsigned)strtoul(count + 1, NULL, 10);
     scan_skip(s);
-    if (!is_end(s) || name[1] == '\0' || times == 0 || times > 9999)
+    if (*s->at == '(')
+        arguments = take_arguments(s, argument);
+    if (s->failed || name[1] == '\0')
         return false;
-    lower(name);
+    put_calls(s, name, argument, arguments);
+    scan_skip(s);
+    if (!is_end(s) || s->failed) {
+        t->behind.length = 0;
+        return false;
+    }
     clear(t);
-    for (unsigned i = 0; i < times && i < TRANSLATE_PROGRAMS_MAX; i++)
-        translate_add(&t->behind, "o<%s> call", name);
     return true;
 }
 
@@ -287,30 +375,10 @@ static void take_shift(struct scan *s)
     scan_words(s);
 }
 
-/* The arguments of a cycle, as expressions; how many. */
-static unsigned take_arguments(struct scan *s, char argument[8][48])
-{
-    unsigned count = 0;
-
-    s->failed = s->failed || !scan_take(s, "(");
-    while (!s->failed && count < 8 && !scan_take(s, ")")) {
-        s->length = 0;
-        scan_skip(s);
-        scan_put(s, "%s", "");
-        if (*s->at != ',' && *s->at != ')')
-            scan_brackets(s);
-        s->out[s->length] = '\0';
-        (void)snprintf(argument[count++], 48, "%.47s", s->out);
-        (void)scan_take(s, ",");
-    }
-    s->length = 0;
-    return count;
-}
-
 /* Return height, reference, safety above it, depth, depth below the reference; then a dwell, or the first peck and the rest. */
 static void drill(struct scan *s, const char *name, char text[FLOW_CALL_MAX])
 {
-    char a[8][48] = {"", "", "", "", "", "", "", ""};
+    char a[ARGUMENTS][48] = {{0}};
     const unsigned count = take_arguments(s, a);
     const bool relative = a[3][0] == '\0';
     const char *dwell = count > 5 && a[5][0] != '\0' ? a[5] : "0";
@@ -418,6 +486,31 @@ static void take_definitions(struct scan *s)
     clear(t);
 }
 
+/* PROC NAME(REAL A, INT B=2, VAR REAL C): #1, #2 ... of the subroutine. */
+static void take_parameters(struct scan *s)
+{
+    struct translator *t = s->t;
+    unsigned number = 0;
+    bool more = scan_take(s, "(");
+    char type[NAME_MAX_];
+    char name[NAME_MAX_];
+
+    while (more && !s->failed) {
+        s->failed = !scan_name(s, type) || (strcmp(type, "VAR") == 0 && !scan_name(s, type)) ||
+                    !scan_name(s, name) || t->variables == TRANSLATE_PROGRAMS_MAX;
+        if (s->failed)
+            return;
+        memcpy(t->variable[t->variables++], name, sizeof name);
+        s->length = 0;
+        scan_operand(s, name);
+        translate_add(&t->before, "%s=#%u", s->out, ++number);
+        if (scan_take(s, "="))
+            scan_brackets(s);
+        more = scan_take(s, ",");
+    }
+    clear(t);
+}
+
 /* ---- a line ---- */
 
 /* N100, and NAME: where jumps go to. */
@@ -457,7 +550,7 @@ static bool take_order(struct scan *s, char *name)
     if (strcmp(name, "PROC") == 0 && scan_name(s, name)) {
         if (s->t->subprogram[0] == '\0')
             begin_subprogram(s->t, name);
-        clear(s->t);
+        take_parameters(s);
         return true;
     }
     return *s->at != '=' && strcmp(name, "TRANS") != 0 && take_call(s, name);
@@ -502,6 +595,19 @@ void siemens_finish(struct translator *t)
     output_add(&t->result->text, t->before.bytes, t->before.length);
 }
 
+static bool begins_so(const char *text)
+{
+    static const char *const orders[] = {
+        "%_N_",      "MCALL",      "MSG(",      "PROC ",      "DEF REAL ", "DEF INT ", "DEF BOOL ",
+        "DEF CHAR ", "DEF STRING", "DEF AXIS ", "DEF FRAME ", "EXTERN ",   "CASE(",    "CYCLE8"};
+
+    for (size_t i = 0; i < sizeof orders / sizeof orders[0]; i++) {
+        if (strncmp(text, orders[i], strlen(orders[i])) == 0)
+            return true;
+    }
+    return false;
+}
+
 bool siemens_tells(const struct line *l)
 {
     const size_t length = strcspn(l->text, ";");
@@ -517,7 +623,11 @@ bool siemens_tells(const struct line *l)
     const bool parameter =
         at[0] == 'R' && scan_is_digit(at[1]) && at[1 + strspn(at + 1, "0123456789 ")] == '=';
 
-    return parameter || strncmp(text, "%_N_", 4) == 0 || strncmp(at, "MCALL", 5) == 0 ||
-           strncmp(at, "MSG(", 4) == 0 ||
-           (strchr(text, '(') == NULL && strchr(text, '#') == NULL && strstr(text, "CR=") != NULL);
+    const bool begins = begins_so(at);
+    const bool arc =
+        strchr(text, '(') == NULL && strchr(text, '#') == NULL && strstr(text, "CR=") != NULL;
+
+    text[strcspn(text, "(")] = '\0';
+    return parameter || begins || arc || strstr(text, "T=\"") != NULL ||
+           strstr(text, "GOTOF ") != NULL || strstr(text, "GOTOB ") != NULL;
 }

@@ -16,10 +16,16 @@ static const struct command *const commands[] = {
     &command_machine,   &command_serve,   &command_panel,
     &command_bore,      &command_drives,  &command_calibrate,
     &command_correct,   &command_replay,  &command_cycle_frequency,
-    &command_precision, &command_compile,
+    &command_precision, &command_compile, &command_completion,
 };
 
 #define COMMANDS (sizeof commands / sizeof commands[0])
+
+const struct command *const *command_list(unsigned *count)
+{
+    *count = COMMANDS;
+    return commands;
+}
 
 static void print_usage(FILE *stream)
 {

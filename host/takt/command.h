@@ -48,6 +48,10 @@ extern const struct command command_drives;
 extern const struct command command_replay;
 extern const struct command command_bore;
 extern const struct command command_compile;
+extern const struct command command_completion;
+
+/* All of them, in the order of the help. */
+const struct command *const *command_list(unsigned *count);
 
 /* Finds and runs the sub-command of a command line. Returns the exit status. */
 enum command_status command_main(int argc, char **argv);

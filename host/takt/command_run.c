@@ -210,7 +210,8 @@ static const struct option_row rows[] = {
     {"plan", OPTION_TEXT, offsetof(struct options, plan), "HOW",
      "board (default): while it runs; ahead: compiled first; or a FILE of takt compile"},
     {"target", OPTION_TEXT, offsetof(struct options, target), "NAME",
-     "run the controller in QEMU, on a Cortex-M4 (m4f) or M7 (m7), compared bit for bit"},
+     "run the controller in QEMU, on a Cortex-M4 (m4f), M7 (m7) or RISC-V (rv64), compared bit for "
+     "bit"},
     {"image", OPTION_TEXT, offsetof(struct options, image), "FILE",
      "its image, takt-desk.elf; host/run --target builds it"},
     {"trace", OPTION_TEXT, offsetof(struct options, trace), "FILE.csv",

@@ -30,7 +30,8 @@ static const struct hint hints[] = {
     {TAKT_ERROR_AXIS_MISSING,
      "an axis is added to a machine file by [axis A]; U V W there are none"},
     {TAKT_ERROR_SUB_UNKNOWN,
-     "its file NAME.ngc is looked for beside the program, and in folders given by --subroutines"},
+     "its file (NAME.ngc, O1000.nc) is looked for beside the program, and in folders given by "
+     "--subroutines"},
     {TAKT_ERROR_PARAMETER_UNDEFINED,
      "set it before: #<name> = 0; without _ it belongs to its subroutine alone"},
     {TAKT_ERROR_SPINDLE_STANDS, "M3 S1000 starts it"},
@@ -233,13 +234,29 @@ static bool write_name(const struct diagnostic *d, const char *line, size_t leng
     return asked;
 }
 
+/* T="NAME" of Siemens' controllers. */
+static bool write_tool(const struct diagnostic *d, char text[HINT_MAX])
+{
+    const bool asked =
+        d->code == TAKT_ERROR_PARAMETER_UNDEFINED && strncmp(d->word, "TOOL_", 5) == 0;
+
+    if (asked)
+        (void)snprintf(text, HINT_MAX,
+                       "    the number of the tool of this name, to the machine file, or as "
+                       "--set values.%s=1:\n"
+                       "    [values]\n"
+                       "    %s = 1\n",
+                       d->word, d->word);
+    return asked;
+}
+
 void hint_write(const struct diagnostic *d, const char *line, size_t length, size_t at,
                 char text[HINT_MAX])
 {
     const char *hint = find(d->code);
 
     text[0] = '\0';
-    if (write_value(d, text) || write_name(d, line, length, at, text))
+    if (write_value(d, text) || write_tool(d, text) || write_name(d, line, length, at, text))
         return;
     if (hint != NULL)
         write(text, hint);

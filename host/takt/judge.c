@@ -268,6 +268,8 @@ static void take_tube(struct judge *j, bool completed)
 
     if (completed)
         tube_judge_finish(&j->tube);
+    else
+        tube_judge_stop(&j->tube);
     j->figures.path_length_mm = tube->path_length_mm;
     raise_to(&j->figures.path_error_mm, tube->beyond_mm);
     j->figures.smoothed_path_part = tube->path_part;

@@ -32,7 +32,7 @@ enum command_status target_setup_check(const struct session *session)
     if (options->target == NULL && options->image == NULL)
         return STATUS_DONE;
     if (options->target != NULL && !target_is_known(options->target))
-        message_command_error("--target %s: m4f or m7 is expected", options->target);
+        message_command_error("--target %s: m4f, m7 or rv64 is expected", options->target);
     else if (options->target == NULL || options->image == NULL)
         message_command_error("--target and --image belong together; host/run --target NAME builds "
                               "the image and gives both");

@@ -45,6 +45,7 @@ struct stride {
     struct tube_segment segment;
     struct point to;
     uint32_t motion; /* that is said to be executed */
+    double sag_mm;   /* by which a curve is off the segment, at most */
 };
 
 void tube_judge_init(struct tube_judge *t, const struct program_config *program,
@@ -54,6 +55,7 @@ void tube_judge_init(struct tube_judge *t, const struct program_config *program,
     tube_path_init(&t->path, program, source, exact_mm);
     t->active = 1;
     t->last = program->start;
+    t->before = program->start;
 }
 
 void tube_judge_free(struct tube_judge *t)
@@ -124,6 +126,8 @@ static double within_end(const struct tube_piece *piece, const struct stride *st
 {
     const double within_mm = maths_max(within_of(piece), piece->motion.turning_mm);
 
+    if (piece->motion.rounded && !piece->ends)
+        return within_mm + step->sag_mm;
     return piece->motion.rounded ? within_mm : maths_max(within_mm, step->segment.length_mm / 2);
 }
 
@@ -364,38 +368,72 @@ static void leave_crowd(struct tube_judge *t, const struct stride *step)
     }
 }
 
-static struct stride step_to(const struct tube_judge *t, const struct point *setpoint,
-                             uint32_t motion)
+/* |a - 2 b + c| */
+static double bend_of(const struct point *a, const struct point *b, const struct point *c)
 {
-    struct stride step = {.segment = {.start = t->last}, .to = *setpoint, .motion = motion};
+    double square = 0;
 
     for (int i = 0; i < AXIS_COUNT; i++) {
-        const double way = setpoint->at[i] - t->last.at[i];
+        const double bend = a->at[i] - 2 * b->at[i] + c->at[i];
+
+        square += bend * bend;
+    }
+    return maths_sqrt(square);
+}
+
+/* From the last setpoint to the next one, behind which the axes go on to another. */
+static struct stride step_to(const struct tube_judge *t, const struct point *then)
+{
+    struct stride step = {.segment = {.start = t->last}, .to = t->next, .motion = t->next_motion};
+
+    for (int i = 0; i < AXIS_COUNT; i++) {
+        const double way = t->next.at[i] - t->last.at[i];
 
         step.segment.way.at[i] = way;
         step.segment.square_mm2 += way * way;
     }
     step.segment.length_mm = maths_sqrt(step.segment.square_mm2);
+    step.sag_mm =
+        maths_max(bend_of(&t->before, &t->last, &t->next), bend_of(&t->last, &t->next, then)) / 8;
     return step;
 }
 
-bool tube_judge_add(struct tube_judge *t, const struct point *setpoint, uint32_t motion)
+static void judge_next(struct tube_judge *t, const struct point *then)
 {
-    const struct stride step = step_to(t, setpoint, motion);
+    const struct stride step = step_to(t, then);
     struct nearest n = {.of_tolerance = MATHS_INFINITY};
     bool left;
 
     if (t->path.failed)
-        return false;
+        return;
     left = !follow(t, &step, &n);
-    measure(t, setpoint, &n, left);
+    measure(t, &step.to, &n, left);
     if (left)
         find_again(t, &step);
     t->figures.path_length_mm = length_before(tube_path_at(&t->path, n.piece), n.part);
     leave_crowd(t, &step);
     drop_left(t);
-    t->last = *setpoint;
+    t->before = t->last;
+    t->last = step.to;
+}
+
+bool tube_judge_add(struct tube_judge *t, const struct point *setpoint, uint32_t motion)
+{
+    if (t->has_next)
+        judge_next(t, setpoint);
+    t->next = *setpoint;
+    t->next_motion = motion;
+    t->has_next = true;
     return !t->path.failed;
+}
+
+void tube_judge_stop(struct tube_judge *t)
+{
+    const struct point rest = t->next;
+
+    if (t->has_next)
+        judge_next(t, &rest);
+    t->has_next = false;
 }
 
 /* The axes stand before this piece, which has not been come to: it must be near them all the same. */
@@ -426,6 +464,7 @@ static void leave_all(struct tube_judge *t)
 
 void tube_judge_answer(struct tube_judge *t, const struct program_answer *answer)
 {
+    tube_judge_stop(t);
     if (t->path.failed)
         return;
     leave_all(t);
@@ -438,6 +477,7 @@ void tube_judge_answer(struct tube_judge *t, const struct program_answer *answer
 
 void tube_judge_finish(struct tube_judge *t)
 {
+    tube_judge_stop(t);
     if (t->path.failed)
         return;
     leave_all(t);

@@ -9,6 +9,9 @@
  * such place left the path has been left: that is how far off the setpoint is, and the path is looked for near by, ahead.
  * Memory is what lies within reach.
  *
+ * Between two setpoints of a curve the axes do not go straight: with second differences d it is off its chord by d/8 at most.
+ * So much more a bend, not a corner, may be off the line from one to the other.
+ *
  * Where motions of a few tolerances go to and fro, a setpoint may be on any number of them. The motion that the run says it
  * executes then chooses: if the setpoint is near it, places far ahead are not gone to yet, and those far behind are left.
  * A run that says what is wrong has fewer places to be at, never more, so that it is judged more strictly.
@@ -34,8 +37,12 @@ struct tube_judge {
     struct tube_path path;
     bool exact_elsewhere; /* the ends of exact motions are judged by others */
     size_t active;        /* pieces before this one may be where the setpoint is */
-    struct point last;    /* setpoint */
-    uint64_t looks;       /* work: pieces that a setpoint has been compared with */
+    struct point last;    /* setpoint, */
+    struct point before;  /* and the one before */
+    struct point next;    /* not judged yet: what comes after it tells how the axes go there */
+    uint32_t next_motion;
+    bool has_next;
+    uint64_t looks; /* work: pieces that a setpoint has been compared with */
     struct tube_figures figures;
 };
 
@@ -47,7 +54,9 @@ void tube_judge_free(struct tube_judge *t);
 bool tube_judge_add(struct tube_judge *t, const struct point *setpoint, uint32_t motion);
 /* What the program has been told (G38, M66): everything before it has been executed, but for the rest of a probing move. */
 void tube_judge_answer(struct tube_judge *t, const struct program_answer *answer);
-/* After the last setpoint of a program that has been executed to its end. */
+/* After the last setpoint, wherever that is. */
+void tube_judge_stop(struct tube_judge *t);
+/* The same of a program that has been executed to its end. */
 void tube_judge_finish(struct tube_judge *t);
 
 #endif

@@ -10,8 +10,6 @@
 #include <sys/wait.h>
 #include <time.h>
 
-#define QEMU "qemu-system-arm"
-
 /* The image's files get the numbers from here on, which are free: takt has far fewer open. */
 #define FIRST_FILE 200
 
@@ -24,15 +22,23 @@
 
 extern char **environ;
 
-const char *process_board(const char *name)
+static const struct process_board boards[] = {
+    {"m4f", "qemu-system-arm", "qemu-system-arm", {"-M", "mps2-an386"}},
+    {"m7", "qemu-system-arm", "qemu-system-arm", {"-M", "mps2-an500"}},
+    {"rv64", "qemu-system-riscv64", "qemu-system-misc", {"-M", "virt", "-bios", "none"}},
+};
+
+const struct process_board *process_board(const char *name)
 {
-    if (strcmp(name, "m4f") == 0)
-        return "mps2-an386";
-    return strcmp(name, "m7") == 0 ? "mps2-an500" : NULL;
+    for (size_t i = 0; i < sizeof boards / sizeof boards[0]; i++) {
+        if (strcmp(name, boards[i].name) == 0)
+            return &boards[i];
+    }
+    return NULL;
 }
 
 /* Without a share of the signals that Ctrl-C sends to the foreground. */
-static int start(pid_t *process, char *const *arguments, const int *file)
+static int start(pid_t *process, const char *qemu, char *const *arguments, const int *file)
 {
     posix_spawn_file_actions_t actions;
     posix_spawnattr_t attributes;
@@ -43,7 +49,7 @@ static int start(pid_t *process, char *const *arguments, const int *file)
     (void)posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETPGROUP);
     for (int i = 0; i < PROCESS_FILES && file[i] >= 0; i++)
         (void)posix_spawn_file_actions_adddup2(&actions, file[i], FIRST_FILE + i);
-    error = posix_spawnp(process, QEMU, &actions, &attributes, arguments, environ);
+    error = posix_spawnp(process, qemu, &actions, &attributes, arguments, environ);
     (void)posix_spawn_file_actions_destroy(&actions);
     (void)posix_spawnattr_destroy(&attributes);
     return error;
@@ -59,41 +65,41 @@ static void name_files(char *words, size_t size, const int file[PROCESS_FILES])
             snprintf(words + length, size - (size_t)length, ",arg=/dev/fd/%d", FIRST_FILE + i);
 }
 
+/* posix_spawn takes words that may be changed, and changes none. */
+static char *word(const char *text)
+{
+    char *own;
+
+    memcpy(&own, &text, sizeof own);
+    return own;
+}
+
 /*
  * -icount shift=0: an instruction takes a nanosecond, so that the image's clock counts instructions, and two runs are
  * the same. sleep=off: never waits for real time.
  */
-pid_t process_start(const char *board, const char *image, const int file[PROCESS_FILES])
+pid_t process_start(const struct process_board *board, const char *image,
+                    const int file[PROCESS_FILES])
 {
-    char machine[ARGUMENT_MAX], kernel[] = "-kernel", path[4096], semihosting[ARGUMENT_MAX];
-    char *const arguments[] = {
-        (char[]){QEMU},
-        (char[]){"-M"},
-        machine,
-        kernel,
-        path,
-        (char[]){"-display"},
-        (char[]){"none"},
-        (char[]){"-monitor"},
-        (char[]){"none"},
-        (char[]){"-serial"},
-        (char[]){"null"},
-        (char[]){"-semihosting-config"},
-        semihosting,
-        (char[]){"-icount"},
-        (char[]){"shift=0,sleep=off"},
-        NULL,
+    char semihosting[ARGUMENT_MAX];
+    const char *const last[] = {
+        "-kernel",   image,      "-display",
+        "none",      "-monitor", "none",
+        "-serial",   "null",     "-semihosting-config",
+        semihosting, "-icount",  "shift=0,sleep=off",
     };
+    char *arguments[ARGUMENTS_MAX + 1] = {NULL};
+    unsigned count = 0;
     pid_t process = 0;
     int error;
 
-    (void)snprintf(machine, sizeof machine, "%s", board);
-    if (snprintf(path, sizeof path, "%s", image) >= (int)sizeof path) {
-        errno = ENAMETOOLONG;
-        return 0;
-    }
     name_files(semihosting, sizeof semihosting, file);
-    error = start(&process, arguments, file);
+    arguments[count++] = word(board->qemu);
+    for (unsigned i = 0; board->options[i] != NULL; i++)
+        arguments[count++] = word(board->options[i]);
+    for (unsigned i = 0; i < sizeof last / sizeof last[0]; i++)
+        arguments[count++] = word(last[i]);
+    error = start(&process, board->qemu, arguments, file);
     errno = error;
     return error == 0 ? process : 0;
 }

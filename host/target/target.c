@@ -111,6 +111,7 @@ static bool open_pipe(int ends[2])
 static bool start_qemu(struct target *t, const struct target_config *config, FILE *setup,
                        FILE *program)
 {
+    const struct process_board *board = process_board(config->name);
     int to[2], from[2];
 
     if (!open_pipe(to))
@@ -122,12 +123,12 @@ static bool start_qemu(struct target *t, const struct target_config *config, FIL
     }
     t->from = from[0];
     t->process =
-        process_start(process_board(config->name), config->image,
+        process_start(board, config->image,
                       (int[PROCESS_FILES]){fileno(setup), fileno(program), to[0], from[1],
                                            config->plan != NULL ? fileno(config->plan) : -1});
     if (t->process == 0)
-        (void)fail(t, "qemu-system-arm cannot be started: %s (Debian: qemu-system-arm)",
-                   strerror(errno));
+        (void)fail(t, "%s cannot be started: %s (Debian: %s)", board->qemu, strerror(errno),
+                   board->package);
     (void)close(to[0]);
     (void)close(from[1]);
     return t->process != 0;

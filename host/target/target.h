@@ -1,5 +1,5 @@
 /*
- * A run whose controller is on another processor: QEMU, started with an image (hal/mps2), talked to cycle by cycle.
+ * A run whose controller is on another processor: QEMU, started with an image (hal/semihosting), talked to cycle by cycle.
  *
  *     target_begin_cycle    inputs and received frames go out; the image works
  *     ... the controller of this process does the same cycle ...
@@ -32,7 +32,7 @@ struct target_table {
 #define TARGET_TABLES_MAX (AXIS_COUNT + 1)
 
 struct target_config {
-    const char *name;    /* m4f, m7 */
+    const char *name;    /* m4f, m7, rv64 */
     const char *image;   /* path of the ELF file */
     struct can_port bus; /* of the drives */
     const struct machine *machine;

@@ -23,13 +23,13 @@
 #define CYCLES_MAX 2000000
 
 /*
- * A hold takes up to so many parts of V/A + A/J, and cycles beside it; so many of a hundred holds may take more. Not counted
+ * A hold takes up to so many parts of V/A + A/J, and cycles beside it; so many of a thousand holds may take more. Not counted
  * are those of machines that stop in less than HOLD_CYCLES_MIN: what rounds to cycles is most of them.
  */
-#define HOLD_CYCLES_MIN 4.0
-#define HOLD_PARTS      1.5
-#define HOLD_CYCLES     10.0
-#define SLOW_OF_HUNDRED 1
+#define HOLD_CYCLES_MIN  4.0
+#define HOLD_PARTS       1.5
+#define HOLD_CYCLES      10.0
+#define SLOW_OF_THOUSAND 1
 
 /* Tenths of V/A + A/J that holds are counted in. */
 #define TENTHS_MAX 50
@@ -218,7 +218,7 @@ static void test_axes_come_to_rest_within_what_their_limits_tell_and_break_none(
     printf("\n%u took more than %.1f of it and %.0f cycles, at most %.2f (seed %u)\n", slow,
            HOLD_PARTS, HOLD_CYCLES, longest, longest_seed);
     TEST_ASSERT_EQUAL_UINT(0, failed);
-    TEST_ASSERT_LESS_OR_EQUAL_UINT(holds * SLOW_OF_HUNDRED, 100 * slow);
+    TEST_ASSERT_LESS_OR_EQUAL_UINT(holds * SLOW_OF_THOUSAND, 1000 * slow);
 }
 
 int main(int argc, char **argv)

@@ -28,5 +28,8 @@ for seed in ("80010", "80068", "80072", "80078", "80086"):
     hunt(f"strokes and loops of a few tolerances are not left out: {seed}", "1", seed, "--operator", "--kinds", KINDS)
 hunt("a straight line is as quick within a tolerance as exact", "6", "93301", "--family", "stops", "--kinds", "slow,back,endless")
 hunt("a tolerance as large as the part is no standstill", "1", "93051", "--kinds", KINDS + ",endless")
+for seed in ("94312", "202802", "206396"):
+    hunt(f"where the curve stands it comes to its end: {seed}", "1", seed, "--operator", "--kinds", KINDS + ",endless")
+hunt("where it rests before the place that it was thought to be at it goes on from there", "1", "220050", "--kinds", KINDS + ",endless")
 hunt("corners of exact paths are not cut where a cycle is long", "1", "40033", "--exact")
 t.finish()

@@ -5,45 +5,28 @@ $TAKT_PLAYWRIGHT, in build/peers, and where npm installs for all.
 """
 
 import os
-import shutil
 import subprocess
 import sys
-import tempfile
 
+import browser
 import page_client as w
 import panel_client as p
 import takt_test as t
 
 HANGS_AFTER_S = 300
-BROWSERS = "chromium", "chromium-browser", "google-chrome", "google-chrome-stable"
 PART = b"G21 G90 G61 F600\nG0 Z1\nG1 Z-0.5\nG1 X6 Y2\nG2 X10 Y-2 I0 J-4\nG1 X8 Y-3\nG1 X0\nG1 Y0\nG0 Z1\nG1 X4 Y4\nG1 X0 Y0\nM2\n"
 TOOLS = "T1 P1 Z20 D6 ;end mill\nT2 P2 Z35.5 D3 ;engraver\n"
 
 
-def find_playwright(node):
-    """A file beside the folder node_modules that has it; None: nowhere."""
-    npm = shutil.which("npm")
-    everybody = subprocess.run([npm, "root", "-g"], capture_output=True, text=True, check=False).stdout.strip() if npm else ""
-    for folder in (os.environ.get("TAKT_PLAYWRIGHT"), os.path.join(t.SOURCE, "build", "peers", "node_modules"), everybody):
-        if folder and os.path.isdir(os.path.join(folder, "playwright-core")):
-            return os.path.join(os.path.dirname(folder), "here.js")
-    return None
-
-
-node = shutil.which("node")
-chromium = next(filter(None, map(shutil.which, BROWSERS)), None)
-if not node or not chromium:
-    t.skip("no node" if not node else "no Chromium")
-playwright = find_playwright(node)
-if not playwright:
-    t.skip("no playwright-core: npm install playwright-core, and TAKT_PLAYWRIGHT is its node_modules")
+found = browser.find()
+if isinstance(found, str):
+    t.skip(found)
 service = w.serve("--tools", t.write("tools.tbl", TOOLS))
 client = service.client()
 client.wait_for("STATE", p.IDLE)
-environment = {**os.environ, "PLAYWRIGHT": playwright, "CHROMIUM": chromium, "TAKT_PART": t.write("part.ngc", PART),
-               "TAKT_SHOWN": os.path.join(t.EXAMPLES, "engraving.ngc"), "HOME": tempfile.mkdtemp()}
+environment = {**os.environ, **found, "TAKT_PART": t.write("part.ngc", PART), "TAKT_SHOWN": os.path.join(t.EXAMPLES, "engraving.ngc")}
 script = os.path.join(os.path.dirname(os.path.abspath(__file__)), "page_in_browser.mjs")
-done = subprocess.run([node, script, f"http://127.0.0.1:{service.page_port}/", *sys.argv[1:]], env=environment, timeout=HANGS_AFTER_S,
+done = subprocess.run(["node", script, f"http://127.0.0.1:{service.page_port}/", *sys.argv[1:]], env=environment, timeout=HANGS_AFTER_S,
                       capture_output=True, text=True, check=False)
 print(done.stdout, end="")
 t.check(done.returncode == 0, "every step on the page holds", done.stderr[-1000:])

@@ -8,10 +8,10 @@
  * 0 when it came to its end, STOPPED when the clock was first, and something else when it failed.
  */
 #include "mps2/file_flash.h"
-#include "mps2/semihosting.h"
 #include "port/cortex_m.h"
 #include "port/settings_upload.h"
 #include "port/startup.h"
+#include "semihosting/semihosting.h"
 
 #include <string.h>
 

@@ -80,7 +80,11 @@ static void test_only_what_linuxcnc_cannot_read_tells_of_another_dialect(void)
         {"G2 X1 I1 J0 K0", DIALECT_GRBL, 1},
         {"G0 X1\nG2 X2 CR=5", DIALECT_SIEMENS, 2},
         {"N10 R1 = 5", DIALECT_SIEMENS, 1},
+        {"N20 DEF INT A=5\nX1", DIALECT_SIEMENS, 1},
+        {"G0 X1\nT=\"DRILL 8\"", DIALECT_SIEMENS, 2},
+        {"PROC BORE (REAL A)", DIALECT_SIEMENS, 1},
         {"G0 X1\n#<CR>=5 (CR=5)", DIALECT_LINUXCNC, 0},
+        {"G0 X1 (T=\"DRILL\", GOTOF END)", DIALECT_LINUXCNC, 0},
         {"G0 X1\nG28 X", DIALECT_MARLIN, 2},
         {"G54.1 P2", DIALECT_FANUC, 1},
         {"WHILE [#1 LT 3] DO1", DIALECT_FANUC, 1},
@@ -393,6 +397,27 @@ static void test_flow_of_siemens(void)
            "o<l10> call\n|o<l10> call\nM30 \no<l10> sub\nX1 \no<l10> return\n|o<l10> endsub\n");
 }
 
+static void test_subprograms_of_siemens(void)
+{
+    expect(DIALECT_SIEMENS,
+           "BORE(1, ,R2+3)\nM30\nN1 PROC BORE (REAL TOP, INT N=2,VAR REAL R)\nX=TOP\n",
+           "o<bore> call [[1]] [0] [[#102+3]]\nM30 \n"
+           "o<bore> sub\n|#<_def_top>=#1\n|#<_def_n>=#2\n|#<_def_r>=#3\nX[#<_def_top>] \n"
+           "|o<bore> endsub\n");
+    expect(DIALECT_SIEMENS, "R1=80 R2=1.5 L903 P2\nL140(2)\n",
+           "#101=[80]\n|#102=[1.5]\n|o<l903> call\n|o<l903> call\no<l140> call [[2]]\n");
+    expect(DIALECT_SIEMENS, "CASE(R1-1) OF 2 GOTOF A DEFAULT GOTOF B\nA: X1\nB: X2\n",
+           "o98000001 if [[[#101-1]] EQ 2]\n|o00000152 goto [00000002] [00]\n|o98000001 endif\n"
+           "|o98000001 if [0 EQ 0]\n|o00000156 goto [00000003] [00]\n|o98000001 endif\nX1 \nX2 \n");
+}
+
+static void test_named_tools_have_numbers_of_the_machine_file(void)
+{
+    TEST_ASSERT_NULL(dialect_value_set(&codes, "TOOL_DRILL_8_5", "7"));
+    expect(DIALECT_SIEMENS, "T=\"Drill 8.5\" M6\nT=\"12\"\nT=\"X\"\n",
+           "T[7] M6 \nT12 \nT#<TOOL_X> \n");
+}
+
 static void test_orders_of_siemens(void)
 {
     expect(DIALECT_SIEMENS, "MSG(\"a (b)\")\nTRANS X1\nTRANS\n",
@@ -450,6 +475,8 @@ int main(void)
     RUN_TEST(test_round_pockets_become_arcs);
     RUN_TEST(test_words_and_values_of_siemens);
     RUN_TEST(test_flow_of_siemens);
+    RUN_TEST(test_subprograms_of_siemens);
+    RUN_TEST(test_named_tools_have_numbers_of_the_machine_file);
     RUN_TEST(test_orders_of_siemens);
     RUN_TEST(test_a_byte_order_mark_is_no_part_of_the_program);
     return UNITY_END();

@@ -1,5 +1,6 @@
 /* Settings as bytes: what is packed is read back, and nothing else is taken for it. */
 #include "base/crc32.h"
+#include "storage/little_words.h"
 #include "storage/settings.h"
 #include "storage/settings_fields.h"
 #include "unity.h"
@@ -55,10 +56,8 @@ static void pack(void)
 /* After a change by hand. */
 static void seal(void)
 {
-    const uint32_t crc = crc32_add(CRC32_START, bytes() + 12, size - 12);
-    const uint32_t words[] = {(uint32_t)size, crc};
-
-    memcpy(bytes() + 4, words, sizeof words);
+    little_put32(bytes() + 4, (uint32_t)size);
+    little_put32(bytes() + 8, crc32_add(CRC32_START, bytes() + 12, size - 12));
 }
 
 static bool read_back(void)

@@ -68,7 +68,7 @@ static void jump_to(double x, double y)
 /* Setpoints straight on. */
 static void go_to(double x, double y)
 {
-    const struct point from = judge.last;
+    const struct point from = judge.has_next ? judge.next : judge.last;
     const double way_x = x - from.at[AXIS_X];
     const double way_y = y - from.at[AXIS_Y];
     const int steps = (int)ceil(hypot(way_x, way_y) / STEP_MM);
@@ -396,6 +396,20 @@ static void test_an_arc_is_measured_by_its_curve_and_not_by_chords(void)
     TEST_ASSERT_DOUBLE_WITHIN(1e-9, 10 * PI, judge.figures.path_length_mm);
 }
 
+/* On a circle of 0.105 in place of 0.2, 1.2 rad from each other: their lines come to 0.105 cos 0.6 = 0.2 - 0.113. */
+static void test_between_setpoints_of_a_bend_the_axes_do_not_go_straight(void)
+{
+    begin("G64 P0.1\nF100\nG3 I-0.2 P3\nG1 Y-5\n");
+    for (int k = 0; k < 16; k++)
+        jump_to(-0.2 + 0.105 * cos(1.2 * k), 0.105 * sin(1.2 * k));
+    go_to(0, 0);
+    go_to(0, -5);
+    tube_judge_finish(&judge);
+    TEST_ASSERT_TRUE(judge.figures.path_part < 1);
+    TEST_ASSERT_TRUE(judge.figures.corner_part < 1);
+    TEST_ASSERT_EQUAL_DOUBLE(0, judge.figures.beyond_mm);
+}
+
 static void test_a_radian_counts_as_a_millimetre(void)
 {
     begin("G64 P0.1\nF100\nG1 X10 A57.29577951308232\n");
@@ -427,6 +441,7 @@ static void test_a_program_that_is_not_done_to_its_end_is_seen(void)
     begin("G64 P0.1\nF100\nG1 X10\nG1 Y10\n");
     go_to(10, 0);
     go_to(10, 9);
+    tube_judge_stop(&judge);
     TEST_ASSERT_DOUBLE_WITHIN(1e-12, 19, judge.figures.path_length_mm);
     TEST_ASSERT_TRUE(is_within());
     tube_judge_finish(&judge);
@@ -513,6 +528,7 @@ int main(void)
     RUN_TEST(test_standing_changes_nothing);
     RUN_TEST(test_an_exact_motion_between_rounded_ones_must_be_exact);
     RUN_TEST(test_an_arc_is_measured_by_its_curve_and_not_by_chords);
+    RUN_TEST(test_between_setpoints_of_a_bend_the_axes_do_not_go_straight);
     RUN_TEST(test_a_radian_counts_as_a_millimetre);
     RUN_TEST(test_a_probing_move_ends_where_the_axes_come_to_rest);
     RUN_TEST(test_what_an_answer_comes_before_must_have_been_done);

@@ -7,9 +7,12 @@ import { $, make, say, setText, told } from "./dom.js";
 const LINE_PX = 20;
 const PIECE = 32768;
 const OVERRIDES = [["FEED_OVERRIDE", "Feed", 0, 120], ["RAPID_OVERRIDE", "Rapid", 0, 100], ["SPINDLE_OVERRIDE", "Spindle", 50, 150]];
+const SWITCHES = [["single", "SINGLE_BLOCK"], ["optional", "OPTIONAL_STOP"], ["delete", "BLOCK_DELETE"]];
+const FRAMES_AFTER = 2; // one may have been on its way when the order was answered
 
 let lines = [];
 let shown = [0, -1], active = -1, known = "";
+const waits = new Map(); // frames that a switch still shows what was wished, not what is
 
 const table = Uint32Array.from({ length: 256 }, (_, n) => { for (let k = 0; k < 8; k += 1) n = n & 1 ? n >>> 1 ^ 0xEDB88320 : n >>> 1; return n; });
 function crc32(bytes) {
@@ -110,8 +113,21 @@ function show() {
   $("start").disabled = !isState(STATE.IDLE, STATE.HELD) || (!counts("PROGRAM_SIZE") && isState(STATE.IDLE));
   $("hold").disabled = !isState(STATE.RUNNING, STATE.MDI, STATE.JOGGING, STATE.HOMING);
   $("resume").disabled = !isState(STATE.HELD);
-  for (const [id, name] of [["single", "SINGLE_BLOCK"], ["optional", "OPTIONAL_STOP"], ["delete", "BLOCK_DELETE"]]) $(id).checked = counts(name) !== 0;
+  showSwitches();
   showOverrides();
+}
+
+async function turn(id, name) {
+  waits.set(id, Infinity);
+  waits.set(id, await told(write([name, $(id).checked ? 1 : 0]), name) ? 0 : FRAMES_AFTER);
+}
+
+function showSwitches() {
+  for (const [id, name] of SWITCHES) {
+    const left = waits.get(id) || 0;
+    if (left > 0) waits.set(id, left - 1);
+    else $(id).checked = counts(name) !== 0;
+  }
 }
 
 function listenToFiles() {
@@ -132,9 +148,7 @@ export function startProgramPane() {
   $("hold").onclick = () => told(write(["FEED_HOLD", 1]), "Hold");
   $("resume").onclick = () => told(write(["RESUME", 1]), "Resume");
   $("reset").onclick = () => told(write(["RESET", 1]), "Reset");
-  for (const [id, name] of [["single", "SINGLE_BLOCK"], ["optional", "OPTIONAL_STOP"], ["delete", "BLOCK_DELETE"]]) {
-    $(id).onchange = () => told(write([name, $(id).checked ? 1 : 0]), name);
-  }
+  for (const [id, name] of SWITCHES) $(id).onchange = () => turn(id, name);
   $("text").addEventListener("scroll", () => showText(false));
   $("text").addEventListener("click", (event) => { if (event.target.dataset.n) $("fromline").value = event.target.dataset.n; });
   new ResizeObserver(() => showText(true)).observe($("text"));

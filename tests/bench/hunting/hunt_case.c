@@ -64,24 +64,29 @@ void place(const struct judge *j, const struct motion *m, double part, double *p
 
 static void read_arc(FILE *file, struct motion *m)
 {
-    double x, y;
-
     m->first = (unsigned)number(file);
     m->second = (unsigned)number(file);
     m->centre[0] = number(file);
     m->centre[1] = number(file);
     m->sweep_rad = number(file);
-    x = m->start[m->first] - m->centre[0];
-    y = m->start[m->second] - m->centre[1];
+}
+
+static void measure_arc(struct motion *m)
+{
+    const double x = m->start[m->first] - m->centre[0];
+    const double y = m->start[m->second] - m->centre[1];
+
     m->angle_rad = atan2(y, x);
     m->radius_mm[0] = hypot(x, y);
     m->radius_mm[1] = hypot(m->end[m->first] - m->centre[0], m->end[m->second] - m->centre[1]);
 }
 
-static void measure_motion(const struct judge *j, struct motion *m)
+void measure_motion(const struct judge *j, struct motion *m)
 {
     double way[AXES_MAX] = {0};
 
+    if (m->is_arc)
+        measure_arc(m);
     for (unsigned i = 0; i < j->axes; i++)
         way[i] = m->end[i] - m->start[i];
     if (m->is_arc) {
@@ -92,24 +97,39 @@ static void measure_motion(const struct judge *j, struct motion *m)
     m->turning_rad = length_of(way, j->linear_axes, j->axes);
 }
 
+struct motion *add_motion(struct judge *j)
+{
+    struct motion *m;
+
+    if (j->motions == j->motion_room) {
+        j->motion_room = j->motion_room > 0 ? 2 * j->motion_room : 256;
+        j->motion = realloc(j->motion, j->motion_room * sizeof *j->motion);
+        if (j->motion == NULL)
+            fail("no memory");
+    }
+    m = &j->motion[j->motions++];
+    memset(m, 0, sizeof *m);
+    memcpy(m->start, j->motions > 1 ? m[-1].end : j->start, sizeof m->start);
+    return m;
+}
+
 /* KIND LINE TOLERANCE TIME RAPID STOPS END..., arcs: FIRST SECOND CENTRE CENTRE SWEEP */
-static bool read_motion(struct judge *j, FILE *file, struct motion *m, const double *start)
+static bool read_motion(struct judge *j, FILE *file)
 {
     char kind[2];
+    struct motion *m;
 
     if (fscanf(file, "%1s", kind) != 1)
         return false;
-    memset(m, 0, sizeof *m);
+    m = add_motion(j);
     m->is_arc = kind[0] == 'A';
     m->line = (unsigned)number(file);
     m->tolerance_mm = number(file);
     m->time_s = number(file);
     m->is_rapid = number(file) > 0;
     m->stops = number(file) > 0;
-    for (unsigned i = 0; i < j->axes; i++) {
-        m->start[i] = start[i];
+    for (unsigned i = 0; i < j->axes; i++)
         m->end[i] = number(file) * j->scale[i];
-    }
     if (m->is_arc)
         read_arc(file, m);
     measure_motion(j, m);
@@ -119,8 +139,6 @@ static bool read_motion(struct judge *j, FILE *file, struct motion *m, const dou
 /* AXES LINEAR CYCLE FEED_FACTOR COMPLETED, of each axis SCALE V A J START, then motions. */
 void read_case(struct judge *j, FILE *file)
 {
-    size_t room = 0;
-
     j->axes = (unsigned)number(file);
     if (j->axes > AXES_MAX)
         fail("too many axes");
@@ -134,17 +152,7 @@ void read_case(struct judge *j, FILE *file)
             j->limit[i][k] = number(file);
         j->start[i] = number(file) * j->scale[i];
     }
-    for (;;) {
-        if (j->motions == room) {
-            room = room > 0 ? 2 * room : 256;
-            j->motion = realloc(j->motion, room * sizeof *j->motion);
-            if (j->motion == NULL)
-                fail("no memory");
-        }
-        if (!read_motion(j, file, &j->motion[j->motions],
-                         j->motions > 0 ? j->motion[j->motions - 1].end : j->start))
-            return;
-        j->motions++;
+    while (read_motion(j, file)) {
     }
 }
 
@@ -228,27 +236,28 @@ static void read_row(struct judge *j, char *line, const bool *wanted, double *ro
         fail("a row of the trace is too short");
 }
 
+double *add_row(struct judge *j)
+{
+    if (j->rows == j->row_room) {
+        j->row_room = j->row_room > 0 ? 2 * j->row_room : 4096;
+        j->setpoint = realloc(j->setpoint, j->row_room * j->axes * sizeof *j->setpoint);
+        if (j->setpoint == NULL)
+            fail("no memory");
+    }
+    j->rows++;
+    return &j->setpoint[(j->rows - 1) * j->axes];
+}
+
 void read_trace(struct judge *j, FILE *file)
 {
     static char line[4096];
     bool wanted[64] = {false};
-    size_t room = 4096;
 
     if (fgets(line, sizeof line, file) == NULL || find_columns(line, wanted, 64) != j->axes)
         fail("the trace has other axes than the case");
-    j->setpoint = make(room * j->axes, sizeof *j->setpoint);
-    memcpy(j->setpoint, j->start, j->axes * sizeof *j->setpoint);
-    j->rows = 1;
-    while (fgets(line, sizeof line, file) != NULL) {
-        if (j->rows == room) {
-            room *= 2;
-            j->setpoint = realloc(j->setpoint, room * j->axes * sizeof *j->setpoint);
-            if (j->setpoint == NULL)
-                fail("no memory");
-        }
-        read_row(j, line, wanted, &j->setpoint[j->rows * j->axes]);
-        j->rows++;
-    }
+    memcpy(add_row(j), j->start, j->axes * sizeof *j->setpoint);
+    while (fgets(line, sizeof line, file) != NULL)
+        read_row(j, line, wanted, add_row(j));
 }
 
 const double *row_of(const struct judge *j, size_t k)

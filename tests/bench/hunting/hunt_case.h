@@ -8,6 +8,7 @@
 
 #include <stdbool.h>
 #include <stddef.h>
+#include <stdint.h>
 #include <stdio.h>
 
 #define AXES_MAX 6
@@ -53,13 +54,14 @@ struct judge {
     bool completed; /* the axes stand after the last row */
     double start[AXES_MAX];
     struct motion *motion;
-    size_t motions;
+    size_t motions, motion_room;
     struct piece *piece;
     size_t pieces, piece_room;
     double *setpoint; /* rows of `axes` numbers, mm and rad; row 0 is where the program starts */
     double *bend;     /* second difference at each row */
-    size_t rows;
-    struct span *reach; /* of each piece: where the last setpoint may be */
+    size_t rows, row_room;
+    struct span *reach;       /* of each piece: where the last setpoint may be */
+    uint64_t work, work_most; /* pieces looked at beside a step; of more a walk is tired */
 };
 
 /* Ends the program with a reason. */
@@ -74,6 +76,12 @@ void place(const struct judge *j, const struct motion *m, double part, double *p
 /* Setpoint of a row; before the first and after the last the axes stand. */
 const double *row_of(const struct judge *j, size_t k);
 void step_of(const struct judge *j, size_t k, double *step);
+/* One more motion, which begins where the last one ends; the rest of it is to be set. */
+struct motion *add_motion(struct judge *j);
+/* Once it is set: what follows from it. */
+void measure_motion(const struct judge *j, struct motion *m);
+/* One more setpoint, to be set; the first is where the program starts. */
+double *add_row(struct judge *j);
 void read_case(struct judge *j, FILE *file);
 /* The motions, into pieces. */
 void cut(struct judge *j);

@@ -1,7 +1,7 @@
 /*
  * A second judge of setpoints, for `hunt`: it shares no code with the controller or with takt's own judge.
  *
- *     hunt_judge CASE TRACE.csv        CASE: written by hunt, see read_case; -: standard input
+ *     hunt_judge CASE TRACE.csv [WORK]        CASE: written by hunt, see read_case; -: standard input
  *
  * The programmed path is cut into straight pieces, the setpoints are the corners of a polyline that begins where the
  * program starts. Is there a way to walk along both, never backwards, with no more than the tolerance between them? Where
@@ -11,8 +11,10 @@
  *
  * Tolerance of a place: P of its motion, or ORDER_MM where it must be exact (how exact is measured apart, from the true
  * curve), and what a piece is off its arc. Between two setpoints the axes do not go straight: with second differences d a
- * curve is off its chord by d / 8, a joint passed in an exact path by d / 2 at most; ends of motions may be off a step by
+ * curve is off its chord by d / 8, a joint passed in an exact path by half a step at most; ends of motions may be off a step by
  * that.
+ *
+ * What takes more than so much WORK (pieces looked at beside a step) is not judged, and told: unjudged.
  *
  * Lengths are over all axes, in mm, a radian counts as one. Figures are printed, a line each: NAME VALUE [PLACE].
  */
@@ -21,6 +23,9 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+
+/* Pieces that are looked at beside steps: some half a minute. */
+#define WORK_MOST 400000000
 
 /* The tolerance may be exceeded by this for rounding. */
 #define TOLERANCE_ROOM 1e-6
@@ -74,17 +79,18 @@ static double segment_distance(unsigned axes, const double *start, const double 
 }
 
 /* Most that a setpoint is off all of the path, whatever the order, as a part of the tolerance of the nearest piece. */
-static void judge_tube(const struct judge *j)
+static void judge_tube(struct judge *j)
 {
     double worst = 0;
     size_t where = 0;
 
-    for (size_t k = 0; k < j->rows; k++) {
+    for (size_t k = 0; k < j->rows && j->work <= j->work_most; k++) {
         double least = (double)INFINITY;
 
         for (size_t n = 0; n < j->pieces && least > worst; n++) {
             const struct piece *p = &j->piece[n];
 
+            j->work++;
             least = fmin(least,
                          segment_distance(j->axes, p->start, p->way, p->square_mm2, row_of(j, k)) /
                              p->tolerance_mm);
@@ -98,12 +104,12 @@ static void judge_tube(const struct judge *j)
 }
 
 /* Most that an end of a motion is off all steps, likewise. */
-static void judge_corners(const struct judge *j)
+static void judge_corners(struct judge *j)
 {
     double worst = 0;
     unsigned line = 0;
 
-    for (size_t m = 0; m < j->motions; m++) {
+    for (size_t m = 0; m < j->motions && j->work <= j->work_most; m++) {
         const struct motion *motion = &j->motion[m];
         const double within_mm = motion->tolerance_mm > 0 ? motion->tolerance_mm : ORDER_MM;
         double least = (double)INFINITY;
@@ -111,6 +117,7 @@ static void judge_corners(const struct judge *j)
         for (size_t k = 1; k < j->rows && least > worst; k++) {
             double way[AXES_MAX], off_mm;
 
+            j->work++;
             step_of(j, k, way);
             off_mm = segment_distance(j->axes, row_of(j, k - 1), way,
                                       pow(length_of(way, 0, j->axes), 2), motion->end);
@@ -140,24 +147,37 @@ static void judge_travel(const struct judge *j)
     printf("end %.6g\n", length_of(off, 0, j->axes));
 }
 
+/* How far from one is it, and where? Each of these may be so much work. */
+static double judge_disorder(struct judge *j, const struct walk *w)
+{
+    double factor;
+
+    j->work = 0;
+    factor = least_factor(j);
+    printf("order %.6g %zu\n", factor, w->lost_row > 0 ? w->lost_row - 1 : j->rows - 1);
+    j->work = 0;
+    judge_tube(j);
+    judge_corners(j);
+    j->work = 0;
+    return factor;
+}
+
 static void judge_path(struct judge *j)
 {
     double *before = make(j->motions + 1, sizeof *before);
-    double factor = 1 + TOLERANCE_ROOM;
+    const double factor = 1 + TOLERANCE_ROOM;
     struct walk w;
 
     for (size_t m = 0; m < j->motions; m++)
         before[m + 1] = before[m] + j->motion[m].time_s;
     j->reach = make(j->pieces, sizeof *j->reach);
     w = walk_along(j, factor, true, before);
-    if (w.arrived) {
+    if (w.tired_row > 0) {
+        printf("unjudged %llu %zu\n", (unsigned long long)j->work, w.tired_row - 1);
+    } else if (w.arrived) {
         printf("order 1\n");
     } else {
-        factor = least_factor(j);
-        printf("order %.6g %zu\n", factor, w.lost_row > 0 ? w.lost_row - 1 : j->rows - 1);
-        judge_tube(j);
-        judge_corners(j);
-        w = walk_along(j, factor, true, before);
+        w = walk_along(j, judge_disorder(j, &w), true, before);
     }
     printf("back %.6g %u\n", w.back_part, w.back_line);
     printf("exact %.6g %u\n", w.off_mm, w.off_line);
@@ -178,11 +198,13 @@ static FILE *open_file(const char *name)
 
 int main(int count, char **word)
 {
-    struct judge j = {0};
+    struct judge j = {.work_most = WORK_MOST};
     FILE *file;
 
-    if (count != 3)
-        fail("usage: hunt_judge CASE TRACE.csv");
+    if (count != 3 && count != 4)
+        fail("usage: hunt_judge CASE TRACE.csv [WORK]");
+    if (count == 4)
+        j.work_most = strtoull(word[3], NULL, 10);
     file = open_file(word[1]);
     read_case(&j, file);
     (void)fclose(file);

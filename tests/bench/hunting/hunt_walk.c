@@ -1,5 +1,6 @@
 #include "hunt_walk.h"
 
+#include <float.h>
 #include <math.h>
 #include <stdlib.h>
 
@@ -48,19 +49,35 @@ static struct span from_on(struct span s, double first)
     return (struct span){fmax(s.first, first), s.last};
 }
 
-/* How far the end of a piece may be from step k (from row k - 1 to row k). */
+/* The longer one of the steps before and after that to row k. */
+static double beside_step(const struct judge *j, size_t k)
+{
+    double before[AXES_MAX], after[AXES_MAX];
+
+    step_of(j, k > 0 ? k - 1 : 0, before);
+    step_of(j, k + 1, after);
+    return fmax(length_of(before, 0, j->axes), length_of(after, 0, j->axes));
+}
+
+/*
+ * How far the end of a piece may be from step k (from row k - 1 to row k). On an exact path it is gone through on the way from
+ * one setpoint to the next: half of that way from the nearer one at most. As long as that are the steps beside it; or there, where
+ * one joint alone is passed, differ so much.
+ */
 static double end_within(const struct judge *j, size_t piece, size_t k, double factor)
 {
     const struct piece *p = &j->piece[piece];
     const struct motion *m = &j->motion[p->motion];
-    double within_mm = p->tolerance_mm;
     const double bend_mm = fmax(j->bend[k > 0 ? k - 1 : 0], j->bend[k]);
+    double within_mm = p->tolerance_mm;
 
     if (p->ends && m->stops)
         return 4 * ROUNDING * factor;
     if (piece + 1 < j->pieces)
         within_mm = fmin(within_mm, j->piece[piece + 1].tolerance_mm);
-    return within_mm * factor + bend_mm / (m->tolerance_mm > 0 ? 8 : 2);
+    if (m->tolerance_mm > 0)
+        return within_mm * factor + bend_mm / 8;
+    return within_mm * factor + fmax(bend_mm, beside_step(j, k)) / 2;
 }
 
 /* Most that the step goes along any of the pieces it may be on. */
@@ -72,6 +89,7 @@ static void go_along(const struct judge *j, struct walk *w, size_t piece, const 
     for (unsigned i = 0; i < j->axes; i++)
         along += step[i] * p->way[i];
     w->along_mm = fmax(w->along_mm, p->length_mm > 0 ? along / p->length_mm : 0);
+    w->tolerance_mm = fmax(w->tolerance_mm, j->motion[p->motion].tolerance_mm);
     w->last = piece;
     if (w->first > piece)
         w->first = piece;
@@ -95,12 +113,14 @@ static bool advance(struct judge *j, struct walk *w, size_t k, double factor, si
     square = pow(length_of(step, 0, j->axes), 2);
     w->first = j->pieces;
     w->along_mm = -(double)INFINITY;
+    w->tolerance_mm = 0;
     for (; n < j->pieces && (n <= *high || is_there(entered)); n++) {
         const struct piece *p = &j->piece[n];
         const struct span old = j->reach[n];
         const bool was = k > 0 && n <= *high && is_there(old);
         struct span now, end;
 
+        j->work++;
         j->reach[n] = nowhere;
         if (!was && !is_there(entered))
             continue;
@@ -199,19 +219,46 @@ static bool has_rounded(const struct judge *j, const struct walk *w)
     return false;
 }
 
-/* Backwards against every piece that it may be on. */
+/* Sum of |t_k - t_k-1|, t the tangents of pieces, from one to another. */
+static double turn_between(const struct judge *j, size_t from, size_t to)
+{
+    double turn = 0;
+
+    for (size_t n = from + 1; n <= to; n++) {
+        const struct piece *a = &j->piece[n - 1], *b = &j->piece[n];
+        double d[AXES_MAX];
+
+        for (unsigned i = 0; i < j->axes; i++)
+            d[i] =
+                b->way[i] / fmax(b->length_mm, DBL_MIN) - a->way[i] / fmax(a->length_mm, DBL_MIN);
+        turn += length_of(d, 0, j->axes);
+    }
+    return turn;
+}
+
+/*
+ * Backwards against every piece that it may be on. A curve in order may do so by 2 P: from P before a place of the path to P
+ * behind it. In all, with setpoints x_k = p_k + e_k, |e_k| <= P, beside places p_k that only go on, and the tangents t_k there,
+ *
+ *     sum (x_k+1 - x_k) t_k >= sum (e_k+1 - e_k) t_k = e_n t_n-1 - e_0 t_0 - sum e_k (t_k - t_k-1) >= -P (2 + sum |t_k - t_k-1|)
+ *
+ * So what a curve may go back by is what the path turns by meanwhile, and 2.
+ */
 static void judge_back(const struct judge *j, struct walk *w, size_t k)
 {
-    const struct motion *m = &j->motion[j->piece[w->first].motion];
     double step[AXES_MAX];
 
     step_of(j, k, step);
+    if (w->back_mm <= 0)
+        w->back_first = w->first;
     if (w->along_mm < 0)
         w->back_mm -= w->along_mm;
     else
         w->back_mm = fmax(0, w->back_mm - length_of(step, 0, j->axes));
-    if (m->tolerance_mm > 0)
-        note(&w->back_part, &w->back_line, w->back_mm / m->tolerance_mm, m->line);
+    if (w->tolerance_mm > 0 && w->back_mm > w->back_part * w->tolerance_mm)
+        note(&w->back_part, &w->back_line,
+             w->back_mm / w->tolerance_mm - turn_between(j, w->back_first, w->last),
+             j->motion[j->piece[w->first].motion].line);
 }
 
 /* Of a piece that is touched, but left, nothing. */
@@ -298,6 +345,10 @@ struct walk walk_along(struct judge *j, double factor, bool closely, const doubl
             w.lost_row = k;
             break;
         }
+        if (j->work > j->work_most) {
+            w.tired_row = k + 1;
+            break;
+        }
         if (!closely)
             continue;
         w.time_s[0][k] = w.time_s[1][k] = (double)NAN;
@@ -312,7 +363,8 @@ struct walk walk_along(struct judge *j, double factor, bool closely, const doubl
         w.arrived = k + 1 == j->rows && high + 1 == j->pieces && j->reach[high].last >= 1;
     }
     if (!closely)
-        w.arrived = w.lost_row == 0 && high + 1 == j->pieces && j->reach[high].last >= 1;
+        w.arrived = w.lost_row == 0 && w.tired_row == 0 && high + 1 == j->pieces &&
+                    j->reach[high].last >= 1;
     free(w.time_s[0]);
     free(w.time_s[1]);
     return w;
@@ -325,10 +377,10 @@ double least_factor(struct judge *j)
     while (!walk_along(j, high, false, NULL).arrived) {
         low = high;
         high *= 1.5;
-        if (high > 1e6)
-            return high;
+        if (high > 1e6 || j->work > j->work_most)
+            return 1.001 * low;
     }
-    while (high > 1.001 * low) {
+    while (high > 1.001 * low && j->work <= j->work_most) {
         const double middle = sqrt(low * high);
 
         if (walk_along(j, middle, false, NULL).arrived)

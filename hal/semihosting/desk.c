@@ -7,10 +7,10 @@
  */
 #include "correction/table_store.h"
 #include "correction/tables.h"
-#include "mps2/semihosting.h"
-#include "port/cortex_m.h"
 #include "port/image.h"
 #include "remote/remote.h"
+#include "semihosting/desk_clock.h"
+#include "semihosting/semihosting.h"
 
 #include <assert.h>
 #include <stdbool.h>
@@ -18,10 +18,6 @@
 
 #define COMMAND_LINE_MAX 256
 #define TOOLS_MAX        1000
-
-/* The SysTick of these boards: 25 MHz. Under -icount shift=0 it counts 40 instructions a tick. */
-#define CLOCK_HZ    25000000U
-#define NS_PER_TICK 40U
 
 /* The frames of a cycle: of those received, what the controller has not had; and room for those it sends. */
 struct bus {
@@ -240,7 +236,7 @@ static void open_controller(struct desk *d)
 static bool begin(struct desk *d, int setup)
 {
     const struct remote_hello hello = {REMOTE_MAGIC, sizeof d->machine, sizeof d->tools[0]};
-    struct remote_ready ready = {.clock_hz = CLOCK_HZ};
+    struct remote_ready ready = {.clock_hz = desk_clock_hz()};
     struct diagnostic damage;
 
     if (!semihosting_write(d->out, &hello, sizeof hello))
@@ -252,11 +248,6 @@ static bool begin(struct desk *d, int setup)
 }
 
 /* -- cycles -- */
-
-static uint32_t ns_since(uint32_t start)
-{
-    return NS_PER_TICK * ((start - CORTEX_SYSTICK_VALUE) & CORTEX_SYSTICK_MAX);
-}
 
 static void set_rise(struct desk *d)
 {
@@ -275,13 +266,13 @@ static void open_bus(struct desk *d)
 
 static void run_cycle(struct desk *d)
 {
-    uint32_t start = CORTEX_SYSTICK_VALUE;
+    uint32_t start = desk_clock_now();
 
     controller_background(&d->controller);
-    d->sent.background_ns = ns_since(start);
-    start = CORTEX_SYSTICK_VALUE;
+    d->sent.background_ns = desk_clock_ns_since(start);
+    start = desk_clock_now();
     controller_cycle(&d->controller, &d->received.inputs);
-    d->sent.cycle_ns = ns_since(start);
+    d->sent.cycle_ns = desk_clock_ns_since(start);
 }
 
 static void fill_outputs(struct desk *d)
@@ -331,9 +322,7 @@ int main(void)
 {
     int setup;
 
-    CORTEX_SYSTICK_RELOAD = CORTEX_SYSTICK_MAX;
-    CORTEX_SYSTICK_VALUE = 0;
-    CORTEX_SYSTICK_CONTROL = CORTEX_SYSTICK_ON | CORTEX_SYSTICK_CORE;
+    desk_clock_start();
     setup = open_files(&desk);
     if (setup < 0)
         semihosting_exit(2);

@@ -1,4 +1,6 @@
-#include "mps2/semihosting.h"
+#include "semihosting/semihosting.h"
+
+#include "semihosting/semihosting_call.h"
 
 #include <string.h>
 
@@ -14,59 +16,55 @@ enum operation {
 
 #define STOPPED_APPLICATION_EXIT 0x20026U
 
-static uint32_t call(enum operation operation, const uint32_t *arguments)
+static uintptr_t call(enum operation operation, const uintptr_t *arguments)
 {
-    register uint32_t number __asm("r0") = (uint32_t)operation;
-    register const uint32_t *block __asm("r1") = arguments;
-
-    __asm volatile("bkpt 0xAB" : "+r"(number) : "r"(block) : "memory");
-    return number;
+    return semihosting_call((uintptr_t)operation, arguments);
 }
 
-static uint32_t address(const void *at)
+static uintptr_t address(const void *at)
 {
-    return (uint32_t)(uintptr_t)at;
+    return (uintptr_t)at;
 }
 
 int semihosting_open(const char *path, enum semihosting_mode mode)
 {
-    const uint32_t block[] = {address(path), (uint32_t)mode, (uint32_t)strlen(path)};
+    const uintptr_t block[] = {address(path), (uintptr_t)mode, strlen(path)};
 
     return (int)call(SYS_OPEN, block);
 }
 
 size_t semihosting_read(int file, void *bytes, size_t size)
 {
-    const uint32_t block[] = {(uint32_t)file, address(bytes), (uint32_t)size};
-    const uint32_t missing = call(SYS_READ, block);
+    const uintptr_t block[] = {(uintptr_t)file, address(bytes), size};
+    const uintptr_t missing = call(SYS_READ, block);
 
     return missing <= size ? size - missing : 0;
 }
 
 bool semihosting_write(int file, const void *bytes, size_t size)
 {
-    const uint32_t block[] = {(uint32_t)file, address(bytes), (uint32_t)size};
+    const uintptr_t block[] = {(uintptr_t)file, address(bytes), size};
 
     return call(SYS_WRITE, block) == 0;
 }
 
 bool semihosting_seek(int file, uint32_t offset)
 {
-    const uint32_t block[] = {(uint32_t)file, offset};
+    const uintptr_t block[] = {(uintptr_t)file, offset};
 
     return call(SYS_SEEK, block) == 0;
 }
 
 bool semihosting_command_line(char *text, size_t size)
 {
-    uint32_t block[] = {address(text), (uint32_t)size};
+    uintptr_t block[] = {address(text), size};
 
     return call(SYS_GET_CMDLINE, block) == 0;
 }
 
 void semihosting_exit(uint32_t status)
 {
-    const uint32_t block[] = {STOPPED_APPLICATION_EXIT, status};
+    const uintptr_t block[] = {STOPPED_APPLICATION_EXIT, status};
 
     (void)call(SYS_EXIT_EXTENDED, block);
     for (;;) {

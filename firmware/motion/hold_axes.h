@@ -1,0 +1,38 @@
+/*
+ * What the axes allow of a change of the rate of a hold (hold.c): on a part of the way, and where it is.
+ */
+#ifndef TAKT_MOTION_HOLD_AXES_H
+#define TAKT_MOTION_HOLD_AXES_H
+
+#include "motion/hold.h"
+
+#include <stdbool.h>
+
+struct range {
+    float low;
+    float high;
+};
+
+/*
+ * A state that is tried, in single precision: what rounding does to it is less than the bounds leave. What is gone along is
+ * in double precision.
+ */
+struct hold_trial {
+    float at;
+    float rate;
+    float change;
+};
+
+static inline const struct hold_piece *hold_piece_at(const struct hold *h, uint32_t block)
+{
+    return &h->piece[block % HOLD_PIECES_MAX];
+}
+
+/* Can it go from one state to another by w, on pieces that are known, and not back? In one direction of the change. */
+bool hold_can_go(const struct hold *h, const struct hold_trial *a, const struct hold_trial *b,
+                 float w);
+
+/* w between which every axis keeps A and J where it is; limited where none moves. */
+struct range hold_steps(const struct hold *h);
+
+#endif
