@@ -30,7 +30,9 @@ static inline bool characters_are_blank(const char *text)
 
 static inline char characters_upper(char c)
 {
-    return c >= 'a' && c <= 'z' ? (char)(c - 'a' + 'A') : c;
+    if (c >= 'a' && c <= 'z')
+        c = (char)(c - 'a' + 'A');
+    return c;
 }
 
 #endif

@@ -5,8 +5,6 @@
 #include "console/characters.h"
 #include "console/console_private.h"
 
-#include <string.h>
-
 /* Upper and lower case are one; what stands behind the first word is the command's. */
 static bool is_command(const char *text, const char *name)
 {
@@ -139,13 +137,19 @@ static enum console_result password(struct console *c, const char *digits)
     return answer(c, refusal == PANEL_REFUSAL_NONE ? CONSOLE_OK : CONSOLE_LOCKED);
 }
 
+static char *write_text(char *to, const char *text)
+{
+    for (; *text != '\0'; text++)
+        *to++ = *text;
+    return to;
+}
+
 /* Offsets of G54 to G59 and of G92 to 0, as lines of a program. */
 static void write_zeros(const struct machine *machine, char *text)
 {
-    for (char system = '1'; system <= '6'; system++) {
-        memcpy(text, "G10L2P", 6);
-        text += 6;
-        *text++ = system;
+    for (unsigned system = 1; system <= 6; system++) {
+        text = write_text(text, "G10L2P");
+        *text++ = "0123456"[system];
         for (unsigned i = 0; i < AXIS_COUNT; i++) {
             if (machine->axis[i].present) {
                 *text++ = AXIS_LETTERS[i];
@@ -154,7 +158,7 @@ static void write_zeros(const struct machine *machine, char *text)
         }
         *text++ = '\n';
     }
-    memcpy(text, "G92.1", sizeof "G92.1");
+    *write_text(text, "G92.1") = '\0';
 }
 
 static enum console_result restore(struct console *c, const struct panel_snapshot *now)

@@ -8,24 +8,24 @@
 
 /* Between threads, or a background and what interrupts it: what was written before is there when the new value is seen. */
 
-static uint32_t get_place(const uint32_t *place)
+static uint32_t get_place(const struct lines_place *place)
 {
-    return __atomic_load_n(place, __ATOMIC_ACQUIRE);
+    return __atomic_load_n(&place->value, __ATOMIC_ACQUIRE);
 }
 
-static void set_place(uint32_t *place, uint32_t value)
+static void set_place(struct lines_place *place, uint32_t value)
 {
-    __atomic_store_n(place, value, __ATOMIC_RELEASE);
+    __atomic_store_n(&place->value, value, __ATOMIC_RELEASE);
 }
 
-static bool get_flag(const bool *flag)
+static bool get_flag(const struct lines_flag *flag)
 {
-    return __atomic_load_n(flag, __ATOMIC_ACQUIRE);
+    return __atomic_load_n(&flag->value, __ATOMIC_ACQUIRE);
 }
 
-static void set_flag(bool *flag, bool value)
+static void set_flag(struct lines_flag *flag, bool value)
 {
-    __atomic_store_n(flag, value, __ATOMIC_RELEASE);
+    __atomic_store_n(&flag->value, value, __ATOMIC_RELEASE);
 }
 
 void lines_init(struct lines *l, uint8_t *byte, uint32_t size)

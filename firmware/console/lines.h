@@ -31,6 +31,15 @@ enum lines_mark {
     LINES_MARKS = 0xf0 /* marks are above, errors below */
 };
 
+/* Read and written as a whole by two threads. */
+struct lines_place {
+    uint32_t value;
+};
+
+struct lines_flag {
+    bool value;
+};
+
 struct lines {
     uint8_t *byte; /* the caller's, size of them: a power of two */
     uint32_t size;
@@ -41,18 +50,18 @@ struct lines {
     uint32_t last; /* the line collected last */
     bool is_long;  /* the line that comes */
     /* Between the two: read and written as a whole, in order. */
-    uint32_t released; /* the program may read as far as this */
-    uint32_t read;     /* it has done with all before this */
-    bool active;       /* a program reads */
-    bool ends;         /* what is released is all there is */
-    bool has_why;      /* why has been filled, and not been taken */
-    uint32_t why_at;   /* the line that it is of */
+    struct lines_place released; /* the program may read as far as this */
+    struct lines_place read;     /* it has done with all before this */
+    struct lines_flag active;    /* a program reads */
+    struct lines_flag ends;      /* what is released is all there is */
+    struct lines_flag has_why;   /* why has been filled, and not been taken */
+    uint32_t why_at;             /* the line that it is of */
     struct diagnostic why;
     /* The program's. */
-    bool is_handed;    /* the line at read has been handed out, up to out */
-    uint32_t out, end; /* and ends here */
-    uint8_t answer;    /* of it */
-    uint32_t cause;    /* enum takt_error: why the program failed; TAKT_OK: it did not */
+    bool is_handed;           /* the line at read has been handed out, up to out */
+    uint32_t out, end;        /* and ends here */
+    uint8_t answer;           /* of it */
+    struct lines_place cause; /* enum takt_error: why the program failed; TAKT_OK: it did not */
 };
 
 void lines_init(struct lines *l, uint8_t *byte, uint32_t size);

@@ -73,12 +73,12 @@ static bool ask(struct serving *s, void (*task)(void *context), void *context)
 struct question {
     const struct service *service;
     enum console_fact fact;
-    double *value;
+    double value[AXIS_COUNT];
 };
 
 static void answer(void *context)
 {
-    const struct question *q = context;
+    struct question *q = context;
 
     service_tell(q->service, q->fact, q->value);
 }
@@ -86,9 +86,11 @@ static void answer(void *context)
 static bool tell(void *context, enum console_fact fact, double value[AXIS_COUNT])
 {
     struct serving *s = context;
-    struct question question = {&s->service, fact, value};
+    struct question question = {.service = &s->service, .fact = fact};
+    const bool is_told = ask(s, answer, &question);
 
-    return ask(s, answer, &question);
+    memcpy(value, question.value, sizeof question.value);
+    return is_told;
 }
 
 /* ---- $C ---- */
@@ -154,15 +156,13 @@ static enum takt_error check(void *context, const char *line, bool begins)
     struct serving *s = context;
     struct serving_check *c = &s->console.check;
     char text[LINES_LENGTH_MAX + 2];
-    const size_t length = strlen(line);
+    const int length = snprintf(text, sizeof text, "%s\n", line);
 
     if (begins) {
         (void)ask(s, copy_parameters, s);
         begin_check(s);
     }
-    memcpy(text, line, length);
-    text[length] = '\n';
-    c->text = (struct source_text){text, length + 1, 0};
+    c->text = (struct source_text){text, (size_t)length, 0};
     return read_moves(s);
 }
 
