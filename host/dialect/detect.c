@@ -242,7 +242,10 @@ static bool is_declared(const struct line_word *w, const struct dialect_codes *c
     return false;
 }
 
-/* Axis words before the first motion: Grbl begins in G0. Without any motion behind it is a mistake. */
+/*
+ * Axis words before the first motion: Grbl begins in G0. Without any motion behind it is a mistake. Axis words behind the
+ * end of a cycle: industry goes on with what was before it.
+ */
 static void look_at_motion(struct look *k)
 {
     struct dialect_detector *d = k->d;
@@ -251,6 +254,9 @@ static void look_at_motion(struct look *k)
     bool other;
 
     line_look_for_motion(l, &motion, &other);
+    if (!motion && !other && d->ended_cycle && line_has_axis(l) && line_is_plain(l))
+        note(k, INDUSTRY, NULL);
+    d->ended_cycle = line_ends_cycle(l) || (d->ended_cycle && !motion);
     if (!motion && !other && !d->moves && d->bare_line == 0 && line_has_axis(l) &&
         line_is_plain(l)) {
         d->bare_line = d->line;

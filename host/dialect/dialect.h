@@ -99,6 +99,7 @@ struct dialect_detector {
     uint32_t line;
     bool calls;         /* it has a call, O... call or M98: perhaps of another file */
     bool moves;         /* it has a motion code */
+    bool ended_cycle;   /* and the last one was G80 */
     uint32_t bare_line; /* axis words before that; 0: none */
     char bare[32];
     bool linuxcnc;  /* it has what only LinuxCNC knows */

@@ -17,6 +17,8 @@
 
 #define LOOP_LABEL 91000000U
 #define IF_LABEL   92000000U
+/* Programs that begin at lines. */
+#define LOCAL_FIRST 97000000U
 /* Arguments of G65: A to Z are #1 to #26, in Fanuc's order. */
 #define ARGUMENTS 26
 #define TEXT_MAX  1024
@@ -36,6 +38,21 @@ static void remember(uint32_t *numbers, unsigned *count, double number)
         numbers[(*count)++] = line_whole(number);
 }
 
+/* M97 calls a line; one behind the end of the program can be a program of its own. */
+static void survey_locals(struct survey *s, struct line *l)
+{
+    const struct line_word *first = l->words > 0 ? &l->word[0] : NULL;
+    const struct line_word *p = line_find(l, 'p', 0);
+
+    if (p != NULL && p->is_number && line_find_code(l, 'm', 970) != NULL)
+        remember(s->call, &s->calls, p->value);
+    if (first != NULL && first->letter == 'n' && first->is_number && s->ended &&
+        has(s->call, s->calls, line_whole(first->value)))
+        remember(s->local, &s->locals, first->value);
+    s->ended = s->ended || line_find_code(l, 'm', 20) != NULL ||
+               line_find_code(l, 'm', 300) != NULL || line_find_code(l, 'm', 990) != NULL;
+}
+
 void flow_survey(struct survey *s, struct line *l)
 {
     const struct line_word *first = l->words > 0 ? &l->word[0] : NULL;
@@ -46,6 +63,7 @@ void flow_survey(struct survey *s, struct line *l)
     if (p != NULL && p->is_number &&
         (line_find_code(l, 'g', 650) != NULL || line_find_code(l, 'g', 660) != NULL))
         remember(s->macro, &s->macros, p->value);
+    survey_locals(s, l);
     for (unsigned i = 0; i < l->words; i++)
         s->jumps = s->jumps || line_is_keyword(l, &l->word[i], "goto");
 }
@@ -323,6 +341,33 @@ static void end_macro(struct translator *t)
     t->macro = 0;
 }
 
+/* M97 P300 is M98 of a program that begins at N300. */
+static void take_local(struct translator *t)
+{
+    struct line *l = &t->line;
+    const struct survey *s = &t->survey;
+    const struct line_word *first = l->words > 0 ? &l->word[0] : NULL;
+    struct line_word *call = line_find_code(l, 'm', 970);
+    struct line_word *p = line_find(l, 'p', 0);
+    char text[32];
+
+    if (s->programs > 1)
+        return;
+    if (first != NULL && first->letter == 'n' && first->is_number &&
+        has(s->local, s->locals, line_whole(first->value))) {
+        t->program++;
+        translate_add(&t->before, "O%u", (unsigned)(LOCAL_FIRST + line_whole(first->value)));
+    }
+    if (call == NULL || p == NULL || !p->is_number ||
+        !has(s->local, s->locals, line_whole(p->value)))
+        return;
+    (void)snprintf(text, sizeof text, "P%u", (unsigned)(LOCAL_FIRST + line_whole(p->value)));
+    (void)line_replace(l, call, "M98");
+    p = line_find(l, 'p', 0);
+    if (p != NULL)
+        (void)line_replace(l, p, text);
+}
+
 /* O1000, M99 and the second % */
 static void take_program(struct translator *t)
 {
@@ -363,6 +408,7 @@ void flow_translate(struct translator *t)
     unsigned at;
 
     take_program(t);
+    take_local(t);
     take_modal_call(t);
     take_macro_call(t);
     take_sub_call(t);

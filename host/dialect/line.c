@@ -333,6 +333,15 @@ void line_look_for_motion(struct line *l, bool *motion, bool *other)
     }
 }
 
+bool line_ends_cycle(struct line *l)
+{
+    for (unsigned number = 0; number < 40; number += 10) {
+        if (line_find_code(l, 'g', number) != NULL)
+            return false;
+    }
+    return line_find_code(l, 'g', 800) != NULL;
+}
+
 /* Planes, units, compensation off, length off, systems, path, distances, feed modes. */
 static bool is_mode(int number)
 {

@@ -74,6 +74,9 @@ bool line_has_axis(struct line *l);
 /* Motions and cycles; and what uses axis words beside them. */
 void line_look_for_motion(struct line *l, bool *motion, bool *other);
 
+/* G80 ends a cycle, and no other motion begins on the line. */
+bool line_ends_cycle(struct line *l);
+
 /* No G codes but modes: what its axis words are for is clear. */
 bool line_is_plain(const struct line *l);
 

@@ -1,5 +1,5 @@
 /*
- * The language of Siemens' controllers, before the table of differences, its values and words; flow and orders are in siemens_flow.c: what it says in words and brackets.
+ * The language of Siemens' controllers, before the table of differences, its values and words; flow and orders are in siemens_flow.c, cycles in siemens_cycles.c: what it says in words and brackets.
  *
  *     X=R1+2*(R2-1) CR=5 TURN=2       X[#101+2*[#102-1]] R5 P3
  *     R1=5 R2=R1*2                    #101=5, #102=[#101*2]
@@ -210,6 +210,25 @@ void scan_brackets(struct scan *s)
     scan_put(s, "]");
 }
 
+unsigned scan_arguments(struct scan *s, char argument[SCAN_ARGUMENTS][48])
+{
+    unsigned count = 0;
+
+    s->failed = s->failed || !scan_take(s, "(");
+    while (!s->failed && count < SCAN_ARGUMENTS && !scan_take(s, ")")) {
+        s->length = 0;
+        scan_skip(s);
+        scan_put(s, "%s", "");
+        if (*s->at != ',' && *s->at != ')')
+            scan_brackets(s);
+        s->out[s->length] = '\0';
+        (void)snprintf(argument[count++], 48, "%.47s", s->out);
+        (void)scan_take(s, ",");
+    }
+    s->length = 0;
+    return count;
+}
+
 /* ---- words ---- */
 
 /* X=IC(5) is 5 further, X=AC(5) at 5, in any mode; centres with AC are no distances. */
@@ -375,7 +394,8 @@ bool scan_keyword(struct scan *s, const char *name)
             return true;
         }
     }
-    if (!is_quiet(name))
+    /* without arguments it lays a tilted plane flat */
+    if (!is_quiet(name) && !(strcmp(name, "CYCLE800") == 0 && scan_take(s, "()")))
         return false;
     skip_arguments(s);
     return true;

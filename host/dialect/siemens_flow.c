@@ -13,8 +13,6 @@
 #define REPEAT_LABEL 99000000U
 /* Jumps go to names: their numbers begin behind those of blocks. */
 #define NAME_NUMBER 100000000U
-/* Of a cycle or a subprogram. */
-#define ARGUMENTS 20
 
 /* ---- flow ---- */
 
@@ -33,11 +31,6 @@ static uint32_t number_of(struct translator *t, const char *name)
 static void clear(struct translator *t)
 {
     (void)line_read(&t->line, "", 0);
-}
-
-static bool is_end(const struct scan *s)
-{
-    return *s->at == '\0' || *s->at == ';';
 }
 
 static bool take_jump(struct scan *s, const char *name)
@@ -159,7 +152,7 @@ static void take_case(struct scan *s)
     scan_brackets(s);
     (void)snprintf(asked, sizeof asked, "%s", s->out);
     s->failed = s->failed || !scan_name(s, name) || strcmp(name, "OF") != 0;
-    for (scan_skip(s); !s->failed && !is_end(s); scan_skip(s)) {
+    for (scan_skip(s); !s->failed && !scan_is_end(s); scan_skip(s)) {
         const char *before = s->at;
         const bool rest = scan_name(s, name) && strcmp(name, "DEFAULT") == 0;
 
@@ -197,7 +190,7 @@ static bool take_flow(struct scan *s, const char *name)
     } else if (strcmp(name, "ENDFOR") == 0 || strcmp(name, "ENDWHILE") == 0 ||
                strcmp(name, "ENDLOOP") == 0) {
         end_loop(s);
-    } else if (strcmp(name, "REPEAT") == 0 && is_end(s)) {
+    } else if (strcmp(name, "REPEAT") == 0 && scan_is_end(s)) {
         t->depth++;
         translate_add(&t->before, "o%u do", (unsigned)open_block(t, REPEAT_LABEL));
         clear(t);
@@ -213,28 +206,6 @@ static bool take_flow(struct scan *s, const char *name)
         return false;
     }
     return true;
-}
-
-/* ---- arguments ---- */
-
-/* ( 1, , R2+3 ) as expressions, those that are left out empty; how many. */
-static unsigned take_arguments(struct scan *s, char argument[ARGUMENTS][48])
-{
-    unsigned count = 0;
-
-    s->failed = s->failed || !scan_take(s, "(");
-    while (!s->failed && count < ARGUMENTS && !scan_take(s, ")")) {
-        s->length = 0;
-        scan_skip(s);
-        scan_put(s, "%s", "");
-        if (*s->at != ',' && *s->at != ')')
-            scan_brackets(s);
-        s->out[s->length] = '\0';
-        (void)snprintf(argument[count++], 48, "%.47s", s->out);
-        (void)scan_take(s, ",");
-    }
-    s->length = 0;
-    return count;
 }
 
 /* ---- subprograms ---- */
@@ -280,7 +251,8 @@ static bool take_section(struct translator *t, const char *text)
 }
 
 /* L100 P2; arguments that are left out are 0. */
-static void put_calls(struct scan *s, char *name, char argument[ARGUMENTS][48], unsigned arguments)
+static void put_calls(struct scan *s, char *name, char argument[SCAN_ARGUMENTS][48],
+                      unsigned arguments)
 {
     unsigned times = 1;
     char text[FLOW_CALL_MAX];
@@ -315,7 +287,7 @@ bool siemens_call(struct scan *s, char *name)
 static bool take_call(struct scan *s, char *name)
 {
     struct translator *t = s->t;
-    char argument[ARGUMENTS][48] = {{0}};
+    char argument[SCAN_ARGUMENTS][48] = {{0}};
     unsigned arguments = 0;
 
     if (scan_keyword(s, name) || (scan_is_digit(name[1]) && name[0] != 'L')) {
@@ -324,12 +296,12 @@ static bool take_call(struct scan *s, char *name)
     }
     scan_skip(s);
     if (*s->at == '(')
-        arguments = take_arguments(s, argument);
+        arguments = scan_arguments(s, argument);
     if (s->failed || name[1] == '\0')
         return false;
     put_calls(s, name, argument, arguments);
     scan_skip(s);
-    if (!is_end(s) || s->failed) {
+    if (!scan_is_end(s) || s->failed) {
         t->behind.length = 0;
         return false;
     }
@@ -370,102 +342,9 @@ static void take_shift(struct scan *s)
 {
     scan_put(s, "G52 ");
     scan_skip(s);
-    if (is_end(s))
+    if (scan_is_end(s))
         scan_put(s, "X0 Y0 Z0");
     scan_words(s);
-}
-
-/* Return height, reference, safety above it, depth, depth below the reference; then a dwell, or the first peck and the rest. */
-static void drill(struct scan *s, const char *name, char text[FLOW_CALL_MAX])
-{
-    char a[ARGUMENTS][48] = {{0}};
-    const unsigned count = take_arguments(s, a);
-    const bool relative = a[3][0] == '\0';
-    const char *dwell = count > 5 && a[5][0] != '\0' ? a[5] : "0";
-
-    s->failed = s->failed || count < 4 || a[0][0] == '\0' || a[1][0] == '\0' ||
-                (relative && a[4][0] == '\0');
-    if (s->failed)
-        return;
-    if (a[2][0] == '\0')
-        (void)snprintf(a[2], sizeof a[2], "0");
-    const int at =
-        snprintf(text, FLOW_CALL_MAX, "G98 G%s R[%s+%s] Z[%s%s%s]",
-                 strcmp(name, "CYCLE83") == 0   ? "83"
-                 : strcmp(name, "CYCLE82") == 0 ? "82"
-                                                : "81",
-                 a[1], a[2], relative ? a[1] : "", relative ? "-" : "", relative ? a[4] : a[3]);
-
-    if (strcmp(name, "CYCLE82") == 0)
-        (void)snprintf(text + at, FLOW_CALL_MAX - (size_t)at, " P[%s]", dwell);
-    /* pecks are as deep as the first one: an absolute depth, or one below the reference */
-    if (strcmp(name, "CYCLE83") == 0 && a[5][0] != '\0')
-        (void)snprintf(text + at, FLOW_CALL_MAX - (size_t)at, " Q[ABS[%s-%s]]", a[1], a[5]);
-    else if (strcmp(name, "CYCLE83") == 0)
-        (void)snprintf(text + at, FLOW_CALL_MAX - (size_t)at, " Q[ABS[%s]]", a[6]);
-    translate_add(&s->t->behind, "G0 Z%s", a[0]);
-}
-
-static bool is_drilling(const char *name)
-{
-    return strcmp(name, "CYCLE81") == 0 || strcmp(name, "CYCLE82") == 0 ||
-           strcmp(name, "CYCLE83") == 0;
-}
-
-/* Here and now, at X and Y where the tool is; or at every place from the next line on (MCALL). */
-static bool take_cycle(struct scan *s, const char *name)
-{
-    struct translator *t = s->t;
-    char cycle[NAME_MAX_];
-    char text[FLOW_CALL_MAX];
-    const bool modal = strcmp(name, "MCALL") == 0;
-
-    if (modal && is_end(s)) {
-        clear(t);
-        if (t->modal_call[0] != '\0')
-            translate_add(&t->behind, "G80 G0");
-        t->modal_call[0] = '\0';
-        return true;
-    }
-    (void)snprintf(cycle, sizeof cycle, "%s", name);
-    if (modal && !scan_name(s, cycle))
-        return false;
-    if (!is_drilling(cycle))
-        return false;
-    drill(s, cycle, text);
-    if (s->failed)
-        return true;
-    clear(t);
-    if (modal)
-        memcpy(t->modal_call, text, sizeof text);
-    else
-        translate_add(&t->behind, "%s X#<_x> Y#<_y>", text);
-    if (!modal)
-        translate_add(&t->behind, "G80 G0");
-    return true;
-}
-
-/* With MCALL a place is a hole, also one that a rotary axis leads to: the cycle itself has no words for it. */
-static void drill_there(struct scan *s)
-{
-    struct translator *t = s->t;
-    struct line l;
-    bool turns = false;
-
-    if (t->modal_call[0] == '\0' || !line_read(&l, s->out, s->length) || !line_has_axis(&l))
-        return;
-    for (unsigned i = 0; i < l.words; i++) {
-        turns = turns || strchr("abc", l.word[i].letter) != NULL;
-        if (line_code(&l.word[i]) == 0 || line_code(&l.word[i]) == 10)
-            line_blank(&l, &l.word[i]);
-    }
-    s->length = 0;
-    if (turns) {
-        scan_put(s, "G0 %s", l.text);
-        translate_add(&t->behind, "%s X#<_x> Y#<_y>", t->modal_call);
-    } else {
-        scan_put(s, "%s %s", l.text, t->modal_call);
-    }
 }
 
 /* DEF REAL A=1, B */
@@ -537,7 +416,7 @@ static bool take_label(struct scan *s)
 
 static bool take_order(struct scan *s, char *name)
 {
-    if (take_flow(s, name) || take_return(s, name) || take_cycle(s, name))
+    if (take_flow(s, name) || take_return(s, name) || siemens_cycle(s, name))
         return true;
     if (strcmp(name, "MSG") == 0) {
         take_text(s);
@@ -584,7 +463,7 @@ void siemens_translate(struct translator *t)
     }
     scan_words(&s);
     if (!s.failed)
-        drill_there(&s);
+        siemens_drill(&s);
     if (!s.failed)
         (void)line_read(&t->line, s.out, s.length);
 }

@@ -51,6 +51,7 @@ static bool is(const struct translator *t, unsigned dialects)
 #define MARLIN      (1U << DIALECT_MARLIN)
 #define MACROS      (1U << DIALECT_FANUC | 1U << DIALECT_HAAS)
 #define SIEMENS     (1U << DIALECT_SIEMENS)
+#define INDUSTRY    (MACROS | 1U << DIALECT_MACH3)
 #define NOT_FOREIGN (1U << DIALECT_LINUXCNC)
 
 /* ---- whole lines ---- */
@@ -185,6 +186,27 @@ static void follow_modes(struct translator *t)
         t->incremental = true;
 }
 
+/*
+ * Behind a cycle G0 or G1 is in effect again, as it was before it. What is executed before is the text before, as long as
+ * there are no jumps and calls.
+ */
+static void go_on_behind_cycle(struct translator *t, bool moves)
+{
+    struct line *l = &t->line;
+    const bool elsewhere = t->survey.jumps || (l->words > 0 && l->word[0].letter == 'o') ||
+                           line_find_code(l, 'm', 980) != NULL;
+
+    if (!moves && t->ended_cycle && t->straight != NULL && line_has_axis(l) && is(t, INDUSTRY)) {
+        (void)line_append(l, t->straight);
+        t->ended_cycle = false;
+    }
+    if (elsewhere || line_find_code(l, 'g', 20) != NULL || line_find_code(l, 'g', 30) != NULL)
+        t->straight = NULL;
+    else if (line_find_code(l, 'g', 0) != NULL || line_find_code(l, 'g', 10) != NULL)
+        t->straight = line_find_code(l, 'g', 0) != NULL ? "G0" : "G1";
+    t->ended_cycle = line_ends_cycle(l) || (t->ended_cycle && !moves);
+}
+
 /* G0 that is in effect at the start, or was given beside G28, which has the axis words of that line. */
 static void translate_motion(struct translator *t)
 {
@@ -192,6 +214,7 @@ static void translate_motion(struct translator *t)
     bool other;
 
     line_look_for_motion(&t->line, &motion, &other);
+    go_on_behind_cycle(t, motion || other);
     if (line_has_axis(&t->line) && !motion && !other &&
         (t->motion_is_owed || (is(t, GRBL) && !t->has_motion && line_is_plain(&t->line)))) {
         (void)line_append(&t->line, "G0");
@@ -433,6 +456,7 @@ static void translate_foreign(struct translator *t)
         siemens_translate(t);
     translate_start(t);
     translate_numbers(t);
+    names_begin(t);
     names_translate(t);
     if (is(t, MACROS)) {
         bracket_assignment(&t->line);
@@ -529,6 +553,7 @@ static void survey_line(struct translator *t, const char *bytes, size_t length)
     if (!line_read(l, bytes, length))
         return;
     flow_survey(&t->survey, l);
+    names_survey(&t->survey, l);
     t->survey.rotary = t->survey.rotary || upright_turns(l);
     t->survey.lathe = t->survey.lathe || turning_tells(l) ||
                       (line_find_code(l, 'g', 500) != NULL && line_find(l, 's', 0) != NULL) ||

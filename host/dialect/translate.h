@@ -10,6 +10,7 @@
 #define TRANSLATE_PROGRAMS_MAX 128
 #define TRANSLATE_JUMPS_MAX    1024
 #define TRANSLATE_LINES_MAX    16
+#define TRANSLATE_NUMBERS_MAX  64
 /* A call with all of its arguments. */
 #define FLOW_CALL_MAX 1408
 
@@ -41,6 +42,12 @@ struct survey {
     uint32_t program[TRANSLATE_PROGRAMS_MAX]; /* O1000 */
     uint32_t macro[TRANSLATE_PROGRAMS_MAX];   /* called by G65 */
     bool jumps;
+    bool ended; /* M30, M2 or M99 has passed */
+    unsigned calls, locals;
+    uint32_t call[TRANSLATE_PROGRAMS_MAX];  /* N that M97 calls */
+    uint32_t local[TRANSLATE_PROGRAMS_MAX]; /* those of them that begin behind an end */
+    unsigned numbers;
+    uint32_t number[TRANSLATE_NUMBERS_MAX]; /* parameters beyond those of LinuxCNC */
 };
 
 struct translator {
@@ -54,12 +61,14 @@ struct translator {
     uint32_t number;                    /* of it */
     struct dialect_text before, behind; /* lines of their own, each with its end */
     /* what the words so far leave for the next */
-    char across;         /* centre word that arcs of the plane do not have: 'k' in G17 */
-    bool incremental;    /* G91 */
-    bool has_motion;     /* there has been a motion code */
-    bool motion_is_owed; /* G0 stood beside G28: it holds from the next line on */
-    bool has_tool;       /* there has been a T */
-    bool begun;          /* a line with words has passed */
+    char across;          /* centre word that arcs of the plane do not have: 'k' in G17 */
+    bool incremental;     /* G91 */
+    bool has_motion;      /* there has been a motion code */
+    bool ended_cycle;     /* the last one was G80 */
+    const char *straight; /* G0 or G1 before cycles; NULL: neither, or not known */
+    bool motion_is_owed;  /* G0 stood beside G28: it holds from the next line on */
+    bool has_tool;        /* there has been a T */
+    bool begun;           /* a line with words has passed */
     struct dialect_detector detector;
     bool absolute;                  /* centres of arcs are, and G90.1 has to say so */
     bool feed_given;                /* the F that the machine file declares has been put in */
@@ -96,8 +105,11 @@ __attribute__((format(printf, 2, 3))) void translate_add(struct dialect_text *t,
 /* #<_ini[...]> and #<_hal[...]> as numbers. */
 void values_translate(struct translator *t);
 
-/* #name, which LinuxCNC does not know. */
+/* #name and #900000, which LinuxCNC does not know. */
 void names_translate(struct translator *t);
+/* Which parameters there are of those numbers: all are 0 in the beginning. */
+void names_survey(struct survey *s, const struct line *l);
+void names_begin(struct translator *t);
 
 /* @ and ^ as X and Y. */
 void polar_translate(struct translator *t);

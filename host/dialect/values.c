@@ -5,6 +5,7 @@
 #include "dialect/translate.h"
 
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 /* Spaces and case do not count in names. The length of what has been passed; 0: it is another name. */
@@ -71,9 +72,75 @@ static void nothing_translate(struct translator *t, size_t at)
         (void)line_replace(&t->line, &whole, "[0]");
 }
 
+/* The last parameter of LinuxCNC; those of 10100 and on are 100 and on by another name (Haas). */
+#define NUMBER_LAST  5601U
+#define AGAIN_FIRST  10100U
+#define AGAIN_LAST   10999U
+#define AGAIN_OFFSET 10000U
+
+/* The number of a parameter that LinuxCNC does not have; 0: it has it, or there is none. */
+static uint32_t number_at(const struct line *l, size_t at, size_t *length)
+{
+    char *end;
+    const unsigned long number = strtoul(&l->text[at + 1], &end, 10);
+
+    *length = (size_t)(end - &l->text[at]);
+    if (l->text[at] != '#' || l->text[at + 1] < '0' || l->text[at + 1] > '9' || *length > 8)
+        return 0;
+    return number > NUMBER_LAST ? (uint32_t)number : 0;
+}
+
+static bool is_again(uint32_t number)
+{
+    return number >= AGAIN_FIRST && number <= AGAIN_LAST;
+}
+
+void names_survey(struct survey *s, const struct line *l)
+{
+    size_t length;
+
+    for (size_t at = 0; at < l->length && strchr("(;", l->text[at]) == NULL; at++) {
+        const uint32_t number = number_at(l, at, &length);
+        unsigned i = 0;
+
+        while (i < s->numbers && s->number[i] != number)
+            i++;
+        if (number != 0 && !is_again(number) && i == s->numbers && i < TRANSLATE_NUMBERS_MAX)
+            s->number[s->numbers++] = number;
+    }
+}
+
+void names_begin(struct translator *t)
+{
+    if (t->line.words == 0 || t->line.text[0] == '%')
+        return;
+    for (unsigned i = 0; i < t->survey.numbers; i++)
+        translate_add(&t->before, "#<_n%u>=0", (unsigned)t->survey.number[i]);
+    t->survey.numbers = 0;
+}
+
+static void number_translate(struct translator *t, size_t at)
+{
+    size_t length;
+    const uint32_t number = number_at(&t->line, at, &length);
+    struct line_word whole = {.begin = (uint16_t)at, .end = (uint16_t)(at + length)};
+    char text[32];
+
+    if (is_again(number))
+        (void)snprintf(text, sizeof text, "#%u", (unsigned)(number - AGAIN_OFFSET));
+    else
+        (void)snprintf(text, sizeof text, "#<_n%u>", (unsigned)number);
+    if (number != 0)
+        (void)line_replace(&t->line, &whole, text);
+}
+
 void names_translate(struct translator *t)
 {
+    const bool macros = t->dialect == DIALECT_FANUC || t->dialect == DIALECT_HAAS;
+
     for (size_t at = 0; at < t->line.length && strchr("(;", t->line.text[at]) == NULL; at++) {
+        if (macros && t->line.text[at] == '#')
+            number_translate(t, at);
         if (t->line.text[at] == '#' && t->line.text[at + 1] == '0')
             nothing_translate(t, at);
         if (t->line.text[at] == '#' && line_name_length(&t->line, at + 1) > 0)

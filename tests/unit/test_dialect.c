@@ -368,6 +368,33 @@ static void test_round_pockets_become_arcs(void)
            "|G1 G91\n");
 }
 
+static void test_behind_a_cycle_goes_on_what_was_before_it(void)
+{
+    TEST_ASSERT_EQUAL_INT(DIALECT_FANUC, guess("G0 X1\nG81 R1 Z-1\nG80\nZ9").dialect);
+    TEST_ASSERT_EQUAL_INT(DIALECT_LINUXCNC, guess("G0 X1\nG81 R1 Z-1\nG80\nG0 Z9\nX1").dialect);
+    TEST_ASSERT_EQUAL_INT(DIALECT_LINUXCNC, guess("G80 X1\nG80\nG28 Z9").dialect);
+    expect(DIALECT_FANUC, "G0 X1\nG81 R1 Z-1\nG80\nZ9\nX1\n",
+           "G0 X1\nG81 R1 Z-1\nG80\nZ9 G0\nX1\n");
+    expect(DIALECT_FANUC, "G1 X1\nG81 R1 Z-1\nG80\nX9\n", "G1 X1\nG81 R1 Z-1\nG80\nX9 G1\n");
+    expect(DIALECT_FANUC, "G2 X1 R1\nG81 R1 Z-1\nG80\nX9\n", "G2 X1 R1\nG81 R1 Z-1\nG80\nX9\n");
+    expect(DIALECT_FANUC, "G1 X1\nG81 R1 Z-1\nM98 P2\nG80\nX9\n",
+           "G1 X1\nG81 R1 Z-1\nM98 P2\nG80\nX9\n");
+}
+
+static void test_parameters_beyond_those_of_linuxcnc_have_names_and_begin_as_0(void)
+{
+    expect(DIALECT_FANUC, "%\nO1\n#901200=#5601\nX#900001 Y#10101 (#900009)\n",
+           "%\n#<_n901200>=0\n|#<_n900001>=0\n|O1\n#<_n901200>=#5601\n"
+           "X#<_n900001> Y#101   (#900009)\n");
+}
+
+static void test_lines_called_by_m97_are_programs_when_they_stand_behind_the_end(void)
+{
+    expect(DIALECT_HAAS, "O1\nG0 X1\nM97 P30 L2\nM30\nN30 X2\nM99\n",
+           "O1\nG0 X1\nM98 P97000030 L2\nM30\nO97000030\n|N30 X2\nM99\n");
+    expect(DIALECT_HAAS, "O1\nN30 G0 X1\nM97 P30\nM30\n", "O1\nN30 G0 X1\nM97 P30\nM30\n");
+}
+
 static void test_words_and_values_of_siemens(void)
 {
     expect(DIALECT_SIEMENS, "N10 G1 X=R1+2*(R2-1) Y-2 CR=5 TURN=2 F=R3 ;x=1\n",
@@ -473,6 +500,9 @@ int main(void)
     RUN_TEST(test_threads_of_two_lines_become_one);
     RUN_TEST(test_the_tip_is_led_by_g43_where_nothing_turns);
     RUN_TEST(test_round_pockets_become_arcs);
+    RUN_TEST(test_behind_a_cycle_goes_on_what_was_before_it);
+    RUN_TEST(test_parameters_beyond_those_of_linuxcnc_have_names_and_begin_as_0);
+    RUN_TEST(test_lines_called_by_m97_are_programs_when_they_stand_behind_the_end);
     RUN_TEST(test_words_and_values_of_siemens);
     RUN_TEST(test_flow_of_siemens);
     RUN_TEST(test_subprograms_of_siemens);
