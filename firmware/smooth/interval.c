@@ -30,7 +30,8 @@ static double longest_ramp(const struct smooth_limits *limits, unsigned axes)
 }
 
 /* Of the axis that crosses the tolerance soonest. */
-double interval_of_tolerance(const struct smooth_limits *curve, unsigned axes, double tolerance_mm)
+static double soonest_interval(const struct smooth_limits *curve, unsigned axes,
+                               double tolerance_mm)
 {
     double soonest = MATHS_INFINITY;
 
@@ -47,7 +48,15 @@ double interval_of_tolerance(const struct smooth_limits *curve, unsigned axes, d
     return maths_max(curve->cycle_s, soonest);
 }
 
-double interval_of_ramps(const struct smooth_limits *machine, unsigned axes, unsigned samples)
+double interval_of(const struct smooth_limits *machine, const struct route *r, double tolerance_mm,
+                   unsigned samples)
 {
-    return longest_ramp(machine, axes) * WINDOW_OF_RAMP / samples;
+    struct smooth_limits curve = *machine;
+
+    smooth_limit(&curve, r->tolerance_mm);
+    const double interval_s = soonest_interval(&curve, r->moved, tolerance_mm);
+
+    return samples == 0
+               ? interval_s
+               : maths_max(interval_s, longest_ramp(machine, r->moved) * WINDOW_OF_RAMP / samples);
 }

@@ -4,11 +4,13 @@
 #ifndef TAKT_SMOOTH_INTERVAL_H
 #define TAKT_SMOOTH_INTERVAL_H
 
-#include "smooth/limits.h"
+#include "smooth/route.h"
 
-/* What a way of the tolerance takes the quickest of the axes that move, by the limits of the curve; at least a cycle. s. */
-double interval_of_tolerance(const struct smooth_limits *curve, unsigned axes, double tolerance_mm);
-/* So long that none of them needs many windows of so many samples to reach its velocity, by the limits of the machine. */
-double interval_of_ramps(const struct smooth_limits *machine, unsigned axes, unsigned samples);
+/*
+ * What a way of the tolerance takes the quickest of the axes that move on the route, by the limits of its curve; at least a cycle,
+ * and so long that none of them needs many windows of so many samples to reach its velocity (0: they need not). s.
+ */
+double interval_of(const struct smooth_limits *machine, const struct route *r, double tolerance_mm,
+                   unsigned samples);
 
 #endif

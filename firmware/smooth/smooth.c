@@ -78,21 +78,12 @@ static double merged_within(const struct move *move)
     return maths_min(move->merge_mm, MERGED * move->tolerance_mm);
 }
 
-/*
- * Near a place where the curve stood no axis comes far. Elsewhere none is to need many windows for its ramps.
- */
+/* Near a place where the curve stood no axis comes far; elsewhere none is to need many windows for its ramps. */
 static double interval_for(const struct smooth *s, double tolerance_mm)
 {
-    struct smooth_limits limits = s->limits;
+    const bool near = stall_is_near(&s->stall, s->route.tolerance_mm);
 
-    smooth_limit(&limits, s->route.tolerance_mm);
-    const double interval_s = interval_of_tolerance(&limits, s->route.moved, tolerance_mm);
-
-    if (stall_is_near(&s->stall, s->route.tolerance_mm)) {
-        return interval_s;
-    }
-    return maths_max(interval_s,
-                     interval_of_ramps(&s->limits, s->route.moved, window_capacity(&s->route)));
+    return interval_of(&s->limits, &s->route, tolerance_mm, near ? 0 : window_capacity(&s->route));
 }
 
 /* The time between samples, and what depends on it; the window is empty. */
@@ -405,11 +396,10 @@ static void follow_ready(struct smooth *s, const struct judge_verdict *v)
 /* Has an axis begun to move whose ramps are longer? */
 static bool needs_other_interval(struct smooth *s)
 {
-    if (s->moved == s->route.moved) {
-        return false;
-    }
+    const bool more = s->moved != s->route.moved;
+
     s->moved = s->route.moved;
-    return interval_for(s, s->route.tolerance_mm) > s->window.interval_s;
+    return more && interval_for(s, s->route.tolerance_mm) > s->window.interval_s;
 }
 
 /* Must the axes rest where what was proved last ends: because no way on has been found, or for another tolerance? */

@@ -62,7 +62,7 @@ def random_machine(rng):
     for letter in letters:
         factors = [decades(rng, 1 / math.sqrt(apart), math.sqrt(apart)) for _ in range(3)]
         unit = 1 if letter in hunt_path.LINEAR else decades(rng, 0.3, 30)
-        lowest = (0, 5e-12 * TRAVEL / (cycle_us * 1e-6) ** 2, 1e-12 * TRAVEL / (cycle_us * 1e-6) ** 3)
+        lowest = (0, 5.000001e-12 * TRAVEL / (cycle_us * 1e-6) ** 2, 1.000001e-12 * TRAVEL / (cycle_us * 1e-6) ** 3)
         values = [float(f"{unit * b * f:.6g}") for b, f in zip(base, factors)]
         axes[letter] = tuple(min(max(v, low), high) for v, low, high in zip(values, lowest, HIGHEST))
     law = rng.choice(("jerk", "jerk", "smooth", "gentle"))
