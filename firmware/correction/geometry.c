@@ -120,65 +120,37 @@ unsigned geometry_deviation(const struct geometry *g, const struct point *at,
 
 /* ---- what it takes of the axes ---- */
 
-/* Bounds of a quantity and of its first three derivatives in time. */
-struct jet {
-    double value[4];
-};
-
-/* Leibniz: |(r a)'''| <= r a''' + 3 r' a'' + 3 r'' a' + r''' a, and so on. */
-static void add_product(struct need *need, unsigned corrected, const struct jet *r,
-                        const struct jet *a)
+static struct need_jet jet_of(const struct need *errors, unsigned i)
 {
-    const double *p = r->value;
-    const double *q = a->value;
-
-    need->size_mm[corrected] += p[0] * q[0];
-    need->noise_mm[corrected] += NEED_ROUNDING * p[0] * q[0];
-    need->velocity_mm_s[corrected] += p[0] * q[1] + p[1] * q[0];
-    need->acceleration_mm_s2[corrected] += p[0] * q[2] + 2.0 * p[1] * q[1] + p[2] * q[0];
-    need->jerk_mm_s3[corrected] +=
-        p[0] * q[3] + 3.0 * p[1] * q[2] + 3.0 * p[2] * q[1] + p[3] * q[0];
-}
-
-static struct jet jet_of(const struct need *errors, unsigned i)
-{
-    return (struct jet){{errors->size_mm[i], errors->velocity_mm_s[i],
-                         errors->acceleration_mm_s2[i], errors->jerk_mm_s3[i]}};
-}
-
-static void add_travel(struct jet *arm, const struct motion_bound *most, unsigned axis)
-{
-    arm->value[0] += most->farthest_mm[axis];
-    arm->value[1] += most->velocity_mm_s[axis];
-    arm->value[2] += most->acceleration_mm_s2[axis];
-    arm->value[3] += most->jerk_mm_s3[axis];
+    return (struct need_jet){{errors->size_mm[i], errors->velocity_mm_s[i],
+                              errors->acceleration_mm_s2[i], errors->jerk_mm_s3[i]}};
 }
 
 /* Shifts and turns of one unit, over arms no longer than these. */
-static void add_unit(const struct need *errors, const struct jet arm[SIDE], struct need *need)
+static void add_unit(const struct need *errors, const struct need_jet arm[SIDE], struct need *need)
 {
-    static const struct jet one = {{1.0, 0.0, 0.0, 0.0}};
+    static const struct need_jet one = {{1.0, 0.0, 0.0, 0.0}};
 
     for (unsigned i = 0; i < SIDE; i++) {
-        const struct jet shift = jet_of(errors, i);
+        const struct need_jet shift = jet_of(errors, i);
         const unsigned j = (i + 1) % SIDE;
         const unsigned k = (i + 2) % SIDE;
-        const struct jet about_j = jet_of(errors, SIDE + j);
-        const struct jet about_k = jet_of(errors, SIDE + k);
+        const struct need_jet about_j = jet_of(errors, SIDE + j);
+        const struct need_jet about_k = jet_of(errors, SIDE + k);
 
-        add_product(need, i, &shift, &one);
-        add_product(need, i, &about_j, &arm[k]);
-        add_product(need, i, &about_k, &arm[j]);
+        need_add_product(need, i, &shift, &one);
+        need_add_product(need, i, &about_j, &arm[k]);
+        need_add_product(need, i, &about_k, &arm[j]);
     }
 }
 
 /* The turning unit's own turn, which its axis takes back; it moves nothing else. */
 static void add_own_turn(struct need *errors, unsigned axis, struct need *need)
 {
-    static const struct jet one = {{1.0, 0.0, 0.0, 0.0}};
-    const struct jet turn = jet_of(errors, axis);
+    static const struct need_jet one = {{1.0, 0.0, 0.0, 0.0}};
+    const struct need_jet turn = jet_of(errors, axis);
 
-    add_product(need, axis, &turn, &one);
+    need_add_product(need, axis, &turn, &one);
     errors->size_mm[axis] = errors->velocity_mm_s[axis] = 0.0;
     errors->acceleration_mm_s2[axis] = errors->jerk_mm_s3[axis] = 0.0;
 }
@@ -198,21 +170,21 @@ static void add_leans(const struct geometry *g, const struct motion_bound *most,
 
 /* The arms of the turning unit: all of X Y Z, from its centre. */
 static void set_turning_arms(const struct geometry *g, const struct motion_bound *most,
-                             struct jet arm[SIDE])
+                             struct need_jet arm[SIDE])
 {
     for (unsigned i = 0; i < SIDE; i++) {
-        arm[i] = (struct jet){{maths_abs(g->centre_mm[i]), 0.0, 0.0, 0.0}};
-        add_travel(&arm[i], most, i);
+        arm[i] = (struct need_jet){{maths_abs(g->centre_mm[i]), 0.0, 0.0, 0.0}};
+        need_jet_add_travel(&arm[i], most, i);
     }
 }
 
 void geometry_need(const struct geometry *g, const struct motion_bound *most, struct need *need)
 {
     static const struct approach_bound still = {0.0, 0.0, 0.0};
-    struct jet arm[SIDE];
+    struct need_jet arm[SIDE];
 
     for (unsigned i = 0; i < SIDE; i++) {
-        arm[i] = (struct jet){{maths_abs(g->tool_mm[i]), 0.0, 0.0, 0.0}};
+        arm[i] = (struct need_jet){{maths_abs(g->tool_mm[i]), 0.0, 0.0, 0.0}};
     }
     for (unsigned u = 0; u < g->chain.units; u++) {
         const unsigned axis = g->chain.axis[u];
@@ -224,11 +196,11 @@ void geometry_need(const struct geometry *g, const struct motion_bound *most, st
             add_own_turn(&errors, axis, need);
             set_turning_arms(g, most, arm);
         } else if (!carries_tool(g, u)) {
-            add_travel(&arm[axis], most, axis);
+            need_jet_add_travel(&arm[axis], most, axis);
         }
         add_unit(&errors, arm, need);
         if (!is_turning(g, u) && carries_tool(g, u)) {
-            add_travel(&arm[axis], most, axis);
+            need_jet_add_travel(&arm[axis], most, axis);
         }
     }
     add_leans(g, most, need);

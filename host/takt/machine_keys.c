@@ -346,7 +346,7 @@ const struct machine_key machine_keys[] = {
     OF_CORRECTION("overhang_turn", SCALE_NONE, overhang[3], 3, "to the turning axis, rad"),
     OF_CORRECTION("setup_offset_mm", SCALE_NONE, setup_offset_mm, 3, "the part stands displaced by X, Y, Z"),
     OF_CORRECTION("setup_rotation_deg", SCALE_DEGREE, setup_rotation_rad, 3, "and turned about X, Y, Z, in this order"),
-    OF_CORRECTION("setup_pivot_mm", SCALE_NONE, setup_pivot_mm, 3, "about this point"),
+    OF_CORRECTION("setup_pivot_mm", SCALE_NONE, setup_pivot_mm, 3, "about this point; with turn_axis a point of its axis, since the set-up turns with the table"),
     FROM(SECTION_CORRECTION, "setup_turn_deg", SCALE_DEGREE, IN_SETUP(machine.correction.setup_turn_rad), -360, 360,
          "turn of the turning axis"),
     OF_CORRECTION("thermal_um_per_m_k", SCALE_PPM, thermal_per_k, 3, "growth of X, Y, Z per K"),
