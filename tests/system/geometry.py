@@ -118,7 +118,7 @@ def off_um(machine, wanted, sent):
 def program_of(points):
     lines = ["G21 G90 G4 P4"]
     for point in points:
-        lines += ["G0 " + " ".join(f"{axis}{value:.4f}" for axis, value in point.items()), "G4 P0.12"]
+        lines += ["G0 " + " ".join(f"{axis}{value:.4f}" for axis, value in point.items()), "G4 P0.3"]
     return t.write("points.ngc", "\n".join(lines) + "\nM2\n")
 
 
@@ -153,7 +153,7 @@ for number, chain in enumerate(("w b X Y Z t", "w B X Z b Y t")):
     program = program_of(points)
     before, live = rests_of(program, "--machine", path), rests_of(program, *options)
     t.check(len(live) == POINTS, "every point is measured", len(live))
-    t.check(all(abs(off_um(machine, point, point) - um) < 0.3 for point, um in zip(points, before)),
+    t.check(all(abs(off_um(machine, point, point) - um) < 0.05 for point, um in zip(points, before)),
             f"{chain}: the virtual machine is as wrong as the model", max(before))
     t.check(max(before) > 20 and max(live) <= 1, f"{chain}: live within a micrometre", max(before), max(live))
     status, _, err = t.run("correct", program, *options, "--quiet", "-o", "points-corrected.ngc")
