@@ -171,6 +171,8 @@
     X(TABLE_KIND, "this needs a table over one axis; a volume one over two to four (here: %v)")    \
     X(TABLE_PAIRS_MANY, "more than %v pairs of axes, or the points of '%w' find no room")          \
     X(TABLE_PAIR_TWICE, "the correction '%w' is in two tables of the same axis")                   \
+    X(TABLE_ERRORS, "'%w': a table of a unit's errors is over its axis alone, and has no others")  \
+    X(TABLE_UNIT, "this is no table of errors of a unit of the machine's chain (here: over %w)")   \
     X(TABLE_RESERVE, "axis %w would need %v percent of its limits, more than has been reserved")   \
     /* machine and drives */                                                                       \
     X(STALLED, "the axes do not go on, and nothing explains it: a fault of the planner")           \

@@ -4,6 +4,8 @@
  * The direction of an axis is that of its last motion. It counts as reversed when the axis has come back by
  * REVERSAL_MM from the furthest it went, so that rounding turns nothing; the tables of both directions then fade into
  * each other.
+ *
+ * Errors of units, which act along the machine's chain, are tables over one axis too, and taken back with them.
  */
 #include "correction/layer.h"
 
@@ -17,7 +19,7 @@ static bool axes_begin(const struct correction *c, struct layer_notes *notes)
         notes->number[i] = 1.0;
         notes->number[AXIS_COUNT + i] = c->at->at[i];
     }
-    return c->tables != NULL && c->tables->axes.count > 0;
+    return c->tables != NULL && (c->tables->axes.count > 0 || c->tables->geometry != NULL);
 }
 
 /* number[axis] is the direction, number[AXIS_COUNT + axis] the furthest position in it. */
@@ -49,11 +51,24 @@ static void axes_follow(struct correction *c, struct layer_notes *notes)
     }
 }
 
+static void add_geometry(const struct correction *c, double weight, struct correction_sum *sum)
+{
+    double deviation[AXIS_COUNT];
+
+    sum->outside |= geometry_deviation(c->tables->geometry, c->at, deviation);
+    for (unsigned i = 0; i < c->axes_end; i++) {
+        sum->fine[i] -= (float)(weight * deviation[i]);
+    }
+}
+
 static void axes_add(struct correction *c, struct layer_notes *notes, double weight,
                      struct correction_sum *sum)
 {
     sum->outside |=
         axis_tables_sum(&c->tables->axes, c->at, notes->coefficient, (float)weight, sum->fine);
+    if (c->tables->geometry != NULL) {
+        add_geometry(c, weight, sum);
+    }
 }
 
 static void axes_need(const struct correction *c, const struct layer_notes *notes,
@@ -68,6 +83,9 @@ static void axes_need(const struct correction *c, const struct layer_notes *note
 
     (void)notes;
     axis_tables_need(&c->tables->axes, &approach, most, need);
+    if (c->tables->geometry != NULL) {
+        geometry_need(c->tables->geometry, most, need);
+    }
 }
 
 const struct correction_layer layer_axes = {

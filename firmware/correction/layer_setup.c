@@ -1,12 +1,16 @@
 /*
- * Set-up: the part, or its pallet, stands displaced and turned. A rigid transform about a pivot P:
+ * Set-up: the part, or its pallet, stands displaced and turned. A rigid transform about a pivot P, which turns with the
+ * table T(psi) that bears the part; P is then a point of the table's axis:
  *
- *     K = (R - I) (U - P) + offset,   R = R_z R_y R_x,   K_psi = turn
+ *     K = T ((R - I) T^-1 (U - P) + offset),   R = R_z R_y R_x,   K_psi = turn
  *
+ * The set-up is told with the table at psi = 0, and is what remains after the table has turned by K_psi.
  * A displacement may be millimetres, so this layer alone is summed in double precision.
  */
 #include "base/maths.h"
 #include "correction/layer.h"
+
+#include <string.h>
 
 #define SIDE AXIS_LINEAR_COUNT
 
@@ -45,41 +49,164 @@ static bool setup_begin(const struct correction *c, struct layer_notes *notes)
     return any;
 }
 
+static bool has_table(const struct correction *c)
+{
+    return c->settings.turn_axis < AXIS_COUNT;
+}
+
+/* The linear axis that the table turns about; those after it, in order, are its plane. */
+static unsigned about_of(const struct correction *c)
+{
+    return c->settings.turn_axis - AXIS_A;
+}
+
+/* v turns with the table, or back. */
+static void turn_vector(const struct correction *c, double sine, double cosine, double v[SIDE])
+{
+    const unsigned first = (about_of(c) + 1) % SIDE;
+    const unsigned second = (about_of(c) + 2) % SIDE;
+    const double x = v[first];
+    const double y = v[second];
+
+    v[first] = cosine * x - sine * y;
+    v[second] = sine * x + cosine * y;
+}
+
 static void setup_add(struct correction *c, struct layer_notes *notes, double weight,
                       struct correction_sum *sum)
 {
     const struct correction_settings *s = &c->settings;
     const unsigned end = c->axes_end < SIDE ? c->axes_end : SIDE;
+    double way[SIDE], k[SIDE], sine = 0.0, cosine = 1.0;
 
-    for (unsigned i = 0; i < end; i++) {
-        double k = s->setup_offset_mm[i];
-
-        for (unsigned j = 0; j < SIDE; j++) {
-            k += notes->number[SIDE * i + j] * (c->at->at[j] - s->setup_pivot_mm[j]);
-        }
-        sum->coarse[i] += weight * k;
+    for (unsigned i = 0; i < SIDE; i++) {
+        way[i] = c->at->at[i] - s->setup_pivot_mm[i];
     }
-    if (s->turn_axis < AXIS_COUNT) {
+    if (has_table(c)) {
+        maths_sincos(c->at->at[s->turn_axis], &sine, &cosine);
+        turn_vector(c, -sine, cosine, way);
+    }
+    for (unsigned i = 0; i < SIDE; i++) {
+        k[i] = s->setup_offset_mm[i];
+        for (unsigned j = 0; j < SIDE; j++) {
+            k[i] += notes->number[SIDE * i + j] * way[j];
+        }
+    }
+    if (has_table(c)) {
+        turn_vector(c, sine, cosine, k);
         sum->coarse[s->turn_axis] += weight * s->setup_turn_rad;
     }
+    for (unsigned i = 0; i < end; i++) {
+        sum->coarse[i] += weight * k[i];
+    }
+}
+
+/* ---- what it takes of the axes ---- */
+
+static double length_of(double x, double y)
+{
+    return maths_sqrt(x * x + y * y);
+}
+
+/* K_i = slope (x_j - P_j), whatever its sign. */
+static void add_constant(const struct correction *c, unsigned i, unsigned j, double slope,
+                         const struct motion_bound *most, struct need *need)
+{
+    const double size = maths_abs(slope);
+
+    need_add_slope(need, i, j, size, most);
+    need->size_mm[i] += size * (most->farthest_mm[j] + maths_abs(c->settings.setup_pivot_mm[j]));
+}
+
+/* size cos(n psi + ...), n = 1 or 2. */
+static struct need_jet wave_of(const struct correction *c, double size, double n,
+                               const struct motion_bound *most)
+{
+    const unsigned axis = c->settings.turn_axis;
+    const double v = n * most->velocity_mm_s[axis];
+    const double a = n * most->acceleration_mm_s2[axis];
+    const double j = n * most->jerk_mm_s3[axis];
+
+    return (struct need_jet){
+        {size, size * v, size * (v * v + a), size * (v * v * v + 3.0 * v * a + j)}};
+}
+
+/* x_j - P_j */
+static struct need_jet way_of(const struct correction *c, unsigned j,
+                              const struct motion_bound *most)
+{
+    struct need_jet way = {{maths_abs(c->settings.setup_pivot_mm[j]), 0.0, 0.0, 0.0}};
+
+    need_jet_add_travel(&way, most, j);
+    return way;
+}
+
+/*
+ * What goes round with the table: once per turn the offset in its plane and what R - I does between plane and axis, twice
+ * what of R - I is symmetric in the plane.
+ */
+static void add_waves(const struct correction *c, const double m[SIDE][SIDE],
+                      const struct motion_bound *most, struct need *need)
+{
+    const unsigned t = about_of(c);
+    const unsigned u = (t + 1) % SIDE;
+    const unsigned v = (t + 2) % SIDE;
+    const double *offset = c->settings.setup_offset_mm;
+    const double round_twice = 0.5 * length_of(m[u][u] - m[v][v], m[u][v] + m[v][u]);
+    const struct need_jet one = {{1.0, 0.0, 0.0, 0.0}};
+    const struct need_jet along = way_of(c, t, most);
+    const struct need_jet shift = wave_of(c, length_of(offset[u], offset[v]), 1.0, most);
+    const struct need_jet out = wave_of(c, length_of(m[u][t], m[v][t]), 1.0, most);
+    const struct need_jet into = wave_of(c, length_of(m[t][u], m[t][v]), 1.0, most);
+    const struct need_jet twice = wave_of(c, round_twice, 2.0, most);
+
+    for (unsigned i = 0; i < 2; i++) {
+        const unsigned axis = i == 0 ? u : v;
+        const struct need_jet way = way_of(c, axis, most);
+
+        need_add_product(need, axis, &shift, &one);
+        need_add_product(need, axis, &out, &along);
+        need_add_product(need, t, &into, &way);
+        need_add_product(need, u, &twice, &way);
+        need_add_product(need, v, &twice, &way);
+    }
+}
+
+/* What is the same at every angle of the table: turns about its axis are of this kind. */
+static void add_unturned(const struct correction *c, const double m[SIDE][SIDE],
+                         const struct motion_bound *most, struct need *need)
+{
+    const unsigned t = about_of(c);
+    const unsigned u = (t + 1) % SIDE;
+    const unsigned v = (t + 2) % SIDE;
+    const double stretch = 0.5 * (m[u][u] + m[v][v]);
+    const double swing = 0.5 * (m[v][u] - m[u][v]);
+
+    add_constant(c, t, t, m[t][t], most, need);
+    add_constant(c, u, u, stretch, most, need);
+    add_constant(c, v, v, stretch, most, need);
+    add_constant(c, u, v, swing, most, need);
+    add_constant(c, v, u, swing, most, need);
+    need->size_mm[t] += maths_abs(c->settings.setup_offset_mm[t]);
+    need->size_mm[c->settings.turn_axis] += maths_abs(c->settings.setup_turn_rad);
 }
 
 static void setup_need(const struct correction *c, const struct layer_notes *notes,
                        const struct motion_bound *most, struct need *need)
 {
-    const struct correction_settings *s = &c->settings;
+    double m[SIDE][SIDE];
 
+    memcpy(m, notes->number, sizeof(m));
+    if (has_table(c)) {
+        add_unturned(c, (const double(*)[SIDE])m, most, need);
+        add_waves(c, (const double(*)[SIDE])m, most, need);
+        return;
+    }
     for (unsigned i = 0; i < SIDE; i++) {
         for (unsigned j = 0; j < SIDE; j++) {
-            const double slope = maths_abs(notes->number[SIDE * i + j]);
-
-            need_add_slope(need, i, j, slope, most);
-            need->size_mm[i] += slope * 2.0 * most->farthest_mm[j];
+            add_constant(c, i, j, m[i][j], most, need);
         }
-        need->size_mm[i] += maths_abs(s->setup_offset_mm[i]);
-    }
-    if (s->turn_axis < AXIS_COUNT) {
-        need->size_mm[s->turn_axis] += maths_abs(s->setup_turn_rad);
+        need->size_mm[i] += maths_abs(c->settings.setup_offset_mm[i]);
     }
 }
 

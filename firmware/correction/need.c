@@ -7,3 +7,25 @@ void need_add_slope(struct need *need, unsigned corrected, unsigned input, doubl
     need->acceleration_mm_s2[corrected] += slope * most->acceleration_mm_s2[input];
     need->jerk_mm_s3[corrected] += slope * most->jerk_mm_s3[input];
 }
+
+void need_jet_add_travel(struct need_jet *jet, const struct motion_bound *most, unsigned axis)
+{
+    jet->value[0] += most->farthest_mm[axis];
+    jet->value[1] += most->velocity_mm_s[axis];
+    jet->value[2] += most->acceleration_mm_s2[axis];
+    jet->value[3] += most->jerk_mm_s3[axis];
+}
+
+void need_add_product(struct need *need, unsigned corrected, const struct need_jet *r,
+                      const struct need_jet *a)
+{
+    const double *p = r->value;
+    const double *q = a->value;
+
+    need->size_mm[corrected] += p[0] * q[0];
+    need->noise_mm[corrected] += NEED_ROUNDING * p[0] * q[0];
+    need->velocity_mm_s[corrected] += p[0] * q[1] + p[1] * q[0];
+    need->acceleration_mm_s2[corrected] += p[0] * q[2] + 2.0 * p[1] * q[1] + p[2] * q[0];
+    need->jerk_mm_s3[corrected] +=
+        p[0] * q[3] + 3.0 * p[1] * q[2] + 3.0 * p[2] * q[1] + p[3] * q[0];
+}

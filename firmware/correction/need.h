@@ -34,4 +34,16 @@ struct need {
 void need_add_slope(struct need *need, unsigned corrected, unsigned input, double slope,
                     const struct motion_bound *most);
 
+/* Bounds of a quantity and of its first three derivatives in time. */
+struct need_jet {
+    double value[4];
+};
+
+/* The position of an axis is added to the quantity. */
+void need_jet_add_travel(struct need_jet *jet, const struct motion_bound *most, unsigned axis);
+
+/* Adds a correction that is the product of two quantities (Leibniz): of third order r a3 + 3 r1 a2 + 3 r2 a1 + r3 a. */
+void need_add_product(struct need *need, unsigned corrected, const struct need_jet *r,
+                      const struct need_jet *a);
+
 #endif

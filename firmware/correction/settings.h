@@ -19,7 +19,8 @@ struct correction_settings {
     double workpiece[CORRECTION_COORDINATES][CORRECTION_COORDINATES];
     double overhang[CORRECTION_COORDINATES][AXIS_LINEAR_COUNT];
 
-    /* The part stands displaced by offset and turned about pivot: about X first, then Y, then Z. */
+    /* The part stands displaced by offset and turned about pivot: about X first, then Y, then Z. All of it turns with the
+     * table (turn_axis): pivot is a point of its axis then, and the set-up is told with psi = 0. */
     double setup_offset_mm[AXIS_LINEAR_COUNT];
     double setup_rotation_rad[AXIS_LINEAR_COUNT];
     double setup_pivot_mm[AXIS_LINEAR_COUNT];

@@ -53,12 +53,13 @@ static void name_add_position(struct name *n, double value)
     name_add(n, digits, length);
 }
 
-static void name_add_output(struct name *n, const struct table_output *output)
+/* kind: ": K" of a correction, ": E" of an error. */
+static void name_add_output(struct name *n, const char kind[3], const struct table_output *output)
 {
     static const char *const direction[] = {"", "_up", "_down"};
     const char *word = direction[output->direction];
 
-    name_add(n, ": K", 3);
+    name_add(n, kind, 3);
     name_add(n, &AXIS_LETTERS[output->axis], 1);
     while (*word != '\0') {
         name_add(n, word++, 1);
@@ -81,7 +82,7 @@ void table_name_cell(const struct table *table, uint32_t row, unsigned output,
         name_add_position(&n, axis < AXIS_LINEAR_COUNT ? at : at * DEGREES_PER_RAD);
     }
     if (output < table->outputs) {
-        name_add_output(&n, &table->output[output]);
+        name_add_output(&n, table->errors ? ": E" : ": K", &table->output[output]);
     }
     name[n.length] = '\0';
 }
@@ -128,7 +129,7 @@ static bool check_axes(const struct table *table, const struct table_rules *rule
             return refuse_axis(wrong, TAKT_ERROR_AXIS_MISSING, table->input[i], 0.0);
         }
     }
-    for (unsigned i = 0; i < table->outputs; i++) {
+    for (unsigned i = 0; i < table->outputs && !table->errors; i++) {
         if ((rules->axes & 1U << table->output[i].axis) == 0) {
             return refuse_axis(wrong, TAKT_ERROR_AXIS_MISSING, table->output[i].axis, 0.0);
         }

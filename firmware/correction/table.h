@@ -34,6 +34,7 @@ struct table_output {
 
 struct table {
     uint8_t inputs, outputs;
+    bool errors;                      /* of a unit (geometry.h), of which nothing is to be added */
     uint8_t input[TABLE_INPUTS_MAX];  /* enum axis */
     uint16_t knots[TABLE_INPUTS_MAX]; /* points along each input, 2 ... TABLE_KNOTS_MAX */
     struct table_output output[TABLE_OUTPUTS_MAX];

@@ -21,9 +21,10 @@ static const struct unit units[] = {
     {"arcsec", true, true, DEGREE / 3600.0},
 };
 
-/* What the name of a column says: "KX_up_um" is a correction of X, up, in um. */
+/* What the name of a column says: "KX_up_um" is a correction of X, up, in um; "EA_urad" a turn of a unit about X. */
 struct column {
     bool correction;
+    bool error; /* of a unit: E instead of K */
     uint8_t axis;
     uint8_t direction;
     double unit;
@@ -83,7 +84,8 @@ static bool read_column(const struct cells *cells, struct column *column)
 {
     struct cells rest = *cells;
 
-    column->correction = take(&rest, "K");
+    column->error = take(&rest, "E");
+    column->correction = column->error || take(&rest, "K");
     column->direction = TABLE_BOTH;
     if (rest.cell >= rest.until || !axis_of(rest.text[rest.cell], &column->axis)) {
         return false;
@@ -150,6 +152,13 @@ static enum takt_error add_output(struct table *table, const struct column *colu
     if (table->inputs > 1 && is_second_rotary(table, column->axis)) {
         return TAKT_ERROR_TABLE_ROTARY_SECOND;
     }
+    if (column->error && (table->inputs > 1 || column->direction != TABLE_BOTH)) {
+        return TAKT_ERROR_TABLE_ERRORS;
+    }
+    if (table->outputs > 0 && column->error != table->errors) {
+        return TAKT_ERROR_TABLE_ERRORS;
+    }
+    table->errors = column->error;
     for (unsigned i = 0; i < table->outputs; i++) {
         if (is_same(&table->output[i], column)) {
             return TAKT_ERROR_TABLE_COLUMN_TWICE;

@@ -282,6 +282,7 @@ bool table_read_text(const char *text, size_t length, const struct table_rules *
     struct reader r = {.table = table, .rules = rules, .wrong = wrong};
 
     table->inputs = table->outputs = 0;
+    table->errors = false;
     for (unsigned i = 0; i < TABLE_INPUTS_MAX; i++) {
         table->knots[i] = 0;
     }

@@ -159,6 +159,7 @@ static bool get_head(const uint8_t **at, size_t size, struct table *table)
         return false;
     }
     *at += sizeof(mark);
+    table->errors = false;
     table->inputs = (uint8_t)get(at, 1);
     table->outputs = (uint8_t)get(at, 3);
     if (table->inputs == 0 || table->inputs > TABLE_INPUTS_MAX || table->outputs == 0 ||

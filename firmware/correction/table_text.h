@@ -3,6 +3,7 @@
  *
  *     X_mm,Y_mm,Z_mm,KX_um,KY_um,KZ_um        a volume: the grid's axes, then the corrections
  *     X_mm,KX_up_um,KX_down_um,KY_um          one axis, both directions of approach where they differ
+ *     X_mm,EX_um,EY_um,EZ_um,EA_urad,EB_urad  errors of a unit (geometry.h): its shifts, and its turns about X, Y and Z
  *
  * Units: mm, um, in for linear axes, deg, rad, urad, arcsec for rotary ones. Columns are separated by commas, semicolons
  * or tabs. Lines that begin with # are comments. A last line "checksum,1a2b3c4d" is the CRC-32 of every byte before it:

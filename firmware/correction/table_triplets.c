@@ -9,6 +9,7 @@ enum { NOMINAL, FORWARD, REVERSE };
 static void open_table(struct table *table, enum axis axis)
 {
     table->inputs = 1;
+    table->errors = false;
     table->input[0] = (uint8_t)axis;
     table->knots[0] = 0;
     table->outputs = 2;

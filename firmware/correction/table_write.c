@@ -54,7 +54,8 @@ static void write_header(struct writer *w, const struct table *table)
         write_word(w, ",");
     }
     for (unsigned i = 0; i < table->outputs; i++) {
-        write_word(w, i > 0 ? ",K" : "K");
+        write_word(w, i > 0 ? "," : "");
+        write_word(w, table->errors ? "E" : "K");
         write(w, &AXIS_LETTERS[table->output[i].axis], 1);
         write_word(w, direction[table->output[i].direction]);
         write_word(w, table->output[i].axis < AXIS_LINEAR_COUNT ? "_um" : "_urad");

@@ -9,12 +9,26 @@
 #define UM     1e-3 /* in mm */
 #define DEGREE (MATHS_PI / 180.0)
 
+/* The chain of a machine that tells none. */
+static const struct unit_chain usual_chain = {
+    .units = N, .tool_units = N, .axis = {AXIS_Z, AXIS_Y, AXIS_X}};
+
+static void set_chain(struct deviation_config *config)
+{
+    if (config->chain.units > 0)
+        return;
+    config->chain = usual_chain;
+    if (config->table_axis < AXIS_COUNT)
+        config->chain.axis[config->chain.units++] = (uint8_t)config->table_axis;
+}
+
 void deviation_init(struct deviation *d, const struct deviation_config *config,
                     const double min_mm[AXIS_COUNT], const double max_mm[AXIS_COUNT])
 {
     const double *number = (const double *)config->axis;
 
     *d = (struct deviation){.config = *config};
+    set_chain(&d->config);
     for (unsigned i = 0; i < AXIS_COUNT; i++) {
         d->min_mm[i] = min_mm[i];
         d->max_mm[i] = max_mm[i];
@@ -83,25 +97,26 @@ static double table_mm(const struct deviation *d, unsigned axis, double drive_mm
                    (x - d->config.growth_reference_mm[axis]);
 }
 
-/*
- * Carries a point, as seen from the carriage of an axis, to what the axis stands on:
- *
- *     v = R(x) v + x along the axis + translations + squareness x
- */
-static void carry(const struct deviation *d, unsigned axis, double drive_mm, double v[N])
+/* Shifts (mm) and turns (rad) of a unit. The table's curves are over degrees. */
+static void errors_of(const struct deviation *d, unsigned axis, double drive_mm,
+                      double e[DEVIATION_OF_AXIS])
 {
-    const double x = table_mm(d, axis, drive_mm);
-    const double *square = d->config.squareness_urad;
-    double e[DEVIATION_OF_AXIS];
+    const bool turns = axis >= N;
+    const unsigned unit = turns ? DEVIATION_TABLE : axis;
+    const double size = turns ? DEGREE : 1.0;
 
     for (unsigned i = 0; i < DEVIATION_OF_AXIS; i++)
-        e[i] =
-            deviation_curve(d->config.axis[axis][i], drive_mm, d->min_mm[axis], d->max_mm[axis]) *
-            (i < N ? UM : MICRO);
-    turn_slightly(e + N, v);
+        e[i] = deviation_curve(d->config.axis[unit][i], drive_mm / size, d->min_mm[axis] / size,
+                               d->max_mm[axis] / size) *
+               (i < N ? UM : MICRO);
+}
+
+/* v += x (direction of the axis, which squareness leans) */
+static void travel(const struct deviation *d, unsigned axis, double x, double v[N])
+{
+    const double *square = d->config.squareness_urad;
+
     v[axis] += x;
-    for (unsigned i = 0; i < N; i++)
-        v[i] += e[i];
     if (axis == AXIS_Y)
         v[AXIS_X] -= square[0] * MICRO * x;
     if (axis == AXIS_Z) {
@@ -110,15 +125,51 @@ static void carry(const struct deviation *d, unsigned axis, double drive_mm, dou
     }
 }
 
+/* A unit that carries the tool: v, seen from it, becomes v = R v + travel + shifts, seen from what it stands on. */
+static void carry_tool(const struct deviation *d, unsigned axis, double drive_mm, double v[N])
+{
+    double e[DEVIATION_OF_AXIS];
+
+    errors_of(d, axis, drive_mm, e);
+    turn_slightly(e + N, v);
+    travel(d, axis, table_mm(d, axis, drive_mm), v);
+    for (unsigned i = 0; i < N; i++)
+        v[i] += e[i];
+}
+
+/* v -= s, and back by r */
+static void take_back(double e[DEVIATION_OF_AXIS], double v[N])
+{
+    for (unsigned i = 0; i < N; i++) {
+        v[i] -= e[i];
+        e[N + i] = -e[N + i];
+    }
+    turn_slightly(e + N, v);
+}
+
+/* A unit that carries the part: v, seen from what it stands on, is seen from it. It goes against its axis. */
+static void enter_part(const struct deviation *d, unsigned axis, double drive_mm, double v[N])
+{
+    double e[DEVIATION_OF_AXIS];
+
+    errors_of(d, axis, drive_mm, e);
+    travel(d, axis, table_mm(d, axis, drive_mm), v);
+    take_back(e, v);
+}
+
 double deviation_table_angle(const struct deviation *d, const struct point *drives)
 {
     const struct deviation_config *config = &d->config;
     const double angle = drives->at[config->table_axis];
     const double turn_deg = angle / DEGREE;
 
-    return angle + MICRO * deviation_curve(config->table_yaw, turn_deg,
-                                           d->min_mm[config->table_axis] / DEGREE,
-                                           d->max_mm[config->table_axis] / DEGREE);
+    double e[DEVIATION_OF_AXIS];
+
+    errors_of(d, config->table_axis, angle, e);
+    return angle + e[config->table_axis] +
+           MICRO * deviation_curve(config->table_yaw, turn_deg,
+                                   d->min_mm[config->table_axis] / DEGREE,
+                                   d->max_mm[config->table_axis] / DEGREE);
 }
 
 /* Turns v about an axis through the table's centre. */
@@ -135,17 +186,63 @@ static void turn_about(const struct deviation *d, double angle, struct point *v)
     v->at[second] = centre[second] + sine * u + cosine * w;
 }
 
-/* Spindle first, then down the machine: Z stands on Y, Y on X, X on the bed. */
+/* The table: about its centre; its turn about its own axis is in its angle. */
+static void enter_table(const struct deviation *d, double drive_rad, double v[N])
+{
+    const double *centre = d->config.table_centre_mm;
+    const double *tool =
+        d->config.tool_mm; /* the centre is where X Y Z stand when the tool is on it */
+    double e[DEVIATION_OF_AXIS];
+
+    errors_of(d, d->config.table_axis, drive_rad, e);
+    e[d->config.table_axis] = 0;
+    for (unsigned i = 0; i < N; i++)
+        v[i] -= centre[i] + tool[i];
+    take_back(e, v);
+    for (unsigned i = 0; i < N; i++)
+        v[i] += centre[i] + tool[i];
+}
+
+void deviation_unit(const struct deviation *d, unsigned axis, const struct point *drives,
+                    double at_mm, double errors[DEVIATION_OF_AXIS])
+{
+    const struct unit_chain *chain = &d->config.chain;
+    const double drive = drives->at[axis];
+    double way[N] = {0}, sign = -1;
+
+    errors_of(d, axis, drive, errors);
+    if (axis >= N) {
+        errors[axis] = deviation_table_angle(d, drives) - at_mm;
+        return;
+    }
+    for (unsigned i = 0; i < chain->tool_units; i++)
+        sign = chain->axis[i] == axis ? 1 : sign;
+    travel(d, axis, table_mm(d, axis, drive), way);
+    way[axis] -= at_mm;
+    for (unsigned i = 0; i < N; i++)
+        errors[i] += sign * way[i];
+}
+
+/* From the tool down to the bed, and from the bed up to the part. */
 void deviation_tool_point(const struct deviation *d, const struct point *drives, double turn_rad,
                           struct point *tool)
 {
+    const struct unit_chain *chain = &d->config.chain;
     double v[N];
 
     for (unsigned i = 0; i < N; i++)
         v[i] = d->config.tool_mm[i];
     v[AXIS_Z] += d->wear_mm;
-    for (unsigned axis = N; axis-- > 0;)
-        carry(d, axis, drives->at[axis], v);
+    for (unsigned i = 0; i < chain->units; i++) {
+        const unsigned axis = chain->axis[i];
+
+        if (axis >= N)
+            enter_table(d, drives->at[axis], v);
+        else if (i < chain->tool_units)
+            carry_tool(d, axis, drives->at[axis], v);
+        else
+            enter_part(d, axis, drives->at[axis], v);
+    }
     *tool = *drives;
     for (unsigned i = 0; i < N; i++)
         tool->at[i] = v[i] - d->config.tool_mm[i];

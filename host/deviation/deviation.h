@@ -1,15 +1,16 @@
 /*
  * The machine as it really is: where the tool's point comes to when the drives stand where they stand.
  *
- * Three linear axes carry the tool, X on the bed, Y on X, Z on Y; a table may turn the part. Every linear axis has the six
- * errors of a rigid body that is guided along a line (ISO 230-1: E_XX ... E_CX), and there are three squarenesses: 21
- * errors, as functions of position. Besides: growth with temperature, backlash, the yaw of the table, and wear of the
+ * Three linear axes and a turning table, if there is one, stand on one another as the chain says. Each of them has the six
+ * errors of a rigid body that is guided (ISO 230-1: E_XX ... E_CX), and there are three squarenesses: 21 errors of the
+ * linear axes, as functions of position. Besides: growth with temperature, backlash, the yaw of the table, and wear of the
  * tool. Nothing of this is known to the controller.
  */
 #ifndef TAKT_DEVIATION_DEVIATION_H
 #define TAKT_DEVIATION_DEVIATION_H
 
 #include "base/point.h"
+#include "base/unit_chain.h"
 #include "deviation/deviation_curve.h"
 
 #include <stdbool.h>
@@ -17,11 +18,16 @@
 
 #define DEVIATION_LINEAR 3
 
+/* Units with errors: X, Y, Z, and the table. */
+#define DEVIATION_TABLE DEVIATION_LINEAR
+#define DEVIATION_UNITS (DEVIATION_TABLE + 1)
+
 /* Errors of a guided axis: translations along X, Y, Z (um), rotations about them (urad). */
 #define DEVIATION_OF_AXIS 6
 
 struct deviation_config {
-    double axis[DEVIATION_LINEAR][DEVIATION_OF_AXIS][DEVIATION_CURVE_NUMBERS];
+    struct unit_chain chain; /* units 0: Z on Y on X on the bed, a turning table on the bed too */
+    double axis[DEVIATION_UNITS][DEVIATION_OF_AXIS][DEVIATION_CURVE_NUMBERS];
     double squareness_urad
         [3]; /* of Y to X about Z (C0Y), of Z to X about Y (B0Z), of Z to Y about X (A0Z) */
     double tool_mm
@@ -71,6 +77,13 @@ double deviation_sensor_k(const struct deviation *d);
  */
 void deviation_tool_point(const struct deviation *d, const struct point *drives, double turn_rad,
                           struct point *tool);
+
+/*
+ * The six errors of a unit as an instrument finds them that looks at this unit alone: how far it is from its place (mm)
+ * and direction (rad), in machine axes, when it is wanted at at_mm. Squareness, play and growth are among its shifts.
+ */
+void deviation_unit(const struct deviation *d, unsigned axis, const struct point *drives,
+                    double at_mm, double errors[DEVIATION_OF_AXIS]);
 
 /* The table's angle: rad. */
 double deviation_table_angle(const struct deviation *d, const struct point *drives);

@@ -13,7 +13,7 @@ struct calibration {
     struct session session;
     struct table table;
     struct measurement_visit *visits; /* of every row first from below, then from above */
-    struct measurement_noise noise;
+    struct measurement_instrument instrument;
 };
 
 static bool is_axis(const struct calibration *c, unsigned axis)
@@ -24,7 +24,11 @@ static bool is_axis(const struct calibration *c, unsigned axis)
 /* The axis that turns the part on this machine; AXIS_COUNT: none. */
 static unsigned turn_axis(const struct calibration *c)
 {
-    return c->session.setup.geometry.table_axis;
+    struct unit_chain chain;
+
+    (void)machine_setup_chain(&c->session.setup, &chain);
+    return chain.axis[chain.units - 1] < AXIS_LINEAR_COUNT ? AXIS_COUNT
+                                                           : chain.axis[chain.units - 1];
 }
 
 /* ---- what is to be measured ---- */
@@ -127,27 +131,50 @@ static bool set_volume(struct calibration *c, const char *grid)
     if (!turns)
         return true;
     if (turn_axis(c) == AXIS_COUNT || !is_axis(c, turn_axis(c))) {
-        message_command_error("--grid %s: the machine has no turning table (geometry.table_axis)",
+        message_command_error("--grid %s: the machine has no turning table (geometry.table_axis, "
+                              "machine.chain)",
                               grid);
         return false;
     }
     c->table.input[c->table.inputs++] = (uint8_t)turn_axis(c);
+    c->table.output[c->table.outputs++] = (struct table_output){(uint8_t)turn_axis(c), TABLE_BOTH};
+    c->instrument.on_table = true; /* what the table is off in its angle is corrected there */
     return true;
+}
+
+/* The axis of an option, one that can be measured. AXIS_COUNT after a message. */
+static uint8_t read_axis(const struct calibration *c, const char *option, const char *name)
+{
+    const char *letter = strlen(name) == 1 ? strchr(AXIS_LETTERS, name[0] & ~0x20) : NULL;
+    const uint8_t axis = letter != NULL ? (uint8_t)(letter - AXIS_LETTERS) : AXIS_COUNT;
+
+    if (axis < AXIS_COUNT && is_axis(c, axis) && (axis < AXIS_LINEAR_COUNT || axis == turn_axis(c)))
+        return axis;
+    message_command_error("%s %s: a linear axis of the machine, or its turning table, is expected",
+                          option, name);
+    return AXIS_COUNT;
+}
+
+/* A unit: three shifts and three turns. */
+static bool set_unit(struct calibration *c, const char *name)
+{
+    const uint8_t axis = read_axis(c, "--unit", name);
+
+    c->table.input[c->table.inputs++] = axis;
+    c->table.errors = true;
+    c->instrument.unit = axis;
+    for (uint8_t i = 0; i < DEVIATION_OF_AXIS; i++)
+        c->table.output[c->table.outputs++] = (struct table_output){i, TABLE_BOTH};
+    return axis < AXIS_COUNT;
 }
 
 /* One axis: its own error in both directions, and what it does to the others. */
 static bool set_axis(struct calibration *c, const char *name)
 {
-    const char *letter = strlen(name) == 1 ? strchr(AXIS_LETTERS, name[0] & ~0x20) : NULL;
-    const uint8_t axis = letter != NULL ? (uint8_t)(letter - AXIS_LETTERS) : AXIS_COUNT;
+    const uint8_t axis = read_axis(c, "--axis", name);
 
-    if (axis == AXIS_COUNT || !is_axis(c, axis) ||
-        (axis >= AXIS_LINEAR_COUNT && axis != turn_axis(c))) {
-        message_command_error("--axis %s: a linear axis of the machine, or its turning table, is "
-                              "expected",
-                              name);
+    if (axis == AXIS_COUNT)
         return false;
-    }
     c->table.input[c->table.inputs++] = axis;
     c->table.output[c->table.outputs++] = (struct table_output){axis, TABLE_UP};
     c->table.output[c->table.outputs++] = (struct table_output){axis, TABLE_DOWN};
@@ -176,7 +203,10 @@ static void drop_axis_tables(struct axis_tables *tables, unsigned input)
 static void switch_off(struct calibration *c)
 {
     c->session.setup.machine.correction.off |= 1U << CORRECTION_SETUP | 1U << CORRECTION_WEAR;
-    if (c->session.correction == NULL)
+    if (c->table.errors)
+        c->session.setup.machine.correction.off |=
+            1U << CORRECTION_MATRIX | 1U << CORRECTION_AXES | 1U << CORRECTION_VOLUME;
+    if (c->session.correction == NULL || c->table.errors)
         return;
     if (c->table.inputs > 1)
         c->session.correction->volume.inputs = 0;
@@ -208,15 +238,15 @@ static bool plan_visits(struct calibration *c)
     return true;
 }
 
-/* K is what takes the deviation back; without a direction, the mean of both. */
-static double correction_of(const struct measurement_visit visit[2],
-                            const struct table_output *output)
+/* K is what takes the deviation back; without a direction, the mean of both. Of a unit the errors are told themselves. */
+static double value_of(const struct calibration *c, const struct measurement_visit visit[2],
+                       const struct table_output *output)
 {
     const double up = visit[0].deviation.at[output->axis];
     const double down = visit[1].deviation.at[output->axis];
 
     if (output->direction == TABLE_BOTH)
-        return -0.5 * (up + down);
+        return (c->table.errors ? 0.5 : -0.5) * (up + down);
     return output->direction == TABLE_UP ? -up : -down;
 }
 
@@ -228,7 +258,7 @@ static void set_values(struct calibration *c)
     for (uint32_t row = 0; row < rows; row++) {
         for (unsigned i = 0; i < table->outputs; i++)
             table->value_mm[row * table->outputs + i] =
-                (float)correction_of(&c->visits[2 * (size_t)row], &table->output[i]);
+                (float)value_of(c, &c->visits[2 * (size_t)row], &table->output[i]);
     }
 }
 
@@ -239,29 +269,106 @@ static enum command_status write_result(const struct calibration *c, const struc
 
     if (options->correction.comp != NULL)
         (void)snprintf(comment, sizeof comment, "from a file of nominal, forward, reverse");
+    else if (options->correction.compose)
+        (void)snprintf(comment, sizeof comment, "composed of the errors of the units of %.60s",
+                       c->session.setup.machine.name);
     else
-        (void)snprintf(
-            comment, sizeof comment, "measured on %.60s: %u points, noise %.3g um (1 sigma)",
-            c->session.setup.machine.name, (unsigned)table_rows(&c->table), 1e3 * c->noise.sigma);
+        (void)snprintf(comment, sizeof comment,
+                       "measured on %.60s: %u points, noise %.3g um (1 sigma)",
+                       c->session.setup.machine.name, (unsigned)table_rows(&c->table),
+                       1e3 * c->instrument.sigma);
     return correction_file_write(&c->table, path, comment) ? STATUS_DONE : STATUS_ENVIRONMENT;
 }
 
+/* ---- what is composed instead ---- */
+
+/* The volume table that the errors of all units make together: for controllers without them, on boards. */
+static void compose(struct calibration *c)
+{
+    struct table *table = &c->table;
+    const uint32_t rows = table_rows(table);
+
+    for (uint32_t row = 0; row < rows; row++) {
+        double deviation[AXIS_COUNT];
+
+        (void)geometry_deviation(c->session.correction->geometry, &c->visits[2 * (size_t)row].at,
+                                 deviation);
+        for (unsigned i = 0; i < table->outputs; i++)
+            table->value_mm[row * table->outputs + i] = (float)-deviation[table->output[i].axis];
+    }
+}
+
+/* ---- whether the machine can use the table ---- */
+
+static bool fits_grid(const struct table *table, struct diagnostic *wrong)
+{
+    struct grid *grid = calloc(1, sizeof *grid);
+    const bool fits = grid != NULL && grid_set(grid, table, wrong);
+
+    free(grid);
+    return fits;
+}
+
+/* By the rules that the machine file has for tables, as when it is loaded. */
+static bool check_table(const struct calibration *c)
+{
+    const struct machine *machine = &c->session.setup.machine;
+    char text[DIAGNOSTIC_TEXT_MAX];
+    struct diagnostic wrong = {0};
+    struct table_rules rules;
+
+    correction_table_rules(&machine->correction, machine_axes(machine), &rules);
+    if (table_check(&c->table, &rules, &wrong) &&
+        (c->table.inputs == 1 || fits_grid(&c->table, &wrong)))
+        return true;
+    (void)diagnostic_text(&wrong, text);
+    message_command_error("this machine would refuse the table: %s", text);
+    return false;
+}
+
+static bool set_task(struct calibration *c, const struct options *options)
+{
+    c->instrument.unit = AXIS_COUNT;
+    if (options->correction.compose &&
+        (c->session.correction == NULL || c->session.correction->geometry == NULL)) {
+        message_command_error("--compose: the machine file names no errors of units "
+                              "(unit_table_..., squareness_urad)");
+        return false;
+    }
+    if (options->correction.unit != NULL)
+        return set_unit(c, options->correction.unit);
+    return options->correction.axis != NULL ? set_axis(c, options->correction.axis)
+                                            : set_volume(c, options->correction.grid);
+}
+
+static enum command_status fill(struct calibration *c, const struct options *options)
+{
+    enum command_status status;
+
+    if (options->correction.compose) {
+        compose(c);
+        return STATUS_DONE;
+    }
+    switch_off(c);
+    status = measurement_run(&c->session, c->visits, 2 * table_rows(&c->table), &c->instrument);
+    if (status == STATUS_DONE)
+        set_values(c);
+    return status;
+}
+
+/* A table that does not fit is refused before anything is measured, one with too large numbers afterwards. */
 static enum command_status measure(struct calibration *c, const struct options *options)
 {
     enum command_status status;
 
-    if (!(options->correction.axis != NULL ? set_axis(c, options->correction.axis)
-                                           : set_volume(c, options->correction.grid)) ||
-        !set_knots(c, options))
+    if (!set_task(c, options) || !set_knots(c, options) || !check_table(c))
         return STATUS_INPUT;
-    switch_off(c);
     if (!plan_visits(c))
         return STATUS_ENVIRONMENT;
-    status = measurement_run(&c->session, c->visits, 2 * table_rows(&c->table), &c->noise);
+    status = fill(c, options);
     if (status != STATUS_DONE)
         return status;
-    set_values(c);
-    return write_result(c, options);
+    return check_table(c) ? write_result(c, options) : STATUS_FAILED;
 }
 
 /* From LinuxCNC's file instead of a measurement. */
@@ -308,9 +415,9 @@ static enum command_status execute(struct calibration *c, const struct options *
 
     if (status != STATUS_DONE)
         return status;
-    if (!read_noise(options->correction.noise, &c->noise.sigma))
+    if (!read_noise(options->correction.noise, &c->instrument.sigma))
         return STATUS_INPUT;
-    c->noise.state = UINT64_C(0x9E3779B97F4A7C15) * (1 + (uint64_t)options->correction.seed);
+    c->instrument.state = UINT64_C(0x9E3779B97F4A7C15) * (1 + (uint64_t)options->correction.seed);
     if (options->correction.comp != NULL)
         return convert(c, options);
     if (options->correction.grid == NULL) {
@@ -343,6 +450,10 @@ static const struct option_row rows[] = {
      "points along X, Y, Z, a fourth number: the turning table; with --axis one number"},
     {"axis", OPTION_TEXT, offsetof(struct options, correction.axis), "AXIS",
      "a table over this axis alone, both directions of approach"},
+    {"unit", OPTION_TEXT, offsetof(struct options, correction.unit), "AXIS",
+     "the errors of this unit: three shifts, three turns (unit_table_x ...)"},
+    {"compose", OPTION_FLAG, offsetof(struct options, correction.compose), NULL,
+     "a volume table of the errors of units, without measuring: for boards"},
     {"from", OPTION_TEXT, offsetof(struct options, correction.from), "X,Y,Z",
      "first point (default: where the travel begins)"},
     {"to", OPTION_TEXT, offsetof(struct options, correction.to), "X,Y,Z",
@@ -371,11 +482,16 @@ const struct command command_calibrate = {
             "measuring, except the\n"
             "one that is measured, set-up and wear. So calibrate the volume first, name its table "
             "in the machine file,\n"
-            "then calibrate the axes for backlash.\n"
+            "then calibrate the axes for backlash. Or measure the errors of each unit (--unit), "
+            "which the controller\n"
+            "composes along machine.chain; all layers that correct positions are off then. What "
+            "the machine would not\n"
+            "load is refused.\n"
             "\n"
             "Examples:\n"
             "  takt calibrate --machine worn_mill.ini --grid 9x7x6 -o volume.csv\n"
             "  takt calibrate --machine worn_mill.ini --axis X --grid 17 -o x.csv\n"
+            "  takt calibrate --machine worn_mill.ini --unit X --grid 33 -o unit_x.csv\n"
             "  takt calibrate --comp x.comp --axis X -o x.csv\n",
     .options = rows,
     .operands_min = 0,

@@ -23,7 +23,8 @@ static bool use_table(struct session *session, const char *path)
     bool good = table != NULL && correction_file_read(table, path, &setup->machine);
 
     if (good && table->inputs == 1)
-        place = setup->axis_table[table->input[0]];
+        place =
+            table->errors ? setup->unit_table[table->input[0]] : setup->axis_table[table->input[0]];
     free(table);
     if (!good)
         return false;

@@ -89,10 +89,72 @@ static bool load_axis(struct correction_tables *tables, struct table *table,
                       AXIS_LETTERS[table->input[0]], AXIS_LETTERS[axis]);
         return false;
     }
-    if (axis_tables_add(&tables->axes, table, &wrong))
+    if (!table->errors && axis_tables_add(&tables->axes, table, &wrong))
+        return true;
+    if (table->errors)
+        message_error(path, 0, 0, "errors of a unit (columns E...) belong to unit_table_%c",
+                      AXIS_LETTERS[axis] | 0x20);
+    else
+        report(path, &wrong);
+    return false;
+}
+
+/* What is allocated together, so that one free() releases it. */
+struct loaded {
+    struct correction_tables tables;
+    struct geometry geometry;
+};
+
+static bool load_unit(struct geometry *geometry, struct table *table,
+                      const struct machine_setup *setup, unsigned axis)
+{
+    const char *path = setup->unit_table[axis];
+    struct diagnostic wrong;
+
+    if (path[0] == '\0')
+        return true;
+    if (!correction_file_read(table, path, &setup->machine))
+        return false;
+    if (table->input[0] != axis) {
+        message_error(path, 0, 0, "this table is over axis %c, and the machine file has it for %c",
+                      AXIS_LETTERS[table->input[0]], AXIS_LETTERS[axis]);
+        return false;
+    }
+    if (geometry_add(geometry, table, &wrong))
         return true;
     report(path, &wrong);
     return false;
+}
+
+static bool has_geometry(const struct machine_setup *setup)
+{
+    bool any = false;
+
+    for (unsigned i = 0; i < AXIS_COUNT; i++)
+        any = any || setup->unit_table[i][0] != '\0';
+    for (unsigned i = 0; i < AXIS_LINEAR_COUNT; i++)
+        any = any || setup->known_geometry.squareness_rad[i] != 0;
+    return any;
+}
+
+/* The chain has passed machine_setup_check. */
+static bool load_geometry(struct loaded *loaded, struct table *table,
+                          const struct machine_setup *setup)
+{
+    struct geometry *g = &loaded->geometry;
+
+    (void)machine_setup_chain(setup, &g->chain);
+    for (unsigned i = 0; i < AXIS_LINEAR_COUNT; i++) {
+        g->tool_mm[i] = setup->known_geometry.tool_mm[i];
+        g->centre_mm[i] = setup->known_geometry.centre_mm[i];
+        g->squareness_rad[i] = setup->known_geometry.squareness_rad[i];
+    }
+    for (unsigned i = 0; i < AXIS_COUNT; i++) {
+        if (!load_unit(g, table, setup, i))
+            return false;
+    }
+    loaded->tables.geometry = has_geometry(setup) ? g : NULL;
+    return true;
 }
 
 /* What is left of every axis must be enough to move. */
@@ -126,41 +188,44 @@ static bool check_share(const struct correction_tables *tables, const struct mac
 
 static bool has_tables(const struct machine_setup *setup)
 {
-    bool any = setup->volume_table[0] != '\0';
+    bool any = setup->volume_table[0] != '\0' || has_geometry(setup);
 
     for (unsigned i = 0; i < AXIS_COUNT; i++)
         any = any || setup->axis_table[i][0] != '\0';
     return any;
 }
 
-static bool load_all(struct correction_tables *tables, const struct machine_setup *setup)
+static bool load_all(struct loaded *loaded, const struct machine_setup *setup)
 {
     struct table *table = calloc(1, sizeof *table);
     bool good = table != NULL;
 
     if (!good)
         message_command_error("out of memory");
-    good = good && load_volume(tables, table, setup);
+    good = good && load_volume(&loaded->tables, table, setup);
     for (unsigned i = 0; i < AXIS_COUNT && good; i++)
-        good = load_axis(tables, table, setup, i);
+        good = load_axis(&loaded->tables, table, setup, i);
+    good = good && load_geometry(loaded, table, setup);
     free(table);
     return good;
 }
 
 bool correction_file_load(struct correction_tables **tables, const struct machine_setup *setup)
 {
+    struct loaded *loaded;
+
     *tables = NULL;
     if (has_tables(setup)) {
-        *tables = calloc(1, sizeof **tables);
-        if (*tables == NULL) {
+        loaded = calloc(1, sizeof *loaded);
+        if (loaded == NULL) {
             message_command_error("out of memory");
             return false;
         }
-        if (!load_all(*tables, setup)) {
-            free(*tables);
-            *tables = NULL;
+        if (!load_all(loaded, setup)) {
+            free(loaded);
             return false;
         }
+        *tables = &loaded->tables; /* the first member */
     }
     return check_share(*tables, &setup->machine);
 }

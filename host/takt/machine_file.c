@@ -224,7 +224,8 @@ static bool resolve_files(struct machine_setup *setup, const char *machine_file)
     bool fits = resolve_path(setup->volume_table, machine_file);
 
     for (unsigned i = 0; i < AXIS_COUNT; i++)
-        fits = resolve_path(setup->axis_table[i], machine_file) && fits;
+        fits = resolve_path(setup->axis_table[i], machine_file) &&
+               resolve_path(setup->unit_table[i], machine_file) && fits;
     for (unsigned i = 0; i < MACHINE_SETUP_DRIVES_MAX; i++)
         fits = resolve_path(setup->drive[i].eds, machine_file) &&
                resolve_path(setup->drive[i].dcf, machine_file) && fits;

@@ -38,6 +38,9 @@
 #define OF_CORRECTION(name, scale, field, count, meaning)                                          \
     VECTOR(SECTION_CORRECTION, name, scale, IN_SETUP(machine.correction.field), count, -1e6, 1e6,  \
            meaning)
+#define OF_KNOWN(name, scale, field, meaning)                                                      \
+    VECTOR(SECTION_CORRECTION, name, scale, IN_SETUP(known_geometry.field), AXIS_LINEAR_COUNT,     \
+           -1e6, 1e6, meaning)
 #define OF_GEOMETRY(name, field, count, meaning)                                                   \
     VECTOR(SECTION_GEOMETRY, name, SCALE_NONE, IN_SETUP(geometry.field), count, -1e9, 1e9, meaning)
 /* The six errors of an axis: E_XX and so on. */
@@ -85,6 +88,8 @@ const struct machine_key machine_keys[] = {
            "pulses of step drives: even (each axis at its own times); by evaluation functions improved or plain (one axis at a time)"),
     ABOVE(SECTION_MACHINE, "tool_change_s", SCALE_NONE, IN_SETUP(machine.tool_change_s), 0, 3600,
           "longest change of the tool (M6) by a changer at I/O nodes"),
+    TEXT(SECTION_MACHINE, "chain", IN_SETUP(chain), CHAIN_TEXT_MAX,
+         "which units carry the part and which the tool, from the part (w) over the bed (b) to the tool (t), such as w C X b Y Z t; empty: w b X Y Z t, a turning table on the bed"),
     TEXT(SECTION_MACHINE, "tool_table", IN_SETUP(tool_table), MACHINE_SETUP_PATH_MAX + 1,
          "LinuxCNC .tbl file; relative to this file's folder; empty: no tools"),
     TEXT(SECTION_MACHINE, "parameter_file", IN_SETUP(parameter_file), MACHINE_SETUP_PATH_MAX + 1,
@@ -313,6 +318,16 @@ const struct machine_key machine_keys[] = {
     TEXT(SECTION_CORRECTION, "axis_table_a", IN_SETUP(axis_table[AXIS_A]), MACHINE_SETUP_PATH_MAX + 1, "likewise"),
     TEXT(SECTION_CORRECTION, "axis_table_b", IN_SETUP(axis_table[AXIS_B]), MACHINE_SETUP_PATH_MAX + 1, "likewise"),
     TEXT(SECTION_CORRECTION, "axis_table_c", IN_SETUP(axis_table[AXIS_C]), MACHINE_SETUP_PATH_MAX + 1, "likewise"),
+    TEXT(SECTION_CORRECTION, "unit_table_x", IN_SETUP(unit_table[AXIS_X]), MACHINE_SETUP_PATH_MAX + 1,
+         "CSV table of the errors of a unit over its axis, three shifts and three turns, which act along machine.chain; empty: none"),
+    TEXT(SECTION_CORRECTION, "unit_table_y", IN_SETUP(unit_table[AXIS_Y]), MACHINE_SETUP_PATH_MAX + 1, "likewise"),
+    TEXT(SECTION_CORRECTION, "unit_table_z", IN_SETUP(unit_table[AXIS_Z]), MACHINE_SETUP_PATH_MAX + 1, "likewise"),
+    TEXT(SECTION_CORRECTION, "unit_table_a", IN_SETUP(unit_table[AXIS_A]), MACHINE_SETUP_PATH_MAX + 1, "likewise"),
+    TEXT(SECTION_CORRECTION, "unit_table_b", IN_SETUP(unit_table[AXIS_B]), MACHINE_SETUP_PATH_MAX + 1, "likewise"),
+    TEXT(SECTION_CORRECTION, "unit_table_c", IN_SETUP(unit_table[AXIS_C]), MACHINE_SETUP_PATH_MAX + 1, "likewise"),
+    OF_KNOWN("squareness_urad", SCALE_PPM, squareness_rad, "of Y to X about Z, of Z to X about Y, of Z to Y about X, where unit tables do not contain it"),
+    OF_KNOWN("tool_mm", SCALE_NONE, tool_mm, "from spindle nose to tool point: the arm of the turns of units"),
+    OF_KNOWN("turn_centre_mm", SCALE_NONE, centre_mm, "a point of the turning axis, about which the turns of its unit act"),
     CHOICE(SECTION_CORRECTION, "off", KEY_LAYERS, IN_SETUP(machine.correction.off),
            "layers that are off until switched on: matrix setup axes volume thermal wear"),
     CHOICE(SECTION_CORRECTION, "turn_axis", KEY_AXIS, IN_SETUP(machine.correction.turn_axis),
@@ -331,7 +346,7 @@ const struct machine_key machine_keys[] = {
     OF_CORRECTION("overhang_turn", SCALE_NONE, overhang[3], 3, "to the turning axis, rad"),
     OF_CORRECTION("setup_offset_mm", SCALE_NONE, setup_offset_mm, 3, "the part stands displaced by X, Y, Z"),
     OF_CORRECTION("setup_rotation_deg", SCALE_DEGREE, setup_rotation_rad, 3, "and turned about X, Y, Z, in this order"),
-    OF_CORRECTION("setup_pivot_mm", SCALE_NONE, setup_pivot_mm, 3, "about this point"),
+    OF_CORRECTION("setup_pivot_mm", SCALE_NONE, setup_pivot_mm, 3, "about this point; with turn_axis a point of its axis, since the set-up turns with the table"),
     FROM(SECTION_CORRECTION, "setup_turn_deg", SCALE_DEGREE, IN_SETUP(machine.correction.setup_turn_rad), -360, 360,
          "turn of the turning axis"),
     OF_CORRECTION("thermal_um_per_m_k", SCALE_PPM, thermal_per_k, 3, "growth of X, Y, Z per K"),
@@ -358,6 +373,7 @@ const struct machine_key machine_keys[] = {
     ERRORS("x", 0),
     ERRORS("y", 1),
     ERRORS("z", 2),
+    ERRORS("_table", DEVIATION_TABLE),
     OF_GEOMETRY("squareness_urad", squareness_urad, 3, "squareness of Y to X about Z, of Z to X about Y, of Z to Y about X"),
     OF_GEOMETRY("tool_mm", tool_mm, 3, "from spindle nose to tool point: the arm of the rotations"),
     VECTOR(SECTION_GEOMETRY, "backlash_um", SCALE_NONE, IN_SETUP(geometry.backlash_um), 3, 0, 1e4, "gap of X, Y, Z"),

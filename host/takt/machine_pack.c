@@ -56,6 +56,13 @@ enum command_status machine_pack_write(const struct machine_setup *setup, const 
         configuration_files_free(&files);
         return STATUS_INPUT;
     }
+    if (tables != NULL && tables->geometry != NULL) {
+        message_command_error("errors of units (unit_table_..., squareness_urad) are not for a "
+                              "board: make a volume table of them with takt calibrate --compose");
+        free(tables);
+        configuration_files_free(&files);
+        return STATUS_INPUT;
+    }
     size = settings_pack(&setup->machine, tables, files.dcf, packed.bytes, sizeof packed.bytes);
     if (size == 0) {
         message_command_error("the settings take more than %u bytes", BYTES_MAX);

@@ -122,9 +122,53 @@ static const char *check_machine(const struct machine *machine)
     return problem("%s", text);
 }
 
+/* The axis that turns the part: as the controller knows it, or as the machine really is. */
+static uint32_t turn_axis(const struct machine_setup *setup)
+{
+    const uint32_t known = setup->machine.correction.turn_axis;
+
+    return known < AXIS_COUNT ? known : setup->geometry.table_axis;
+}
+
+/* The turning unit is the axis that [correction] and [geometry] mean. */
+static const char *check_turning(const struct machine_setup *setup, uint32_t axis)
+{
+    const uint32_t named[] = {setup->machine.correction.turn_axis, setup->geometry.table_axis};
+
+    for (unsigned i = 0; i < 2; i++) {
+        if (named[i] < AXIS_COUNT && named[i] != axis)
+            return problem("chain: the unit beside w is to be %c, which %s says turns the part",
+                           AXIS_LETTERS[named[i]],
+                           i == 0 ? "correction.turn_axis" : "geometry.table_axis");
+    }
+    return NULL;
+}
+
+const char *machine_setup_chain(const struct machine_setup *setup, struct unit_chain *chain)
+{
+    const char *wrong = chain_text_read(setup->chain, turn_axis(setup), chain);
+    unsigned units = 0;
+
+    if (wrong != NULL)
+        return wrong;
+    for (unsigned i = 0; i < chain->units; i++)
+        units |= 1U << chain->axis[i];
+    for (unsigned i = 0; i < AXIS_LINEAR_COUNT; i++) {
+        if (setup->machine.axis[i].present && (units & 1U << i) == 0)
+            return problem("chain: axis %c is missing", AXIS_LETTERS[i]);
+    }
+    const uint8_t last = chain->axis[chain->units - 1];
+
+    return check_turning(setup, last >= AXIS_LINEAR_COUNT ? last : AXIS_COUNT);
+}
+
 const char *machine_setup_check(const struct machine_setup *setup)
 {
     const char *wrong = check_machine(&setup->machine);
+    struct unit_chain chain;
+
+    if (wrong == NULL)
+        wrong = machine_setup_chain(setup, &chain);
 
     for (unsigned i = 0; i < AXIS_COUNT && wrong == NULL; i++) {
         if (setup->machine.axis[i].present)

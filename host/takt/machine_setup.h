@@ -10,6 +10,7 @@
 #include "drives/drive_plant.h"
 #include "spindle/virtual_spindle.h"
 #include "stepper/virtual_steppers.h"
+#include "takt/chain_text.h"
 
 #include <stdbool.h>
 
@@ -36,12 +37,22 @@ struct machine_drive {
 #define MACHINE_SECOND_DRIVE     AXIS_COUNT
 #define MACHINE_SETUP_DRIVES_MAX (AXIS_COUNT + MACHINE_GANTRIES_MAX)
 
+/* What the controller is told of its machine's geometry (correction/geometry.h), beside the errors of units. */
+struct geometry_setup {
+    double tool_mm[AXIS_LINEAR_COUNT];
+    double centre_mm[AXIS_LINEAR_COUNT];
+    double squareness_rad[AXIS_LINEAR_COUNT];
+};
+
 struct machine_setup {
     struct machine machine;
     char tool_table[MACHINE_SETUP_PATH_MAX + 1];     /* empty: none */
     char parameter_file[MACHINE_SETUP_PATH_MAX + 1]; /* empty: none */
     char volume_table[MACHINE_SETUP_PATH_MAX + 1];   /* correction tables; empty: none */
     char axis_table[AXIS_COUNT][MACHINE_SETUP_PATH_MAX + 1];
+    char unit_table[AXIS_COUNT][MACHINE_SETUP_PATH_MAX + 1];
+    char chain[CHAIN_TEXT_MAX]; /* of units, from the part to the tool; empty: see chain_text.h */
+    struct geometry_setup known_geometry;
     struct deviation_config geometry; /* how the virtual machine differs from a perfect one */
     struct machine_drive
         drive[MACHINE_SETUP_DRIVES_MAX]; /* of each axis, and the second ones of gantries */
@@ -60,6 +71,9 @@ void machine_setup_set_default(struct machine_setup *setup);
  * carry the cycle. NULL: good; else what is wrong, valid until the next call.
  */
 const char *machine_setup_check(const struct machine_setup *setup);
+
+/* The machine's chain. NULL: good; else what is wrong with it. */
+const char *machine_setup_chain(const struct machine_setup *setup, struct unit_chain *chain);
 
 /* The virtual spindle: its highest speed is the machine's. */
 struct virtual_spindle_config machine_setup_get_spindle(const struct machine_setup *setup);

@@ -98,40 +98,63 @@ static bool set_program(struct session *session, const struct measurement_visit 
 /* ---- the measurement ---- */
 
 /* xorshift64*: S. Vigna, 2016. */
-static double random_uniform(struct measurement_noise *noise)
+static double random_uniform(struct measurement_instrument *instrument)
 {
-    noise->state ^= noise->state >> 12;
-    noise->state ^= noise->state << 25;
-    noise->state ^= noise->state >> 27;
-    return (double)((noise->state * UINT64_C(0x2545F4914F6CDD1D)) >> 11) * 0x1p-53;
+    instrument->state ^= instrument->state >> 12;
+    instrument->state ^= instrument->state << 25;
+    instrument->state ^= instrument->state >> 27;
+    return (double)((instrument->state * UINT64_C(0x2545F4914F6CDD1D)) >> 11) * 0x1p-53;
 }
 
 /* The sum of twelve uniform numbers has the variance 1, and is near enough to Gauss. */
-static double random_normal(struct measurement_noise *noise)
+static double random_normal(struct measurement_instrument *instrument)
 {
     double sum = -6;
 
     for (int i = 0; i < 12; i++)
-        sum += random_uniform(noise);
+        sum += random_uniform(instrument);
     return sum;
 }
 
-static void read_instrument(const struct simulation *s, struct measurement_noise *noise,
-                            struct measurement_visit *visit)
+/* Shifts in mm, turns in rad: each with its noise. */
+static void read_unit(const struct tool_point *t, struct measurement_instrument *instrument,
+                      struct measurement_visit *visit)
 {
-    const struct tool_point *t = &s->tool_point;
+    const unsigned axis = instrument->unit;
+    double *errors = visit->deviation.at;
+
+    deviation_unit(&t->real, axis, &t->real_at, visit->at.at[axis], errors);
+    for (unsigned i = 0; i < DEVIATION_OF_AXIS; i++)
+        errors[i] += (i < AXIS_LINEAR_COUNT ? 1.0 : RAD_PER_MM) * instrument->sigma *
+                     random_normal(instrument);
+}
+
+static void read_tool(const struct tool_point *t, struct measurement_instrument *instrument,
+                      struct measurement_visit *visit)
+{
+    const unsigned turn = t->real.config.table_axis;
+    struct point wanted = visit->at;
     struct point tool;
 
-    tool_point_get(t, &visit->at, &tool);
+    if (instrument->on_table)
+        wanted.at[turn] = deviation_table_angle(&t->real, &t->real_at);
+    tool_point_get(t, &wanted, &tool);
     for (unsigned i = 0; i < AXIS_LINEAR_COUNT; i++)
-        visit->deviation.at[i] = tool.at[i] - visit->at.at[i] + noise->sigma * random_normal(noise);
-    if (t->real.config.table_axis < AXIS_COUNT) {
-        const unsigned turn = t->real.config.table_axis;
-
+        visit->deviation.at[i] =
+            tool.at[i] - visit->at.at[i] + instrument->sigma * random_normal(instrument);
+    if (turn < AXIS_COUNT)
         visit->deviation.at[turn] = deviation_table_angle(&t->real, &t->real_at) -
                                     visit->at.at[turn] +
-                                    RAD_PER_MM * noise->sigma * random_normal(noise);
-    }
+                                    RAD_PER_MM * instrument->sigma * random_normal(instrument);
+}
+
+static void read_instrument(const struct simulation *s, struct measurement_instrument *instrument,
+                            struct measurement_visit *visit)
+{
+    if (instrument->unit < AXIS_COUNT)
+        read_unit(&s->tool_point, instrument, visit);
+    else
+        read_tool(&s->tool_point, instrument, visit);
 }
 
 /* The visit whose dwell is going on, or count. */
@@ -145,7 +168,7 @@ static uint32_t visit_at(const struct simulation *s, uint32_t count)
 }
 
 static enum command_status run(struct simulation *s, struct measurement_visit *visits,
-                               uint32_t count, struct measurement_noise *noise)
+                               uint32_t count, struct measurement_instrument *instrument)
 {
     uint32_t standing = count;
     char fault[DIAGNOSTIC_TEXT_MAX];
@@ -161,7 +184,7 @@ static enum command_status run(struct simulation *s, struct measurement_visit *v
             const struct tool_point now = s->tool_point;
 
             s->tool_point = before; /* the end of the dwell */
-            read_instrument(s, noise, &visits[standing]);
+            read_instrument(s, instrument, &visits[standing]);
             s->tool_point = now;
         }
         standing = visit;
@@ -174,7 +197,7 @@ static enum command_status run(struct simulation *s, struct measurement_visit *v
 }
 
 enum command_status measurement_run(struct session *session, struct measurement_visit *visits,
-                                    uint32_t count, struct measurement_noise *noise)
+                                    uint32_t count, struct measurement_instrument *instrument)
 {
     struct session_totals totals;
     struct simulation *simulation;
@@ -188,7 +211,7 @@ enum command_status measurement_run(struct session *session, struct measurement_
     status = simulation_open(session, &simulation);
     if (status != STATUS_DONE)
         return status;
-    status = run(simulation, visits, count, noise);
+    status = run(simulation, visits, count, instrument);
     simulation_close(simulation);
     return status;
 }

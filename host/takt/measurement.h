@@ -9,6 +9,7 @@
 #include "takt/command.h"
 #include "takt/session.h"
 
+#include <stdbool.h>
 #include <stdint.h>
 
 /* Distance from which a point is approached, so that the direction of approach is known. */
@@ -17,22 +18,26 @@
 /* Standard deviation of the instrument unless something else is asked for, um or urad. */
 #define MEASUREMENT_NOISE 0.1
 
-struct measurement_noise {
-    double sigma;   /* mm: the instrument's standard deviation */
+struct measurement_instrument {
+    double sigma;   /* mm: standard deviation of its noise */
     uint64_t state; /* of the random numbers, not 0 */
+    uint32_t
+        unit; /* enum axis of the unit it looks at: its three shifts and turns; AXIS_COUNT: at the tool's point */
+    bool
+        on_table; /* the tool's point as seen from the table where it really stands, instead of where it is wanted */
 };
 
 /* One point, and what was found there. */
 struct measurement_visit {
     struct point at;        /* where the machine is sent: machine coordinates */
     int direction;          /* of the approach in all axes: 1 from below, -1 from above */
-    struct point deviation; /* mm, and rad of the turning axis */
+    struct point deviation; /* mm, and rad of the turning axis; of a unit its shifts and turns */
 };
 
 /*
  * Visits all points in their order on the session's machine. Its program is replaced. STATUS_DONE; else after a message.
  */
 enum command_status measurement_run(struct session *session, struct measurement_visit *visits,
-                                    uint32_t count, struct measurement_noise *noise);
+                                    uint32_t count, struct measurement_instrument *instrument);
 
 #endif

@@ -61,9 +61,9 @@ struct option_pack {
 
 /* For `takt calibrate` and `takt correct`. */
 struct option_correction {
-    const char *grid, *axis, *from, *to, *noise, *comp, *table, *tolerance;
+    const char *grid, *axis, *unit, *from, *to, *noise, *comp, *table, *tolerance;
     double seed, comp_type;
-    bool filter;
+    bool filter, compose;
 };
 
 /* Everything a command line may say; each sub-command offers a part. NULL: not given. Texts are argv's. */

@@ -39,6 +39,10 @@ enum command_status target_setup_check(const struct session *session)
     else if (has_steps(&session->setup.machine))
         message_command_error("--target: the image drives axes over CAN alone, and this machine "
                               "has step drives");
+    else if (session->correction != NULL && session->correction->geometry != NULL)
+        message_command_error("--target: errors of units (unit_table_..., squareness_urad) are not "
+                              "for a board: make a volume table of them with takt calibrate "
+                              "--compose");
     else if (has_configurations(&session->setup))
         message_command_error("--target: the image is not handed configurations of drives (dcf); "
                               "a board has them in its settings (takt machine --pack)");

@@ -2,10 +2,26 @@
 
 #include "base/maths.h"
 
+/* A table that the chain names is there; one that only the controller believes in is not. */
+static void set_chain(const struct machine_setup *setup, struct deviation_config *geometry)
+{
+    struct unit_chain *chain = &geometry->chain;
+
+    (void)machine_setup_chain(setup, chain); /* a setup that has passed its check */
+    if (chain->axis[chain->units - 1] < AXIS_LINEAR_COUNT)
+        return;
+    if (setup->chain[0] != '\0')
+        geometry->table_axis = chain->axis[chain->units - 1];
+    else if (geometry->table_axis == AXIS_COUNT)
+        chain->units--;
+}
+
 void tool_point_init(struct tool_point *t, const struct machine_setup *setup)
 {
     double min_mm[AXIS_COUNT], max_mm[AXIS_COUNT];
+    struct deviation_config geometry = setup->geometry;
 
+    set_chain(setup, &geometry);
     for (unsigned i = 0; i < AXIS_COUNT; i++) {
         min_mm[i] = setup->machine.axis[i].travel_min_mm;
         max_mm[i] = setup->machine.axis[i].travel_max_mm;
@@ -14,7 +30,7 @@ void tool_point_init(struct tool_point *t, const struct machine_setup *setup)
         .cycle_s = 1e-6 * (double)setup->machine.cycle_us,
         .axes = machine_axes(&setup->machine),
     };
-    deviation_init(&t->real, &setup->geometry, min_mm, max_mm);
+    deviation_init(&t->real, &geometry, min_mm, max_mm);
     t->nominal = t->real;
     t->is_watched = t->real.any;
 }

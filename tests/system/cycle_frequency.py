@@ -14,7 +14,7 @@ def needed(*arguments):
 
 
 # The machines of the page, with the digits it gives, and what governs them.
-for name, frequency in (("6R13GN1", 111), ("FP7M", 122), ("FP7SMN", 157), ("MA655SM30A", 297), ("16K20F3", 313)):
+for name, frequency in (("6R13GN1", 111), ("FP7M", 122), ("FP7SMN", 157), ("MA655SM30A", 297), ("MA655 X", 177), ("16K20F3", 313)):
     hertz, out = needed("--machine", name)
     t.check(abs(hertz - frequency) < 0.55, f"{name} needs {frequency} Hz", hertz)
     t.check(needed("--machine", name.lower())[1] == out, f"{name} in small letters")

@@ -148,6 +148,104 @@ static void test_the_setup_layer_takes_back_a_turned_and_displaced_pallet(void)
     TEST_ASSERT_DOUBLE_WITHIN(1e-15, 0.001, k.at[AXIS_C]);
 }
 
+/* Where a feature of the part is, by a displacement D of the part on its table and the table's own turn about P. */
+static void place_of(const double q[3], double psi, const double angle[3], double p[3])
+{
+    double v[3], w[3];
+
+    for (int i = 0; i < 3; i++)
+        v[i] = q[i] - settings.setup_pivot_mm[i];
+    for (int i = 0; i < 3; i++) {
+        const int j = (i + 1) % 3, k = (i + 2) % 3;
+
+        memcpy(w, v, sizeof w);
+        v[j] = cos(angle[i]) * w[j] - sin(angle[i]) * w[k];
+        v[k] = sin(angle[i]) * w[j] + cos(angle[i]) * w[k];
+    }
+    for (int i = 0; i < 3; i++)
+        v[i] += settings.setup_offset_mm[i];
+    p[0] = cos(psi) * v[0] - sin(psi) * v[1] + settings.setup_pivot_mm[0];
+    p[1] = sin(psi) * v[0] + cos(psi) * v[1] + settings.setup_pivot_mm[1];
+    p[2] = v[2] + settings.setup_pivot_mm[2];
+}
+
+static void set_up_askew(void)
+{
+    settings.turn_axis = AXIS_C;
+    settings.setup_offset_mm[AXIS_X] = 0.7;
+    settings.setup_offset_mm[AXIS_Y] = -0.43;
+    settings.setup_offset_mm[AXIS_Z] = 0.2;
+    settings.setup_rotation_rad[AXIS_X] = 0.004;
+    settings.setup_rotation_rad[AXIS_Y] = -0.003;
+    settings.setup_rotation_rad[AXIS_Z] = 0.01;
+    settings.setup_pivot_mm[AXIS_X] = 30;
+    settings.setup_pivot_mm[AXIS_Y] = -12;
+    settings.setup_pivot_mm[AXIS_Z] = 5;
+}
+
+static void test_the_set_up_turns_with_the_table_that_bears_the_part(void)
+{
+    const double straight[3] = {0}, q[3] = {120, 45, -20};
+    double wanted[3], is[3];
+
+    set_up_askew();
+    begin(NULL);
+    for (int quarter = -4; quarter < 5; quarter++) {
+        const double psi = quarter * MATHS_PI / 2 + (quarter == 3 ? 0.3 : 0);
+        const double offset[3] = {settings.setup_offset_mm[0], settings.setup_offset_mm[1],
+                                  settings.setup_offset_mm[2]};
+
+        memset(settings.setup_offset_mm, 0, sizeof settings.setup_offset_mm);
+        place_of(q, psi, straight, wanted);
+        memcpy(settings.setup_offset_mm, offset, sizeof offset);
+        place_of(q, psi, settings.setup_rotation_rad, is);
+        const struct point k = settle(wanted[0], wanted[1], wanted[2], psi);
+
+        for (int i = 0; i < 3; i++)
+            TEST_ASSERT_DOUBLE_WITHIN(1e-9, is[i], wanted[i] + k.at[i]);
+    }
+}
+
+/* Sines of all axes: the derivatives of K by differences. */
+static void test_a_set_up_on_a_table_takes_no_more_of_the_axes_than_it_asked_for(void)
+{
+    static const double size[AXIS_COUNT] = {200, 150, 100, 0, 0, 3},
+                        rate[AXIS_COUNT] = {3.1, 2.3, 4.7, 0, 0, 5.9};
+    struct motion_bound most = {{0}, {0}, {0}, {0}};
+    double k[4][AXIS_COUNT] = {{0}};
+    struct need need;
+
+    set_up_askew();
+    begin(NULL);
+    for (int i = 0; i < AXIS_COUNT; i++) {
+        most.farthest_mm[i] = size[i];
+        most.velocity_mm_s[i] = size[i] * rate[i];
+        most.acceleration_mm_s2[i] = most.velocity_mm_s[i] * rate[i];
+        most.jerk_mm_s3[i] = most.acceleration_mm_s2[i] * rate[i];
+    }
+    correction_get_need(&c, &most, &need);
+    (void)settle(0, 0, 0, 0);
+    for (int n = 0; n < 20000; n++) {
+        struct point at, set;
+
+        for (int i = 0; i < AXIS_COUNT; i++)
+            at.at[i] = size[i] * sin(rate[i] * n * CYCLE_S + i);
+        correction_cycle(&c, &at, &move, &set);
+        memmove(k[1], k[0], 3 * sizeof k[0]);
+        for (int i = 0; i < 3; i++) {
+            k[0][i] = set.at[i] - at.at[i];
+            const double first = k[0][i] - k[1][i], second = first - (k[1][i] - k[2][i]);
+            const double third = second - (k[1][i] - 2 * k[2][i] + k[3][i]);
+
+            if (n < 3)
+                continue;
+            TEST_ASSERT_TRUE(fabs(first) <= need.velocity_mm_s[i] * CYCLE_S);
+            TEST_ASSERT_TRUE(fabs(second) <= need.acceleration_mm_s2[i] * CYCLE_S * CYCLE_S);
+            TEST_ASSERT_TRUE(fabs(third) <= need.jerk_mm_s3[i] * CYCLE_S * CYCLE_S * CYCLE_S);
+        }
+    }
+}
+
 static void test_thermal_growth_of_fifteen_kelvin_is_taken_back(void)
 {
     settings.thermal_per_k[AXIS_Y] = 11e-6;
@@ -384,6 +482,8 @@ int main(void)
     RUN_TEST(test_the_matrix_is_composed_of_machine_workpiece_and_overhang);
     RUN_TEST(test_the_setup_layer_moves_no_axis_that_is_not_there);
     RUN_TEST(test_the_setup_layer_takes_back_a_turned_and_displaced_pallet);
+    RUN_TEST(test_the_set_up_turns_with_the_table_that_bears_the_part);
+    RUN_TEST(test_a_set_up_on_a_table_takes_no_more_of_the_axes_than_it_asked_for);
     RUN_TEST(test_thermal_growth_of_fifteen_kelvin_is_taken_back);
     RUN_TEST(test_backlash_follows_the_direction_of_the_last_motion);
     RUN_TEST(test_a_reversal_fades_within_the_need);

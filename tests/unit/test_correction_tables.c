@@ -57,6 +57,14 @@ static void test_units_separators_and_small_letters_are_understood(void)
     TEST_ASSERT_FLOAT_WITHIN(1e-9F, 0.00508F, table.value_mm[3]);
 }
 
+static void test_errors_of_a_unit_are_read_also_about_axes_that_the_machine_has_not(void)
+{
+    TEST_ASSERT_TRUE(read_text("X_mm,EX_um,EB_urad\n0,1,2\n100,3,4\n"));
+    TEST_ASSERT_TRUE(table.errors);
+    TEST_ASSERT_EQUAL_UINT(AXIS_B, table.output[1].axis);
+    TEST_ASSERT_EQUAL_FLOAT(4e-6F, table.value_mm[3]);
+}
+
 static void test_both_directions_of_an_axis_are_read(void)
 {
     TEST_ASSERT_TRUE(read_text("X_mm\tKX_up_um\tKX_down_um\tKY_um\n0\t5\t-5\t1\n7\t6\t-4\t2\n"));
@@ -239,6 +247,9 @@ static const struct broken broken[] = {
     {"X_mm,Y_mm\n", TAKT_ERROR_TABLE_OUTPUTS_MISSING, NULL, 1},
     {"X_mm,KX_up_um\n", TAKT_ERROR_TABLE_DIRECTION_ALONE, "KX", 1},
     {"X_mm,Y_mm,KX_up_um,KX_down_um\n", TAKT_ERROR_TABLE_DIRECTION_GRID, "KX_up_um", 1},
+    {"X_mm,Y_mm,EX_um\n", TAKT_ERROR_TABLE_ERRORS, "EX_um", 1},
+    {"X_mm,KX_um,EY_um\n", TAKT_ERROR_TABLE_ERRORS, "EY_um", 1},
+    {"X_mm,EX_up_um\n", TAKT_ERROR_TABLE_ERRORS, "EX_up_um", 1},
     {"X_mm,C_deg,B_deg,KX_um\n", TAKT_ERROR_TABLE_ROTARY_SECOND, "B_deg", 1},
     {"B_deg,KB_urad\n0,0\n1,0\n", TAKT_ERROR_AXIS_MISSING, "B", 0},
     /* cells */
@@ -321,6 +332,7 @@ int main(void)
     UNITY_BEGIN();
     RUN_TEST(test_a_grid_is_read_with_its_axes_and_units);
     RUN_TEST(test_units_separators_and_small_letters_are_understood);
+    RUN_TEST(test_errors_of_a_unit_are_read_also_about_axes_that_the_machine_has_not);
     RUN_TEST(test_both_directions_of_an_axis_are_read);
     RUN_TEST(test_what_is_written_reads_as_the_same_table);
     RUN_TEST(test_a_changed_byte_breaks_the_checksum_of_a_written_table);
