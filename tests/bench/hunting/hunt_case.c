@@ -238,6 +238,8 @@ static void read_row(struct judge *j, char *line, const bool *wanted, double *ro
 
 double *add_row(struct judge *j)
 {
+    if (j->axes == 0)
+        fail("the case has no axis");
     if (j->rows == j->row_room) {
         j->row_room = j->row_room > 0 ? 2 * j->row_room : 4096;
         j->setpoint = realloc(j->setpoint, j->row_room * j->axes * sizeof *j->setpoint);
