@@ -37,13 +37,6 @@
 /* Blocks that are gone on by in a cycle, at most: twice what the lead point can pass in it (plan/block.c). */
 #define BLOCKS_MAX 16
 
-void lead_end_blocks(struct lead *l, bool on)
-{
-    l->halt.on = on;
-    l->halt.begun = l->halt.begun && on;
-    l->halt.found = l->halt.found && on;
-}
-
 bool lead_has_halted(const struct lead *l)
 {
     return l->halt.found && l->feed == 0.0 && l->at == l->halt.end;
@@ -55,21 +48,16 @@ void lead_leave_halt(struct lead *l)
     l->halt.found = false;
 }
 
-/* Not harder than the joint behind allows: it can be rested at too when the halt is taken back (can_rest_before). */
-double lead_halt_acceleration(const struct lead *l)
+/* Cycles until it may brake. */
+static double waiting(const struct lead *l)
 {
-    const uint32_t landing = lead_landing(l);
-    const double a = lead_has_piece(l) ? maths_min(l->halt.a, lead_acceleration(l)) : l->halt.a;
-
-    return landing == CEILING_NONE ? a : maths_min(a, (double)lead_piece(l, landing)->acceleration);
+    return maths_max(0.0, l->window - (double)l->since_plus);
 }
 
 /* By how much feed squared is below what it may be; < 0: it is above. */
 static double spare_energy(const struct lead *l, double a)
 {
-    const double wait = maths_max(0.0, l->window - (double)l->since_plus);
-
-    return 2.0 * a * (path_mm(l->at, l->halt.end) - l->feed * wait) - lead_square(l->feed);
+    return 2.0 * a * (path_mm(l->at, l->halt.end) - l->feed * waiting(l)) - lead_square(l->feed);
 }
 
 bool lead_can_halt(const struct lead *l, double a)
@@ -84,11 +72,51 @@ static bool keeps_halt(const struct lead *l, double a)
            -LEAD_ENERGY_SLACK * lead_square(l->feed) - 2.0 * LEAD_REST_PART * lead_square(a);
 }
 
-static bool can_rest(const struct lead *l, bool found)
+/* What the end itself and the place that it is in allow. */
+static double free_acceleration(const struct lead *l)
+{
+    return lead_has_piece(l) ? maths_min(l->halt.a, lead_acceleration(l)) : l->halt.a;
+}
+
+/* Not harder than the joint behind allows: it can be rested at too when the halt is taken back (can_rest_before). */
+static double joint_acceleration(const struct lead *l)
+{
+    const uint32_t landing = lead_landing(l);
+    const double a = free_acceleration(l);
+
+    return landing == CEILING_NONE ? a : maths_min(a, (double)lead_piece(l, landing)->acceleration);
+}
+
+/*
+ * A joint that came into view since the end was found may allow less than what it takes to rest there, w^2 / 2 (E - s - w k).
+ * The end is kept, and not taken back.
+ */
+static bool is_bound(const struct lead *l)
+{
+    return l->halt.found && l->feed > 0.0 && !keeps_halt(l, joint_acceleration(l)) &&
+           keeps_halt(l, free_acceleration(l));
+}
+
+double lead_halt_acceleration(const struct lead *l)
+{
+    const double gap = path_mm(l->at, l->halt.end) - l->feed * waiting(l);
+
+    return is_bound(l) ? maths_min(free_acceleration(l), 0.5 * lead_square(l->feed) / gap)
+                       : joint_acceleration(l);
+}
+
+static bool can_rest(const struct lead *l)
 {
     const double a = lead_halt_acceleration(l);
 
-    return l->feed == 0.0 || lead_can_halt(l, a) || (found && keeps_halt(l, a));
+    return l->feed == 0.0 || lead_can_halt(l, a) || (l->halt.found && keeps_halt(l, a));
+}
+
+void lead_end_blocks(struct lead *l, bool on)
+{
+    l->halt.on = on;
+    l->halt.begun = l->halt.begun && on;
+    l->halt.found = l->halt.found && (on || is_bound(l));
 }
 
 /* The block begins a motion, or goes on with that of the one before. */
@@ -155,6 +183,7 @@ bool lead_seek_halt(struct lead *l)
     if (l->run.active || !find_end(l, l->here.ceiling)) {
         return false;
     }
-    h->found = can_rest(l, found && h->end == end);
+    h->found = found && h->end == end;
+    h->found = can_rest(l);
     return !h->found;
 }
