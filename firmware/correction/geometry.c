@@ -35,6 +35,13 @@ static bool carries_tool(const struct geometry *g, unsigned unit)
     return unit < g->chain.tool_units;
 }
 
+void geometry_init(struct geometry *g)
+{
+    memset(g, 0, sizeof(*g));
+    g->deviation = geometry_deviation;
+    g->need = geometry_need;
+}
+
 bool geometry_add(struct geometry *g, const struct table *table, struct diagnostic *wrong)
 {
     for (unsigned u = 0; u < g->chain.units && table->errors; u++) {

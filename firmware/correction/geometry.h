@@ -24,7 +24,14 @@ struct geometry {
     /* of Y to X about Z (C0Y), of Z to X about Y (B0Z), of Z to Y about X (A0Z): as ISO 230-1 has them */
     double squareness_rad[AXIS_LINEAR_COUNT];
     struct axis_tables errors[UNIT_CHAIN_MAX]; /* of each unit; count 0: it has none */
+    /* Those below, by geometry_init: an image in which no machine has errors of units is without their code. */
+    unsigned (*deviation)(const struct geometry *g, const struct point *at,
+                          double deviation[AXIS_COUNT]);
+    void (*need)(const struct geometry *g, const struct motion_bound *most, struct need *need);
 };
+
+/* No errors yet; whatever else it holds is for the caller to set. */
+void geometry_init(struct geometry *g);
 
 /* Takes a table of a unit's errors (E columns). The chain is set; *g must not be moved. False: *wrong says why. */
 bool geometry_add(struct geometry *g, const struct table *table, struct diagnostic *wrong);

@@ -53,9 +53,10 @@ static void axes_follow(struct correction *c, struct layer_notes *notes)
 
 static void add_geometry(const struct correction *c, double weight, struct correction_sum *sum)
 {
+    const struct geometry *g = c->tables->geometry;
     double deviation[AXIS_COUNT];
 
-    sum->outside |= geometry_deviation(c->tables->geometry, c->at, deviation);
+    sum->outside |= g->deviation(g, c->at, deviation);
     for (unsigned i = 0; i < c->axes_end; i++) {
         sum->fine[i] -= (float)(weight * deviation[i]);
     }
@@ -84,7 +85,7 @@ static void axes_need(const struct correction *c, const struct layer_notes *note
     (void)notes;
     axis_tables_need(&c->tables->axes, &approach, most, need);
     if (c->tables->geometry != NULL) {
-        geometry_need(c->tables->geometry, most, need);
+        c->tables->geometry->need(c->tables->geometry, most, need);
     }
 }
 

@@ -143,6 +143,7 @@ static bool load_geometry(struct loaded *loaded, struct table *table,
 {
     struct geometry *g = &loaded->geometry;
 
+    geometry_init(g);
     (void)machine_setup_chain(setup, &g->chain);
     for (unsigned i = 0; i < AXIS_LINEAR_COUNT; i++) {
         g->tool_mm[i] = setup->known_geometry.tool_mm[i];

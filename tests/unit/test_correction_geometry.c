@@ -41,7 +41,7 @@ static uint64_t state;
 
 void setUp(void)
 {
-    memset(&geometry, 0, sizeof geometry);
+    geometry_init(&geometry);
     memset(&tables, 0, sizeof tables);
     memset(&move, 0, sizeof move);
     correction_settings_set_default(&settings);
@@ -101,7 +101,7 @@ static void make_unit(unsigned unit, unsigned axis)
 
 static void make_machine(const struct unit_chain *chain)
 {
-    memset(&geometry, 0, sizeof geometry);
+    geometry_init(&geometry);
     geometry.chain = *chain;
     for (unsigned i = 0; i < 3; i++) {
         geometry.tool_mm[i] = between(-100, 100);
