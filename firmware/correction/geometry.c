@@ -38,7 +38,7 @@ static bool carries_tool(const struct geometry *g, unsigned unit)
 void geometry_init(struct geometry *g)
 {
     memset(g, 0, sizeof(*g));
-    g->deviation = geometry_deviation;
+    g->take_back = geometry_take_back;
     g->need = geometry_need;
 }
 
@@ -121,6 +121,18 @@ unsigned geometry_deviation(const struct geometry *g, const struct point *at,
         const struct lean *l = &leans[i];
 
         deviation[l->moved] += l->sign * g->squareness_rad[l->angle] * at->at[l->axis];
+    }
+    return outside;
+}
+
+unsigned geometry_take_back(const struct geometry *g, const struct point *at, double weight,
+                            unsigned axes_end, float k[AXIS_COUNT])
+{
+    double deviation[AXIS_COUNT];
+    const unsigned outside = geometry_deviation(g, at, deviation);
+
+    for (unsigned i = 0; i < axes_end; i++) {
+        k[i] -= (float)(weight * deviation[i]);
     }
     return outside;
 }

@@ -25,8 +25,8 @@ struct geometry {
     double squareness_rad[AXIS_LINEAR_COUNT];
     struct axis_tables errors[UNIT_CHAIN_MAX]; /* of each unit; count 0: it has none */
     /* Those below, by geometry_init: an image in which no machine has errors of units is without their code. */
-    unsigned (*deviation)(const struct geometry *g, const struct point *at,
-                          double deviation[AXIS_COUNT]);
+    unsigned (*take_back)(const struct geometry *g, const struct point *at, double weight,
+                          unsigned axes_end, float k[AXIS_COUNT]);
     void (*need)(const struct geometry *g, const struct motion_bound *most, struct need *need);
 };
 
@@ -42,6 +42,10 @@ bool geometry_add(struct geometry *g, const struct table *table, struct diagnost
  */
 unsigned geometry_deviation(const struct geometry *g, const struct point *at,
                             double deviation[AXIS_COUNT]);
+
+/* Takes these deviations, by weight, from the corrections of the axes before axes_end. Returns the same. */
+unsigned geometry_take_back(const struct geometry *g, const struct point *at, double weight,
+                            unsigned axes_end, float k[AXIS_COUNT]);
 
 /* Adds what taking these deviations back takes of the axes. */
 void geometry_need(const struct geometry *g, const struct motion_bound *most, struct need *need);

@@ -39,7 +39,7 @@ static void follow_direction(const struct correction *c, struct layer_notes *not
 
 static void axes_follow(struct correction *c, struct layer_notes *notes)
 {
-    for (unsigned i = 0; i < AXIS_COUNT; i++) {
+    for (unsigned i = 0; i < c->axes_end; i++) {
         if ((c->tables->axes.inputs & 1U << i) == 0) {
             continue;
         }
@@ -51,24 +51,15 @@ static void axes_follow(struct correction *c, struct layer_notes *notes)
     }
 }
 
-static void add_geometry(const struct correction *c, double weight, struct correction_sum *sum)
-{
-    const struct geometry *g = c->tables->geometry;
-    double deviation[AXIS_COUNT];
-
-    sum->outside |= g->deviation(g, c->at, deviation);
-    for (unsigned i = 0; i < c->axes_end; i++) {
-        sum->fine[i] -= (float)(weight * deviation[i]);
-    }
-}
-
 static void axes_add(struct correction *c, struct layer_notes *notes, double weight,
                      struct correction_sum *sum)
 {
+    const struct geometry *g = c->tables->geometry;
+
     sum->outside |=
         axis_tables_sum(&c->tables->axes, c->at, notes->coefficient, (float)weight, sum->fine);
-    if (c->tables->geometry != NULL) {
-        add_geometry(c, weight, sum);
+    if (g != NULL) {
+        sum->outside |= g->take_back(g, c->at, weight, c->axes_end, sum->fine);
     }
 }
 

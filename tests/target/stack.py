@@ -24,7 +24,7 @@ OPERATORS = (r"function_.*|add|subtract|multiply|divide|modulo|power|equal|not_e
              r"|less_or_equal|logic_.*")
 STORE = r"begin|begin_stream|bring|prepare|place|room|end|look|order|hear|settings_.*|may_load"
 CALLS = (
-    (r"add_geometry|axes_add|axes_need", r"geometry_.*"),  # no machine of a target has errors of units
+    (r"axes_add|axes_need", r"geometry_.*"),  # no machine of a target has errors of units
     (r"answer_.*|modbus_answer", r"panel_read|panel_write"),
     (r".*_layers?|exchange_tables|correction_.*", LAYER),
     (r"comment_run", r"say"),  # nobody listens on a target
