@@ -4,7 +4,7 @@
 #ifndef TAKT_LIBRARY_COLUMNS_H
 #define TAKT_LIBRARY_COLUMNS_H
 
-#include "takt/trace_row.h"
+#include "results/trace_row.h"
 
 #include <stdbool.h>
 #include <stdint.h>

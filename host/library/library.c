@@ -4,10 +4,10 @@
 
 #include "report/asset.h"
 
-#include "takt/canon_write.h"
-#include "takt/machine_file.h"
-#include "takt/message.h"
-#include "takt/plan_write.h"
+#include "cli/message.h"
+#include "config/machine_file.h"
+#include "session/canon_write.h"
+#include "session/plan_write.h"
 
 #include <pthread.h>
 #include <stdlib.h>

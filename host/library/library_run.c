@@ -1,10 +1,10 @@
 #include "library/library_private.h"
 
-#include "takt/axis_unit.h"
-#include "takt/compiled_judge.h"
-#include "takt/error_map.h"
-#include "takt/message.h"
-#include "takt/stopwatch.h"
+#include "cli/axis_unit.h"
+#include "cli/message.h"
+#include "cli/stopwatch.h"
+#include "compiled/compiled_judge.h"
+#include "simulation/error_map.h"
 
 #include <stdlib.h>
 #include <string.h>

@@ -1,8 +1,8 @@
 #include "bore/write.h"
-#include "takt/bore_compare.h"
+#include "cli/message.h"
+#include "cli/output_file.h"
+#include "studies/bore_compare.h"
 #include "takt/command.h"
-#include "takt/message.h"
-#include "takt/output_file.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -1,6 +1,6 @@
-#include "takt/canon_write.h"
+#include "session/canon_write.h"
+#include "session/session.h"
 #include "takt/command.h"
-#include "takt/session.h"
 
 #include <stdio.h>
 

@@ -1,5 +1,5 @@
+#include "session/session.h"
 #include "takt/command.h"
-#include "takt/session.h"
 
 #include <stdio.h>
 

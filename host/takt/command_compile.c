@@ -1,8 +1,8 @@
+#include "cli/message.h"
+#include "cli/output_file.h"
+#include "compiled/compiled.h"
+#include "session/session.h"
 #include "takt/command.h"
-#include "takt/compiled.h"
-#include "takt/message.h"
-#include "takt/output_file.h"
-#include "takt/session.h"
 
 #include <string.h>
 

@@ -1,6 +1,6 @@
+#include "editor/lint.h"
+#include "session/session.h"
 #include "takt/command.h"
-#include "takt/lint.h"
-#include "takt/session.h"
 
 #include <stdio.h>
 

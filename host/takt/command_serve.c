@@ -1,6 +1,6 @@
+#include "cli/message.h"
+#include "serving/serving.h"
 #include "takt/command.h"
-#include "takt/message.h"
-#include "takt/serving.h"
 
 #include <inttypes.h>
 #include <stdio.h>

@@ -1,6 +1,6 @@
-/* host/takt/canon.h: moves as text. */
+/* host/session/canon.h: moves as text. */
 #include "base/maths.h"
-#include "takt/canon.h"
+#include "session/canon.h"
 
 #include "unity.h"
 

@@ -1,9 +1,9 @@
 #define _XOPEN_SOURCE 700 /* mkstemp, mkdtemp */
 
 /* Tables that are read, files that are whole or not there. */
-#include "takt/output_file.h"
-#include "takt/parameter_file.h"
-#include "takt/tool_file.h"
+#include "cli/output_file.h"
+#include "config/parameter_file.h"
+#include "config/tool_file.h"
 #include "unity.h"
 
 #include <stdlib.h>

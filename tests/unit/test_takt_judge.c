@@ -1,8 +1,8 @@
 /*
  * The judge against runs made by hand, most of them wrong in one way: it must see each.
  */
-#include "takt/judge.h"
-#include "takt/judge_curve.h"
+#include "judge/judge.h"
+#include "judge/judge_curve.h"
 #include "unity.h"
 
 #include <math.h>

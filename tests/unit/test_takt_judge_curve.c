@@ -3,7 +3,7 @@
  * against the largest distance of many points of the curve from the chord.
  */
 #include "base/maths.h"
-#include "takt/judge_curve.h"
+#include "judge/judge_curve.h"
 
 #include <unity.h>
 

@@ -1,4 +1,4 @@
-#include "takt/lsp_text.h"
+#include "editor/lsp_text.h"
 #include "unity.h"
 
 #include <stdio.h>

@@ -1,7 +1,7 @@
 #define _XOPEN_SOURCE 700 /* mkstemp, mkdtemp */
 
-#include "takt/machine_file.h"
-#include "takt/machine_keys.h"
+#include "config/machine_file.h"
+#include "config/machine_keys.h"
 #include "unity.h"
 
 #include <stdlib.h>

@@ -1,5 +1,5 @@
+#include "editor/meaning.h"
 #include "program/codes.h"
-#include "takt/meaning.h"
 #include "unity.h"
 
 #include <stdio.h>

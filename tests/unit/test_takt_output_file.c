@@ -4,7 +4,7 @@
  */
 #define _XOPEN_SOURCE 700
 
-#include "takt/output_file.h"
+#include "cli/output_file.h"
 #include "unity.h"
 
 #include <dirent.h>

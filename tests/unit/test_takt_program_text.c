@@ -1,7 +1,7 @@
 #define _XOPEN_SOURCE 700 /* mkdtemp */
 
 /* The text of a program: from a file piece by piece, the same bytes as from memory. */
-#include "takt/program_text.h"
+#include "cli/program_text.h"
 
 #include "unity.h"
 

@@ -1,4 +1,4 @@
-#include "takt/suggest.h"
+#include "cli/suggest.h"
 #include "unity.h"
 
 static const char *const words[] = {"max_velocity_mm_s", "max_acceleration_mm_s2", "max_jerk_mm_s3",

@@ -1,7 +1,7 @@
 #define _XOPEN_SOURCE 700 /* mkstemp, mkdtemp */
 
-#include "takt/trace_check.h"
-#include "takt/trace_writer.h"
+#include "results/trace_writer.h"
+#include "trace/trace_check.h"
 #include "unity.h"
 
 #include <stdlib.h>

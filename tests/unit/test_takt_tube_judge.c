@@ -2,7 +2,7 @@
  * The judge of paths within a tolerance, against setpoints made by hand: it must follow what is right, and see what is
  * wrong.
  */
-#include "takt/tube_judge.h"
+#include "judge/tube_judge.h"
 #include "unity.h"
 
 #include <math.h>

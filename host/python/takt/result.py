@@ -53,7 +53,7 @@ def _axis(json_axis: Mapping[str, Any]) -> AxisSummary:
 
 @dataclass(frozen=True)
 class Summary:
-    """The summary of ``takt run --json``; ``raw`` is all of it, as ``host/takt/summary.schema.json`` describes."""
+    """The summary of ``takt run --json``; ``raw`` is all of it, as ``host/results/summary.schema.json`` describes."""
 
     program: str
     machine: str
