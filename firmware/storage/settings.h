@@ -13,7 +13,7 @@
 
 #include "base/error.h"
 #include "canopen/concise_dcf.h"
-#include "controller/machine.h"
+#include "machine/machine.h"
 #include "correction/correction.h"
 #include "correction/tables.h"
 

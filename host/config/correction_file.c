@@ -174,7 +174,7 @@ static bool check_share(const struct correction_tables *tables, const struct mac
     }
     correction_init(correction, &machine->correction, machine_axes(machine),
                     1e-6 * (double)machine->cycle_us, tables, &start);
-    controller_motion_bound(machine, &most);
+    machine_motion_bound(machine, &most);
     correction_reserve(correction, &most, &need);
     share = correction_largest_share(&need, &most, &axis);
     free(correction);

@@ -1,7 +1,7 @@
 #include "config/machine_setup.h"
 
 #include "base/maths.h"
-#include "controller/machine_check.h"
+#include "machine/machine_check.h"
 #include "drive/drives.h"
 
 #include <stdarg.h>

@@ -4,7 +4,7 @@
 #ifndef TAKT_HOST_MACHINE_SETUP_H
 #define TAKT_HOST_MACHINE_SETUP_H
 
-#include "controller/machine.h"
+#include "machine/machine.h"
 #include "deviation/deviation.h"
 #include "dialect/dialect.h"
 #include "drives/drive_plant.h"

@@ -15,7 +15,7 @@
 #ifndef TAKT_HOST_JUDGE_H
 #define TAKT_HOST_JUDGE_H
 
-#include "controller/machine.h"
+#include "machine/machine.h"
 #include "drive/drives.h"
 #include "motion/cycle_record.h"
 #include "offset/offset.h"

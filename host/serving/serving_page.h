@@ -5,7 +5,7 @@
 #ifndef TAKT_HOST_SERVING_PAGE_H
 #define TAKT_HOST_SERVING_PAGE_H
 
-#include "controller/machine.h"
+#include "machine/machine.h"
 #include "inject/inject.h"
 #include "page/page_link.h"
 #include "page/page_server.h"

@@ -7,7 +7,7 @@
 
 #include "bus/bus.h"
 #include "bus/bus_response.h"
-#include "controller/machine.h"
+#include "machine/machine.h"
 #include "drive/drives.h"
 
 #include <stdbool.h>

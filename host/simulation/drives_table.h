@@ -5,7 +5,7 @@
 #ifndef TAKT_HOST_DRIVES_TABLE_H
 #define TAKT_HOST_DRIVES_TABLE_H
 
-#include "controller/machine.h"
+#include "machine/machine.h"
 #include "drive/drives.h"
 
 #include <cjson/cJSON.h>

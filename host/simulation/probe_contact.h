@@ -4,7 +4,7 @@
 #ifndef TAKT_HOST_PROBE_CONTACT_H
 #define TAKT_HOST_PROBE_CONTACT_H
 
-#include "controller/machine.h"
+#include "machine/machine.h"
 #include "drives/virtual_drives.h"
 #include "probe/virtual_probe.h"
 

@@ -8,7 +8,7 @@
 #define TAKT_HOST_PRECISION_H
 
 #include "classic/interpolator.h"
-#include "controller/machine.h"
+#include "machine/machine.h"
 #include "motion/cycle_record.h"
 #include "plan/block.h"
 #include "step/steps.h"

@@ -4,7 +4,7 @@
 #ifndef TAKT_HOST_TRACE_CHECK_H
 #define TAKT_HOST_TRACE_CHECK_H
 
-#include "controller/machine.h"
+#include "machine/machine.h"
 #include "cli/status.h"
 #include "trace/trace_reader.h"
 

@@ -1,5 +1,5 @@
 /* Machines that cannot work, and why. */
-#include "controller/machine_check.h"
+#include "machine/machine_check.h"
 #include "unity.h"
 
 static struct machine machine;

@@ -1,5 +1,6 @@
-#include "controller/machine.h"
+#include "machine/machine.h"
 
+#include "base/maths.h"
 #include "canopen/node.h"
 
 #include <string.h>
@@ -95,4 +96,20 @@ unsigned machine_drive_nodes(const struct machine *machine, uint8_t node[MACHINE
         node[count++] = machine->gantry[i].drive_node;
     }
     return count;
+}
+
+void machine_motion_bound(const struct machine *machine, struct motion_bound *most)
+{
+    memset(most, 0, sizeof(*most));
+    for (int i = 0; i < AXIS_COUNT; i++) {
+        const struct machine_axis *axis = &machine->axis[i];
+
+        if (axis->present) {
+            most->velocity_mm_s[i] = axis->max_velocity_mm_s;
+            most->acceleration_mm_s2[i] = axis->max_acceleration_mm_s2;
+            most->jerk_mm_s3[i] = axis->max_jerk_mm_s3;
+            most->farthest_mm[i] =
+                maths_max(maths_abs(axis->travel_min_mm), maths_abs(axis->travel_max_mm));
+        }
+    }
 }

@@ -2,10 +2,11 @@
  * A machine: everything the controller must know of the iron it moves. Filled by whoever reads a machine file;
  * machine_set_default is the built-in three-axis mill.
  */
-#ifndef TAKT_CONTROLLER_MACHINE_H
-#define TAKT_CONTROLLER_MACHINE_H
+#ifndef TAKT_MACHINE_H
+#define TAKT_MACHINE_H
 
 #include "base/point.h"
+#include "correction/need.h"
 #include "correction/settings.h"
 #include "drive/io_wiring.h"
 #include "plan/limits.h"
@@ -127,6 +128,9 @@ unsigned machine_gantry_count(const struct machine *machine);
 #define MACHINE_DRIVES_MAX AXIS_COUNT
 #define MACHINE_NODES_MAX  (AXIS_COUNT + MACHINE_GANTRIES_MAX) /* before it is checked */
 unsigned machine_drive_nodes(const struct machine *machine, uint8_t node[MACHINE_NODES_MAX]);
+
+/* The most the machine's axes do before correction. */
+void machine_motion_bound(const struct machine *machine, struct motion_bound *most);
 
 /* I/O nodes on the bus. */
 unsigned machine_io_count(const struct machine *machine);

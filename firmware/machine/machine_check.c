@@ -1,4 +1,4 @@
-#include "controller/machine_check.h"
+#include "machine/machine_check.h"
 
 #include "base/maths.h"
 #include "canopen/node.h"

@@ -1,11 +1,11 @@
 /*
  * Can this machine work? What single values, each in its range, do not show.
  */
-#ifndef TAKT_CONTROLLER_MACHINE_CHECK_H
-#define TAKT_CONTROLLER_MACHINE_CHECK_H
+#ifndef TAKT_MACHINE_CHECK_H
+#define TAKT_MACHINE_CHECK_H
 
 #include "base/error.h"
-#include "controller/machine.h"
+#include "machine/machine.h"
 
 #include <stdbool.h>
 
