@@ -1,11 +1,11 @@
 #include "compiled/compiled_judge.h"
 
 #include "base/maths.h"
+#include "cli/interrupt.h"
+#include "cli/message.h"
+#include "judge/judge.h"
 #include "motion/handover.h"
 #include "replay/replay.h"
-#include "cli/interrupt.h"
-#include "judge/judge.h"
-#include "cli/message.h"
 
 #include <stdarg.h>
 #include <stdio.h>

@@ -1,8 +1,8 @@
 #include "config/machine_setup.h"
 
 #include "base/maths.h"
-#include "machine/machine_check.h"
 #include "drive/drives.h"
+#include "machine/machine_check.h"
 
 #include <stdarg.h>
 #include <stdint.h>

@@ -4,13 +4,13 @@
 #ifndef TAKT_HOST_MACHINE_SETUP_H
 #define TAKT_HOST_MACHINE_SETUP_H
 
-#include "machine/machine.h"
+#include "config/chain_text.h"
 #include "deviation/deviation.h"
 #include "dialect/dialect.h"
 #include "drives/drive_plant.h"
+#include "machine/machine.h"
 #include "spindle/virtual_spindle.h"
 #include "stepper/virtual_steppers.h"
-#include "config/chain_text.h"
 
 #include <stdbool.h>
 

@@ -15,13 +15,13 @@
 #ifndef TAKT_HOST_JUDGE_H
 #define TAKT_HOST_JUDGE_H
 
-#include "machine/machine.h"
 #include "drive/drives.h"
+#include "judge/tube_judge.h"
+#include "machine/machine.h"
 #include "motion/cycle_record.h"
 #include "offset/offset.h"
 #include "plan/block.h"
 #include "program/program.h"
-#include "judge/tube_judge.h"
 
 #include <stdbool.h>
 #include <stdint.h>

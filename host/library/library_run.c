@@ -1,3 +1,4 @@
+/* A run of the library, cycle by cycle: opened, stepped, finished. */
 #include "library/library_private.h"
 
 #include "cli/axis_unit.h"

@@ -7,13 +7,13 @@
 #define TAKT_HOST_RUN_OUTPUTS_H
 
 #include "bus/candump.h"
-#include "report/report.h"
-#include "simulation/frame_buffer.h"
 #include "cli/output_file.h"
-#include "session/session.h"
-#include "simulation/simulation.h"
+#include "report/report.h"
 #include "results/summary.h"
 #include "results/trace_writer.h"
+#include "session/session.h"
+#include "simulation/frame_buffer.h"
+#include "simulation/simulation.h"
 
 #include <stdbool.h>
 

@@ -1,10 +1,10 @@
 #include "session/planner.h"
 
 #include "base/maths.h"
-#include "motion/motion.h"
-#include "plan/path_unit.h"
 #include "cli/interrupt.h"
 #include "cli/message.h"
+#include "motion/motion.h"
+#include "plan/path_unit.h"
 
 #include <assert.h>
 #include <stdlib.h>

@@ -1,11 +1,11 @@
 #include "simulation/simulation.h"
 
-#include "compiled/compiled.h"
-#include "simulation/cutting_feed.h"
-#include "config/inject_file.h"
 #include "cli/message.h"
-#include "config/probe_file.h"
 #include "cli/stopwatch.h"
+#include "compiled/compiled.h"
+#include "config/inject_file.h"
+#include "config/probe_file.h"
+#include "simulation/cutting_feed.h"
 #include "simulation/target_setup.h"
 
 #include <stdlib.h>

@@ -6,18 +6,18 @@
 #ifndef TAKT_HOST_SIMULATION_H
 #define TAKT_HOST_SIMULATION_H
 
+#include "config/override_file.h"
 #include "controller/controller.h"
 #include "hal/inputs.h"
 #include "probe/virtual_probe.h"
-#include "spindle/virtual_spindle.h"
+#include "session/session.h"
 #include "simulation/announcer.h"
 #include "simulation/correction_watch.h"
 #include "simulation/cycle_cost.h"
 #include "simulation/field.h"
-#include "config/override_file.h"
 #include "simulation/probe_contact.h"
-#include "session/session.h"
 #include "simulation/tool_point.h"
+#include "spindle/virtual_spindle.h"
 #include "target/target.h"
 
 #include <stdbool.h>

@@ -5,11 +5,11 @@
 #ifndef TAKT_HOST_TOOL_POINT_H
 #define TAKT_HOST_TOOL_POINT_H
 
+#include "config/machine_setup.h"
 #include "deviation/deviation.h"
 #include "drives/virtual_drives.h"
 #include "motion/cycle_record.h"
 #include "plan/block.h"
-#include "config/machine_setup.h"
 
 #include <stdbool.h>
 #include <stdint.h>
