@@ -277,6 +277,11 @@ const struct cycle_record *simulation_get_record(const struct simulation *s)
     return s->has_target ? target_get_record(&s->target) : controller_get_record(&s->controller);
 }
 
+const struct point *simulation_get_tool(const struct simulation *s)
+{
+    return s->tool_point.is_watched ? &s->tool_point.tool : NULL;
+}
+
 bool simulation_step(struct simulation *s)
 {
     if (!control(s))

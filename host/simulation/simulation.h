@@ -68,6 +68,9 @@ bool simulation_set_overrides(struct simulation *s, double feed_percent, double 
 bool simulation_add_faults(struct simulation *s, const char *name, const char *bytes,
                            size_t length);
 
+/* Where the tool's point was in it; NULL: drives stand for it, on a machine without errors or with drives outside. */
+const struct point *simulation_get_tool(const struct simulation *s);
+
 /* What the last cycle did, on the target if there is one; NULL: it was none of the program. */
 const struct cycle_record *simulation_get_record(const struct simulation *s);
 
