@@ -7,6 +7,7 @@
 #include "compiled/compiled_judge.h"
 #include "simulation/error_map.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -245,19 +246,41 @@ void takt_get_inputs(const struct takt_job *job, struct takt_inputs *inputs)
     memcpy(inputs->analogue, s->inputs.analogue, sizeof inputs->analogue);
 }
 
-int takt_set_inputs(struct takt_job *job, const struct takt_inputs *inputs)
+/* False after a message. */
+static bool can_be_set(const struct takt_inputs *inputs)
 {
-    struct simulation *s = job->run.simulation;
+    for (unsigned i = 0; i < sizeof inputs->analogue / sizeof inputs->analogue[0]; i++) {
+        if (!isfinite(inputs->analogue[i])) {
+            message_command_error("input E%u is %g: a finite number is expected", i,
+                                  inputs->analogue[i]);
+            return false;
+        }
+    }
+    return true;
+}
 
-    if (!simulation_set_overrides(s, inputs->feed_override_percent,
-                                  inputs->rapid_override_percent)) {
-        library_enter(job);
+static bool set_overrides(struct simulation *s, const struct takt_inputs *inputs)
+{
+    const bool good = simulation_set_overrides(s, inputs->feed_override_percent,
+                                               inputs->rapid_override_percent);
+
+    if (!good)
         message_command_error("overrides %g %% and %g %%: the feed override is 0 ... 120 %%, the "
                               "rapid override 0 ... 100 %%",
                               inputs->feed_override_percent, inputs->rapid_override_percent);
-        library_leave(job);
+    return good;
+}
+
+int takt_set_inputs(struct takt_job *job, const struct takt_inputs *inputs)
+{
+    struct simulation *s = job->run.simulation;
+    bool good;
+
+    library_enter(job);
+    good = can_be_set(inputs) && set_overrides(s, inputs);
+    library_leave(job);
+    if (!good)
         return STATUS_INPUT;
-    }
     s->inputs.feed_hold = inputs->feed_hold != 0;
     s->inputs.single_block = inputs->single_block != 0;
     s->inputs.digital = inputs->digital;
@@ -293,7 +316,12 @@ double takt_get_position_mm(const struct takt_job *job, unsigned drive)
 /* Objects of the dictionary are known by index, sub-index and bits. */
 static uint32_t object_of(uint32_t index, uint32_t sub, unsigned bits)
 {
-    return (index & 0xFFFF) << 16 | (sub & 0xFF) << 8 | bits;
+    return index << 16 | sub << 8 | bits;
+}
+
+static bool can_be_object(uint32_t index, uint32_t sub)
+{
+    return index <= 0xFFFF && sub <= 0xFF;
 }
 
 unsigned takt_read_object(struct takt_job *job, unsigned drive, uint32_t index, uint32_t sub,
@@ -301,7 +329,7 @@ unsigned takt_read_object(struct takt_job *job, unsigned drive, uint32_t index, 
 {
     struct virtual_drive *d = &job->run.simulation->field.drives.drive[drive];
 
-    for (unsigned bits = 8; bits <= 32; bits *= 2) {
+    for (unsigned bits = 8; bits <= 32 && can_be_object(index, sub); bits *= 2) {
         if (virtual_drive_read_object(d, object_of(index, sub, bits), value))
             return bits;
     }
@@ -313,7 +341,7 @@ unsigned takt_write_object(struct takt_job *job, unsigned drive, uint32_t index,
 {
     struct virtual_drive *d = &job->run.simulation->field.drives.drive[drive];
 
-    for (unsigned bits = 8; bits <= 32; bits *= 2) {
+    for (unsigned bits = 8; bits <= 32 && can_be_object(index, sub); bits *= 2) {
         if (virtual_drive_write_object(d, object_of(index, sub, bits), value))
             return bits;
     }
