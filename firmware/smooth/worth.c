@@ -1,0 +1,98 @@
+#include "smooth/worth.h"
+
+#include "smooth/exact.h"
+#include "smooth/single.h"
+
+/* Of a piece at its rate, s. */
+static float piece_time(const struct worth_window *now, unsigned piece)
+{
+    const struct window *w = now->window;
+    struct judge_need need;
+    struct judge_rate rate;
+
+    judge_need(w, now->route, piece, &need);
+    judge_rate(&need, now->route, w->element[piece + 1], now->change, &rate);
+    return (float)w->interval_s / single_min(1.0f, single_min(rate.most, rate.programmed));
+}
+
+/* The place where the path rests first behind the start of an element, or its end: index of an element. */
+static uint32_t next_rest(const struct worth_window *now, uint32_t element)
+{
+    uint32_t i = element + 1;
+
+    while (i < now->route->count && !exact_rests(now->route, now->machine, i)) {
+        i++;
+    }
+    return i;
+}
+
+/* A rest that the curve has passed: the start of an element, and when. */
+struct passed {
+    uint32_t element;
+    float time;
+    float feed;
+};
+
+/* v/2a + w a/2j, a^2 <= v j/w: what a ramp from rest takes longer than its way at the feed. */
+static float ramp(const struct worth_window *now, uint32_t element, float feed)
+{
+    const struct route_element *e = route_element(now->route, element);
+    const float j = e->along.jerk / (float)now->machine->windows;
+    const float a = single_min(e->along.acceleration, single_sqrt(feed * j));
+
+    return a > 0.0f ? 0.5f * (feed / a + a / j) : 0.0f;
+}
+
+/* Goes along the pieces; returns the time for them from the beginning of the first one on. */
+static float go(const struct worth_window *now, struct passed *last)
+{
+    const struct window *w = now->window;
+    uint32_t next = next_rest(now, w->element[0]);
+    float time = 0.0f;
+
+    *last = (struct passed){.element = next};
+    for (unsigned i = 0; i < now->pieces; i++) {
+        const float takes = piece_time(now, i);
+
+        time += takes;
+        while (next < now->route->count &&
+               route_element(now->route, next)->start_mm <= w->at_mm[i + 2]) {
+            *last = (struct passed){.element = next,
+                                    .time = time,
+                                    .feed = (float)(w->at_mm[i + 2] - w->at_mm[i + 1]) / takes};
+            next = next_rest(now, next);
+        }
+    }
+    return time;
+}
+
+bool worth_path_from_rest(const struct worth_window *now, double *to_mm)
+{
+    const struct window *w = now->window;
+    struct passed last;
+    float time = now->standing_s + go(now, &last);
+
+    if (now->ends) {
+        last.element = now->route->count;
+        time += now->standing_s;
+    } else if (last.time > 0.0f) {
+        time = now->standing_s + last.time - ramp(now, last.element, last.feed);
+    }
+    *to_mm = last.element < now->route->count ? route_element(now->route, last.element)->start_mm
+                                              : route_end(now->route);
+    return exact_time(now->route, now->machine, w->at_mm[0], w->element[0], last.element) < time;
+}
+
+bool worth_path(const struct worth_window *now)
+{
+    const struct window *w = now->window;
+    uint32_t first = w->element[1];
+    struct passed last;
+    const float time = go(now, &last);
+    const uint32_t end = next_rest(now, w->element[now->pieces + 1]);
+
+    while (first > now->route->first && !exact_rests(now->route, now->machine, first)) {
+        first--;
+    }
+    return exact_time(now->route, now->machine, 0.0, first, end) < time;
+}
