@@ -234,6 +234,7 @@ static void push_smooth_motion(struct path *p, const struct smooth_piece *piece,
     }
     block_set_motion(b, piece->move, curve, &p->limits);
     b->number = piece->number;
+    b->continues = piece->continues;
     append_joined(p, b);
 }
 

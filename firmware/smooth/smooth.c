@@ -601,7 +601,8 @@ static bool take_motion(struct smooth *s, struct smooth_piece *piece, struct cur
     piece->number = route_element(&s->route, latest_told(s, element))->number;
     piece->starts = s->starts;
     s->starts = s->starts && !goes;
-    if (s->window.at_mm[0] >= route_end_of(&s->route, element)) {
+    piece->continues = s->window.at_mm[0] < route_end_of(&s->route, element);
+    if (!piece->continues) {
         end_element(s);
     }
     return goes;
@@ -644,10 +645,13 @@ enum smooth_taken smooth_take(struct smooth *s, union smooth_scratch *scratch,
             return SMOOTH_PIECE;
         }
         drop_taken(s);
-        if (s->exact ? !is_element_known(s) : !next_window(s, scratch)) {
+        if (!s->exact) {
+            if (!next_window(s, scratch)) {
+                return SMOOTH_NONE;
+            }
+        } else if (!is_element_known(s)) {
             return SMOOTH_NONE;
-        }
-        if (s->exact && take_motion(s, piece, curve)) {
+        } else if (take_motion(s, piece, curve)) {
             return SMOOTH_MOTION;
         }
     }

@@ -42,6 +42,7 @@ struct smooth_piece {
     bool stop;   /* comes to rest at its end, though the chain goes on: no way on was found */
     bool rotary; /* no linear axis moves in that motion */
     bool starts; /* begins at rest */
+    bool continues; /* more of the motion follows */
     bool last;   /* of the chain: ends at rest, in the end of the last motion */
 };
 
@@ -49,7 +50,7 @@ struct smooth_piece {
 enum smooth_taken {
     SMOOTH_NONE,  /* more motions, or the chain's end, must come first, or the chain has been taken to its end */
     SMOOTH_PIECE, /* a piece of the curve */
-    SMOOTH_MOTION /* a motion of the path itself: of the piece move, number, starts and last count */
+    SMOOTH_MOTION /* a motion of the path itself: of the piece move, number, starts and continues count */
 };
 
 /* Samples at the window's beginning as they were proved, to fall back on; half as many where the window has half. */
