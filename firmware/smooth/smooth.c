@@ -110,6 +110,7 @@ static void begin(struct smooth *s, const struct move *move)
     s->proved = 0;
     s->stops = false;
     s->exact = false;
+    s->since = (struct worth_since){.element = 0};
     s->starts = true;
     s->standing = 0;
     order_start(&s->order, 0.0, 0);
@@ -409,29 +410,30 @@ static void take_path(struct smooth *s, double to_mm)
 }
 
 /*
- * Whether the window goes on. Where it does not what was proved last is gone to its end, and from there on the path itself is
- * taken; at rest it is taken at once, and also where it is quicker.
+ * Whether the window goes on. Where it does not, or the path itself is quicker, what was proved last is gone to its end; and
+ * from rest, where every way is open again, the path itself is taken.
  */
 static void choose(struct smooth *s, unsigned good)
 {
+    const bool rests = s->head.proved == 0;
     const struct worth_window now = {.window = &s->window,
                                      .route = &s->route,
                                      .machine = &s->limits,
                                      .change = &s->change,
                                      .pieces = good,
+                                     .kept = s->ready,
                                      .standing_s = (float)standing_s(s),
+                                     .starts = rests,
                                      .ends = is_end(s, good)};
     const bool stops = s->ready == 0 || (s->proved == 0 && !is_end(s, good));
+    const bool slower = worth_path(&now, &s->since);
     double to_mm;
 
-    if (s->head.proved == 0) {
-        if (worth_path_from_rest(&now, &to_mm) || stops) {
+    if (rests) {
+        if (worth_path_from_rest(&now, &to_mm) || slower || stops) {
             take_path(s, to_mm);
         }
-        return;
-    }
-    s->exact = stops || worth_path(&now);
-    if (s->exact || needs_other_interval(s)) {
+    } else if (stops || slower || needs_other_interval(s)) {
         fall_back(s);
     }
 }
@@ -548,7 +550,6 @@ static void drop_taken(struct smooth *s)
     s->ready = 0;
     if (s->stops) {
         window_rest(&s->window, &s->route, &s->order);
-        s->exact_mm = s->window.at_mm[0];
         s->stops = false;
         begin_anew(s);
     }
@@ -587,6 +588,7 @@ static void end_element(struct smooth *s)
     s->exact = false;
     s->tried_mm = w->at_mm[0];
     s->tried = next;
+    s->since = (struct worth_since){.element = next};
     order_start(&s->order, w->at_mm[0], next);
     begin_anew(s);
 }

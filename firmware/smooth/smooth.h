@@ -14,6 +14,7 @@
 #include "smooth/route.h"
 #include "smooth/timing.h"
 #include "smooth/window.h"
+#include "smooth/worth.h"
 
 #include <stdbool.h>
 #include <stdint.h>
@@ -89,6 +90,7 @@ struct smooth {
     uint32_t tried;   /* and the element there */
     double exact_mm;  /* to this place the path itself is taken, and on to where it rests */
     bool exact;       /* it is */
+    struct worth_since since;
     unsigned standing; /* pieces that are still to come, in which the axes stand */
     bool starts;       /* the next piece begins at rest */
     bool leaves;       /* after those the chain goes on; else they end it, or a part of it */

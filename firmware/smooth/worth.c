@@ -26,11 +26,12 @@ static uint32_t next_rest(const struct worth_window *now, uint32_t element)
     return i;
 }
 
-/* A rest that the curve has passed: the start of an element, and when. */
+/* A rest that the curve has passed: the start of an element, when, and how fast; and when those that are kept end. */
 struct passed {
     uint32_t element;
     float time;
     float feed;
+    float kept;
 };
 
 /* v/2a + w a/2j, a^2 <= v j/w: what a ramp from rest takes longer than its way at the feed. */
@@ -43,23 +44,24 @@ static float ramp(const struct worth_window *now, uint32_t element, float feed)
     return a > 0.0f ? 0.5f * (feed / a + a / j) : 0.0f;
 }
 
-/* Goes along the pieces; returns the time for them from the beginning of the first one on. */
+/* Goes along the pieces; returns the time for them. */
 static float go(const struct worth_window *now, struct passed *last)
 {
     const struct window *w = now->window;
     uint32_t next = next_rest(now, w->element[0]);
-    float time = 0.0f;
+    float time = now->starts ? now->standing_s : 0.0f;
 
     *last = (struct passed){.element = next};
     for (unsigned i = 0; i < now->pieces; i++) {
         const float takes = piece_time(now, i);
 
         time += takes;
+        last->kept = i < now->kept ? time : last->kept;
         while (next < now->route->count &&
                route_element(now->route, next)->start_mm <= w->at_mm[i + 2]) {
-            *last = (struct passed){.element = next,
-                                    .time = time,
-                                    .feed = (float)(w->at_mm[i + 2] - w->at_mm[i + 1]) / takes};
+            last->element = next;
+            last->time = time;
+            last->feed = (float)(w->at_mm[i + 2] - w->at_mm[i + 1]) / takes;
             next = next_rest(now, next);
         }
     }
@@ -70,20 +72,20 @@ bool worth_path_from_rest(const struct worth_window *now, double *to_mm)
 {
     const struct window *w = now->window;
     struct passed last;
-    float time = now->standing_s + go(now, &last);
+    float time = go(now, &last);
 
     if (now->ends) {
         last.element = now->route->count;
         time += now->standing_s;
     } else if (last.time > 0.0f) {
-        time = now->standing_s + last.time - ramp(now, last.element, last.feed);
+        time = last.time - ramp(now, last.element, last.feed);
     }
     *to_mm = last.element < now->route->count ? route_element(now->route, last.element)->start_mm
                                               : route_end(now->route);
     return exact_time(now->route, now->machine, w->at_mm[0], w->element[0], last.element) < time;
 }
 
-bool worth_path(const struct worth_window *now)
+bool worth_path(const struct worth_window *now, struct worth_since *since)
 {
     const struct window *w = now->window;
     uint32_t first = w->element[1];
@@ -94,5 +96,11 @@ bool worth_path(const struct worth_window *now)
     while (first > now->route->first && !exact_rests(now->route, now->machine, first)) {
         first--;
     }
-    return exact_time(now->route, now->machine, 0.0, first, end) < time;
+    if (first != since->element) {
+        *since = (struct worth_since){.element = first};
+    }
+    const float spent = since->spent_s;
+
+    since->spent_s += last.kept;
+    return exact_time(now->route, now->machine, 0.0, first, end) < spent + time;
 }

@@ -14,8 +14,16 @@ struct worth_window {
     const struct smooth_limits *machine;
     const struct judge_change *change;
     unsigned pieces;
-    float standing_s; /* what a curve takes longer at either end */
+    unsigned kept;    /* of them: these are handed on */
+    float standing_s; /* what a curve takes longer where it begins and ends at rest */
+    bool starts;      /* the first one begins at rest */
     bool ends;        /* they end where the chain does */
+};
+
+/* What the curve has taken since it came to the stretch of path between two rests that it is on. */
+struct worth_since {
+    uint32_t element; /* the first one of that */
+    float spent_s;
 };
 
 /*
@@ -23,7 +31,7 @@ struct worth_window {
  * the next one where there is none.
  */
 bool worth_path_from_rest(const struct worth_window *now, double *to_mm);
-/* In motion, is the path itself quicker, from the rest before these pieces to the one behind them? */
-bool worth_path(const struct worth_window *now);
+/* Is the path quicker along all stretches that the pieces touch, with what has been taken on the first one before? */
+bool worth_path(const struct worth_window *now, struct worth_since *since);
 
 #endif
