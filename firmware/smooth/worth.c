@@ -85,6 +85,7 @@ bool worth_path_from_rest(const struct worth_window *now, double *to_mm)
     return exact_time(now->route, now->machine, w->at_mm[0], w->element[0], last.element) < time;
 }
 
+/* In motion the curve must first come to rest, and the path get going from there. */
 bool worth_path(const struct worth_window *now, struct worth_since *since)
 {
     const struct window *w = now->window;
@@ -99,8 +100,10 @@ bool worth_path(const struct worth_window *now, struct worth_since *since)
     if (first != since->element) {
         *since = (struct worth_since){.element = first};
     }
+    const float feed = (float)((w->at_mm[2] - w->at_mm[1]) / w->interval_s);
+    const float stop = now->starts ? 0.0f : now->standing_s + 2.0f * ramp(now, w->element[1], feed);
     const float spent = since->spent_s;
 
     since->spent_s += last.kept;
-    return exact_time(now->route, now->machine, 0.0, first, end) < spent + time;
+    return exact_time(now->route, now->machine, 0.0, first, end) + stop < spent + time;
 }
