@@ -17,7 +17,8 @@ static_assert(SHARE_BLOCKS_MAX <= PATH_MODES_MAX,
 /* Path counts as much as the fastest axis goes in that time: a length that looks like mm. */
 static void init_smooth(struct path *p)
 {
-    struct smooth_limits limits = {.axes = p->limits.axes, .cycle_s = p->limits.cycle_s,
+    struct smooth_limits limits = {.axes = p->limits.axes,
+                                   .cycle_s = p->limits.cycle_s,
                                    .windows = 0.5 + 0.5 * law_boxes(p->limits.law)};
 
     for (int i = 0; i < AXIS_COUNT; i++) {

@@ -56,8 +56,8 @@ static void bound_bent(const struct route *r, uint32_t index, struct course *c)
 
     c->jerk = e->along.jerk;
     c->feed = single_min(c->feed, single_cbrt(ARC_JERK * c->jerk * radius * radius));
-    c->acceleration = single_min(e->along.acceleration,
-                                 RAMP_NORMAL * c->jerk * radius / (3.0f * c->feed));
+    c->acceleration =
+        single_min(e->along.acceleration, RAMP_NORMAL * c->jerk * radius / (3.0f * c->feed));
     c->jerk = RAMP_ALONG * c->jerk - c->feed * c->feed * c->feed / (radius * radius);
 }
 

@@ -383,8 +383,7 @@ float route_curvature(const struct route *r, uint32_t index, double at_mm, float
     bent_curve(r, index, &c);
     curve_curvature(&c, bent_place(r, index, &c, at_mm), &k);
     for (unsigned i = 0; i < r->slots.count; i++) {
-        curvature[i] =
-            r->slots.weight[i] * (float)k.at[r->slots.axis[i]] / (per_mm * per_mm);
+        curvature[i] = r->slots.weight[i] * (float)k.at[r->slots.axis[i]] / (per_mm * per_mm);
         square += curvature[i] * curvature[i];
     }
     return single_sqrt(square);

@@ -424,7 +424,7 @@ static void choose(struct smooth *s, unsigned good)
                                      .kept = s->ready,
                                      .standing_s = (float)standing_s(s),
                                      .starts = rests,
-                                     .ends = is_end(s, good)};
+                                     .finished = s->finished};
     const bool stops = s->ready == 0 || (s->proved == 0 && !is_end(s, good));
     const bool slower = worth_path(&now, &s->since);
     double to_mm;

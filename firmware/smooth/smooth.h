@@ -39,17 +39,17 @@ struct smooth_piece {
     double interval_s;
     struct smooth_rate rate;
     struct smooth_change
-        change;  /* rounded over the same time in all pieces in which the axes move */
-    bool stop;   /* comes to rest at its end, though the chain goes on: no way on was found */
-    bool rotary; /* no linear axis moves in that motion */
-    bool starts; /* begins at rest */
+        change;     /* rounded over the same time in all pieces in which the axes move */
+    bool stop;      /* comes to rest at its end, though the chain goes on: no way on was found */
+    bool rotary;    /* no linear axis moves in that motion */
+    bool starts;    /* begins at rest */
     bool continues; /* more of the motion follows */
-    bool last;   /* of the chain: ends at rest, in the end of the last motion */
+    bool last;      /* of the chain: ends at rest, in the end of the last motion */
 };
 
 /* What has been taken. */
 enum smooth_taken {
-    SMOOTH_NONE,  /* more motions, or the chain's end, must come first, or the chain has been taken to its end */
+    SMOOTH_NONE, /* more motions, or the chain's end, must come first, or the chain has been taken to its end */
     SMOOTH_PIECE, /* a piece of the curve */
     SMOOTH_MOTION /* a motion of the path itself: of the piece move, number, starts and continues count */
 };

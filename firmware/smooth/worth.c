@@ -68,21 +68,38 @@ static float go(const struct worth_window *now, struct passed *last)
     return time;
 }
 
+/* What is known behind the pieces, at its nominal feed: no curve is quicker. */
+static float time_left(const struct worth_window *now)
+{
+    const struct route *r = now->route;
+    double from_mm = now->window->at_mm[now->pieces + 1];
+    float time = 0.0f;
+
+    for (uint32_t i = now->window->element[now->pieces + 1]; i < r->count; i++) {
+        const double end_mm = route_end_of(r, i);
+
+        time += (float)(maths_max(end_mm, from_mm) - from_mm) / route_element(r, i)->feed_mm_s;
+        from_mm = end_mm;
+    }
+    return time;
+}
+
 bool worth_path_from_rest(const struct worth_window *now, double *to_mm)
 {
     const struct window *w = now->window;
+    const struct route *r = now->route;
+    const double at_mm = w->at_mm[0];
     struct passed last;
-    float time = go(now, &last);
+    const float time = go(now, &last);
 
-    if (now->ends) {
-        last.element = now->route->count;
-        time += now->standing_s;
-    } else if (last.time > 0.0f) {
-        time = last.time - ramp(now, last.element, last.feed);
+    *to_mm = route_end(r);
+    if (now->finished && exact_time(r, now->machine, at_mm, w->element[0], r->count) <
+                             time + time_left(now) + now->standing_s) {
+        return true;
     }
-    *to_mm = last.element < now->route->count ? route_element(now->route, last.element)->start_mm
-                                              : route_end(now->route);
-    return exact_time(now->route, now->machine, w->at_mm[0], w->element[0], last.element) < time;
+    *to_mm = last.element < r->count ? route_element(r, last.element)->start_mm : *to_mm;
+    return exact_time(r, now->machine, at_mm, w->element[0], last.element) <
+           (last.time > 0.0f ? last.time - ramp(now, last.element, last.feed) : time);
 }
 
 /* In motion the curve must first come to rest, and the path get going from there. */

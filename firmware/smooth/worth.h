@@ -17,7 +17,7 @@ struct worth_window {
     unsigned kept;    /* of them: these are handed on */
     float standing_s; /* what a curve takes longer where it begins and ends at rest */
     bool starts;      /* the first one begins at rest */
-    bool ends;        /* they end where the chain does */
+    bool finished;    /* nothing follows in the chain */
 };
 
 /* What the curve has taken since it came to the stretch of path between two rests that it is on. */
@@ -27,8 +27,8 @@ struct worth_since {
 };
 
 /*
- * From rest, is the path itself quicker: to the last place in the window where it rests, or to its end? to_mm: that place, or
- * the next one where there is none.
+ * From rest, is the path itself quicker: to the chain's end, if that is known, or to the last place in the window where it rests?
+ * to_mm: that place, or the next one where there is none.
  */
 bool worth_path_from_rest(const struct worth_window *now, double *to_mm);
 /* Is the path quicker along all stretches that the pieces touch, with what has been taken on the first one before? */

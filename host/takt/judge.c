@@ -211,8 +211,7 @@ static void judge_axes(struct judge *j, const struct cycle_record *record)
 static void judge_smoothed(struct judge *j, const struct cycle_record *record,
                            const struct block *block)
 {
-    if (record->landed && !block->continues &&
-        point_is_same(&block->curve.end, &block->move.end))
+    if (record->landed && !block->continues && point_is_same(&block->curve.end, &block->move.end))
         raise_to(&j->figures.landing_error_mm, judge_distance(&record->cmd, &j->block.end));
     j->block.landed = true;
     j->block.fraction = 1;
@@ -223,8 +222,8 @@ bool judge_add(struct judge *j, const struct cycle_record *record, const struct 
 {
     if (record->block != j->block.number && !j->strayed)
         enter_block(j, record);
-    const bool smoothed = block_is_motion(block) &&
-                          (block->curve.kind == CURVE_SPLINE || j->block.rounded);
+    const bool smoothed =
+        block_is_motion(block) && (block->curve.kind == CURVE_SPLINE || j->block.rounded);
 
     if (!smoothed && !j->block.ending && !block->continues && !j->block.landed)
         begin_ending(j, block);
