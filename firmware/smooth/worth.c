@@ -102,14 +102,28 @@ bool worth_path_from_rest(const struct worth_window *now, double *to_mm)
            (last.time > 0.0f ? last.time - ramp(now, last.element, last.feed) : time);
 }
 
-/* In motion the curve must first come to rest, and the path get going from there. */
+/* From rest at the start of an element to where the pieces end, of the last element a part. */
+static float path_time(const struct worth_window *now, uint32_t first)
+{
+    const struct route *r = now->route;
+    const double at_mm = now->window->at_mm[now->pieces + 1];
+    const uint32_t last = route_find(r, at_mm, now->window->element[now->pieces + 1]);
+    const double start_mm = route_element(r, last)->start_mm;
+    const double part = (at_mm - start_mm) / (route_end_of(r, last) - start_mm);
+
+    return exact_time(r, now->machine, 0.0, first, last) +
+           (float)part * exact_time(r, now->machine, 0.0, last, last + 1);
+}
+
+/* To change over the curve must first come to rest, and the path get going from there. */
 bool worth_path(const struct worth_window *now, struct worth_since *since)
 {
     const struct window *w = now->window;
+    const float feed = (float)((w->at_mm[2] - w->at_mm[1]) / w->interval_s);
+    const float change = now->standing_s + 2.0f * ramp(now, w->element[1], feed);
     uint32_t first = w->element[1];
     struct passed last;
     const float time = go(now, &last);
-    const uint32_t end = next_rest(now, w->element[now->pieces + 1]);
 
     while (first > now->route->first && !exact_rests(now->route, now->machine, first)) {
         first--;
@@ -117,10 +131,8 @@ bool worth_path(const struct worth_window *now, struct worth_since *since)
     if (first != since->element) {
         *since = (struct worth_since){.element = first};
     }
-    const float feed = (float)((w->at_mm[2] - w->at_mm[1]) / w->interval_s);
-    const float stop = now->starts ? 0.0f : now->standing_s + 2.0f * ramp(now, w->element[1], feed);
     const float spent = since->spent_s;
 
     since->spent_s += last.kept;
-    return exact_time(now->route, now->machine, 0.0, first, end) + stop < spent + time;
+    return path_time(now, first) + change < spent + time;
 }

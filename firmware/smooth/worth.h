@@ -31,7 +31,7 @@ struct worth_since {
  * to_mm: that place, or the next one where there is none.
  */
 bool worth_path_from_rest(const struct worth_window *now, double *to_mm);
-/* Is the path quicker along all stretches that the pieces touch, with what has been taken on the first one before? */
+/* Is the path so much quicker to where the pieces end, with what has been taken on the first stretch before, that a change is worth it? */
 bool worth_path(const struct worth_window *now, struct worth_since *since);
 
 #endif
