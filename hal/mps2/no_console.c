@@ -1,3 +1,4 @@
+/* The line of the console of images that have none. */
 #include "mps2/console_line.h"
 
 #include <stddef.h>
