@@ -146,13 +146,18 @@ const steps = {
     await tab(other, "Jog");
     const button = other.locator("[data-jog='Y+']"), touches = await other.context().newCDPSession(other);
     await button.scrollIntoViewIfNeeded();
-    const box = await button.boundingBox(), before = await value(page, "POSITION_Y");
-    const finger = { x: box.x + box.width / 2, y: box.y + box.height / 2 };
+    const place = await button.boundingBox(), before = await value(page, "POSITION_Y");
+    const finger = { x: place.x + place.width / 2, y: place.y + place.height / 2 };
     await touches.send("Input.dispatchTouchEvent", { type: "touchStart", touchPoints: [finger] });
     await until(page, "POSITION_Y", before + 0.5, 1000);
     await touches.send("Input.dispatchTouchEvent", { type: "touchEnd", touchPoints: [] });
     await state(page, "idle");
     check(await other.evaluate(() => document.documentElement.scrollWidth <= innerWidth), "nothing is wider than the phone");
+    for (const title of ["Offsets", "Tools"]) {
+      await tab(other, title);
+      const box = other.locator("[role=tabpanel]:not([hidden]) .scroll");
+      check(await box.evaluate((table) => table.scrollWidth <= table.clientWidth), `${title} are as wide as the phone`);
+    }
     await other.context().close();
     check(await value(page, "ALARM") === 0, "no alarm");
   },
