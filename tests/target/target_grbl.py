@@ -7,6 +7,7 @@ import signal
 import subprocess
 
 import target
+import data_sheets
 import grbl_sender as g
 import serial_pair
 import takt_test as t
@@ -57,12 +58,20 @@ def hold_and_reset(sender, panel):
     t.check(sender.ask("G0 X1") == "error:9", "after an emergency stop it moves nothing")
 
 
+def blind_sheet():
+    """Of drives that do not watch when SYNC comes: it is the console that is tried here, not the time a busy computer has."""
+    t.check(t.run("drives", "--nodes", "1", "--eds", "own.eds")[0] == 0, "our own data sheet is written")
+    sheet = data_sheets.read("own.eds")
+    data_sheets.drop(sheet, "1006", "1016")
+    return data_sheets.write("blind.eds", sheet)
+
+
 def main():
     target.need_qemu()
     image = target.image("m4f", "takt-mps2-grbl")
     status, out, err = t.run("run", t.write("part.ngc", PART), "--quiet", "--json", "-")
     t.check(status == 0, "the part is a program", err)
-    drives = subprocess.Popen([t.TAKT, "drives", "--bus", "slcan:pty:bus"], stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL)
+    drives = subprocess.Popen([t.TAKT, "drives", "--bus", "slcan:pty:bus", "--eds", blind_sheet()], stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL)
     target.wait_for(lambda: os.path.exists("bus"), "the drives' end of the bus")
     line, console = serial_pair.Pair(), serial_pair.Pair()
     terminal = g.Terminal(console.paths[1])
