@@ -190,7 +190,7 @@ def connect(scheduler: str | None, workers: int) -> Any:
     if scheduler is not None:
         return Client(scheduler, timeout="60s")
     cluster = LocalCluster(
-        n_workers=workers, threads_per_worker=1, processes=True, dashboard_address=None, silence_logs=50
+        n_workers=workers, threads_per_worker=1, processes=True, dashboard_address=":0", silence_logs=50
     )
     return Client(cluster)
 
