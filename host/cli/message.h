@@ -8,8 +8,8 @@
 #define TAKT_HOST_MESSAGE_H
 
 #include "base/error.h"
-#include "controller/controller.h"
 #include "cli/program_text.h"
+#include "controller/controller.h"
 
 #include <stdint.h>
 

@@ -5,8 +5,8 @@
 #ifndef TAKT_HOST_PROGRAM_TEXT_H
 #define TAKT_HOST_PROGRAM_TEXT_H
 
-#include "program/source.h"
 #include "cli/text.h"
+#include "program/source.h"
 
 #include <stdbool.h>
 #include <stddef.h>

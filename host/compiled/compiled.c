@@ -7,13 +7,13 @@
 #include "base/crc32.h"
 #include "base/fnv.h"
 #include "base/maths.h"
-#include "replay/fit.h"
-#include "compiled/compiled_judge.h"
 #include "cli/interrupt.h"
 #include "cli/message.h"
 #include "cli/progress.h"
 #include "cli/stopwatch.h"
 #include "cli/text.h"
+#include "compiled/compiled_judge.h"
+#include "replay/fit.h"
 
 #include <errno.h>
 #include <stdlib.h>

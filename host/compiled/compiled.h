@@ -4,9 +4,9 @@
 #ifndef TAKT_HOST_COMPILED_H
 #define TAKT_HOST_COMPILED_H
 
+#include "judge/tube_judge.h"
 #include "replay/intake.h"
 #include "session/session.h"
-#include "judge/tube_judge.h"
 
 #include <stdbool.h>
 #include <stdint.h>

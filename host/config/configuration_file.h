@@ -6,8 +6,8 @@
 #define TAKT_HOST_CONFIGURATION_FILE_H
 
 #include "canopen/concise_dcf.h"
-#include "config/machine_setup.h"
 #include "cli/text.h"
+#include "config/machine_setup.h"
 
 /* A machine's; it has no more drives than there are places. All zero: none. */
 struct configuration_files {

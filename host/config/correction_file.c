@@ -1,11 +1,11 @@
 #include "config/correction_file.h"
 
 #include "base/maths.h"
-#include "controller/controller.h"
-#include "correction/table_text.h"
 #include "cli/message.h"
 #include "cli/output_file.h"
 #include "cli/text.h"
+#include "controller/controller.h"
+#include "correction/table_text.h"
 
 #include <stdlib.h>
 

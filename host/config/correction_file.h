@@ -4,9 +4,9 @@
 #ifndef TAKT_HOST_CORRECTION_FILE_H
 #define TAKT_HOST_CORRECTION_FILE_H
 
+#include "config/machine_setup.h"
 #include "correction/table.h"
 #include "correction/tables.h"
-#include "config/machine_setup.h"
 
 #include <stdbool.h>
 

@@ -4,8 +4,8 @@
 #ifndef TAKT_HOST_DATA_SHEET_H
 #define TAKT_HOST_DATA_SHEET_H
 
-#include "drives/virtual_drives.h"
 #include "config/machine_setup.h"
+#include "drives/virtual_drives.h"
 
 /* False after a message. */
 bool data_sheet_load(struct dictionary *dictionary, const char *path);

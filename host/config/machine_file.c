@@ -1,8 +1,8 @@
 #include "config/machine_file.h"
 
-#include "config/machine_keys.h"
 #include "cli/message.h"
 #include "cli/text.h"
+#include "config/machine_keys.h"
 
 #include <ini.h>
 #include <stdint.h>

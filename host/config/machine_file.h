@@ -4,8 +4,8 @@
 #ifndef TAKT_HOST_MACHINE_FILE_H
 #define TAKT_HOST_MACHINE_FILE_H
 
-#include "config/machine_setup.h"
 #include "cli/options.h"
+#include "config/machine_setup.h"
 
 #include <stdbool.h>
 #include <stdio.h>

@@ -4,8 +4,8 @@
 #ifndef TAKT_HOST_MACHINE_IO_H
 #define TAKT_HOST_MACHINE_IO_H
 
-#include "drive/io_wiring.h"
 #include "config/machine_keys.h"
+#include "drive/io_wiring.h"
 
 /* False: *wrong says why, by the name of the key, and nothing has changed. */
 bool machine_io_read(uint8_t field[IO_BITS_MAX], const char *value, bool is_output,

@@ -43,6 +43,9 @@
            -1e6, 1e6, meaning)
 #define OF_GEOMETRY(name, field, count, meaning)                                                   \
     VECTOR(SECTION_GEOMETRY, name, SCALE_NONE, IN_SETUP(geometry.field), count, -1e9, 1e9, meaning)
+#define OF_VIBRATION(name, axis, meaning)                                                          \
+    VECTOR(SECTION_GEOMETRY, name, SCALE_NONE, IN_SETUP(vibration.mode[axis]),                     \
+           VIBRATION_MODES *VIBRATION_NUMBERS, -1e9, 1e9, meaning)
 /* The six errors of an axis: E_XX and so on. */
 #define ERRORS(letter, number)                                                                     \
     OF_GEOMETRY("ex" letter, axis[number][0], DEVIATION_CURVE_NUMBERS,                             \
@@ -385,6 +388,9 @@ const struct machine_key machine_keys[] = {
     VECTOR(SECTION_GEOMETRY, "growth_um_per_m_k", SCALE_NONE, IN_SETUP(geometry.growth_um_per_m_k), 3, -1e4, 1e4,
            "with temperature: X, Y, Z"),
     OF_GEOMETRY("growth_reference_mm", growth_reference_mm, 3, "where nothing moves"),
+    OF_VIBRATION("mode_x", AXIS_X, "how X swings between motor and tool: frequency Hz, damping ratio, part of it that the tool sees (1: all); and the same of a second mode"),
+    OF_VIBRATION("mode_y", AXIS_Y, "likewise"),
+    OF_VIBRATION("mode_z", AXIS_Z, "likewise"),
     FROM(SECTION_GEOMETRY, "warming_k", SCALE_NONE, IN_SETUP(geometry.warming_k), -100, 100, "in the end"),
     FROM(SECTION_GEOMETRY, "warming_time_s", SCALE_NONE, IN_SETUP(geometry.warming_time_s), 0, 1e6,
          "time constant; 0: warm from the start"),

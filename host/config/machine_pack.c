@@ -1,13 +1,13 @@
 #include "config/machine_pack.h"
 
-#include "storage/settings.h"
-#include "storage/store.h"
-#include "config/configuration_file.h"
-#include "config/correction_file.h"
-#include "config/machine_file.h"
 #include "cli/message.h"
 #include "cli/output_file.h"
 #include "cli/text.h"
+#include "config/configuration_file.h"
+#include "config/correction_file.h"
+#include "config/machine_file.h"
+#include "storage/settings.h"
+#include "storage/store.h"
 
 #include <stdlib.h>
 #include <string.h>

@@ -1,8 +1,8 @@
 #include "config/machine_setup.h"
 
 #include "base/maths.h"
-#include "machine/machine_check.h"
 #include "drive/drives.h"
+#include "machine/machine_check.h"
 
 #include <stdarg.h>
 #include <stdint.h>
@@ -162,6 +162,14 @@ const char *machine_setup_chain(const struct machine_setup *setup, struct unit_c
     return check_turning(setup, last >= AXIS_LINEAR_COUNT ? last : AXIS_COUNT);
 }
 
+static const char *check_vibration(const struct machine_setup *setup)
+{
+    unsigned axis = 0;
+    const char *wrong = vibration_check(&setup->vibration, &axis);
+
+    return wrong == NULL ? NULL : problem("geometry.mode_%c: %s", "xyz"[axis], wrong);
+}
+
 const char *machine_setup_check(const struct machine_setup *setup)
 {
     const char *wrong = check_machine(&setup->machine);
@@ -169,6 +177,8 @@ const char *machine_setup_check(const struct machine_setup *setup)
 
     if (wrong == NULL)
         wrong = machine_setup_chain(setup, &chain);
+    if (wrong == NULL)
+        wrong = check_vibration(setup);
 
     for (unsigned i = 0; i < AXIS_COUNT && wrong == NULL; i++) {
         if (setup->machine.axis[i].present)

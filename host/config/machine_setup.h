@@ -4,13 +4,14 @@
 #ifndef TAKT_HOST_MACHINE_SETUP_H
 #define TAKT_HOST_MACHINE_SETUP_H
 
-#include "machine/machine.h"
+#include "config/chain_text.h"
 #include "deviation/deviation.h"
 #include "dialect/dialect.h"
 #include "drives/drive_plant.h"
+#include "machine/machine.h"
 #include "spindle/virtual_spindle.h"
 #include "stepper/virtual_steppers.h"
-#include "config/chain_text.h"
+#include "vibration/vibration.h"
 
 #include <stdbool.h>
 
@@ -53,7 +54,8 @@ struct machine_setup {
     char unit_table[AXIS_COUNT][MACHINE_SETUP_PATH_MAX + 1];
     char chain[CHAIN_TEXT_MAX]; /* of units, from the part to the tool; empty: see chain_text.h */
     struct geometry_setup known_geometry;
-    struct deviation_config geometry; /* how the virtual machine differs from a perfect one */
+    struct deviation_config geometry;  /* how the virtual machine differs from a perfect one */
+    struct vibration_config vibration; /* and how it swings */
     struct machine_drive
         drive[MACHINE_SETUP_DRIVES_MAX]; /* of each axis, and the second ones of gantries */
     struct virtual_stepper_config stepper[AXIS_COUNT]; /* of each axis, if it has a step drive */

@@ -2,10 +2,10 @@
 #include "config/machine_keys.h"
 
 #include "base/maths.h"
-#include "correction/correction.h"
-#include "config/machine_io.h"
 #include "cli/message.h"
 #include "cli/suggest.h"
+#include "config/machine_io.h"
+#include "correction/correction.h"
 
 #include <ctype.h>
 #include <math.h>

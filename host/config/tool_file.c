@@ -1,9 +1,9 @@
 #include "config/tool_file.h"
 
 #include "base/maths.h"
-#include "program/program_limits.h"
 #include "cli/message.h"
 #include "cli/text.h"
+#include "program/program_limits.h"
 
 #include <ctype.h>
 #include <math.h>

@@ -1,8 +1,8 @@
 #include "config/tool_guess.h"
 
+#include "cli/message.h"
 #include "dialect/line.h"
 #include "program/program_limits.h"
-#include "cli/message.h"
 
 #include <stdio.h>
 #include <stdlib.h>

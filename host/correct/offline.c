@@ -1,9 +1,9 @@
 #include "correct/offline.h"
 
-#include "program/coordinates.h"
 #include "cli/interrupt.h"
 #include "cli/message.h"
 #include "correct/offline_private.h"
+#include "program/coordinates.h"
 
 #include <stdlib.h>
 #include <string.h>

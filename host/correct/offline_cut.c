@@ -1,7 +1,7 @@
 /* What is left of a line when words are cut out of it. */
+#include "correct/offline_private.h"
 #include "program/lexer.h"
 #include "program/words.h"
-#include "correct/offline_private.h"
 
 #include <string.h>
 

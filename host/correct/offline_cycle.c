@@ -3,8 +3,8 @@
  * written too: the spindle, waits, stops.
  */
 #include "base/maths.h"
-#include "program/words.h"
 #include "correct/offline_private.h"
+#include "program/words.h"
 
 #define WORDS_DRILLING                                                                             \
     (LETTERS_AXES | LETTERS_CENTRE | LETTER_BIT('r') | LETTER_BIT('p') | LETTER_BIT('q') |         \

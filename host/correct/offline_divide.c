@@ -9,8 +9,8 @@
  * It makes of an involute another one, of the base circle a C + b, |a| r.
  */
 #include "base/maths.h"
-#include "geometry/involute.h"
 #include "correct/offline_private.h"
+#include "geometry/involute.h"
 
 /* Words have six decimals: what is written is this far from what was meant, at most, in each axis. */
 #define WRITTEN_STEPS_PER_MM 1e6

@@ -1,8 +1,8 @@
 /* A line of the program with the words of its motion replaced. */
+#include "correct/offline_private.h"
 #include "program/coordinates.h"
 #include "program/flow.h"
 #include "program/words.h"
-#include "correct/offline_private.h"
 
 #include <stdlib.h>
 #include <string.h>

@@ -1,9 +1,9 @@
 /* The words that say where a piece of a motion ends. */
 #include "base/maths.h"
-#include "program/coordinates.h"
-#include "program/words.h"
 #include "cli/axis_unit.h"
 #include "correct/offline_private.h"
+#include "program/coordinates.h"
+#include "program/words.h"
 
 #include <stdarg.h>
 #include <stdlib.h>

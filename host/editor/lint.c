@@ -1,8 +1,8 @@
 #include "editor/lint.h"
 
-#include "dialect/line.h"
 #include "cli/interrupt.h"
 #include "cli/message.h"
+#include "dialect/line.h"
 #include "session/planner.h"
 
 #include <math.h>

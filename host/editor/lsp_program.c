@@ -1,11 +1,11 @@
 #include "editor/lsp_program.h"
 
-#include "dialect/line.h"
 #include "cli/interrupt.h"
+#include "cli/message.h"
+#include "dialect/line.h"
 #include "editor/lint.h"
 #include "editor/lsp_text.h"
 #include "editor/meaning.h"
-#include "cli/message.h"
 #include "editor/mode_text.h"
 #include "session/session.h"
 

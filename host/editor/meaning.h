@@ -1,6 +1,6 @@
 /*
  * What words of a program mean, one line each: for who reads one in an editor. Which codes there are says the table of
- * firmware/program/codes.c; test_takt_meaning holds the two together.
+ * firmware/program/codes.c; test_editor_meaning holds the two together.
  */
 #ifndef TAKT_HOST_MEANING_H
 #define TAKT_HOST_MEANING_H

@@ -15,13 +15,13 @@
 #ifndef TAKT_HOST_JUDGE_H
 #define TAKT_HOST_JUDGE_H
 
-#include "machine/machine.h"
 #include "drive/drives.h"
+#include "judge/tube_judge.h"
+#include "machine/machine.h"
 #include "motion/cycle_record.h"
 #include "offset/offset.h"
 #include "plan/block.h"
 #include "program/program.h"
-#include "judge/tube_judge.h"
 
 #include <stdbool.h>
 #include <stdint.h>
@@ -63,6 +63,7 @@ struct judge_block {
     bool probing;    /* it may end early: judge_answer */
     double
         turning_mm; /* into a hole the axes turn round with the spindle, so far above its end at most; 0: no hole */
+    bool rounded;     /* a tolerance is programmed: the tube judges it, whether it is a curve or not */
     bool landed;      /* a cycle has ended it exactly */
     bool ending;      /* its last piece is being executed */
     bool passed;      /* then: it is to be left without a cycle at its end */

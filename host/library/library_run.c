@@ -1,3 +1,4 @@
+/* A run of the library, cycle by cycle: opened, stepped, finished. */
 #include "library/library_private.h"
 
 #include "cli/axis_unit.h"
@@ -19,7 +20,7 @@ static void see(void *context, const struct cycle_record *record, const struct b
     if (record == NULL)
         return;
     if (job->keeps_trace)
-        columns_add(&job->columns, record);
+        columns_add(&job->columns, record, simulation_get_tool(job->run.simulation));
     if (job->report != NULL)
         report_add(job->report, record, block->move.kind == MOVE_RAPID);
 }
@@ -31,7 +32,8 @@ static bool keep(struct takt_job *job, unsigned keeps)
     struct plan_limits limits;
 
     job->keeps_trace = (keeps & TAKT_KEEPS_TRACE) != 0;
-    columns_init(&job->columns, machine_axes(machine), 1e-6 * (double)machine->cycle_us);
+    columns_init(&job->columns, machine_axes(machine), 1e-6 * (double)machine->cycle_us,
+                 simulation_get_tool(job->run.simulation) != NULL);
     if (keeps != 0)
         job->run.watcher = (struct run_watcher){see, job};
     if ((keeps & TAKT_KEEPS_REPORT) == 0)

@@ -13,11 +13,11 @@
 
 #include "cli/status.h"
 #include "compiled/compiled.h"
-#include "simulation/ending.h"
 #include "judge/judge.h"
-#include "session/session.h"
-#include "simulation/simulation.h"
 #include "results/summary.h"
+#include "session/session.h"
+#include "simulation/ending.h"
+#include "simulation/simulation.h"
 
 #include <stdbool.h>
 #include <stdint.h>

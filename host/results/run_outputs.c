@@ -120,7 +120,7 @@ static bool open_trace(struct run_outputs *o, const struct machine *machine)
     if (o->trace == NULL)
         return false;
     trace_writer_init(o->trace, o->file[RUN_TRACE].stream, machine_axes(machine),
-                      1e-6 * (double)machine->cycle_us);
+                      1e-6 * (double)machine->cycle_us, o->tool != NULL);
     return true;
 }
 
@@ -138,6 +138,7 @@ static bool open_report(struct run_outputs *o, const struct machine *machine)
 static bool open_writers(struct run_outputs *o, const struct machine *machine,
                          struct simulation *simulation)
 {
+    o->tool = simulation_get_tool(simulation);
     return (o->path[RUN_TRACE] == NULL || open_trace(o, machine)) &&
            (o->path[RUN_BUS_LOG] == NULL || open_bus_log(o, simulation)) &&
            (o->path[RUN_REPORT] == NULL || open_report(o, machine));
@@ -184,7 +185,7 @@ void run_outputs_add(struct run_outputs *o, const struct cycle_record *record,
     if (record == NULL)
         return;
     if (o->trace != NULL)
-        trace_writer_add(o->trace, record);
+        trace_writer_add(o->trace, record, o->tool);
     if (o->report != NULL)
         report_add(o->report, record, block->move.kind == MOVE_RAPID);
 }

@@ -7,13 +7,13 @@
 #define TAKT_HOST_RUN_OUTPUTS_H
 
 #include "bus/candump.h"
-#include "report/report.h"
-#include "simulation/frame_buffer.h"
 #include "cli/output_file.h"
-#include "session/session.h"
-#include "simulation/simulation.h"
+#include "report/report.h"
 #include "results/summary.h"
 #include "results/trace_writer.h"
+#include "session/session.h"
+#include "simulation/frame_buffer.h"
+#include "simulation/simulation.h"
 
 #include <stdbool.h>
 
@@ -35,9 +35,10 @@ struct run_outputs {
     struct candump *bus_log;
     struct frame_buffer *frames;
     struct report *report;
-    char *shares;    /* of the time at each limit, as JSON; NULL: none. Owned */
-    char *map;       /* error of the tool's point, as JSON; NULL: none. Owned */
-    bool each_cycle; /* something is to be written every cycle */
+    const struct point *tool; /* its point in each cycle, the simulation's; NULL: it is not known */
+    char *shares;             /* of the time at each limit, as JSON; NULL: none. Owned */
+    char *map;                /* error of the tool's point, as JSON; NULL: none. Owned */
+    bool each_cycle;          /* something is to be written every cycle */
 };
 
 /* The paths that the options ask for, without touching any file. False after a message: two are the same, or one is

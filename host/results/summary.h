@@ -5,10 +5,10 @@
 #define TAKT_HOST_SUMMARY_H
 
 #include "base/error.h"
-#include "simulation/bus_plan.h"
-#include "simulation/drives_table.h"
 #include "judge/judge.h"
 #include "session/session.h"
+#include "simulation/bus_plan.h"
+#include "simulation/drives_table.h"
 #include "simulation/simulation.h"
 
 #include <stdbool.h>

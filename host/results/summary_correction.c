@@ -58,6 +58,10 @@ static void add_tool_point(cJSON *root, const struct summary *summary)
         return;
     }
     object = cJSON_AddObjectToObject(root, "tool_point");
+    if (tool->vibration.any) {
+        cJSON_AddNumberToObject(object, "way_error_max_mm", tool->way.max_mm);
+        cJSON_AddNumberToObject(object, "way_error_rms_mm", tool_way_rms_mm(&tool->way));
+    }
     cJSON_AddNumberToObject(object, "rests", (double)tool->at_rest.count);
     cJSON_AddNumberToObject(object, "rest_error_max_mm", tool->at_rest.max_mm);
     cJSON_AddNumberToObject(object, "rest_error_mean_mm", tool_point_mean(&tool->at_rest));
@@ -106,6 +110,10 @@ static void write_tool_point(FILE *stream, const struct summary *summary)
                   (unsigned)tool->at_rest.count);
     (void)fprintf(stream, "                %.2f um at most, %.2f um on average, by the setpoints\n",
                   1e3 * tool->of_setpoints.max_mm, 1e3 * tool_point_mean(&tool->of_setpoints));
+    if (tool->vibration.any)
+        (void)fprintf(stream,
+                      "                %.2f um at most, %.2f um rms, off the way, swinging\n",
+                      1e3 * tool->way.max_mm, 1e3 * tool_way_rms_mm(&tool->way));
 }
 
 void summary_correction_write_text(FILE *stream, const struct summary *summary)

@@ -2,6 +2,7 @@
 
 #include "cli/axis_unit.h"
 
+#include <stddef.h>
 #include <stdio.h>
 
 #define PLACES_POSITION 9
@@ -28,7 +29,7 @@ static unsigned add_of_axis(struct trace_column *column, unsigned count, const c
     return count + 1;
 }
 
-unsigned trace_columns(unsigned axes, struct trace_column column[TRACE_ROW_COLUMNS])
+unsigned trace_columns(unsigned axes, bool has_tool, struct trace_column column[TRACE_ROW_COLUMNS])
 {
     static const struct trace_column first[] = {{"cycle", 0},
                                                 {"time_s", PLACES_TIME},
@@ -48,11 +49,14 @@ unsigned trace_columns(unsigned axes, struct trace_column column[TRACE_ROW_COLUM
         count = add_of_axis(column, count, "set", i);
         count = add_of_axis(column, count, "act", i);
     }
-    return add_column(column, count, "spindle_rev", PLACES_POSITION);
+    count = add_column(column, count, "spindle_rev", PLACES_POSITION);
+    for (unsigned i = 0; has_tool && i < AXIS_LINEAR_COUNT; i++)
+        count = add_of_axis(column, count, "tool", i);
+    return count;
 }
 
 unsigned trace_values(unsigned axes, double cycle_s, const struct cycle_record *record,
-                      double value[TRACE_ROW_COLUMNS])
+                      const struct point *tool, double value[TRACE_ROW_COLUMNS])
 {
     unsigned count = 0;
 
@@ -73,5 +77,7 @@ unsigned trace_values(unsigned axes, double cycle_s, const struct cycle_record *
         value[count++] = record->act.at[i] * ratio;
     }
     value[count++] = record->spindle_rev;
+    for (unsigned i = 0; tool != NULL && i < AXIS_LINEAR_COUNT; i++)
+        value[count++] = tool->at[i];
     return count;
 }

@@ -7,8 +7,10 @@
 #include "base/point.h"
 #include "motion/cycle_record.h"
 
-/* Cycle, time, block, line, feed, override, limiter, three of every axis, the spindle's angle. */
-#define TRACE_ROW_COLUMNS     (8 + 3 * AXIS_COUNT)
+#include <stdbool.h>
+
+/* Cycle, time, block, line, feed, override, limiter, three of every axis, the spindle's angle, the tool's point. */
+#define TRACE_ROW_COLUMNS     (8 + 3 * AXIS_COUNT + AXIS_LINEAR_COUNT)
 #define TRACE_COLUMN_NAME_MAX 23
 
 struct trace_column {
@@ -16,10 +18,10 @@ struct trace_column {
     unsigned places; /* behind the point, in CSV */
 };
 
-/* Returns how many there are. axes: bit i set: those of axis i. */
-unsigned trace_columns(unsigned axes, struct trace_column column[TRACE_ROW_COLUMNS]);
-/* The values of a cycle, likewise. */
+/* Returns how many there are. axes: bit i set: those of axis i. has_tool: the tool's point is known beside the drives. */
+unsigned trace_columns(unsigned axes, bool has_tool, struct trace_column column[TRACE_ROW_COLUMNS]);
+/* The values of a cycle, likewise. tool: its point; NULL: it is not known. */
 unsigned trace_values(unsigned axes, double cycle_s, const struct cycle_record *record,
-                      double value[TRACE_ROW_COLUMNS]);
+                      const struct point *tool, double value[TRACE_ROW_COLUMNS]);
 
 #endif

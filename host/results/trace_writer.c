@@ -14,7 +14,8 @@ static void write_buffer(struct trace_writer *w)
     w->used = 0;
 }
 
-void trace_writer_init(struct trace_writer *w, FILE *stream, unsigned axes, double cycle_s)
+void trace_writer_init(struct trace_writer *w, FILE *stream, unsigned axes, double cycle_s,
+                       bool has_tool)
 {
     unsigned count;
 
@@ -22,17 +23,20 @@ void trace_writer_init(struct trace_writer *w, FILE *stream, unsigned axes, doub
     w->failed = false;
     w->axes = axes;
     w->cycle_s = cycle_s;
+    w->has_tool = has_tool;
     w->used = 0;
-    count = trace_columns(axes, w->column);
+    count = trace_columns(axes, has_tool, w->column);
     for (unsigned i = 0; i < count; i++)
         w->used += (size_t)snprintf(w->buffer + w->used, TRACE_ROW_MAX, "%s%c", w->column[i].name,
                                     i + 1 < count ? ',' : '\n');
 }
 
-void trace_writer_add(struct trace_writer *w, const struct cycle_record *record)
+void trace_writer_add(struct trace_writer *w, const struct cycle_record *record,
+                      const struct point *tool)
 {
     double value[TRACE_ROW_COLUMNS];
-    const unsigned count = trace_values(w->axes, w->cycle_s, record, value);
+    const unsigned count =
+        trace_values(w->axes, w->cycle_s, record, w->has_tool ? tool : NULL, value);
     char *at;
 
     if (w->used > TRACE_BUFFER_SIZE - TRACE_ROW_MAX)

@@ -2,13 +2,13 @@
 
 #include "serving/drive_service.h"
 
-#include "drives/drive_store.h"
-#include "drives/eds.h"
-#include "simulation/bus_log.h"
 #include "cli/interrupt.h"
 #include "cli/message.h"
 #include "cli/output_file.h"
 #include "cli/text.h"
+#include "drives/drive_store.h"
+#include "drives/eds.h"
+#include "simulation/bus_log.h"
 
 #include <stdlib.h>
 #include <unistd.h>

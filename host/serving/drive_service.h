@@ -10,8 +10,8 @@
 #define TAKT_HOST_DRIVE_SERVICE_H
 
 #include "bus/link.h"
-#include "drives/virtual_drives.h"
 #include "cli/status.h"
+#include "drives/virtual_drives.h"
 #include "simulation/probe_contact.h"
 
 #include <stdbool.h>

@@ -2,8 +2,8 @@
 
 #include "base/maths.h"
 #include "cli/message.h"
-#include "serving/serving_options.h"
 #include "cli/suggest.h"
+#include "serving/serving_options.h"
 
 #include <stdio.h>
 #include <stdlib.h>

@@ -4,11 +4,11 @@
 #ifndef TAKT_HOST_PANEL_LINE_H
 #define TAKT_HOST_PANEL_LINE_H
 
+#include "cli/options.h"
+#include "cli/status.h"
 #include "client/client.h"
 #include "panel/registers.h"
 #include "serve/serial_line.h"
-#include "cli/options.h"
-#include "cli/status.h"
 
 #include <stdbool.h>
 

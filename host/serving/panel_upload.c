@@ -3,13 +3,13 @@
 #include "serving/panel_upload.h"
 
 #include "base/crc32.h"
+#include "cli/interrupt.h"
+#include "cli/message.h"
+#include "cli/text.h"
 #include "modbus/crc.h"
 #include "panel/registers.h"
 #include "replay/format.h"
-#include "cli/interrupt.h"
-#include "cli/message.h"
 #include "session/program_front.h"
-#include "cli/text.h"
 
 #include <inttypes.h>
 #include <stdio.h>

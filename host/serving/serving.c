@@ -3,12 +3,12 @@
 #include "serving/serving.h"
 
 #include "base/crc32.h"
-#include "simulation/cutting_feed.h"
-#include "simulation/drives_table.h"
 #include "cli/message.h"
-#include "session/program_front.h"
 #include "cli/stopwatch.h"
 #include "cli/text.h"
+#include "session/program_front.h"
+#include "simulation/cutting_feed.h"
+#include "simulation/drives_table.h"
 
 #include <stdlib.h>
 #include <unistd.h>

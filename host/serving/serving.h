@@ -8,23 +8,23 @@
 #ifndef TAKT_HOST_SERVING_H
 #define TAKT_HOST_SERVING_H
 
+#include "cli/status.h"
 #include "port/plan_queue.h"
 #include "serve/exchange.h"
 #include "serve/panel_host.h"
 #include "serve/program_store.h"
 #include "serve/server.h"
 #include "service/service.h"
-#include "simulation/bus_log.h"
-#include "cli/status.h"
-#include "simulation/cycle_cost.h"
-#include "simulation/ending.h"
-#include "simulation/field.h"
 #include "serving/serving_console.h"
 #include "serving/serving_options.h"
 #include "serving/serving_page.h"
 #include "serving/serving_spindle.h"
 #include "serving/serving_state.h"
 #include "session/session.h"
+#include "simulation/bus_log.h"
+#include "simulation/cycle_cost.h"
+#include "simulation/ending.h"
+#include "simulation/field.h"
 
 #include <stdbool.h>
 #include <stdint.h>

@@ -1,8 +1,8 @@
 #include "serving/serving_console.h"
 
-#include "console/numbers.h"
 #include "cli/message.h"
 #include "cli/options.h"
+#include "console/numbers.h"
 #include "serving/serving.h"
 
 #include <stdio.h>

@@ -4,11 +4,11 @@
 #ifndef TAKT_HOST_SERVING_CONSOLE_H
 #define TAKT_HOST_SERVING_CONSOLE_H
 
+#include "cli/status.h"
 #include "offset/offset.h"
 #include "program/program.h"
 #include "serve/console_server.h"
 #include "service/service.h"
-#include "cli/status.h"
 
 #include <stdbool.h>
 

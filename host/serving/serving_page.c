@@ -2,12 +2,12 @@
 
 #include "base/error.h"
 #include "base/maths.h"
-#include "drives/virtual_drives.h"
-#include "offset/offset.h"
-#include "simulation/inject_bus.h"
 #include "cli/message.h"
 #include "cli/options.h"
+#include "drives/virtual_drives.h"
+#include "offset/offset.h"
 #include "serving/serving.h"
+#include "simulation/inject_bus.h"
 
 #include <stdio.h>
 #include <stdlib.h>

@@ -5,12 +5,12 @@
 #ifndef TAKT_HOST_SERVING_PAGE_H
 #define TAKT_HOST_SERVING_PAGE_H
 
-#include "machine/machine.h"
+#include "cli/status.h"
 #include "inject/inject.h"
+#include "machine/machine.h"
 #include "page/page_link.h"
 #include "page/page_server.h"
 #include "page/page_setup.h"
-#include "cli/status.h"
 
 #include <stdint.h>
 

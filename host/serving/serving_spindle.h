@@ -5,10 +5,10 @@
 #define TAKT_HOST_SERVING_SPINDLE_H
 
 #include "client/registers_client.h"
+#include "config/machine_setup.h"
 #include "inverter/inverter.h"
 #include "serve/serial_line.h"
 #include "spindle/virtual_spindle.h"
-#include "config/machine_setup.h"
 
 #include <stdbool.h>
 #include <stdint.h>

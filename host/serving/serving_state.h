@@ -7,9 +7,9 @@
 #ifndef TAKT_HOST_SERVING_STATE_H
 #define TAKT_HOST_SERVING_STATE_H
 
+#include "cli/status.h"
 #include "serve/state_keeper.h"
 #include "service/service.h"
-#include "cli/status.h"
 #include "session/session.h"
 
 #include <stdbool.h>

@@ -1,8 +1,8 @@
 #include "serving/spindle_service.h"
 
 #include "cli/message.h"
-#include "serving/serving_options.h"
 #include "cli/stopwatch.h"
+#include "serving/serving_options.h"
 
 #include <errno.h>
 #include <stdio.h>

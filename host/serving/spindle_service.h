@@ -4,10 +4,10 @@
 #ifndef TAKT_HOST_SPINDLE_SERVICE_H
 #define TAKT_HOST_SPINDLE_SERVICE_H
 
+#include "config/machine_setup.h"
 #include "serve/serial_line.h"
 #include "serve/server.h"
 #include "spindle/inverter_registers.h"
-#include "config/machine_setup.h"
 
 #include <stdbool.h>
 #include <stdint.h>

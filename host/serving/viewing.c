@@ -1,9 +1,9 @@
 #include "serving/viewing.h"
 
 #include "base/maths.h"
-#include "drive/drives.h"
 #include "cli/axis_unit.h"
 #include "cli/message.h"
+#include "drive/drives.h"
 #include "trace/trace_reader.h"
 
 #include <stdio.h>

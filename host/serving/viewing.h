@@ -9,9 +9,9 @@
 #ifndef TAKT_HOST_VIEWING_H
 #define TAKT_HOST_VIEWING_H
 
+#include "config/machine_setup.h"
 #include "page/page_link.h"
 #include "panel/snapshot.h"
-#include "config/machine_setup.h"
 
 #include <stdbool.h>
 #include <stddef.h>

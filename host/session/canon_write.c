@@ -1,7 +1,7 @@
 #include "session/canon_write.h"
 
-#include "session/canon.h"
 #include "cli/interrupt.h"
+#include "session/canon.h"
 
 enum command_status canon_write(FILE *stream, const struct session *session)
 {

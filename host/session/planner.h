@@ -5,8 +5,8 @@
 #ifndef TAKT_HOST_PLANNER_H
 #define TAKT_HOST_PLANNER_H
 
-#include "plan/block.h"
 #include "cli/status.h"
+#include "plan/block.h"
 #include "session/session.h"
 
 #include <stdint.h>

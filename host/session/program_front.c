@@ -2,8 +2,8 @@
 
 #include "session/program_front.h"
 
-#include "dialect/line.h"
 #include "cli/message.h"
+#include "dialect/line.h"
 
 #include <dirent.h>
 #include <stdio.h>

@@ -5,8 +5,8 @@
 #ifndef TAKT_HOST_PROGRAM_FRONT_H
 #define TAKT_HOST_PROGRAM_FRONT_H
 
-#include "dialect/dialect.h"
 #include "cli/program_text.h"
+#include "dialect/dialect.h"
 
 #include <stdbool.h>
 

@@ -1,12 +1,12 @@
 #include "session/session.h"
 
-#include "program/comment_text.h"
-#include "config/correction_file.h"
 #include "cli/interrupt.h"
-#include "config/machine_file.h"
 #include "cli/message.h"
-#include "session/program_front.h"
+#include "config/correction_file.h"
+#include "config/machine_file.h"
 #include "config/tool_guess.h"
+#include "program/comment_text.h"
+#include "session/program_front.h"
 
 #include <stdio.h>
 #include <stdlib.h>

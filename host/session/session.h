@@ -5,17 +5,17 @@
 #ifndef TAKT_HOST_SESSION_H
 #define TAKT_HOST_SESSION_H
 
+#include "cli/options.h"
+#include "cli/program_text.h"
+#include "cli/status.h"
+#include "config/configuration_file.h"
+#include "config/machine_setup.h"
+#include "config/parameter_file.h"
+#include "config/tool_file.h"
 #include "controller/controller.h"
 #include "correction/tables.h"
 #include "offset/offset.h"
 #include "program/program.h"
-#include "cli/status.h"
-#include "config/configuration_file.h"
-#include "config/machine_setup.h"
-#include "cli/options.h"
-#include "config/parameter_file.h"
-#include "cli/program_text.h"
-#include "config/tool_file.h"
 
 #include <stdbool.h>
 #include <stdint.h>

@@ -1,7 +1,7 @@
 #include "simulation/announcer.h"
 
-#include "program/comment_text.h"
 #include "cli/message.h"
+#include "program/comment_text.h"
 
 #include <stdio.h>
 

@@ -7,9 +7,9 @@
 #ifndef TAKT_HOST_ANNOUNCER_H
 #define TAKT_HOST_ANNOUNCER_H
 
-#include "program/program.h"
 #include "cli/output_file.h"
 #include "cli/program_text.h"
+#include "program/program.h"
 
 #include <stdbool.h>
 

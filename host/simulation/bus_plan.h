@@ -7,8 +7,8 @@
 
 #include "bus/bus.h"
 #include "bus/bus_response.h"
-#include "machine/machine.h"
 #include "drive/drives.h"
+#include "machine/machine.h"
 
 #include <stdbool.h>
 

@@ -5,8 +5,8 @@
 #ifndef TAKT_HOST_DRIVES_TABLE_H
 #define TAKT_HOST_DRIVES_TABLE_H
 
-#include "machine/machine.h"
 #include "drive/drives.h"
+#include "machine/machine.h"
 
 #include <cjson/cJSON.h>
 #include <stdio.h>

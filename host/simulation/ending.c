@@ -1,8 +1,8 @@
 #include "simulation/ending.h"
 
 #include "canopen/cia402.h"
-#include "controller/restart.h"
 #include "cli/interrupt.h"
+#include "controller/restart.h"
 
 /*
  * Two controlwords for each of six drives, one drive a cycle in turn, and for each the time of a report; several times over

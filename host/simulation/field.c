@@ -1,8 +1,8 @@
 #include "simulation/field.h"
 
+#include "cli/message.h"
 #include "config/data_sheet.h"
 #include "simulation/inject_bus.h"
-#include "cli/message.h"
 
 #include <string.h>
 

@@ -10,13 +10,13 @@
 
 #include "bus/bus.h"
 #include "bus/link.h"
-#include "drives/virtual_drives.h"
-#include "stepper/virtual_steppers.h"
-#include "simulation/bus_return.h"
 #include "cli/status.h"
-#include "simulation/lockstep.h"
 #include "config/machine_setup.h"
+#include "drives/virtual_drives.h"
+#include "simulation/bus_return.h"
+#include "simulation/lockstep.h"
 #include "simulation/pace.h"
+#include "stepper/virtual_steppers.h"
 
 #include <stdbool.h>
 #include <stdint.h>

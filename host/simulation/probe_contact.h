@@ -4,8 +4,8 @@
 #ifndef TAKT_HOST_PROBE_CONTACT_H
 #define TAKT_HOST_PROBE_CONTACT_H
 
-#include "machine/machine.h"
 #include "drives/virtual_drives.h"
+#include "machine/machine.h"
 #include "probe/virtual_probe.h"
 
 /* It must stay where it is. */

@@ -1,11 +1,11 @@
 #include "simulation/simulation.h"
 
-#include "compiled/compiled.h"
-#include "simulation/cutting_feed.h"
-#include "config/inject_file.h"
 #include "cli/message.h"
-#include "config/probe_file.h"
 #include "cli/stopwatch.h"
+#include "compiled/compiled.h"
+#include "config/inject_file.h"
+#include "config/probe_file.h"
+#include "simulation/cutting_feed.h"
 #include "simulation/target_setup.h"
 
 #include <stdlib.h>
@@ -275,6 +275,11 @@ static bool control(struct simulation *s)
 const struct cycle_record *simulation_get_record(const struct simulation *s)
 {
     return s->has_target ? target_get_record(&s->target) : controller_get_record(&s->controller);
+}
+
+const struct point *simulation_get_tool(const struct simulation *s)
+{
+    return s->tool_point.is_watched ? &s->tool_point.tool : NULL;
 }
 
 bool simulation_step(struct simulation *s)

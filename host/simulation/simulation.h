@@ -6,18 +6,18 @@
 #ifndef TAKT_HOST_SIMULATION_H
 #define TAKT_HOST_SIMULATION_H
 
+#include "config/override_file.h"
 #include "controller/controller.h"
 #include "hal/inputs.h"
 #include "probe/virtual_probe.h"
-#include "spindle/virtual_spindle.h"
+#include "session/session.h"
 #include "simulation/announcer.h"
 #include "simulation/correction_watch.h"
 #include "simulation/cycle_cost.h"
 #include "simulation/field.h"
-#include "config/override_file.h"
 #include "simulation/probe_contact.h"
-#include "session/session.h"
 #include "simulation/tool_point.h"
+#include "spindle/virtual_spindle.h"
 #include "target/target.h"
 
 #include <stdbool.h>
@@ -67,6 +67,9 @@ bool simulation_set_overrides(struct simulation *s, double feed_percent, double 
 /* Faults join those of --inject: the text of a script, and its name for messages. False after a message: none has. */
 bool simulation_add_faults(struct simulation *s, const char *name, const char *bytes,
                            size_t length);
+
+/* Where the tool's point was in it; NULL: drives stand for it, on a machine without errors or with drives outside. */
+const struct point *simulation_get_tool(const struct simulation *s);
 
 /* What the last cycle did, on the target if there is one; NULL: it was none of the program. */
 const struct cycle_record *simulation_get_record(const struct simulation *s);

@@ -1,9 +1,9 @@
 #include "simulation/target_setup.h"
 
-#include "correction/table_store.h"
+#include "cli/message.h"
 #include "compiled/compiled.h"
 #include "config/correction_file.h"
-#include "cli/message.h"
+#include "correction/table_store.h"
 
 #include <stdlib.h>
 

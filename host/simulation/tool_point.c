@@ -32,7 +32,8 @@ void tool_point_init(struct tool_point *t, const struct machine_setup *setup)
     };
     deviation_init(&t->real, &geometry, min_mm, max_mm);
     t->nominal = t->real;
-    t->is_watched = t->real.any;
+    vibration_init(&t->vibration, &setup->vibration, t->cycle_s);
+    t->is_watched = t->real.any || t->vibration.any;
 }
 
 static double distance(const struct point *a, const struct point *b)
@@ -113,14 +114,22 @@ static double turn_of(const struct tool_point *t, const struct point *cmd)
     return axis < AXIS_COUNT ? cmd->at[axis] : 0;
 }
 
+static void follow_way(struct tool_point *t, const struct point *cmd)
+{
+    tool_way_add(&t->way, cmd);
+    tool_way_measure(&t->way, &t->tool);
+}
+
 static void measure(struct tool_point *t, const struct cycle_record *record, double time_s)
 {
     struct point tool;
 
+    tool_point_get(t, &record->cmd, &t->tool);
+    if (t->vibration.any)
+        follow_way(t, &record->cmd);
     if (t->has_cmd && point_is_same(&record->cmd, &t->cmd)) {
-        tool_point_get(t, &record->cmd, &tool);
-        t->still_mm = distance(&tool, &record->cmd);
-        t->still_at = tool;
+        t->still_mm = distance(&t->tool, &record->cmd);
+        t->still_at = t->tool;
         t->still_line = record->line;
         t->still++;
     } else {
@@ -139,6 +148,7 @@ void tool_point_follow(struct tool_point *t, const struct virtual_drives *drives
     if (!t->is_watched)
         return;
     get_drives(t, drives, &at);
+    vibration_follow(&t->vibration, &at);
     deviation_follow(&t->real, &at, time_s);
     t->real_at = at;
     if (record == NULL)

@@ -1,15 +1,17 @@
 /*
- * Where the tool's point really is in a run on a machine with errors ([geometry]), and how far from where the program
+ * Where the tool's point really is in a run on a machine with errors, or one that swings ([geometry]), and how far from where the program
  * wants it. Only the virtual machine knows; the controller is told no more than a temperature.
  */
 #ifndef TAKT_HOST_TOOL_POINT_H
 #define TAKT_HOST_TOOL_POINT_H
 
+#include "config/machine_setup.h"
 #include "deviation/deviation.h"
 #include "drives/virtual_drives.h"
 #include "motion/cycle_record.h"
 #include "plan/block.h"
-#include "config/machine_setup.h"
+#include "vibration/tool_way.h"
+#include "vibration/vibration.h"
 
 #include <stdbool.h>
 #include <stdint.h>
@@ -27,8 +29,10 @@ struct tool_point {
     unsigned axes;         /* bit i set: the machine has axis i, whose drive is the next */
     struct deviation real; /* by the positions of the drives */
     struct point real_at;
-    struct deviation nominal; /* by the setpoints, as if the drives followed at once */
-    double cut_mm, cut_s;     /* of cutting so far */
+    struct point tool;          /* in the last program cycle */
+    struct vibration vibration; /* between them and the tool */
+    struct deviation nominal;   /* by the setpoints, as if the drives followed at once */
+    double cut_mm, cut_s;       /* of cutting so far */
     bool has_cmd;
     struct point cmd;    /* of the last cycle */
     uint32_t still;      /* cycles without motion until now */
@@ -38,6 +42,7 @@ struct tool_point {
     FILE *rests; /* a row for every standstill; NULL: not wanted. The caller's */
     struct tool_point_error at_rest; /* by the drives, at the end of every standstill of REST_S */
     struct tool_point_error of_setpoints; /* by the setpoints, in every program cycle */
+    struct tool_way way; /* from the commanded way, wherever along it; of machines that swing */
 };
 
 /* Shortest standstill that is a measurement: drives have settled then. */

@@ -6,9 +6,9 @@
 #include "bore/rival.h"
 #include "bore/write.h"
 #include "cli/interrupt.h"
-#include "config/machine_file.h"
 #include "cli/message.h"
 #include "cli/output_file.h"
+#include "config/machine_file.h"
 #include "session/session.h"
 #include "simulation/simulation.h"
 

@@ -1,3 +1,4 @@
+/* takt bore: make a program that mills a hole by involutes. */
 #include "bore/write.h"
 #include "cli/message.h"
 #include "cli/output_file.h"

@@ -1,3 +1,4 @@
+/* takt calibrate: measure a correction table on the virtual machine. */
 #include "cli/axis_unit.h"
 #include "cli/message.h"
 #include "config/correction_file.h"

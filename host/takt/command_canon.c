@@ -1,3 +1,4 @@
+/* takt canon: print the canonical moves of a part program as text. */
 #include "session/canon_write.h"
 #include "session/session.h"
 #include "takt/command.h"

@@ -1,3 +1,4 @@
+/* takt check: find all errors of a part program without moving anything. */
 #include "session/session.h"
 #include "takt/command.h"
 

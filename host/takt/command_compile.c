@@ -1,3 +1,4 @@
+/* takt compile: plan a program's motion ahead of the run, inside the tolerance of G64. */
 #include "cli/message.h"
 #include "cli/output_file.h"
 #include "compiled/compiled.h"

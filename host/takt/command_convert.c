@@ -1,3 +1,4 @@
+/* takt convert: write the moves of a part program in the words of another controller. */
 #include "cli/interrupt.h"
 #include "cli/message.h"
 #include "cli/output_file.h"

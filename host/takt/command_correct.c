@@ -1,3 +1,4 @@
+/* takt correct: write a program with position errors corrected, for other controllers. */
 #include "cli/message.h"
 #include "cli/output_file.h"
 #include "config/correction_file.h"

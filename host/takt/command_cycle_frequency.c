@@ -1,3 +1,4 @@
+/* takt cycle-frequency: control frequency needed for a machine's limits and an accuracy. */
 #define _POSIX_C_SOURCE 200809L
 
 #include "cli/message.h"

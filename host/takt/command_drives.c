@@ -1,3 +1,4 @@
+/* takt drives: virtual CiA 402 drives, for any CANopen master. */
 #define _POSIX_C_SOURCE 200809L
 
 #include "takt/command.h"

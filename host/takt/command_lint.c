@@ -1,3 +1,4 @@
+/* takt lint: find what is right and yet hardly meant. */
 #include "editor/lint.h"
 #include "session/session.h"
 #include "takt/command.h"

@@ -1,3 +1,4 @@
+/* takt lsp: tell an editor what is wrong in a program, what a word means, where a subroutine is. */
 #define _POSIX_C_SOURCE 200809L
 
 #include "cli/interrupt.h"

@@ -1,3 +1,4 @@
+/* takt machine: check a machine file and print it with every key, or pack it for a target. */
 #include "cli/message.h"
 #include "config/configuration_file.h"
 #include "config/machine_file.h"

@@ -1,3 +1,4 @@
+/* takt panel: read and write the panel of a running controller by name. */
 #define _POSIX_C_SOURCE 200809L
 
 #include "cli/interrupt.h"

@@ -1,3 +1,4 @@
+/* takt plan: show the planned blocks: lengths, feeds, what governs them, times. */
 #include "cli/output_file.h"
 #include "session/plan_write.h"
 #include "session/session.h"

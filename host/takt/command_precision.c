@@ -1,3 +1,4 @@
+/* takt precision: errors of every interpolator on a program, with bounds and word lengths. */
 #include "cli/interrupt.h"
 #include "cli/message.h"
 #include "session/session.h"

@@ -1,3 +1,4 @@
+/* takt replay: send the frames of a bus log onto a bus. */
 #include "takt/command.h"
 
 #include "bus/candump_read.h"

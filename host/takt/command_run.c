@@ -1,3 +1,4 @@
+/* takt run: run the firmware on a part program against the virtual machine. */
 #include "cli/interrupt.h"
 #include "cli/message.h"
 #include "cli/progress.h"

@@ -1,3 +1,4 @@
+/* takt serve: the controller as a service, with the operator's panel on Modbus. */
 #include "cli/message.h"
 #include "serving/serving.h"
 #include "takt/command.h"

@@ -1,3 +1,4 @@
+/* takt trace: check a trace against limits, or compare two. */
 #include "config/machine_file.h"
 #include "takt/command.h"
 #include "trace/trace_check.h"

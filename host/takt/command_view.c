@@ -1,3 +1,4 @@
+/* takt view: play a trace back in the browser. */
 #include "cli/interrupt.h"
 #include "cli/message.h"
 #include "cli/text.h"

@@ -4,8 +4,8 @@
 #ifndef TAKT_HOST_TRACE_CHECK_H
 #define TAKT_HOST_TRACE_CHECK_H
 
-#include "machine/machine.h"
 #include "cli/status.h"
+#include "machine/machine.h"
 #include "trace/trace_reader.h"
 
 /* Prints peaks of velocity, acceleration and jerk by differences of the set columns, how many cycles are above the

@@ -1,3 +1,4 @@
+/* takt trace A B: where two traces differ, column by column. */
 #include "trace/trace_check.h"
 
 #include "base/maths.h"

@@ -1,9 +1,10 @@
+/* takt trace: peaks of a trace beside the limits of a machine. */
 #include "trace/trace_check.h"
 
 #include "base/maths.h"
 #include "cli/axis_unit.h"
-#include "judge/judge.h"
 #include "cli/message.h"
+#include "judge/judge.h"
 
 #include <stdio.h>
 

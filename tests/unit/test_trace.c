@@ -39,13 +39,13 @@ static void write_trace(const char *name, const double x[], unsigned count)
     FILE *stream = fopen(name, "wb");
 
     TEST_ASSERT_NOT_NULL(stream);
-    trace_writer_init(&writer, stream, 1, 0.001);
+    trace_writer_init(&writer, stream, 1, 0.001, false);
     for (unsigned i = 0; i < count; i++) {
         struct cycle_record record = {
             .cycle = i, .block = 1, .line = 7, .override_percent = 100, .limiter = 1};
 
         record.set.at[AXIS_X] = x[i];
-        trace_writer_add(&writer, &record);
+        trace_writer_add(&writer, &record, NULL);
     }
     TEST_ASSERT_TRUE(trace_writer_flush(&writer));
     (void)fclose(stream);
@@ -64,12 +64,12 @@ static void test_rows_have_the_columns_and_places_of_the_format(void)
     size_t length;
 
     TEST_ASSERT_NOT_NULL(stream);
-    trace_writer_init(&writer, stream, 1u << AXIS_Y | 1u << AXIS_A, 0.001);
+    trace_writer_init(&writer, stream, 1u << AXIS_Y | 1u << AXIS_A, 0.001, false);
     record.cmd.at[AXIS_Y] = -1.5;
     record.set.at[AXIS_Y] = 1e-9;
     record.act.at[AXIS_A] = 3.14159265358979323846 / 2;
     record.spindle_rev = -12.25;
-    trace_writer_add(&writer, &record);
+    trace_writer_add(&writer, &record, NULL);
     TEST_ASSERT_TRUE(trace_writer_flush(&writer));
     rewind(stream);
     length = fread(text, 1, sizeof text - 1, stream);
