@@ -1,3 +1,4 @@
+/* What each cycle sends: SYNC, then controlwords and target positions. */
 #include "base/maths.h"
 #include "canopen/cia402.h"
 #include "canopen/little_endian.h"
