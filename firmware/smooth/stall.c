@@ -2,9 +2,13 @@
 
 #include "base/maths.h"
 
-/* A curve goes on by this part of the tolerance, or of the way at nominal feed, in so many windows, or it never will. */
-#define STALL_PART    0.1
-#define STALL_WINDOWS 2
+/*
+ * A curve goes on by this part of so many tolerances, or of the way at nominal feed, in so many windows, or it never will: or
+ * creeps, standing still at the end of each window that it was to leave a place in.
+ */
+#define STALL_PART       0.1
+#define STALL_TOLERANCES 8.0
+#define STALL_WINDOWS    2
 
 /* From rest it goes to the route, and then on along it: where it comes to rest more often without having gone on, it never will. */
 #define STALL_RESTS 2
@@ -24,7 +28,8 @@ static double way_expected(const struct stall *s, const struct window *w, const 
                            unsigned ready, unsigned pieces)
 {
     const double feed_mm_s = (double)route_element(r, w->element[ready])->feed_mm_s;
-    const double way_mm = maths_min(r->tolerance_mm, pieces * w->interval_s * feed_mm_s);
+    const double way_mm =
+        maths_min(STALL_TOLERANCES * r->tolerance_mm, pieces * w->interval_s * feed_mm_s);
 
     return STALL_PART * maths_min(way_mm, route_end(r) - s->mark_mm);
 }
