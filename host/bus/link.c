@@ -201,10 +201,13 @@ static bool port_send(void *context, const struct can_frame *frame)
 
 static bool port_receive(void *context, struct can_frame *frame)
 {
+    const uint8_t kind = ((const struct link *)context)->config.data_bitrate > 0 ? WIRE_FD : 0;
     struct wire_frame wire;
-    while (link_receive(context, &wire))
-        if (wire_frame_to_can(&wire, frame))
+    while (link_receive(context, &wire)) {
+        const uint8_t others = wire.flags & WIRE_REMOTE ? 0 : WIRE_FD & ~kind;
+        if (!(wire.flags & others) && wire_frame_to_can(&wire, frame))
             return true;
+    }
     return false;
 }
 
