@@ -29,29 +29,13 @@ void controller_plan_limits(const struct machine *machine, struct plan_limits *l
     }
 }
 
-void controller_motion_bound(const struct machine *machine, struct motion_bound *most)
-{
-    memset(most, 0, sizeof(*most));
-    for (int i = 0; i < AXIS_COUNT; i++) {
-        const struct machine_axis *axis = &machine->axis[i];
-
-        if (axis->present) {
-            most->velocity_mm_s[i] = axis->max_velocity_mm_s;
-            most->acceleration_mm_s2[i] = axis->max_acceleration_mm_s2;
-            most->jerk_mm_s3[i] = axis->max_jerk_mm_s3;
-            most->farthest_mm[i] =
-                maths_max(maths_abs(axis->travel_min_mm), maths_abs(axis->travel_max_mm));
-        }
-    }
-}
-
 void controller_reserve_correction(struct correction *correction, const struct machine *machine,
                                    struct plan_limits *limits)
 {
     struct motion_bound most;
     struct need need;
 
-    controller_motion_bound(machine, &most);
+    machine_motion_bound(machine, &most);
     correction_reserve(correction, &most, &need);
     for (int i = 0; i < AXIS_COUNT; i++) {
         limits->velocity_mm_s[i] -= need.velocity_mm_s[i];

@@ -11,7 +11,7 @@ static float piece_time(const struct worth_window *now, unsigned piece)
     struct judge_rate rate;
 
     judge_need(w, now->route, piece, &need);
-    judge_rate(&need, now->route, w->element[piece + 1], now->change, &rate);
+    judge_rate(&need, now->route, now->route->first + w->paced[piece], now->change, &rate);
     return (float)w->interval_s / single_min(1.0f, single_min(rate.most, rate.programmed));
 }
 
