@@ -36,7 +36,7 @@ static void set_slots(struct route_slots *s, const struct smooth_limits *limits)
     s->groups = (s->count + SMOOTH_LANES - 1) / SMOOTH_LANES;
 }
 
-void route_limit(struct route *r, const struct smooth_limits *limits, double tolerance_mm)
+static void route_limit(struct route *r, const struct smooth_limits *limits, double tolerance_mm)
 {
     r->chord_mm = (float)limits->chord_mm;
     set_slots(&r->slots, limits);

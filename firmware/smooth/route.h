@@ -99,8 +99,6 @@ struct route_foot {
 };
 
 void route_init(struct route *r, const struct smooth_limits *limits, double tolerance_mm);
-/* Other limits and another tolerance from here on. */
-void route_limit(struct route *r, const struct smooth_limits *limits, double tolerance_mm);
 bool route_has_room(const struct route *r);
 /* Appends a curve that begins where the last one ended. Needs room. */
 void route_push(struct route *r, const struct move *move, uint32_t number,

@@ -3,6 +3,7 @@
 #include "base/maths.h"
 #include "smooth/exact.h"
 #include "smooth/interval.h"
+#include "smooth/piece.h"
 #include "smooth/single.h"
 #include "smooth/worth.h"
 
@@ -18,10 +19,6 @@
 
 /* Lines are merged within this part of the tolerance at most. */
 #define MERGED 0.05
-
-/* How long the axes stand at both ends: a part of the rounding of changes of rate, and cycles. */
-#define STANDING        1.75
-#define STANDING_CYCLES 4.0
 
 /* Smoothing aims at this part of the tolerance. */
 #define AIM 0.90
@@ -389,15 +386,6 @@ static void follow_ready(struct smooth *s, const struct judge_verdict *v)
     }
 }
 
-/*
- * At both ends of what begins and ends at rest by itself the axes stand for a while, and the rate of nominal time rises and
- * falls: in half of what it is rounded over, and as long again until the setpoint has come so far.
- */
-static double standing_s(const struct smooth *s)
-{
-    return STANDING * s->change.rounding_s + STANDING_CYCLES * s->limits.cycle_s;
-}
-
 /* The path itself is taken from where the axes rest: to that place at least. */
 static void take_path(struct smooth *s, double to_mm)
 {
@@ -422,7 +410,7 @@ static void choose(struct smooth *s, unsigned good)
                                      .change = &s->change,
                                      .pieces = good,
                                      .kept = s->ready,
-                                     .standing_s = (float)standing_s(s),
+                                     .standing_s = (float)smooth_standing_s(s),
                                      .starts = rests,
                                      .finished = s->finished};
     const bool stops = s->ready == 0 || (s->proved == 0 && !is_end(s, good));
@@ -461,87 +449,6 @@ static void smooth_window(struct smooth *s, union smooth_scratch *scratch)
     choose(s, good);
     if (s->ready > 0) {
         follow_ready(s, &v);
-    }
-}
-
-/* Control point of a piece; exactly the programmed end where it is that. */
-static void set_control(const struct smooth *s, unsigned i, struct point *control)
-{
-    const struct window *w = &s->window;
-    const bool end = s->ends && w->at_end && i + SMOOTH_FIXED >= w->count;
-    double p[AXIS_COUNT];
-
-    window_sample(w, &s->route, i, p);
-    memset(control, 0, sizeof(*control));
-    for (unsigned k = 0; k < s->route.slots.count; k++) {
-        control->at[s->route.slots.axis[k]] = end ? s->route.end[k] : p[k];
-    }
-}
-
-/* After a stop the curve goes on from where it can have come to, which may be before where it was thought to be. */
-static uint32_t latest_told(struct smooth *s, uint32_t element)
-{
-    s->told = element < s->told ? s->told : element;
-    return s->told;
-}
-
-static void set_piece(struct smooth *s, struct smooth_piece *piece)
-{
-    const struct window *w = &s->window;
-    const unsigned i = s->taken;
-    const uint32_t element = w->element[i + 1];
-    const uint32_t told = latest_told(s, element);
-    struct judge_need need;
-    struct judge_rate rate;
-
-    route_move(&s->route, told, &s->move);
-    piece->move = &s->move;
-    piece->number = route_element(&s->route, told)->number;
-    piece->rotary = route_element(&s->route, element)->rotary;
-    piece->interval_s = w->interval_s;
-    for (unsigned k = 0; k < 4; k++) {
-        set_control(s, i + k, &piece->control[k]);
-    }
-    judge_need(w, &s->route, i, &need);
-    judge_rate(&need, &s->route, s->route.first + w->paced[i], &s->change, &rate);
-    piece->rate.most = maths_min((double)rate.most, 1.0);
-    piece->rate.programmed = (double)rate.programmed;
-    piece->change.by =
-        (double)judge_change_on(&need, &s->route, &s->change, (float)piece->rate.most);
-    piece->change.rounded = piece->change.by / s->change.rounding_s;
-    piece->stop = s->stops && s->taken + 1 == s->ready;
-    piece->last = s->finished && w->at_end && i + 4 == w->count;
-}
-
-/* at: where the axes stand; of: the piece before or behind. */
-static void stand(struct smooth *s, const struct smooth_piece *of, const struct point *at,
-                  bool leaves)
-{
-    s->stand_rotary = of->rotary;
-    s->stand_number = of->number;
-    s->stand_at = *at;
-    s->standing = (unsigned)(standing_s(s) / s->window.interval_s) + 1;
-    s->leaves = leaves;
-}
-
-static void take_standing(struct smooth *s, struct smooth_piece *piece)
-{
-    const double change_per_s = 2.0 / s->change.rounding_s;
-    const struct point at = s->stand_at;
-
-    s->standing--;
-    *piece = (struct smooth_piece){
-        .move = &s->move,
-        .number = s->stand_number,
-        .control = {at, at, at, at},
-        .interval_s = s->window.interval_s,
-        .rate = {.most = 1.0, .programmed = MATHS_INFINITY},
-        .change = {.by = change_per_s, .rounded = change_per_s / s->change.rounding_s},
-        .rotary = s->stand_rotary,
-        .last = s->standing == 0 && !s->leaves,
-    };
-    if (piece->last) {
-        smooth_reset(s);
     }
 }
 
@@ -603,7 +510,7 @@ static bool take_motion(struct smooth *s, struct smooth_piece *piece, struct cur
     const bool goes = exact_next(&s->window, &s->route, &s->move, curve);
 
     piece->move = &s->move;
-    piece->number = route_element(&s->route, latest_told(s, element))->number;
+    piece->number = route_element(&s->route, smooth_tell(s, element))->number;
     piece->starts = s->starts;
     s->starts = s->starts && !goes;
     piece->continues = s->window.at_mm[0] < route_end_of(&s->route, element);
@@ -615,16 +522,16 @@ static bool take_motion(struct smooth *s, struct smooth_piece *piece, struct cur
 
 static void take_piece(struct smooth *s, struct smooth_piece *piece)
 {
-    set_piece(s, piece);
+    smooth_set_piece(s, piece);
     if (s->starts) {
         s->starts = false;
-        stand(s, piece, &piece->control[0], true);
-        take_standing(s, piece);
+        smooth_stand(s, piece, &piece->control[0], true);
+        smooth_take_standing(s, piece);
         return;
     }
     s->taken++;
     if (piece->last) {
-        stand(s, piece, &piece->control[3], false);
+        smooth_stand(s, piece, &piece->control[3], false);
         piece->last = false;
     }
 }
@@ -640,7 +547,7 @@ enum smooth_taken smooth_take(struct smooth *s, union smooth_scratch *scratch,
 {
     while (s->open) {
         if (s->standing > 0) {
-            take_standing(s, piece);
+            smooth_take_standing(s, piece);
             return SMOOTH_PIECE;
         }
         if (s->taken < s->ready) {
