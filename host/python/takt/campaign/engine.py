@@ -185,8 +185,9 @@ def connect(scheduler: str | None, workers: int) -> Any:
     from dask.distributed import Client, LocalCluster
 
     dask.config.set(QUIET)
-    for name in ("distributed", "asyncio"):  # what matters of it is told here
-        logging.getLogger(name).setLevel(logging.CRITICAL)
+    for name in list(logging.root.manager.loggerDict):  # what matters of it is told here
+        if name.split(".")[0] in ("distributed", "asyncio", "tornado"):
+            logging.getLogger(name).setLevel(logging.CRITICAL)
     if scheduler is not None:
         return Client(scheduler, timeout="60s")
     cluster = LocalCluster(
