@@ -3,14 +3,14 @@
  *
  *     pass   PDO     wanted                                            type
  *     0      RPDO1   controlword, mode                                 at once
- *     1      RPDO2   target, and a dummy for that of the neighbour     SYNC
+ *     1      RPDO2   target, and dummies for those of its group        SYNC
  *     2, 3   RPDO3,4 what has found no place so far, else not valid
  *     4      RPDO1   again, if the target has found no place: target, controlword
  *     5      TPDO1   statusword, position                              every SYNC
  *     6 - 8  TPDO2-4 the same, if they have found no place in one PDO; error code, following error (event, 100 ms)
  *     9 - 12 TPDO1-4 again, if they have found no such place: each in one of its own
  *
- * A PDO is told as CiA 301, 7.5.2.36 has it: not valid, type, no mapping, entries, their number, valid. An entry that is
+ * A PDO is told as CiA 301, 7.5.2.36 has it: not valid, type, no mapping, entries, their number, inhibit time, valid. An entry that is
  * refused is left out, and so is the last one as long as their number is. Is anything else refused, the PDO is read: its
  * identifier, type and entries, wherever in it they are, are what counts. So a drive whose PDOs are fixed needs no case
  * of its own, and what is in a frame beside what takt knows keeps the value that the drive has for it.
@@ -41,6 +41,7 @@ enum step {
     CLEAR,
     ENTRY,
     COUNT,
+    INHIBIT,
     TIMER,
     ON,
     TOLD,
@@ -81,8 +82,8 @@ static void want_target(const struct drives *d, struct pdo *pdo)
         add(pdo, drives_target_of(axis), true);
         return;
     }
-    target_pdo_set(pdo, d->node, d->count, d->at_axis);
-    pdo->mapping.object[d->at_axis & 1] = drives_target_of(axis);
+    target_pdo_set(pdo, d->node, d->count, d->at_axis, d->group);
+    pdo->mapping.object[d->at_axis % d->group] = drives_target_of(axis);
 }
 
 static void want_received(const struct drives *d, struct pdo *pdo)
@@ -169,6 +170,12 @@ static bool is_event_driven(const struct drives_mapping *m)
     return drives_is_transmitted(m) && m->pdo.transmission == PDO_EVENT;
 }
 
+/* Reports of a cycle are not held back; a following error changes in every cycle, and is not to be told as often. */
+static uint32_t inhibit_of(const struct drives_mapping *m)
+{
+    return is_event_driven(m) ? DRIVES_EVENT_MS * OBJECT_PDO_INHIBIT_PER_MS : 0;
+}
+
 static bool find_telling(const struct drives_mapping *m, struct drives_step *step)
 {
     const unsigned parameters = parameters_of(m), mapping = parameters + MAPPING_OFFSET;
@@ -187,6 +194,9 @@ static bool find_telling(const struct drives_mapping *m, struct drives_step *ste
                set_write(step, mapping, m->entry + 1u, 4, pdo->mapping.object[m->entry]);
     case COUNT:
         return set_write(step, mapping, 0, 1, count) && count > 0;
+    case INHIBIT:
+        return set_write(step, parameters, OBJECT_PDO_INHIBIT, 2, inhibit_of(m)) && count > 0 &&
+               drives_is_transmitted(m);
     case TIMER:
         return set_write(step, parameters, OBJECT_PDO_EVENT_TIMER, 2, DRIVES_EVENT_MS) &&
                count > 0 && is_event_driven(m);
@@ -254,11 +264,12 @@ static bool find_reading(const struct drives *d, struct drives_step *step)
 
 /* ---- What is made of it ---- */
 
-/* Neither of them shares a frame any more; the first of them is told so from its beginning. */
-static void part_pair(struct drives *d)
+/* None of a group shares a frame any more; the first of them is told so from its beginning. */
+static void part_group(struct drives *d)
 {
-    unsigned first = d->at_axis & ~1u;
-    for (unsigned i = first; i < first + 2; i++) {
+    unsigned first = d->at_axis - d->at_axis % d->group;
+    unsigned members = target_pdo_members(d->count, first, d->group);
+    for (unsigned i = first; i < first + members; i++) {
         d->axis[i].is_paired = false;
         drives_give_up(d, i, DRIVES_NO_PAIR);
     }
@@ -322,6 +333,8 @@ static bool take_refusal(struct drives *d, uint32_t abort_code)
     case COUNT:
         mapping->count--;
         return mapping->count == 0;
+    case INHIBIT:
+        return true; /* it has none, or keeps it */
     case TIMER:
         drives_give_up(d, d->at_axis, DRIVES_NO_EVENT_TIMER);
         return true;
@@ -500,12 +513,12 @@ static void take_mode(struct drives *d)
     check_watch(d);
 }
 
-/* Its target is where a pair has it: halves of one frame (target_pdo.h). */
+/* Its target is where a group has it: parts of one frame (target_pdo.h). */
 static bool shares_frame(const struct drives *d)
 {
     const struct drives_frame *frame = &d->axis[d->at_axis].target_frame;
     struct pdo pdo;
-    target_pdo_set(&pdo, d->node, d->count, d->at_axis);
+    target_pdo_set(&pdo, d->node, d->count, d->at_axis, d->group);
     return frame->cob_id == pdo.cob_id && frame->length == pdo.mapping.length &&
            frame->target == drives_byte_of(&pdo, CIA402_TARGET_POSITION);
 }
@@ -525,7 +538,7 @@ static bool finish(struct drives *d)
     struct drives_axis *axis = &d->axis[d->at_axis];
     axis->mode = axis->follow_mode;
     if (axis->is_paired && !shares_frame(d)) {
-        part_pair(d);
+        part_group(d);
         return false;
     }
     if (axis->target_frame.length == 0)
@@ -544,10 +557,10 @@ static bool finish(struct drives *d)
     if (axis->error_id == NO_TPDO)
         drives_give_up(d, d->at_axis, DRIVES_NO_ERROR_PDO);
     axis->sends = axis->target_frame.is_mixed ? DRIVES_SENDS_MIXED : DRIVES_SENDS;
-    if (axis->is_paired && !(d->at_axis & 1))
+    if (axis->is_paired && !drives_ends_group(d, d->at_axis))
         axis->sends = DRIVES_WAITS;
     else
-        drives_count_bits(axis, axis->target_frame.length);
+        drives_count_bits(d, axis->target_frame.length);
     set_report(axis);
     return false;
 }

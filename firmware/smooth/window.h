@@ -29,7 +29,9 @@ struct window {
     float weighted_unit_mm[SMOOTH_SLOTS_MAX]; /* what it counts in a distance (limits.h) */
     double at_mm[SMOOTH_SAMPLES_MAX];
     uint32_t element[SMOOTH_SAMPLES_MAX]; /* of the route, at at_mm */
-    lanes_int x[SMOOTH_SAMPLES_MAX];      /* one group of lanes after the other */
+    unsigned char paced
+        [SMOOTH_SAMPLES_MAX]; /* by piece: whose feed is its, elements from the route's first on */
+    lanes_int x[SMOOTH_SAMPLES_MAX]; /* one group of lanes after the other */
 };
 
 /* Where a sample, or a place of the curve, is: units from the origin, by slot; 0 in lanes that no slot has. */
@@ -52,6 +54,9 @@ static inline unsigned window_capacity(const struct route *r)
 void window_init(struct window *w, const struct route *r, double interval_s);
 /* Begins at rest at the start of the route. */
 void window_start(struct window *w, const struct route *r);
+/* Begins at rest in a point, which is beside a place of the route. */
+void window_stand(struct window *w, const struct route *r, const double p[], double at_mm,
+                  uint32_t element);
 /* Begins anew at rest where the curve has come to: at the end of its first three samples. */
 void window_rest(struct window *w, const struct route *r, const struct order *order);
 /* Appends samples at the nominal feed until the window is full or the route's end is in it. */

@@ -3,16 +3,16 @@
 /* The files that takt is given: texts by path. */
 #include "readers.h"
 
-#include "takt/correction_file.h"
-#include "takt/data_sheet.h"
-#include "takt/inject_file.h"
-#include "takt/machine_file.h"
-#include "takt/override_file.h"
-#include "takt/parameter_file.h"
-#include "takt/probe_file.h"
-#include "takt/tool_file.h"
-#include "takt/trace_check.h"
-#include "takt/trace_reader.h"
+#include "config/correction_file.h"
+#include "config/data_sheet.h"
+#include "config/inject_file.h"
+#include "config/machine_file.h"
+#include "config/override_file.h"
+#include "config/parameter_file.h"
+#include "config/probe_file.h"
+#include "config/tool_file.h"
+#include "trace/trace_check.h"
+#include "trace/trace_reader.h"
 
 #include <stdio.h>
 
@@ -99,7 +99,7 @@ void read_inject(const char *path)
 static bool send_nowhere(void *context, const struct can_frame *frame)
 {
     (void)context;
-    require(frame->length <= CAN_DATA_MAX);
+    require(frame->length <= CAN_CLASSIC_MAX);
     return true;
 }
 
