@@ -7,8 +7,8 @@
 #include <stdio.h>
 #include <string.h>
 
-/* Words that only the code in front of them can mean. */
-#define OWN_WORDS "dehijklpqr"
+/* Words that only the code in front of them can mean: not F, S, T and the axes. */
+#define OWN_WORDS "dehijklpqruvw"
 
 static void drop_code(struct translator *t, struct line_word *w)
 {
@@ -16,10 +16,12 @@ static void drop_code(struct translator *t, struct line_word *w)
     unsigned i = (unsigned)(w - l->word);
 
     line_blank(l, w);
-    for (i++; i < l->words && l->word[i].kind == WORD_VALUE &&
-              strchr(OWN_WORDS, l->word[i].letter) != NULL;
-         i++)
-        line_blank(l, &l->word[i]);
+    for (i++;
+         i < l->words && l->word[i].kind == WORD_VALUE && strchr("gm", l->word[i].letter) == NULL;
+         i++) {
+        if (strchr(OWN_WORDS, l->word[i].letter) != NULL)
+            line_blank(l, &l->word[i]);
+    }
 }
 
 static const struct dialect_code *declared(const struct translator *t, const struct line_word *w)

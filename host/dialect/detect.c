@@ -111,11 +111,23 @@ static bool look_at_line(struct look *k)
         note(k, BIT(DIALECT_GRBL), NULL);
         return true;
     }
+    if (line_is_directive(&k->line)) {
+        note(k, BIT(DIALECT_FANUC), NULL);
+        return true;
+    }
+    size_t length;
+
+    if (line_message(&k->line, &length) != NULL) {
+        note(k, BIT(DIALECT_GRBL), NULL);
+        return true;
+    }
     if (siemens_tells(&k->line)) {
         note(k, BIT(DIALECT_SIEMENS), NULL);
         return true;
     }
-    if (c == ':' ||
+    if (line_checksum(&k->line) != NULL)
+        note(k, BIT(DIALECT_GRBL), NULL);
+    if (c == ':' || (c == '%' && k->line.words > 1 && k->line.word[1].kind != WORD_COMMENT) ||
         (line_lower(c) == 'o' && k->line.words > 0 && k->line.word[0].kind == WORD_BARE))
         note(k, BIT(DIALECT_FANUC), NULL);
     return false;
@@ -256,6 +268,8 @@ static void look_at_motion(struct look *k)
     line_look_for_motion(l, &motion, &other);
     if (!motion && !other && d->ended_cycle && line_has_axis(l) && line_is_plain(l))
         note(k, INDUSTRY, NULL);
+    if ((!d->moves || d->ended_cycle) && line_is_bare_machine(l))
+        note(k, INDUSTRY, line_find_code(l, 'g', 530));
     d->ended_cycle = line_ends_cycle(l) || (d->ended_cycle && !motion);
     if (!motion && !other && !d->moves && d->bare_line == 0 && line_has_axis(l) &&
         line_is_plain(l)) {
@@ -287,6 +301,8 @@ static void look_at_unused(struct look *k)
     struct line *l = &k->line;
     struct line_word *p = line_find(l, 'p', 0);
     struct line_word *s = line_find(l, 's', 0);
+    struct line_word *t = line_find(l, 't', 0);
+    struct line_word *h = line_find(l, 'h', 0);
 
     for (size_t i = 0; i < sizeof cycles / sizeof cycles[0]; i++) {
         if (p != NULL && line_find_code(l, 'g', cycles[i]) != NULL)
@@ -294,6 +310,29 @@ static void look_at_unused(struct look *k)
     }
     if (p != NULL && line_find_code(l, 'm', 60) != NULL && line_find_code(l, 'g', 40) == NULL)
         note(k, BIT(DIALECT_GRBL), p);
+    if (p == NULL && line_find_code(l, 'g', 40) != NULL &&
+        (line_find(l, 'x', 0) != NULL || line_find(l, 'u', 0) != NULL))
+        note(k, BIT(DIALECT_FANUC) | BIT(DIALECT_HAAS), line_find_code(l, 'g', 40));
+    if (p != NULL && line_find_code(l, 'g', 80) != NULL)
+        note(k, BIT(DIALECT_FANUC) | BIT(DIALECT_HAAS), p);
+    if (h != NULL && line_find_code(l, 'g', 100) == NULL && line_find_code(l, 'g', 430) == NULL &&
+        line_find_code(l, 'g', 432) == NULL && line_find_code(l, 'g', 760) == NULL &&
+        line_find_code(l, 'g', 370) == NULL && line_is_plain(l))
+        note(k, BIT(DIALECT_FANUC) | BIT(DIALECT_HAAS), h);
+    if ((p == NULL && line_find_code(l, 'm', 980) != NULL && line_find(l, 'q', 0) != NULL) ||
+        turning_tells(l))
+        note(k, BIT(DIALECT_FANUC) | BIT(DIALECT_HAAS), NULL);
+    if (s == NULL && line_find_code(l, 'g', 960) != NULL)
+        note(k, BIT(DIALECT_FANUC) | BIT(DIALECT_HAAS), line_find_code(l, 'g', 960));
+    if (l->words > 1 && l->word[0].letter == 'n' && line_find(l, 'n', 1) != NULL)
+        note(k, BIT(DIALECT_GRBL), line_find(l, 'n', 1));
+    if (line_find_code(l, 'g', 430) != NULL && line_find_code(l, 'g', 410) == NULL &&
+        line_find_code(l, 'g', 420) == NULL && line_find(l, 'd', 0) != NULL)
+        note(k, BIT(DIALECT_FANUC) | BIT(DIALECT_HAAS), line_find(l, 'd', 0));
+    if (line_unit(l) != NULL)
+        note(k, INDUSTRY, line_unit(l));
+    if (t != NULL && t->is_number && t->has_point && t->value != floor(t->value))
+        note(k, BIT(DIALECT_FANUC), t);
     if (s != NULL && line_find(l, 's', (unsigned)(s - l->word) + 1) != NULL)
         note(k, BIT(DIALECT_GRBL), s);
 }

@@ -37,6 +37,7 @@ static const struct difference rows[] = {
     TELLS(INDUSTRY, 'g', 1130, DIFFERENCE_QUIET, "polar interpolation off"),
     /* how a block is worked on: takt decides that by its limits */
     CODE(INDUSTRY, 'g', 51, DIFFERENCE_DROP, "high-speed contouring"),
+    CODE(FANUC | HAAS, 'g', 80, DIFFERENCE_DROP, "blocks read ahead"),
     CODE(FANUC | HAAS, 'g', 90, DIFFERENCE_DROP, "exact stop of one block"),
     TELLS(HAAS, 'g', 1030, DIFFERENCE_DROP, "blocks read ahead"),
     TELLS(HAAS, 'g', 1870, DIFFERENCE_DROP, "smoothness of corners"),

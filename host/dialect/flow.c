@@ -38,10 +38,24 @@ static void remember(uint32_t *numbers, unsigned *count, double number)
         numbers[(*count)++] = line_whole(number);
 }
 
+/* M98 Q300 without P calls a line: M97 P300. */
+static void name_local(struct line *l)
+{
+    struct line_word *call = line_find_code(l, 'm', 980);
+    const struct line_word *q = line_find(l, 'q', 0);
+
+    if (call == NULL || q == NULL || line_find(l, 'p', 0) != NULL)
+        return;
+    l->text[q->begin] = 'P';
+    (void)line_replace(l, call, "M97");
+}
+
 /* M97 calls a line; one behind the end of the program can be a program of its own. */
 static void survey_locals(struct survey *s, struct line *l)
 {
     const struct line_word *first = l->words > 0 ? &l->word[0] : NULL;
+
+    name_local(l);
     const struct line_word *p = line_find(l, 'p', 0);
 
     if (p != NULL && p->is_number && line_find_code(l, 'm', 970) != NULL)
@@ -347,6 +361,8 @@ static void take_local(struct translator *t)
     struct line *l = &t->line;
     const struct survey *s = &t->survey;
     const struct line_word *first = l->words > 0 ? &l->word[0] : NULL;
+
+    name_local(l);
     struct line_word *call = line_find_code(l, 'm', 970);
     struct line_word *p = line_find(l, 'p', 0);
     char text[32];

@@ -295,6 +295,59 @@ bool line_append(struct line *l, const char *text)
     return insert(l, at, at, " ") && insert(l, at + 1, at + 1, text);
 }
 
+const char *line_checksum(const struct line *l)
+{
+    const char *star = strrchr(l->text, '*');
+
+    if (star == NULL || strpbrk(l->text, "[(;#=") != NULL ||
+        strspn(star + 1, "0123456789 \r") != strlen(star + 1))
+        return NULL;
+    return star;
+}
+
+const char *line_message(const struct line *l, size_t *length)
+{
+    const size_t begin = skip_spaces(l, 0);
+    const size_t quote = skip_spaces(l, begin + 3);
+    const char *end;
+
+    if (!line_begins(&l->text[begin], "msg") || l->text[quote] != '"')
+        return NULL;
+    end = strchr(&l->text[quote + 1], '"');
+    *length = end != NULL ? (size_t)(end - &l->text[quote + 1]) : l->length - quote - 1;
+    return &l->text[quote + 1];
+}
+
+bool line_is_directive(const struct line *l)
+{
+    const size_t at = skip_spaces(l, 0);
+
+    return l->text[at] == '[' && is_letter(l->text[at + 1]);
+}
+
+struct line_word *line_unit(struct line *l)
+{
+    for (unsigned i = 0; i < l->words; i++) {
+        const struct line_word *w = &l->word[i];
+
+        if (w->kind != WORD_COMMENT &&
+            (w->kind != WORD_VALUE || strchr("gmnfst", w->letter) == NULL))
+            return NULL;
+    }
+    struct line_word *inches = line_find_code(l, 'g', 700);
+
+    return inches != NULL ? inches : line_find_code(l, 'g', 710);
+}
+
+bool line_is_bare_machine(struct line *l)
+{
+    bool motion;
+    bool other;
+
+    line_look_for_motion(l, &motion, &other);
+    return !motion && line_find_code(l, 'g', 530) != NULL && line_has_axis(l);
+}
+
 bool line_is_blank(const struct line *l)
 {
     return skip_spaces(l, 0) == l->length;

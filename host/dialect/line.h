@@ -80,6 +80,21 @@ bool line_ends_cycle(struct line *l);
 /* No G codes but modes: what its axis words are for is clear. */
 bool line_is_plain(const struct line *l);
 
+/* N10 G1 X1*57: where a checksum begins; NULL: there is none. A calculation has none. */
+const char *line_checksum(const struct line *l);
+
+/* MSG "text", as Eding CNC has it: the text and its length. NULL: no such line. */
+const char *line_message(const struct line *l, size_t *length);
+
+/* [BILLET X62 Z70: what a simulator is told of the stock. */
+bool line_is_directive(const struct line *l);
+
+/* G70 and G71 without words of their own are inches and millimetres. NULL: no such line. */
+struct line_word *line_unit(struct line *l);
+
+/* G53 that does not say how to move, with axes. */
+bool line_is_bare_machine(struct line *l);
+
 /* Nothing is left but spaces. */
 bool line_is_blank(const struct line *l);
 

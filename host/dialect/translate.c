@@ -86,10 +86,9 @@ static void close_comment(struct line *l)
 /* N10 G1 X1*57 */
 static void drop_checksum(struct line *l)
 {
-    const char *star = strrchr(l->text, '*');
+    const char *star = line_checksum(l);
 
-    if (star == NULL || strpbrk(l->text, "[(;") != NULL ||
-        strspn(star + 1, "0123456789 \r") != strlen(star + 1))
+    if (star == NULL)
         return;
     l->length = (size_t)(star - l->text);
     l->text[l->length] = '\0';
@@ -100,8 +99,16 @@ static void translate_start(struct translator *t)
 {
     struct line *l = &t->line;
 
-    if (is_no_line(l))
+    const char *message;
+    size_t length;
+
+    if (is_no_line(l) || line_is_directive(l))
         clear_line(t);
+    message = line_message(l, &length);
+    if (message != NULL) {
+        translate_add(&t->behind, "(msg,%.*s)", (int)length, message);
+        clear_line(t);
+    }
     drop_checksum(l);
     close_comment(l);
     if (l->words == 0)
@@ -190,13 +197,14 @@ static void follow_modes(struct translator *t)
  * Behind a cycle G0 or G1 is in effect again, as it was before it. What is executed before is the text before, as long as
  * there are no jumps and calls.
  */
-static void go_on_behind_cycle(struct translator *t, bool moves)
+static void go_on_behind_cycle(struct translator *t, bool motion, bool other)
 {
     struct line *l = &t->line;
     const bool elsewhere = t->survey.jumps || (l->words > 0 && l->word[0].letter == 'o') ||
                            line_find_code(l, 'm', 980) != NULL;
 
-    if (!moves && t->ended_cycle && t->straight != NULL && line_has_axis(l) && is(t, INDUSTRY)) {
+    if (!motion && !other && t->ended_cycle && t->straight != NULL && line_has_axis(l) &&
+        is(t, INDUSTRY)) {
         (void)line_append(l, t->straight);
         t->ended_cycle = false;
     }
@@ -204,7 +212,7 @@ static void go_on_behind_cycle(struct translator *t, bool moves)
         t->straight = NULL;
     else if (line_find_code(l, 'g', 0) != NULL || line_find_code(l, 'g', 10) != NULL)
         t->straight = line_find_code(l, 'g', 0) != NULL ? "G0" : "G1";
-    t->ended_cycle = line_ends_cycle(l) || (t->ended_cycle && !moves);
+    t->ended_cycle = line_ends_cycle(l) || (t->ended_cycle && !motion);
 }
 
 /* G0 that is in effect at the start, or was given beside G28, which has the axis words of that line. */
@@ -214,7 +222,7 @@ static void translate_motion(struct translator *t)
     bool other;
 
     line_look_for_motion(&t->line, &motion, &other);
-    go_on_behind_cycle(t, motion || other);
+    go_on_behind_cycle(t, motion, other);
     if (line_has_axis(&t->line) && !motion && !other &&
         (t->motion_is_owed || (is(t, GRBL) && !t->has_motion && line_is_plain(&t->line)))) {
         (void)line_append(&t->line, "G0");
@@ -222,6 +230,13 @@ static void translate_motion(struct translator *t)
     }
     t->has_motion = t->has_motion || motion;
     t->motion_is_owed = t->motion_is_owed && !motion;
+}
+
+/* G53 goes at rapid where no motion is in effect; what was before a cycle stays what goes on behind it. */
+static void translate_bare_machine(struct translator *t)
+{
+    if (is(t, INDUSTRY) && (!t->has_motion || t->ended_cycle) && line_is_bare_machine(&t->line))
+        (void)line_append(&t->line, "G0");
 }
 
 /* M6 of a program that never says which tool: somebody changes it. */
@@ -253,6 +268,10 @@ static void translate_unused(struct translator *t)
     if (p != NULL && p->kind == WORD_VALUE && line_find_code(l, 'm', 60) != NULL &&
         line_find_code(l, 'g', 40) == NULL)
         line_blank(l, p);
+    for (unsigned i = 1; i < l->words && l->word[0].letter == 'n'; i++) {
+        if (l->word[i].kind == WORD_VALUE && l->word[i].letter == 'n')
+            line_blank(l, &l->word[i]);
+    }
     while (s != NULL && line_find(l, 's', (unsigned)(s - l->word) + 1) != NULL) {
         line_blank(l, s);
         s = line_find(l, 's', 0);
@@ -371,45 +390,6 @@ static void translate_dwell(struct translator *t)
         set_value(l, p, 'P', 1e-3 * p->value);
 }
 
-/* G54.1 P1 to P3 and G154 are the last three systems here. */
-static void translate_system(struct translator *t)
-{
-    static const uint16_t codes[] = {541, 540, 1540};
-    struct line *l = &t->line;
-    struct line_word *p = line_find(l, 'p', 0);
-
-    for (size_t i = 0; i < sizeof codes / sizeof codes[0]; i++) {
-        struct line_word *w = line_find_code(l, 'g', codes[i]);
-        char text[16];
-
-        if (w != NULL && p != NULL && p->is_number && p->value >= 1.0 && p->value <= 3.0) {
-            (void)snprintf(text, sizeof text, "G59.%u", (unsigned)p->value);
-            line_blank(l, p);
-            (void)line_replace(l, w, text);
-            return;
-        }
-    }
-}
-
-/* G50 S2000 is the highest speed for the G96 that follows; without S it ends a scale that is not there. */
-static void translate_speed_limit(struct translator *t)
-{
-    struct line *l = &t->line;
-    struct line_word *w = line_find_code(l, 'g', 500);
-    struct line_word *s = line_find(l, 's', 0);
-
-    if (w != NULL) {
-        line_blank(l, w);
-        if (s != NULL) {
-            (void)snprintf(t->speed_limit, sizeof t->speed_limit, "D%.*s",
-                           (int)(s->end - s->value_begin), &l->text[s->value_begin]);
-            line_blank(l, s);
-        }
-    } else if (line_find_code(l, 'g', 960) != NULL && line_find(l, 'd', 0) == NULL) {
-        (void)line_append(l, t->speed_limit);
-    }
-}
-
 /* Turning: feeds per minute and per turn, T0101 that changes the tool, diameters. */
 static void translate_lathe(struct translator *t)
 {
@@ -428,7 +408,8 @@ static void translate_lathe(struct translator *t)
     if (turn != NULL)
         (void)line_replace(l, turn, "G95");
     if (tool != NULL && tool->is_number && tool->value >= 100.0) {
-        (void)snprintf(text, sizeof text, "T%u M6", (unsigned)line_whole(tool->value / 100.0));
+        (void)snprintf(text, sizeof text, "T%u%s", (unsigned)line_whole(tool->value / 100.0),
+                       line_find_code(l, 'm', 60) != NULL ? "" : " M6");
         (void)line_replace(l, tool, text);
     }
 }
@@ -465,6 +446,7 @@ static void translate_foreign(struct translator *t)
         pocket_translate(t);
         flow_translate(t);
     }
+    registers_translate_unit(t);
     codes_translate(t);
     translate_unused(t);
     translate_change(t);
@@ -473,14 +455,15 @@ static void translate_foreign(struct translator *t)
     if (is(t, MACROS | MARLIN))
         translate_dwell(t);
     if (is(t, MACROS)) {
-        translate_system(t);
         upright_translate(t);
+        registers_translate(t);
         translate_lathe(t);
     }
-    translate_speed_limit(t);
+    registers_translate_speed(t);
     follow_modes(t);
     translate_reference(t);
     translate_arc(t);
+    translate_bare_machine(t);
     translate_motion(t);
 }
 
@@ -555,6 +538,7 @@ static void survey_line(struct translator *t, const char *bytes, size_t length)
     flow_survey(&t->survey, l);
     names_survey(&t->survey, l);
     t->survey.rotary = t->survey.rotary || upright_turns(l);
+    t->survey.whole = t->survey.whole || turning_is_whole(l);
     t->survey.lathe = t->survey.lathe || turning_tells(l) ||
                       (line_find_code(l, 'g', 500) != NULL && line_find(l, 's', 0) != NULL) ||
                       (line_find_code(l, 'g', 280) != NULL && line_find(l, 'u', 0) != NULL);

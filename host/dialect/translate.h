@@ -38,6 +38,7 @@ struct turned {
 struct survey {
     bool lathe;
     bool rotary; /* it has words of rotary axes */
+    bool whole;  /* turning cycles write distances in whole thousandths */
     unsigned programs, macros;
     uint32_t program[TRANSLATE_PROGRAMS_MAX]; /* O1000 */
     uint32_t macro[TRANSLATE_PROGRAMS_MAX];   /* called by G65 */
@@ -73,6 +74,11 @@ struct translator {
     bool absolute;                  /* centres of arcs are, and G90.1 has to say so */
     bool feed_given;                /* the F that the machine file declares has been put in */
     char speed_limit[24];           /* G50 S */
+    char radius[24];                /* D beside G43 */
+    char length[24];                /* H that stood alone */
+    bool has_length;                /* G43 is in effect */
+    unsigned side;                  /* G41 or G42 is in effect: 41, 42; else 0 */
+    bool surface_is_owed;           /* G96 waits for its S */
     uint32_t program;               /* number of O1000 lines so far */
     uint32_t macro;                 /* the current program is called by G65; 0: it is not */
     char modal_call[FLOW_CALL_MAX]; /* G66; empty: none */
@@ -119,6 +125,8 @@ void codes_translate(struct translator *t);
 
 /* G70, G71, G72, G75 and G76 of lathes. */
 void turning_translate(struct translator *t);
+/* Distances of a cycle that are whole thousandths, since nothing is that large. */
+bool turning_is_whole(struct line *l);
 /* Only programs for lathes have such a line. */
 bool turning_tells(struct line *l);
 
@@ -126,6 +134,13 @@ bool turning_tells(struct line *l);
 bool upright_turns(struct line *l);
 /* G43.4, G53.1 and G68.2 of a program that has none. */
 void upright_translate(struct translator *t);
+
+/* Systems, and what T, D, H and compensation leave for later lines. */
+void registers_translate(struct translator *t);
+/* G50 S, and G96 that waits for its S. */
+void registers_translate_speed(struct translator *t);
+/* G70 and G71 as units. */
+void registers_translate_unit(struct translator *t);
 
 /* G12 and G13. */
 void pocket_translate(struct translator *t);

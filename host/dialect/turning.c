@@ -6,6 +6,7 @@
  *                                         G71 Q93000010 D0.2 I2. R0.5, and back to where it began
  *     G70 P10 Q20                         G42 / G70 Q93000010 / G40, if the profile has G42
  *     G75 X0. I1.                         steps of 1 down to X0, a little back after each
+ *     G74 R0.5 / G74 Z-40. Q5000          the same along Z, 0.5 back after each
  *     G76 X8. Z-20. K1.2 D0.4 F1.5        G76 P1.5 Z-20 I... J0.8 K2.4 R2
  *     G76 P020560 Q100 R50                2 finishing cuts, run-out over half a turn, flanks of 60 degrees
  *     G76 X8. Z-20. P1200 Q400 F1.5       the same thread, K and D in thousandths
@@ -122,6 +123,43 @@ static const struct turned *find_profile(struct translator *t, double from, doub
 
 /* ---- cycles ---- */
 
+/* A value of whole thousandths, in inches ten-thousandths, if it is written without a point. */
+static void thousandths(struct line *l, char letter, char *text, size_t size)
+{
+    const struct line_word *w = line_find(l, letter, 0);
+
+    if (w != NULL && w->is_number && !w->has_point)
+        (void)snprintf(text, size, "%.0f*[0.001-0.0009*#<_imperial>]", w->value);
+    else
+        expression(l, letter, "", text, size);
+}
+
+/* From here on a distance without a point is in thousandths: no allowance and no depth of cut is that large. */
+#define WHOLE_MIN 100.0
+
+bool turning_is_whole(struct line *l)
+{
+    if (line_find_code(l, 'g', 710) == NULL && line_find_code(l, 'g', 720) == NULL)
+        return false;
+    for (const char *letter = "uwrd"; *letter != '\0'; letter++) {
+        const struct line_word *w = line_find(l, *letter, 0);
+
+        if (w != NULL && w->is_number && !w->has_point && w->value >= WHOLE_MIN)
+            return true;
+    }
+    return false;
+}
+
+/* A distance of G71 or G72. */
+static void distance(struct translator *t, char letter, const char *otherwise, char *text,
+                     size_t size)
+{
+    if (t->survey.whole && line_find(&t->line, letter, 0) != NULL)
+        thousandths(&t->line, letter, text, size);
+    else
+        expression(&t->line, letter, otherwise, text, size);
+}
+
 static void begin_at(struct translator *t)
 {
     translate_add(&t->before, "#<_turning_x>=[2*#<_x>] #<_turning_z>=#<_z>");
@@ -136,8 +174,8 @@ static void go_back(struct translator *t)
 /* G71 U2. R0.5: the depth and the way back of the next one. */
 static void take_depths(struct translator *t)
 {
-    expression(&t->line, 'u', "", t->depth_of_cut, sizeof t->depth_of_cut);
-    expression(&t->line, 'r', "", t->way_back, sizeof t->way_back);
+    distance(t, 'u', "", t->depth_of_cut, sizeof t->depth_of_cut);
+    distance(t, 'r', "", t->way_back, sizeof t->way_back);
     leave_feed(t);
 }
 
@@ -150,17 +188,20 @@ static void take_rough(struct translator *t, unsigned code, double from, double 
 
     if (p == NULL)
         return;
-    expression(&t->line, 'd', t->depth_of_cut[0] != '\0' ? t->depth_of_cut : "1", depth,
-               sizeof depth);
-    expression(&t->line, 'u', "0", u, sizeof u);
-    expression(&t->line, 'w', "0", w, sizeof w);
+    distance(t, 'd', t->depth_of_cut[0] != '\0' ? t->depth_of_cut : "1", depth, sizeof depth);
+    distance(t, 'u', "0", u, sizeof u);
+    distance(t, 'w', "0", w, sizeof w);
     leave_feed(t);
     begin_at(t);
+    if (t->side != 0)
+        translate_add(&t->before, "G40");
     /* the larger of U/2 and W remains everywhere */
     translate_add(&t->behind, "G%u Q%u D[[ABS[%s]/2+ABS[%s]+ABS[ABS[%s]/2-ABS[%s]]]/2] I[%s] R[%s]",
                   code / 10, p->label, u, w, u, w, depth,
                   t->way_back[0] != '\0' ? t->way_back : "0.5-0.48*#<_imperial>");
     go_back(t);
+    if (t->side != 0)
+        translate_add(&t->behind, "G%u", t->side);
     t->skip_from = from;
     t->skip_to = to;
 }
@@ -173,48 +214,71 @@ static void take_finish(struct translator *t, double from, double to)
         return;
     leave_feed(t);
     begin_at(t);
-    if (p->side != 0)
-        translate_add(&t->behind, "G%u", p->side);
+    const unsigned side = p->side != 0 ? p->side : t->side;
+
+    if (t->side != 0)
+        translate_add(&t->before, "G40");
+    if (side != 0)
+        translate_add(&t->behind, "G%u", side);
     translate_add(&t->behind, "G70 Q%u", p->label);
-    if (p->side != 0)
+    if (side != 0)
         translate_add(&t->behind, "G40");
     go_back(t);
+    if (t->side != 0)
+        translate_add(&t->behind, "G%u", t->side);
 }
 
-/* Down to X in steps of I, each a tenth of a step back. */
-static void take_groove(struct translator *t)
+/* Down to `end` in steps, a little back after each: where the tool is stands in #<_turning_at>. */
+static void put_pecks(struct translator *t, char axis, const char *end, const char *step,
+                      const char *back)
 {
     const unsigned label = PECK_LABEL + t->number % 1000000U;
-    char x[48];
-    char step[48];
 
-    expression(&t->line, 'x', "", x, sizeof x);
-    expression(&t->line, 'i', "", step, sizeof step);
-    if (x[0] == '\0' || step[0] == '\0' || line_find(&t->line, 'z', 0) != NULL)
-        return;
     leave_feed(t);
     begin_at(t);
-    translate_add(&t->behind, "#<_turning_at>=#<_turning_x>");
-    translate_add(&t->behind, "o%u repeat [FUP[[#<_turning_at>-[%s]]/2/[%s]]]", label, x, step);
-    translate_add(&t->behind, "#<_turning_at>=[#<_turning_at>-2*[%s]]", step);
-    translate_add(&t->behind, "o%u if [#<_turning_at> LT [%s]]", label + 1000000U, x);
-    translate_add(&t->behind, "#<_turning_at>=[%s]", x);
+    translate_add(&t->behind, "#<_turning_at>=#<_turning_%c>", axis);
+    translate_add(&t->behind, "o%u repeat [FUP[[#<_turning_at>-[%s]]/[%s]]]", label, end, step);
+    translate_add(&t->behind, "#<_turning_at>=[#<_turning_at>-[%s]]", step);
+    translate_add(&t->behind, "o%u if [#<_turning_at> LT [%s]]", label + 1000000U, end);
+    translate_add(&t->behind, "#<_turning_at>=[%s]", end);
     translate_add(&t->behind, "o%u endif", label + 1000000U);
-    translate_add(&t->behind, "G1 X#<_turning_at>");
-    translate_add(&t->behind, "G0 X[#<_turning_at>+0.2*[%s]]", step);
+    translate_add(&t->behind, "G1 %c#<_turning_at>", axis);
+    translate_add(&t->behind, "G0 %c[#<_turning_at>+[%s]]", axis, back);
     translate_add(&t->behind, "o%u endrepeat", label);
     go_back(t);
 }
 
-/* A value of whole thousandths, in inches ten-thousandths, if it is written without a point. */
-static void thousandths(struct line *l, char letter, char *text, size_t size)
+/* The step of a peck: I or K, or thousandths in P or Q. */
+static void peck_step(struct line *l, char letter, char whole, char *text, size_t size)
 {
-    const struct line_word *w = line_find(l, letter, 0);
+    expression(l, letter, "", text, size);
+    if (text[0] == '\0')
+        thousandths(l, whole, text, size);
+}
 
-    if (w != NULL && w->is_number && !w->has_point)
-        (void)snprintf(text, size, "%.0f*[0.001-0.0009*#<_imperial>]", w->value);
-    else
-        expression(l, letter, "", text, size);
+/* G75 down to X, G74 along Z; without either word it says how far a peck goes back. */
+static void take_pecks(struct translator *t, char axis, char across)
+{
+    const double diameters = axis == 'x' ? 2.0 : 1.0;
+    char end[48];
+    char one[64];
+    char step[96];
+    char back[96];
+
+    expression(&t->line, axis, "", end, sizeof end);
+    if (end[0] == '\0' && line_find(&t->line, across, 0) == NULL &&
+        line_find(&t->line, 'r', 0) != NULL) {
+        take_depths(t);
+        return;
+    }
+    peck_step(&t->line, axis == 'x' ? 'i' : 'k', axis == 'x' ? 'p' : 'q', one, sizeof one);
+    if (end[0] == '\0' || one[0] == '\0' || line_find(&t->line, across, 0) != NULL)
+        return;
+    (void)snprintf(step, sizeof step, "%.0f*[%s]", diameters, one);
+    (void)snprintf(back, sizeof back, "%.1f*[%s]",
+                   t->way_back[0] != '\0' ? diameters : 0.1 * diameters,
+                   t->way_back[0] != '\0' ? t->way_back : one);
+    put_pecks(t, axis, end, step, back);
 }
 
 /* Of X or Z, or of the distances U and W to them. */
@@ -306,7 +370,12 @@ static bool is_passed_over(struct translator *t)
 bool turning_tells(struct line *l)
 {
     const bool paired = line_find(l, 'p', 0) != NULL && line_find(l, 'q', 0) != NULL;
+    const struct line_word *q = line_find(l, 'q', 0);
+    const bool pecks = q != NULL && q->is_number && !q->has_point && q->value >= WHOLE_MIN &&
+                       line_find(l, 'z', 0) != NULL && line_find(l, 'y', 0) == NULL;
 
+    if (pecks && line_find_code(l, 'g', 740) != NULL)
+        return true;
     return paired && (line_find_code(l, 'g', 710) != NULL || line_find_code(l, 'g', 720) != NULL ||
                       (line_find_code(l, 'g', 760) != NULL && !line_has_axis(l)));
 }
@@ -331,8 +400,9 @@ void turning_translate(struct translator *t)
     }
     if (line_find_code(l, 'g', 700) != NULL && profile)
         take_finish(t, p->value, q->value);
-    else if (line_find_code(l, 'g', 750) != NULL)
-        take_groove(t);
+    else if (line_find_code(l, 'g', 740) != NULL || line_find_code(l, 'g', 750) != NULL)
+        take_pecks(t, line_find_code(l, 'g', 750) != NULL ? 'x' : 'z',
+                   line_find_code(l, 'g', 750) != NULL ? 'z' : 'x');
     else if (line_find_code(l, 'g', 760) != NULL && p != NULL)
         take_thread_pair(t, p);
     else if (line_find_code(l, 'g', 760) != NULL)

@@ -192,15 +192,20 @@ def read_tools(path):
 
 
 def give_tools(folder, text):
-    """LinuxCNC 2.9 keeps its tool table in a file mapped from the home folder, which its main program makes."""
+    """LinuxCNC keeps its tool table in a file mapped from the home folder, which its main program makes."""
     os.environ["HOME"] = folder
     table = os.path.join(folder, "tool.tbl")
     with open(table, "w") as file:
         file.write(text)
     library = ctypes.CDLL("libtooldata.so.0")
-    library["_Z17tool_mmap_creatorPK13EMC_TOOL_STATi"](None, 0)
-    library["_Z13tooldata_initb"](False)
-    library["_Z13tooldata_loadPKcPPc"](table.encode(), None)
+
+    def function(plain, mangled):
+        """2.10 has names of C."""
+        return library[plain if hasattr(library, plain) else mangled]
+
+    function("tool_mmap_creator", "_Z17tool_mmap_creatorPK13EMC_TOOL_STATi")(None, 0)
+    function("tooldata_init", "_Z13tooldata_initb")(False)
+    function("tooldata_load", "_Z13tooldata_loadPKcPPc")(table.encode(), None)
 
 
 def ask(program, options, folder):

@@ -96,6 +96,20 @@ static void test_only_what_linuxcnc_cannot_read_tells_of_another_dialect(void)
         {"(Mach3)\nG69", DIALECT_MACH3, 2},
         {"G92 E0\nG1 X1 E2", DIALECT_MARLIN, 1},
         {"M104 S200", DIALECT_MARLIN, 1},
+        {"%O0003 (FIXTURE)\nG0 X1", DIALECT_FANUC, 1},
+        {"% (FIXTURE)\nG0 X1\n%", DIALECT_LINUXCNC, 0},
+        {"G28*77", DIALECT_GRBL, 1},
+        {"[BILLET X62 Z70\nG0 X1", DIALECT_FANUC, 1},
+        {"G0 X1\nMSG \"tool 3\"", DIALECT_GRBL, 2},
+        {"G71 G90\nG0 X1", DIALECT_FANUC, 1},
+        {"G71 Q100 D1 I2 R1", DIALECT_LINUXCNC, 0},
+        {"T1.1 M6", DIALECT_FANUC, 1},
+        {"G4 X2.", DIALECT_FANUC, 1},
+        {"G1 X1\nG53 Z0", DIALECT_LINUXCNC, 0},
+        {"G53 Z0\nG1 X1", DIALECT_FANUC, 1},
+        {"N10 N10 G0 X1", DIALECT_GRBL, 1},
+        {"M98 Q300", DIALECT_FANUC, 1},
+        {"G74 Z-40. Q5000", DIALECT_FANUC, 1},
     };
 
     for (size_t i = 0; i < sizeof table / sizeof table[0]; i++) {
@@ -319,6 +333,52 @@ static void test_profiles_of_fanuc_become_subroutines(void)
            "|G42\n|G70 Q93000010\n|G40\n|G0 X#<_turning_x>\n|Z#<_turning_z>\n");
 }
 
+static void test_distances_of_cycles_can_be_whole_thousandths(void)
+{
+    expect(DIALECT_FANUC, "G50 S9\nG71U1250R500\nG71P10Q20U250W0.1F.2\nN10G0X1.\nN20X9.\n",
+           "G18 G7\n            \no93000010 sub\n|   G0X1.\n|   X9.\n|o93000010 endsub\n"
+           "|#<_turning_x>=[2*#<_x>] #<_turning_z>=#<_z>\n|                 F.2\n"
+           "|G71 Q93000010 D[[ABS[250*[0.001-0.0009*#<_imperial>]]/2+ABS[0.1]+"
+           "ABS[ABS[250*[0.001-0.0009*#<_imperial>]]/2-ABS[0.1]]]/2] "
+           "I[1250*[0.001-0.0009*#<_imperial>]] R[500*[0.001-0.0009*#<_imperial>]]\n"
+           "|G0 X#<_turning_x>\n|Z#<_turning_z>\n\n\n");
+}
+
+static void test_pecks_along_the_axis_of_a_lathe_become_a_loop(void)
+{
+    expect(
+        DIALECT_FANUC, "G50 S9\nG74 R0.5\nG74 Z-12. Q5000 F0.1\n",
+        "G18 G7\n        \n"
+        "#<_turning_x>=[2*#<_x>] #<_turning_z>=#<_z>\n"
+        "|                F0.1\n"
+        "|#<_turning_at>=#<_turning_z>\n"
+        "|o94000003 repeat [FUP[[#<_turning_at>-[-12.]]/[1*[5000*[0.001-0.0009*#<_imperial>]]]]]\n"
+        "|#<_turning_at>=[#<_turning_at>-[1*[5000*[0.001-0.0009*#<_imperial>]]]]\n"
+        "|o95000003 if [#<_turning_at> LT [-12.]]\n|#<_turning_at>=[-12.]\n|o95000003 endif\n"
+        "|G1 z#<_turning_at>\n|G0 z[#<_turning_at>+[1.0*[0.5]]]\n|o94000003 endrepeat\n"
+        "|G0 X#<_turning_x>\n|Z#<_turning_z>\n");
+}
+
+static void test_registers_hold_what_later_lines_mean(void)
+{
+    expect(DIALECT_FANUC, "G43 H1 D51 Z5\nG41 X1\nG28 Z0\nG40\nG28 Z0\n",
+           "G43 H1     Z5\nG41 X1 D51\nG40\n|G28 Z0\n|G41 D51\nG40\nG28 Z0\n");
+    expect(DIALECT_FANUC, "H8\nG43 Z5\nH9\nG49 H0\n", "  \nG43 Z5 H8\nH9 G43\nG49   \n");
+    expect(DIALECT_FANUC, "T1.1 M6\nG4 X2.\n", "T1   M6\nG4 P2.000000\n");
+    expect(DIALECT_FANUC, "G96 M3\nS200 F1\nS300\n", "    M3\nS200 F1 G96 \nS300\n");
+}
+
+static void test_other_names_of_what_linuxcnc_has(void)
+{
+    expect(DIALECT_FANUC, "%O3 (A)\n[BILLET X62\nG71 G90\nG53 Z0\nN10 N10 X1\n%\n",
+           "%\n\nG21 G90\nG53 Z0 G0\nN10     X1\n%\n");
+    expect(DIALECT_GRBL, "MSG \"tool 3\"\nG0 X1*52\n#1=#2*3\n", "(msg,tool 3)\nG0 X1\n#1=#2*3\n");
+    expect(DIALECT_HAAS, "O1\nM98 Q30\nM30\nN30 X2\nM99\n",
+           "O1\nM98 P97000030\nM30\nO97000030\n|N30 X2\nM99\n");
+    declare("M649", "ignore");
+    expect(DIALECT_GRBL, "M649 S13 L2 P5 W1 G1 X1 P2\n", "     S13          G1 X1 P2\n");
+}
+
 #define NO_ARGUMENTS " [0] [0] [0] [0] [0] [0] [0] [0] [0] [0] [0] [0] [0] [0] [0] [0] [0]"
 
 static void test_modal_macros_are_called_behind_each_line_that_moves(void)
@@ -495,6 +555,10 @@ int main(void)
     RUN_TEST(test_axis_words_before_a_motion_move_at_rapid);
     RUN_TEST(test_words_that_mean_nothing_are_left_out);
     RUN_TEST(test_profiles_of_fanuc_become_subroutines);
+    RUN_TEST(test_distances_of_cycles_can_be_whole_thousandths);
+    RUN_TEST(test_pecks_along_the_axis_of_a_lathe_become_a_loop);
+    RUN_TEST(test_registers_hold_what_later_lines_mean);
+    RUN_TEST(test_other_names_of_what_linuxcnc_has);
     RUN_TEST(test_modal_macros_are_called_behind_each_line_that_moves);
     RUN_TEST(test_what_has_no_value_is_nothing);
     RUN_TEST(test_threads_of_two_lines_become_one);

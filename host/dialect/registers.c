@@ -1,0 +1,143 @@
+/*
+ * What words of one line mean for later ones: registers of tools, work systems, and the speed of turning.
+ */
+#include "dialect/translate.h"
+
+#include <stdio.h>
+
+/* D beside G43 is for the compensation that follows. */
+static void translate_radius(struct translator *t)
+{
+    struct line *l = &t->line;
+    struct line_word *d = line_find(l, 'd', 0);
+    const bool compensates =
+        line_find_code(l, 'g', 410) != NULL || line_find_code(l, 'g', 420) != NULL;
+
+    if (compensates && d == NULL) {
+        (void)line_append(l, t->radius);
+    } else if (!compensates && d != NULL && line_find_code(l, 'g', 430) != NULL) {
+        (void)snprintf(t->radius, sizeof t->radius, "D%.*s", (int)(d->end - d->value_begin),
+                       &l->text[d->value_begin]);
+        line_blank(l, d);
+    }
+}
+
+/* H alone is the length in use, or the one of the G43 that follows. */
+static void translate_length(struct translator *t)
+{
+    static const uint16_t codes[] = {100, 370, 431, 432, 434, 650, 760};
+    struct line *l = &t->line;
+    struct line_word *h = line_find(l, 'h', 0);
+    const bool begins = line_find_code(l, 'g', 430) != NULL;
+
+    for (size_t i = 0; i < sizeof codes / sizeof codes[0]; i++) {
+        if (line_find_code(l, 'g', codes[i]) != NULL)
+            return;
+    }
+    t->has_length = (t->has_length || begins) && line_find_code(l, 'g', 490) == NULL;
+    if (h != NULL && !begins) {
+        (void)snprintf(t->length, sizeof t->length, "H%.*s", (int)(h->end - h->value_begin),
+                       &l->text[h->value_begin]);
+        if (t->has_length)
+            (void)line_append(l, "G43");
+        else
+            line_blank(l, h);
+    } else if (begins && h == NULL) {
+        (void)line_append(l, t->length);
+    }
+}
+
+/* A reference is gone to without compensation, which holds again behind it. */
+static void translate_side(struct translator *t)
+{
+    struct line *l = &t->line;
+
+    if (line_find_code(l, 'g', 410) != NULL || line_find_code(l, 'g', 420) != NULL)
+        t->side = line_find_code(l, 'g', 410) != NULL ? 41 : 42;
+    if (line_find_code(l, 'g', 400) != NULL)
+        t->side = 0;
+    if (t->side != 0 &&
+        (line_find_code(l, 'g', 280) != NULL || line_find_code(l, 'g', 300) != NULL)) {
+        translate_add(&t->before, "G40");
+        translate_add(&t->behind, "G%u %s", t->side, t->radius);
+    }
+}
+
+/* T1.1 is tool 1 with its first offset. */
+static void translate_tool(struct translator *t)
+{
+    struct line_word *tool = line_find(&t->line, 't', 0);
+    char text[16];
+
+    if (tool == NULL || !tool->is_number || !tool->has_point)
+        return;
+    (void)snprintf(text, sizeof text, "T%u", (unsigned)line_whole(tool->value));
+    (void)line_replace(&t->line, tool, text);
+}
+
+/* G54.1 P1 to P3 and G154 are the last three systems here. */
+static void translate_system(struct translator *t)
+{
+    static const uint16_t codes[] = {541, 540, 1540};
+    struct line *l = &t->line;
+    struct line_word *p = line_find(l, 'p', 0);
+
+    for (size_t i = 0; i < sizeof codes / sizeof codes[0]; i++) {
+        struct line_word *w = line_find_code(l, 'g', codes[i]);
+        char text[16];
+
+        if (w != NULL && p != NULL && p->is_number && p->value >= 1.0 && p->value <= 3.0) {
+            (void)snprintf(text, sizeof text, "G59.%u", (unsigned)p->value);
+            line_blank(l, p);
+            (void)line_replace(l, w, text);
+            return;
+        }
+    }
+}
+
+/* G50 S2000 is the highest speed for the G96 that follows; without S it ends a scale that is not there. */
+void registers_translate_speed(struct translator *t)
+{
+    struct line *l = &t->line;
+    struct line_word *w = line_find_code(l, 'g', 500);
+    struct line_word *s = line_find(l, 's', 0);
+    struct line_word *surface = line_find_code(l, 'g', 960);
+
+    if (surface != NULL && s == NULL)
+        line_blank(l, surface);
+    if (surface == NULL && s != NULL && w == NULL && t->surface_is_owed)
+        (void)line_append(l, "G96");
+    t->surface_is_owed = (t->surface_is_owed || surface != NULL) && (s == NULL || w != NULL) &&
+                         line_find_code(l, 'g', 970) == NULL;
+    w = line_find_code(l, 'g', 500);
+    s = line_find(l, 's', 0);
+    if (w != NULL) {
+        line_blank(l, w);
+        if (s != NULL) {
+            (void)snprintf(t->speed_limit, sizeof t->speed_limit, "D%.*s",
+                           (int)(s->end - s->value_begin), &l->text[s->value_begin]);
+            line_blank(l, s);
+        }
+    } else if (line_find_code(l, 'g', 960) != NULL && line_find(l, 'd', 0) == NULL) {
+        (void)line_append(l, t->speed_limit);
+    }
+}
+
+/* Inches and millimetres by other numbers; a lathe's G71 has words of its own. */
+void registers_translate_unit(struct translator *t)
+{
+    struct line_word *unit = line_unit(&t->line);
+
+    if (unit != NULL)
+        (void)line_replace(&t->line, unit, line_code(unit) == 700 ? "G20" : "G21");
+}
+
+/* What a control has in registers. */
+void registers_translate(struct translator *t)
+{
+    translate_system(t);
+    translate_radius(t);
+    translate_length(t);
+    translate_side(t);
+    translate_tool(t);
+}
