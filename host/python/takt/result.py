@@ -119,7 +119,8 @@ class Trace(Mapping[str, Array]):
         if order < 1:
             raise ValueError(f"order {order}: 1 is velocity, 2 acceleration, 3 jerk")
         for i in range(order):
-            first = x[:1] if i == 0 else np.zeros(1)
+            # The first setpoint may have moved: where the axis stood is what it reported before.
+            first = self.axis(letter, "act")[:1] if i == 0 else np.zeros(1)
             x = np.diff(x, prepend=first) / self.cycle_s
         return x
 
