@@ -198,7 +198,7 @@ static enum command_status write_eds(const struct virtual_drive_config *config, 
     if (!output_file_open(&file, path))
         return STATUS_ENVIRONMENT;
     virtual_drive_init(&drive, config, NULL, &nowhere);
-    eds_write(file.stream, &drive, slash != NULL ? slash + 1 : path);
+    eds_write(file.stream, &drive.servo, slash != NULL ? slash + 1 : path);
     if (!output_file_finish(&file) || !output_file_place(&file))
         return STATUS_ENVIRONMENT;
     return STATUS_DONE;

@@ -1,5 +1,6 @@
 #include "takt/data_sheet.h"
 
+#include "drives/dictionary_read.h"
 #include "takt/message.h"
 #include "takt/text.h"
 

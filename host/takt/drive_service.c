@@ -2,6 +2,7 @@
 
 #include "takt/drive_service.h"
 
+#include "drives/drive_event.h"
 #include "drives/drive_store.h"
 #include "drives/eds.h"
 #include "takt/bus_log.h"
@@ -60,7 +61,7 @@ static void log_start(struct drive_service *service)
 }
 
 /* Each drive gives its own data sheet away, object 1021. */
-static bool make_eds(struct virtual_drive *drive, struct eds_text *text)
+static bool make_eds(struct servo *drive, struct eds_text *text)
 {
     FILE *stream = open_memstream(&text->bytes, &text->length);
 
@@ -69,11 +70,11 @@ static bool make_eds(struct virtual_drive *drive, struct eds_text *text)
     eds_write(stream, drive, "takt-drive.eds");
     if (fclose(stream) != 0)
         return false;
-    virtual_drive_set_eds(drive, text->bytes, text->length);
+    servo_set_eds(drive, text->bytes, text->length);
     return true;
 }
 
-static void store_path(const struct drive_service *service, const struct virtual_drive *drive,
+static void store_path(const struct drive_service *service, const struct servo *drive,
                        char path[OUTPUT_PATH_MAX])
 {
     (void)snprintf(path, OUTPUT_PATH_MAX, "%s/takt-drive-%u.store", service->config->store,
@@ -81,7 +82,7 @@ static void store_path(const struct drive_service *service, const struct virtual
 }
 
 /* A message says so when it fails; the drive tells its master. */
-static bool keep_stored(void *context, const struct virtual_drive *drive)
+static bool keep_stored(void *context, const struct servo *drive)
 {
     static _Thread_local struct output_file file;
     char path[OUTPUT_PATH_MAX];
@@ -94,14 +95,14 @@ static bool keep_stored(void *context, const struct virtual_drive *drive)
 }
 
 /* False after a message. A drive that has stored nothing has no file. */
-static bool load_stored(struct drive_service *service, struct virtual_drive *drive)
+static bool load_stored(struct drive_service *service, struct servo *drive)
 {
     char path[OUTPUT_PATH_MAX];
     struct drive_store_problem wrong;
     struct text text;
     bool good;
 
-    virtual_drive_keep(drive, &(struct drive_keeper){keep_stored, service});
+    servo_keep(drive, &(struct drive_keeper){keep_stored, service});
     store_path(service, drive, path);
     if (access(path, F_OK) != 0)
         return true;
@@ -117,7 +118,7 @@ static bool load_stored(struct drive_service *service, struct virtual_drive *dri
 static bool load_all_stored(struct drive_service *service)
 {
     for (unsigned i = 0; i < service->set.count && service->config->store != NULL; i++) {
-        if (!load_stored(service, &service->set.drive[i]))
+        if (!load_stored(service, &service->set.drive[i].servo))
             return false;
     }
     return true;
@@ -126,7 +127,7 @@ static bool load_all_stored(struct drive_service *service)
 static bool make_all_eds(struct drive_service *service)
 {
     for (unsigned i = 0; i < service->set.count; i++) {
-        if (!make_eds(&service->set.drive[i], &service->eds[i])) {
+        if (!make_eds(&service->set.drive[i].servo, &service->eds[i])) {
             message_command_error("out of memory");
             return false;
         }

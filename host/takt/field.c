@@ -1,5 +1,6 @@
 #include "takt/field.h"
 
+#include "drives/dictionary_read.h"
 #include "takt/data_sheet.h"
 #include "takt/inject_bus.h"
 #include "takt/message.h"
@@ -63,7 +64,7 @@ static bool add_faults(struct field *field, const struct inject *script, enum in
     uint8_t nodes[VIRTUAL_DRIVES_MAX];
 
     for (unsigned i = 0; i < field->drives.count; i++)
-        nodes[i] = field->drives.drive[i].config.node;
+        nodes[i] = field->drives.drive[i].servo.config.node;
     return inject_bus_add(&field->bus, script, anchor, anchor_ns, nodes, field->drives.count);
 }
 

@@ -3,6 +3,7 @@
 /* The files that takt is given: texts by path. */
 #include "readers.h"
 
+#include "drives/dictionary_read.h"
 #include "takt/correction_file.h"
 #include "takt/data_sheet.h"
 #include "takt/inject_file.h"

@@ -5,8 +5,8 @@
  * Positions are in increments, velocities in increments/s, accelerations in increments/s2; what an
  * increment is, objects 6091 and 6092 say.
  */
-#ifndef TAKT_DRIVES_DRIVE_OBJECTS_H
-#define TAKT_DRIVES_DRIVE_OBJECTS_H
+#ifndef TAKT_SERVO_DRIVE_OBJECTS_H
+#define TAKT_SERVO_DRIVE_OBJECTS_H
 
 #include <stdint.h>
 
