@@ -394,11 +394,14 @@ static void take_other(struct servo *drive, const struct can_frame *frame)
     }
 }
 
+bool servo_accepts(const struct servo *drive, const struct can_frame *frame)
+{
+    return drive->accepts[frame->id >> 5 & 63] >> (frame->id & 31) & 1;
+}
+
 void servo_on_frame(struct servo *drive, const struct can_frame *frame)
 {
-    if (!(drive->accepts[frame->id >> 5 & 63] >> (frame->id & 31) & 1))
-        return;
-    if (drive->boot_ns != 0)
+    if (!servo_accepts(drive, frame) || drive->boot_ns != 0)
         return;
     if (nmt_is_guard(frame, drive->config.node) && !drive->lss.is_nameless)
         take_guard(drive);

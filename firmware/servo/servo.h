@@ -100,6 +100,9 @@ void servo_tell(const struct servo *drive, enum drive_event_kind kind, uint32_t 
 /* Sends the boot-up message and enters the state pre-operational. */
 void servo_boot(struct servo *drive);
 
+/* The drive listens to frames of this identifier: what a filter of the bus may let through. */
+bool servo_accepts(const struct servo *drive, const struct can_frame *frame);
+
 /* A frame has come; the drive may send answers. */
 void servo_on_frame(struct servo *drive, const struct can_frame *frame);
 /* The same where the time on the bus is known: targets behind the window of object 1007 are none. */

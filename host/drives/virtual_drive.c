@@ -25,14 +25,30 @@ static struct servo_config servo_config_of(const struct virtual_drive_config *co
     };
 }
 
+void virtual_drive_begin(const struct virtual_drive *drive, const struct twin_order *order)
+{
+    if (drive->twin != NULL)
+        drive->twin->begin(drive->twin->context, order, NULL);
+}
+
+void virtual_drive_end(const struct virtual_drive *drive)
+{
+    if (drive->twin != NULL)
+        drive->twin->end(drive->twin->context);
+}
+
 void virtual_drive_init(struct virtual_drive *drive, const struct virtual_drive_config *config,
                         const struct pdo *target, const struct can_port *port)
 {
     const struct servo_config servo = servo_config_of(config);
-    const struct motor_port motor = drive_plant_get_port(&drive->plant);
+    struct motor_port motor = drive_plant_get_port(&drive->plant);
+    struct can_port bus = *port;
     memset(&drive->faults, 0, sizeof drive->faults);
+    drive->twin = config->twin;
     drive_plant_init(&drive->plant, &config->plant, config->increments_per_mm < 0);
-    servo_init(&drive->servo, &servo, target, port, &motor);
+    if (drive->twin != NULL)
+        drive->twin->open(drive->twin->context, &drive->servo, &servo, target, &bus, &motor);
+    servo_init(&drive->servo, &servo, target, &bus, &motor);
 }
 
 void virtual_drive_observe(struct virtual_drive *drive, const struct drive_observer *observer)
@@ -40,38 +56,84 @@ void virtual_drive_observe(struct virtual_drive *drive, const struct drive_obser
     servo_observe(&drive->servo, observer);
 }
 
-void virtual_drive_boot(struct virtual_drive *drive)
+void virtual_drive_set_eds(struct virtual_drive *drive, const char *eds, size_t length)
 {
-    servo_boot(&drive->servo);
+    const struct virtual_drive_twin *twin = drive->twin;
+    servo_set_eds(&drive->servo, eds, length);
+    if (twin == NULL)
+        return;
+    twin->begin(twin->context, &(struct twin_order){.kind = TWIN_EDS, .a = (uint32_t)length}, eds);
+    twin->end(twin->context);
 }
 
-void virtual_drive_on_frame(struct virtual_drive *drive, const struct can_frame *frame)
+void virtual_drive_keep(struct virtual_drive *drive, const struct drive_keeper *keeper)
 {
-    if (!drive->faults.is_hung)
-        servo_on_frame(&drive->servo, frame);
+    const struct virtual_drive_twin *twin = drive->twin;
+    struct drive_keeper both = *keeper;
+    virtual_drive_begin(drive, &(struct twin_order){.kind = TWIN_KEEPER});
+    if (twin != NULL)
+        both = twin->keep(twin->context, keeper);
+    servo_keep(&drive->servo, &both);
+    virtual_drive_end(drive);
+}
+
+void virtual_drive_boot(struct virtual_drive *drive)
+{
+    virtual_drive_begin(drive, &(struct twin_order){.kind = TWIN_BOOT});
+    servo_boot(&drive->servo);
+    virtual_drive_end(drive);
+}
+
+/* What the drive does not listen to its twin need not be told. */
+static bool is_heard(const struct virtual_drive *drive, const struct can_frame *frame)
+{
+    return !drive->faults.is_hung && servo_accepts(&drive->servo, frame);
 }
 
 void virtual_drive_on_frame_at(struct virtual_drive *drive, const struct can_frame *frame,
                                uint64_t time_ns)
 {
-    if (!drive->faults.is_hung)
-        servo_on_frame_at(&drive->servo, frame, time_ns);
+    if (!is_heard(drive, frame))
+        return;
+    virtual_drive_begin(
+        drive, &(struct twin_order){.kind = TWIN_FRAME, .frame = *frame, .time_ns = time_ns});
+    servo_on_frame_at(&drive->servo, frame, time_ns);
+    virtual_drive_end(drive);
+}
+
+void virtual_drive_on_frame(struct virtual_drive *drive, const struct can_frame *frame)
+{
+    virtual_drive_on_frame_at(drive, frame, 0);
 }
 
 void virtual_drive_step(struct virtual_drive *drive, uint32_t cycle_ns)
 {
     if (drive->faults.script)
         virtual_drive_run_faults(drive);
+    virtual_drive_begin(drive, &(struct twin_order){.kind = TWIN_STEP, .a = cycle_ns});
     servo_step(&drive->servo, cycle_ns);
+    virtual_drive_end(drive);
+}
+
+void virtual_drive_touch(struct virtual_drive *drive, bool touches, double ratio)
+{
+    virtual_drive_begin(drive,
+                        &(struct twin_order){.kind = TWIN_TOUCH, .a = touches, .ratio = ratio});
+    servo_touch(&drive->servo, touches, ratio);
+    virtual_drive_end(drive);
 }
 
 void virtual_drive_inject(struct virtual_drive *drive, const struct inject *script,
                           const struct inject_clock *clock)
 {
-    const struct servo_meddler meddler = virtual_drive_meddler(drive);
+    struct servo_meddler meddler = virtual_drive_meddler(drive);
     drive->faults.script = script;
     drive->faults.clock = clock;
+    virtual_drive_begin(drive, &(struct twin_order){.kind = TWIN_MEDDLE});
+    if (drive->twin != NULL)
+        meddler = drive->twin->meddle(drive->twin->context, &meddler);
     servo_meddle(&drive->servo, &meddler);
+    virtual_drive_end(drive);
 }
 
 enum cia402_state virtual_drive_get_state(const struct virtual_drive *drive)
@@ -91,7 +153,10 @@ bool virtual_drive_read_object(struct virtual_drive *drive, uint32_t object, uin
 
 bool virtual_drive_write_object(struct virtual_drive *drive, uint32_t object, uint32_t value)
 {
-    return servo_write_object(&drive->servo, object, value);
+    virtual_drive_begin(drive, &(struct twin_order){.kind = TWIN_WRITE, .a = object, .b = value});
+    bool good = servo_write_object(&drive->servo, object, value);
+    virtual_drive_end(drive);
+    return good;
 }
 
 double virtual_drive_get_position_mm(const struct virtual_drive *drive)

@@ -6,6 +6,7 @@
 #define TAKT_DRIVES_VIRTUAL_DRIVE_H
 
 #include "drives/drive_plant.h"
+#include "drives/virtual_drive_twin.h"
 #include "inject/inject.h"
 #include "servo/servo.h"
 
@@ -26,6 +27,7 @@ struct virtual_drive_config {
     struct drive_plant_config plant;
     bool is_io;
     uint16_t closed;
+    const struct virtual_drive_twin *twin; /* must stay; NULL: the drive runs here alone */
 };
 
 /* Private. */
@@ -42,6 +44,7 @@ struct virtual_drive {
     struct servo servo;
     struct drive_plant plant;
     struct drive_faults faults;
+    const struct virtual_drive_twin *twin;
 };
 
 /*
@@ -54,11 +57,14 @@ void virtual_drive_init(struct virtual_drive *drive, const struct virtual_drive_
 
 /* As those of servo.h. */
 void virtual_drive_observe(struct virtual_drive *drive, const struct drive_observer *observer);
+void virtual_drive_set_eds(struct virtual_drive *drive, const char *eds, size_t length);
+void virtual_drive_keep(struct virtual_drive *drive, const struct drive_keeper *keeper);
 void virtual_drive_boot(struct virtual_drive *drive);
 void virtual_drive_on_frame(struct virtual_drive *drive, const struct can_frame *frame);
 void virtual_drive_on_frame_at(struct virtual_drive *drive, const struct can_frame *frame,
                                uint64_t time_ns);
 void virtual_drive_step(struct virtual_drive *drive, uint32_t cycle_ns);
+void virtual_drive_touch(struct virtual_drive *drive, bool touches, double ratio);
 enum cia402_state virtual_drive_get_state(const struct virtual_drive *drive);
 enum nmt_state virtual_drive_get_nmt_state(const struct virtual_drive *drive);
 bool virtual_drive_read_object(struct virtual_drive *drive, uint32_t object, uint32_t *value);

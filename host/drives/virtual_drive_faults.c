@@ -56,8 +56,11 @@ static uint32_t shown_by(struct virtual_drive *drive, const struct inject_fault 
 
 static void look_at_motor(struct virtual_drive *drive)
 {
-    if (!drive->servo.config.is_io)
-        servo_loop_look(&drive->servo.loop);
+    if (drive->servo.config.is_io)
+        return;
+    virtual_drive_begin(drive, &(struct twin_order){.kind = TWIN_LOOK});
+    servo_loop_look(&drive->servo.loop);
+    virtual_drive_end(drive);
 }
 
 /* Faults that last: their sum. */
@@ -82,16 +85,35 @@ static void sum_up(struct virtual_drive *drive)
     look_at_motor(drive);
 }
 
+static void tell_of_error(struct virtual_drive *drive, const struct inject_fault *fault)
+{
+    const struct twin_order order = {.kind =
+                                         fault->kind == INJECT_EMCY ? TWIN_FAIL : TWIN_EMERGENCY,
+                                     .a = fault->code,
+                                     .b = register_of(fault)};
+    virtual_drive_begin(drive, &order);
+    if (fault->kind == INJECT_EMCY)
+        servo_fail(&drive->servo, (uint16_t)order.a, (uint8_t)order.b);
+    else
+        servo_send_emergency(&drive->servo, (uint16_t)order.a, (uint8_t)order.b);
+    virtual_drive_end(drive);
+}
+
+static void reboot(struct virtual_drive *drive)
+{
+    virtual_drive_begin(drive, &(struct twin_order){.kind = TWIN_REBOOT});
+    servo_reboot(&drive->servo);
+    virtual_drive_end(drive);
+}
+
 /* Faults that happen once. */
 static void happen(struct virtual_drive *drive, const struct inject_fault *fault)
 {
-    if (fault->kind == INJECT_EMCY)
-        servo_fail(&drive->servo, (uint16_t)fault->code, register_of(fault));
-    else if (fault->kind == INJECT_WARN)
-        servo_send_emergency(&drive->servo, (uint16_t)fault->code, register_of(fault));
-    else if (fault->kind == INJECT_REBOOT)
-        servo_reboot(&drive->servo);
-    else if (fault->kind == INJECT_ENCODER_JUMP) {
+    if (fault->kind == INJECT_EMCY || fault->kind == INJECT_WARN) {
+        tell_of_error(drive, fault);
+    } else if (fault->kind == INJECT_REBOOT) {
+        reboot(drive);
+    } else if (fault->kind == INJECT_ENCODER_JUMP) {
         drive_plant_shift_encoder(&drive->plant, fault->by_mm);
         look_at_motor(drive);
     }

@@ -166,7 +166,7 @@ static void look_for_contact(struct virtual_drives *set)
     }
     set->touches = touches;
     for (unsigned i = 0; i < set->motors; i++)
-        servo_touch(&set->drive[i].servo, touches, after);
+        virtual_drive_touch(&set->drive[i], touches, after);
 }
 
 void virtual_drives_step(struct virtual_drives *set, uint32_t cycle_ns)

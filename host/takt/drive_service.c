@@ -6,6 +6,7 @@
 #include "drives/drive_store.h"
 #include "drives/eds.h"
 #include "takt/bus_log.h"
+#include "takt/drive_images.h"
 #include "takt/interrupt.h"
 #include "takt/message.h"
 #include "takt/output_file.h"
@@ -38,6 +39,7 @@ struct drive_service {
     struct bus_log bus_log;
     struct eds_text eds[VIRTUAL_DRIVES_MAX];
     struct virtual_drives set;
+    struct drive_images images;
     struct probe_contact contact;
 };
 
@@ -61,16 +63,16 @@ static void log_start(struct drive_service *service)
 }
 
 /* Each drive gives its own data sheet away, object 1021. */
-static bool make_eds(struct servo *drive, struct eds_text *text)
+static bool make_eds(struct virtual_drive *drive, struct eds_text *text)
 {
     FILE *stream = open_memstream(&text->bytes, &text->length);
 
     if (stream == NULL)
         return false;
-    eds_write(stream, drive, "takt-drive.eds");
+    eds_write(stream, &drive->servo, "takt-drive.eds");
     if (fclose(stream) != 0)
         return false;
-    servo_set_eds(drive, text->bytes, text->length);
+    virtual_drive_set_eds(drive, text->bytes, text->length);
     return true;
 }
 
@@ -127,7 +129,7 @@ static bool load_all_stored(struct drive_service *service)
 static bool make_all_eds(struct drive_service *service)
 {
     for (unsigned i = 0; i < service->set.count; i++) {
-        if (!make_eds(&service->set.drive[i].servo, &service->eds[i])) {
+        if (!make_eds(&service->set.drive[i], &service->eds[i])) {
             message_command_error("out of memory");
             return false;
         }
@@ -160,6 +162,9 @@ static enum command_status start(struct drive_service *service)
         return STATUS_ENVIRONMENT;
     bus_log_observe_link(&service->bus_log, service->link);
     service->cycle_ns = (uint64_t)config->cycle_us * 1000;
+    if (config->target != NULL &&
+        !drive_images_open(&service->images, config->target, config->image, config->drives))
+        return STATUS_ENVIRONMENT;
     virtual_drives_open(&service->set, &service->port, config->drives);
     if (!make_all_eds(service))
         return STATUS_ENVIRONMENT;
@@ -213,6 +218,18 @@ static void keep_time(struct drive_service *service)
     }
 }
 
+/* False after a message: an image has gone, or does not do what the drive here does. */
+static bool check_images(struct drive_service *service)
+{
+    const char *problem = drive_images_problem(&service->images);
+
+    if (problem == NULL && drive_images_differences(&service->images) == 0)
+        return true;
+    message_command_error(
+        "%s", problem != NULL ? problem : "an image sends or turns what the drive here does not");
+    return false;
+}
+
 static enum command_status run(struct drive_service *service)
 {
     while (!interrupt_asked()) {
@@ -224,6 +241,8 @@ static enum command_status run(struct drive_service *service)
         look_who_left(service);
         keep_time(service);
         bus_log_keep(&service->bus_log);
+        if (!check_images(service))
+            return STATUS_ENVIRONMENT;
     }
     return STATUS_DONE;
 }
@@ -241,6 +260,7 @@ enum command_status drive_service_run(const struct drive_service_config *config)
     status = start(service);
     if (status == STATUS_DONE)
         status = run(service);
+    drive_images_close(&service->images);
     link_close(service->link);
     if (!bus_log_close(&service->bus_log) && status == STATUS_DONE)
         status = STATUS_ENVIRONMENT;
