@@ -7,11 +7,13 @@
 
 #define OBJECT_DEVICE_TYPE        0x1000
 #define OBJECT_ERROR_REGISTER     0x1001
+#define OBJECT_SYNC_COB_ID        0x1005
 #define OBJECT_SYNC_PERIOD        0x1006 /* us */
 #define OBJECT_GUARD_TIME         0x100C /* ms */
 #define OBJECT_LIFE_TIME_FACTOR   0x100D /* guard times without a guarding frame */
 #define OBJECT_CONSUMER_HEARTBEAT 0x1016 /* each sub-index: node << 16 | ms */
 #define OBJECT_PRODUCER_HEARTBEAT 0x1017 /* ms */
+#define OBJECT_SYNC_OVERFLOW      0x1019 /* of the SYNC counter; 0: SYNC has none */
 #define OBJECT_IDENTITY           0x1018 /* 1 vendor, 2 product code, 3 revision, 4 serial number */
 
 /*
@@ -24,9 +26,11 @@
 #define OBJECT_TPDO_MAPPING 0x1A00
 
 /* Sub-indices of a PDO's communication parameters. */
-#define OBJECT_PDO_COB_ID      1
-#define OBJECT_PDO_TYPE        2
-#define OBJECT_PDO_EVENT_TIMER 5 /* ms */
+#define OBJECT_PDO_COB_ID         1
+#define OBJECT_PDO_TYPE           2
+#define OBJECT_PDO_INHIBIT        3 /* 100 us */
+#define OBJECT_PDO_INHIBIT_PER_MS 10u
+#define OBJECT_PDO_EVENT_TIMER    5 /* ms */
 
 /* Bits of a PDO's COB-ID. */
 #define OBJECT_PDO_NOT_VALID 0x80000000u

@@ -1,3 +1,4 @@
+/* Abort codes of SDO transfers in words. */
 #include "canopen/sdo.h"
 
 /* CiA 301, table 22. */

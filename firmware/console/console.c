@@ -135,6 +135,7 @@ static void tell_why(struct console *c)
     console_message(c, text);
 }
 
+/* A sender that has reset counts no more on answers to what it sent before. */
 static void collect(struct console *c)
 {
     char text[LINES_LENGTH_MAX + 1];
@@ -142,6 +143,8 @@ static void collect(struct console *c)
 
     while (lines_collect(c->config.lines, text, &answer)) {
         c->pending--;
+        if (c->resets)
+            continue;
         if (answer != CONSOLE_OK)
             tell_why(c);
         else if (is_probing(text))

@@ -14,7 +14,7 @@
 
 #include "console/lines.h"
 #include "console/reply.h"
-#include "controller/machine.h"
+#include "machine/machine.h"
 #include "panel/snapshot.h"
 
 #include <stdbool.h>

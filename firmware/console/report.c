@@ -353,7 +353,7 @@ void console_report_build(struct console *c, bool extended)
     text(c, c->config.version);
     text(c, ":");
     text(c, c->config.machine->name);
-    text(c, "]\r\n[OPT:VNM,");
+    text(c, "]\r\n[OPT:VM,");
     number(c, room / BYTES_PER_LINE);
     text(c, ",");
     number(c, room);

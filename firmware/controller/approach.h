@@ -6,7 +6,7 @@
 #define TAKT_CONTROLLER_APPROACH_H
 
 #include "base/point.h"
-#include "controller/machine.h"
+#include "machine/machine.h"
 
 #include <stdbool.h>
 #include <stdint.h>

@@ -29,29 +29,13 @@ void controller_plan_limits(const struct machine *machine, struct plan_limits *l
     }
 }
 
-void controller_motion_bound(const struct machine *machine, struct motion_bound *most)
-{
-    memset(most, 0, sizeof(*most));
-    for (int i = 0; i < AXIS_COUNT; i++) {
-        const struct machine_axis *axis = &machine->axis[i];
-
-        if (axis->present) {
-            most->velocity_mm_s[i] = axis->max_velocity_mm_s;
-            most->acceleration_mm_s2[i] = axis->max_acceleration_mm_s2;
-            most->jerk_mm_s3[i] = axis->max_jerk_mm_s3;
-            most->farthest_mm[i] =
-                maths_max(maths_abs(axis->travel_min_mm), maths_abs(axis->travel_max_mm));
-        }
-    }
-}
-
 void controller_reserve_correction(struct correction *correction, const struct machine *machine,
                                    struct plan_limits *limits)
 {
     struct motion_bound most;
     struct need need;
 
-    controller_motion_bound(machine, &most);
+    machine_motion_bound(machine, &most);
     correction_reserve(correction, &most, &need);
     for (int i = 0; i < AXIS_COUNT; i++) {
         limits->velocity_mm_s[i] -= need.velocity_mm_s[i];
@@ -232,10 +216,13 @@ static bool waits_for_text(struct controller *c)
 /* Reads more only when the look-ahead has become shorter by this part of it: a ceiling is then made for many blocks. */
 #define TOP_UP_PART 8
 
+static uint32_t look_ahead(const struct controller *c)
+{
+    return path_look_ahead(&c->path, c->machine.look_ahead_blocks);
+}
+
 void controller_background(struct controller *c)
 {
-    const uint32_t wanted = c->machine.look_ahead_blocks;
-
     take_answer(c);
     if (c->replays) {
         replay_read(&c->replay, &c->path.limits);
@@ -246,8 +233,8 @@ void controller_background(struct controller *c)
     path_go_on(&c->path);
     take_held(c);
     c->program_late = false;
-    if (motion_ahead(&c->motion) + wanted / TOP_UP_PART <= wanted) {
-        while (can_read(c) && motion_ahead(&c->motion) < wanted) {
+    if (motion_ahead(&c->motion) + look_ahead(c) / TOP_UP_PART <= look_ahead(c)) {
+        while (can_read(c) && motion_ahead(&c->motion) < look_ahead(c)) {
             read_move(c);
         }
     }

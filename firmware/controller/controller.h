@@ -19,13 +19,13 @@
 #include "accuracy/cycle_frequency.h"
 #include "base/error.h"
 #include "controller/controller_reader.h"
-#include "controller/machine.h"
 #include "correction/correction.h"
 #include "drive/drives.h"
 #include "hal/can.h"
 #include "hal/inputs.h"
 #include "hal/outputs.h"
 #include "hal/step.h"
+#include "machine/machine.h"
 #include "motion/cycle_record.h"
 #include "plan/block.h"
 #include "program/program.h"
@@ -127,9 +127,6 @@ void controller_plan_limits(const struct machine *machine, struct plan_limits *l
 /* Takes from the limits what correction needs of the axes: what controller_init itself uses. */
 void controller_reserve_correction(struct correction *correction, const struct machine *machine,
                                    struct plan_limits *limits);
-
-/* The most the machine's axes do before correction. */
-void controller_motion_bound(const struct machine *machine, struct motion_bound *most);
 
 /* Position-error correction, to switch layers, tell temperatures and load tables between two cycles. */
 struct correction *controller_get_correction(struct controller *c);

@@ -1,3 +1,4 @@
+/* A correction table from its text: header, rows in order, checksum. */
 #include "correction/table_text.h"
 
 #include "base/crc32.h"

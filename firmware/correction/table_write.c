@@ -1,3 +1,4 @@
+/* A correction table as the text that table_read.c reads. */
 #include "correction/table_text.h"
 
 #include "base/crc32.h"

@@ -8,6 +8,7 @@
 #include "base/maths.h"
 #include "canopen/cia402.h"
 #include "canopen/objects.h"
+#include "canopen/sync.h"
 #include "drive/drives_private.h"
 
 #include <assert.h>
@@ -89,14 +90,18 @@ static bool is_something_else(uint32_t type)
     return profile >= 400 && profile <= 499 && profile != OBJECT_DEVICE_PROFILE_402;
 }
 
-/* The best mode it has; one that does not tell is tried in cyclic synchronous position, unless it is something else. */
+/*
+ * The best mode it has; one that does not tell is tried in cyclic synchronous position, and if it has no target position in
+ * profile velocity, unless it is something else.
+ */
 static void take_modes(struct drives *d, const struct drives_answer *answer)
 {
     struct drives_axis *axis = &d->axis[d->at_axis];
     const char *missing = NULL;
     axis->modes = (uint16_t)answer->value;
     if (answer->abort_code != SDO_ABORT_NONE || answer->value == 0) {
-        axis->modes = mode_bit(CIA402_MODE_CYCLIC_SYNC_POSITION) | mode_bit(CIA402_MODE_HOMING);
+        axis->modes = mode_bit(CIA402_MODE_CYCLIC_SYNC_POSITION) |
+                      mode_bit(CIA402_MODE_PROFILE_VELOCITY) | mode_bit(CIA402_MODE_HOMING);
         drives_give_up(d, d->at_axis, DRIVES_NO_MODES);
         if (is_something_else(d->read[0]))
             drives_raise(d, d->at_axis, TAKT_ERROR_DRIVE_TYPE, d->read[0], NULL);
@@ -164,7 +169,7 @@ void drives_take_ask(struct drives *d, const struct drives_answer *answer)
 
 #define REQUIRED  DRIVES_GIVEN_UP_COUNT
 #define NOTHING   (DRIVES_GIVEN_UP_COUNT + 1)
-#define SET_PLAIN 12 /* from here on: only where the axis is homed */
+#define SET_PLAIN 14 /* from here on: only where the axis is homed */
 
 struct setting {
     uint16_t index;
@@ -175,14 +180,17 @@ struct setting {
 #define SET_HEARTBEAT 0
 #define SET_GUARD     2 /* and the life time factor: only where there is no heartbeat */
 #define SET_LIFE      3
-#define SET_PERIOD    5
-#define SET_EXPONENT  6
-#define SET_RAMPS     10 /* up and down: only of profile velocity */
+#define SET_SYNC      4
+#define SET_PERIOD    7
+#define SET_EXPONENT  8
+#define SET_RAMPS     12 /* up and down: only of profile velocity */
 static const struct setting settings[] = {
     {OBJECT_PRODUCER_HEARTBEAT, 0, 2, DRIVES_NO_HEARTBEAT},
     {OBJECT_CONSUMER_HEARTBEAT, 1, 4, DRIVES_NO_WATCH},
     {OBJECT_GUARD_TIME, 0, 2, NOTHING},
     {OBJECT_LIFE_TIME_FACTOR, 0, 1, NOTHING},
+    {OBJECT_SYNC_COB_ID, 0, 4, REQUIRED},
+    {OBJECT_SYNC_OVERFLOW, 0, 1, NOTHING},
     {OBJECT_SYNC_PERIOD, 0, 4, DRIVES_NO_SYNC_PERIOD},
     {CIA402_INTERPOLATION_PERIOD, 1, 1, DRIVES_NO_PERIOD},
     {CIA402_INTERPOLATION_PERIOD, 2, 1, DRIVES_NO_PERIOD},
@@ -254,6 +262,8 @@ static uint32_t value_of(const struct drives *d, unsigned number)
                                (uint32_t)d->controller_node << 16 | lost_ms,
                                drives_guard_ms(d),
                                DRIVES_HEARTBEATS_LOST,
+                               SYNC_COB_ID,
+                               0,
                                d->cycle_us,
                                period,
                                (uint8_t)exponent,
@@ -304,7 +314,10 @@ static bool is_too_slow(const struct drives *d, const struct drives_answer *answ
            answer->value < velocity_of(config, config->max_acceleration_mm_s2);
 }
 
-/* The drive has this value, and ours is another, or it could not be read. */
+/*
+ * The drive has this value, and ours is another, or it could not be read. Without an object there is nothing to be done
+ * where that is as good: 0, or the identifier that SYNC has without it.
+ */
 static void miss(struct drives *d, const struct drives_answer *answer)
 {
     const struct setting *setting = &settings[d->at_step];
@@ -314,7 +327,7 @@ static void miss(struct drives *d, const struct drives_answer *answer)
         return;
     if (!is_required)
         drives_give_up(d, d->at_axis, (enum drives_given_up)setting->given_up);
-    else if (!is_absent || value_of(d, d->at_step) != 0)
+    else if (!is_absent || (value_of(d, d->at_step) != 0 && d->at_step != SET_SYNC))
         raise_refusal(d, SDO_OBJECT(setting->index, setting->sub),
                       answer->abort_code != SDO_ABORT_NONE ? answer->abort_code : SDO_ABORT_VALUE);
 }
@@ -389,8 +402,11 @@ static void take_kept(struct drives *d, uint32_t value)
     }
 }
 
+/* Bit 31 of the identifier of SYNC has no meaning. */
 static uint32_t mask_of(const struct setting *setting)
 {
+    if (setting->index == OBJECT_SYNC_COB_ID)
+        return INT32_MAX;
     return setting->length == 4 ? UINT32_MAX : (1u << 8 * setting->length) - 1;
 }
 

@@ -68,12 +68,20 @@ void drives_enter_enabled(struct drives *d)
             d->sent_mm[k][i] = d->axis[i].actual_mm;
 }
 
+/* A drive whose brake opens may show "operation enabled", and that it does not follow yet; older ones never show it. */
+static bool may_follow(const struct drives *d, const struct drives_axis *axis)
+{
+    bool is_cyclic = axis->mode == CIA402_MODE_CYCLIC_SYNC_POSITION ||
+                     axis->mode == CIA402_MODE_CYCLIC_SYNC_VELOCITY;
+    return !is_cyclic || axis->statusword & CIA402_FOLLOWS_TARGET || is_late(d);
+}
+
 /* Interpolated position mode follows targets from controlword bit 4 on. */
-static bool follows(struct drives_axis *axis)
+static bool follows(const struct drives *d, struct drives_axis *axis)
 {
     const uint16_t told = CIA402_ENABLE_OPERATION | CIA402_INTERPOLATE;
     if (axis->mode != CIA402_MODE_INTERPOLATED_POSITION)
-        return true;
+        return may_follow(d, axis);
     axis->command = CIA402_INTERPOLATE;
     return axis->controlword == told && axis->statusword & CIA402_INTERPOLATES;
 }
@@ -83,7 +91,7 @@ void drives_follow(struct drives *d)
     bool all = true;
     drives_check_all_links(d);
     for (unsigned i = 0; i < d->count && d->state == DRIVES_STARTING; i++) {
-        bool is_following = follows(&d->axis[i]);
+        bool is_following = follows(d, &d->axis[i]);
         if (!is_following && is_late(d))
             drives_raise(d, i, TAKT_ERROR_DRIVE_MODE, d->axis[i].mode, NULL);
         all = all && is_following;

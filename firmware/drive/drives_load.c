@@ -1,3 +1,4 @@
+/* The frames of a cycle, and how much of the bus they take. */
 #include "drive/drives_private.h"
 #include "drive/word.h"
 

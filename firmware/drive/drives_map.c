@@ -10,7 +10,7 @@
  *     6 - 8  TPDO2-4 the same, if they have found no place in one PDO; error code, following error (event, 100 ms)
  *     9 - 12 TPDO1-4 again, if they have found no such place: each in one of its own
  *
- * A PDO is told as CiA 301, 7.5.2.36 has it: not valid, type, no mapping, entries, their number, valid. An entry that is
+ * A PDO is told as CiA 301, 7.5.2.36 has it: not valid, type, no mapping, entries, their number, inhibit time, valid. An entry that is
  * refused is left out, and so is the last one as long as their number is. Is anything else refused, the PDO is read: its
  * identifier, type and entries, wherever in it they are, are what counts. So a drive whose PDOs are fixed needs no case
  * of its own, and what is in a frame beside what takt knows keeps the value that the drive has for it.
@@ -41,6 +41,7 @@ enum step {
     CLEAR,
     ENTRY,
     COUNT,
+    INHIBIT,
     TIMER,
     ON,
     TOLD,
@@ -169,6 +170,12 @@ static bool is_event_driven(const struct drives_mapping *m)
     return drives_is_transmitted(m) && m->pdo.transmission == PDO_EVENT;
 }
 
+/* Reports of a cycle are not held back; a following error changes in every cycle, and is not to be told as often. */
+static uint32_t inhibit_of(const struct drives_mapping *m)
+{
+    return is_event_driven(m) ? DRIVES_EVENT_MS * OBJECT_PDO_INHIBIT_PER_MS : 0;
+}
+
 static bool find_telling(const struct drives_mapping *m, struct drives_step *step)
 {
     const unsigned parameters = parameters_of(m), mapping = parameters + MAPPING_OFFSET;
@@ -187,6 +194,9 @@ static bool find_telling(const struct drives_mapping *m, struct drives_step *ste
                set_write(step, mapping, m->entry + 1u, 4, pdo->mapping.object[m->entry]);
     case COUNT:
         return set_write(step, mapping, 0, 1, count) && count > 0;
+    case INHIBIT:
+        return set_write(step, parameters, OBJECT_PDO_INHIBIT, 2, inhibit_of(m)) && count > 0 &&
+               drives_is_transmitted(m);
     case TIMER:
         return set_write(step, parameters, OBJECT_PDO_EVENT_TIMER, 2, DRIVES_EVENT_MS) &&
                count > 0 && is_event_driven(m);
@@ -322,6 +332,8 @@ static bool take_refusal(struct drives *d, uint32_t abort_code)
     case COUNT:
         mapping->count--;
         return mapping->count == 0;
+    case INHIBIT:
+        return true; /* it has none, or keeps it */
     case TIMER:
         drives_give_up(d, d->at_axis, DRIVES_NO_EVENT_TIMER);
         return true;

@@ -119,7 +119,7 @@ static inline bool drives_has_given_up(const struct drives_axis *axis, enum driv
 /* Its mode goes by SDO, and has not been told yet. */
 bool drives_tells_mode(const struct drives_axis *axis);
 /* The controlword that brings a drive on its way. */
-uint16_t drives_controlword(const struct drives_axis *axis);
+uint16_t drives_controlword(const struct drives *d, const struct drives_axis *axis);
 
 /*
  * I/O nodes, drives_io.c: before anything else; a frame of one of them; what is watched in every cycle. boot: true when

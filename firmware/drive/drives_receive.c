@@ -1,3 +1,4 @@
+/* What drives and I/O nodes send: positions, statuswords, heartbeats, emergencies, answers. */
 #include "canopen/cia402.h"
 #include "canopen/emcy.h"
 #include "canopen/little_endian.h"

@@ -1,3 +1,4 @@
+/* What each cycle sends: SYNC, then controlwords and target positions. */
 #include "base/maths.h"
 #include "canopen/cia402.h"
 #include "canopen/little_endian.h"
@@ -103,6 +104,14 @@ static void send_resets(struct drives *d, const struct can_port *port)
             d->axis[i].reset_pending = false;
 }
 
+/* Many drives take a mapping in this state alone, and some leave it by themselves when they have booted. */
+static void send_holds(struct drives *d, const struct can_port *port)
+{
+    for (unsigned i = 0; i < d->count; i++)
+        if (d->axis[i].hold_pending && drives_send_nmt(port, NMT_ENTER_PREOPERATIONAL, d->node[i]))
+            d->axis[i].hold_pending = false;
+}
+
 static void send_request(struct drives *d, const struct can_port *port)
 {
     struct can_frame frame;
@@ -150,7 +159,7 @@ static void send_enabling(struct drives *d, const struct can_port *port)
         return;
     struct drives_axis *turn = &d->axis[d->cycle % d->count];
     if (turn->heard)
-        send_controlword(turn, port, drives_controlword(turn), false);
+        send_controlword(turn, port, drives_controlword(d, turn), false);
     for (unsigned i = 0; i < d->count; i++)
         if (!drives_axis_is_enabled(&d->axis[i]) || d->axis[i].mode == CIA402_MODE_HOMING)
             drives_rest(&d->axis[i]);
@@ -165,6 +174,7 @@ static void send_starting(struct drives *d, const struct can_port *port)
         drives_io_send_resets(d, port);
         break;
     case DRIVES_CONFIGURE:
+        send_holds(d, port);
         send_request(d, port);
         break;
     case DRIVES_IO:

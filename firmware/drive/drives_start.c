@@ -67,6 +67,7 @@ void drives_start_again(struct drives *d, unsigned index)
     if (axis->reset_pending)
         return; /* it does not know of its reset yet, and will boot again */
     axis->booted = true;
+    axis->hold_pending = true;
     axis->started = false;
     axis->heard = false;
     axis->controlword = 0;
@@ -310,17 +311,22 @@ bool drives_tells_mode(const struct drives_axis *axis)
     return drives_has_given_up(axis, DRIVES_NO_MODE_PDO) && axis->told_mode != axis->mode;
 }
 
-uint16_t drives_controlword(const struct drives_axis *axis)
+/* A fault is reset by an edge; one that has come too early for the drive does nothing, so it comes again and again. */
+#define RESET_CYCLES 32
+
+uint16_t drives_controlword(const struct drives *d, const struct drives_axis *axis)
 {
     enum cia402_state state = cia402_state(axis->statusword);
+    if (state == CIA402_FAULT && d->phase_cycles / RESET_CYCLES % 2 == 1)
+        return CIA402_DISABLE_VOLTAGE;
     uint16_t command = state == CIA402_ENABLED ? axis->command : 0;
     return (uint16_t)(cia402_step_to_enabled(state) | command);
 }
 
-static bool tells_control(const struct drives_axis *axis)
+static bool tells_control(const struct drives *d, const struct drives_axis *axis)
 {
     return drives_has_given_up(axis, DRIVES_NO_CONTROL_PDO) && axis->heard &&
-           axis->controlword != drives_controlword(axis);
+           axis->controlword != drives_controlword(d, axis);
 }
 
 /* The mode first: the controlword is meant for it. */
@@ -329,7 +335,7 @@ static void tell(struct drives *d, const struct drives_axis *axis)
     bool is_mode = drives_tells_mode(axis);
     uint32_t object = (is_mode ? CIA402_MODE : CIA402_CONTROLWORD) & ~0xFFu;
     sdo_client_download_number(&d->sdo, axis->config.node, object,
-                               is_mode ? axis->mode : drives_controlword(axis), is_mode ? 1 : 2,
+                               is_mode ? axis->mode : drives_controlword(d, axis), is_mode ? 1 : 2,
                                d->sdo_timeout_cycles);
     d->is_telling = true;
     d->tells = (uint8_t)(d->tells + (d->tells <= TELLS_MAX));
@@ -358,7 +364,7 @@ static void tell_by_sdo(struct drives *d)
     if (d->sdo.result != SDO_IDLE || d->state != DRIVES_STARTING)
         return;
     for (unsigned i = 0; i < d->count && !d->is_telling; i++)
-        if (drives_tells_mode(&d->axis[i]) || tells_control(&d->axis[i]))
+        if (drives_tells_mode(&d->axis[i]) || tells_control(d, &d->axis[i]))
             tell(d, &d->axis[i]);
 }
 

@@ -70,6 +70,7 @@ struct drives_axis {
         report_id; /* TPDO with statusword and position in the plain form, drives_receive.c; as status_id */
     uint8_t sends; /* enum drives_sends */
     bool reset_pending;
+    bool hold_pending; /* it is to be pre-operational */
     bool booted;       /* its boot-up message has come */
     bool started;      /* NMT start has been sent */
     bool heard;        /* a TPDO1 has come since it was started */

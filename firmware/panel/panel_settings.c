@@ -1,3 +1,4 @@
+/* Uploads of settings by a panel, and why they were refused. */
 #include "panel/panel_private.h"
 
 #include <string.h>

@@ -1,3 +1,4 @@
+/* Registers and coils written: values decoded, checked, and handed to the row they belong to. */
 #include "panel/panel_private.h"
 
 #include <assert.h>

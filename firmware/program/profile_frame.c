@@ -1,3 +1,4 @@
+/* The profile of a turning cycle in the frame of its cuts: facing is roughing turned by a quarter. */
 #include "program/profile.h"
 
 /* (u, v) to (v, -u) */

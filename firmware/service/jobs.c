@@ -1,3 +1,4 @@
+/* What the service starts: programs, and jogs, MDI lines and homing as short programs that it writes itself. */
 #include "base/decimal.h"
 #include "base/fnv.h"
 #include "base/maths.h"

@@ -1,8 +1,7 @@
 #include "storage/settings.h"
 
 #include "base/crc32.h"
-#include "controller/controller.h"
-#include "controller/machine_check.h"
+#include "machine/machine_check.h"
 #include "storage/little_words.h"
 #include "storage/settings_fields.h"
 #include "storage/settings_tables.h"
@@ -338,7 +337,7 @@ bool settings_check_share(const struct machine *machine, const struct correction
 
     correction_init(scratch, &machine->correction, machine_axes(machine),
                     1e-6 * (double)machine->cycle_us, tables, &start);
-    controller_motion_bound(machine, &most);
+    machine_motion_bound(machine, &most);
     correction_reserve(scratch, &most, &need);
     share = correction_largest_share(&need, &most, &axis);
     if (share <= CORRECTION_SHARE_MAX)

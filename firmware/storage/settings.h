@@ -13,9 +13,9 @@
 
 #include "base/error.h"
 #include "canopen/concise_dcf.h"
-#include "controller/machine.h"
 #include "correction/correction.h"
 #include "correction/tables.h"
+#include "machine/machine.h"
 
 #include <stdbool.h>
 #include <stddef.h>

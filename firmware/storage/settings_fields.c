@@ -1,7 +1,7 @@
 #include "storage/settings_fields.h"
 
 #include "base/maths.h"
-#include "controller/machine.h"
+#include "machine/machine.h"
 #include "storage/little_words.h"
 
 #include <assert.h>

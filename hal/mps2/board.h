@@ -30,5 +30,7 @@ void uart_1_receive(void);
 void uart_1_send(void);
 void uart_2_receive(void);
 void uart_2_send(void);
+void uart_3_receive(void);
+void uart_3_send(void);
 
 #endif

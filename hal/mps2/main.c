@@ -5,11 +5,13 @@
  *     UART0   panel, Modbus RTU, unit 1
  *     UART1   drives, CAN as SLCAN
  *     UART2   log
+ *     UART3   console for senders of Grbl, of takt-mps2-grbl alone
  *
  * A serial line carries some 200 to 550 cycles a second, less than the machine asks for. So a cycle begins at the next
  * millisecond after the drives have answered the last one; setpoints do not depend on it.
  */
 #include "mps2/board.h"
+#include "mps2/console_line.h"
 #include "mps2/slcan_can.h"
 #include "mps2/uart.h"
 #include "port/embedded.h"
@@ -160,8 +162,9 @@ void port_systick(void)
     embedded_cycle(&board.embedded, &inputs, false);
 }
 
-STARTUP_INTERRUPTS(board_interrupts, 6) = {uart_0_receive, uart_0_send,    uart_1_receive,
-                                           uart_1_send,    uart_2_receive, uart_2_send};
+STARTUP_INTERRUPTS(board_interrupts, 20) = {
+    uart_0_receive, uart_0_send,    uart_1_receive,        uart_1_send,
+    uart_2_receive, uart_2_send,    [18] = uart_3_receive, uart_3_send};
 
 /* -- start -- */
 
@@ -180,6 +183,7 @@ static void open_embedded(void)
                  .now_ns = now_ns,
                  .reply = reply,
                  .log = write_log},
+        .lines = console_line_get_lines(),
         .unit = PANEL_UNIT,
         .gap_us = PANEL_GAP_US,
         .name = "takt " TAKT_VERSION " on MPS2",
@@ -209,9 +213,11 @@ int main(void)
     slcan_can_open(&board.can, &board.bus);
     open_embedded();
     uart_open(&board.panel, 0, take_panel_byte, NULL);
+    console_line_open(&board.embedded);
     start_ticks();
     for (;;) {
         embedded_background(&board.embedded);
+        console_line_serve();
         cortex_sleep();
     }
 }

@@ -28,7 +28,9 @@ static struct uart *uarts[UART_COUNT];
 /* Interrupt numbers: in before out, pair by pair. */
 static unsigned in_interrupt(unsigned number)
 {
-    return 2U * number;
+    static const uint8_t first[UART_COUNT] = {0, 2, 4, 18};
+
+    return first[number];
 }
 
 void uart_open(struct uart *uart, unsigned number, void (*take)(void *context, uint8_t byte),
@@ -122,4 +124,14 @@ void uart_2_receive(void)
 void uart_2_send(void)
 {
     send(2);
+}
+
+void uart_3_receive(void)
+{
+    receive(3);
+}
+
+void uart_3_send(void)
+{
+    send(3);
 }

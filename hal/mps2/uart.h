@@ -9,7 +9,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#define UART_COUNT 3
+#define UART_COUNT 4
 
 /* Bytes that wait to be sent: a power of two. A cycle's frames (six drives: 22 bytes each of a PDO and an SDO), a reply of
  * Modbus (256), or the longest line of the log and some short ones; no cycle begins before the last one's frames have gone. */

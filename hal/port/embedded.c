@@ -80,6 +80,7 @@ static void init_service(struct embedded *e)
         .dcf = config->dcf,
         .programs = {text_queue_open, text_queue_adopt, &e->config.core->queue},
         .plans = plan_queue_get_plans(&e->config.core->plan),
+        .lines = config->lines,
     };
 
     parameters_clear(&e->config.core->parameters);

@@ -1,3 +1,4 @@
+/* The clock of measurements on a Cortex-M in QEMU. */
 #include "port/cortex_m.h"
 #include "semihosting/desk_clock.h"
 

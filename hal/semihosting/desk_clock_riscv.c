@@ -1,3 +1,4 @@
+/* The clock of measurements on a RISC-V in QEMU. */
 #include "semihosting/desk_clock.h"
 
 /* The counter of cycles (RISC-V Privileged Architecture, 3.1.10): an instruction each. */

@@ -1,3 +1,4 @@
+/* The instruction by which a Cortex-M asks its debugger. */
 #include "semihosting/semihosting_call.h"
 
 uintptr_t semihosting_call(uintptr_t operation, const uintptr_t *arguments)

@@ -1,3 +1,4 @@
+/* The instructions by which a RISC-V asks its debugger. */
 #include "semihosting/semihosting_call.h"
 
 /* RISC-V Semihosting, 1.0: these three instructions uncompressed, one behind the other on one page. */

@@ -1,3 +1,4 @@
+/* The problem of one section: rows for tolerance, corners, velocity, acceleration and jerk. */
 #include "ahead/problem.h"
 
 #include "ahead/excess.h"

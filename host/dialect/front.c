@@ -1,3 +1,4 @@
+/* Names of dialects, and the codes that a machine file declares. */
 #include "dialect/dialect.h"
 
 #include "dialect/line.h"

@@ -307,20 +307,29 @@ static bool take_default(struct object_row *row, struct text_part part)
     return true;
 }
 
-/* Defaults in increments are the machine's, whatever the unit of the drive is; as takt's own drive has them. */
-static bool is_in_increments(uint16_t index)
+/*
+ * Defaults in increments are the machine's, whatever the unit of the drive is, and limits the motor's; as takt's own drive has
+ * them.
+ */
+static bool is_of_motor(uint16_t index)
 {
     switch (index) {
     case 0x6065:
     case 0x6066:
     case 0x6067:
+    case 0x606D:
+    case 0x606F:
+    case 0x6072:
     case 0x607F:
+    case 0x6080:
     case 0x6081:
     case 0x6083:
     case 0x6084:
     case 0x6085:
     case 0x6099:
     case 0x609A:
+    case 0x60C5:
+    case 0x60C6:
         return true;
     default:
         return false;
@@ -366,7 +375,7 @@ static bool add_row(struct builder *b, const struct section *section, uint8_t su
         row.title = keep(b, value);
     } else {
         take_limits(&row, section);
-        if (take_default(&row, value) && !is_in_increments(row.index))
+        if (!is_of_motor(row.index) && take_default(&row, value))
             row.flags &= (uint8_t)~OBJECT_BY_MACHINE;
     }
     b->row[b->count++] = row;
@@ -451,6 +460,27 @@ static void limit_mappings(struct builder *b)
     }
 }
 
+/* What is mapped when a drive comes from its maker can be mapped, whatever its sheet says there. */
+static void allow_mapped(struct builder *b)
+{
+    const struct dictionary built = {.row = b->row, .count = b->count};
+    for (unsigned i = 0; i < b->count; i++) {
+        const struct object_row *entry = &b->row[i];
+        bool is_received = entry->index >= 0x1600 && entry->index < 0x1800;
+        bool is_sent = entry->index >= 0x1A00 && entry->index < 0x1C00;
+        bool has_index;
+        if (entry->sub == 0 || !(is_received || is_sent))
+            continue;
+        const struct object_row *mapped =
+            dictionary_find(&built, (uint16_t)((uint64_t)entry->initial >> 16),
+                            (uint8_t)((uint64_t)entry->initial >> 8), &has_index);
+        if (mapped != NULL && is_received && mapped->access != OBJECT_RO)
+            b->row[mapped - b->row].flags |= OBJECT_TO_RPDO;
+        else if (mapped != NULL && is_sent)
+            b->row[mapped - b->row].flags |= OBJECT_TO_TPDO;
+    }
+}
+
 static bool fail(struct dictionary_problem *wrong, const char *text)
 {
     wrong->line = 0;
@@ -466,6 +496,7 @@ static bool build(struct builder *b, struct dictionary_problem *wrong)
         if (!add_section(b, &r->section[i]))
             return fail(wrong, "out of memory");
     limit_mappings(b);
+    allow_mapped(b);
     const struct dictionary built = {.row = b->row, .count = b->count};
     if (dictionary_find(&built, 0x1000, 0, &has_index) == NULL)
         return fail(wrong, "this is no electronic data sheet: it has no section [1000]");

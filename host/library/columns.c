@@ -5,10 +5,10 @@
 /* Rows there is room for at first: a minute. */
 #define ROOM_FIRST 65536
 
-void columns_init(struct columns *c, unsigned axes, double cycle_s)
+void columns_init(struct columns *c, unsigned axes, double cycle_s, bool has_tool)
 {
-    *c = (struct columns){.axes = axes, .cycle_s = cycle_s};
-    c->count = trace_columns(axes, c->column);
+    *c = (struct columns){.axes = axes, .cycle_s = cycle_s, .has_tool = has_tool};
+    c->count = trace_columns(axes, has_tool, c->column);
 }
 
 static void grow(struct columns *c)
@@ -26,7 +26,7 @@ static void grow(struct columns *c)
         c->room = room;
 }
 
-void columns_add(struct columns *c, const struct cycle_record *record)
+void columns_add(struct columns *c, const struct cycle_record *record, const struct point *tool)
 {
     double value[TRACE_ROW_COLUMNS];
 
@@ -34,7 +34,7 @@ void columns_add(struct columns *c, const struct cycle_record *record)
         grow(c);
     if (c->failed)
         return;
-    (void)trace_values(c->axes, c->cycle_s, record, value);
+    (void)trace_values(c->axes, c->cycle_s, record, c->has_tool ? tool : NULL, value);
     for (unsigned i = 0; i < c->count; i++)
         c->value[i][c->rows] = value[i];
     c->rows++;

@@ -4,7 +4,7 @@
 #ifndef TAKT_LIBRARY_COLUMNS_H
 #define TAKT_LIBRARY_COLUMNS_H
 
-#include "takt/trace_row.h"
+#include "results/trace_row.h"
 
 #include <stdbool.h>
 #include <stdint.h>
@@ -12,6 +12,7 @@
 struct columns {
     unsigned axes; /* bit i set: those of axis i */
     double cycle_s;
+    bool has_tool;
     unsigned count;
     struct trace_column column[TRACE_ROW_COLUMNS];
     double *value[TRACE_ROW_COLUMNS];
@@ -19,8 +20,10 @@ struct columns {
     bool failed; /* out of memory: rows are missing */
 };
 
-void columns_init(struct columns *c, unsigned axes, double cycle_s);
-void columns_add(struct columns *c, const struct cycle_record *record);
+/* has_tool: every row has the tool's point, too. */
+void columns_init(struct columns *c, unsigned axes, double cycle_s, bool has_tool);
+/* tool: its point; not looked at where rows have none. */
+void columns_add(struct columns *c, const struct cycle_record *record, const struct point *tool);
 void columns_free(struct columns *c);
 
 #endif

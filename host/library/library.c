@@ -4,10 +4,10 @@
 
 #include "report/asset.h"
 
-#include "takt/canon_write.h"
-#include "takt/machine_file.h"
-#include "takt/message.h"
-#include "takt/plan_write.h"
+#include "cli/message.h"
+#include "config/machine_file.h"
+#include "session/canon_write.h"
+#include "session/plan_write.h"
 
 #include <pthread.h>
 #include <stdlib.h>
@@ -15,6 +15,23 @@
 
 /* getopt_long keeps its place in the process. */
 static pthread_mutex_t reading_options = PTHREAD_MUTEX_INITIALIZER;
+static pthread_once_t watching_forks = PTHREAD_ONCE_INIT;
+
+static void lock_options(void)
+{
+    (void)pthread_mutex_lock(&reading_options);
+}
+
+static void unlock_options(void)
+{
+    (void)pthread_mutex_unlock(&reading_options);
+}
+
+/* A child made while another thread reads would wait for that thread, which it does not have. */
+static void watch_forks(void)
+{
+    (void)pthread_atfork(lock_options, unlock_options, unlock_options);
+}
 
 const char *takt_library_version(void)
 {
@@ -174,11 +191,15 @@ enum command_status library_read_options(struct takt_job *job, const struct comm
 {
     bool good;
 
-    (void)pthread_mutex_lock(&reading_options);
+    (void)pthread_once(&watching_forks, watch_forks);
+    lock_options();
     good = options_read(&job->options, command->options, command->operands_min,
                         command->operands_max, job->argc, job->argv);
-    (void)pthread_mutex_unlock(&reading_options);
-    return good ? STATUS_DONE : STATUS_INPUT;
+    unlock_options();
+    if (good && job->options.help)
+        message_command_error("--help: the library prints nothing; `takt help %s` does",
+                              command->name);
+    return good && !job->options.help ? STATUS_DONE : STATUS_INPUT;
 }
 
 /* ---- texts ---- */

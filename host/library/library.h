@@ -117,6 +117,12 @@ const double *takt_get_column(const struct takt_job *job, unsigned column);
 double *takt_take_column(struct takt_job *job, unsigned column);
 void takt_free(void *memory);
 
+/*
+ * run, canon, plan, compile or machine with its options, as the command itself: it prints, and signals end it in order. For a
+ * process of its own. Returns the exit status.
+ */
+int takt_command(int argc, char **argv);
+
 /* The plotting library of reports (JavaScript), for other pages; length 0: built without. */
 const unsigned char *takt_get_plotting(size_t *length);
 

@@ -2,11 +2,12 @@
 #ifndef TAKT_LIBRARY_LIBRARY_PRIVATE_H
 #define TAKT_LIBRARY_LIBRARY_PRIVATE_H
 
+#include "cli/text.h"
 #include "library/columns.h"
 #include "library/library.h"
 #include "report/report.h"
-#include "takt/run.h"
-#include "takt/text.h"
+#include "results/run.h"
+#include "takt/command.h"
 
 #include <stdbool.h>
 #include <stddef.h>

@@ -1,11 +1,13 @@
+/* A run of the library, cycle by cycle: opened, stepped, finished. */
 #include "library/library_private.h"
 
-#include "takt/axis_unit.h"
-#include "takt/compiled_judge.h"
-#include "takt/error_map.h"
-#include "takt/message.h"
-#include "takt/stopwatch.h"
+#include "cli/axis_unit.h"
+#include "cli/message.h"
+#include "cli/stopwatch.h"
+#include "compiled/compiled_judge.h"
+#include "simulation/error_map.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -18,7 +20,7 @@ static void see(void *context, const struct cycle_record *record, const struct b
     if (record == NULL)
         return;
     if (job->keeps_trace)
-        columns_add(&job->columns, record);
+        columns_add(&job->columns, record, simulation_get_tool(job->run.simulation));
     if (job->report != NULL)
         report_add(job->report, record, block->move.kind == MOVE_RAPID);
 }
@@ -30,7 +32,8 @@ static bool keep(struct takt_job *job, unsigned keeps)
     struct plan_limits limits;
 
     job->keeps_trace = (keeps & TAKT_KEEPS_TRACE) != 0;
-    columns_init(&job->columns, machine_axes(machine), 1e-6 * (double)machine->cycle_us);
+    columns_init(&job->columns, machine_axes(machine), 1e-6 * (double)machine->cycle_us,
+                 simulation_get_tool(job->run.simulation) != NULL);
     if (keeps != 0)
         job->run.watcher = (struct run_watcher){see, job};
     if ((keeps & TAKT_KEEPS_REPORT) == 0)
@@ -243,19 +246,41 @@ void takt_get_inputs(const struct takt_job *job, struct takt_inputs *inputs)
     memcpy(inputs->analogue, s->inputs.analogue, sizeof inputs->analogue);
 }
 
-int takt_set_inputs(struct takt_job *job, const struct takt_inputs *inputs)
+/* False after a message. */
+static bool can_be_set(const struct takt_inputs *inputs)
 {
-    struct simulation *s = job->run.simulation;
+    for (unsigned i = 0; i < sizeof inputs->analogue / sizeof inputs->analogue[0]; i++) {
+        if (!isfinite(inputs->analogue[i])) {
+            message_command_error("input E%u is %g: a finite number is expected", i,
+                                  inputs->analogue[i]);
+            return false;
+        }
+    }
+    return true;
+}
 
-    if (!simulation_set_overrides(s, inputs->feed_override_percent,
-                                  inputs->rapid_override_percent)) {
-        library_enter(job);
+static bool set_overrides(struct simulation *s, const struct takt_inputs *inputs)
+{
+    const bool good = simulation_set_overrides(s, inputs->feed_override_percent,
+                                               inputs->rapid_override_percent);
+
+    if (!good)
         message_command_error("overrides %g %% and %g %%: the feed override is 0 ... 120 %%, the "
                               "rapid override 0 ... 100 %%",
                               inputs->feed_override_percent, inputs->rapid_override_percent);
-        library_leave(job);
+    return good;
+}
+
+int takt_set_inputs(struct takt_job *job, const struct takt_inputs *inputs)
+{
+    struct simulation *s = job->run.simulation;
+    bool good;
+
+    library_enter(job);
+    good = can_be_set(inputs) && set_overrides(s, inputs);
+    library_leave(job);
+    if (!good)
         return STATUS_INPUT;
-    }
     s->inputs.feed_hold = inputs->feed_hold != 0;
     s->inputs.single_block = inputs->single_block != 0;
     s->inputs.digital = inputs->digital;
@@ -291,7 +316,12 @@ double takt_get_position_mm(const struct takt_job *job, unsigned drive)
 /* Objects of the dictionary are known by index, sub-index and bits. */
 static uint32_t object_of(uint32_t index, uint32_t sub, unsigned bits)
 {
-    return (index & 0xFFFF) << 16 | (sub & 0xFF) << 8 | bits;
+    return index << 16 | sub << 8 | bits;
+}
+
+static bool can_be_object(uint32_t index, uint32_t sub)
+{
+    return index <= 0xFFFF && sub <= 0xFF;
 }
 
 unsigned takt_read_object(struct takt_job *job, unsigned drive, uint32_t index, uint32_t sub,
@@ -299,7 +329,7 @@ unsigned takt_read_object(struct takt_job *job, unsigned drive, uint32_t index, 
 {
     struct virtual_drive *d = &job->run.simulation->field.drives.drive[drive];
 
-    for (unsigned bits = 8; bits <= 32; bits *= 2) {
+    for (unsigned bits = 8; bits <= 32 && can_be_object(index, sub); bits *= 2) {
         if (virtual_drive_read_object(d, object_of(index, sub, bits), value))
             return bits;
     }
@@ -311,7 +341,7 @@ unsigned takt_write_object(struct takt_job *job, unsigned drive, uint32_t index,
 {
     struct virtual_drive *d = &job->run.simulation->field.drives.drive[drive];
 
-    for (unsigned bits = 8; bits <= 32; bits *= 2) {
+    for (unsigned bits = 8; bits <= 32 && can_be_object(index, sub); bits *= 2) {
         if (virtual_drive_write_object(d, object_of(index, sub, bits), value))
             return bits;
     }

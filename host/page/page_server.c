@@ -31,6 +31,9 @@
 /* A request must be whole so long after its first byte. */
 #define REQUEST_S 5
 
+/* Open at once, requests among them: others of this process have need of files too (1024 as a rule). */
+#define CONNECTIONS_MAX 512
+
 #define US_PER_MS    1000
 #define RECEIVED_MAX 16384
 #define HEADER_MAX   512
@@ -442,6 +445,7 @@ static void set_info(struct page_server *server, struct lws_context_creation_inf
     info->iface = server->address;
     info->protocols = protocols;
     info->user = server;
+    info->fd_limit_per_thread = CONNECTIONS_MAX;
     info->timeout_secs = REQUEST_S;
     info->keepalive_timeout = REQUEST_S;
     info->options = LWS_SERVER_OPTION_EXPLICIT_VHOSTS | LWS_SERVER_OPTION_FAIL_UPON_UNABLE_TO_BIND |

@@ -1,9 +1,9 @@
 #include "takt/command.h"
 
+#include "cli/interrupt.h"
+#include "cli/message.h"
+#include "cli/suggest.h"
 #include "inject/inject.h"
-#include "takt/interrupt.h"
-#include "takt/message.h"
-#include "takt/suggest.h"
 
 #include <errno.h>
 #include <stdio.h>

@@ -1,8 +1,9 @@
+/* takt bore: make a program that mills a hole by involutes. */
 #include "bore/write.h"
-#include "takt/bore_compare.h"
+#include "cli/message.h"
+#include "cli/output_file.h"
+#include "studies/bore_compare.h"
 #include "takt/command.h"
-#include "takt/message.h"
-#include "takt/output_file.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -1,8 +1,9 @@
-#include "takt/axis_unit.h"
+/* takt calibrate: measure a correction table on the virtual machine. */
+#include "cli/axis_unit.h"
+#include "cli/message.h"
+#include "config/correction_file.h"
+#include "studies/measurement.h"
 #include "takt/command.h"
-#include "takt/correction_file.h"
-#include "takt/measurement.h"
-#include "takt/message.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -1,6 +1,7 @@
-#include "takt/canon_write.h"
+/* takt canon: print the canonical moves of a part program as text. */
+#include "session/canon_write.h"
+#include "session/session.h"
 #include "takt/command.h"
-#include "takt/session.h"
 
 #include <stdio.h>
 

@@ -1,5 +1,6 @@
+/* takt check: find all errors of a part program without moving anything. */
+#include "session/session.h"
 #include "takt/command.h"
-#include "takt/session.h"
 
 #include <stdio.h>
 

@@ -1,8 +1,9 @@
+/* takt compile: plan a program's motion ahead of the run, inside the tolerance of G64. */
+#include "cli/message.h"
+#include "cli/output_file.h"
+#include "compiled/compiled.h"
+#include "session/session.h"
 #include "takt/command.h"
-#include "takt/compiled.h"
-#include "takt/message.h"
-#include "takt/output_file.h"
-#include "takt/session.h"
 
 #include <string.h>
 

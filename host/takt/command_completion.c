@@ -3,7 +3,7 @@
  */
 #include "takt/command.h"
 
-#include "takt/message.h"
+#include "cli/message.h"
 
 #include <stdio.h>
 #include <string.h>

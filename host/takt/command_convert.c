@@ -1,9 +1,10 @@
+/* takt convert: write the moves of a part program in the words of another controller. */
+#include "cli/interrupt.h"
+#include "cli/message.h"
+#include "cli/output_file.h"
+#include "session/convert.h"
+#include "session/session.h"
 #include "takt/command.h"
-#include "takt/convert.h"
-#include "takt/interrupt.h"
-#include "takt/message.h"
-#include "takt/output_file.h"
-#include "takt/session.h"
 
 #include <stdio.h>
 

@@ -1,8 +1,9 @@
+/* takt correct: write a program with position errors corrected, for other controllers. */
+#include "cli/message.h"
+#include "cli/output_file.h"
+#include "config/correction_file.h"
+#include "correct/offline.h"
 #include "takt/command.h"
-#include "takt/correction_file.h"
-#include "takt/message.h"
-#include "takt/offline.h"
-#include "takt/output_file.h"
 
 #include <float.h>
 #include <stdlib.h>

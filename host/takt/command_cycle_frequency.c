@@ -1,10 +1,11 @@
+/* takt cycle-frequency: control frequency needed for a machine's limits and an accuracy. */
 #define _POSIX_C_SOURCE 200809L
 
+#include "cli/message.h"
+#include "cli/output_file.h"
+#include "cli/suggest.h"
+#include "config/machine_file.h"
 #include "takt/command.h"
-#include "takt/machine_file.h"
-#include "takt/message.h"
-#include "takt/output_file.h"
-#include "takt/suggest.h"
 
 #include "base/maths.h"
 #include "frequency/diagrams.h"

@@ -1,20 +1,21 @@
+/* takt drives: virtual CiA 402 drives, for any CANopen master. */
 #define _POSIX_C_SOURCE 200809L
 
 #include "takt/command.h"
 
+#include "cli/interrupt.h"
+#include "cli/message.h"
+#include "cli/output_file.h"
+#include "cli/text.h"
+#include "config/data_sheet.h"
+#include "config/inject_file.h"
+#include "config/machine_file.h"
+#include "config/probe_file.h"
 #include "drives/eds.h"
-#include "takt/data_sheet.h"
-#include "takt/drive_images.h"
-#include "takt/drive_service.h"
-#include "takt/inject_file.h"
-#include "takt/interrupt.h"
-#include "takt/machine_file.h"
-#include "takt/message.h"
-#include "takt/output_file.h"
-#include "takt/probe_file.h"
-#include "takt/serving_options.h"
-#include "takt/spindle_service.h"
-#include "takt/text.h"
+#include "serving/drive_service.h"
+#include "serving/serving_options.h"
+#include "serving/spindle_service.h"
+#include "simulation/drive_images.h"
 
 #include <poll.h>
 #include <stdlib.h>

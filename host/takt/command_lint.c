@@ -1,6 +1,7 @@
+/* takt lint: find what is right and yet hardly meant. */
+#include "editor/lint.h"
+#include "session/session.h"
 #include "takt/command.h"
-#include "takt/lint.h"
-#include "takt/session.h"
 
 #include <stdio.h>
 

@@ -1,11 +1,12 @@
+/* takt lsp: tell an editor what is wrong in a program, what a word means, where a subroutine is. */
 #define _POSIX_C_SOURCE 200809L
 
+#include "cli/interrupt.h"
+#include "cli/message.h"
+#include "editor/lint.h"
+#include "editor/lsp.h"
+#include "editor/lsp_frames.h"
 #include "takt/command.h"
-#include "takt/interrupt.h"
-#include "takt/lint.h"
-#include "takt/lsp.h"
-#include "takt/lsp_frames.h"
-#include "takt/message.h"
 
 #include <errno.h>
 #include <poll.h>

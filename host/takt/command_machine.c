@@ -1,8 +1,9 @@
+/* takt machine: check a machine file and print it with every key, or pack it for a target. */
+#include "cli/message.h"
+#include "config/configuration_file.h"
+#include "config/machine_file.h"
+#include "config/machine_pack.h"
 #include "takt/command.h"
-#include "takt/configuration_file.h"
-#include "takt/machine_file.h"
-#include "takt/machine_pack.h"
-#include "takt/message.h"
 
 #include <stdio.h>
 

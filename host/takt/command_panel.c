@@ -1,13 +1,14 @@
+/* takt panel: read and write the panel of a running controller by name. */
 #define _POSIX_C_SOURCE 200809L
 
+#include "cli/interrupt.h"
+#include "cli/message.h"
+#include "cli/suggest.h"
+#include "serving/panel_line.h"
+#include "serving/panel_table.h"
+#include "serving/panel_upload.h"
+#include "simulation/drives_table.h"
 #include "takt/command.h"
-#include "takt/drives_table.h"
-#include "takt/interrupt.h"
-#include "takt/message.h"
-#include "takt/panel_line.h"
-#include "takt/panel_table.h"
-#include "takt/panel_upload.h"
-#include "takt/suggest.h"
 
 #include <stdio.h>
 #include <stdlib.h>

@@ -1,7 +1,8 @@
+/* takt plan: show the planned blocks: lengths, feeds, what governs them, times. */
+#include "cli/output_file.h"
+#include "session/plan_write.h"
+#include "session/session.h"
 #include "takt/command.h"
-#include "takt/output_file.h"
-#include "takt/plan_write.h"
-#include "takt/session.h"
 
 static enum command_status plan_into(const struct session *session,
                                      const struct session_totals *found, struct output_file *json)

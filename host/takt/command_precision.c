@@ -1,9 +1,10 @@
+/* takt precision: errors of every interpolator on a program, with bounds and word lengths. */
+#include "cli/interrupt.h"
+#include "cli/message.h"
+#include "session/session.h"
+#include "simulation/simulation.h"
+#include "studies/precision.h"
 #include "takt/command.h"
-#include "takt/interrupt.h"
-#include "takt/message.h"
-#include "takt/precision.h"
-#include "takt/session.h"
-#include "takt/simulation.h"
 
 #include "accuracy/bounds.h"
 #include "base/maths.h"

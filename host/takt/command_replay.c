@@ -1,11 +1,12 @@
+/* takt replay: send the frames of a bus log onto a bus. */
 #include "takt/command.h"
 
 #include "bus/candump_read.h"
 #include "bus/hex.h"
 #include "bus/link.h"
-#include "takt/interrupt.h"
-#include "takt/message.h"
-#include "takt/text.h"
+#include "cli/interrupt.h"
+#include "cli/message.h"
+#include "cli/text.h"
 
 #include <inttypes.h>
 #include <stdio.h>

@@ -1,13 +1,14 @@
+/* takt run: run the firmware on a part program against the virtual machine. */
+#include "cli/interrupt.h"
+#include "cli/message.h"
+#include "cli/progress.h"
+#include "cli/stopwatch.h"
+#include "compiled/compiled_judge.h"
+#include "results/run.h"
+#include "results/run_outputs.h"
+#include "simulation/drives_table.h"
+#include "simulation/error_map.h"
 #include "takt/command.h"
-#include "takt/compiled_judge.h"
-#include "takt/drives_table.h"
-#include "takt/error_map.h"
-#include "takt/interrupt.h"
-#include "takt/message.h"
-#include "takt/progress.h"
-#include "takt/run.h"
-#include "takt/run_outputs.h"
-#include "takt/stopwatch.h"
 
 #include <stdlib.h>
 

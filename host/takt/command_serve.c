@@ -1,6 +1,7 @@
+/* takt serve: the controller as a service, with the operator's panel on Modbus. */
+#include "cli/message.h"
+#include "serving/serving.h"
 #include "takt/command.h"
-#include "takt/message.h"
-#include "takt/serving.h"
 
 #include <inttypes.h>
 #include <stdio.h>

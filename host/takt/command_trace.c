@@ -1,7 +1,8 @@
+/* takt trace: check a trace against limits, or compare two. */
+#include "config/machine_file.h"
 #include "takt/command.h"
-#include "takt/machine_file.h"
-#include "takt/trace_check.h"
-#include "takt/trace_reader.h"
+#include "trace/trace_check.h"
+#include "trace/trace_reader.h"
 
 static enum command_status compare(const struct options *options)
 {

@@ -1,13 +1,14 @@
+/* takt view: play a trace back in the browser. */
+#include "cli/interrupt.h"
+#include "cli/message.h"
+#include "cli/text.h"
 #include "serve/exchange.h"
+#include "serving/serving_options.h"
+#include "serving/serving_page.h"
+#include "serving/viewing.h"
+#include "session/session.h"
+#include "simulation/pace.h"
 #include "takt/command.h"
-#include "takt/interrupt.h"
-#include "takt/message.h"
-#include "takt/pace.h"
-#include "takt/serving_options.h"
-#include "takt/serving_page.h"
-#include "takt/session.h"
-#include "takt/text.h"
-#include "takt/viewing.h"
 
 #include <stdio.h>
 #include <stdlib.h>

@@ -1,3 +1,4 @@
+/* The command takt. */
 #include "takt/command.h"
 
 int main(int argc, char **argv)

@@ -70,6 +70,7 @@ static void put_statuses(void)
         frame = fake_nodes_add(&nodes);
         *frame = (struct can_frame){.id = (uint16_t)(0x180 + node), .length = 6};
         little_endian_write16(frame->data, (uint16_t)(cia402_statusword(shown[node]) |
+                                                      (nodes.mode[node] == 8 ? 0x1000 : 0) |
                                                       (control[node] & 0x10 ? 0x1400 : 0)));
         if (++beats % 50 == 0)
             nmt_write_heartbeat(fake_nodes_add(&nodes), (uint8_t)node, NMT_OPERATIONAL);

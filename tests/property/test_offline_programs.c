@@ -5,8 +5,8 @@
 #define _POSIX_C_SOURCE 200809L
 
 #include "base/maths.h"
+#include "correct/offline.h"
 #include "property_arguments.h"
-#include "takt/offline.h"
 #include "unity.h"
 
 #include <math.h>

@@ -44,7 +44,7 @@ def fits(schema, value, place="summary"):
 
 
 def check_schema(summary):
-    schema = t.load_json(os.path.join(t.SOURCE, "host", "takt", "summary.schema.json"))
+    schema = t.load_json(os.path.join(t.SOURCE, "host", "results", "summary.schema.json"))
     found = fits(schema, summary)
     t.check(found is True, "the summary fits its schema", found)
     broken = dict(summary, outcome="maybe")

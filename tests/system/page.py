@@ -1,6 +1,7 @@
 """The page in the browser, as anything on its port sees it: what is shown, orders and their rules, dead-man, strangers."""
 
 import json
+import os
 import random
 import struct
 import sys
@@ -14,6 +15,9 @@ PROGRAM = b"G21 G90 G61 F1800\nG1 X3 Y2\nG2 X5 Y0 I0 J-2\nG1 X0\nG0 Z1\nM2\n"
 # A page that is gone moves nothing after so many cycles of 1 ms: the watchdog of the page (jog.js), and braking.
 WATCHDOG_MS = 120
 REST_MS = 300
+
+# More connections than the page takes at once.
+CROWD = 700
 
 STRANGERS = int(sys.argv[1]) if len(sys.argv) > 1 else 25
 
@@ -189,31 +193,63 @@ def check_drives(service, page, client):
     page.send({"watch": -1})
 
 
+HEAD = b"GET / HTTP/1.1\r\nHost: 127.0.0.1\r\n"
+MASK = b"\0\0\0\0"
+
+
+def hostile_request(random_numbers):
+    """Bytes in place of a request; none of them is one that is answered with more than a page."""
+    return random_numbers.choice((
+        random_numbers.randbytes(random_numbers.randrange(1, 3000)),
+        HEAD + b"X: " + b"y" * random_numbers.choice((5000, 70000)),
+        HEAD + b"".join(b"X%d: y\r\n" % i for i in range(random_numbers.choice((100, 3000)))) + b"\r\n",
+        HEAD[: random_numbers.randrange(1, len(HEAD))],  # and no more
+        HEAD + b"Host: evil.example\r\nHost: 127.0.0.1\r\n\r\n",
+        (HEAD + b"\r\n") * 200,  # one behind the other
+        b"POST /live HTTP/1.1\r\nHost: 127.0.0.1\r\nContent-Length: 99999999999999999999\r\n\r\n" + b"z" * 5000,
+        b"POST / HTTP/1.1\r\nHost: 127.0.0.1\r\nTransfer-Encoding: chunked\r\n\r\nffffffffffffffff\r\n" + b"z" * 500,
+        b"PRI * HTTP/2.0\r\n\r\nSM\r\n\r\n" + random_numbers.randbytes(100),
+        b"\x16\x03\x01\x02\x00\x01\x00\x01\xfc" + random_numbers.randbytes(500),  # TLS
+        HEAD + b"Upgrade: websocket\r\nConnection: Upgrade\r\nSec-WebSocket-Version: 7\r\nSec-WebSocket-Key: ?\r\n\r\n",
+        b"GET /" + b"../" * 2000 + b" HTTP/1.1\r\nHost: 127.0.0.1\r\n\r\n",
+    ))
+
+
+def hostile_frames(random_numbers):
+    """Bytes in place of the frames of a WebSocket."""
+    data = bytearray(json.dumps({"id": 1, "write": [["JOG_FEED", 5], ["MDI_TEXT", "G0 X1"]]}).encode())
+    for _ in range(3):
+        data[random_numbers.randrange(len(data))] = random_numbers.randrange(256)
+    size = len(data)
+    return random_numbers.choice((
+        bytes([random_numbers.choice((0x81, 0x82, 0x01, 0x80, 0xF1)), 0x80 | size]) + MASK + bytes(data),
+        bytes([0x81, size]) + bytes(data),  # not masked
+        b"\x81\xff" + b"\xff" * 8 + MASK + bytes(data),  # 2^64 - 1 bytes
+        b"\x81\xff\0\0\0\1\0\0\0\0" + MASK + bytes(data),  # 4 GiB
+        b"\x01\x81" + MASK + b"{" + (b"\x00\x81" + MASK + b" ") * 5000,  # one byte a piece, without an end
+        (b"\x01\x80" + MASK) * 500,  # a message in a message
+        b"\x89\xfe\x04\x00" + MASK + b"p" * 1024,  # a ping that is too long
+        (b"\x89\x84" + MASK + b"ping") * 3000,
+        b"\x88\x82" + MASK + random_numbers.randbytes(2) + b"\x81\x82" + MASK + b"{}",  # closed, and goes on
+        b"\x81\x84" + MASK + b"\xff\xfe\xc0\x80",  # no UTF-8
+        b"\x83\x80" + MASK + b"\x8b\x80" + MASK,  # opcodes that are not used
+        random_numbers.randbytes(random_numbers.randrange(1, 2000)),
+    ))
+
+
 def hostile(port, random_numbers):
     """Something no browser sends. Returns the connection: it may stay open."""
-    kind = random_numbers.randrange(6)
-    if kind == 0:
+    kind = random_numbers.randrange(5)
+    if kind < 2:
         connection = w.connect(port)
-        connection.sendall(random_numbers.randbytes(random_numbers.randrange(1, 3000)))
-    elif kind == 1:
-        connection = w.connect(port)
-        connection.sendall(b"GET / HTTP/1.1\r\nHost: 127.0.0.1\r\nX: " + b"y" * random_numbers.choice((5000, 70000)))
-    elif kind == 2:
-        connection = w.connect(port)
-        connection.sendall(b"GET / HT")  # and no more
+        connection.sendall(hostile_request(random_numbers))
+        return connection
+    page = w.Page(port)
+    if kind == 2:
+        page.send(random_numbers.choice((b"[" * random_numbers.choice((10, 5000, 60000)), b"{" + b" " * 200000)))
     else:
-        page = w.Page(port)
-        connection = page.socket
-        if kind == 3:
-            page.send(b"[" * random_numbers.choice((10, 5000, 60000)))
-        elif kind == 4:
-            page.send(b"{" + b" " * 200000)
-        else:
-            data = bytearray(json.dumps({"id": 1, "write": [["JOG_FEED", 5], ["MDI_TEXT", "G0 X1"]]}).encode())
-            for _ in range(3):
-                data[random_numbers.randrange(len(data))] = random_numbers.randrange(256)
-            connection.sendall(bytes([random_numbers.choice((0x81, 0x82, 0x01, 0x80, 0xF1)), 0x80 | len(data)]) + b"\0\0\0\0" + bytes(data) if len(data) < 126 else b"\x81\xff")
-    return connection
+        page.socket.sendall(hostile_frames(random_numbers))
+    return page.socket
 
 
 def check_strangers(service, client):
@@ -244,6 +280,28 @@ def check_strangers(service, client):
     t.check(page.next_frame() is not None, "the service still shows the machine")
     page.close()
     t.check(client.digest() == digest, "and its setpoints are those of takt run", client.digest())
+
+
+def check_crowd(service):
+    """Of those who only connect there are so many at most that others of the service have files left."""
+    page = w.Page(service.page_port)
+    crowd = [w.connect(service.page_port) for _ in range(CROWD)]
+    for connection in crowd:
+        connection.sendall(HEAD[:9])
+    p.until(lambda: open_files(service) > CROWD / 2, lambda: f"{open_files(service)} files are open")
+    page.next_frame()
+    panel = service.client()
+    t.check(panel.counts("STATE") == p.IDLE, "a panel that comes is answered")
+    t.check(open_files(service) < CROWD, "the page has taken no more than its part of the files", open_files(service))
+    for connection in (*crowd, panel, page):
+        connection.close()
+    again = w.Page(service.page_port)
+    t.check(again.next_frame() is not None, "a page that comes after them is shown the machine")
+    again.close()
+
+
+def open_files(service):
+    return len(os.listdir(f"/proc/{service.process.pid}/fd"))
 
 
 def check_view():
@@ -282,6 +340,7 @@ check_drives(service, page, client)
 page.close()
 check_dead_man(service, client)
 check_strangers(service, client)
+check_crowd(service)
 status = service.stop()
 t.check(status[0] == 0, "it ends in order", status)
 

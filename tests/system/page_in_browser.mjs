@@ -95,7 +95,7 @@ const steps = {
     await tab(page, "MDI");
     await page.fill("#mdiline", "G0 X0 Y0 Z0");
     await page.keyboard.press("Enter");
-    await until(page, "POSITION_X", 0, 0);
+    await until(page, "POSITION_Z", 0, 0); // the program has ended at Z 1
     await state(page, "idle");
     await page.waitForFunction(() => document.getElementById("mdiline").value === "");
     await page.press("#mdiline", "ArrowUp");

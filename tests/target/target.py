@@ -53,18 +53,19 @@ def wait_for(condition, what):
 
 
 class Board:
-    """An image with all of its serial lines: panel and bus are paths of serial ports, the log is a file."""
+    """An image with all of its serial lines: panel, bus and console, if there is one, are paths of serial ports, the log is a file."""
 
-    def __init__(self, target, path, panel, bus, log):
+    def __init__(self, target, path, panel, bus, log, console=None):
         need_qemu()
         self.log_path = log
         if os.path.exists(log):
             os.remove(log)
+        more = ["-chardev", f"serial,id=console,path={console}", "-serial", "chardev:console"] if console else []
         self.process = subprocess.Popen(
             [QEMU, "-M", BOARDS[target], "-kernel", path, "-display", "none", "-monitor", "none",
              "-chardev", f"serial,id=panel,path={panel}", "-serial", "chardev:panel",
              "-chardev", f"serial,id=bus,path={bus}", "-serial", "chardev:bus",
-             "-chardev", f"file,id=log,path={log}", "-serial", "chardev:log",
+             "-chardev", f"file,id=log,path={log}", "-serial", "chardev:log", *more,
              "-semihosting-config", "enable=on,target=native"],
             stdin=subprocess.DEVNULL)
 

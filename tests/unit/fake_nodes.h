@@ -38,9 +38,10 @@ struct fake_nodes {
     struct fake_rule rule[FAKE_NODES_RULES];
     uint8_t mode[128]; /* shown as object 6061: what RPDO1 said */
     uint8_t mute;      /* this node says nothing; 0: none */
-    unsigned resets[128], starts[128];
-    unsigned guards[128]; /* guarding frames */
-    unsigned toggles;     /* NMT_TOGGLE: answers to them do as they should */
+    unsigned resets[128], starts[128], holds[128];
+    unsigned written_before_hold; /* values to nodes that may have started themselves */
+    unsigned guards[128];         /* guarding frames */
+    unsigned toggles;             /* NMT_TOGGLE: answers to them do as they should */
 };
 
 static inline struct can_frame *fake_nodes_add(struct fake_nodes *nodes)
@@ -54,6 +55,8 @@ static inline uint32_t fake_nodes_value(const struct fake_nodes *nodes, uint8_t 
     switch (sdo_index(object)) {
     case 0x1000:
         return 0x00020192;
+    case 0x1005:
+        return 0x80;
     case 0x6502:
         return 0xE1;
     case 0x6061:
@@ -76,6 +79,7 @@ static inline struct fake_rule *fake_nodes_rule(struct fake_nodes *nodes, uint8_
 static inline void fake_nodes_keep(struct fake_nodes *nodes, uint8_t node, uint32_t object,
                                    const struct can_frame *frame)
 {
+    nodes->written_before_hold += nodes->holds[node] == 0;
     nodes->written[nodes->written_count++ % FAKE_NODES_WRITTEN] =
         (struct fake_written){node, object, little_endian_read32(frame->data + 4),
                               (uint8_t)(4 - sdo_unused_expedited(frame->data[0]))};
@@ -125,6 +129,7 @@ static inline void fake_nodes_take(struct fake_nodes *nodes, const struct can_fr
         node = frame->data[1];
         nodes->resets[node] += frame->data[0] == NMT_RESET_COMMUNICATION;
         nodes->starts[node] += frame->data[0] == NMT_START;
+        nodes->holds[node] += frame->data[0] == NMT_ENTER_PREOPERATIONAL;
         if (frame->data[0] == NMT_RESET_COMMUNICATION && node != nodes->mute)
             nmt_write_heartbeat(fake_nodes_add(nodes), node, NMT_BOOTED);
     } else if (nmt_is_guard(frame, node)) {

@@ -43,6 +43,28 @@ static inline bool port_receive(void *context, struct can_frame *frame)
 
 static const struct can_port port = {.send = port_send, .receive = port_receive};
 
+static bool follows_at_once = true;
+
+static inline uint16_t bits_of_following(unsigned node)
+{
+    bool is_cyclic = nodes.mode[node] == CIA402_MODE_CYCLIC_SYNC_POSITION;
+    return is_cyclic && shown[node] == CIA402_ENABLED ? CIA402_FOLLOWS_TARGET : 0;
+}
+
+static unsigned deaf_edges;  /* so many fault resets come too early */
+static uint16_t before[128]; /* controlwords */
+
+static inline enum cia402_state next_state(unsigned node)
+{
+    const uint16_t previous = before[node];
+    before[node] = control[node];
+    if (shown[node] == CIA402_FAULT && control[node] & ~previous & 0x80 && deaf_edges > 0) {
+        deaf_edges--;
+        return CIA402_FAULT;
+    }
+    return cia402_next_state(shown[node], control[node], previous);
+}
+
 /* Drives that do what the controlword says. */
 static inline void put_statuses(void)
 {
@@ -51,13 +73,14 @@ static inline void put_statuses(void)
         struct can_frame *frame;
         if (nodes.starts[node] == 0 || node == nodes.mute)
             continue;
-        shown[node] = cia402_next_state(shown[node], control[node], 0);
+        shown[node] = next_state(node);
         if (cycles_run % 100 == node)
             nmt_write_heartbeat(fake_nodes_add(&nodes), (uint8_t)node, NMT_OPERATIONAL);
         frame = fake_nodes_add(&nodes);
         *frame = (struct can_frame){.id = (uint16_t)(PDO_TPDO1_FUNCTION + node), .length = 6};
         little_endian_write16(frame->data,
-                              (uint16_t)(cia402_statusword(shown[node]) | shown_bits[node]));
+                              (uint16_t)(cia402_statusword(shown[node]) | shown_bits[node] |
+                                         (follows_at_once ? bits_of_following(node) : 0)));
         little_endian_write32(frame->data + 2, (uint32_t)shown_inc);
     }
 }
@@ -95,6 +118,9 @@ void setUp(void)
         shown[i] = CIA402_SWITCH_ON_DISABLED;
     cycles_run = frames_sent = 0;
     shown_inc = 0;
+    follows_at_once = true;
+    deaf_edges = 0;
+    memset(before, 0, sizeof before);
     config = (struct drives_config){
         .count = DRIVES,
         .cycle_us = 1000,

@@ -165,6 +165,24 @@ static void test_a_reset_gives_up_what_runs_and_forgets_what_was_to_come(void)
     expect_limits_kept();
 }
 
+/* Lines that wait behind a full look-ahead are no errors of the sender's. */
+static void test_a_reset_answers_no_line_that_it_drops(void)
+{
+    char line[32];
+
+    for (unsigned i = 1; i < 1500; i++) {
+        (void)snprintf(line, sizeof line, "G1 X%.2f F3000\n", 0.1 * i);
+        give(line);
+    }
+    TEST_ASSERT_TRUE(console.pending > 1);
+    forget();
+    give("\x18");
+    settle();
+    TEST_ASSERT_EQUAL_UINT(0, answers());
+    expect("\r\nGrbl 1.1h ['$' for help]\r\n");
+    ask("G4 P0.1", "ok");
+}
+
 static void test_jogs_move_by_words_of_their_own(void)
 {
     ask("G21 G90 G0 X10", "ok");
@@ -391,6 +409,7 @@ int main(void)
     RUN_TEST(test_a_line_beyond_the_travel_stops_all_until_it_is_unlocked);
     RUN_TEST(test_a_hold_stops_on_the_path_and_a_start_goes_on);
     RUN_TEST(test_a_reset_gives_up_what_runs_and_forgets_what_was_to_come);
+    RUN_TEST(test_a_reset_answers_no_line_that_it_drops);
     RUN_TEST(test_jogs_move_by_words_of_their_own);
     RUN_TEST(test_a_jog_is_cancelled_at_once_and_when_its_sender_goes);
     RUN_TEST(test_overrides_are_those_of_the_panel);

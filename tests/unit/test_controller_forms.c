@@ -2,7 +2,7 @@
 #include "classic/classic.h"
 #include "classic/interpolator.h"
 #include "classic/limiter.h"
-#include "controller/machine_check.h"
+#include "machine/machine_check.h"
 #include "unity.h"
 
 static struct machine machine;

@@ -112,9 +112,88 @@ static void test_the_event_timer_of_tpdo2_is_set_while_it_is_not_valid(void)
         {2, SDO_OBJECT(0x1801, 1), 0xC0000282, 4}, {2, SDO_OBJECT(0x1801, 2), 255, 1},
         {2, SDO_OBJECT(0x1A01, 0), 0, 1},          {2, SDO_OBJECT(0x1A01, 1), 0x603F0010, 4},
         {2, SDO_OBJECT(0x1A01, 2), 0x60F40020, 4}, {2, SDO_OBJECT(0x1A01, 0), 2, 1},
-        {2, SDO_OBJECT(0x1801, 5), 100, 2},        {2, SDO_OBJECT(0x1801, 1), 0x40000282, 4}};
+        {2, SDO_OBJECT(0x1801, 3), 1000, 2},       {2, SDO_OBJECT(0x1801, 5), 100, 2},
+        {2, SDO_OBJECT(0x1801, 1), 0x40000282, 4}};
     run_start();
-    assert_writes(2, 0x1801, 0x1A01, tpdo2, 8);
+    assert_writes(2, 0x1801, 0x1A01, tpdo2, 9);
+}
+
+/* A drive may have one stored that is longer than a cycle, or hear SYNC by another identifier. */
+static void test_reports_are_not_held_back_and_sync_is_told(void)
+{
+    run_start();
+    for (uint8_t node = 1; node <= DRIVES; node++) {
+        assert_told(node, SDO_OBJECT(0x1800, 3), 0);
+        assert_told(node, SDO_OBJECT(0x1005, 0), 0x80);
+        assert_told(node, SDO_OBJECT(0x1019, 0), 0);
+    }
+}
+
+static void test_a_drive_without_the_identifier_of_sync_has_that_of_the_standard(void)
+{
+    set_rule(
+        (struct fake_rule){.object = SDO_OBJECT(0x1005, 0), .abort_code = SDO_ABORT_NO_OBJECT});
+    run_start();
+    TEST_ASSERT_EQUAL_INT(DRIVES_ENABLED, drives_get_state(&drives));
+    setUp();
+    set_rule((struct fake_rule){
+        .object = SDO_OBJECT(0x1005, 0), .value = 0x80000080, .write_code = SDO_ABORT_READ_ONLY});
+    run_start();
+    TEST_ASSERT_EQUAL_INT(DRIVES_ENABLED, drives_get_state(&drives));
+}
+
+static void test_a_drive_that_keeps_another_sync_is_refused(void)
+{
+    static const uint32_t others[] = {0x81, 0x40000080, 0};
+    for (unsigned i = 0; i < sizeof others / sizeof others[0]; i++) {
+        setUp();
+        set_rule((struct fake_rule){.node = 2,
+                                    .object = SDO_OBJECT(0x1005, 0),
+                                    .value = others[i],
+                                    .write_code = SDO_ABORT_READ_ONLY});
+        assert_refused(TAKT_ERROR_DRIVE_REFUSES, "the drive of axis Y (node 2), object 1005:00, "
+                                                 "refuses with abort code 06090030: invalid value");
+    }
+}
+
+/* What the drive does first when it has booted is its own affair: it may have started itself. */
+static void test_a_drive_is_configured_while_it_is_pre_operational(void)
+{
+    run_start();
+    for (unsigned node = 1; node <= DRIVES; node++)
+        TEST_ASSERT_EQUAL_UINT(1, nodes.holds[node]);
+    TEST_ASSERT_EQUAL_UINT(0, nodes.written_before_hold);
+}
+
+static void test_a_fault_is_reset_by_as_many_edges_as_the_drive_needs(void)
+{
+    for (unsigned edges = 1; edges <= 5; edges += 2) {
+        setUp();
+        shown[2] = CIA402_FAULT;
+        deaf_edges = edges - 1;
+        run_start();
+        TEST_ASSERT_EQUAL_INT(DRIVES_ENABLED, drives_get_state(&drives));
+        TEST_ASSERT_EQUAL_UINT(0, deaf_edges);
+    }
+}
+
+static void test_setpoints_wait_for_a_brake_and_not_for_a_drive_that_does_not_tell(void)
+{
+    follows_at_once = false;
+    run_start();
+    TEST_ASSERT_EQUAL_INT(DRIVES_ENABLED, drives_get_state(&drives));
+    unsigned without = cycles_run;
+    TEST_ASSERT_GREATER_THAN_UINT(1000, without);
+    setUp();
+    follows_at_once = false;
+    drives_init(&drives, &config);
+    for (unsigned i = 0; i < 600; i++) {
+        cycle();
+        TEST_ASSERT_EQUAL_INT(DRIVES_STARTING, drives_get_state(&drives));
+    }
+    follows_at_once = true;
+    cycle();
+    TEST_ASSERT_EQUAL_INT(DRIVES_ENABLED, drives_get_state(&drives));
 }
 
 static void test_heartbeats_cycle_and_stops_are_configured(void)
@@ -461,6 +540,12 @@ int main(void)
     RUN_TEST(test_a_node_that_never_boots_is_named);
     RUN_TEST(test_two_axes_are_paired_in_a_frame_by_dummies);
     RUN_TEST(test_the_event_timer_of_tpdo2_is_set_while_it_is_not_valid);
+    RUN_TEST(test_reports_are_not_held_back_and_sync_is_told);
+    RUN_TEST(test_a_drive_without_the_identifier_of_sync_has_that_of_the_standard);
+    RUN_TEST(test_a_drive_that_keeps_another_sync_is_refused);
+    RUN_TEST(test_a_drive_is_configured_while_it_is_pre_operational);
+    RUN_TEST(test_a_fault_is_reset_by_as_many_edges_as_the_drive_needs);
+    RUN_TEST(test_setpoints_wait_for_a_brake_and_not_for_a_drive_that_does_not_tell);
     RUN_TEST(test_heartbeats_cycle_and_stops_are_configured);
     RUN_TEST(test_periods_of_any_length_are_told_as_value_and_power_of_ten);
     RUN_TEST(test_pdos_that_are_not_used_are_switched_off);

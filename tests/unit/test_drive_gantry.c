@@ -29,7 +29,8 @@ static void test_both_drives_of_an_axis_are_enabled(void)
     drives_get_actual(&drives, &actual);
     drives_get_statuswords(&drives, statusword);
     TEST_ASSERT_EQUAL_DOUBLE(2, actual.at[AXIS_Y]);
-    TEST_ASSERT_EQUAL_HEX16(cia402_statusword(CIA402_ENABLED), statusword[AXIS_Y]);
+    TEST_ASSERT_EQUAL_HEX16(cia402_statusword(CIA402_ENABLED) | CIA402_FOLLOWS_TARGET,
+                            statusword[AXIS_Y]);
 }
 
 static void test_drives_too_far_apart_are_not_brought_together(void)

@@ -147,6 +147,18 @@ static void test_inputs_stay_in_their_ranges(void)
     takt_close(job);
 }
 
+/* Asked for help a command line is good, and still none to start a run by. */
+static void test_help_is_no_run(void)
+{
+    const char *const argv[] = {"run", "--help"};
+    struct takt_job *job = takt_open(2, argv, NULL, 0);
+    unsigned count;
+
+    TEST_ASSERT_EQUAL_INT(2, takt_start(job, 0));
+    TEST_ASSERT_EQUAL_STRING("error", takt_get_messages(job, &count)[0].kind);
+    takt_close(job);
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -154,6 +166,7 @@ int main(void)
     RUN_TEST(test_threads_do_not_meet);
     RUN_TEST(test_an_error_says_where);
     RUN_TEST(test_words_of_a_command_line_are_refused_as_there);
+    RUN_TEST(test_help_is_no_run);
     RUN_TEST(test_texts_are_those_of_the_commands);
     RUN_TEST(test_inputs_stay_in_their_ranges);
     return UNITY_END();

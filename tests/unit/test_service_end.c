@@ -4,7 +4,7 @@
 #include "service_judge.h"
 
 #include "drives/virtual_drives.h"
-#include "takt/ending.h"
+#include "simulation/ending.h"
 
 #define WINDING "G21 G90 G64 P0.05 F6000\nM3 S1000\nM8\nG1 X100 Y30\nG1 X200 Y0\nG1 X300 Y50\nM2\n"
 

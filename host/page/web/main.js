@@ -48,10 +48,16 @@ function gauge(name, text, part) {
   gauges[name].parentElement.style.setProperty("--part", `${Math.min(100, Math.max(0, part))}%`);
 }
 
+// Why the override is not the one that is set; where it is, there is nothing to tell.
+function overrideNote() {
+  if (value("OVERRIDE_EFFECTIVE") === value("FEED_OVERRIDE")) return "";
+  return ["", " held", " locked", " limited"][counts("OVERRIDE_REASON")];
+}
+
 function showGauges() {
   const most = Math.max(...machine.axes.filter((a) => !a.rotary).map((a) => a.limits[0])) * 60;
   gauge("Feed", `${value("FEED").toFixed(0)} mm/min`, 100 * value("FEED") / most);
-  gauge("Override", `${value("OVERRIDE_EFFECTIVE").toFixed(0)} %${["", " held", " locked", " limited"][counts("OVERRIDE_REASON")]}`, value("OVERRIDE_EFFECTIVE") / 1.2);
+  gauge("Override", `${value("OVERRIDE_EFFECTIVE").toFixed(0)} %${overrideNote()}`, value("OVERRIDE_EFFECTIVE") / 1.2);
   gauge("Spindle rpm", `${value("SPINDLE_SPEED").toFixed(0)} of ${value("SPINDLE_COMMANDED").toFixed(0)}`, 100 * value("SPINDLE_SPEED") / (value("SPINDLE_COMMANDED") || 1));
   gauge("Spindle load", `${value("SPINDLE_LOAD").toFixed(0)} %`, value("SPINDLE_LOAD"));
   gauge("Control cycle", `${value("CYCLE_MEAN").toFixed(1)} µs`, 100 * value("CYCLE_MEAN") / machine.hello.cycle_us);

@@ -23,6 +23,11 @@ class Library(NamedTuple):
     digest: str
     path: Path
 
+    @property
+    def is_own(self) -> bool:
+        """That of this package."""
+        return self.path == (HERE / "libtakt.so").resolve()
+
 
 def _declarations(header: Path) -> str:
     kept = [

@@ -7,7 +7,7 @@ from collections.abc import Iterator, Mapping, MutableMapping
 from pathlib import Path
 from typing import Union
 
-from ._job import Words
+from ._job import Source, Words, written
 
 Value = Union[int, float, str]
 
@@ -25,10 +25,6 @@ def _value(text: str) -> Value:
     return text
 
 
-def _written(value: Value) -> str:
-    return repr(value) if isinstance(value, float) else str(value)
-
-
 def _key(section: str, name: str) -> str:
     return ".".join([*section.split(" ", 1), name])
 
@@ -40,6 +36,7 @@ class Machine(MutableMapping[str, Value]):
     >>> mill = Machine()                                    # the built-in mill
     >>> mill["axis.X.max_jerk_mm_s3"] = 20000
     >>> mill = Machine("mill.ini", {"machine.look_ahead_blocks": 32})
+    >>> mill = Machine({"axis.X.max_jerk_mm_s3": 20000})    # the built-in mill with other limits
 
     Keys are ``section.key`` or ``section.instance.key``, values numbers or words, in the units that the names end with
     (mm, mm/s, mm/s^2, mm/s^3; deg for rotary axes). Every assignment is checked at once, alone and together with all
@@ -47,18 +44,19 @@ class Machine(MutableMapping[str, Value]):
     """
 
     def __init__(
-        self, base: str | Path | Machine | None = None, changes: Mapping[str, Value] | None = None
+        self,
+        base: Source | Machine | Mapping[str, Value] | None = None,
+        changes: Mapping[str, Value] | None = None,
     ) -> None:
         self._text: str
         if isinstance(base, Machine):
             self._text = base._text
-        elif isinstance(base, str) and "\n" in base:
-            self._text = base
-            self._text = self._made([])
         else:
             words = Words("machine")
-            if base is not None:
-                words.operand(str(base))
+            if isinstance(base, Mapping):
+                changes = {**base, **(changes or {})}
+            elif base is not None:
+                words.operand(words.source(base, NAME))
             self._text = words.job().write().decode()
         self._read()
         self.update(changes or {})
@@ -79,7 +77,7 @@ class Machine(MutableMapping[str, Value]):
 
     def update(self, *args: Mapping[str, Value], **named: Value) -> None:  # type: ignore[override]
         """Several keys at once: what only fits together is checked together."""
-        changes = [f"{key}={_written(value)}" for key, value in dict(*args, **named).items()]
+        changes = [f"{key}={written(value)}" for key, value in dict(*args, **named).items()]
         if changes:
             for i in range(0, len(changes), SETS_MAX):
                 self._text = self._made(changes[i : i + SETS_MAX])
@@ -117,8 +115,9 @@ class Machine(MutableMapping[str, Value]):
         return self._text
 
 
-def machine_text(machine: str | Path | Machine | Mapping[str, Value] | None) -> str | None:
+MachineLike = Union[Source, Machine, Mapping[str, Value], None]
+
+
+def machine_source(machine: MachineLike) -> Source | None:
     """What a run is given: a path stays one."""
-    if machine is None or isinstance(machine, (str, Path)):
-        return None if machine is None else str(machine)
-    return (machine if isinstance(machine, Machine) else Machine(None, machine)).text
+    return (machine if isinstance(machine, Machine) else Machine(machine)).text if isinstance(machine, Mapping) else machine

@@ -5,7 +5,9 @@ from __future__ import annotations
 import json
 from typing import Any
 
-from .simulation import MachineLike, Source, command_words
+from ._job import Source
+from .machine import MachineLike
+from .simulation import command_words
 
 
 def canon(program: Source, *, machine: MachineLike = None, **options: Any) -> list[str]:

@@ -53,7 +53,7 @@ def _axis(json_axis: Mapping[str, Any]) -> AxisSummary:
 
 @dataclass(frozen=True)
 class Summary:
-    """The summary of ``takt run --json``; ``raw`` is all of it, as ``host/takt/summary.schema.json`` describes."""
+    """The summary of ``takt run --json``; ``raw`` is all of it, as ``host/results/summary.schema.json`` describes."""
 
     program: str
     machine: str
@@ -64,15 +64,15 @@ class Summary:
     cycles: int
     cycle_time_s: float
     program_time_s: float
-    wall_time_s: float
-    realtime_ratio: float
+    wall_time_s: float = field(compare=False)
+    realtime_ratio: float = field(compare=False)
     path_length_mm: float
     chord_error_max_mm: float
     path_error_max_mm: float
     landing_error_max_mm: float
     setpoint_digest: str
     axes: tuple[AxisSummary, ...] = field(repr=False)
-    raw: Mapping[str, Any] = field(repr=False)
+    raw: Mapping[str, Any] = field(repr=False, compare=False)
 
     @classmethod
     def of(cls, raw: Mapping[str, Any]) -> Summary:
@@ -116,31 +116,35 @@ class Trace(Mapping[str, Array]):
         differences over one cycle from rest, shape ``(cycles,)``, mm or degrees per s, s^2, s^3.
         """
         x = self.axis(letter)
-        for _ in range(order):
-            first = x[:1] if x is self.axis(letter) else np.zeros(1)
+        if order < 1:
+            raise ValueError(f"order {order}: 1 is velocity, 2 acceleration, 3 jerk")
+        for i in range(order):
+            first = x[:1] if i == 0 else np.zeros(1)
             x = np.diff(x, prepend=first) / self.cycle_s
         return x
 
 
 def take_trace(job: Job, cycle_s: float) -> Trace:
     """The columns become Python's."""
-    rows = job.lib.takt_count_rows(job.c)
     columns = {}
-    for i in range(job.lib.takt_count_columns(job.c)):
-        name = ffi.string(job.lib.takt_get_column_name(job.c, i)).decode()
-        memory = job.lib.takt_take_column(job.c, i)
-        if memory == ffi.NULL:
-            columns[name] = np.empty(0)
-            continue
-        owned = ffi.gc(memory, job.lib.takt_free)
-        columns[name] = np.frombuffer(ffi.buffer(owned, rows * 8), dtype=np.float64)
+    with job as (lib, c):
+        rows = lib.takt_count_rows(c)
+        for i in range(lib.takt_count_columns(c)):
+            name = ffi.string(lib.takt_get_column_name(c, i)).decode()
+            memory = lib.takt_take_column(c, i)
+            if memory == ffi.NULL:
+                columns[name] = np.empty(0)
+                continue
+            owned = ffi.gc(memory, lib.takt_free)
+            columns[name] = np.frombuffer(ffi.buffer(owned, rows * 8), dtype=np.float64)
     return Trace(columns, cycle_s)
 
 
 @dataclass(frozen=True)
 class Result:
     """
-    What a run comes to. ``trace`` is ``None`` if none was asked for, ``report`` likewise (HTML, complete in itself).
+    What a run comes to. ``trace`` is ``None`` if none was asked for, ``report`` likewise (HTML, complete in itself). Results
+    are equal if they say the same but for wall time.
 
     In a notebook it shows the report where there is one, else the summary as a table.
     """
@@ -148,8 +152,8 @@ class Result:
     summary: Summary
     checks: tuple[Check, ...]
     messages: tuple[Message, ...]
-    trace: Trace | None = field(default=None, repr=False)
-    report: str | None = field(default=None, repr=False)
+    trace: Trace | None = field(default=None, repr=False, compare=False)
+    report: str | None = field(default=None, repr=False, compare=False)
 
     @property
     def digest(self) -> str:
@@ -218,8 +222,9 @@ def make_result(job: Job, status: int, keeps_trace: bool, keeps_report: bool) ->
     raw = json.loads(text)
     report = None
     if keeps_report:
-        job.require(job.lib.takt_write_report(job.c))
-        report = job.text.decode()
+        with job as (lib, c):
+            job.require(lib.takt_write_report(c))
+            report = job.text.decode()
     return Result(
         summary=Summary.of(raw),
         checks=tuple(Check(**c) for c in raw["checks"]),

@@ -3,23 +3,28 @@
 from __future__ import annotations
 
 import enum
+import numbers
+import os
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from pathlib import Path
-from typing import Any, Union
+from typing import TYPE_CHECKING, Any, Union
 
 import numpy as np
 
-from ._job import DONE, INPUT, Job, Words
+from ._job import DONE, INPUT, Job, Source, Words, encoded, written
 from ._library import Library, ffi
-from .machine import Machine, Value, machine_text
+from .machine import MachineLike, machine_source
 from .result import Array, Result, Trace, make_result
 
-Source = Union[str, bytes, Path]
+if TYPE_CHECKING:
+    from typing import TypeGuard
+
 #: Rows of time from the first program cycle (s) and override (%), or the text or path of such a file.
 Overrides = Union[Source, float, Iterable[tuple[float, float]]]
-MachineLike = Union[str, Path, Machine, Mapping[str, Value], None]
+#: Faults, as a text, its path, or a list of lines.
+Faults = Union[Source, Sequence[str]]
 
+FAULTS = "<faults>"
 KEEPS_TRACE = 1
 KEEPS_REPORT = 2
 #: Cycles between two looks at Ctrl-C: some tenths of a second.
@@ -42,24 +47,45 @@ class State(enum.IntEnum):
     FAULTED = 4
 
 
+def _is_source(given: object) -> TypeGuard[Source]:
+    return isinstance(given, (str, bytes, bytearray, memoryview, os.PathLike))
+
+
 def _override_text(rows: Overrides) -> Source:
-    if isinstance(rows, (str, bytes, Path)):
+    if _is_source(rows):
         return rows
-    pairs: Iterable[tuple[float, float]] = [(0.0, rows)] if isinstance(rows, (int, float)) else rows
+    if isinstance(rows, numbers.Real):
+        return f"0 {float(rows)!r}\n"
+    if not isinstance(rows, Iterable):
+        raise TypeError(f"overrides: rows of (seconds, per cent) are expected, not {type(rows).__name__}")
+    pairs: Any = rows
     return "".join(f"{float(time_s)!r} {float(percent)!r}\n" for time_s, percent in pairs) or "\n"
 
 
-def _plan(words: Words, plan: str | bytes | Path) -> None:
-    if isinstance(plan, bytes):
-        words.option("plan", words.hold("<plan>", plan))
-    elif plan == "exact":
+def _fault_text(given: Faults) -> Source:
+    if _is_source(given):
+        return given
+    if not isinstance(given, Iterable):
+        raise TypeError(f"inject: a path, a text or a list of lines is expected, not {type(given).__name__}")
+    return "".join(f"{line}\n" for line in given) or "\n"
+
+
+def _plan(words: Words, plan: Source) -> None:
+    if plan == "exact":
         words.option("exact-path", True)
+    elif plan == "ahead":
+        words.option("plan", plan)
     elif plan != "board":
-        words.option("plan", str(plan))
+        words.option("plan", words.source(plan, "<plan>"))
 
 
-def _sets(given: Mapping[str, Value]) -> list[str]:
-    return [f"{key}={value!r}" if isinstance(value, float) else f"{key}={value}" for key, value in given.items()]
+def _option(words: Words, key: str, value: Any) -> Any:
+    """The value as a word of the command line."""
+    if key == "set" and value is not None:
+        return [f"{name}={written(v)}" for name, v in dict(value).items()]
+    if key in ("tools", "parameters") and value is not None and not (key == "tools" and value == "auto"):
+        return words.source(value, f"<{key}>")
+    return value
 
 
 def command_words(
@@ -73,15 +99,13 @@ def command_words(
     """The words of a command on a program, and the texts they name."""
     words = Words(command)
     words.operand(words.source(program, name))
-    given = machine_text(machine)
+    given = machine_source(machine)
     if given is not None:
         words.option("machine", words.source(given, "<machine>"))
     for key, value in options.items():
         if key not in OPTIONS and key != "ceiling":
             raise TypeError(f"{key}: options are {', '.join(sorted(OPTIONS))}")
-        if key in ("tools", "parameters") and value is not None:
-            value = words.source(value, f"<{key}>")
-        words.option(key.replace("_", "-"), _sets(value) if key == "set" else value)
+        words.option(key.replace("_", "-"), _option(words, key, value))
     return words
 
 
@@ -89,10 +113,10 @@ def run_words(
     program: Source,
     *,
     machine: MachineLike = None,
-    plan: str | bytes | Path = "board",
+    plan: Source = "board",
     overrides: Overrides | None = None,
     rapid_overrides: Overrides | None = None,
-    inject: Source | Sequence[str] | None = None,
+    inject: Faults | None = None,
     probe: Source | None = None,
     name: str = "<program>",
     **options: Any,
@@ -104,8 +128,7 @@ def run_words(
     if rapid_overrides is not None:
         words.option("rapid-override", words.source(_override_text(rapid_overrides), "<rapid overrides>"))
     if inject is not None:
-        script = inject if isinstance(inject, (str, bytes, Path)) else "\n".join(inject) + "\n"
-        words.option("inject", words.source(script, "<faults>"))
+        words.option("inject", words.source(_fault_text(inject), FAULTS))
     if probe is not None:
         words.option("probe", words.source(probe, "<probe>"))
     return words
@@ -115,9 +138,9 @@ def run(
     program: Source,
     *,
     machine: MachineLike = None,
-    plan: str | bytes | Path = "board",
+    plan: Source = "board",
     overrides: Overrides | None = None,
-    inject: Source | Sequence[str] | None = None,
+    inject: Faults | None = None,
     trace: bool = True,
     report: bool = False,
     library: Library | None = None,
@@ -140,14 +163,11 @@ def run(
     A broken limit or a drive's fault is a result (:meth:`Result.verify` raises); wrong input raises :class:`InputError`.
     Without the GIL, so that threads run side by side.
     """
-    words = run_words(program, machine=machine, plan=plan, overrides=overrides, inject=inject, **options)
-    job = words.job(library)
-    job.require(job.lib.takt_start(job.c, KEEPS_TRACE * trace | KEEPS_REPORT * report))
-    status = DONE
-    while status == DONE and not job.lib.takt_is_over(job.c):
-        status = job.lib.takt_step(job.c, CYCLES_AT_ONCE)
-    job.require(status)
-    return make_result(job, job.lib.takt_finish(job.c, 0), trace, report)
+    inputs = {"machine": machine, "plan": plan, "overrides": overrides, "inject": inject, **options}
+    with Simulation(program, trace=trace, report=report, library=library, **inputs) as sim:
+        while sim.step(CYCLES_AT_ONCE):
+            pass
+        return sim.finish()
 
 
 @dataclass(frozen=True)
@@ -174,26 +194,35 @@ class Drive:
     def __init__(self, job: Job, place: int) -> None:
         self._job = job
         self._place = place
-        self.node: int = job.lib.takt_get_node(job.c, place)  #: CANopen node id
+        with job as (lib, c):
+            self.node: int = lib.takt_get_node(c, place)  #: CANopen node id
 
     @property
     def position_mm(self) -> float:
         """True position of its axis, unrounded; rad of a rotary axis."""
-        return float(self._job.lib.takt_get_position_mm(self._job.c, self._place))
+        with self._job as (lib, c):
+            return float(lib.takt_get_position_mm(c, self._place))
+
+    def _read(self, index: int, sub: int) -> tuple[int, int]:
+        """Bits, 0: there is no such number; and what they are."""
+        value = ffi.new("uint32_t *")
+        with self._job as (lib, c):
+            return int(lib.takt_read_object(c, self._place, index, sub, value)), int(value[0])
 
     def read(self, index: int, sub: int = 0, signed: bool = False) -> int:
         """A number of the object dictionary, as raw bits or in two's complement."""
-        value = ffi.new("uint32_t *")
-        bits = self._job.lib.takt_read_object(self._job.c, self._place, index, sub, value)
+        bits, found = self._read(index, sub)
         if bits == 0:
             raise KeyError(f"drive {self.node} has no number {index:04X}:{sub:02X}")
-        found = int(value[0])
         return found - (1 << bits) if signed and found >> (bits - 1) else found
 
     def write(self, index: int, value: int, sub: int = 0) -> None:
-        """As an SDO download would."""
-        if not self._job.lib.takt_write_object(self._job.c, self._place, index, sub, value & 0xFFFFFFFF):
-            raise KeyError(f"drive {self.node} does not take {value} for {index:04X}:{sub:02X}")
+        """As an SDO download would; a number below 0 in two's complement."""
+        bits = self._read(index, sub)[0] or 32
+        fits = -(1 << (bits - 1)) <= value < 1 << bits
+        with self._job as (lib, c):
+            if not fits or not lib.takt_write_object(c, self._place, index, sub, value & ((1 << bits) - 1)):
+                raise KeyError(f"drive {self.node} does not take {value} for {index:04X}:{sub:02X}")
 
     def __getitem__(self, key: int | tuple[int, int]) -> int:
         return self.read(*key) if isinstance(key, tuple) else self.read(key)
@@ -215,21 +244,27 @@ class Simulation:
     ...         sim.feed_override = 50
     ...     result = sim.finish()
 
-    Arguments as of :func:`run`. Steps of any length give the same setpoints. One thread at a time may use a simulation;
-    different ones share nothing.
+    Arguments as of :func:`run`. Steps of any length give the same setpoints. Different simulations share nothing; of one,
+    calls of several threads wait for each other.
     """
+
+    __slots__ = ("__weakref__", "_job", "_keeps", "_last", "_result", "drives")
 
     def __init__(
         self, program: Source, *, trace: bool = False, report: bool = False, library: Library | None = None, **options: Any
     ) -> None:
-        self._keeps = (trace, report)
+        self._keeps = (bool(trace), bool(report))
         self._job = run_words(program, **options).job(library)
-        self._job.require(self._job.lib.takt_start(self._job.c, KEEPS_TRACE * trace | KEEPS_REPORT * report))
         self._result: Result | None = None
         self._last: Snapshot | None = None
-        nodes = self._job.lib.takt_count_drives(self._job.c)
+        with self._job as (lib, c):
+            self._job.require(lib.takt_start(c, KEEPS_TRACE * self._keeps[0] | KEEPS_REPORT * self._keeps[1]))
+            nodes = lib.takt_count_drives(c)
         #: by node id
         self.drives: dict[int, Drive] = {d.node: d for d in (Drive(self._job, i) for i in range(nodes))}
+
+    def __reduce__(self) -> Any:
+        return self._job.__reduce__()
 
     def __enter__(self) -> Simulation:
         return self
@@ -238,18 +273,20 @@ class Simulation:
         self.close()
 
     def close(self) -> None:
-        """Gives up what is left of it."""
-        self.drives = {}
-        ffi.release(self._job.c)
+        """Gives up what is left of it. Results, with their traces, stay; any further call is a ``ValueError``."""
+        self._job.close()
 
     def step(self, cycles: int = 1) -> bool:
         """So many control cycles, drive start included; fewer where the run ends. False: it has ended."""
-        lib, c = self._job.lib, self._job.c
+        if cycles < 0:
+            raise ValueError(f"{cycles} cycles: a simulation does not go back")
         for done in range(0, cycles, CYCLES_AT_ONCE):
-            if lib.takt_is_over(c):
-                break
-            self._job.require(lib.takt_step(c, min(CYCLES_AT_ONCE, cycles - done)))
-        return not lib.takt_is_over(c)
+            with self._job as (lib, c):
+                self._job.require(lib.takt_step(c, min(CYCLES_AT_ONCE, cycles - done)))
+                if lib.takt_is_over(c):
+                    return False
+        with self._job as (lib, c):
+            return not lib.takt_is_over(c)
 
     def __iter__(self) -> Iterator[Snapshot]:
         """Every cycle to the end."""
@@ -258,7 +295,8 @@ class Simulation:
 
     def _raw(self) -> Any:
         state = ffi.new("struct takt_state *")
-        self._job.lib.takt_get_state(self._job.c, state)
+        with self._job as (lib, c):
+            lib.takt_get_state(c, state)
         return state
 
     @property
@@ -285,16 +323,17 @@ class Simulation:
 
     def _inputs(self) -> Any:
         inputs = ffi.new("struct takt_inputs *")
-        self._job.lib.takt_get_inputs(self._job.c, inputs)
+        with self._job as (lib, c):
+            lib.takt_get_inputs(c, inputs)
         return inputs
 
     def _set(self, **values: Any) -> None:
-        inputs = self._inputs()
-        for name, value in values.items():
-            setattr(inputs, name, value)
-        status = self._job.lib.takt_set_inputs(self._job.c, inputs)
-        if status == INPUT:
-            raise ValueError(self._job.messages[-1].text)
+        with self._job as (lib, c):
+            inputs = self._inputs()
+            for name, value in values.items():
+                setattr(inputs, name, value)
+            if lib.takt_set_inputs(c, inputs) == INPUT:
+                raise ValueError(self._job.messages[-1].text)
 
     @property
     def feed_override(self) -> float:
@@ -347,11 +386,12 @@ class Simulation:
         values[number] = value
         self._set(analogue=values)
 
-    def inject(self, script: str) -> None:
-        """Faults beside those there are (``takt help inject``); times that have gone by begin at once."""
-        text = script.encode()
-        status = self._job.lib.takt_add_faults(self._job.c, ffi.from_buffer(text), len(text))
-        self._job.require(status)
+    def inject(self, script: str | bytes | Sequence[str]) -> None:
+        """Faults beside those there are: lines (``takt help inject``); times that have gone by begin at once."""
+        given = _fault_text(script)
+        text = given if isinstance(given, bytes) else encoded(str(given))
+        with self._job as (lib, c):
+            self._job.require(lib.takt_add_faults(c, ffi.from_buffer(text), len(text)))
 
     @property
     def messages(self) -> tuple[Any, ...]:
@@ -360,14 +400,19 @@ class Simulation:
 
     @property
     def trace(self) -> Trace:
-        """So far, as a copy. Only of a simulation that keeps it (``trace=True``)."""
-        job, rows = self._job, self._job.lib.takt_count_rows(self._job.c)
+        """So far, as a copy; behind :meth:`finish` that of the result. Of a simulation that keeps it (``trace=True``)."""
+        if not self._keeps[0]:
+            raise ValueError("the simulation keeps no trace: Simulation(..., trace=True)")
+        if self._result is not None and self._result.trace is not None:
+            return self._result.trace
         columns: dict[str, Array] = {}
-        for i in range(job.lib.takt_count_columns(job.c)):
-            column = job.lib.takt_get_column(job.c, i)
-            values = np.frombuffer(ffi.buffer(column, rows * 8)).copy() if column != ffi.NULL else np.empty(0)
-            columns[ffi.string(job.lib.takt_get_column_name(job.c, i)).decode()] = values
-        return Trace(columns, self._raw().cycle_s)
+        with self._job as (lib, c):
+            rows = lib.takt_count_rows(c)
+            for i in range(lib.takt_count_columns(c)):
+                column = lib.takt_get_column(c, i)
+                values = np.frombuffer(ffi.buffer(column, rows * 8)).copy() if column != ffi.NULL else np.empty(0)
+                columns[ffi.string(lib.takt_get_column_name(c, i)).decode()] = values
+            return Trace(columns, self._raw().cycle_s)
 
     def finish(self) -> Result:
         """
@@ -375,8 +420,9 @@ class Simulation:
         interrupted. The simulation cannot be stepped behind it.
         """
         if self._result is None:
-            self._last = self.state
-            over = self._job.lib.takt_is_over(self._job.c)
-            status = self._job.lib.takt_finish(self._job.c, DONE if over else INTERRUPTED)
-            self._result = make_result(self._job, status, *self._keeps)
+            with self._job as (lib, c):
+                self._last = self.state
+                over = lib.takt_is_over(c)
+                status = lib.takt_finish(c, DONE if over else INTERRUPTED)
+                self._result = make_result(self._job, status, *self._keeps)
         return self._result

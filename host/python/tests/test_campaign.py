@@ -5,6 +5,7 @@ import signal
 import subprocess
 import sys
 import time
+from dataclasses import fields, replace
 from pathlib import Path
 
 import pytest
@@ -17,7 +18,7 @@ from takt.campaign import __main__ as command  # noqa: E402
 from takt.campaign.engine import run_missing  # noqa: E402
 from takt.campaign.scenario import Scenario, execute, is_bad  # noqa: E402
 from takt.campaign.shrink import shrink  # noqa: E402
-from takt.campaign.spec import SpecError, latin_hypercube, plan  # noqa: E402
+from takt.campaign.spec import latin_hypercube, plan  # noqa: E402
 from takt.campaign.store import Store, results  # noqa: E402
 
 PROGRAM = "G21 G90 G64 P0.01\nG1 F3000 X2\nY2\nM2\n"
@@ -59,13 +60,84 @@ def test_a_hypercube_has_one_value_in_every_stratum():
     assert points == latin_hypercube({"b": {"low": 1, "high": 1000, "log": True}, "a": {"low": 0, "high": 10}}, 10, 1)
 
 
-@pytest.mark.parametrize("wrong", [
-    {}, {"programs": ["nothing*.ngc"]}, {"programs": [PROGRAM], "machnes": {}},
-    {"programs": [PROGRAM], "machines": {"m": {"fil": "x"}}}, {"programs": [PROGRAM], "variables": {"a": []}},
+GOOD = 'programs = ["""\nG1 F100 X1\nM2\n"""]\n'
+
+
+@pytest.mark.parametrize("wrong, line, key", [
+    ("seeds = 2\n", 1, "programs"),
+    ('seeds = 2\nprograms = ["nothing*.ngc"]\n', 2, "programs.0"),
+    ('programs = ["/nowhere/*.ngc"]\n', 1, "programs.0"),
+    ("programs = 5\n", 1, "programs"),
+    ("programs = [5]\n", 1, "programs.0"),
+    (GOOD + "[machnes]\n", 5, "machnes"),
+    (GOOD + 'machines = "mill"\n', 5, "machines"),
+    (GOOD + '\n[machines]\ngood = {}\n\nm = { fil = "x" }\n', 9, "machines.m.fil"),
+    (GOOD + '[machines.m]\nfile = "nowhere.ini"\n', 5, "machines.m"),
+    (GOOD + '[machines.m.set]\n"axis.X.max_jrk_mm_s3" = 5\n', 5, "machines.m"),
+    (GOOD + "seeds = 0\n", 5, "seeds"),
+    (GOOD + "seeds = [1,\n  -2]\n", 5, "seeds.1"),
+    (GOOD + 'samples = "5"\n', 5, "samples"),
+    (GOOD + "until = -1\n", 5, "until"),
+    (GOOD + "until = nan\n", 5, "until"),
+    (GOOD + 'plans = ["board", "bord"]\n', 5, "plans.1"),
+    (GOOD + 'tools = "nowhere.tbl"\n', 5, "tools"),
+    (GOOD + "[overrides]\nnone = []\nhalf = [[0, 50], [1]]\n", 7, "overrides.half"),
+    (GOOD + "[overrides]\nhigh = [[0, 121]]\n", 6, "overrides.high"),
+    (GOOD + "[overrides]\ns = { changes = 5 }\n", 6, "overrides.s.within_s"),
+    (GOOD + "[overrides]\ns = { changes = 5, within_s = 2, hgh = 5 }\n", 6, "overrides.s.hgh"),
+    (GOOD + "[overrides]\ns = { changes = 5, within_s = 2, low = 50, high = 20 }\n", 6, "overrides.s.high"),
+    (GOOD + "[faults]\nf = 5\n", 6, "faults.f"),
+    (GOOD + '[faults]\nf = """\npower+1s drive 1 jam\n# {ratoi}\n"""\n', 6, "faults.f"),
+    (GOOD + "[variables]\na = []\n", 6, "variables.a"),
+    (GOOD + "[variables]\na = [[1]]\n", 6, "variables.a"),
+    (GOOD + "[variables]\na = { low = 1 }\n", 6, "variables.a.high"),
+    (GOOD + "[variables]\na = { low = 0, high = 5, log = true }\n", 6, "variables.a"),
+    (GOOD + "[variables]\na = { low = 5, high = 1 }\n", 6, "variables.a"),
+    (GOOD + '[variables]\nok = [1]\n"axis.X.max_jrk_mm_s3" = [5]\n', 7, "variables.axis.X.max_jrk_mm_s3"),
 ])  # fmt: skip
-def test_a_wrong_specification_is_refused(wrong, tmp_path):
-    with pytest.raises(SpecError):
-        list(plan(wrong, tmp_path))
+def test_a_wrong_specification_names_line_and_key(wrong, line, key, tmp_path, capsys):
+    path = tmp_path / "wrong.toml"
+    path.write_text(wrong)
+    assert command.main([str(path)]) == 2
+    told = capsys.readouterr().err
+    assert told.startswith(f"takt-campaign: {path}:{line}: {key}: "), told
+    assert not (tmp_path / "wrong").exists()
+
+
+def test_what_is_no_toml_names_line_and_column(tmp_path, capsys):
+    path = tmp_path / "wrong.toml"
+    path.write_text(GOOD + "seeds = = 2\n")
+    assert command.main([str(path)]) == 2
+    assert capsys.readouterr().err.startswith(f"takt-campaign: {path}:5:9: ")
+    path.write_bytes(b"\xff")
+    assert command.main([str(path)]) == 2
+    assert command.main([str(tmp_path / "nowhere.toml")]) == 2
+
+
+def test_variables_are_words_of_programs_and_keys_of_machines(tmp_path):
+    (tmp_path / "tools.tbl").write_text("T1 P1 D6.0 Z5.0\n")
+    planned = list(plan({
+        "programs": ["G21 {mode}\nG1 F100 X{x} Y{y}\nM2\n"], "tools": "tools.tbl",
+        "variables": {
+            "x": [0.00001, 1e7], "mode": ["G61", "G64"], "y": {"low": 1e-6, "high": 2e-6},
+            "machine.look_ahead_blocks": {"low": 4, "high": 64, "log": True, "whole": True},
+        },
+        "samples": 3,
+    }, tmp_path))  # fmt: skip
+    assert len(planned) == 12
+    assert all(execute(p.scenario)["outcome"] in ("completed", "refused") for p in planned)
+    first = planned[0].scenario
+    assert "X0.00001 Y0.00000" in first.program and first.program.startswith("G21 G61\n")
+    assert first.tools == "T1 P1 D6.0 Z5.0\n" and execute(first)["outcome"] == "completed"
+
+
+def test_a_part_of_a_scenario_makes_another_one():
+    base = Scenario(PROGRAM)
+    parts = {"program": "M2\n", "machine": "x", "sets": ("a.b=1",), "overrides": "0 5\n", "faults": "#\n", "plan": "exact",
+             "until": 1.0, "tools": "auto", "dialect": "fanuc"}  # fmt: skip
+    others = [replace(base, **{name: value}) for name, value in parts.items()]
+    assert len(parts) == len(fields(Scenario))
+    assert len({s.identity for s in [base, *others]}) == len(parts) + 1
 
 
 def test_scenarios_differ_where_their_inputs_do(spec):
@@ -94,7 +166,14 @@ def test_what_is_there_is_not_run_again(spec, tmp_path):
     assert run_here(spec, tmp_path / "c") == whole
 
 
-def test_a_failed_scenario_is_repeated_by_its_line(command_line, spec, tmp_path):
+def repeat(line):
+    """The line as a shell takes it."""
+    assert " run " in line and " takt " in line
+    done = subprocess.run(f"{line} --json - --quiet", shell=True, capture_output=True, text=True)
+    return done.returncode, json.loads(done.stdout)["setpoint_digest"] if done.stdout else ""
+
+
+def test_a_failed_scenario_is_repeated_by_its_line(spec, tmp_path):
     spec.write_text(SPEC.replace('none = ""', 'none = ""\nwrong = "enabled+1s drive 9 jam"'))
     run_here(spec, tmp_path / "c")
     rows = results(tmp_path / "c")
@@ -103,22 +182,8 @@ def test_a_failed_scenario_is_repeated_by_its_line(command_line, spec, tmp_path)
     good = next(r for r in rows if r["overrides"] == "storm" and r["faults"] == "noise")
     for row in (bad[0], good):
         scenario = {p.scenario.identity: p.scenario for p in command.read(spec)}[row["identity"]]
-        status, digest = command_line(scenario.write(tmp_path / row["key"]))
+        status, digest = repeat(scenario.write(tmp_path / row["key"], takt.load()))
         assert (status, digest) == (row["status"], row["digest"])
-
-
-@pytest.fixture
-def command_line(command, tmp_path):
-    import shlex
-
-    call = command.path
-
-    def repeat(line):
-        words = [call, *shlex.split(line)[1:], "--json", "-", "--quiet"]
-        done = subprocess.run(words, capture_output=True, text=True)
-        return done.returncode, json.loads(done.stdout)["setpoint_digest"] if done.stdout else ""
-
-    return repeat
 
 
 def test_shrinking_leaves_what_fails():
@@ -136,7 +201,7 @@ def test_shrinking_leaves_what_fails():
 def test_comparison_tells_what_became_worse(spec, tmp_path, capsys):
     for name in ("before", "after"):
         assert run_here(spec, tmp_path / name)
-        Store(tmp_path / name).note({"spec": str(spec), "library": str(takt.load().path)})
+        Store(tmp_path / name).note(spec, takt.load())
     assert command.main(["compare", str(tmp_path / "before"), str(tmp_path / "after")]) == 0
     store = Store(tmp_path / "after")
     key, row = sorted(store.rows.items())[0]

@@ -4,7 +4,9 @@ import csv
 import json
 import pickle
 import subprocess
+import sys
 import threading
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -148,3 +150,63 @@ def test_a_compiled_program_is_replayed():
     assert takt.run(SHORT, plan=compiled).digest == takt.run(SHORT, plan="ahead").digest
     with pytest.raises(takt.InputError):
         takt.run(SHORT + "\n", machine={"axis.X.max_jerk_mm_s3": 1000}, plan=compiled)
+
+
+@pytest.mark.parametrize("options", [
+    {"overrides": np.float32(50)}, {"overrides": np.int64(50)}, {"overrides": np.array([[0, 50]])},
+    {"overrides": b"0 50\n"}, {"overrides": bytearray(b"0 50\n")},
+])  # fmt: skip
+def test_numbers_of_numpy_and_bytes_are_taken(options):
+    assert takt.run(SHORT, **options).digest == takt.run(SHORT, overrides=50).digest
+
+
+@pytest.mark.parametrize("value", [np.float64(20000.5), np.float32(20000.5)])
+def test_keys_take_numbers_of_numpy(value):
+    expected = takt.run(SHORT, machine={"axis.X.max_jerk_mm_s3": 20000.5})
+    assert takt.run(SHORT, machine={"axis.X.max_jerk_mm_s3": value}) == expected
+    assert takt.run(SHORT, set={"axis.X.max_jerk_mm_s3": value}) == expected
+    assert takt.run(SHORT, machine=takt.Machine({"axis.X.max_jerk_mm_s3": value})) == expected
+    assert takt.Machine({"machine.look_ahead_blocks": np.int64(32)})["machine.look_ahead_blocks"] == 32
+
+
+@pytest.mark.parametrize("name", ["program", "machine", "overrides", "inject", "plan", "probe", "tools"])
+@pytest.mark.parametrize("value", [5j, object()])
+def test_a_value_of_another_kind_is_a_type_error_that_names_it(name, value):
+    with pytest.raises(TypeError, match=name):
+        takt.run(**{"program": SHORT, name: value})
+
+
+@pytest.mark.parametrize("path", ["--help", "-", "-h"])
+def test_a_path_is_never_an_option(path, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    with pytest.raises(takt.InputError, match="no such file"):
+        takt.run(path)
+    Path(path).write_text(SHORT)
+    assert takt.run(path).digest == takt.run(SHORT).digest
+
+
+def test_a_text_without_line_end_is_told_from_a_path():
+    with pytest.raises(takt.InputError, match="line end"):
+        takt.run("G1 F100 X1")
+    with pytest.raises(takt.InputError, match="line end"):
+        takt.run(SHORT, inject="power+1s drive 1 jam")
+
+
+def test_results_are_compared_without_wall_time():
+    a, b = takt.run(SHORT), takt.run(SHORT, report=True)
+    assert a == b and hash(a) == hash(b) and pickle.loads(pickle.dumps(a)) == a
+    assert a != takt.run(SHORT, overrides=50)
+
+
+def test_the_module_is_the_command(tmp_path):
+    (tmp_path / "part.ngc").write_text(SHORT)
+
+    def takt_command(*words):
+        return subprocess.run([sys.executable, "-m", "takt", *map(str, words)], capture_output=True, text=True)
+
+    done = takt_command("run", tmp_path / "part.ngc", "--json", "-", "--quiet")
+    assert done.returncode == 0
+    assert json.loads(done.stdout)["setpoint_digest"] == takt.run(SHORT).digest
+    assert "usage: takt run" in takt_command("run", "--help").stdout
+    assert takt_command("run", "nowhere.ngc").returncode == 2
+    assert takt_command("serve").returncode == 2

@@ -1,5 +1,11 @@
 """Simulations in steps."""
 
+import copy
+import os
+import pickle
+import threading
+
+import numpy as np
 import pytest
 from conftest import EXAMPLES
 
@@ -111,3 +117,96 @@ def test_many_stand_side_by_side():
         pass
     alone = [takt.run(SHORT, machine={"axis.X.max_jerk_mm_s3": 10000.0 + i}).digest for i in range(20)]
     assert [sim.finish().digest for sim in sims] == alone
+
+
+USES = {
+    "step": lambda sim, drive: sim.step(),
+    "state": lambda sim, drive: sim.state,
+    "finish": lambda sim, drive: sim.finish(),
+    "read": lambda sim, drive: sim.feed_override,
+    "set": lambda sim, drive: setattr(sim, "feed_override", 50),
+    "digital": lambda sim, drive: sim.set_digital(0, True),
+    "inject": lambda sim, drive: sim.inject("power+9s drive 1 jam\n"),
+    "messages": lambda sim, drive: sim.messages,
+    "trace": lambda sim, drive: sim.trace,
+    "drive": lambda sim, drive: drive.position_mm,
+    "object": lambda sim, drive: drive[0x6041],
+    "write": lambda sim, drive: drive.write(0x6065, 1),
+}
+
+
+@pytest.mark.parametrize("use", USES)
+def test_a_closed_simulation_is_refused_and_not_touched(use):
+    sim = takt.Simulation(SHORT, trace=True)
+    drive = sim.drives[1]
+    sim.step(10)
+    sim.close()
+    sim.close()
+    with pytest.raises(ValueError, match="closed"):
+        USES[use](sim, drive)
+
+
+def test_a_result_outlives_its_simulation():
+    with takt.Simulation(SHORT, trace=True) as sim:
+        while sim.step(1000):
+            pass
+        result = sim.finish()
+        assert len(sim.trace["cycle"]) == result.summary.cycles
+    assert sim.finish() is result and sim.state.state is takt.State.COMPLETED
+    assert result.trace["set_X_mm"].max() == pytest.approx(40, abs=0.01)
+
+
+def test_threads_take_turns_at_one_simulation():
+    sim = takt.Simulation(SHORT)
+    threads = [threading.Thread(target=lambda: [sim.step(3) for _ in range(400)]) for _ in range(4)]
+    for t in threads:
+        t.start()
+    for t in threads:
+        t.join()
+    assert sim.finish().digest == takt.run(SHORT).digest
+
+
+def test_a_simulation_goes_on_on_both_sides_of_a_fork():
+    sim = takt.Simulation(SHORT)
+    sim.step(500)
+    child = os.fork()
+    while sim.step(100):
+        pass
+    same = sim.finish().digest == takt.run(SHORT).digest
+    if child == 0:
+        os._exit(0 if same else 1)
+    assert same and os.waitpid(child, 0)[1] == 0
+
+
+def test_what_would_be_lost_in_silence_is_an_error():
+    sim = takt.Simulation(SHORT)
+    with pytest.raises(AttributeError):
+        sim.feedhold = True
+    for wrong in (float("nan"), float("inf")):
+        with pytest.raises(ValueError):
+            sim.feed_override = wrong
+        with pytest.raises(ValueError, match="E2"):
+            sim.set_analogue(2, wrong)
+    with pytest.raises(ValueError):
+        sim.step(-1)
+    with pytest.raises(ValueError, match="trace=True"):
+        sim.trace
+    for copied in (copy.copy, copy.deepcopy, pickle.dumps):
+        with pytest.raises(TypeError, match="another one"):
+            copied(sim)
+
+
+def test_objects_take_what_fits_alone():
+    drive = takt.Simulation(SHORT).drives[1]
+    for index in (0x16065, 1 << 16):
+        with pytest.raises(KeyError):
+            drive[index]
+        with pytest.raises(KeyError):
+            drive[index] = 1
+    for value in (1 << 32, -(1 << 31) - 1):
+        with pytest.raises(KeyError):
+            drive[0x6065] = value
+    drive[0x6098] = -1  # 8 bits
+    assert drive.read(0x6098, signed=True) == -1
+    drive[0x6065] = np.int64(77)
+    assert drive[0x6065] == 77

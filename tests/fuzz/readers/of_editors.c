@@ -3,9 +3,9 @@
 /* What an editor sends to `takt lsp`. */
 #include "readers.h"
 
-#include "takt/lsp.h"
-#include "takt/lsp_frames.h"
-#include "takt/lsp_text.h"
+#include "editor/lsp.h"
+#include "editor/lsp_frames.h"
+#include "editor/lsp_text.h"
 
 #include <cjson/cJSON.h>
 #include <string.h>

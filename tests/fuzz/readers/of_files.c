@@ -3,17 +3,17 @@
 /* The files that takt is given: texts by path. */
 #include "readers.h"
 
+#include "config/correction_file.h"
+#include "config/data_sheet.h"
+#include "config/inject_file.h"
+#include "config/machine_file.h"
+#include "config/override_file.h"
+#include "config/parameter_file.h"
+#include "config/probe_file.h"
+#include "config/tool_file.h"
 #include "drives/dictionary_read.h"
-#include "takt/correction_file.h"
-#include "takt/data_sheet.h"
-#include "takt/inject_file.h"
-#include "takt/machine_file.h"
-#include "takt/override_file.h"
-#include "takt/parameter_file.h"
-#include "takt/probe_file.h"
-#include "takt/tool_file.h"
-#include "takt/trace_check.h"
-#include "takt/trace_reader.h"
+#include "trace/trace_check.h"
+#include "trace/trace_reader.h"
 
 #include <stdio.h>
 

@@ -7,7 +7,7 @@
 #include "dialect/dialect.h"
 #include "offset/offset.h"
 #include "program/program.h"
-#include "takt/convert.h"
+#include "session/convert.h"
 
 #include <stdio.h>
 #include <string.h>

@@ -9,20 +9,21 @@ Exit status: 0 nothing failed, or became worse; 1 something did; 2 the specifica
 from __future__ import annotations
 
 import argparse
+import json
 import os
 import sys
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from .. import load
+from .. import Library, load
 from .compare import Change, Judge, compare, difference_of, worse_of
 from .engine import BATCH, Costs, run_missing
 from .report import campaign_page, comparison_page, worst, write_runs
 from .scenario import Scenario, execute, is_bad
 from .shrink import shrink
 from .spec import SpecError, read
-from .store import Store, results
+from .store import LIBRARY, Store, results
 
 #: Failed scenarios whose files are written and whose lines are printed.
 SHOWN = 20
@@ -58,12 +59,21 @@ def _scenarios(spec: Path) -> dict[str, Scenario]:
     return {p.scenario.identity: p.scenario for p in read(spec)}
 
 
-def _show_failed(folder: Path, bad: Sequence[Mapping[str, Any]], scenarios: Mapping[str, Scenario]) -> dict[str, str]:
+def _scenario_of(spec: Path, row: Mapping[str, Any]) -> Scenario:
+    found = _scenarios(spec).get(row["identity"])
+    if found is None:
+        raise SpecError((), f"{spec} has changed: scenario {row['number']} is in it no more")
+    return found
+
+
+def _show_failed(
+    folder: Path, bad: Sequence[Mapping[str, Any]], scenarios: Mapping[str, Scenario], library: Library
+) -> dict[str, str]:
     """Prints the lines that repeat them; returns them by key."""
     lines: dict[str, str] = {}
     distinct = list({row["key"]: row for row in bad}.values())
     for row in distinct[:SHOWN]:
-        lines[row["key"]] = scenarios[row["identity"]].write(folder / "failed" / row["key"][:16])
+        lines[row["key"]] = scenarios[row["identity"]].write(folder / "failed" / row["key"][:16], library)
         print(f"failed: scenario {row['number']}: {row['failed'] or row['text']}\n  {lines[row['key']]}")
     if len(distinct) > SHOWN:
         print(f"{len(distinct) - SHOWN} more failed")
@@ -84,7 +94,7 @@ def _run(given: argparse.Namespace) -> int:
     folder = given.output or given.spec.with_suffix("")
     store = Store(folder)
     library = load(given.library)
-    store.note({"spec": str(given.spec.resolve()), "takt": library.digest, "library": str(library.path)})
+    store.note(given.spec, library)
     costs = run_missing(
         store, [p.scenario for p in planned], scheduler=given.scheduler, workers=given.workers, batch=given.batch,
         library=given.library,
@@ -94,7 +104,7 @@ def _run(given: argparse.Namespace) -> int:
     rows = results(folder)
     bad = [r for r in rows if is_bad(r, r["has_faults"])]
     scenarios = {p.scenario.identity: p.scenario for p in planned}
-    lines = _show_failed(folder, bad, scenarios)
+    lines = _show_failed(folder, bad, scenarios, library)
     print(f"{len(rows)} scenarios, {len(bad)} failed: {folder / 'results.parquet'}")
     if not given.no_report:
         chosen = worst(rows)
@@ -104,8 +114,8 @@ def _run(given: argparse.Namespace) -> int:
     return 1 if bad else 0
 
 
-def _report_small(small: Scenario, folder: Path) -> None:
-    line = small.write(folder)
+def _report_small(small: Scenario, folder: Path, library: Library) -> None:
+    line = small.write(folder, library)
     print(f"shrunk to {len(small.program.splitlines())} lines of program:\n{small.program}  {line}")
     if small.faults:
         print(f"faults:\n{small.faults}", end="")
@@ -114,21 +124,25 @@ def _report_small(small: Scenario, folder: Path) -> None:
 def _shrink(given: argparse.Namespace) -> int:
     folder = given.output or given.spec.with_suffix("")
     library = load(given.library)
-    row = results(folder)[given.number]
-    scenario = _scenarios(given.spec)[row["identity"]]
+    rows = results(folder)
+    if not 0 <= given.number < len(rows):
+        raise SpecError((), f"there is no scenario {given.number}: the last one is {len(rows) - 1}")
+    row = rows[given.number]
+    if not is_bad(row, row["has_faults"]):
+        raise SpecError((), f"scenario {given.number} has not failed: {row['outcome']}")
+    scenario = _scenario_of(given.spec, row)
     failed = set(row["failed"].split())
 
     def fails(s: Scenario) -> bool:
         found = execute(s, library)
         return found["outcome"] == row["outcome"] and failed <= set(found["failed"].split())
 
-    _report_small(shrink(scenario, fails), folder / "shrunk" / row["key"][:16])
+    _report_small(shrink(scenario, fails), folder / "shrunk" / row["key"][:16], library)
     return 0
 
 
-def _still_worse(change: Change, judge: Judge, before: str, after: str) -> Callable[[Scenario], bool]:
+def _still_worse(change: Change, judge: Judge, libraries: Sequence[Library]) -> Callable[[Scenario], bool]:
     """The same thing as in the change became worse."""
-    libraries = load(before), load(after)
     kind = change.worse[0].split()[0]
 
     def fails(s: Scenario) -> bool:
@@ -139,8 +153,6 @@ def _still_worse(change: Change, judge: Judge, before: str, after: str) -> Calla
 
 
 def _compare(given: argparse.Namespace) -> int:
-    import json
-
     judge = difference_of if given.same else worse_of
     changes, common = compare(given.before, given.after, judge)
     worse = [c for c in changes if c.worse]
@@ -150,11 +162,11 @@ def _compare(given: argparse.Namespace) -> int:
     if given.html is not None:
         page = comparison_page(changes, common, f"{given.before.name} and {given.after.name}")
         given.html.write_text(page, encoding="utf-8")
-    notes = [json.loads((folder / "campaign.json").read_text()) for folder in (given.before, given.after)]
-    scenarios = _scenarios(Path(notes[1]["spec"])) if worse and given.shrink else {}
     for c in worse[: given.shrink]:
-        fails = _still_worse(c, judge, notes[0]["library"], notes[1]["library"])
-        _report_small(shrink(scenarios[c.after["identity"]], fails), given.after / "shrunk" / c.after["key"][:16])
+        libraries = [load(str(folder / LIBRARY)) for folder in (given.before, given.after)]
+        spec = Path(json.loads((given.after / "campaign.json").read_text())["spec"])
+        small = shrink(_scenario_of(spec, c.after), _still_worse(c, judge, libraries))
+        _report_small(small, given.after / "shrunk" / c.after["key"][:16], libraries[1])
     return 1 if worse else 0
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import itertools
+import logging
 import sys
 import time
 from collections.abc import Iterator
@@ -19,6 +20,9 @@ BATCH = 64
 AHEAD = 3
 #: Workers that a scenario may end before it is given up.
 DEATHS = 3
+#: s between two looks at what has ended, and looks until the workers are counted.
+LOOK_S = 0.02
+LOOKS = 500
 
 
 #: Of Dask's own: what its workers do all the time beside the tasks, and how many deaths of workers a task survives.
@@ -26,7 +30,10 @@ QUIET = {
     "distributed.scheduler.allowed-failures": DEATHS,
     "distributed.scheduler.active-memory-manager.start": False,
     "distributed.worker.profile.enabled": False,
-    "distributed.admin.tick.interval": "500ms",
+    "distributed.admin.tick.interval": "2s",
+    "distributed.admin.system-monitor.interval": "5s",
+    "distributed.worker.memory.monitor-interval": "1s",
+    "distributed.scheduler.work-stealing-interval": "1s",
 }
 
 
@@ -50,12 +57,23 @@ class Costs:
         return whole / self.runs_s - 1 if self.runs_s > 0 else 0.0
 
 
+class SchedulerLost(OSError):
+    """Nobody is there to hand scenarios to."""
+
+
 class Progress:
     """A bar on a terminal; elsewhere a line for every tenth."""
 
     def __init__(self, total: int, stream: TextIO | None = None) -> None:
         self.total, self.done, self.begin, self.told = total, 0, time.monotonic(), 0
         self.stream = stream if stream is not None else sys.stderr
+        self.workers = 1
+
+    def tell_workers(self, count: int, address: str) -> None:
+        if count == 0 < self.workers:
+            self.stream.write(f"\nno worker is left at {address}: waiting for one\n")
+            self.stream.flush()
+        self.workers = count
 
     def add(self, count: int) -> None:
         self.done += count
@@ -110,6 +128,15 @@ class Engine:
         self.store.add({batch.scenarios[0].key(self.digest): crashed(why)})
         return []
 
+    def _wait(self, done: Any, progress: Progress) -> None:
+        """Until something has ended; tells if nobody is left to work, which a scheduler waits for without a word."""
+        for look in itertools.count(1):
+            if done.has_ready():
+                return
+            if look % LOOKS == 0:
+                progress.tell_workers(len(self.client.nthreads()), self.client.scheduler.address)
+            time.sleep(LOOK_S)
+
     def run(self, scenarios: list[Scenario], batch_size: int, progress: Progress) -> None:
         """All of them; returns when every row is stored."""
         from dask.distributed import as_completed
@@ -134,6 +161,7 @@ class Engine:
 
         fill()
         while running:
+            self._wait(done, progress)
             future = next(done)
             batch = running.pop(future)
             error = future.exception() if future.status == "error" else None
@@ -157,6 +185,8 @@ def connect(scheduler: str | None, workers: int) -> Any:
     from dask.distributed import Client, LocalCluster
 
     dask.config.set(QUIET)
+    for name in ("distributed", "asyncio"):  # what matters of it is told here
+        logging.getLogger(name).setLevel(logging.CRITICAL)
     if scheduler is not None:
         return Client(scheduler, timeout="60s")
     cluster = LocalCluster(
@@ -169,6 +199,8 @@ def run_missing(
     store: Store, scenarios: list[Scenario], *, scheduler: str | None, workers: int, batch: int, library: str | None
 ) -> Costs:
     """Runs what the store does not have yet, each scenario once."""
+    from distributed.comm import CommClosedError
+
     loaded = load(library)
     missing: dict[str, Scenario] = {}
     for s in scenarios:
@@ -183,6 +215,10 @@ def run_missing(
     try:
         engine = Engine(client, store, loaded.digest, library)
         engine.run(list(missing.values()), batch, progress)
+    except CommClosedError as error:
+        raise SchedulerLost(
+            f"the scheduler is gone: {error}\n{progress.done} scenarios have been kept; the same command goes on from there"
+        ) from error
     finally:
         progress.end()
         cluster = client.cluster

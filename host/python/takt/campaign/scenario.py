@@ -6,6 +6,7 @@ import functools
 import hashlib
 import json
 import shlex
+import sys
 import time
 from collections.abc import Mapping
 from dataclasses import dataclass, fields, replace
@@ -36,12 +37,14 @@ class Scenario:
     faults: str = ""
     plan: str = "board"
     until: float = 0.0  #: s; 0: to the end
+    tools: str = ""  #: a tool table, or ``auto``
+    dialect: str = ""
 
     @functools.cached_property
     def identity(self) -> str:
         """SHA-256 of the inputs: the same scenario for every takt."""
-        texts = [_digest(text) for text in (self.program, self.machine, self.overrides, self.faults)]
-        return _digest(json.dumps([*texts, self.sets, self.plan, self.until]))
+        texts = [_digest(text) for text in (self.program, self.machine, self.overrides, self.faults, self.tools)]
+        return _digest(json.dumps([*texts, self.sets, self.plan, self.until, self.dialect]))
 
     def key(self, takt_digest: str) -> str:
         """SHA-256 of the inputs and of takt: what a result is kept under."""
@@ -60,17 +63,25 @@ class Scenario:
             "inject": self.faults or None,
             "plan": self.plan,
             "until": self.until or None,
+            "tools": (self.tools if self.tools == "auto" else self.tools.encode("utf-8", "surrogateescape")) or None,
+            "dialect": self.dialect or None,
         }
 
-    def write(self, folder: Path) -> str:
-        """Its files; returns the one line of ``takt run`` that repeats it."""
+    def write(self, folder: Path, library: Library) -> str:
+        """Its files; returns the one line of ``takt run`` that repeats it with this library."""
         folder.mkdir(parents=True, exist_ok=True)
-        files = {"program.ngc": self.program, "machine.ini": self.machine, "override": self.overrides, "inject": self.faults}
+        tables = "" if self.tools == "auto" else self.tools
+        files = {
+            "program.ngc": self.program, "machine.ini": self.machine, "override": self.overrides, "inject": self.faults,
+            "tools.tbl": tables,
+        }  # fmt: skip
         for name, text in files.items():
             if text:
                 (folder / name).write_text(text, encoding="utf-8", errors="surrogateescape")
-        words = ["takt", "run", str(folder / "program.ngc")]
-        for option, name in (("--machine", "machine.ini"), ("--override", "override"), ("--inject", "inject")):
+        here = [] if library.is_own else ["env", f"TAKT_LIBRARY={library.path}"]
+        words = [*here, sys.executable, "-m", "takt", "run", str(folder / "program.ngc")]
+        named = {"--machine": "machine.ini", "--override": "override", "--inject": "inject", "--tools": "tools.tbl"}
+        for option, name in named.items():
             if files[name]:
                 words += [option, str(folder / name)]
         for s in self.sets:
@@ -81,6 +92,10 @@ class Scenario:
             words += ["--plan", self.plan]
         if self.until:
             words += ["--until", repr(self.until)]
+        if self.tools == "auto":
+            words += ["--tools", "auto"]
+        if self.dialect:
+            words += ["--dialect", self.dialect]
         return shlex.join(words)
 
 

@@ -4,6 +4,7 @@ The folder of a campaign:
     parts/*.parquet     rows as they came, written aside and renamed: a kill at any time leaves whole ones
     results.parquet     one row per scenario in the order of the specification: equal bytes however they were computed
     campaign.json       what was run
+    libtakt.so          and by which takt: a later one takes its place in the package
     failed/KEY/         the files of scenarios that failed
     reports/KEY.html    the reports of the worst ones
 """
@@ -13,6 +14,7 @@ from __future__ import annotations
 import hashlib
 import json
 import os
+import shutil
 from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import Any
@@ -20,9 +22,11 @@ from typing import Any
 import pyarrow as pa
 import pyarrow.parquet as pq
 
+from .._library import Library
 from .scenario import FIGURES, Row
 from .spec import Planned
 
+LIBRARY = "libtakt.so"
 _TYPES = {str: pa.string(), int: pa.int64(), float: pa.float64()}
 PART = pa.schema([("key", pa.string()), *((name, _TYPES[kind]) for name, kind in FIGURES.items())])
 LABELS = ("program", "machine", "overrides", "faults", "plan")
@@ -96,13 +100,21 @@ class Store:
         _write(table, self.folder / "results.parquet")
         return table
 
-    def note(self, what: Mapping[str, Any]) -> None:
-        """Writes campaign.json."""
+    def note(self, spec: Path, library: Library) -> None:
+        """Writes campaign.json and libtakt.so."""
+        what = {"spec": str(spec.resolve()), "takt": library.digest, "library": str(library.path)}
         aside = self.folder / "campaign.json.new"
         aside.write_text(json.dumps(what, indent=2) + "\n", encoding="utf-8")
         os.replace(aside, self.folder / "campaign.json")
+        copy = self.folder / LIBRARY
+        if not copy.exists() or copy.resolve() != library.path:
+            shutil.copyfile(library.path, aside)
+            os.replace(aside, copy)
 
 
 def results(folder: Path) -> list[dict[str, Any]]:
     """The rows of a finished campaign."""
-    return list(pq.read_table(folder / "results.parquet").to_pylist())
+    path = folder / "results.parquet"
+    if not path.exists():
+        raise FileNotFoundError(f"{folder} is no folder of a campaign that has ended: {path} is missing")
+    return list(pq.read_table(path).to_pylist())

@@ -1,0 +1,115 @@
+#include "machine/machine.h"
+
+#include "base/maths.h"
+#include "canopen/node.h"
+
+#include <string.h>
+
+void machine_set_default(struct machine *machine)
+{
+    static const char name[] = "built-in three-axis mill";
+
+    memset(machine, 0, sizeof(*machine));
+    memcpy(machine->name, name, sizeof(name));
+    machine->cycle_us = 1000;
+    machine->resolution_per_mm = 1000.0;
+    machine->look_ahead_blocks = MACHINE_LOOK_AHEAD_MAX;
+    machine->spindle_max_rpm = 24000.0;
+    machine->tool_change_s = 60.0;
+    machine->spindle_ramp_rpm_s = 12000.0;
+    machine->spindle_encoder_counts = 4096;
+    machine->thread_tolerance_mm = 0.1;
+    machine->can_bitrate = 1000000;
+    machine->heartbeat_ms = 100;
+    machine->boot_timeout_ms = 3000;
+    machine->sdo_timeout_ms = 2000;
+    machine->controller_node = 127;
+    for (unsigned i = 0; i < MACHINE_GANTRIES_MAX; i++) {
+        machine->gantry[i].axis = AXIS_COUNT;
+        machine->gantry[i].drive_node = (uint8_t)(NODE_MAX - 1 - i);
+    }
+    correction_settings_set_default(&machine->correction);
+    for (int i = 0; i < AXIS_LINEAR_COUNT; i++) {
+        machine->axis[i] = (struct machine_axis){
+            .present = true,
+            .max_velocity_mm_s = 100.0,
+            .max_acceleration_mm_s2 = 1000.0,
+            .max_jerk_mm_s3 = 50000.0,
+            .travel_min_mm = -500.0,
+            .travel_max_mm = 500.0,
+            .drive_node = (uint8_t)(i + 1),
+            .increments_per_mm = 100000.0,
+            .following_error_max_mm = 1.0,
+            .steps_per_mm = 1000.0,
+            .step_rate_max_hz = 200000.0,
+            .home_method = 37,
+            .home_velocity_mm_s = 20.0,
+            .home_zero_velocity_mm_s = 2.0,
+            .home_acceleration_mm_s2 = 500.0,
+            .home_timeout_s = 60.0,
+        };
+    }
+}
+
+unsigned machine_axes(const struct machine *machine)
+{
+    unsigned axes = 0;
+
+    for (unsigned i = 0; i < AXIS_COUNT; i++) {
+        if (machine->axis[i].present) {
+            axes |= 1U << i;
+        }
+    }
+    return axes;
+}
+
+unsigned machine_io_count(const struct machine *machine)
+{
+    unsigned count = 0;
+
+    while (count < IO_NODES_MAX && machine->io[count].node != 0) {
+        count++;
+    }
+    return count;
+}
+
+unsigned machine_gantry_count(const struct machine *machine)
+{
+    unsigned count = 0;
+
+    while (count < MACHINE_GANTRIES_MAX && machine->gantry[count].axis < AXIS_COUNT) {
+        count++;
+    }
+    return count;
+}
+
+unsigned machine_drive_nodes(const struct machine *machine, uint8_t node[MACHINE_NODES_MAX])
+{
+    unsigned count = 0;
+
+    for (unsigned i = 0; i < AXIS_COUNT; i++) {
+        if (machine_axis_is_on_can(&machine->axis[i])) {
+            node[count++] = machine->axis[i].drive_node;
+        }
+    }
+    for (unsigned i = 0; i < machine_gantry_count(machine); i++) {
+        node[count++] = machine->gantry[i].drive_node;
+    }
+    return count;
+}
+
+void machine_motion_bound(const struct machine *machine, struct motion_bound *most)
+{
+    memset(most, 0, sizeof(*most));
+    for (int i = 0; i < AXIS_COUNT; i++) {
+        const struct machine_axis *axis = &machine->axis[i];
+
+        if (axis->present) {
+            most->velocity_mm_s[i] = axis->max_velocity_mm_s;
+            most->acceleration_mm_s2[i] = axis->max_acceleration_mm_s2;
+            most->jerk_mm_s3[i] = axis->max_jerk_mm_s3;
+            most->farthest_mm[i] =
+                maths_max(maths_abs(axis->travel_min_mm), maths_abs(axis->travel_max_mm));
+        }
+    }
+}

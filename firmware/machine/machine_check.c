@@ -1,0 +1,265 @@
+#include "machine/machine_check.h"
+
+#include "base/maths.h"
+#include "canopen/node.h"
+#include "classic/classic.h"
+#include "classic/interpolator.h"
+#include "classic/limiter.h"
+#include "drive/drives.h"
+#include "hal/outputs.h"
+
+#define DEGREE (MATHS_PI / 180.0)
+#define PER_US 1e-6
+#define RANGE  2147483647.0 /* of 32 bits */
+
+/*
+ * Setpoints are doubles: X mm from zero they are rounded, and differences over a cycle t turn that into noise of up to
+ * 4.5e-16 X / t^2 in acceleration and 9e-16 X / t^3 in jerk. The limits are kept to 1e-4 and 1e-3 of themselves, so
+ * they must stand that far above the noise.
+ */
+#define ROUNDING_ACCELERATION 5e-12
+#define ROUNDING_JERK         1e-12
+
+/* An axis of the machine; what its numbers are in a machine file: mm, or degrees. */
+struct checked {
+    const struct machine_axis *axis;
+    char letter;
+    double unit; /* of the file, in mm or rad */
+    double farthest_mm;
+    struct diagnostic *wrong;
+};
+
+static bool refuse(const struct checked *c, enum takt_error code, double value, double limit)
+{
+    diagnostic_set(c->wrong, code, 0, 0, &c->letter, 1, value);
+    diagnostic_set_limit(c->wrong, limit);
+    return false;
+}
+
+static bool check_travel(const struct checked *c)
+{
+    const struct machine_axis *axis = c->axis;
+    const double increments = maths_abs(axis->increments_per_mm);
+
+    if (axis->travel_min_mm >= axis->travel_max_mm)
+        return refuse(c, TAKT_ERROR_MACHINE_TRAVEL, 0, 0);
+    if (axis->travel_min_mm > 0 || axis->travel_max_mm < 0)
+        return refuse(c, TAKT_ERROR_MACHINE_TRAVEL_ZERO, 0, 0);
+    if (increments <= 0 || c->farthest_mm * increments > RANGE)
+        return refuse(c, TAKT_ERROR_MACHINE_INCREMENTS, axis->increments_per_mm * c->unit, 0);
+    return true;
+}
+
+static bool check_limits(const struct checked *c, double cycle_s)
+{
+    const double acceleration = ROUNDING_ACCELERATION * c->farthest_mm / (cycle_s * cycle_s);
+    const double jerk = ROUNDING_JERK * c->farthest_mm / (cycle_s * cycle_s * cycle_s);
+
+    if (c->axis->max_acceleration_mm_s2 < acceleration)
+        return refuse(c, TAKT_ERROR_MACHINE_ACCELERATION, acceleration / c->unit, 0);
+    if (c->axis->max_jerk_mm_s3 < jerk)
+        return refuse(c, TAKT_ERROR_MACHINE_JERK, jerk / c->unit, 0);
+    return true;
+}
+
+static bool check_steps(const struct checked *c)
+{
+    const double rate_hz = c->axis->max_velocity_mm_s * c->axis->steps_per_mm;
+
+    if (!machine_axis_is_stepped(c->axis))
+        return true;
+    if (rate_hz > c->axis->step_rate_max_hz * (1 + 1e-9))
+        return refuse(c, TAKT_ERROR_MACHINE_STEP_RATE, rate_hz, c->axis->step_rate_max_hz);
+    if (c->farthest_mm * c->axis->steps_per_mm > RANGE)
+        return refuse(c, TAKT_ERROR_MACHINE_STEPS, 0, 0);
+    return true;
+}
+
+static bool check_home(const struct checked *c)
+{
+    if (c->axis->home_method == 0)
+        return refuse(c, TAKT_ERROR_MACHINE_HOME_METHOD, 0, 0);
+    return maths_abs(c->axis->home_offset_mm * c->axis->increments_per_mm) <= RANGE ||
+           refuse(c, TAKT_ERROR_MACHINE_HOME, 0, 0);
+}
+
+/* Each node id once, and none the controller's own. */
+static bool check_node(const struct checked *c, const struct machine *machine, unsigned number)
+{
+    const uint8_t node = c->axis->drive_node;
+
+    for (unsigned i = 0; i < number; i++) {
+        if (machine->axis[i].present && machine->axis[i].drive_node == node) {
+            const char both[] = {AXIS_LETTERS[i], ' ', 'a', 'n', 'd', ' ', c->letter};
+
+            diagnostic_set(c->wrong, TAKT_ERROR_MACHINE_NODES, 0, 0, both, sizeof both, node);
+            return false;
+        }
+    }
+    return node != machine->controller_node ||
+           refuse(c, TAKT_ERROR_MACHINE_CONTROLLER_NODE, node, 0);
+}
+
+static bool check_axis(const struct machine *machine, unsigned i, struct diagnostic *wrong)
+{
+    const struct machine_axis *axis = &machine->axis[i];
+    const struct checked c = {
+        .axis = axis,
+        .letter = AXIS_LETTERS[i],
+        .unit = axis->rotary ? DEGREE : 1.0,
+        .farthest_mm = maths_max(maths_abs(axis->travel_min_mm), maths_abs(axis->travel_max_mm)),
+        .wrong = wrong,
+    };
+
+    return check_travel(&c) && check_limits(&c, PER_US * (double)machine->cycle_us) &&
+           check_steps(&c) && check_home(&c) && check_node(&c, machine, i);
+}
+
+/* "io 2". */
+static bool refuse_io(const struct machine *machine, unsigned number, enum takt_error code,
+                      struct diagnostic *wrong)
+{
+    const char name[] = {'i', 'o', ' ', (char)('1' + number)};
+
+    diagnostic_set(wrong, code, 0, 0, name, sizeof name, machine->io[number].node);
+    return false;
+}
+
+static bool is_wired_well(const struct io_wiring *wiring)
+{
+    bool good = true;
+
+    for (unsigned i = 0; i < IO_BITS_MAX; i++)
+        good = good && io_is_output(wiring->output[i]) && io_is_input(wiring->input[i]);
+    for (unsigned i = 0; i < IO_ANALOGUE_MAX; i++)
+        good = good && io_get_analogue(wiring, i) <= OUTPUTS_ANALOGUE_MAX;
+    return good;
+}
+
+/* Its id is that of nobody else on the bus. */
+static bool is_alone(const struct machine *machine, unsigned number)
+{
+    const uint8_t node = machine->io[number].node;
+    bool alone = node != machine->controller_node;
+
+    for (unsigned i = 0; i < AXIS_COUNT; i++)
+        alone = alone && !(machine->axis[i].present && machine->axis[i].drive_node == node);
+    for (unsigned i = 0; i < machine_gantry_count(machine); i++)
+        alone = alone && machine->gantry[i].drive_node != node;
+    for (unsigned i = 0; i < number; i++)
+        alone = alone && machine->io[i].node != node;
+    return alone;
+}
+
+/* One after the other from the first on, each id once. */
+static bool check_io(const struct machine *machine, struct diagnostic *wrong)
+{
+    const unsigned count = machine_io_count(machine);
+
+    for (unsigned i = 0; i < IO_NODES_MAX; i++) {
+        const bool is_there = machine->io[i].node != 0;
+
+        if (!is_wired_well(&machine->io[i]) || machine->io[i].node > NODE_MAX ||
+            is_there != (i < count))
+            return refuse_io(machine, i, TAKT_ERROR_MACHINE_IO, wrong);
+        if (is_there && !is_alone(machine, i))
+            return refuse_io(machine, i, TAKT_ERROR_MACHINE_IO_NODE, wrong);
+    }
+    return true;
+}
+
+/* Its axis is one of the linear ones, on CAN; its node nobody else's but perhaps an I/O node's, which check_io sees. */
+static bool gantry_is_well(const struct machine *machine, unsigned number)
+{
+    const struct machine_gantry *gantry = &machine->gantry[number];
+    uint8_t node[MACHINE_NODES_MAX];
+    bool good = gantry->axis < AXIS_LINEAR_COUNT &&
+                machine_axis_is_on_can(&machine->axis[gantry->axis]) && gantry->skew_max_mm > 0 &&
+                machine_drive_nodes(machine, node) <= MACHINE_DRIVES_MAX &&
+                gantry->drive_node != machine->controller_node;
+
+    for (unsigned i = 0; i < AXIS_COUNT; i++)
+        good = good &&
+               !(machine->axis[i].present && machine->axis[i].drive_node == gantry->drive_node);
+    for (unsigned i = 0; i < number; i++)
+        good = good && machine->gantry[i].drive_node != gantry->drive_node &&
+               machine->gantry[i].axis != gantry->axis;
+    return good && maths_abs(gantry->home_offset_mm *
+                             machine->axis[gantry->axis].increments_per_mm) <= RANGE;
+}
+
+/* On which side a maker's own method looks for a home nobody can tell. */
+static bool check_gantry_home(const struct machine *machine, unsigned number,
+                              struct diagnostic *wrong)
+{
+    const struct machine_gantry *gantry = &machine->gantry[number];
+
+    if (gantry->is_reversed == 0 || gantry->home_method != 0 ||
+        machine->axis[gantry->axis].home_method > 0)
+        return true;
+    diagnostic_set(wrong, TAKT_ERROR_MACHINE_GANTRY_HOME, 0, 0, &AXIS_LETTERS[gantry->axis], 1, 0);
+    return false;
+}
+
+/* One after the other from the first on. */
+static bool check_gantries(const struct machine *machine, struct diagnostic *wrong)
+{
+    const unsigned count = machine_gantry_count(machine);
+    bool good = true;
+
+    for (unsigned i = 0; i < MACHINE_GANTRIES_MAX; i++)
+        good = good &&
+               (i < count ? gantry_is_well(machine, i) : machine->gantry[i].axis >= AXIS_COUNT);
+    if (!good)
+        diagnostic_set(wrong, TAKT_ERROR_MACHINE_GANTRY, 0, 0, "", 0, MACHINE_DRIVES_MAX);
+    for (unsigned i = 0; i < count && good; i++)
+        good = check_gantry_home(machine, i, wrong);
+    return good;
+}
+
+static bool check_bus(const struct machine *machine, struct diagnostic *wrong)
+{
+    struct drives_load load;
+    uint8_t node[MACHINE_NODES_MAX];
+    const unsigned drives = machine_drive_nodes(machine, node);
+
+    if (drives_predict_whole_load(drives, machine->io, machine_io_count(machine),
+                                  machine->can_bitrate, machine->cycle_us, &load))
+        return true;
+    drives_set_overload(&load, wrong);
+    return false;
+}
+
+/* size: of the name with its zero */
+static bool check_form(bool is_there, const char *name, size_t size, struct diagnostic *wrong)
+{
+    if (!is_there)
+        diagnostic_set(wrong, TAKT_ERROR_MACHINE_FORM, 0, 0, name, size - 1, 0);
+    return is_there;
+}
+
+/* Not every build has all forms of interpolation and feed. */
+static bool check_forms(const struct machine *machine, struct diagnostic *wrong)
+{
+    static const char interpolator[] = "interpolator", limiter[] = "limiter", landing[] = "landing";
+    const bool all = classic_is_there();
+
+    return check_form(all || machine->interpolator == INTERPOLATOR_EXACT, interpolator,
+                      sizeof interpolator, wrong) &&
+           check_form(all || machine->limiter == LIMITER_CEILING, limiter, sizeof limiter, wrong) &&
+           check_form(all || machine->landing != LANDING_SCALE, landing, sizeof landing, wrong);
+}
+
+bool machine_check(const struct machine *machine, struct diagnostic *wrong)
+{
+    if (machine_axes(machine) == 0) {
+        diagnostic_set(wrong, TAKT_ERROR_MACHINE_NO_AXIS, 0, 0, "", 0, 0);
+        return false;
+    }
+    for (unsigned i = 0; i < AXIS_COUNT; i++) {
+        if (machine->axis[i].present && !check_axis(machine, i, wrong))
+            return false;
+    }
+    return check_forms(machine, wrong) && check_gantries(machine, wrong) &&
+           check_io(machine, wrong) && check_bus(machine, wrong);
+}

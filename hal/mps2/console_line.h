@@ -1,0 +1,18 @@
+/*
+ * The line of an image's console: UART3 (console_line.c), or none (no_console.c).
+ */
+#ifndef TAKT_MPS2_CONSOLE_LINE_H
+#define TAKT_MPS2_CONSOLE_LINE_H
+
+#include "port/embedded.h"
+
+/* For embedded_config. */
+struct service_lines console_line_get_lines(void);
+
+/* After embedded_init. */
+void console_line_open(struct embedded *embedded);
+
+/* From the background, as often as it comes round. */
+void console_line_serve(void);
+
+#endif

@@ -1,0 +1,48 @@
+/*
+ * Grbl's interface on a serial line of an image, beside the panel: CNCjs, UGS or a script at its other end stream lines into
+ * the program that runs. A port that has a line and the memory for it gives embedded_config the lines of a console, and calls
+ *
+ *     embedded_console_take_byte     from the interrupt of the line
+ *     embedded_console_background    from main, after embedded_background
+ *
+ * There is no check mode ($C): it would need a second program reader.
+ */
+#ifndef TAKT_PORT_EMBEDDED_CONSOLE_H
+#define TAKT_PORT_EMBEDDED_CONSOLE_H
+
+#include "console/console.h"
+#include "port/embedded.h"
+
+/* A power of two; half of it is told to senders. */
+#define EMBEDDED_CONSOLE_TEXT 2048
+
+struct embedded_console_config {
+    struct embedded *embedded; /* has been initialised; must stay */
+    const char *version;       /* of the firmware; must stay */
+    /* A piece of an answer, copied or sent; it may wait for room, since cycles interrupt it. */
+    void (*write)(void *context, const char *text, size_t length);
+    void *context; /* owned by whoever made it */
+};
+
+/* Private, but the caller owns it. */
+struct embedded_console {
+    struct embedded_console_config config;
+    struct console console;
+    struct panel_client client; /* of the panel */
+    struct line_ring received;
+    struct lines lines;
+    uint8_t text[EMBEDDED_CONSOLE_TEXT];
+};
+
+/* For embedded_config: before embedded_init. */
+struct service_lines embedded_console_get_lines(struct embedded_console *c);
+
+/* After embedded_init; the sender is welcomed. */
+void embedded_console_init(struct embedded_console *c,
+                           const struct embedded_console_config *config);
+
+void embedded_console_take_byte(struct embedded_console *c, uint8_t byte);
+
+void embedded_console_background(struct embedded_console *c);
+
+#endif

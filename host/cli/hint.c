@@ -1,0 +1,273 @@
+#include "cli/hint.h"
+
+#include "dialect/dialect.h"
+#include "dialect/line.h"
+
+#include <stdio.h>
+#include <string.h>
+
+struct hint {
+    enum takt_error code;
+    const char *text;
+};
+
+static const struct hint hints[] = {
+    {TAKT_ERROR_COMMENT_UNCLOSED, "a comment ends with ')' on its own line"},
+    {TAKT_ERROR_FEED_MISSING,
+     "give it on this line or before: F600 is 600 mm/min, or inch/min after G20; or in [codes] of "
+     "the machine file, or as --set codes.F=600, for programs that never do"},
+    {TAKT_ERROR_MOTION_MODE_MISSING,
+     "begin with G0 (rapid) or G1 (cutting); G80 and cycles end them"},
+    {TAKT_ERROR_ARC_ENDPOINT, "I J K count from the arc's start; if they are absolute, G90.1 comes "
+                              "before. Or give R instead"},
+    {TAKT_ERROR_ARC_RADIUS_SMALL, "R must be half of the distance to the end, at least"},
+    {TAKT_ERROR_ARC_CENTRE_MISSING,
+     "in G17 the centre is I J, in G18 I K, in G19 J K; G1 goes straight"},
+    {TAKT_ERROR_TOOL_ABSENT, "give a table with --tools FILE, or tool_table in the machine file; "
+                             "--tools auto takes what the program says"},
+    {TAKT_ERROR_TRAVEL_EXCEEDED, "look at the units (G20, G21), the work offsets (--parameters), "
+                                 "G91, and the travel in the machine file"},
+    {TAKT_ERROR_AXIS_MISSING,
+     "an axis is added to a machine file by [axis A]; U V W there are none"},
+    {TAKT_ERROR_SUB_UNKNOWN,
+     "its file (NAME.ngc, O1000.nc) is looked for beside the program, and in folders given by "
+     "--subroutines"},
+    {TAKT_ERROR_PARAMETER_UNDEFINED,
+     "set it before: #<name> = 0; without _ it belongs to its subroutine alone"},
+    {TAKT_ERROR_SPINDLE_STANDS, "M3 S1000 starts it"},
+    {TAKT_ERROR_TOOL_MISSING, "T1 M6 takes tool 1"},
+    {TAKT_ERROR_CUTTER_ON, "G40 ends it"},
+    {TAKT_ERROR_CUTTER_EXIT_ARC, "leave the contour by G1 or G0"},
+    {TAKT_ERROR_OFFSET_ENTRY_SHORT, "begin the contour further away than the tool's radius"},
+    {TAKT_ERROR_DWELL_MISSING, "G4 P0.5 waits for half a second"},
+    {TAKT_ERROR_OWORD_UNCLOSED, "its end has the same number or name: o1 if ... o1 endif"},
+    {TAKT_ERROR_CIRCLE, "what its condition asks for never changes"},
+    {TAKT_ERROR_LINE_TOO_LONG, "make two lines of it; comments do not count"},
+    {TAKT_ERROR_SPINDLE_NO_ENCODER, "encoder_counts in [spindle] of the machine file"},
+};
+
+/* Codes of other controllers that move something: to leave them out would cut something else. */
+static const struct {
+    const char *word;
+    const char *meaning;
+    const char *cure;
+} moving[] = {
+    {"G12", "a round pocket (Haas)", "G12 I5. F200 is read with --dialect haas"},
+    {"G13", "a round pocket (Haas)", "G13 I5. F200 is read with --dialect haas"},
+    {"G12.1", "a face cut by turning C", "C and X of one path are not calculated here"},
+    {"G112", "a face cut by turning C", "C and X of one path are not calculated here"},
+    {"G7.1", "a path on a cylinder", "C and Z of one path are not calculated here"},
+    {"G107", "a path on a cylinder", "C and Z of one path are not calculated here"},
+    {"G16", "polar coordinates", "@10 ^30 is 10 from the origin at 30 degrees"},
+    {"G32", "a thread in one cut", "G33 Z-20 K1.5 cuts it"},
+    {"G34", "a thread of changing pitch", "G33 has one pitch"},
+    {"G43.4", "the tool's tip led while rotary axes turn",
+     "write the program with a postprocessor for this machine"},
+    {"G43.5", "the tool's tip led while rotary axes turn",
+     "write the program with a postprocessor for this machine"},
+    {"G51", "a scaled program", "the program that makes programs scales them"},
+    {"G51.1", "a mirrored program", "the program that makes programs mirrors them"},
+    {"G53.1", "the tool turned upright on a tilted plane",
+     "write the program with a postprocessor for this machine"},
+    {"G68", "a turned program", "G10 L2 P1 R30 turns G54 by 30 degrees, R0 back"},
+    {"G68.2", "a tilted plane", "write the program with a postprocessor for this machine"},
+    {"G150", "a pocket of any shape (Haas)", "the program that makes programs has pockets"},
+    {"M97", "a call of a line of this program (Haas)", "M98 P1000 calls O1000"},
+};
+
+const char *hint_meaning(const struct diagnostic *d)
+{
+    for (size_t i = 0; i < sizeof moving / sizeof moving[0]; i++) {
+        if (d->code == TAKT_ERROR_WORD_UNKNOWN && strcmp(moving[i].word, d->word) == 0)
+            return moving[i].meaning;
+    }
+    return NULL;
+}
+
+static const char *cure_of(const char *word)
+{
+    for (size_t i = 0; i < sizeof moving / sizeof moving[0]; i++) {
+        if (strcmp(moving[i].word, word) == 0)
+            return moving[i].cure;
+    }
+    return NULL;
+}
+
+static const char *find(enum takt_error code)
+{
+    for (size_t i = 0; i < sizeof hints / sizeof hints[0]; i++) {
+        if (hints[i].code == code)
+            return hints[i].text;
+    }
+    return NULL;
+}
+
+static void write(char text[HINT_MAX], const char *hint)
+{
+    (void)snprintf(text, HINT_MAX, "    %s\n", hint);
+}
+
+/* Codes of the line, such as "G0 and G28". */
+static unsigned list_codes(const char *line, size_t length, char *text, size_t size)
+{
+    static _Thread_local struct line l;
+    unsigned count = 0;
+    size_t used = 0;
+
+    text[0] = '\0';
+    if (!line_read(&l, line, length))
+        return 0;
+    for (unsigned i = 0; i < l.words; i++) {
+        const struct line_word *w = &l.word[i];
+
+        if (line_code(w) >= 0 && used < size)
+            used += (size_t)snprintf(text + used, size - used, "%s%.*s", count++ > 0 ? ", " : "",
+                                     (int)(w->end - w->begin), &l.text[w->begin]);
+    }
+    return count;
+}
+
+static void write_shared(const char *line, size_t length, char text[HINT_MAX])
+{
+    char codes[128];
+
+    if (list_codes(line, length, codes, sizeof codes) > 1)
+        (void)snprintf(text, HINT_MAX, "    give these codes lines of their own: %s\n", codes);
+}
+
+/* The code that stands where the error is. */
+static void write_missing(const struct diagnostic *d, const char *line, size_t length, size_t at,
+                          char text[HINT_MAX])
+{
+    static _Thread_local struct line l;
+
+    if (!line_read(&l, line, length))
+        return;
+    for (unsigned i = 0; i < l.words; i++) {
+        const struct line_word *w = &l.word[i];
+
+        if (w->begin <= at && at < w->end)
+            (void)snprintf(text, HINT_MAX, "    %.*s needs %s on its line\n",
+                           (int)(w->end - w->begin), &l.text[w->begin], d->word);
+    }
+}
+
+/* Characters that only look like others: minus signs and spaces of text processors. */
+static const char *look_alike(const unsigned char *c, size_t left)
+{
+    if (left >= 3 && c[0] == 0xe2 && c[1] == 0x88 && c[2] == 0x92)
+        return "this is another character than '-': type it anew";
+    if (left >= 3 && c[0] == 0xe2 && c[1] == 0x80 && (c[2] == 0x93 || c[2] == 0x94))
+        return "this is a dash of a text processor, not '-': type it anew";
+    if (left >= 2 && c[0] == 0xc2 && c[1] == 0xa0)
+        return "this is a space of a text processor: type it anew";
+    if (left >= 1 && c[0] == ',')
+        return "decimals have a point: X1.5";
+    if (left >= 1 && c[0] != '\0' && strchr("+-*/", (char)c[0]) != NULL)
+        return "calculations stand in brackets: #1 = [#2 + 3], X[#1 * 2]";
+    return NULL;
+}
+
+static void write_character(const char *line, size_t length, size_t at, char text[HINT_MAX])
+{
+    const char *hint =
+        at < length ? look_alike((const unsigned char *)line + at, length - at) : NULL;
+
+    if (hint != NULL)
+        write(text, hint);
+}
+
+/* The letter O for the digit 0. */
+static void write_number(const char *line, size_t length, size_t at, char text[HINT_MAX])
+{
+    if (at + 1 < length && line_lower(line[at + 1]) == 'o')
+        write(text, "this is the letter O, not the digit 0");
+}
+
+/* Only the machine's owner can know what it is for. */
+static void write_code(const struct diagnostic *d, char text[HINT_MAX])
+{
+    struct dialect_code code;
+
+    if (cure_of(d->word) != NULL)
+        write(text, cure_of(d->word));
+    else if (dialect_code_read(&code, d->word, "ignore") == NULL)
+        (void)snprintf(text, HINT_MAX,
+                       "    if this machine can do without it, add to the machine file, or as "
+                       "--set codes.%s=ignore:\n"
+                       "    [codes]\n"
+                       "    %s = ignore         (or: stop, output 3 on, subroutine NAME)\n",
+                       d->word, d->word);
+}
+
+/* LinuxCNC's configuration and signals: _INI[TRAJ]X is a number of the machine file. */
+static bool write_value(const struct diagnostic *d, char text[HINT_MAX])
+{
+    const bool asked = d->code == TAKT_ERROR_PARAMETER_UNDEFINED &&
+                       (strncmp(d->word, "_INI[", 5) == 0 || strncmp(d->word, "_HAL[", 5) == 0);
+
+    if (asked)
+        (void)snprintf(text, HINT_MAX,
+                       "    the machine file answers it, in the letters of the program:\n"
+                       "    [values]\n"
+                       "    _%c%c%c%s = NUMBER\n",
+                       line_lower(d->word[1]), line_lower(d->word[2]), line_lower(d->word[3]),
+                       d->word + 4);
+    return asked;
+}
+
+/* #NAME, which the sender puts a number for. */
+static bool write_name(const struct diagnostic *d, const char *line, size_t length, size_t at,
+                       char text[HINT_MAX])
+{
+    const bool asked = d->code == TAKT_ERROR_PARAMETER_UNDEFINED && at > 0 && at < length &&
+                       line[at - 1] == '#' && line_lower(line[at]) == line_lower(d->word[0]);
+
+    if (asked)
+        (void)snprintf(
+            text, HINT_MAX,
+            "    the number that the program's sender puts here, to the machine file, or "
+            "as --set values.%s=0:\n"
+            "    [values]\n"
+            "    %s = 0\n",
+            d->word, d->word);
+    return asked;
+}
+
+/* T="NAME" of Siemens' controllers. */
+static bool write_tool(const struct diagnostic *d, char text[HINT_MAX])
+{
+    const bool asked =
+        d->code == TAKT_ERROR_PARAMETER_UNDEFINED && strncmp(d->word, "TOOL_", 5) == 0;
+
+    if (asked)
+        (void)snprintf(text, HINT_MAX,
+                       "    the number of the tool of this name, to the machine file, or as "
+                       "--set values.%s=1:\n"
+                       "    [values]\n"
+                       "    %s = 1\n",
+                       d->word, d->word);
+    return asked;
+}
+
+void hint_write(const struct diagnostic *d, const char *line, size_t length, size_t at,
+                char text[HINT_MAX])
+{
+    const char *hint = find(d->code);
+
+    text[0] = '\0';
+    if (write_value(d, text) || write_tool(d, text) || write_name(d, line, length, at, text))
+        return;
+    if (hint != NULL)
+        write(text, hint);
+    else if (d->code == TAKT_ERROR_WORD_UNKNOWN)
+        write_code(d, text);
+    else if (d->code == TAKT_ERROR_WORD_SHARED || d->code == TAKT_ERROR_WORDS_CONFLICT)
+        write_shared(line, length, text);
+    else if (d->code == TAKT_ERROR_WORD_MISSING)
+        write_missing(d, line, length, at, text);
+    else if (d->code == TAKT_ERROR_CHARACTER_UNKNOWN)
+        write_character(line, length, at, text);
+    else if (d->code == TAKT_ERROR_NUMBER_EXPECTED)
+        write_number(line, length, at, text);
+}

@@ -1,0 +1,133 @@
+#define _XOPEN_SOURCE 700
+
+#include "cli/output_file.h"
+
+#include "cli/message.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+static bool output_file_fail(struct output_file *file, const char *what)
+{
+    message_command_error("%s %s: %s", file->path, what, strerror(errno));
+    output_file_discard(file);
+    return false;
+}
+
+/* Where the bytes will end up: behind links, so that renaming replaces the file and not the link. */
+static bool output_file_resolve(struct output_file *file, const char *path, bool *straight)
+{
+    struct stat status;
+    char *real = realpath(path, NULL);
+
+    (void)snprintf(file->path, sizeof file->path, "%s", real != NULL ? real : path);
+    free(real);
+    if (strlen(path) >= sizeof file->path) {
+        errno = ENAMETOOLONG;
+        return false;
+    }
+    *straight = stat(file->path, &status) == 0 && !S_ISREG(status.st_mode);
+    return true;
+}
+
+static FILE *output_file_open_aside(struct output_file *file)
+{
+    mode_t mask = umask(0);
+    int descriptor;
+
+    (void)umask(mask);
+    (void)snprintf(file->aside, sizeof file->aside, "%s.part-XXXXXX", file->path);
+    descriptor = mkstemp(file->aside);
+    if (descriptor < 0) {
+        file->aside[0] = '\0';
+        return NULL;
+    }
+    /* mkstemp makes files only their owner can read; give it the rights any new file would have. */
+    (void)fchmod(descriptor, 0666 & ~mask);
+    return fdopen(descriptor, "w+b");
+}
+
+bool output_file_open(struct output_file *file, const char *path)
+{
+    bool straight = false;
+
+    file->stream = NULL;
+    file->aside[0] = '\0';
+    if (strcmp(path, "-") == 0) {
+        (void)snprintf(file->path, sizeof file->path, "<stdout>");
+        file->stream = stdout;
+        return true;
+    }
+    if (!output_file_resolve(file, path, &straight))
+        return output_file_fail(file, "cannot be created");
+    file->stream = straight ? fopen(file->path, "wb") : output_file_open_aside(file);
+    return file->stream != NULL || output_file_fail(file, "cannot be created");
+}
+
+static bool output_file_close(struct output_file *file)
+{
+    FILE *stream = file->stream;
+    bool good = fflush(stream) == 0 && ferror(stream) == 0;
+
+    file->stream = NULL;
+    if (stream != stdout)
+        good = fclose(stream) == 0 && good;
+    return good;
+}
+
+/* A name may reach the disk before what it names: then a power cut leaves an empty file under it. */
+static bool output_file_keep(const struct output_file *file)
+{
+    return file->aside[0] == '\0' ||
+           (fflush(file->stream) == 0 && fsync(fileno(file->stream)) == 0);
+}
+
+bool output_file_finish(struct output_file *file)
+{
+    return (output_file_keep(file) && output_file_close(file)) ||
+           output_file_fail(file, "cannot be written");
+}
+
+/* The new name, too. Where folders cannot be kept so, a power cut may leave the old file: that is whole as well. */
+static void keep_folder(const char *path)
+{
+    char folder[OUTPUT_PATH_MAX];
+    char *name;
+    int descriptor;
+
+    (void)snprintf(folder, sizeof folder, "%s", path);
+    name = strrchr(folder, '/');
+    if (name == NULL)
+        (void)snprintf(folder, sizeof folder, ".");
+    else
+        name[name == folder ? 1 : 0] = '\0';
+    descriptor = open(folder, O_RDONLY);
+    if (descriptor < 0)
+        return;
+    (void)fsync(descriptor);
+    (void)close(descriptor);
+}
+
+bool output_file_place(struct output_file *file)
+{
+    if (file->aside[0] == '\0')
+        return true;
+    if (rename(file->aside, file->path) != 0)
+        return output_file_fail(file, "cannot be put in place");
+    file->aside[0] = '\0';
+    keep_folder(file->path);
+    return true;
+}
+
+void output_file_discard(struct output_file *file)
+{
+    if (file->stream != NULL)
+        (void)output_file_close(file);
+    if (file->aside[0] != '\0')
+        (void)unlink(file->aside);
+    file->aside[0] = '\0';
+}

@@ -1,0 +1,223 @@
+#include "results/summary.h"
+
+#include "base/maths.h"
+#include "cli/axis_unit.h"
+
+/* Above the largest chord error a machine allows: rounding of the planner's and the judge's formula. */
+#define SUMMARY_CHORD_ROOM_MM 1e-6
+
+const char *summary_outcome_name(enum summary_outcome outcome)
+{
+    static const char *const names[] = {"completed", "stopped", "faulted", "interrupted"};
+
+    return names[outcome];
+}
+
+double summary_program_time_s(const struct summary *summary)
+{
+    return (double)summary->figures.cycles * summary->cycle_s;
+}
+
+double summary_realtime_ratio(const struct summary *summary)
+{
+    return summary->wall_time_s > 0 ? summary_program_time_s(summary) / summary->wall_time_s : 0;
+}
+
+bool summary_held(const struct summary *summary)
+{
+    for (unsigned i = 0; i < summary->checks; i++) {
+        if (!summary->check[i].held)
+            return false;
+    }
+    return true;
+}
+
+enum command_status summary_status(const struct summary *summary)
+{
+    if (summary->outcome == OUTCOME_INTERRUPTED)
+        return summary->interrupted;
+    if (!summary_held(summary))
+        return STATUS_FAILED;
+    return summary->outcome == OUTCOME_STOPPED ? STATUS_STOPPED : STATUS_DONE;
+}
+
+/* axis: index, or AXIS_COUNT for a check that is not of an axis. */
+static void add_check(struct summary *summary, const char *name, unsigned axis, const char *unit,
+                      double value, double limit)
+{
+    struct summary_check *check = &summary->check[summary->checks++];
+
+    if (axis < AXIS_COUNT)
+        (void)snprintf(check->name, sizeof check->name, "%s.%c", name, AXIS_LETTERS[axis]);
+    else
+        (void)snprintf(check->name, sizeof check->name, "%s", name);
+    check->unit = unit;
+    check->value = value;
+    check->limit = limit;
+    check->held = value <= limit;
+}
+
+static void check_axis(struct summary *summary, unsigned i)
+{
+    static const char *const units[2][3] = {{"mm/s", "mm/s2", "mm/s3"},
+                                            {"deg/s", "deg/s2", "deg/s3"}};
+    const char *const *unit = units[axis_unit_is_rotary(i) ? 1 : 0];
+    const struct machine_axis *axis = &summary->machine->axis[i];
+    const struct judge_figures *figures = &summary->figures;
+    double ratio = axis_unit_ratio(i);
+
+    add_check(summary, "velocity", i, unit[0], figures->velocity_mm_s[i] * ratio,
+              axis->max_velocity_mm_s * ratio * JUDGE_VELOCITY_RATIO);
+    add_check(summary, "acceleration", i, unit[1], figures->acceleration_mm_s2[i] * ratio,
+              axis->max_acceleration_mm_s2 * ratio * JUDGE_ACCELERATION_RATIO);
+    add_check(summary, "jerk", i, unit[2], figures->jerk_mm_s3[i] * ratio,
+              axis->max_jerk_mm_s3 * ratio * JUDGE_JERK_RATIO);
+    if (axis->following_error_max_mm > 0)
+        add_check(summary, "following", i, axis_unit_name(i),
+                  figures->following_error_mm[i] * ratio, axis->following_error_max_mm * ratio);
+    if (machine_axis_is_stepped(axis))
+        add_check(summary, "missed_steps", i, "steps", (double)summary->steppers->axis[i].missed,
+                  0);
+}
+
+static void check_path(struct summary *summary)
+{
+    const struct judge_figures *figures = &summary->figures;
+
+    add_check(summary, "landing", AXIS_COUNT, "mm", figures->landing_error_mm,
+              JUDGE_LANDING_MAX_MM);
+    add_check(summary, "path", AXIS_COUNT, "mm", figures->path_error_mm,
+              JUDGE_PATH_MAX_MM + figures->chord_error_mm);
+    if (figures->smoothed_path_part > 0) {
+        add_check(summary, "smoothed_path", AXIS_COUNT, "of P", figures->smoothed_path_part, 1);
+        add_check(summary, "smoothed_corner", AXIS_COUNT, "of P", figures->smoothed_corner_part, 1);
+    }
+    add_check(summary, "chord", AXIS_COUNT, "mm", figures->chord_error_mm,
+              1.0 / summary->machine->resolution_per_mm + SUMMARY_CHORD_ROOM_MM);
+}
+
+/* After a complete run nothing may be missing; a run that ended early may only not have done what is not there. */
+static void check_blocks(struct summary *summary, const struct summary_source *source)
+{
+    double missing = source->judge->strayed ? 1 : 0;
+
+    if (source->outcome == OUTCOME_COMPLETED && !source->judge->strayed)
+        missing = source->totals->is_open
+                      ? maths_abs(judge_get_missing(source->judge))
+                      : maths_abs((double)source->totals->last - (double)summary->figures.blocks);
+    add_check(summary, "blocks_missing", AXIS_COUNT, "", missing, 0);
+}
+
+static void set_cost(struct summary *summary, const struct cycle_cost *cost)
+{
+    summary->cost_measured = cost->count > 0;
+    if (!summary->cost_measured)
+        return;
+    summary->cost_min_ns = (double)cost->min_ns;
+    summary->cost_mean_ns = (double)cost->sum_ns / (double)cost->count;
+    summary->cost_p99_ns = cycle_cost_get_p99_ns(cost);
+    summary->cost_max_ns = (double)cost->max_ns;
+}
+
+/* Predicted and observed; what faults of the bus and frames that nobody wants have done is no fault of the prediction. */
+static void set_responses(struct summary *summary, const struct field *field,
+                          const struct drives *drives)
+{
+    double nearest = 0;
+
+    bus_plan_set(&summary->bus_plan, summary->machine, drives);
+    summary->responses_observed = field->link == NULL && summary->figures.cycles > 0;
+    if (!summary->responses_observed)
+        return;
+    bus_plan_get_observed(&summary->bus_plan, &field->bus, summary->response_ns);
+    for (unsigned i = 0; i < summary->bus_plan.count; i++)
+        nearest = maths_max(nearest, 100.0 * (double)summary->response_ns[i] /
+                                         (double)summary->bus_plan.worst_ns[i]);
+    bool is_planned = !drives_table_has(&summary->drives, DRIVES_NO_SILENCE) &&
+                      !drives_table_has(&summary->drives, DRIVES_NO_ONE_REPORT);
+    if (field->bus.fault_count == 0 && is_planned)
+        add_check(summary, "bus_response", AXIS_COUNT, "%", nearest, 100);
+}
+
+static void set_pace(struct summary *summary, const struct field *field)
+{
+    summary->is_paced = field->is_paced;
+    if (!field->is_paced)
+        return;
+    pace_get_figures(&field->pace, &summary->pace);
+    summary->permission = field->permission;
+}
+
+/* Whatever the image did otherwise than the host, it did wrong. */
+static void set_target(struct summary *summary, const struct simulation *simulation)
+{
+    if (!simulation->has_target)
+        return;
+    summary->target = &simulation->target;
+    add_check(summary, "target", AXIS_COUNT, "cycles", (double)simulation->target.differences, 0);
+}
+
+/* The same of drives. */
+static void set_drive_images(struct summary *summary, const struct simulation *simulation)
+{
+    const struct drive_images *images = &simulation->field.images;
+
+    if (images->count == 0)
+        return;
+    summary->drive_images = images;
+    add_check(summary, "drive_images", AXIS_COUNT, "frames and torques",
+              (double)drive_images_differences(images), 0);
+}
+
+static void set_fault(struct summary *summary, const struct diagnostic *fault)
+{
+    const char *remedy = drives_table_remedy(fault);
+    char text[DIAGNOSTIC_TEXT_MAX];
+
+    (void)diagnostic_text(fault, text);
+    (void)snprintf(summary->fault, sizeof summary->fault, "%s%s%s", text,
+                   remedy[0] != '\0' ? ": " : "", remedy);
+}
+
+void summary_set(struct summary *summary, const struct summary_source *source)
+{
+    const struct simulation *simulation = source->simulation;
+    const struct machine *machine = &source->session->setup.machine;
+    const struct drives *drives = controller_get_drives(&simulation->controller);
+
+    *summary = (struct summary){
+        .program = source->session->program.name,
+        .machine = machine,
+        .outcome = source->outcome,
+        .interrupted = source->interrupted,
+        .cycle_s = 1e-6 * (double)machine->cycle_us,
+        .wall_time_s = source->wall_time_s,
+        .figures = source->judge->figures,
+        .correction = simulation->correction,
+        .tool_point = simulation->tool_point,
+        .steppers = &simulation->field.steppers,
+        .interpolator = *controller_get_interpolator_errors(&simulation->controller),
+        .bus_frames = field_get_frames(&simulation->field),
+        .bus_load_percent = field_get_load_percent(&simulation->field),
+        .bus_predicted_percent = machine_setup_predict_load_percent(machine),
+    };
+    tool_point_finish(&summary->tool_point);
+    drives_table_set(&summary->drives, drives);
+    if (summary->drives.load.percent > 0)
+        summary->bus_predicted_percent = summary->drives.load.percent;
+    if (source->outcome == OUTCOME_FAULTED)
+        set_fault(summary, controller_get_fault(&simulation->controller));
+    set_cost(summary, &simulation->cost);
+    for (unsigned i = 0; i < AXIS_COUNT; i++) {
+        if (machine->axis[i].present)
+            check_axis(summary, i);
+    }
+    check_path(summary);
+    check_blocks(summary, source);
+    add_check(summary, "bus_load", AXIS_COUNT, "%", summary->bus_load_percent, 100);
+    set_responses(summary, &simulation->field, drives);
+    set_pace(summary, &simulation->field);
+    set_target(summary, simulation);
+    set_drive_images(summary, simulation);
+    add_check(summary, "fault", AXIS_COUNT, "", source->outcome == OUTCOME_FAULTED ? 1 : 0, 0);
+}

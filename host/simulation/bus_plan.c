@@ -1,0 +1,158 @@
+#include "simulation/bus_plan.h"
+
+#include "canopen/nmt.h"
+#include "canopen/node.h"
+#include "canopen/pdo.h"
+#include "canopen/sdo.h"
+#include "canopen/sync.h"
+
+#include <string.h>
+
+#define HEARTBEAT_LENGTH 1
+
+/*
+ * Each is given once between two SYNCs, answers after the SYNC they answer. So as long as all end
+ * before the next SYNC, none meets two of another, and the time an answer waits for its SYNC is no
+ * jitter.
+ */
+static void add_message(struct bus_plan *plan, const char *name, unsigned id, unsigned length,
+                        enum bus_plan_group group)
+{
+    plan->name[plan->count] = name;
+    plan->group[plan->count] = group;
+    plan->message[plan->count++] = (struct bus_message){
+        .id = (uint16_t)id, .length = (uint8_t)length, .period_ns = plan->cycle_ns};
+}
+
+static void add_pdo(struct bus_plan *plan, const struct drives_pdo *pdo)
+{
+    static const char *const names[] = {[DRIVES_PDO_REPORT] = "TPDO1",
+                                        [DRIVES_PDO_TARGET] = "RPDO2",
+                                        [DRIVES_PDO_INPUTS] = "inputs",
+                                        [DRIVES_PDO_OUTPUTS] = "outputs"};
+
+    if (pdo->kind == DRIVES_PDO_ERROR) {
+        plan->error_id[plan->error_count++] = pdo->id;
+        plan->error_length = pdo->length > plan->error_length ? pdo->length : plan->error_length;
+    } else {
+        add_message(plan, names[pdo->kind], pdo->id, pdo->length, BUS_PLAN_ALONE);
+    }
+}
+
+static bool has_between(const struct bus_plan *plan, unsigned lowest, unsigned highest)
+{
+    bool has = false;
+
+    for (unsigned i = 0; i < plan->count; i++)
+        has = has || (plan->message[i].id > lowest && plan->message[i].id < highest);
+    return has;
+}
+
+/*
+ * One of them comes in a cycle. As it may be any, it stands where it delays most, and, if others are between, also where
+ * it is delayed most.
+ */
+static void add_errors(struct bus_plan *plan)
+{
+    unsigned lowest = NODE_FUNCTION_MASK + NODE_MAX, highest = 0;
+
+    for (unsigned i = 0; i < plan->error_count; i++) {
+        lowest = plan->error_id[i] < lowest ? plan->error_id[i] : lowest;
+        highest = plan->error_id[i] > highest ? plan->error_id[i] : highest;
+    }
+    if (plan->error_count > 0)
+        add_message(plan, "TPDO2", lowest, plan->error_length, BUS_PLAN_ERRORS);
+    if (has_between(plan, lowest, highest))
+        add_message(plan, "TPDO2", highest, plan->error_length, BUS_PLAN_ERRORS);
+}
+
+static void add_states(struct bus_plan *plan, const struct drives *drives)
+{
+    const unsigned id = NMT_HEARTBEAT_FUNCTION + NODE_MIN;
+
+    add_message(plan, "heartbeat", id, HEARTBEAT_LENGTH, BUS_PLAN_STATES);
+    if (drives_are_guarding(drives)) {
+        add_message(plan, "guarding", id + 1, 0, BUS_PLAN_STATES);
+        add_message(plan, "its answer", id + 2, HEARTBEAT_LENGTH, BUS_PLAN_STATES);
+    }
+}
+
+/* Any of a group may be the last of it. */
+static void level_groups(struct bus_plan *plan)
+{
+    for (unsigned i = 0; i < plan->count; i++)
+        for (unsigned k = 0; k < plan->count; k++)
+            if (plan->group[i] != BUS_PLAN_ALONE && plan->group[k] == plan->group[i] &&
+                plan->worst_ns[k] > plan->worst_ns[i])
+                plan->worst_ns[i] = plan->worst_ns[k];
+}
+
+void bus_plan_set(struct bus_plan *plan, const struct machine *machine, const struct drives *drives)
+{
+    struct drives_pdo pdo[DRIVES_CYCLE_PDOS_MAX];
+    unsigned count = drives_get_pdos(drives, pdo);
+
+    memset(plan, 0, sizeof *plan);
+    plan->bitrate = machine->can_bitrate;
+    plan->cycle_ns = (uint64_t)machine->cycle_us * 1000;
+    add_message(plan, "SYNC", SYNC_COB_ID, 0, BUS_PLAN_ALONE);
+    for (unsigned i = 0; i < count; i++)
+        add_pdo(plan, &pdo[i]);
+    add_errors(plan);
+    if (drives_have_probed(drives)) {
+        add_message(plan, "SDO answer", SDO_RESPONSE_FUNCTION + NODE_MIN, CAN_DATA_MAX,
+                    BUS_PLAN_SDO);
+        add_message(plan, "SDO request", SDO_REQUEST_FUNCTION + NODE_MIN, CAN_DATA_MAX,
+                    BUS_PLAN_SDO);
+    }
+    add_states(plan, drives);
+    (void)bus_response_predict(plan->message, plan->count, plan->bitrate, plan->worst_ns);
+    level_groups(plan);
+}
+
+static uint32_t longest_of_function(const struct bus *bus, unsigned function)
+{
+    uint32_t most_ns = 0;
+
+    for (unsigned node = NODE_MIN; node <= NODE_MAX; node++) {
+        uint32_t response_ns = bus_get_response_max_ns(bus, function + node);
+
+        most_ns = response_ns > most_ns ? response_ns : most_ns;
+    }
+    return most_ns;
+}
+
+static uint32_t longest_of_errors(const struct bus_plan *plan, const struct bus *bus)
+{
+    uint32_t most_ns = 0;
+
+    for (unsigned i = 0; i < plan->error_count; i++) {
+        uint32_t response_ns = bus_get_response_max_ns(bus, plan->error_id[i]);
+
+        most_ns = response_ns > most_ns ? response_ns : most_ns;
+    }
+    return most_ns;
+}
+
+static uint32_t find_observed_ns(const struct bus_plan *plan, const struct bus *bus, unsigned i)
+{
+    const unsigned id = plan->message[i].id;
+
+    switch (plan->group[i]) {
+    case BUS_PLAN_ERRORS:
+        return longest_of_errors(plan, bus);
+    case BUS_PLAN_SDO:
+    case BUS_PLAN_STATES:
+        return longest_of_function(bus, node_function((uint16_t)id));
+    case BUS_PLAN_ALONE:
+        break;
+    }
+    return bus_get_response_max_ns(bus, id);
+}
+
+void bus_plan_get_observed(const struct bus_plan *plan, const struct bus *bus,
+                           uint64_t observed_ns[BUS_PLAN_MAX])
+{
+    for (unsigned i = 0; i < plan->count; i++)
+        observed_ns[i] = find_observed_ns(plan, bus, i);
+}

@@ -1,0 +1,198 @@
+#include "simulation/drives_table.h"
+
+#include <string.h>
+
+/* In the order of enum drives_given_up. */
+static const struct {
+    const char *name;   /* in JSON */
+    const char *object; /* that is not as takt would have it */
+    const char *follows;
+} rows[DRIVES_GIVEN_UP_COUNT] = {
+    [DRIVES_NO_PAIR] = {"pair", "1601", "no dummy mapping: its target has a frame of its own"},
+    [DRIVES_NO_MAPPING] = {"mapping", "1600 1A00",
+                           "the mapping cannot be changed: PDOs are used as they are"},
+    [DRIVES_NO_SILENCE] = {"silence", "1800", "sends PDOs that nobody needs, which load the bus"},
+    [DRIVES_NO_ONE_REPORT] = {"one_report", "6041 6064",
+                              "not in one PDO: two frames in every cycle"},
+    [DRIVES_NO_CSP] = {"csp", "6502",
+                       "interpolated position mode instead of cyclic synchronous position"},
+    [DRIVES_NO_MODES] = {"modes", "6502",
+                         "does not tell its modes: cyclic synchronous position is tried"},
+    [DRIVES_NO_MODE_PDO] = {"mode_pdo", "6060", "not in a PDO: the mode is told by SDO"},
+    [DRIVES_NO_CONTROL_PDO] = {"control_pdo", "6040",
+                               "not in a PDO: the controlword is told by SDO, a stop comes later"},
+    [DRIVES_NO_MODE_DISPLAY] = {"mode_display", "6061", "cannot be read: the mode is believed"},
+    [DRIVES_NO_SYNC_TARGET] =
+        {"sync_target", "1401:02",
+         "the target acts when it comes, not with SYNC: axes are less simultaneous"},
+    [DRIVES_NO_ERROR_PDO] = {"error_pdo", "603F",
+                             "not in a PDO: a lost emergency leaves a fault without a code"},
+    [DRIVES_NO_EVENT_TIMER] = {"event_timer", "1801:05",
+                               "the error code is told once, when it changes"},
+    [DRIVES_NO_HEARTBEAT] = {"heartbeat", "1017", "the drive is watched by its status alone"},
+    [DRIVES_NO_WATCH] = {"watch", "1016",
+                         "the drive does not notice when the controller falls silent"},
+    [DRIVES_NO_SYNC_PERIOD] = {"sync_period", "1006",
+                               "the drive may not notice when SYNC stays out"},
+    [DRIVES_NO_PERIOD] = {"period", "60C2", "the drive is not told the time between targets"},
+    [DRIVES_NO_STOP_OPTION] = {"stop_option", "6007 605A 605E", "the drive stops as it is set up"},
+    [DRIVES_NO_HOMING_SPEED] = {"homing_speed", "6099 609A",
+                                "the drive homes as fast as it is set up"},
+    [DRIVES_NO_TOUCH_PROBE] = {"touch_probe", "60B8",
+                               "no touch probe: a probing move has the position of a cycle"},
+    [DRIVES_NO_SCALING] = {"scaling", "608F 6091 6092",
+                           "is not told: increments_per_mm is believed"},
+    [DRIVES_NO_POSITION] = {"position", "6502",
+                            "a mode of velocity: the controller closes the position loop"},
+    [DRIVES_NO_RAMPS] = {"ramps", "6083 6084", "the drive goes to a velocity as it is set up"},
+    [DRIVES_NO_TYPE] = {"type", "1000", "the type is not that of a drive: it is taken for one"},
+    [DRIVES_GUARDED] = {"guarded", "1017", "no heartbeat: the drive is asked for its state (100C)"},
+};
+
+void drives_table_set(struct drives_table *table, const struct drives *drives)
+{
+    memset(table, 0, sizeof *table);
+    for (unsigned i = 0; i < AXIS_COUNT; i++)
+        table->given_up[i] = drives_get_given_up(drives, (enum axis)i);
+    if (drives_get_state(drives) != DRIVES_STARTING)
+        drives_get_load(drives, &table->load);
+}
+
+bool drives_table_has(const struct drives_table *table, enum drives_given_up what)
+{
+    uint32_t any = 0;
+
+    for (unsigned i = 0; i < AXIS_COUNT; i++)
+        any |= table->given_up[i];
+    return any >> what & 1;
+}
+
+static bool has_row(const struct drives_table *table, unsigned axis, unsigned row)
+{
+    return table->given_up[axis] >> row & 1;
+}
+
+static void write_row(FILE *stream, const struct drives_table *table, unsigned row,
+                      const char *head)
+{
+    char axes[AXIS_COUNT + 1];
+    unsigned count = 0;
+
+    for (unsigned i = 0; i < AXIS_COUNT; i++)
+        if (has_row(table, i, row))
+            axes[count++] = AXIS_LETTERS[i];
+    axes[count] = '\0';
+    (void)fprintf(stream, "  %-14s%-7s %-15s %s\n", head, axes, rows[row].object,
+                  rows[row].follows);
+}
+
+void drives_table_write_text(FILE *stream, const struct drives_table *table)
+{
+    const char *head = "given up";
+
+    for (unsigned row = 0; row < DRIVES_GIVEN_UP_COUNT; row++) {
+        if (!drives_table_has(table, (enum drives_given_up)row))
+            continue;
+        write_row(stream, table, row, head);
+        head = "";
+    }
+}
+
+void drives_table_write_bits(FILE *stream, uint32_t given_up)
+{
+    for (unsigned row = 0; row < DRIVES_GIVEN_UP_COUNT; row++)
+        if (given_up >> row & 1)
+            (void)fprintf(stream, "  %-15s %s\n", rows[row].object, rows[row].follows);
+}
+
+bool drives_table_tell(const struct drives *drives, bool is_quiet)
+{
+    struct drives_table table;
+
+    if (drives_get_state(drives) != DRIVES_ENABLED)
+        return false;
+    drives_table_set(&table, drives);
+    if (!is_quiet)
+        drives_table_write_text(stderr, &table);
+    return true;
+}
+
+static void add_drive(cJSON *drives, const struct drives_table *table, unsigned axis, unsigned node)
+{
+    const char letter[] = {AXIS_LETTERS[axis], '\0'};
+    cJSON *drive = cJSON_CreateObject();
+
+    cJSON_AddStringToObject(drive, "axis", letter);
+    cJSON_AddNumberToObject(drive, "node", node);
+    cJSON *given_up = cJSON_AddArrayToObject(drive, "given_up");
+
+    for (unsigned row = 0; row < DRIVES_GIVEN_UP_COUNT; row++)
+        if (has_row(table, axis, row))
+            cJSON_AddItemToArray(given_up, cJSON_CreateString(rows[row].name));
+    cJSON_AddItemToArray(drives, drive);
+}
+
+void drives_table_add_json(cJSON *root, const struct drives_table *table,
+                           const struct machine *machine)
+{
+    cJSON *drives = cJSON_AddArrayToObject(root, "drives");
+
+    for (unsigned i = 0; i < AXIS_COUNT; i++)
+        if (machine_axis_is_on_can(&machine->axis[i]))
+            add_drive(drives, table, i, machine->axis[i].drive_node);
+}
+
+const char *drives_table_remedy(const struct diagnostic *fault)
+{
+    switch ((int)fault->code) {
+    case TAKT_ERROR_DRIVE_ABSENT:
+        return "look at its power, node id, bit rate and termination; if it boots more slowly, "
+               "make "
+               "boot_timeout_ms in [bus] longer";
+    case TAKT_ERROR_DRIVE_UNANSWERED:
+        return "if it answers more slowly, make sdo_timeout_ms in [bus] longer, if it boots more "
+               "slowly, "
+               "boot_timeout_ms";
+    case TAKT_ERROR_DRIVE_TYPE:
+    case TAKT_ERROR_DRIVE_IDENTITY:
+        return "look at drive_node and the node ids of the drives; drive_vendor, drive_product, "
+               "drive_revision and drive_serial say what is expected";
+    case TAKT_ERROR_DRIVE_MODES:
+        return "choose another firmware or set-up of the drive; home_order = 0 for one that cannot "
+               "home";
+    case TAKT_ERROR_DRIVE_MODE:
+        return "look at the set-up of the drive, objects 6060 and 6502";
+    case TAKT_ERROR_DRIVE_REFUSES:
+        return "set it up with the maker's tool; homing is home_order, home_method and "
+               "home_offset_mm, ramps (6083, 6084) must not be slower than max_acceleration_mm_s2";
+    case TAKT_ERROR_DRIVE_UNMAPPED:
+        return "map it with the maker's tool into a PDO that is valid and of transmission type 1, "
+               "and store that";
+    case TAKT_ERROR_DRIVE_SHARES:
+        return "give each drive a PDO with an identifier of its own with the maker's tool, or "
+               "drive_is_set_up = 0";
+    case TAKT_ERROR_DRIVE_UNWATCHED:
+        return "set up its consumer heartbeat (1016) or guarding (100C and 100D) with the maker's "
+               "tool; heartbeat_ms in [bus] must not be 0";
+    case TAKT_ERROR_DRIVE_PERIOD:
+        return "set cycle_us in [machine] to that time, or 60C2 with the maker's tool";
+    case TAKT_ERROR_DRIVE_SCALING:
+        return "correct increments_per_mm or travel_per_turn_mm, or objects 608F, 6091 and 6092 "
+               "with the maker's tool";
+    case TAKT_ERROR_DRIVE_SKEW:
+        return "look at the switches of both drives, and at home_offset_mm and skew_max_mm in "
+               "[gantry]";
+    case TAKT_ERROR_IO_ABSENT:
+    case TAKT_ERROR_IO_TYPE:
+    case TAKT_ERROR_IO_UNANSWERED:
+        return "look at its power, bit rate and termination, and at node in its section [io N]";
+    case TAKT_ERROR_IO_REFUSES:
+    case TAKT_ERROR_IO_UNMAPPED:
+        return "give the node the defaults of its maker (object 1011), or wire fewer bits in its "
+               "section [io N]";
+    case TAKT_ERROR_BUS_OVERLOAD:
+        return "make cycle_us in [machine] longer, or bitrate in [bus] higher";
+    default:
+        return "";
+    }
+}

@@ -1,0 +1,116 @@
+/*
+ * What a controller is connected to: a CAN bus and the drives on it.
+ *
+ * Bus and drives are virtual and inside this process (virtual time: as fast as it goes), or
+ * outside: then a cycle lasts until all drives have answered (simulation/lockstep.h). Either may be paced
+ * by the wall clock instead.
+ */
+#ifndef TAKT_HOST_FIELD_H
+#define TAKT_HOST_FIELD_H
+
+#include "bus/bus.h"
+#include "bus/link.h"
+#include "cli/status.h"
+#include "config/machine_setup.h"
+#include "drives/virtual_drives.h"
+#include "simulation/bus_return.h"
+#include "simulation/drive_images.h"
+#include "simulation/lockstep.h"
+#include "simulation/pace.h"
+#include "stepper/virtual_steppers.h"
+
+#include <stdbool.h>
+#include <stdint.h>
+
+/* What has gone over an outside bus. */
+struct field_traffic {
+    struct frame_bits tables;
+    uint64_t frames;
+    uint64_t bits;             /* intermissions included */
+    struct wire_listener next; /* sees them too */
+};
+
+/* It must not be moved once opened. Private but for bus and drives. */
+struct field {
+    struct bus bus; /* both: not used with an outside bus */
+    struct virtual_drives drives;
+    struct drive_images images; /* of the drives; none: they run here alone */
+    struct dictionary
+        sheet[MACHINE_SETUP_DRIVES_MAX]; /* of the drives, by axis; empty: takt's own */
+    struct virtual_steppers steppers;    /* inside, whatever the bus */
+    const struct inject *script;         /* of faults; NULL: none */
+    bool has_enabled_faults; /* those that count from the drives' being enabled are on the bus */
+    struct link *link;       /* NULL: bus and drives are inside */
+    bool returns;            /* a link that is lost is opened again */
+    bool is_lost;            /* it has not been yet */
+    struct bus_return way_back;
+    struct lockstep lockstep;
+    struct field_traffic traffic;
+    struct can_port port;
+    uint64_t cycles; /* ended */
+    uint64_t cycle_ns;
+    uint64_t bit_ns;
+    bool is_paced;
+    struct pace pace;
+    struct pace_permission permission;
+};
+
+/*
+ * What the options --bus, --drives and --realtime say. Texts may be NULL: not given.
+ */
+struct field_options {
+    const char *bus;         /* bus/link.h */
+    const char *drives;      /* internal, external, or where an image of each runs: m4f, m7 */
+    const char *drive_image; /* its file */
+    bool is_paced;
+    bool returns;    /* an outside bus that is lost is opened again; with is_paced */
+    bool has_script; /* --inject is given */
+    const struct inject
+        *script; /* faults of the embedded bus and its drives; NULL: none. It must stay */
+};
+
+/* False after a message: the options do not go together. Touches nothing. */
+bool field_check_options(const struct field_options *options);
+
+/* The drives boot, or are there. STATUS_DONE; else after a message, and nothing is open. */
+enum command_status field_open(struct field *field, const struct machine_setup *setup,
+                               const struct field_options *options);
+void field_close(struct field *field);
+
+/* The controller's drives: it knows which frames are their answers. They must stay. */
+void field_watch_drives(struct field *field, const struct drives *drives);
+
+/*
+ * Faults that join those of the script while drives inside run; first: the first new one of it. The script must stay. False
+ * after a message: the bus can hold no more.
+ */
+bool field_add_faults(struct field *field, const struct inject *script, unsigned first);
+
+/* The controller's bus. */
+struct can_port field_get_port(struct field *field);
+/* Its step drives. */
+struct step_port field_get_step_port(struct field *field);
+
+/*
+ * The controller has done its part of a cycle: frames travel, drives move. False: an outside bus is gone, see
+ * field_get_problem; if it returns, cycles go on meanwhile.
+ */
+bool field_end_cycle(struct field *field);
+
+/* The outside bus is gone, and not back yet. */
+bool field_is_lost(const struct field *field);
+
+/* What an outside bus, or an image of a drive, died of; NULL: it has not. */
+const char *field_get_problem(struct field *field);
+
+/* Every frame on an outside bus from now on, with the time since 1970. */
+void field_observe_outside(struct field *field, const struct wire_listener *listener);
+
+uint64_t field_get_frames(const struct field *field);
+/*
+ * Percent of the cycles' time; of an outside bus: as if its frames took what the machine's bit rate
+ * says.
+ */
+double field_get_load_percent(const struct field *field);
+
+#endif

@@ -1,0 +1,54 @@
+/*
+ * A machine that is not stiff: between motor and tool of an axis lie springs. Each mode is a damped oscillator whose foot
+ * the drive moves; what the tool is off the drive's place is the sum of what its modes are.
+ */
+#ifndef TAKT_VIBRATION_VIBRATION_H
+#define TAKT_VIBRATION_VIBRATION_H
+
+#include "base/point.h"
+
+#include <stdbool.h>
+
+#define VIBRATION_MODES 2 /* of an axis */
+
+/* What a mode is told by, in the order of the machine file. */
+enum vibration_number {
+    VIBRATION_HZ,      /* of the undamped oscillator; 0: there is no such mode */
+    VIBRATION_DAMPING, /* ratio, 0 ... below 1 */
+    VIBRATION_PART, /* how much of it the tool sees; those of an axis whose foot is all that moves it have the sum 1 */
+    VIBRATION_NUMBERS
+};
+
+struct vibration_config {
+    double mode[AXIS_LINEAR_COUNT][VIBRATION_MODES * VIBRATION_NUMBERS];
+};
+
+/* An oscillator, seen from its foot. */
+struct vibration_mode {
+    double part;
+    double advance[2][2]; /* of away_mm and rate_mm_s, by a cycle */
+    double away_mm, rate_mm_s;
+};
+
+struct vibration_axis {
+    struct vibration_mode mode[VIBRATION_MODES];
+    double foot_mm, foot_mm_s;
+};
+
+struct vibration {
+    bool any; /* there is a mode at all */
+    bool has_foot;
+    double cycle_s;
+    struct vibration_axis axis[AXIS_LINEAR_COUNT];
+};
+
+/* NULL: good; else what is wrong with the modes of *axis. */
+const char *vibration_check(const struct vibration_config *config, unsigned *axis);
+
+/* config has passed the check. Everything rests where the drives are first. */
+void vibration_init(struct vibration *v, const struct vibration_config *config, double cycle_s);
+
+/* A cycle later the drives have come to *at, X Y Z mm: it becomes where the tool's side is. */
+void vibration_follow(struct vibration *v, struct point *at);
+
+#endif
