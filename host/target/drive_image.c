@@ -6,7 +6,6 @@
 
 #include <errno.h>
 #include <signal.h>
-#include <stdarg.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -21,24 +20,22 @@ static const char *const ask_names[TWIN_ASK_KINDS] = {
     [TWIN_KEEP] = "has its objects stored",
 };
 
-/* The talk is over. */
-__attribute__((format(printf, 2, 3))) static bool fail(struct drive_image *image,
-                                                       const char *format, ...)
+/* The talk is over; `problem` says why. */
+static bool hang_up(struct drive_image *image)
 {
-    va_list arguments;
-
     image->is_talking = false;
-    if (image->problem[0] != '\0')
-        return false;
-    va_start(arguments, format);
-    (void)vsnprintf(image->problem, sizeof image->problem, format, arguments);
-    va_end(arguments);
     return false;
+}
+
+static bool say(struct drive_image *image, const char *problem)
+{
+    (void)snprintf(image->problem, sizeof image->problem, "%s", problem);
+    return hang_up(image);
 }
 
 static bool is_gone(struct drive_image *image)
 {
-    return fail(image, "QEMU has ended in the middle of the run");
+    return say(image, "QEMU has ended in the middle of the run");
 }
 
 bool drive_image_is_known(const char *name)
@@ -48,20 +45,26 @@ bool drive_image_is_known(const char *name)
 
 /* -- the image does what the drive here does -- */
 
+static bool do_differ(struct drive_image *image, enum twin_ask_kind here, uint32_t there)
+{
+    (void)snprintf(image->problem, sizeof image->problem, "at %.6f s the image %s where takt %s",
+                   (double)image->here->now_ns * 1e-9,
+                   there < TWIN_ASK_KINDS ? ask_names[there] : "does what nobody knows",
+                   ask_names[here]);
+    return hang_up(image);
+}
+
 /* The next thing it does, which must be of this kind. False: there is none; the drive here is alone. */
 static bool next_ask(struct drive_image *image, enum twin_ask_kind kind, struct twin_ask *ask)
 {
+    *ask = (struct twin_ask){.kind = kind};
     if (!image->is_talking)
         return false;
     if (!image->is_in_order)
-        return fail(image, "the drive here %s without an order", ask_names[kind]);
+        return say(image, "the drive here does something without an order");
     if (!wire_read(image->process.from, ask, sizeof *ask))
         return is_gone(image);
-    if (ask->kind == kind)
-        return true;
-    return fail(image, "at %.6f s the image %s where takt %s", (double)image->here->now_ns * 1e-9,
-                ask->kind < TWIN_ASK_KINDS ? ask_names[ask->kind] : "does what nobody knows",
-                ask_names[kind]);
+    return ask->kind == (uint32_t)kind || do_differ(image, kind, ask->kind);
 }
 
 static void reply(struct drive_image *image, const struct twin_reply *reply)
@@ -79,7 +82,11 @@ static void compare(struct drive_image *image, bool is_same)
 /* Bits, not values: -0 is not 0. */
 static bool is_same_number(double a, double b)
 {
-    return memcmp(&a, &b, sizeof a) == 0;
+    uint64_t a_bits, b_bits;
+
+    memcpy(&a_bits, &a, sizeof a_bits);
+    memcpy(&b_bits, &b, sizeof b_bits);
+    return a_bits == b_bits;
 }
 
 static bool is_same_frame(const struct can_frame *a, const struct can_frame *b)
@@ -258,10 +265,10 @@ static bool shake_hands(struct drive_image *image)
     struct twin_hello hello;
 
     if (!wire_read(image->process.from, &hello, sizeof hello))
-        return fail(image, "QEMU has ended before the image said anything");
+        return say(image, "QEMU has ended before the image said anything");
     if (hello.magic != TWIN_MAGIC || hello.config_size != TWIN_CONFIG_SIZE ||
         hello.sense_size != sizeof(struct motor_sense))
-        return fail(image, "the image is of another version: build it anew");
+        return say(image, "the image is of another version: build it anew");
     return true;
 }
 
@@ -277,9 +284,12 @@ bool drive_image_open(struct drive_image *image, const char *name, const char *p
                                               .keep = set_keeper,
                                               .context = image};
     (void)signal(SIGPIPE, SIG_IGN);
-    if (!process_start(&image->process, board, path, (int[PROCESS_FILES]){PROCESS_TALK, -1}))
-        return fail(image, "%s with %s cannot be started: %s (Debian: %s)", board->qemu, path,
-                    strerror(errno), board->package);
+    if (!process_start(&image->process, board, path, (int[PROCESS_FILES]){PROCESS_TALK, -1})) {
+        (void)snprintf(image->problem, sizeof image->problem,
+                       "%s with %s cannot be started: %s (Debian: %s)", board->qemu, path,
+                       strerror(errno), board->package);
+        return false;
+    }
     image->is_talking = shake_hands(image);
     return image->is_talking;
 }
