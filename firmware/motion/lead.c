@@ -86,7 +86,7 @@ static void go(struct lead *l, double feed)
 }
 
 /*
- * Comes to rest in this cycle at a position that is less than half a cycle's way ahead. If it is there already, the last
+ * Comes to rest in this cycle at a position that is no farther ahead than a cycle's way may be. If it is there already, the last
  * way was longer by what was left of the feed, and speeding up in the very next cycle would add to that.
  */
 static void come_to_rest(struct lead *l, uint64_t position)

@@ -63,7 +63,7 @@ static bool is_far(const struct place *p, double w)
 
 /*
  * Brakes for it. True: it is to be come to rest at in this cycle, a little early perhaps, so that no feed is left that is
- * lost in the rounding of positions.
+ * lost in the rounding of positions; but not by a longer way than a cycle may have, where the axes could do much more.
  */
 static bool brake_for(const struct lead *l, const struct place *p, struct lead_brake *b)
 {
@@ -71,7 +71,8 @@ static bool brake_for(const struct lead *l, const struct place *p, struct lead_b
 
     b->a = maths_max(b->a, p->a);
     b->feed = maths_min(b->feed, feed);
-    return p->feed == 0.0 && feed < maths_max(LEAD_REST_PART * p->a, l->feed - p->a) &&
+    return p->feed == 0.0 && p->gap_mm <= maths_max(b->way_mm, l->feed) &&
+           feed < maths_max(LEAD_REST_PART * p->a, l->feed - p->a) &&
            l->feed < p->a * (1.0 + 2.0 * LEAD_REST_PART);
 }
 
@@ -167,6 +168,7 @@ void lead_brake_ahead(const struct lead *l, double low, struct lead_brake *b)
 
     b->at_mm = s;
     b->feed = maths_min(l->feed, low);
+    b->way_mm = low;
     b->a = lead_acceleration(l);
     b->rest = false;
     if (l->here.late) {
@@ -176,6 +178,9 @@ void lead_brake_ahead(const struct lead *l, double low, struct lead_brake *b)
         const struct ceiling_piece *p = lead_piece(l, k);
         const double gap_mm = lead_end_mm(l, k) - s;
 
+        if (p->feed_mm_s > 0.0F) {
+            b->way_mm = maths_min(b->way_mm, lead_feed(l, p->feed_mm_s));
+        }
         if (!l->here.late || p->stop) {
             brake_for_piece(l, k, gap_mm, b);
         }

@@ -23,6 +23,7 @@
 struct lead_brake {
     double at_mm; /* the lead point, from the ceiling's origin */
     double feed;
+    double way_mm; /* in a cycle, by the ceilings there */
     double a;
     bool rest;
     uint64_t rest_at;

@@ -28,6 +28,7 @@
 
 struct servo_config {
     uint8_t node; /* 1 ... 127 */
+    bool is_fd;   /* its bus is CAN FD: PDOs of up to 64 bytes */
     bool
         is_io; /* no drive but an I/O node (CiA 401), of dictionary_io: nothing of the motor counts */
     bool

@@ -78,7 +78,15 @@ void judge_need(const struct window *w, const struct route *r, unsigned piece,
     for (unsigned i = 0; i < r->slots.count; i++) {
         need_of_axis(w, i, piece, need);
     }
-    need->feed_mm_s = feed_of(r, need, route_element(r, w->element[piece + 1])->rotary);
+    need->linear_mm_s = feed_of(r, need, false);
+    need->rotary_mm_s = feed_of(r, need, true);
+}
+
+float judge_programmed(const struct judge_need *need, const struct route *r, uint32_t element)
+{
+    const float feed = route_element(r, element)->rotary ? need->rotary_mm_s : need->linear_mm_s;
+
+    return feed > 0.0f ? route_programmed(r, element) / feed : SINGLE_INFINITY;
 }
 
 /* The highest acceleration that an axis reaches on its way to V: A, or sqrt(V J) where that is less. */
@@ -170,8 +178,7 @@ void judge_rate(const struct judge_need *need, const struct route *r, uint32_t e
     for (unsigned i = 0; i < r->slots.count; i++) {
         rate->most = most_of_axis(need, &r->slots, change, i, rate->most);
     }
-    rate->programmed =
-        need->feed_mm_s > 0.0f ? route_programmed(r, element) / need->feed_mm_s : SINGLE_INFINITY;
+    rate->programmed = judge_programmed(need, r, element);
 }
 
 /* What is left at a rate for r' and r'' = r'/R, R the rounding: see most_of_axis(). */
@@ -377,17 +384,50 @@ static void set_chord(const struct window *w, const struct route *r, const struc
     }
 }
 
-/* The order along a piece; its first place from which there is no way on, or 0. */
-static unsigned follow(const struct window *w, const struct route *r, unsigned piece,
-                       struct order *order)
+/* A motion, and how fast it is gone along at its feed. */
+struct pace {
+    uint32_t element;
+    float rate;
+};
+
+/* Of the motions that the curve can be on here the one whose feed is the highest. */
+static struct pace fastest(const struct route *r, const struct order *order,
+                           const struct judge_need *need)
+{
+    struct pace most = {.element = order->element, .rate = -1.0f};
+    uint32_t e = order->element;
+
+    for (unsigned i = 0; i < order->count; i++) {
+        const struct order_span *span = &order->span[i];
+
+        e = route_find(r, span->first_mm, e);
+        do {
+            const float rate = judge_programmed(need, r, e);
+
+            most = rate > most.rate ? (struct pace){e, rate} : most;
+            e++;
+        } while (e < r->count && route_element(r, e)->start_mm < span->last_mm);
+    }
+    return most;
+}
+
+/*
+ * The order along a piece, and whose feed is its: at each place of it the curve is on some motion of that feed or more. Its
+ * first place from which there is no way on, or 0.
+ */
+static unsigned follow(struct window *w, const struct route *r, unsigned piece, struct order *order)
 {
     const struct look look = look_of(w, r, piece);
     struct order_chord chord = {.within_mm = look.within_mm,
                                 .corner_mm = look.corner_mm,
                                 .believed_mm = w->at_mm[piece + 2]};
+    struct judge_need need;
     struct window_spot a;
     float weight[4];
     unsigned k = 1;
+
+    judge_need(w, r, piece, &need);
+    struct pace slowest = fastest(r, order, &need);
 
     window_weights(0.0f, weight);
     window_spot(w, r, piece, weight, &a);
@@ -399,8 +439,14 @@ static unsigned follow(const struct window *w, const struct route *r, unsigned p
         set_chord(w, r, &a, &b, &chord);
         order_go(order, r, &chord);
         a = b;
+        const struct pace here = fastest(r, order, &need);
+
+        slowest = here.rate < slowest.rate ? here : slowest;
     }
-    return order->count > 0 ? 0 : k - 1;
+    const bool lost = order->count == 0;
+
+    w->paced[piece] = (unsigned char)((lost ? w->element[piece + 1] : slowest.element) - r->first);
+    return lost ? k - 1 : 0;
 }
 
 /* The end of the route must have been come to in order. */
@@ -409,14 +455,14 @@ static bool is_end(const struct window *w, unsigned piece)
     return w->at_end && piece + 4 == w->count;
 }
 
-void judge_order(const struct window *w, const struct route *r, unsigned count, struct order *order)
+void judge_order(struct window *w, const struct route *r, unsigned count, struct order *order)
 {
-    for (unsigned i = 0; i < count && order->count > 0; i++) {
+    for (unsigned i = 0; i < count; i++) {
         (void)follow(w, r, i, order);
     }
 }
 
-void judge_pieces(const struct window *w, const struct route *r, unsigned count, unsigned keep,
+void judge_pieces(struct window *w, const struct route *r, unsigned count, unsigned keep,
                   const struct order *order, struct judge_verdict *v)
 {
     struct order o = *order;

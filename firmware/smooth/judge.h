@@ -12,7 +12,8 @@ struct judge_need {
     float first[AXIS_COUNT];
     float second[AXIS_COUNT];
     float third[AXIS_COUNT];
-    float feed_mm_s; /* along the path: over X, Y, Z, or over A, B, C where only they move */
+    float linear_mm_s; /* over X, Y, Z: the feed of motions of one of them, */
+    float rotary_mm_s; /* and over the others: of those of them alone */
 };
 
 /* How fast nominal time may pass on a piece. */
@@ -41,6 +42,8 @@ float judge_change_on(const struct judge_need *need, const struct route *r,
                       const struct judge_change *change, float rate);
 void judge_rate(const struct judge_need *need, const struct route *r, uint32_t element,
                 const struct judge_change *change, struct judge_rate *rate);
+/* The rate at which a piece is gone along at the programmed feed of an element; infinite for a rapid. */
+float judge_programmed(const struct judge_need *need, const struct route *r, uint32_t element);
 /* What is said of a window's pieces. */
 struct judge_verdict {
     unsigned good; /* pieces from the first one on that keep the tolerance in order */
@@ -52,11 +55,13 @@ struct judge_verdict {
     struct order order; /* and what can have been come to there */
 };
 
-/* Of the first count pieces, of which so many are to be kept. order: what can have been come to where they begin. */
-void judge_pieces(const struct window *w, const struct route *r, unsigned count, unsigned keep,
+/*
+ * Of the first count pieces, of which so many are to be kept. order: what can have been come to where they begin. Tells the
+ * window whose feed is theirs.
+ */
+void judge_pieces(struct window *w, const struct route *r, unsigned count, unsigned keep,
                   const struct order *order, struct judge_verdict *v);
-/* The order after the first count pieces. */
-void judge_order(const struct window *w, const struct route *r, unsigned count,
-                 struct order *order);
+/* The order after the first count pieces, and whose feed is theirs. */
+void judge_order(struct window *w, const struct route *r, unsigned count, struct order *order);
 
 #endif

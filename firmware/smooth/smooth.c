@@ -267,7 +267,7 @@ static unsigned wanted(const struct smooth *s)
     return s->window.at_end || pieces < enough ? pieces : enough;
 }
 
-static void judged(const struct smooth *s, struct judge_verdict *v)
+static void judged(struct smooth *s, struct judge_verdict *v)
 {
     judge_pieces(&s->window, &s->route, wanted(s), kept_most(s), &s->order, v);
 }
@@ -503,7 +503,7 @@ static void set_piece(struct smooth *s, struct smooth_piece *piece)
         set_control(s, i + k, &piece->control[k]);
     }
     judge_need(w, &s->route, i, &need);
-    judge_rate(&need, &s->route, element, &s->change, &rate);
+    judge_rate(&need, &s->route, s->route.first + w->paced[i], &s->change, &rate);
     piece->rate.most = maths_min((double)rate.most, 1.0);
     piece->rate.programmed = (double)rate.programmed;
     piece->change.by =
@@ -517,29 +517,32 @@ static void set_piece(struct smooth *s, struct smooth_piece *piece)
 static void stand(struct smooth *s, const struct smooth_piece *of, const struct point *at,
                   bool leaves)
 {
-    s->stand = *of;
-    s->stand.stop = false;
-    s->stand.last = false;
-    s->stand.rate.most = 1.0;
-    s->stand.rate.programmed = MATHS_INFINITY;
-    s->stand.change.by = 2.0 / s->change.rounding_s;
-    s->stand.change.rounded = s->stand.change.by / s->change.rounding_s;
-    for (unsigned i = 0; i < 4; i++) {
-        s->stand.control[i] = *at;
-    }
+    s->stand_rotary = of->rotary;
+    s->stand_number = of->number;
+    s->stand_at = *at;
     s->standing = (unsigned)(standing_s(s) / s->window.interval_s) + 1;
     s->leaves = leaves;
 }
 
 static void take_standing(struct smooth *s, struct smooth_piece *piece)
 {
-    *piece = s->stand;
+    const double change_per_s = 2.0 / s->change.rounding_s;
+    const struct point at = s->stand_at;
+
     s->standing--;
-    if (s->standing > 0 || s->leaves) {
-        return;
+    *piece = (struct smooth_piece){
+        .move = &s->move,
+        .number = s->stand_number,
+        .control = {at, at, at, at},
+        .interval_s = s->window.interval_s,
+        .rate = {.most = 1.0, .programmed = MATHS_INFINITY},
+        .change = {.by = change_per_s, .rounded = change_per_s / s->change.rounding_s},
+        .rotary = s->stand_rotary,
+        .last = s->standing == 0 && !s->leaves,
+    };
+    if (piece->last) {
+        smooth_reset(s);
     }
-    piece->last = true;
-    smooth_reset(s);
 }
 
 /* Pieces that have been taken leave the window, elements that they have passed the route. */
@@ -621,9 +624,7 @@ static void take_piece(struct smooth *s, struct smooth_piece *piece)
     }
     s->taken++;
     if (piece->last) {
-        const struct smooth_piece end = *piece;
-
-        stand(s, &end, &end.control[3], false);
+        stand(s, piece, &piece->control[3], false);
         piece->last = false;
     }
 }

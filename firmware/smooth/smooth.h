@@ -94,13 +94,15 @@ struct smooth {
     unsigned standing; /* pieces that are still to come, in which the axes stand */
     bool starts;       /* the next piece begins at rest */
     bool leaves;       /* after those the chain goes on; else they end it, or a part of it */
-    struct smooth_piece stand;
-    bool stops;     /* the last of the ready ones is a stop */
-    bool ends;      /* the window's end is that of the chain */
-    bool open;      /* a chain has begun and not been taken to its end */
-    bool finished;  /* nothing follows in this chain */
-    unsigned ready; /* pieces that may be taken */
-    unsigned taken; /* of them */
+    bool stand_rotary; /* of the piece before or behind them, */
+    uint32_t stand_number;
+    struct point stand_at; /* and where the axes stand */
+    bool stops;            /* the last of the ready ones is a stop */
+    bool ends;             /* the window's end is that of the chain */
+    bool open;             /* a chain has begun and not been taken to its end */
+    bool finished;         /* nothing follows in this chain */
+    unsigned ready;        /* pieces that may be taken */
+    unsigned taken;        /* of them */
 };
 
 void smooth_init(struct smooth *s, const struct smooth_limits *limits);

@@ -329,12 +329,11 @@ static void set_most(struct tempo *p, const struct window *w, const struct route
     }
     for (unsigned i = 0; i < p->pieces; i++) {
         struct judge_need need;
-        float feed = single_sqrt(ENERGY_MOST);
 
         judge_need(w, r, i, &need);
-        if (feed * need.feed_mm_s > route_programmed(r, w->element[i + 1])) {
-            feed = route_programmed(r, w->element[i + 1]) / need.feed_mm_s;
-        }
+        float feed =
+            single_min(single_sqrt(ENERGY_MOST), judge_programmed(&need, r, w->element[i + 1]));
+
         for (unsigned k = 0; k < r->slots.count; k++) {
             if (feed * need.first[k] > r->slots.velocity_mm_s[k]) {
                 feed = r->slots.velocity_mm_s[k] / need.first[k];

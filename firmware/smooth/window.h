@@ -29,7 +29,9 @@ struct window {
     float weighted_unit_mm[SMOOTH_SLOTS_MAX]; /* what it counts in a distance (limits.h) */
     double at_mm[SMOOTH_SAMPLES_MAX];
     uint32_t element[SMOOTH_SAMPLES_MAX]; /* of the route, at at_mm */
-    lanes_int x[SMOOTH_SAMPLES_MAX];      /* one group of lanes after the other */
+    unsigned char paced
+        [SMOOTH_SAMPLES_MAX]; /* by piece: whose feed is its, elements from the route's first on */
+    lanes_int x[SMOOTH_SAMPLES_MAX]; /* one group of lanes after the other */
 };
 
 /* Where a sample, or a place of the curve, is: units from the origin, by slot; 0 in lanes that no slot has. */

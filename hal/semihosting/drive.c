@@ -44,7 +44,7 @@ static struct twin_reply ask(const struct twin_ask *question)
 static bool send(void *context, const struct can_frame *frame)
 {
     (void)context;
-    return ask(&(struct twin_ask){.kind = TWIN_SEND, .frame = *frame}).yes != 0;
+    return ask(&(struct twin_ask){.kind = TWIN_SEND, .frame = twin_frame_of(frame)}).yes != 0;
 }
 
 /* Frames come as orders. */
@@ -165,6 +165,13 @@ static void carry_out_special(const struct twin_order *order)
         take_eds(order->a);
 }
 
+static void take_frame(const struct twin_order *order)
+{
+    const struct can_frame frame = twin_frame_get(&order->frame);
+
+    servo_on_frame_at(&node.servo, &frame, order->time_ns);
+}
+
 static void carry_out(const struct twin_order *order)
 {
     struct servo *servo = &node.servo;
@@ -172,7 +179,7 @@ static void carry_out(const struct twin_order *order)
     if (order->kind == TWIN_BOOT)
         servo_boot(servo);
     else if (order->kind == TWIN_FRAME)
-        servo_on_frame_at(servo, &order->frame, order->time_ns);
+        take_frame(order);
     else if (order->kind == TWIN_STEP)
         servo_step(servo, order->a);
     else if (order->kind == TWIN_TOUCH)

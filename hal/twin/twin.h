@@ -19,6 +19,7 @@
 #include <assert.h>
 #include <stddef.h>
 #include <stdint.h>
+#include <string.h>
 
 #define TWIN_MAGIC 0x31445254U /* "TRD1" */
 
@@ -57,10 +58,34 @@ enum twin_order_kind {
     TWIN_EDS        /* servo_set_eds: a bytes follow */
 };
 
+/* A classical frame: as long in every build. */
+struct twin_frame {
+    uint16_t id;
+    uint8_t length;
+    uint8_t data[CAN_CLASSIC_MAX];
+    uint8_t unused;
+};
+
+static inline struct twin_frame twin_frame_of(const struct can_frame *frame)
+{
+    struct twin_frame own = {.id = frame->id, .length = frame->length};
+
+    memcpy(own.data, frame->data, sizeof own.data);
+    return own;
+}
+
+static inline struct can_frame twin_frame_get(const struct twin_frame *own)
+{
+    struct can_frame frame = {.id = own->id, .length = own->length};
+
+    memcpy(frame.data, own->data, sizeof own->data);
+    return frame;
+}
+
 struct twin_order {
     uint32_t kind;
     uint32_t a, b;
-    struct can_frame frame;
+    struct twin_frame frame;
     uint64_t time_ns;
     double ratio;
 };
@@ -80,7 +105,7 @@ enum twin_ask_kind {
 struct twin_ask {
     uint32_t kind;
     uint32_t a, b;
-    struct can_frame frame;
+    struct twin_frame frame;
     double x, y;
 };
 

@@ -9,6 +9,7 @@ static struct servo_config servo_config_of(const struct virtual_drive_config *co
         .node = config->node,
         .is_io = config->is_io,
         .is_nameless = config->is_nameless,
+        .is_fd = config->is_fd,
         .is_absolute = plant->absolute_encoder != 0,
         .closed = config->closed,
         .increments_per_mm = config->increments_per_mm,
@@ -95,8 +96,9 @@ void virtual_drive_on_frame_at(struct virtual_drive *drive, const struct can_fra
 {
     if (!is_heard(drive, frame))
         return;
-    virtual_drive_begin(
-        drive, &(struct twin_order){.kind = TWIN_FRAME, .frame = *frame, .time_ns = time_ns});
+    virtual_drive_begin(drive, &(struct twin_order){.kind = TWIN_FRAME,
+                                                    .frame = twin_frame_of(frame),
+                                                    .time_ns = time_ns});
     servo_on_frame_at(&drive->servo, frame, time_ns);
     virtual_drive_end(drive);
 }

@@ -22,6 +22,7 @@ struct virtual_drive_config {
     uint32_t cycle_us;
     uint32_t boot_us;
     uint32_t sdo_us;
+    bool is_fd;
     bool is_nameless;
     const struct dictionary *dictionary;
     struct drive_plant_config plant;

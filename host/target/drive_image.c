@@ -102,8 +102,9 @@ static bool send(void *context, const struct can_frame *frame)
 
     if (!next_ask(image, TWIN_SEND, &ask))
         return image->bus.send(image->bus.context, frame);
-    compare(image, is_same_frame(frame, &ask.frame));
-    is_sent = image->bus.send(image->bus.context, &ask.frame);
+    const struct can_frame sent = twin_frame_get(&ask.frame);
+    compare(image, is_same_frame(frame, &sent));
+    is_sent = image->bus.send(image->bus.context, &sent);
     reply(image, &(struct twin_reply){.yes = is_sent});
     return is_sent;
 }

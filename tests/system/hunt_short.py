@@ -31,5 +31,9 @@ hunt("a tolerance as large as the part is no standstill", "1", "93051", "--kinds
 for seed in ("94312", "202802", "206396"):
     hunt(f"where the curve stands it comes to its end: {seed}", "1", seed, "--operator", "--kinds", KINDS + ",endless")
 hunt("where it rests before the place that it was thought to be at it goes on from there", "1", "220050", "--kinds", KINDS + ",endless")
+for seed in ("251327", "252650"):
+    hunt(f"beside a rapid no feed is exceeded: {seed}", "1", seed, "--operator", "--kinds", KINDS)
+hunt("a curve does not creep where one axis needs a long interval", "1", "901166", "--operator", "--kinds", KINDS + ",endless")
+hunt("no way to rest is longer than a cycle's feed where the axes could do far more", "1", "901142", "--operator", "--exact")
 hunt("corners of exact paths are not cut where a cycle is long", "1", "40033", "--exact")
 t.finish()
