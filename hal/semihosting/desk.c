@@ -10,14 +10,14 @@
 #include "port/image.h"
 #include "remote/remote.h"
 #include "semihosting/desk_clock.h"
+#include "semihosting/files.h"
 #include "semihosting/semihosting.h"
 
 #include <assert.h>
 #include <stdbool.h>
 #include <string.h>
 
-#define COMMAND_LINE_MAX 256
-#define TOOLS_MAX        1000
+#define TOOLS_MAX 1000
 
 /* The frames of a cycle: of those received, what the controller has not had; and room for those it sends. */
 struct bus {
@@ -106,61 +106,20 @@ static size_t plan_read(void *context, uint8_t *bytes, size_t size)
 
 /* -- start -- */
 
-/* Takes the next word off a command line. NULL: there is none. */
-static char *next_word(char **line)
-{
-    char *word = *line;
-    char *end;
-
-    while (*word == ' ')
-        word++;
-    if (*word == '\0')
-        return NULL;
-    end = strchr(word, ' ');
-    *line = end == NULL ? word + strlen(word) : end + 1;
-    if (end != NULL)
-        *end = '\0';
-    return word;
-}
-
-static int open_next(char **line, enum semihosting_mode mode)
-{
-    const char *name = next_word(line);
-
-    return name == NULL ? -1 : semihosting_open(name, mode);
-}
-
-/* The handle of the setup; -1: one of the files is not there. The first word is the image's own. */
+/* The handle of the setup; -1: one of the files is not there. */
 static int open_files(struct desk *d)
 {
-    char words[COMMAND_LINE_MAX];
-    char *line = words;
+    struct files files;
     int setup;
 
-    if (!semihosting_command_line(words, sizeof words) || next_word(&line) == NULL)
+    if (!files_begin(&files))
         return -1;
-    setup = open_next(&line, SEMIHOSTING_READ);
-    d->program = open_next(&line, SEMIHOSTING_READ);
-    d->in = open_next(&line, SEMIHOSTING_READ);
-    d->out = open_next(&line, SEMIHOSTING_WRITE);
-    d->plan = open_next(&line, SEMIHOSTING_READ);
+    setup = files_open_next(&files, SEMIHOSTING_READ);
+    d->program = files_open_next(&files, SEMIHOSTING_READ);
+    d->in = files_open_next(&files, SEMIHOSTING_READ);
+    d->out = files_open_next(&files, SEMIHOSTING_WRITE);
+    d->plan = files_open_next(&files, SEMIHOSTING_READ);
     return d->program < 0 || d->in < 0 || d->out < 0 ? -1 : setup;
-}
-
-/* All of size bytes; a pipe may give them in pieces. */
-static bool read_all(int file, void *bytes, size_t size)
-{
-    uint8_t *at = bytes;
-
-    while (size > 0) {
-        const size_t count = semihosting_read(file, at, size);
-
-        if (count == 0)
-            return false;
-        at += count;
-        size -= count;
-    }
-    return true;
 }
 
 static enum takt_error read_table(struct desk *d, int file)
@@ -173,8 +132,8 @@ static enum takt_error read_table(struct desk *d, int file)
     struct diagnostic wrong = {.code = TAKT_ERROR_TABLE_DAMAGED};
     struct remote_table head;
 
-    if (!read_all(file, &head, sizeof head) || head.size > sizeof d->bytes ||
-        !read_all(file, d->bytes, head.size) ||
+    if (!files_read_all(file, &head, sizeof head) || head.size > sizeof d->bytes ||
+        !files_read_all(file, d->bytes, head.size) ||
         !table_restore(d->bytes, head.size, &rules, &d->stored, &wrong))
         return wrong.code;
     if (head.is_volume != 0)
@@ -187,7 +146,7 @@ static enum takt_error read_parameters(struct desk *d, int file)
     struct remote_parameter parameter;
 
     for (uint32_t i = 0; i < d->setup.parameters; i++) {
-        if (!read_all(file, &parameter, sizeof parameter))
+        if (!files_read_all(file, &parameter, sizeof parameter))
             return TAKT_ERROR_SOURCE_UNREADABLE;
         if (!parameters_set(&d->parameters, parameter.number, parameter.value))
             return TAKT_ERROR_PARAMETERS_FULL;
@@ -199,12 +158,12 @@ static enum takt_error read_setup(struct desk *d, int file)
 {
     enum takt_error error;
 
-    if (!read_all(file, &d->setup, sizeof d->setup) || d->setup.magic != REMOTE_MAGIC ||
-        !read_all(file, &d->machine, sizeof d->machine))
+    if (!files_read_all(file, &d->setup, sizeof d->setup) || d->setup.magic != REMOTE_MAGIC ||
+        !files_read_all(file, &d->machine, sizeof d->machine))
         return TAKT_ERROR_SOURCE_UNREADABLE;
     error = read_parameters(d, file);
     if (error == TAKT_OK && (d->setup.tools > TOOLS_MAX ||
-                             !read_all(file, d->tools, d->setup.tools * sizeof d->tools[0])))
+                             !files_read_all(file, d->tools, d->setup.tools * sizeof d->tools[0])))
         error = TAKT_ERROR_SOURCE_UNREADABLE;
     d->table = (struct tool_table){d->tools, d->setup.tools};
     for (uint32_t i = 0; i < d->setup.tables && error == TAKT_OK; i++)
@@ -302,8 +261,9 @@ static bool ask(struct desk *d)
 {
     const size_t head = offsetof(struct remote_inputs, frame);
 
-    return read_all(d->in, &d->received, head) && d->received.frames <= REMOTE_FRAMES_MAX &&
-           read_all(d->in, d->received.frame, d->received.frames * sizeof d->received.frame[0]);
+    return files_read_all(d->in, &d->received, head) && d->received.frames <= REMOTE_FRAMES_MAX &&
+           files_read_all(d->in, d->received.frame,
+                          d->received.frames * sizeof d->received.frame[0]);
 }
 
 static void run(struct desk *d)

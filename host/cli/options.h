@@ -101,6 +101,7 @@ struct options {
     struct option_panel panel;
     struct option_pack pack;
     const char *target, *image; /* of `takt run` */
+    const char *drive_image;    /* of the drives that --drives names */
     const char *plan;           /* of `takt run`: board, ahead, or a compiled program */
     double ceiling;             /* of `takt compile`, per cent; 0: not given */
     const char *trace;

@@ -2,6 +2,7 @@
 
 #include "cli/message.h"
 #include "cli/text.h"
+#include "drives/dictionary_read.h"
 
 bool data_sheet_load(struct dictionary *dictionary, const char *path)
 {

@@ -2,7 +2,7 @@
  * Electronic data sheets, as they are written by many tools: keys in any case, spaces anywhere, numbers decimal or
  * hexadecimal, $NODEID before or behind a sum, arrays in full or compact (CiA 306, 4.6).
  */
-#include "drives/dictionary.h"
+#include "drives/dictionary_read.h"
 #include "drives/dictionary_words.h"
 
 #include <stdio.h>
@@ -557,4 +557,11 @@ bool dictionary_read(struct dictionary *dictionary, const char *text, size_t len
         *dictionary = (struct dictionary){0};
     }
     return good;
+}
+
+void dictionary_free(struct dictionary *dictionary)
+{
+    free(dictionary->memory);
+    free(dictionary->names);
+    *dictionary = (struct dictionary){0};
 }

@@ -9,6 +9,9 @@
 #ifndef TAKT_DRIVES_DRIVE_PLANT_H
 #define TAKT_DRIVES_DRIVE_PLANT_H
 
+#include "hal/motor.h"
+#include "servo/loop.h"
+
 #include <stdbool.h>
 #include <stdint.h>
 
@@ -64,46 +67,27 @@ struct drive_plant_damage {
 
 struct drive_plant {
     struct drive_plant_config config;
+    int32_t sign; /* -1: the motor turns the other way than the axis counts */
 
     /* Derived from config once, in units of the axis. */
-    double acceleration_max_mm_s2;
     double friction_per_s;
     double coulomb_mm_s2;
-    double velocity_gain_per_s;
-    double integral_gain_per_s2;
     double encoder_step_mm; /* 0: no quantisation */
     double encoder_steps_per_mm;
-    double standstill_mm_s;    /* slower than this the motor stands */
-    double mm_s2_per_rated;    /* acceleration by the rated torque */
-    double rated_per_mm_s2;    /* its inverse */
-    double torque_limit_mm_s2; /* acceleration by the torque it is allowed */
+    double rated_per_mm_s2; /* part of the rated torque by acceleration */
     double temperature_per_s;
 
-    /* How a cycle of cycle_ns is divided; made anew when another length of cycle comes. */
-    uint32_t cycle_ns;
-    uint32_t steps;
-    double cycle_s, per_cycle_s; /* and the inverse */
-    double step_s, per_step_s;
-
-    /* The mechanics. */
     double position_mm; /* of the motor */
     double velocity_mm_s;
-    double acceleration_mm_s2; /* by the motor's torque, in the last step */
-    double encoder_shift_mm;   /* the encoder reads this much more than the motor's position */
-    double encoder_rounder;    /* rounds to steps and adds the shift */
-    double play_mm; /* the table is behind the motor by this, half the backlash at most */
+    double torque_mm_s2;     /* acceleration by the motor's torque, in the last step */
+    double encoder_shift_mm; /* the encoder reads this much more than the motor's position */
+    double encoder_rounder;  /* rounds to steps and adds the shift */
+    double play_mm;          /* the table is behind the motor by this, half the backlash at most */
     double temperature_c;
     struct drive_plant_damage damage;
 
-    /* The controller. */
-    double measured_mm;            /* what the encoder says now */
-    double measured_velocity_mm_s; /* from its last two readings */
-    double integral_mm_s2;
-    double command_mm;            /* the position it is told to have now */
-    double command_velocity_mm_s; /* of the last cycle */
-    double brake_mm_s2;           /* of the stop that has begun */
-    double velocity_offset_mm_s;  /* fed forward beside the command's (object 60B1) */
-    double torque_offset_mm_s2;   /* the same for torque (object 60B2) */
+    struct motor_sense sense; /* as it was said last */
+    double sensed_mm;         /* the motor's position then */
 };
 
 /* A 400 W servo motor on a ball screw of 10 mm lead; see the room's README for the numbers. */
@@ -116,52 +100,21 @@ void drive_plant_set_default(struct drive_plant_config *config);
  */
 const char *drive_plant_check(const struct drive_plant_config *config);
 
-/* config has passed drive_plant_check. The plant stands still at start_mm, without torque. */
-void drive_plant_init(struct drive_plant *plant, const struct drive_plant_config *config);
-
 /*
- * Cycles are cycle_ns long, > 0. A cycle is divided into equal steps, as few as are no longer than
- * loop_period_us.
+ * config has passed drive_plant_check. The plant stands still at start_mm, without torque. turns_round: the motor turns the
+ * other way than the axis counts.
  */
+void drive_plant_init(struct drive_plant *plant, const struct drive_plant_config *config,
+                      bool turns_round);
 
-/*
- * One cycle with torque, in which the command moves from where it is to command_mm at a constant
- * velocity.
- */
-void drive_plant_follow(struct drive_plant *plant, double command_mm, uint32_t cycle_ns);
+/* The drive's way to the motor. plant must stay. */
+struct motor_port drive_plant_get_port(struct drive_plant *plant);
 
-/* One cycle of the velocity loop alone: the command stays with the motor. */
-void drive_plant_turn(struct drive_plant *plant, double velocity_mm_s, uint32_t cycle_ns);
-
-/* One cycle with the torque for this acceleration, as far as there is so much; the command stays with the motor. */
-void drive_plant_push(struct drive_plant *plant, double acceleration_mm_s2, uint32_t cycle_ns);
-
-/* Acceleration by all the torque that it has, has left, and is allowed. */
-double drive_plant_torque_limit_mm_s2(const struct drive_plant *plant);
-
-/*
- * Before the first drive_plant_brake: from here the motor is to stop by deceleration_mm_s2 (> 0),
- * whatever it was told before.
- */
-void drive_plant_begin_brake(struct drive_plant *plant, double deceleration_mm_s2);
-
-/*
- * One cycle of stopping: the command slows down and takes the motor with it. True: the motor
- * stands.
- */
-bool drive_plant_brake(struct drive_plant *plant, uint32_t cycle_ns);
-
-/* One cycle without torque: the motor runs out by its friction, the command stays with it. */
-void drive_plant_coast(struct drive_plant *plant, uint32_t cycle_ns);
-
-/* command - measured position. */
-double drive_plant_following_error_mm(const struct drive_plant *plant);
+/* What the drive has to know of the motor, and how its loops are tuned. */
+struct servo_loop_config drive_plant_get_loop(const struct drive_plant_config *config);
 
 /* Where the table stands on the axis: the motor's position, the play in it and the error of pitch. */
 double drive_plant_table_mm(const struct drive_plant *plant);
-
-/* Torque of the motor by its rated torque. */
-double drive_plant_torque_ratio(const struct drive_plant *plant);
 
 /* The encoder reads by_mm more from now on, though nothing has moved. */
 void drive_plant_shift_encoder(struct drive_plant *plant, double by_mm);

@@ -2,7 +2,7 @@
 
 #include "canopen/node.h"
 #include "drives/dictionary_words.h"
-#include "drives/virtual_drive_private.h"
+#include "servo/servo_private.h"
 
 #include <stdarg.h>
 #include <string.h>
@@ -58,7 +58,7 @@ static void write_row(FILE *stream, const struct object_row *row,
     }
 }
 
-void drive_store_write(FILE *stream, const struct virtual_drive *drive)
+void drive_store_write(FILE *stream, const struct servo *drive)
 {
     const struct dictionary *dictionary = drive->dictionary;
     const uint8_t born = drive->config.is_nameless ? LSS_NO_NODE : drive->number;
@@ -136,8 +136,7 @@ static bool take_text(const struct object_row *row, struct drive_objects *stored
 }
 
 /* What is stored counts from this node id on. */
-static bool take_node(struct virtual_drive *drive, struct text_part part,
-                      struct drive_store_problem *wrong)
+static bool take_node(struct servo *drive, struct text_part part, struct drive_store_problem *wrong)
 {
     unsigned node = 0;
     for (size_t i = 0; i < part.length && i < 3; i++)
@@ -147,12 +146,11 @@ static bool take_node(struct virtual_drive *drive, struct text_part part,
     if (part.length > 3 || node == 0 || (node > NODE_MAX && node != LSS_NO_NODE))
         return refuse(wrong, "a node id is 1 ... %d, or %d: none", NODE_MAX, LSS_NO_NODE);
     drive->lss.stored = (uint8_t)node;
-    virtual_drive_apply_lss(drive, true);
+    servo_apply_lss(drive, true);
     return true;
 }
 
-static bool take_line(struct virtual_drive *drive, struct text_part part,
-                      struct drive_store_problem *wrong)
+static bool take_line(struct servo *drive, struct text_part part, struct drive_store_problem *wrong)
 {
     unsigned index, sub;
     bool has_index;
@@ -171,7 +169,7 @@ static bool take_line(struct virtual_drive *drive, struct text_part part,
                         : take_number(row, &drive->stored, part, wrong);
 }
 
-bool drive_store_read(struct virtual_drive *drive, const char *text, size_t length,
+bool drive_store_read(struct servo *drive, const char *text, size_t length,
                       struct drive_store_problem *wrong)
 {
     size_t at = 0;
@@ -182,7 +180,7 @@ bool drive_store_read(struct virtual_drive *drive, const char *text, size_t leng
             return false;
         at = next + 1;
     }
-    virtual_drive_restore(drive, UINT16_MAX);
-    virtual_drive_update_pdos(drive);
+    servo_restore(drive, UINT16_MAX);
+    servo_update_pdos(drive);
     return true;
 }

@@ -8,11 +8,11 @@
 #ifndef TAKT_DRIVES_DRIVE_STORE_H
 #define TAKT_DRIVES_DRIVE_STORE_H
 
-#include "drives/virtual_drive.h"
+#include "servo/servo.h"
 
 #include <stdio.h>
 
-void drive_store_write(FILE *stream, const struct virtual_drive *drive);
+void drive_store_write(FILE *stream, const struct servo *drive);
 
 #define DRIVE_STORE_PROBLEM_MAX 120
 
@@ -26,7 +26,7 @@ struct drive_store_problem {
  * that go beyond what may be written, and objects the drive does not have, are wrong; whether a mapping makes sense is
  * looked at when it is used, as with a data sheet.
  */
-bool drive_store_read(struct virtual_drive *drive, const char *text, size_t length,
+bool drive_store_read(struct servo *drive, const char *text, size_t length,
                       struct drive_store_problem *wrong);
 
 #endif

@@ -1,6 +1,6 @@
 #include "drives/eds.h"
 
-#include "drives/dictionary.h"
+#include "servo/dictionary.h"
 
 #include <stdarg.h>
 #include <string.h>
@@ -203,7 +203,7 @@ static void write_row(FILE *stream, const struct dictionary *dictionary,
     write_entry(stream, row, objects, node);
 }
 
-void eds_write(FILE *stream, const struct virtual_drive *drive, const char *name)
+void eds_write(FILE *stream, const struct servo *drive, const char *name)
 {
     const struct dictionary *dictionary = drive->dictionary;
     struct drive_objects objects = drive->objects;

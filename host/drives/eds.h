@@ -4,7 +4,7 @@
 #ifndef TAKT_DRIVES_EDS_H
 #define TAKT_DRIVES_EDS_H
 
-#include "drives/virtual_drive.h"
+#include "servo/servo.h"
 
 #include <stdio.h>
 
@@ -12,6 +12,6 @@
  * Writes the dictionary of this drive as it was at power-on: default values are its own, those that
  * follow its node id are written relative to it. name: of the file, without a folder.
  */
-void eds_write(FILE *stream, const struct virtual_drive *drive, const char *name);
+void eds_write(FILE *stream, const struct servo *drive, const char *name);
 
 #endif

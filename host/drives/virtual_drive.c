@@ -1,550 +1,167 @@
-/*
- * CiA 301: what the node does with frames and with time.
- */
-#include "canopen/node.h"
-#include "canopen/sync.h"
 #include "drives/virtual_drive_private.h"
 
 #include <string.h>
 
-#define MICROSECOND_NS 1000u
-
-#define LAST_COMMUNICATION 0x1FFF
-
-/* Object 1012. */
-#define TIME_CONSUMED 0x80000000u
-#define COB_ID_MASK   0x7FFu
-
-/* SYNC counts as lost after this many of its periods (object 1006). */
-#define SYNC_LOST_PERIODS 3
-
-/* Without a node id there is nothing to be said but by LSS. */
-static bool is_dumb(const struct virtual_drive *drive, const struct can_frame *frame)
+static struct servo_config servo_config_of(const struct virtual_drive_config *config)
 {
-    return drive->lss.is_nameless && frame->id != LSS_ANSWER_COB_ID;
+    const struct drive_plant_config *plant = &config->plant;
+    return (struct servo_config){
+        .node = config->node,
+        .is_io = config->is_io,
+        .is_nameless = config->is_nameless,
+        .is_fd = config->is_fd,
+        .is_absolute = plant->absolute_encoder != 0,
+        .closed = config->closed,
+        .increments_per_mm = config->increments_per_mm,
+        .velocity_units_per_mm_s = config->velocity_units_per_mm_s,
+        .cycle_us = config->cycle_us,
+        .boot_us = config->boot_us,
+        .sdo_us = config->sdo_us,
+        .following_error_window_mm = plant->following_error_window_mm,
+        .following_error_timeout_ms = plant->following_error_timeout_ms,
+        .quick_stop_deceleration_mm_s2 = plant->quick_stop_deceleration_mm_s2,
+        .temperature_max_c = plant->temperature_max_c,
+        .loop = drive_plant_get_loop(plant),
+        .dictionary = config->dictionary,
+    };
 }
 
-/*
- * A refused frame is lost, as in a node whose transmit buffers are full; the bus counts it. One that
- * a scripted fault holds back counts as sent.
- */
-bool virtual_drive_send(struct virtual_drive *drive, enum inject_mute kind,
-                        const struct can_frame *frame)
+void virtual_drive_begin(const struct virtual_drive *drive, const struct twin_order *order)
 {
-    unsigned held_back = drive->faults.mute & (1u << kind | 1u << INJECT_MUTE_ALL);
-    if (held_back || drive->faults.is_hung || is_dumb(drive, frame))
-        return true;
-    return drive->port.send(drive->port.context, frame);
+    if (drive->twin != NULL)
+        drive->twin->begin(drive->twin->context, order, NULL);
 }
 
-static bool send_sdo(void *context, const struct can_frame *frame)
+void virtual_drive_end(const struct virtual_drive *drive)
 {
-    return virtual_drive_send(context, INJECT_MUTE_SDO, frame);
-}
-
-void virtual_drive_tell(const struct virtual_drive *drive, enum drive_event_kind kind,
-                        uint32_t first, uint32_t second)
-{
-    const struct drive_event event = {.kind = kind,
-                                      .time_ns = drive->now_ns,
-                                      .node = drive->config.node,
-                                      .first = first,
-                                      .second = second};
-    if (drive->observer.on_event)
-        drive->observer.on_event(drive->observer.context, &event);
-}
-
-/* Of an object that says more about it in its upper bits. */
-static unsigned identifier_of(uint32_t cob_id)
-{
-    return cob_id & COB_ID_MASK;
-}
-
-static void accept(struct virtual_drive *drive, uint32_t cob_id)
-{
-    unsigned id = identifier_of(cob_id);
-    drive->accepts[id >> 5] |= 1u << (id & 31);
-}
-
-void virtual_drive_set_filter(struct virtual_drive *drive)
-{
-    const struct drive_communication *c = &drive->objects.communication;
-    memset(drive->accepts, 0, sizeof drive->accepts);
-    accept(drive, LSS_REQUEST_COB_ID);
-    accept(drive, NMT_COMMAND_COB_ID);
-    accept(drive, c->sync_cob_id);
-    if (c->time_cob_id & TIME_CONSUMED)
-        accept(drive, c->time_cob_id);
-    accept(drive, SDO_REQUEST_FUNCTION + drive->config.node);
-    accept(drive, NMT_HEARTBEAT_FUNCTION + drive->config.node);
-    for (unsigned i = 0; i < DRIVE_CONSUMERS; i++)
-        if (c->consumer_heartbeat[i])
-            accept(drive, NMT_HEARTBEAT_FUNCTION + (c->consumer_heartbeat[i] >> 16 & NODE_ID_MASK));
-    for (unsigned i = 0; i < DRIVE_PDO_COUNT; i++)
-        if (drive->rpdo[i].is_valid)
-            accept(drive, drive->rpdo[i].cob_id);
-}
-
-static void set_target_pdo(struct virtual_drive *drive, const struct pdo *target)
-{
-    struct drive_communication *c = &drive->objects.communication;
-    c->rpdo[1].cob_id = target->cob_id;
-    c->rpdo[1].transmission = target->transmission;
-    c->rpdo_mapping[1].count = target->mapping.count;
-    for (unsigned i = 0; i < target->mapping.count; i++)
-        c->rpdo_mapping[1].entry[i] = target->mapping.object[i];
+    if (drive->twin != NULL)
+        drive->twin->end(drive->twin->context);
 }
 
 void virtual_drive_init(struct virtual_drive *drive, const struct virtual_drive_config *config,
                         const struct pdo *target, const struct can_port *port)
 {
-    const struct sdo_server_owner owner = {.read = virtual_drive_read_sdo,
-                                           .may_write = virtual_drive_may_write_sdo,
-                                           .write = virtual_drive_write_sdo,
-                                           .send = send_sdo,
-                                           .context = drive};
-    memset(drive, 0, sizeof *drive);
-    drive->config = *config;
-    drive->port = *port;
-    drive->dictionary = config->is_io ? &dictionary_io : &dictionary_own;
-    if (config->dictionary != NULL)
-        drive->dictionary = config->dictionary;
-    drive->nmt = NMT_BOOTED;
-    drive->number = config->node;
-    drive->lss.node = drive->lss.stored = config->is_nameless ? LSS_NO_NODE : config->node;
-    drive->lss.is_nameless = config->is_nameless;
-    drive_plant_init(&drive->plant, &config->plant);
-    sdo_server_init(&drive->sdo, config->node, &owner);
-    virtual_drive_init_objects(drive);
-    if (target && drive->dictionary == &dictionary_own)
-        set_target_pdo(drive, target);
-    drive->initial = drive->stored = drive->objects;
-    virtual_drive_derive(drive);
-    drive->homing.is_homed = config->plant.absolute_encoder;
-    virtual_drive_update_pdos(drive);
-    virtual_drive_reset_profile(drive);
+    const struct servo_config servo = servo_config_of(config);
+    struct motor_port motor = drive_plant_get_port(&drive->plant);
+    struct can_port bus = *port;
+    memset(&drive->faults, 0, sizeof drive->faults);
+    drive->twin = config->twin;
+    drive_plant_init(&drive->plant, &config->plant, config->increments_per_mm < 0);
+    if (drive->twin != NULL)
+        drive->twin->open(drive->twin->context, &drive->servo, &servo, target, &bus, &motor);
+    servo_init(&drive->servo, &servo, target, &bus, &motor);
 }
 
 void virtual_drive_observe(struct virtual_drive *drive, const struct drive_observer *observer)
 {
-    drive->observer = *observer;
+    servo_observe(&drive->servo, observer);
 }
 
 void virtual_drive_set_eds(struct virtual_drive *drive, const char *eds, size_t length)
 {
-    drive->eds = eds;
-    drive->eds_length = length;
-}
-
-void virtual_drive_inject(struct virtual_drive *drive, const struct inject *script,
-                          const struct inject_clock *clock)
-{
-    drive->faults.script = script;
-    drive->faults.clock = clock;
+    const struct virtual_drive_twin *twin = drive->twin;
+    servo_set_eds(&drive->servo, eds, length);
+    if (twin == NULL)
+        return;
+    twin->begin(twin->context, &(struct twin_order){.kind = TWIN_EDS, .a = (uint32_t)length}, eds);
+    twin->end(twin->context);
 }
 
 void virtual_drive_keep(struct virtual_drive *drive, const struct drive_keeper *keeper)
 {
-    drive->keeper = *keeper;
-}
-
-void virtual_drive_look_soon(struct virtual_drive *drive)
-{
-    drive->due_ns = 0;
-}
-
-static void send_heartbeat(struct virtual_drive *drive, enum nmt_state state)
-{
-    struct can_frame frame;
-    nmt_write_heartbeat(&frame, drive->config.node, state);
-    (void)virtual_drive_send(drive, INJECT_MUTE_HEARTBEAT, &frame);
-}
-
-/* The first one comes at once. */
-void virtual_drive_restart_heartbeat(struct virtual_drive *drive)
-{
-    bool produces = drive->objects.communication.producer_heartbeat_ms != 0;
-    drive->heartbeat_ns = produces ? drive->now_ns : DRIVE_NEVER;
-    virtual_drive_look_soon(drive);
-}
-
-/* A heartbeat is watched from the first that comes (CiA 301, 7.2.8.3.2.2). */
-void virtual_drive_restart_consumer(struct virtual_drive *drive, unsigned i)
-{
-    drive->consumer_ns[i] = DRIVE_NEVER;
-    virtual_drive_set_filter(drive);
-    virtual_drive_look_soon(drive);
-}
-
-static void restart_communication(struct virtual_drive *drive)
-{
-    drive->communication_error = 0;
-    drive->emcy_count = 0;
-    drive->emcy_ns = 0;
-    drive->sync_lost_ns = drive->guard_lost_ns = DRIVE_NEVER;
-    drive->guard_toggle = 0;
-    sdo_server_reset(&drive->sdo);
-    virtual_drive_update_pdos(drive);
-    for (unsigned i = 0; i < DRIVE_CONSUMERS; i++)
-        virtual_drive_restart_consumer(drive, i);
-    virtual_drive_restart_heartbeat(drive);
-}
-
-static void enter_nmt_state(struct virtual_drive *drive, enum nmt_state next)
-{
-    if (next != drive->nmt)
-        virtual_drive_tell(drive, DRIVE_EVENT_NMT, (uint32_t)next, 0);
-    bool starts = next == NMT_OPERATIONAL && drive->nmt != NMT_OPERATIONAL;
-    drive->nmt = next;
-    if (starts)
-        virtual_drive_start_pdos(drive);
-    if (next != NMT_OPERATIONAL)
-        virtual_drive_lose_connection(drive);
+    const struct virtual_drive_twin *twin = drive->twin;
+    struct drive_keeper both = *keeper;
+    virtual_drive_begin(drive, &(struct twin_order){.kind = TWIN_KEEPER});
+    if (twin != NULL)
+        both = twin->keep(twin->context, keeper);
+    servo_keep(&drive->servo, &both);
+    virtual_drive_end(drive);
 }
 
 void virtual_drive_boot(struct virtual_drive *drive)
 {
-    drive->nmt = NMT_BOOTED;
-    drive->boot_ns = 0;
-    restart_communication(drive);
-    send_heartbeat(drive, NMT_BOOTED);
-    if (drive->lss.is_nameless)
-        return; /* it stays as it has booted */
-    virtual_drive_tell(drive, DRIVE_EVENT_BOOT, 0, 0);
-    drive->nmt = NMT_PREOPERATIONAL;
+    virtual_drive_begin(drive, &(struct twin_order){.kind = TWIN_BOOT});
+    servo_boot(&drive->servo);
+    virtual_drive_end(drive);
 }
 
-/* What has been set and not stored is forgotten. */
-static void reset(struct virtual_drive *drive, bool whole_node)
+/* What the drive does not listen to its twin need not be told. */
+static bool is_heard(const struct virtual_drive *drive, const struct can_frame *frame)
 {
-    virtual_drive_lose_connection(drive);
-    virtual_drive_apply_lss(drive, whole_node);
-    virtual_drive_restore(drive, whole_node ? UINT16_MAX : LAST_COMMUNICATION);
-    if (whole_node) {
-        virtual_drive_clear_history(drive);
-        virtual_drive_reset_profile(drive);
-    }
-    drive->nmt = NMT_BOOTED;
-    drive->requests.count = 0;
-    drive->boot_ns = drive->now_ns + drive->config.boot_us * (uint64_t)MICROSECOND_NS;
-    if (drive->boot_ns == drive->now_ns)
-        virtual_drive_boot(drive);
-    virtual_drive_look_soon(drive);
-}
-
-void virtual_drive_reboot(struct virtual_drive *drive)
-{
-    reset(drive, true);
-}
-
-static void take_nmt_command(struct virtual_drive *drive, const struct can_frame *frame)
-{
-    enum nmt_command command;
-    uint8_t node;
-    if (!nmt_read_command(frame, &command, &node))
-        return;
-    if (node != NMT_ALL_NODES && (node != drive->config.node || drive->lss.is_nameless))
-        return;
-    if (command == NMT_RESET_NODE || command == NMT_RESET_COMMUNICATION)
-        reset(drive, command == NMT_RESET_NODE);
-    else if (!drive->lss.is_nameless)
-        enter_nmt_state(drive, nmt_next_state(command));
-}
-
-static void take_heartbeat(struct virtual_drive *drive, const struct can_frame *frame)
-{
-    uint8_t node;
-    enum nmt_state state;
-    if (!nmt_read_heartbeat(frame, &node, &state))
-        return;
-    for (unsigned i = 0; i < DRIVE_CONSUMERS; i++) {
-        uint32_t watched = drive->objects.communication.consumer_heartbeat[i];
-        if ((watched >> 16 & NODE_ID_MASK) != node || (watched & 0xFFFF) == 0)
-            continue;
-        drive->consumer_ns[i] = drive->now_ns + (uint64_t)(watched & 0xFFFF) * MILLISECOND_NS;
-        virtual_drive_look_soon(drive);
-        if (drive->communication_error == EMCY_HEARTBEAT)
-            virtual_drive_set_communication_error(drive, EMCY_NONE);
-    }
-}
-
-/* Objects 100C and 100D; 0: no guarding master is watched. */
-static uint32_t life_time_ms(const struct virtual_drive *drive)
-{
-    const struct drive_communication *c = &drive->objects.communication;
-    return c->producer_heartbeat_ms == 0 ? (uint32_t)c->guard_ms * c->life_factor : 0;
-}
-
-static bool can_be_guarded(const struct virtual_drive *drive)
-{
-    bool has_index;
-    return drive->objects.communication.producer_heartbeat_ms == 0 &&
-           dictionary_find(drive->dictionary, 0x100C, 0, &has_index) != NULL;
-}
-
-/*
- * A guarding master asks for the state, and is watched from its first question on (CiA 301, 7.2.8.3.2.1). A node has either
- * that or a heartbeat.
- */
-static void take_guard(struct virtual_drive *drive)
-{
-    const uint32_t life_ms = life_time_ms(drive);
-    struct can_frame frame;
-    if (!can_be_guarded(drive))
-        return;
-    nmt_write_heartbeat(&frame, drive->config.node, drive->nmt);
-    frame.data[0] |= drive->guard_toggle;
-    drive->guard_toggle ^= NMT_TOGGLE;
-    (void)virtual_drive_send(drive, INJECT_MUTE_HEARTBEAT, &frame);
-    drive->guard_lost_ns =
-        life_ms != 0 ? drive->now_ns + (uint64_t)life_ms * MILLISECOND_NS : DRIVE_NEVER;
-    virtual_drive_look_soon(drive);
-    if (drive->communication_error == EMCY_HEARTBEAT)
-        virtual_drive_set_communication_error(drive, EMCY_NONE);
-}
-
-/*
- * SYNC: what was received before it takes effect, and the synchronous TPDOs are sampled and sent.
- */
-static void take_sync(struct virtual_drive *drive, const struct can_frame *frame)
-{
-    uint64_t period_ns = (uint64_t)drive->objects.communication.sync_period_us * MICROSECOND_NS;
-    if (frame->length > 1)
-        return;
-    drive->sync_ns = drive->heard_ns;
-    if (drive->communication_error == EMCY_SYNC)
-        virtual_drive_set_communication_error(drive, EMCY_NONE);
-    if (period_ns != 0) {
-        if (drive->sync_lost_ns == DRIVE_NEVER)
-            virtual_drive_look_soon(drive);
-        drive->sync_lost_ns = drive->now_ns + SYNC_LOST_PERIODS * period_ns;
-    }
-    if (drive->nmt != NMT_OPERATIONAL)
-        return;
-    virtual_drive_apply_held(drive);
-    virtual_drive_send_synchronous(drive, frame);
-}
-
-/* Requests wait in a row; those for which there is no room are lost. */
-static void take_request(struct virtual_drive *drive, const struct can_frame *frame)
-{
-    struct drive_requests *r = &drive->requests;
-    if (drive->config.sdo_us == 0) {
-        sdo_server_take(&drive->sdo, frame);
-        return;
-    }
-    if (r->count == VIRTUAL_DRIVE_REQUESTS)
-        return;
-    if (r->count == 0)
-        r->due_ns = drive->now_ns + drive->config.sdo_us * (uint64_t)MICROSECOND_NS;
-    r->frame[r->count++] = *frame;
-    virtual_drive_look_soon(drive);
-}
-
-static void answer_request(struct virtual_drive *drive)
-{
-    struct drive_requests *r = &drive->requests;
-    if (r->count == 0 || drive->now_ns < r->due_ns)
-        return;
-    sdo_server_take(&drive->sdo, &r->frame[0]);
-    r->count--;
-    memmove(r->frame, r->frame + 1, r->count * sizeof r->frame[0]);
-    r->due_ns = drive->now_ns + drive->config.sdo_us * (uint64_t)MICROSECOND_NS;
-}
-
-/* ---- Clocks ---- */
-
-static void take_time(struct virtual_drive *drive, const struct can_frame *frame)
-{
-    struct time_stamp time;
-    if (drive->nmt == NMT_STOPPED || !time_stamp_read(frame, &time))
-        return;
-    drive->time = time;
-    drive->time_ns = drive->now_ns;
-    virtual_drive_tell(drive, DRIVE_EVENT_TIME, time.ms, time.days);
-}
-
-struct time_stamp virtual_drive_time_of_day(const struct virtual_drive *drive)
-{
-    return time_stamp_add(drive->time, (drive->now_ns - drive->time_ns) / MILLISECOND_NS);
-}
-
-uint32_t virtual_drive_high_resolution_us(const struct virtual_drive *drive)
-{
-    return (uint32_t)(drive->now_ns / MICROSECOND_NS) + drive->clock_us;
-}
-
-void virtual_drive_set_high_resolution_us(struct virtual_drive *drive, uint32_t now_us)
-{
-    drive->clock_us = now_us - (uint32_t)(drive->now_ns / MICROSECOND_NS);
-}
-
-/* ---- Frames ---- */
-
-static bool is_time(const struct virtual_drive *drive, const struct can_frame *frame)
-{
-    uint32_t id = drive->objects.communication.time_cob_id;
-    return id & TIME_CONSUMED && frame->id == identifier_of(id);
-}
-
-static void take_other(struct virtual_drive *drive, const struct can_frame *frame)
-{
-    if (frame->id == NMT_COMMAND_COB_ID)
-        take_nmt_command(drive, frame);
-    else if (frame->id == SDO_REQUEST_FUNCTION + drive->config.node) {
-        if (drive->nmt != NMT_STOPPED)
-            take_request(drive, frame);
-    } else {
-        take_heartbeat(drive, frame);
-    }
-}
-
-void virtual_drive_on_frame(struct virtual_drive *drive, const struct can_frame *frame)
-{
-    if (!(drive->accepts[frame->id >> 5 & 63] >> (frame->id & 31) & 1))
-        return;
-    if (drive->faults.is_hung || drive->boot_ns != 0)
-        return;
-    if (nmt_is_guard(frame, drive->config.node) && !drive->lss.is_nameless)
-        take_guard(drive);
-    if (frame->id > CAN_ID_MASK)
-        return;
-    if (drive->lss.is_nameless && frame->id != LSS_REQUEST_COB_ID &&
-        frame->id != NMT_COMMAND_COB_ID)
-        return;
-    if (frame->id == identifier_of(drive->objects.communication.sync_cob_id))
-        take_sync(drive, frame);
-    else if (frame->id == LSS_REQUEST_COB_ID)
-        virtual_drive_take_lss(drive, frame);
-    else if (is_time(drive, frame))
-        take_time(drive, frame);
-    else if (node_function(frame->id) == SDO_REQUEST_FUNCTION || frame->id == NMT_COMMAND_COB_ID ||
-             node_function(frame->id) == NMT_HEARTBEAT_FUNCTION)
-        take_other(drive, frame);
-    else if (drive->nmt == NMT_OPERATIONAL)
-        virtual_drive_take_rpdo(drive, frame);
+    return !drive->faults.is_hung && servo_accepts(&drive->servo, frame);
 }
 
 void virtual_drive_on_frame_at(struct virtual_drive *drive, const struct can_frame *frame,
                                uint64_t time_ns)
 {
-    drive->heard_ns = time_ns;
-    virtual_drive_on_frame(drive, frame);
-}
-
-static uint64_t earlier(uint64_t a, uint64_t b)
-{
-    return a < b ? a : b;
-}
-
-static void watch_connection(struct virtual_drive *drive)
-{
-    if (drive->now_ns >= drive->sync_lost_ns) {
-        drive->sync_lost_ns = DRIVE_NEVER;
-        virtual_drive_set_communication_error(drive, EMCY_SYNC);
-    }
-    if (drive->now_ns >= drive->guard_lost_ns) {
-        drive->guard_lost_ns = DRIVE_NEVER;
-        virtual_drive_set_communication_error(drive, EMCY_HEARTBEAT);
-    }
-    for (unsigned i = 0; i < DRIVE_CONSUMERS; i++) {
-        if (drive->now_ns < drive->consumer_ns[i])
-            continue;
-        drive->consumer_ns[i] = DRIVE_NEVER;
-        virtual_drive_set_communication_error(drive, EMCY_HEARTBEAT);
-    }
-}
-
-/* Everything that waits for a time; notes when the next of it comes. */
-static void run_timers(struct virtual_drive *drive)
-{
-    uint16_t heartbeat_ms = drive->objects.communication.producer_heartbeat_ms;
-    if (drive->boot_ns != 0) {
-        if (drive->now_ns >= drive->boot_ns)
-            virtual_drive_boot(drive);
-        else
-            drive->due_ns = drive->boot_ns;
+    if (!is_heard(drive, frame))
         return;
-    }
-    answer_request(drive);
-    if (drive->now_ns >= drive->heartbeat_ns) {
-        send_heartbeat(drive, drive->nmt);
-        drive->heartbeat_ns = drive->now_ns + (uint64_t)heartbeat_ms * MILLISECOND_NS;
-    }
-    watch_connection(drive);
-    virtual_drive_send_waiting_emergencies(drive);
-    virtual_drive_send_due(drive);
-    drive->due_ns = earlier(drive->heartbeat_ns, virtual_drive_next_pdo_ns(drive));
-    drive->due_ns = earlier(drive->due_ns, drive->sync_lost_ns);
-    drive->due_ns = earlier(drive->due_ns, drive->guard_lost_ns);
-    for (unsigned i = 0; i < DRIVE_CONSUMERS; i++)
-        drive->due_ns = earlier(drive->due_ns, drive->consumer_ns[i]);
-    if (drive->requests.count > 0)
-        drive->due_ns = earlier(drive->due_ns, drive->requests.due_ns);
-    if (drive->emcy_count > 0)
-        drive->due_ns = earlier(drive->due_ns, drive->emcy_ns);
+    virtual_drive_begin(drive, &(struct twin_order){.kind = TWIN_FRAME,
+                                                    .frame = twin_frame_of(frame),
+                                                    .time_ns = time_ns});
+    servo_on_frame_at(&drive->servo, frame, time_ns);
+    virtual_drive_end(drive);
 }
 
-/* Something that is an event may have changed. */
-static bool may_have_event(const struct virtual_drive *drive)
+void virtual_drive_on_frame(struct virtual_drive *drive, const struct can_frame *frame)
 {
-    const struct drive_process *p = &drive->objects.process;
-    return p->error_code != drive->seen_error_code || p->mode_display != drive->seen_mode ||
-           drive->watched & (DRIVE_GROUP_STATUS | DRIVE_GROUP_INPUTS);
-}
-
-static void run_motor(struct virtual_drive *drive, uint32_t cycle_ns)
-{
-    virtual_drive_begin_probe(drive);
-    virtual_drive_move(drive, cycle_ns);
-    virtual_drive_run_probe(drive);
+    virtual_drive_on_frame_at(drive, frame, 0);
 }
 
 void virtual_drive_step(struct virtual_drive *drive, uint32_t cycle_ns)
 {
     if (drive->faults.script)
         virtual_drive_run_faults(drive);
-    if (drive->config.is_io)
-        virtual_drive_run_io(drive);
-    else
-        run_motor(drive, cycle_ns);
-    drive->now_ns += cycle_ns;
-    if (may_have_event(drive))
-        virtual_drive_note_events(drive);
-    if (drive->now_ns >= drive->due_ns)
-        run_timers(drive);
-    if (drive->sdo.state == SDO_SERVER_SENDING)
-        sdo_server_go_on(&drive->sdo);
+    virtual_drive_begin(drive, &(struct twin_order){.kind = TWIN_STEP, .a = cycle_ns});
+    servo_step(&drive->servo, cycle_ns);
+    virtual_drive_end(drive);
+}
+
+void virtual_drive_touch(struct virtual_drive *drive, bool touches, double ratio)
+{
+    virtual_drive_begin(drive,
+                        &(struct twin_order){.kind = TWIN_TOUCH, .a = touches, .ratio = ratio});
+    servo_touch(&drive->servo, touches, ratio);
+    virtual_drive_end(drive);
+}
+
+void virtual_drive_inject(struct virtual_drive *drive, const struct inject *script,
+                          const struct inject_clock *clock)
+{
+    struct servo_meddler meddler = virtual_drive_meddler(drive);
+    drive->faults.script = script;
+    drive->faults.clock = clock;
+    virtual_drive_begin(drive, &(struct twin_order){.kind = TWIN_MEDDLE});
+    if (drive->twin != NULL)
+        meddler = drive->twin->meddle(drive->twin->context, &meddler);
+    servo_meddle(&drive->servo, &meddler);
+    virtual_drive_end(drive);
+}
+
+enum cia402_state virtual_drive_get_state(const struct virtual_drive *drive)
+{
+    return servo_get_state(&drive->servo);
 }
 
 enum nmt_state virtual_drive_get_nmt_state(const struct virtual_drive *drive)
 {
-    return drive->nmt;
+    return servo_get_nmt_state(&drive->servo);
 }
 
-/* A drive that cannot be told has the time between targets, once it is to follow them. */
-uint32_t virtual_drive_get_sync_period_us(const struct virtual_drive *drive)
+bool virtual_drive_read_object(struct virtual_drive *drive, uint32_t object, uint32_t *value)
 {
-    bool has_index;
-    const struct object_row *row = dictionary_find(drive->dictionary, 0x1006, 0, &has_index);
-    if (row != NULL && row->access == OBJECT_RW)
-        return drive->objects.communication.sync_period_us;
-    return drive->nmt == NMT_OPERATIONAL ? (uint32_t)(drive->interpolation_ns / MICROSECOND_NS) : 0;
+    return servo_read_object(&drive->servo, object, value);
 }
 
-uint32_t virtual_drive_get_watched_ms(const struct virtual_drive *drive)
+bool virtual_drive_write_object(struct virtual_drive *drive, uint32_t object, uint32_t value)
 {
-    uint32_t shortest_ms = drive->guard_lost_ns != DRIVE_NEVER ? life_time_ms(drive) : 0;
-    for (unsigned i = 0; i < DRIVE_CONSUMERS; i++) {
-        uint32_t watched_ms = drive->objects.communication.consumer_heartbeat[i] & 0xFFFF;
-        if (watched_ms != 0 && (shortest_ms == 0 || watched_ms < shortest_ms))
-            shortest_ms = watched_ms;
-    }
-    return shortest_ms;
+    virtual_drive_begin(drive, &(struct twin_order){.kind = TWIN_WRITE, .a = object, .b = value});
+    bool good = servo_write_object(&drive->servo, object, value);
+    virtual_drive_end(drive);
+    return good;
 }
 
-bool virtual_drive_is_sync(const struct virtual_drive *drive, const struct can_frame *frame)
+double virtual_drive_get_position_mm(const struct virtual_drive *drive)
 {
-    return frame->id == identifier_of(drive->objects.communication.sync_cob_id) &&
-           frame->length <= 1;
+    return drive_plant_table_mm(&drive->plant);
 }

@@ -47,11 +47,20 @@ static uint32_t shown_by(struct virtual_drive *drive, const struct inject_fault 
 {
     bool has_index;
     const struct object_row *row =
-        dictionary_find(drive->dictionary, fault->index, fault->sub, &has_index);
+        dictionary_find(drive->servo.dictionary, fault->index, fault->sub, &has_index);
     if (fault->kind == INJECT_REPORT || !row)
         return fault->value;
-    virtual_drive_refresh(drive, DRIVE_GROUP_ALL);
-    return object_read(row, &drive->objects);
+    servo_refresh(&drive->servo);
+    return object_read(row, &drive->servo.objects);
+}
+
+static void look_at_motor(struct virtual_drive *drive)
+{
+    if (drive->servo.config.is_io)
+        return;
+    virtual_drive_begin(drive, &(struct twin_order){.kind = TWIN_LOOK});
+    servo_loop_look(&drive->servo.loop);
+    virtual_drive_end(drive);
 }
 
 /* Faults that last: their sum. */
@@ -61,7 +70,6 @@ static void sum_up(struct virtual_drive *drive)
     struct drive_plant_damage damage = {.torque_ratio = 1};
     f->mute = 0;
     f->is_hung = false;
-    f->overrides = 0;
     for (unsigned i = 0; i < f->script->count; i++) {
         const struct inject_fault *fault = fault_of(drive, i);
         if (!is_in_force(drive, i))
@@ -69,25 +77,46 @@ static void sum_up(struct virtual_drive *drive)
         if (fault->kind == INJECT_MUTE)
             f->mute |= (uint8_t)(1u << fault->what);
         f->is_hung = f->is_hung || fault->kind == INJECT_HANG;
-        f->overrides += overrides(fault);
         damage.is_jammed = damage.is_jammed || fault->kind == INJECT_JAM;
         if (fault->kind == INJECT_WEAK)
             damage.torque_ratio *= fault->ratio;
     }
     drive->plant.damage = damage;
+    look_at_motor(drive);
+}
+
+static void tell_of_error(struct virtual_drive *drive, const struct inject_fault *fault)
+{
+    const struct twin_order order = {.kind =
+                                         fault->kind == INJECT_EMCY ? TWIN_FAIL : TWIN_EMERGENCY,
+                                     .a = fault->code,
+                                     .b = register_of(fault)};
+    virtual_drive_begin(drive, &order);
+    if (fault->kind == INJECT_EMCY)
+        servo_fail(&drive->servo, (uint16_t)order.a, (uint8_t)order.b);
+    else
+        servo_send_emergency(&drive->servo, (uint16_t)order.a, (uint8_t)order.b);
+    virtual_drive_end(drive);
+}
+
+static void reboot(struct virtual_drive *drive)
+{
+    virtual_drive_begin(drive, &(struct twin_order){.kind = TWIN_REBOOT});
+    servo_reboot(&drive->servo);
+    virtual_drive_end(drive);
 }
 
 /* Faults that happen once. */
 static void happen(struct virtual_drive *drive, const struct inject_fault *fault)
 {
-    if (fault->kind == INJECT_EMCY)
-        virtual_drive_fail(drive, (uint16_t)fault->code, register_of(fault));
-    else if (fault->kind == INJECT_WARN)
-        virtual_drive_send_emergency(drive, (uint16_t)fault->code, register_of(fault));
-    else if (fault->kind == INJECT_REBOOT)
-        virtual_drive_reboot(drive);
-    else if (fault->kind == INJECT_ENCODER_JUMP)
+    if (fault->kind == INJECT_EMCY || fault->kind == INJECT_WARN) {
+        tell_of_error(drive, fault);
+    } else if (fault->kind == INJECT_REBOOT) {
+        reboot(drive);
+    } else if (fault->kind == INJECT_ENCODER_JUMP) {
         drive_plant_shift_encoder(&drive->plant, fault->by_mm);
+        look_at_motor(drive);
+    }
 }
 
 static void begin_or_end(struct virtual_drive *drive, unsigned i)
@@ -96,8 +125,8 @@ static void begin_or_end(struct virtual_drive *drive, unsigned i)
     const struct inject_fault *fault = fault_of(drive, i);
     f->in_force ^= UINT64_C(1) << i;
     bool begins = is_in_force(drive, i);
-    virtual_drive_tell(drive, begins ? DRIVE_EVENT_FAULT : DRIVE_EVENT_FAULT_END, fault->line,
-                       (uint32_t)fault->kind);
+    servo_tell(&drive->servo, begins ? DRIVE_EVENT_FAULT : DRIVE_EVENT_FAULT_END, fault->line,
+               (uint32_t)fault->kind);
     if (begins && overrides(fault))
         f->shown[i] = shown_by(drive, fault);
     sum_up(drive);
@@ -110,15 +139,28 @@ void virtual_drive_run_faults(struct virtual_drive *drive)
     const struct drive_faults *f = &drive->faults;
     for (unsigned i = 0; i < f->script->count; i++) {
         const struct inject_fault *fault = fault_of(drive, i);
-        if (inject_is_of_bus(fault->kind) || fault->node != drive->config.node)
+        if (inject_is_of_bus(fault->kind) || fault->node != drive->servo.config.node)
             continue;
         if (inject_is_in_force(fault, f->clock) != is_in_force(drive, i))
             begin_or_end(drive, i);
     }
 }
 
-bool virtual_drive_aborts_sdo(const struct virtual_drive *drive, uint32_t object, uint32_t *code)
+static bool holds_back(void *context, enum servo_frame kind)
 {
+    static const enum inject_mute mute[] = {
+        [SERVO_FRAME_HEARTBEAT] = INJECT_MUTE_HEARTBEAT,
+        [SERVO_FRAME_TPDO] = INJECT_MUTE_TPDO,
+        [SERVO_FRAME_SDO] = INJECT_MUTE_SDO,
+        [SERVO_FRAME_EMCY] = INJECT_MUTE_EMCY,
+    };
+    const struct virtual_drive *drive = context;
+    return drive->faults.is_hung || drive->faults.mute & (1u << mute[kind] | 1u << INJECT_MUTE_ALL);
+}
+
+static bool aborts_sdo(void *context, uint32_t object, uint32_t *code)
+{
+    const struct virtual_drive *drive = context;
     for (unsigned i = 0; i < drive->faults.script->count; i++) {
         const struct inject_fault *fault = fault_of(drive, i);
         if (!is_in_force(drive, i) || fault->kind != INJECT_SDO_ABORT ||
@@ -130,9 +172,9 @@ bool virtual_drive_aborts_sdo(const struct virtual_drive *drive, uint32_t object
     return false;
 }
 
-bool virtual_drive_overrides(const struct virtual_drive *drive, const struct object_row *row,
-                             uint32_t *value)
+static bool shows(void *context, const struct object_row *row, uint32_t *value)
 {
+    const struct virtual_drive *drive = context;
     for (unsigned i = 0; i < drive->faults.script->count; i++) {
         const struct inject_fault *fault = fault_of(drive, i);
         if (!is_in_force(drive, i) || !overrides(fault) || fault->index != row->index ||
@@ -142,4 +184,10 @@ bool virtual_drive_overrides(const struct virtual_drive *drive, const struct obj
         return true;
     }
     return false;
+}
+
+struct servo_meddler virtual_drive_meddler(struct virtual_drive *drive)
+{
+    return (struct servo_meddler){
+        .holds_back = holds_back, .aborts_sdo = aborts_sdo, .overrides = shows, .context = drive};
 }

@@ -305,7 +305,7 @@ unsigned takt_count_drives(const struct takt_job *job)
 
 unsigned takt_get_node(const struct takt_job *job, unsigned drive)
 {
-    return job->run.simulation->field.drives.drive[drive].config.node;
+    return job->run.simulation->field.drives.drive[drive].servo.config.node;
 }
 
 double takt_get_position_mm(const struct takt_job *job, unsigned drive)

@@ -5,9 +5,9 @@
 #define TAKT_PAGE_PAGE_SETUP_H
 
 #include "base/point.h"
-#include "drives/dictionary.h"
 #include "page/page_link.h"
 #include "page/page_path.h"
+#include "servo/dictionary.h"
 
 #include <stdbool.h>
 #include <stddef.h>

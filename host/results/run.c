@@ -10,6 +10,7 @@ enum command_status run_open(struct run *run, const struct options *options)
     struct field_options field = {
         .bus = options->bus,
         .drives = options->drives,
+        .drive_image = options->drive_image,
         .is_paced = options->realtime,
         .has_script = options->inject != NULL,
     };

@@ -157,6 +157,18 @@ static void set_target(struct summary *summary, const struct simulation *simulat
     add_check(summary, "target", AXIS_COUNT, "cycles", (double)simulation->target.differences, 0);
 }
 
+/* The same of drives. */
+static void set_drive_images(struct summary *summary, const struct simulation *simulation)
+{
+    const struct drive_images *images = &simulation->field.images;
+
+    if (images->count == 0)
+        return;
+    summary->drive_images = images;
+    add_check(summary, "drive_images", AXIS_COUNT, "frames and torques",
+              (double)drive_images_differences(images), 0);
+}
+
 static void set_fault(struct summary *summary, const struct diagnostic *fault)
 {
     const char *remedy = drives_table_remedy(fault);
@@ -206,5 +218,6 @@ void summary_set(struct summary *summary, const struct summary_source *source)
     set_responses(summary, &simulation->field, drives);
     set_pace(summary, &simulation->field);
     set_target(summary, simulation);
+    set_drive_images(summary, simulation);
     add_check(summary, "fault", AXIS_COUNT, "", source->outcome == OUTCOME_FAULTED ? 1 : 0, 0);
 }

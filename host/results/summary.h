@@ -22,7 +22,7 @@ enum summary_outcome {
 };
 
 #define SUMMARY_CHECK_NAME_MAX 31
-#define SUMMARY_CHECKS_MAX     (5 * AXIS_COUNT + 8)
+#define SUMMARY_CHECKS_MAX     (5 * AXIS_COUNT + 9)
 
 struct summary_check {
     char name[SUMMARY_CHECK_NAME_MAX + 1];
@@ -57,7 +57,8 @@ struct summary {
     bool is_paced;
     struct pace_figures pace;
     struct pace_permission permission;
-    const struct target *target; /* NULL: the run was on none */
+    const struct target *target;             /* NULL: the run was on none */
+    const struct drive_images *drive_images; /* NULL: the drives were none */
     bool cost_measured;
     double cost_min_ns, cost_mean_ns, cost_p99_ns, cost_max_ns;
     unsigned checks;

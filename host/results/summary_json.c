@@ -204,6 +204,21 @@ static void add_target(cJSON *root, const struct summary *summary)
     cJSON_AddNumberToObject(object, "blocks_planned", target->cost.blocks);
 }
 
+static void add_drive_images(cJSON *root, const struct summary *summary)
+{
+    const struct drive_images *images = summary->drive_images;
+    cJSON *object;
+
+    if (images == NULL) {
+        cJSON_AddNullToObject(root, "drive_images");
+        return;
+    }
+    object = cJSON_AddObjectToObject(root, "drive_images");
+    cJSON_AddStringToObject(object, "name", images->name);
+    cJSON_AddNumberToObject(object, "count", images->count);
+    cJSON_AddNumberToObject(object, "differences", (double)drive_images_differences(images));
+}
+
 static void add_checks(cJSON *root, const struct summary *summary)
 {
     cJSON *checks = cJSON_AddArrayToObject(root, "checks");
@@ -236,6 +251,7 @@ char *summary_json(const struct summary *summary)
     add_pace(root, summary);
     add_cost(root, summary);
     add_target(root, summary);
+    add_drive_images(root, summary);
     add_checks(root, summary);
     (void)snprintf(digest, sizeof digest, "%016" PRIx64, summary->figures.digest);
     cJSON_AddStringToObject(root, "setpoint_digest", digest);

@@ -101,6 +101,22 @@ static void write_pace(FILE *stream, const struct summary *summary)
                   summary->permission.has_memory ? "locked" : "not locked");
 }
 
+static void write_drive_images(FILE *stream, const struct summary *summary)
+{
+    const struct drive_images *images = summary->drive_images;
+    uint64_t differences;
+
+    if (images == NULL)
+        return;
+    differences = drive_images_differences(images);
+    (void)fprintf(stream, "  drives        %u on %s: ", images->count, images->name);
+    if (differences == 0)
+        (void)fprintf(stream, "every frame and torque as on the host, bit for bit\n");
+    else
+        (void)fprintf(stream, "%" PRIu64 " frames and torques differ from the host's\n",
+                      differences);
+}
+
 static void write_target(FILE *stream, const struct summary *summary)
 {
     const struct target *target = summary->target;
@@ -139,6 +155,7 @@ static void write_path(FILE *stream, const struct summary *summary)
     write_pace(stream, summary);
     summary_steps_write_text(stream, summary);
     write_target(stream, summary);
+    write_drive_images(stream, summary);
 }
 
 static void write_checks(FILE *stream, const struct summary *summary)

@@ -6,9 +6,11 @@
 #include "cli/message.h"
 #include "cli/output_file.h"
 #include "cli/text.h"
+#include "drives/drive_event.h"
 #include "drives/drive_store.h"
 #include "drives/eds.h"
 #include "simulation/bus_log.h"
+#include "simulation/drive_images.h"
 
 #include <stdlib.h>
 #include <unistd.h>
@@ -37,6 +39,7 @@ struct drive_service {
     struct bus_log bus_log;
     struct eds_text eds[VIRTUAL_DRIVES_MAX];
     struct virtual_drives set;
+    struct drive_images images;
     struct probe_contact contact;
 };
 
@@ -66,14 +69,14 @@ static bool make_eds(struct virtual_drive *drive, struct eds_text *text)
 
     if (stream == NULL)
         return false;
-    eds_write(stream, drive, "takt-drive.eds");
+    eds_write(stream, &drive->servo, "takt-drive.eds");
     if (fclose(stream) != 0)
         return false;
     virtual_drive_set_eds(drive, text->bytes, text->length);
     return true;
 }
 
-static void store_path(const struct drive_service *service, const struct virtual_drive *drive,
+static void store_path(const struct drive_service *service, const struct servo *drive,
                        char path[OUTPUT_PATH_MAX])
 {
     (void)snprintf(path, OUTPUT_PATH_MAX, "%s/takt-drive-%u.store", service->config->store,
@@ -81,7 +84,7 @@ static void store_path(const struct drive_service *service, const struct virtual
 }
 
 /* A message says so when it fails; the drive tells its master. */
-static bool keep_stored(void *context, const struct virtual_drive *drive)
+static bool keep_stored(void *context, const struct servo *drive)
 {
     static _Thread_local struct output_file file;
     char path[OUTPUT_PATH_MAX];
@@ -94,14 +97,14 @@ static bool keep_stored(void *context, const struct virtual_drive *drive)
 }
 
 /* False after a message. A drive that has stored nothing has no file. */
-static bool load_stored(struct drive_service *service, struct virtual_drive *drive)
+static bool load_stored(struct drive_service *service, struct servo *drive)
 {
     char path[OUTPUT_PATH_MAX];
     struct drive_store_problem wrong;
     struct text text;
     bool good;
 
-    virtual_drive_keep(drive, &(struct drive_keeper){keep_stored, service});
+    servo_keep(drive, &(struct drive_keeper){keep_stored, service});
     store_path(service, drive, path);
     if (access(path, F_OK) != 0)
         return true;
@@ -117,7 +120,7 @@ static bool load_stored(struct drive_service *service, struct virtual_drive *dri
 static bool load_all_stored(struct drive_service *service)
 {
     for (unsigned i = 0; i < service->set.count && service->config->store != NULL; i++) {
-        if (!load_stored(service, &service->set.drive[i]))
+        if (!load_stored(service, &service->set.drive[i].servo))
             return false;
     }
     return true;
@@ -160,6 +163,9 @@ static enum command_status start(struct drive_service *service)
         return STATUS_ENVIRONMENT;
     bus_log_observe_link(&service->bus_log, service->link);
     service->cycle_ns = (uint64_t)config->cycle_us * 1000;
+    if (config->target != NULL &&
+        !drive_images_open(&service->images, config->target, config->image, config->drives))
+        return STATUS_ENVIRONMENT;
     virtual_drives_open(&service->set, &service->port, config->drives);
     if (!make_all_eds(service))
         return STATUS_ENVIRONMENT;
@@ -213,6 +219,18 @@ static void keep_time(struct drive_service *service)
     }
 }
 
+/* False after a message: an image has gone, or does not do what the drive here does. */
+static bool check_images(struct drive_service *service)
+{
+    const char *problem = drive_images_problem(&service->images);
+
+    if (problem == NULL && drive_images_differences(&service->images) == 0)
+        return true;
+    message_command_error(
+        "%s", problem != NULL ? problem : "an image sends or turns what the drive here does not");
+    return false;
+}
+
 static enum command_status run(struct drive_service *service)
 {
     while (!interrupt_asked()) {
@@ -224,6 +242,8 @@ static enum command_status run(struct drive_service *service)
         look_who_left(service);
         keep_time(service);
         bus_log_keep(&service->bus_log);
+        if (!check_images(service))
+            return STATUS_ENVIRONMENT;
     }
     return STATUS_DONE;
 }
@@ -241,6 +261,7 @@ enum command_status drive_service_run(const struct drive_service_config *config)
     status = start(service);
     if (status == STATUS_DONE)
         status = run(service);
+    drive_images_close(&service->images);
     link_close(service->link);
     if (!bus_log_close(&service->bus_log) && status == STATUS_DONE)
         status = STATUS_ENVIRONMENT;

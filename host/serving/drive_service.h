@@ -23,13 +23,14 @@ struct drive_service_config {
     struct frame_rates rates;
     uint32_t cycle_us;
     bool is_paced;
-    const struct virtual_drives_config *drives;
-    const struct inject *script; /* NULL: no faults */
+    struct virtual_drives_config *drives; /* gets twins */
+    const struct inject *script;          /* NULL: no faults */
     const struct machine *machine;
     const struct virtual_probe *probe; /* what touch probes meet, by the machine's axes */
     FILE *log;                         /* one line an event; NULL: none */
     const char *bus_log;               /* simulation/bus_log.h */
-    const char *store;                 /* folder with what drives store (object 1010); NULL: none */
+    const char *target, *image; /* each drive is this image in QEMU; NULL: it runs here alone */
+    const char *store;          /* folder with what drives store (object 1010); NULL: none */
 };
 
 /* Until a signal comes: STATUS_DONE. Else after a message. */

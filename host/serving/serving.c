@@ -85,8 +85,11 @@ static void open_service(struct serving *s)
 static enum command_status open_field(struct serving *s)
 {
     const struct options *options = s->session.options;
-    const struct field_options field = {
-        .bus = options->bus, .drives = options->drives, .is_paced = true, .returns = true};
+    const struct field_options field = {.bus = options->bus,
+                                        .drives = options->drives,
+                                        .drive_image = options->drive_image,
+                                        .is_paced = true,
+                                        .returns = true};
     enum command_status status = field_check_options(&field)
                                      ? field_open(&s->field, &s->session.setup, &field)
                                      : STATUS_INPUT;

@@ -55,8 +55,8 @@ static void set_drives(struct page_setup *setup, const struct field *field,
     for (unsigned i = 0; i < field->drives.count && i < PAGE_DRIVES_MAX; i++) {
         struct page_drive *drive = &setup->drive[setup->drives++];
 
-        drive->node = field->drives.drive[i].config.node;
-        drive->dictionary = field->drives.drive[i].dictionary;
+        drive->node = field->drives.drive[i].servo.config.node;
+        drive->dictionary = field->drives.drive[i].servo.dictionary;
         name_drive(drive, machine);
     }
 }
@@ -204,7 +204,7 @@ static void read_bus(const struct serving *s, struct page_bus *shown)
 static void read_objects(struct serving *s, struct page_job *job)
 {
     struct virtual_drive *drive = &s->field.drives.drive[job->drive];
-    const struct dictionary *dictionary = drive->dictionary;
+    const struct dictionary *dictionary = drive->servo.dictionary;
     struct page_values *values = &job->values;
 
     values->count = dictionary->count < PAGE_OBJECTS_MAX ? dictionary->count : PAGE_OBJECTS_MAX;
@@ -236,7 +236,7 @@ static bool begin_fault(struct serving *s, const struct inject_fault *fault)
     if (!inject_is_of_bus(fault->kind))
         return true;
     for (unsigned i = 0; i < drives->count; i++)
-        nodes[i] = drives->drive[i].config.node;
+        nodes[i] = drives->drive[i].servo.config.node;
     return inject_bus_add(&s->field.bus, &one, INJECT_POWER, 0, nodes, drives->count);
 }
 

@@ -2,6 +2,7 @@
 
 #include "cli/message.h"
 #include "config/data_sheet.h"
+#include "drives/dictionary_read.h"
 #include "simulation/inject_bus.h"
 
 #include <string.h>
@@ -25,6 +26,24 @@ static bool check_bus(const char *bus)
     return false;
 }
 
+/* Where the drives are images, and nowhere else, their file is given. */
+static bool check_images(const struct field_options *options)
+{
+    const char *drives = options->drives;
+    const bool has_images = drives != NULL && drive_image_is_known(drives);
+
+    if (drives != NULL && !has_images && strcmp(drives, "internal") != 0 &&
+        strcmp(drives, "external") != 0) {
+        message_command_error("--drives %s: internal, external, or m4f or m7 is expected", drives);
+        return false;
+    }
+    if (has_images == (options->drive_image != NULL))
+        return true;
+    message_command_error("--drives m4f or m7 and --drive-image belong together; host/run --drives "
+                          "NAME builds the image and gives both");
+    return false;
+}
+
 bool field_check_options(const struct field_options *options)
 {
     const char *drives = options->drives;
@@ -36,10 +55,8 @@ bool field_check_options(const struct field_options *options)
                               "process; give drives their faults by takt drives --inject");
         return false;
     }
-    if (drives != NULL && strcmp(drives, "internal") != 0 && strcmp(drives, "external") != 0) {
-        message_command_error("--drives %s: internal or external is expected", drives);
+    if (!check_images(options))
         return false;
-    }
     if (drives == NULL)
         return true;
     if (strcmp(drives, "external") == 0 && !is_outside(options)) {
@@ -47,10 +64,10 @@ bool field_check_options(const struct field_options *options)
                               "--bus socketcan:can0, slcan:PATH or socketcand:HOST:PORT");
         return false;
     }
-    if (strcmp(drives, "internal") == 0 && is_outside(options)) {
-        message_command_error("--drives internal are on the embedded bus; with --bus %s they are "
+    if (strcmp(drives, "external") != 0 && is_outside(options)) {
+        message_command_error("--drives %s are on the embedded bus; with --bus %s they are "
                               "external, a process of `takt drives` or real ones",
-                              options->bus);
+                              drives, options->bus);
         return false;
     }
     return true;
@@ -63,7 +80,7 @@ static bool add_faults(struct field *field, const struct inject *script, enum in
     uint8_t nodes[VIRTUAL_DRIVES_MAX];
 
     for (unsigned i = 0; i < field->drives.count; i++)
-        nodes[i] = field->drives.drive[i].config.node;
+        nodes[i] = field->drives.drive[i].servo.config.node;
     return inject_bus_add(&field->bus, script, anchor, anchor_ns, nodes, field->drives.count);
 }
 
@@ -98,7 +115,8 @@ bool field_add_faults(struct field *field, const struct inject *script, unsigned
            (!field->has_enabled_faults || add_faults(field, &added, INJECT_ENABLED, enabled_ns));
 }
 
-static bool open_inside(struct field *field, const struct machine_setup *setup)
+static bool open_inside(struct field *field, const struct machine_setup *setup,
+                        const struct field_options *options)
 {
     struct virtual_drives_config drives;
 
@@ -107,6 +125,9 @@ static bool open_inside(struct field *field, const struct machine_setup *setup)
     (void)bus_init_rates(&field->bus, &rates); /* checked with the machine */
     field->port = bus_attach(&field->bus, NULL);
     if (!data_sheet_set_machine(&drives, setup, field->sheet))
+        return false;
+    if (options->drive_image != NULL &&
+        !drive_images_open(&field->images, options->drives, options->drive_image, &drives))
         return false;
     virtual_drives_init(&field->drives, &field->bus, &drives);
     return start_faults(field);
@@ -180,7 +201,7 @@ enum command_status field_open(struct field *field, const struct machine_setup *
     start_steppers(field, setup);
     if (is_outside(options))
         status = open_outside(field, setup, options->bus);
-    else if (!open_inside(field, setup))
+    else if (!open_inside(field, setup, options))
         status = STATUS_INPUT;
     if (status == STATUS_DONE && options->is_paced)
         start_pace(field);
@@ -193,6 +214,7 @@ void field_close(struct field *field)
 {
     bus_return_stop(&field->way_back);
     link_close(field->link);
+    drive_images_close(&field->images);
     field->link = NULL;
     for (unsigned i = 0; i < DATA_SHEETS_MAX; i++)
         dictionary_free(&field->sheet[i]);
@@ -282,7 +304,7 @@ bool field_end_cycle(struct field *field)
         end_inside(field);
     if (field->link != NULL)
         tell_warning(field);
-    return good;
+    return good && drive_images_problem(&field->images) == NULL;
 }
 
 bool field_is_lost(const struct field *field)
@@ -290,9 +312,10 @@ bool field_is_lost(const struct field *field)
     return field->link != NULL && link_get_problem(field->link)[0] != '\0';
 }
 
-const char *field_get_problem(const struct field *field)
+const char *field_get_problem(struct field *field)
 {
-    return field_is_lost(field) ? link_get_problem(field->link) : NULL;
+    return field_is_lost(field) ? link_get_problem(field->link)
+                                : drive_images_problem(&field->images);
 }
 
 void field_observe_outside(struct field *field, const struct wire_listener *listener)

@@ -14,6 +14,7 @@
 #include "config/machine_setup.h"
 #include "drives/virtual_drives.h"
 #include "simulation/bus_return.h"
+#include "simulation/drive_images.h"
 #include "simulation/lockstep.h"
 #include "simulation/pace.h"
 #include "stepper/virtual_steppers.h"
@@ -34,6 +35,7 @@ struct field_traffic {
 struct field {
     struct bus bus; /* both: not used with an outside bus */
     struct virtual_drives drives;
+    struct drive_images images; /* of the drives; none: they run here alone */
     struct dictionary
         sheet[MACHINE_SETUP_DRIVES_MAX]; /* of the drives, by axis; empty: takt's own */
     struct virtual_steppers steppers;    /* inside, whatever the bus */
@@ -57,8 +59,9 @@ struct field {
  * What the options --bus, --drives and --realtime say. Texts may be NULL: not given.
  */
 struct field_options {
-    const char *bus;    /* bus/link.h */
-    const char *drives; /* internal, external */
+    const char *bus;         /* bus/link.h */
+    const char *drives;      /* internal, external, or where an image of each runs: m4f, m7 */
+    const char *drive_image; /* its file */
     bool is_paced;
     bool returns;    /* an outside bus that is lost is opened again; with is_paced */
     bool has_script; /* --inject is given */
@@ -97,8 +100,8 @@ bool field_end_cycle(struct field *field);
 /* The outside bus is gone, and not back yet. */
 bool field_is_lost(const struct field *field);
 
-/* What an outside bus died of; NULL: it has not. */
-const char *field_get_problem(const struct field *field);
+/* What an outside bus, or an image of a drive, died of; NULL: it has not. */
+const char *field_get_problem(struct field *field);
 
 /* Every frame on an outside bus from now on, with the time since 1970. */
 void field_observe_outside(struct field *field, const struct wire_listener *listener);

@@ -26,7 +26,7 @@ void probe_contact_wire(struct probe_contact *contact, const struct virtual_prob
 {
     *contact = (struct probe_contact){.probe = probe, .count = drives->motors};
     for (unsigned i = 0; i < drives->motors; i++)
-        contact->axis[i] = axis_of(machine, drives->drive[i].config.node);
+        contact->axis[i] = axis_of(machine, drives->drive[i].servo.config.node);
     if (probe->solids > 0)
         virtual_drives_set_contact(drives, &(struct virtual_drives_contact){touches, contact});
 }

@@ -110,8 +110,10 @@ static void free_overrides(struct simulation *s)
 enum command_status simulation_open(const struct session *session, struct simulation **opened)
 {
     const struct options *options = session->options;
-    struct field_options field = {
-        .bus = options->bus, .drives = options->drives, .is_paced = options->realtime};
+    struct field_options field = {.bus = options->bus,
+                                  .drives = options->drives,
+                                  .drive_image = options->drive_image,
+                                  .is_paced = options->realtime};
     struct simulation *s = calloc(1, sizeof *s);
     struct virtual_spindle_config spindle;
     enum command_status status;

@@ -15,6 +15,7 @@
 #include "serving/drive_service.h"
 #include "serving/serving_options.h"
 #include "serving/spindle_service.h"
+#include "simulation/drive_images.h"
 
 #include <poll.h>
 #include <stdlib.h>
@@ -199,7 +200,7 @@ static enum command_status write_eds(const struct virtual_drive_config *config, 
     if (!output_file_open(&file, path))
         return STATUS_ENVIRONMENT;
     virtual_drive_init(&drive, config, NULL, &nowhere);
-    eds_write(file.stream, &drive, slash != NULL ? slash + 1 : path);
+    eds_write(file.stream, &drive.servo, slash != NULL ? slash + 1 : path);
     if (!output_file_finish(&file) || !output_file_place(&file))
         return STATUS_ENVIRONMENT;
     return STATUS_DONE;
@@ -262,7 +263,7 @@ static bool open_log(const struct options *options, FILE **log)
     return *log != NULL;
 }
 
-static enum command_status serve(const struct drives_command *command)
+static enum command_status serve(struct drives_command *command)
 {
     const struct options *options = command->options;
     FILE *log;
@@ -280,6 +281,8 @@ static enum command_status serve(const struct drives_command *command)
         .log = log,
         .bus_log = options->bus_log,
         .store = options->store,
+        .target = options->target,
+        .image = options->image,
         .machine = &command->setup.machine,
         .probe = &command->probe,
     });
@@ -297,7 +300,7 @@ static void wait_for_signal(void)
         (void)poll(NULL, 0, SIGNAL_LOOK_MS);
 }
 
-static enum command_status serve_with_spindle(const struct drives_command *command)
+static enum command_status serve_with_spindle(struct drives_command *command)
 {
     static struct spindle_service spindle;
     const struct options *options = command->options;
@@ -348,6 +351,23 @@ static bool check_logs(const struct options *options)
     return true;
 }
 
+static bool check_target(const struct options *options)
+{
+    if (options->target != NULL && !drive_image_is_known(options->target))
+        message_command_error("--target %s: m4f or m7 is expected", options->target);
+    else if ((options->target == NULL) != (options->image == NULL))
+        message_command_error(
+            "--target and --image, takt-drive.elf of a build of that target, belong "
+            "together");
+    else if (options->target != NULL && options->bus == NULL)
+        message_command_error("--target needs --bus: drives that nobody reaches do not run");
+    else if (options->target != NULL && options->store != NULL)
+        message_command_error("--store: what an image stores is not kept");
+    else
+        return true;
+    return false;
+}
+
 static enum command_status command_drives_execute(const struct options *options)
 {
     static struct drives_command command;
@@ -360,7 +380,7 @@ static enum command_status command_drives_execute(const struct options *options)
                               "needed");
         return STATUS_INPUT;
     }
-    if (!check_logs(options))
+    if (!check_logs(options) || !check_target(options))
         return STATUS_INPUT;
     if (!machine_file_load(&command.setup, options) || !load_given(&command) ||
         !set_drives(&command) || !load_script(&command) ||
@@ -392,6 +412,10 @@ static const struct option_row rows[] = {
      "scripted faults; takt help inject explains them"},
     {"probe", OPTION_TEXT, offsetof(struct options, probe), "FILE",
      "what the drives' touch probes meet, as of takt run"},
+    {"target", OPTION_TEXT, offsetof(struct options, target), "NAME",
+     "run each drive's firmware in QEMU, on a Cortex-M4 (m4f) or M7 (m7), compared bit for bit"},
+    {"image", OPTION_TEXT, offsetof(struct options, image), "FILE",
+     "its image, takt-drive.elf of a build of that target"},
     {"unconfigured", OPTION_FLAG, offsetof(struct options, unconfigured), NULL,
      "drives have no node id before they get one by LSS; --nodes are their serial numbers"},
     {"store", OPTION_TEXT, offsetof(struct options, store), "FOLDER",

@@ -3,18 +3,23 @@
 #include "target/process.h"
 
 #include <errno.h>
+#include <fcntl.h>
 #include <signal.h>
 #include <spawn.h>
 #include <stdio.h>
 #include <string.h>
 #include <sys/wait.h>
 #include <time.h>
+#include <unistd.h>
 
 /* The image's files get the numbers from here on, which are free: takt has far fewer open. */
 #define FIRST_FILE 200
 
 #define ARGUMENT_MAX  200
 #define ARGUMENTS_MAX 20
+
+/* The talk takes two places. */
+#define FILES_MAX (1 + PROCESS_FILES)
 
 /* An image that has been told to end is gone after so many looks, or will not go. */
 #define END_LOOKS   200
@@ -47,7 +52,7 @@ static int start(pid_t *process, const char *qemu, char *const *arguments, const
     (void)posix_spawn_file_actions_init(&actions);
     (void)posix_spawnattr_init(&attributes);
     (void)posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETPGROUP);
-    for (int i = 0; i < PROCESS_FILES && file[i] >= 0; i++)
+    for (int i = 0; i < FILES_MAX && file[i] >= 0; i++)
         (void)posix_spawn_file_actions_adddup2(&actions, file[i], FIRST_FILE + i);
     error = posix_spawnp(process, qemu, &actions, &attributes, arguments, environ);
     (void)posix_spawn_file_actions_destroy(&actions);
@@ -56,11 +61,11 @@ static int start(pid_t *process, const char *qemu, char *const *arguments, const
 }
 
 /* The words the image is started with. */
-static void name_files(char *words, size_t size, const int file[PROCESS_FILES])
+static void name_files(char *words, size_t size, const int file[FILES_MAX])
 {
     int length = snprintf(words, size, "enable=on,target=native,arg=takt");
 
-    for (int i = 0; i < PROCESS_FILES && file[i] >= 0; i++)
+    for (int i = 0; i < FILES_MAX && file[i] >= 0; i++)
         length +=
             snprintf(words + length, size - (size_t)length, ",arg=/dev/fd/%d", FIRST_FILE + i);
 }
@@ -78,8 +83,8 @@ static char *word(const char *text)
  * -icount shift=0: an instruction takes a nanosecond, so that the image's clock counts instructions, and two runs are
  * the same. sleep=off: never waits for real time.
  */
-pid_t process_start(const struct process_board *board, const char *image,
-                    const int file[PROCESS_FILES])
+static pid_t start_image(const struct process_board *board, const char *image,
+                         const int file[FILES_MAX])
 {
     char semihosting[ARGUMENT_MAX];
     const char *const last[] = {
@@ -104,15 +109,63 @@ pid_t process_start(const struct process_board *board, const char *image,
     return error == 0 ? process : 0;
 }
 
-void process_end(pid_t process)
+/* Ends of pipes that QEMU must not keep open beside its own. */
+static bool open_pipe(int ends[2])
+{
+    if (pipe(ends) != 0)
+        return false;
+    (void)fcntl(ends[0], F_SETFD, FD_CLOEXEC);
+    (void)fcntl(ends[1], F_SETFD, FD_CLOEXEC);
+    return true;
+}
+
+bool process_start(struct process *process, const struct process_board *board, const char *image,
+                   const int file[PROCESS_FILES])
+{
+    int files[FILES_MAX];
+    int to[2], from[2];
+    unsigned count = 0;
+
+    *process = (struct process){.to = -1, .from = -1};
+    if (access(image, R_OK) != 0 || !open_pipe(to))
+        return false;
+    process->to = to[1];
+    if (!open_pipe(from)) {
+        (void)close(to[0]);
+        return false;
+    }
+    process->from = from[0];
+    for (unsigned i = 0; i < PROCESS_FILES; i++) {
+        files[count++] = file[i] == PROCESS_TALK ? to[0] : file[i];
+        if (file[i] == PROCESS_TALK)
+            files[count++] = from[1];
+    }
+    process->pid = start_image(board, image, files);
+    (void)close(to[0]);
+    (void)close(from[1]);
+    return process->pid != 0;
+}
+
+static void wait_for_end(pid_t pid)
 {
     const struct timespec look = {.tv_nsec = END_LOOK_NS};
 
     for (unsigned i = 0; i < END_LOOKS; i++) {
-        if (waitpid(process, NULL, WNOHANG) != 0)
+        if (waitpid(pid, NULL, WNOHANG) != 0)
             return;
         (void)nanosleep(&look, NULL);
     }
-    (void)kill(process, SIGKILL);
-    (void)waitpid(process, NULL, 0);
+    (void)kill(pid, SIGKILL);
+    (void)waitpid(pid, NULL, 0);
+}
+
+void process_end(struct process *process)
+{
+    if (process->to >= 0)
+        (void)close(process->to);
+    if (process->from >= 0)
+        (void)close(process->from);
+    if (process->pid > 0)
+        wait_for_end(process->pid);
+    *process = (struct process){.to = -1, .from = -1};
 }

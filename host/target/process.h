@@ -7,8 +7,9 @@
 #include <stdbool.h>
 #include <sys/types.h>
 
-/* What the image opens, in this order: setup, program, the pipes it reads and writes, and a plan or -1. */
-#define PROCESS_FILES 5
+/* What the image opens, in this order: files up to the first -1, and for PROCESS_TALK the two ends of the talk. */
+#define PROCESS_FILES 4
+#define PROCESS_TALK  (-2)
 
 /* A board of QEMU. */
 struct process_board {
@@ -21,11 +22,19 @@ struct process_board {
 /* The board that a target's name stands for; NULL: none. */
 const struct process_board *process_board(const char *name);
 
-/* Starts QEMU. The files stay the caller's. 0: it cannot be started; errno says why. */
-pid_t process_start(const struct process_board *board, const char *image,
-                    const int file[PROCESS_FILES]);
+struct process {
+    pid_t pid;    /* 0: none */
+    int to, from; /* ends of pipes that the image reads and writes; -1: none */
+};
 
-/* Waits for its end, which has been asked for; ends it if it lasts. */
-void process_end(pid_t process);
+/*
+ * Starts QEMU. The files stay the caller's. False: it cannot be started; errno says why, and process is
+ * to be ended.
+ */
+bool process_start(struct process *process, const struct process_board *board, const char *image,
+                   const int file[PROCESS_FILES]);
+
+/* Closes the talk and waits for the end, which has been asked for; ends it if it lasts. */
+void process_end(struct process *process);
 
 #endif

@@ -6,7 +6,6 @@
 #include "target/wire.h"
 
 #include <errno.h>
-#include <fcntl.h>
 #include <signal.h>
 #include <stdarg.h>
 #include <stdio.h>
@@ -98,40 +97,17 @@ static bool copy_program(FILE *file, const struct source *program)
     return count == SOURCE_END && fflush(file) == 0 && ferror(file) == 0;
 }
 
-/* Ends of pipes that QEMU must not keep open beside its own. */
-static bool open_pipe(int ends[2])
-{
-    if (pipe(ends) != 0)
-        return false;
-    (void)fcntl(ends[0], F_SETFD, FD_CLOEXEC);
-    (void)fcntl(ends[1], F_SETFD, FD_CLOEXEC);
-    return true;
-}
-
 static bool start_qemu(struct target *t, const struct target_config *config, FILE *setup,
                        FILE *program)
 {
     const struct process_board *board = process_board(config->name);
-    int to[2], from[2];
+    const int plan = config->plan != NULL ? fileno(config->plan) : -1;
 
-    if (!open_pipe(to))
-        return fail(t, "no pipe: %s", strerror(errno));
-    t->to = to[1];
-    if (!open_pipe(from)) {
-        (void)close(to[0]);
-        return fail(t, "no pipe: %s", strerror(errno));
-    }
-    t->from = from[0];
-    t->process =
-        process_start(board, config->image,
-                      (int[PROCESS_FILES]){fileno(setup), fileno(program), to[0], from[1],
-                                           config->plan != NULL ? fileno(config->plan) : -1});
-    if (t->process == 0)
-        (void)fail(t, "%s cannot be started: %s (Debian: %s)", board->qemu, strerror(errno),
-                   board->package);
-    (void)close(to[0]);
-    (void)close(from[1]);
-    return t->process != 0;
+    if (process_start(&t->process, board, config->image,
+                      (int[PROCESS_FILES]){fileno(setup), fileno(program), PROCESS_TALK, plan}))
+        return true;
+    return fail(t, "%s cannot be started: %s (Debian: %s)", board->qemu, strerror(errno),
+                board->package);
 }
 
 /* The image says what it was built with, and what it makes of the setup. */
@@ -141,12 +117,12 @@ static bool shake_hands(struct target *t)
     struct remote_ready ready;
     char text[DIAGNOSTIC_TEXT_MAX];
 
-    if (!wire_read(t->from, &hello, sizeof hello))
+    if (!wire_read(t->process.from, &hello, sizeof hello))
         return fail(t, "QEMU has ended before the image said anything");
     if (hello.magic != REMOTE_MAGIC || hello.machine_size != sizeof(struct machine) ||
         hello.tool_size != sizeof(struct tool))
         return fail(t, "the image is of another version: build it anew");
-    if (!wire_read(t->from, &ready, sizeof ready))
+    if (!wire_read(t->process.from, &ready, sizeof ready))
         return fail(t, "the image has ended at its start");
     if (ready.error == TAKT_OK)
         return true;
@@ -163,7 +139,7 @@ bool target_open(struct target *t, const struct target_config *config)
     memset(t, 0, sizeof *t);
     t->name = config->name;
     t->bus = config->bus;
-    t->to = t->from = -1;
+    t->process = (struct process){.to = -1, .from = -1};
     (void)signal(SIGPIPE, SIG_IGN);
     if (access(config->image, R_OK) != 0)
         (void)fail(t, "%s: %s", config->image, strerror(errno));
@@ -180,17 +156,11 @@ bool target_open(struct target *t, const struct target_config *config)
 
 void target_close(struct target *t)
 {
-    if (t->to >= 0) {
+    if (t->process.to >= 0) {
         t->given.go_on = 0;
-        (void)wire_write(t->to, &t->given, offsetof(struct remote_inputs, frame));
-        (void)close(t->to);
+        (void)wire_write(t->process.to, &t->given, offsetof(struct remote_inputs, frame));
     }
-    if (t->from >= 0)
-        (void)close(t->from);
-    if (t->process > 0)
-        process_end(t->process);
-    t->process = 0;
-    t->to = t->from = -1;
+    process_end(&t->process);
 }
 
 /* -- the bus of the controller in this process -- */
@@ -235,7 +205,7 @@ bool target_begin_cycle(struct target *t, const struct inputs *inputs, const dou
         remote_frame_set(&given->frame[given->frames++], &frame);
     t->taken = 0;
     t->own_count = 0;
-    if (wire_write(t->to, given,
+    if (wire_write(t->process.to, given,
                    offsetof(struct remote_inputs, frame) + given->frames * sizeof given->frame[0]))
         return true;
     return fail(t, "QEMU has ended in the middle of the run");
@@ -245,9 +215,9 @@ static bool read_outputs(struct target *t)
 {
     struct remote_outputs *done = &t->done;
 
-    return wire_read(t->from, done, offsetof(struct remote_outputs, frame)) &&
+    return wire_read(t->process.from, done, offsetof(struct remote_outputs, frame)) &&
            done->frames <= REMOTE_FRAMES_MAX &&
-           wire_read(t->from, done->frame, done->frames * sizeof done->frame[0]);
+           wire_read(t->process.from, done->frame, done->frames * sizeof done->frame[0]);
 }
 
 static bool is_same_frame(const struct remote_frame *a, const struct remote_frame *b)

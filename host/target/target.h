@@ -13,6 +13,7 @@
 #include "controller/controller.h"
 #include "hal/can.h"
 #include "remote/remote.h"
+#include "target/process.h"
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -57,8 +58,7 @@ struct target_cost {
 /* Private, but for name, cost and differences. */
 struct target {
     const char *name;
-    pid_t process; /* 0: none */
-    int to, from;  /* pipes */
+    struct process process;
     struct can_port bus;
     struct remote_inputs given;
     struct remote_outputs done;

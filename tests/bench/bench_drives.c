@@ -109,7 +109,7 @@ static void run_steps(void)
     keep_enabled();
     for (unsigned k = 0; k < CYCLES; k++) {
         for (unsigned i = 0; i < DRIVES; i++)
-            set.drive[i].objects.process.target_position =
+            set.drive[i].servo.objects.process.target_position =
                 (int32_t)(1e5 * setpoint[k % AHEAD].at[i]);
         virtual_drives_step(&set, CYCLE_NS);
     }

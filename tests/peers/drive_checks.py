@@ -193,9 +193,9 @@ def check_time(node, network):
     until("the time of day is taken", lambda: node.sdo[0x2002][2].raw == 1000000000 // 86400 - 5113)  # days to 1984
 
 
-def check_lss(bus, connect):
+def check_lss(bus, connect, *options):
     """A drive as it comes from its maker is found, gets its node id and boots."""
-    drives = Drives(bus, "--nodes", str(NODE), "--unconfigured")
+    drives = Drives(bus, "--nodes", str(NODE), "--unconfigured", *options)
     network = canopen.Network()
     connect(network, drives.address)
     found, identity = network.lss.fast_scan()
@@ -290,11 +290,15 @@ def check_guarding(node):
     expect("by its state", {state & 0x7F for state in seen}, {0x7F})
 
 
-def check_bus(bus, connect):
-    """Drives on a bus; connect(network, address) brings the library there."""
+def by_slcan(network, address):
+    network.connect(interface="slcan", channel=os.path.realpath(address), bitrate=1000000, sleep_after_open=0.1)
+
+
+def check_bus(bus, connect, *options):
+    """Drives on a bus; connect(network, address) brings the library there. options: of takt drives."""
     expect("data sheets are written", subprocess.run([TAKT, "drives", "--eds", "."], check=False).returncode, 0)
     sheet = f"takt-drive-{NODE}.eds"
-    drives = Drives(bus)
+    drives = Drives(bus, *options)
     network = canopen.Network()
     connect(network, drives.address)
     node = BaseNode402(NODE, sheet)
@@ -320,5 +324,5 @@ def check_bus(bus, connect):
     for line in ("node 2: EMCY 8611", "node 2: homing attained, method 34", "node 2: mode profile position",
                  "node 2: fault -> switch on disabled"):
         check(f"the log has '{line}'", line in log, log)
-    check_lss(bus, connect)
+    check_lss(bus, connect, *options)
     print(f"{bus}: {held} claims held")

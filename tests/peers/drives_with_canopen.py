@@ -1,7 +1,6 @@
 #!/usr/bin/env python3
 """python-canopen drives takt's virtual drives, over socketcand and over slcan."""
 
-import os
 import re
 
 import packages
@@ -16,9 +15,5 @@ def by_socketcand(network, address):
     network.connect(interface="socketcand", host=host, port=int(port), channel="can0", tcp_tune=True)
 
 
-def by_slcan(network, address):
-    network.connect(interface="slcan", channel=os.path.realpath(address), bitrate=1000000, sleep_after_open=0.1)
-
-
 drive_checks.check_bus("socketcand:listen:0", by_socketcand)
-drive_checks.check_bus("slcan:pty", by_slcan)
+drive_checks.check_bus("slcan:pty", drive_checks.by_slcan)

@@ -1,7 +1,7 @@
 /*
  * Data sheets of other makers, read into a virtual drive: every way in which the tools write them, and any bytes.
  */
-#include "drives/dictionary.h"
+#include "drives/dictionary_read.h"
 #include "lone_drive.h"
 
 #include <stdlib.h>

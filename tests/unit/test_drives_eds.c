@@ -5,8 +5,8 @@
 #define _POSIX_C_SOURCE 200809L
 
 #include "drives/eds.h"
-#include "drives/object_table.h"
 #include "lone_drive.h"
+#include "servo/object_table.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -21,7 +21,7 @@ void setUp(void)
     lone_start(&lone);
     FILE *stream = open_memstream(&sheet, &sheet_length);
     TEST_ASSERT_NOT_NULL(stream);
-    eds_write(stream, &lone.drive, "test.eds");
+    eds_write(stream, &lone.drive.servo, "test.eds");
     TEST_ASSERT_EQUAL_INT(0, fclose(stream));
 }
 
@@ -294,7 +294,7 @@ static void test_the_sheet_is_the_same_after_the_drive_has_been_set_up(void)
     (void)lone_write(&lone, 0x1017, 0, 2, 100);
     FILE *stream = open_memstream(&again, &again_length);
     TEST_ASSERT_NOT_NULL(stream);
-    eds_write(stream, &lone.drive, "test.eds");
+    eds_write(stream, &lone.drive.servo, "test.eds");
     TEST_ASSERT_EQUAL_INT(0, fclose(stream));
     TEST_ASSERT_EQUAL_STRING(sheet, again);
     free(again);
@@ -305,7 +305,7 @@ static void test_the_drive_gives_its_sheet_away(void)
 {
     char *got = calloc(1, sheet_length + 8);
     size_t length = 0;
-    virtual_drive_set_eds(&lone.drive, sheet, sheet_length);
+    servo_set_eds(&lone.drive.servo, sheet, sheet_length);
     TEST_ASSERT_EQUAL_UINT32(sheet_length, lone_read(&lone, 0x1021, 0));
     for (uint32_t toggle = 0;; toggle ^= 0x10) {
         lone_take(&lone, 0x605, 8, 0x60 | toggle, 0);

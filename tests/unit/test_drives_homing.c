@@ -166,7 +166,7 @@ static void test_a_hard_stop_is_found_by_torque_and_left(void)
         double zero = virtual_drive_get_position_mm(&lone.drive) -
                       lone_actual(&lone) / rows[i].increments_per_mm;
         TEST_ASSERT_TRUE(fabs(zero - rows[i].home_mm) < 0.001);
-        TEST_ASSERT_TRUE(fabs(drive_plant_torque_ratio(&lone.drive.plant)) < 0.05);
+        TEST_ASSERT_TRUE(fabs(servo_loop_torque_ratio(&lone.drive.servo.loop)) < 0.05);
         TEST_ASSERT_EQUAL_INT(CIA402_ENABLED, virtual_drive_get_state(&lone.drive));
     }
 }
@@ -230,11 +230,12 @@ static void test_home_is_at_minus_the_home_offset(void)
 static void test_homing_that_runs_into_the_other_end_fails_and_may_be_tried_again(void)
 {
     home_with(3, 0);
-    lone.drive.config.plant.home_switch_mm = 100;
+    lone.drive.plant.config.home_switch_mm = 100;
     TEST_ASSERT_EQUAL_HEX16(BIT_13, run_homing() & BIT_13);
     lone_step(&lone, 500);
     TEST_ASSERT_EQUAL_HEX16(BIT_13 | REACHED, lone_statusword(&lone) & (REACHED | BIT_12 | BIT_13));
-    lone.drive.config.plant.home_switch_mm = 3.21;
+    lone.drive.plant.config.home_switch_mm = 3.21;
+    lone_step(&lone, 1); /* inputs are read once a cycle */
     lone_control(&lone, ENABLE, HM);
     lone_control(&lone, ENABLE | NEW, HM);
     TEST_ASSERT_EQUAL_HEX16(REACHED | BIT_12, run_homing());
@@ -247,7 +248,7 @@ static void test_homing_is_interrupted_when_bit_4_falls(void)
     lone_control(&lone, ENABLE, HM);
     lone_step(&lone, 300);
     TEST_ASSERT_EQUAL_HEX16(REACHED, lone_statusword(&lone) & (REACHED | BIT_12 | BIT_13));
-    TEST_ASSERT_TRUE(lone.drive.plant.command_velocity_mm_s == 0);
+    TEST_ASSERT_TRUE(lone.drive.servo.loop.command_velocity_mm_s == 0);
 }
 
 int main(void)

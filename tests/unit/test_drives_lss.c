@@ -104,7 +104,7 @@ static void test_a_reset_of_the_node_brings_back_the_id_that_was_stored(void)
 static char kept_text[4096];
 static bool keeps;
 
-static bool keep(void *context, const struct virtual_drive *drive)
+static bool keep(void *context, const struct servo *drive)
 {
     FILE *stream = fmemopen(context, sizeof kept_text, "w");
     TEST_ASSERT_NOT_NULL(stream);
@@ -118,15 +118,15 @@ static void switch_on(void)
     const struct can_port port = {.send = lone_send, .receive = lone_receive, .context = &lone};
     struct drive_store_problem wrong;
     virtual_drive_init(&lone.drive, &lone.config, NULL, &port);
-    TEST_ASSERT_TRUE_MESSAGE(drive_store_read(&lone.drive, kept_text, strlen(kept_text), &wrong),
-                             wrong.text);
+    TEST_ASSERT_TRUE_MESSAGE(
+        drive_store_read(&lone.drive.servo, kept_text, strlen(kept_text), &wrong), wrong.text);
     virtual_drive_boot(&lone.drive);
 }
 
 static uint32_t store_node(uint8_t node, bool can_be_kept)
 {
     keeps = can_be_kept;
-    virtual_drive_keep(&lone.drive, &(struct drive_keeper){keep, kept_text});
+    servo_keep(&lone.drive.servo, &(struct drive_keeper){keep, kept_text});
     (void)lss(0x04, 1, 0);
     (void)ask(0x11, node);
     return ask(0x17, 0);
@@ -166,8 +166,8 @@ static void test_a_stored_id_that_is_none_is_refused(void)
     struct drive_store_problem wrong;
     for (unsigned i = 0; i < sizeof texts / sizeof texts[0]; i++) {
         setUp();
-        TEST_ASSERT_FALSE_MESSAGE(drive_store_read(&lone.drive, texts[i], strlen(texts[i]), &wrong),
-                                  texts[i]);
+        TEST_ASSERT_FALSE_MESSAGE(
+            drive_store_read(&lone.drive.servo, texts[i], strlen(texts[i]), &wrong), texts[i]);
         TEST_ASSERT_EQUAL_UINT(1, wrong.line);
         TEST_ASSERT_EQUAL_STRING("a node id is 1 ... 127, or 255: none", wrong.text);
     }

@@ -36,7 +36,7 @@ void tearDown(void)
 
 static double command_mm(void)
 {
-    return lone.drive.plant.command_mm;
+    return lone.drive.servo.loop.command_mm;
 }
 
 static void set_target(int32_t target_inc)
@@ -114,7 +114,7 @@ static void test_velocity_is_the_least_of_6081_607F_and_6080(void)
     go(20000, 0);
     for (unsigned k = 0; k < 300; k++) {
         lone_step(&lone, 1);
-        fastest_mm_s = fmax(fastest_mm_s, lone.drive.plant.command_velocity_mm_s);
+        fastest_mm_s = fmax(fastest_mm_s, lone.drive.servo.loop.command_velocity_mm_s);
     }
     TEST_ASSERT_TRUE(fabs(fastest_mm_s - 40) < 1e-6);
 }
@@ -240,9 +240,9 @@ static void test_offsets_add_to_target_velocity_and_torque(void)
     target_by_pdo(10);
     lone_step(&lone, 1);
     TEST_ASSERT_TRUE(command_mm() == 0.035);
-    TEST_ASSERT_TRUE(lone.drive.plant.velocity_offset_mm_s == 0.5);
-    TEST_ASSERT_TRUE(
-        fabs(lone.drive.plant.torque_offset_mm_s2 - 0.1 * lone.drive.plant.mm_s2_per_rated) < 1e-9);
+    TEST_ASSERT_TRUE(lone.drive.servo.loop.velocity_offset_mm_s == 0.5);
+    TEST_ASSERT_TRUE(fabs(lone.drive.servo.loop.torque_offset_mm_s2 -
+                          0.1 * lone.drive.servo.loop.mm_s2_per_rated) < 1e-9);
 }
 
 static void test_cyclic_targets_are_held_within_the_software_limits(void)
@@ -281,7 +281,7 @@ static void test_interpolated_position_follows_60C1_while_bit_4_is_set(void)
     lone_step(&lone, 1000);
     TEST_ASSERT_FALSE(lone_statusword(&lone) & BIT_12);
     TEST_ASSERT_TRUE(command_mm() < 0.06 + 1.0); /* it slows down from 30 mm/s and stands */
-    TEST_ASSERT_TRUE(lone.drive.plant.command_velocity_mm_s == 0);
+    TEST_ASSERT_TRUE(lone.drive.servo.loop.command_velocity_mm_s == 0);
 }
 
 static void test_a_mode_the_drive_does_not_have_is_not_taken(void)
@@ -323,7 +323,7 @@ static void test_a_change_of_mode_in_motion_slows_down_and_stands(void)
     lone_step(&lone, 1);
     TEST_ASSERT_EQUAL_INT(CIA402_ENABLED, virtual_drive_get_state(&lone.drive));
     lone_step(&lone, 500);
-    TEST_ASSERT_TRUE(lone.drive.plant.command_velocity_mm_s == 0);
+    TEST_ASSERT_TRUE(lone.drive.servo.loop.command_velocity_mm_s == 0);
     TEST_ASSERT_TRUE(fabs(command_mm() - from_mm) < 2);
 }
 

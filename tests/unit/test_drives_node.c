@@ -410,7 +410,7 @@ static unsigned kept;
 static bool keeps;
 static char kept_text[4096];
 
-static bool keep(void *context, const struct virtual_drive *drive)
+static bool keep(void *context, const struct servo *drive)
 {
     FILE *stream = fmemopen(context, sizeof kept_text, "w");
     TEST_ASSERT_NOT_NULL(stream);
@@ -424,7 +424,7 @@ static void keep_stored(bool succeeds)
 {
     keeps = succeeds;
     kept = 0;
-    virtual_drive_keep(&lone.drive, &(struct drive_keeper){keep, kept_text});
+    servo_keep(&lone.drive.servo, &(struct drive_keeper){keep, kept_text});
 }
 
 static void test_what_is_stored_is_kept_and_is_there_at_the_next_power_on(void)
@@ -448,7 +448,7 @@ static void test_what_is_stored_is_kept_and_is_there_at_the_next_power_on(void)
     TEST_ASSERT_EQUAL_UINT32(0, lone_read(&lone, 0x1017, 0));
     const struct can_port port = {.send = lone_send, .receive = lone_receive, .context = &lone};
     virtual_drive_init(&lone.drive, &lone.config, NULL, &port);
-    TEST_ASSERT_TRUE(drive_store_read(&lone.drive, kept_text, strlen(kept_text), &wrong));
+    TEST_ASSERT_TRUE(drive_store_read(&lone.drive.servo, kept_text, strlen(kept_text), &wrong));
     virtual_drive_boot(&lone.drive);
     TEST_ASSERT_EQUAL_UINT32(100, lone_read(&lone, 0x1017, 0));
     TEST_ASSERT_EQUAL_UINT32(1234, lone_read(&lone, 0x6081, 0));
@@ -489,7 +489,7 @@ static void test_a_store_that_is_none_of_this_drive_is_refused_by_its_line(void)
     char text[80];
     for (unsigned i = 0; i < sizeof lines / sizeof lines[0]; i++) {
         (void)snprintf(text, sizeof text, "# a comment\n\n%s\n", lines[i]);
-        TEST_ASSERT_FALSE_MESSAGE(drive_store_read(&lone.drive, text, strlen(text), &wrong),
+        TEST_ASSERT_FALSE_MESSAGE(drive_store_read(&lone.drive.servo, text, strlen(text), &wrong),
                                   lines[i]);
         TEST_ASSERT_EQUAL_UINT(3, wrong.line);
         TEST_ASSERT_TRUE(wrong.text[0] != '\0');

@@ -3,7 +3,7 @@
  * and a long one.
  */
 #include "canopen/little_endian.h"
-#include "drives/sdo_server.h"
+#include "canopen/sdo_server.h"
 #include "unity.h"
 
 #include <string.h>

@@ -214,15 +214,15 @@ static void test_60C5_and_60C6_limit_ramps_and_quick_stop(void)
     go(20000);
     for (unsigned k = 0; k < 900; k++) {
         lone_step(&lone, 1);
-        double a = (lone.drive.velocity_mm_s - v) / 1e-3;
-        v = lone.drive.velocity_mm_s;
+        double a = (lone.drive.servo.velocity_mm_s - v) / 1e-3;
+        v = lone.drive.servo.velocity_mm_s;
         up = fmax(up, a);
         down = fmin(down, a);
     }
     TEST_ASSERT_TRUE(fabs(up - 200) < 1e-6);
     TEST_ASSERT_TRUE(down < -299 && down > -601); /* the last cycle may brake by two */
-    TEST_ASSERT_TRUE(lone.drive.plant.command_mm == 20);
-    TEST_ASSERT_TRUE(lone.drive.quick_stop_mm_s2 == 300);
+    TEST_ASSERT_TRUE(lone.drive.servo.loop.command_mm == 20);
+    TEST_ASSERT_TRUE(lone.drive.servo.quick_stop_mm_s2 == 300);
 }
 
 /* 10 mm/s at 10 mm, and on to 20 mm; the end velocity of a last target does not count. */
@@ -234,14 +234,14 @@ static void test_6082_is_the_velocity_at_a_target_that_has_another_behind_it(voi
     go(10000);
     go(20000);
     for (unsigned k = 0; k < 2000; k++) {
-        double before_mm = lone.drive.plant.command_mm;
+        double before_mm = lone.drive.servo.loop.command_mm;
         lone_step(&lone, 1);
-        if (before_mm < 10 && lone.drive.plant.command_mm >= 10)
-            at_mm_s = lone.drive.velocity_mm_s;
-        farthest_mm = fmax(farthest_mm, lone.drive.plant.command_mm);
+        if (before_mm < 10 && lone.drive.servo.loop.command_mm >= 10)
+            at_mm_s = lone.drive.servo.velocity_mm_s;
+        farthest_mm = fmax(farthest_mm, lone.drive.servo.loop.command_mm);
     }
     TEST_ASSERT_TRUE(fabs(at_mm_s - 10) < 1.1); /* two cycles of 500 mm/s2 */
-    TEST_ASSERT_TRUE(lone.drive.plant.command_mm == 20 && farthest_mm == 20);
+    TEST_ASSERT_TRUE(lone.drive.servo.loop.command_mm == 20 && farthest_mm == 20);
 }
 
 /* ---- Polarity ---- */
@@ -277,7 +277,7 @@ static void test_polarity_of_velocity_alone_leaves_positions_as_they_are(void)
 /* As it was at power-on the machine has reckoned with it. */
 static void test_polarity_of_a_data_sheet_is_part_of_the_scale(void)
 {
-    lone.drive.initial.settings.polarity = 0xE0;
+    lone.drive.servo.initial.settings.polarity = 0xE0;
     set(0x607E, 1, 0xE0);
     lone_enable(&lone, CSV);
     set(0x60FF, 4, 5000);

@@ -11,6 +11,7 @@
 #include "config/parameter_file.h"
 #include "config/probe_file.h"
 #include "config/tool_file.h"
+#include "drives/dictionary_read.h"
 #include "trace/trace_check.h"
 #include "trace/trace_reader.h"
 

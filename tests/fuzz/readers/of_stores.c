@@ -202,16 +202,16 @@ void read_drive_store(const uint8_t *data, size_t size)
 
     drive_plant_set_default(&config.plant);
     virtual_drive_init(&drive, &config, NULL, &port);
-    if (!drive_store_read(&drive, (const char *)data, size, &wrong))
+    if (!drive_store_read(&drive.servo, (const char *)data, size, &wrong))
         return;
     virtual_drive_boot(&drive);
     virtual_drive_step(&drive, 1000000);
     stream = open_memstream(&text, &length);
     require(stream != NULL);
-    drive_store_write(stream, &drive);
+    drive_store_write(stream, &drive.servo);
     require(fclose(stream) == 0);
     virtual_drive_init(&again, &config, NULL, &port);
-    require(drive_store_read(&again, text, length, &wrong));
+    require(drive_store_read(&again.servo, text, length, &wrong));
     free(text);
 }
 

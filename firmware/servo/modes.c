@@ -2,7 +2,7 @@
  * Modes of operation: where the command goes while the drive is enabled.
  */
 #include "base/maths.h"
-#include "drives/virtual_drive_private.h"
+#include "servo/servo_private.h"
 
 #define CONTROL_BIT_4     0x0010 /* new set-point, homing start, enable interpolation */
 #define CONTROL_IMMEDIATE 0x0020
@@ -19,63 +19,62 @@
 
 #define INCREMENTS_MAX 2147483647.0
 
-int32_t virtual_drive_increments(const struct virtual_drive *drive, double position_mm)
+int32_t servo_increments(const struct servo *drive, double position_mm)
 {
     double increments = maths_round(position_mm * drive->increments_per_mm);
     return (int32_t)maths_clamp(increments, -INCREMENTS_MAX, INCREMENTS_MAX);
 }
 
-double virtual_drive_actual_mm(const struct virtual_drive *drive)
+double servo_actual_mm(const struct servo *drive)
 {
-    return drive->plant.measured_mm - drive->origin_mm;
+    return drive->loop.measured_mm - drive->origin_mm;
 }
 
-static double least_mm(const struct virtual_drive *drive, uint32_t a, uint32_t b)
+static double least_mm(const struct servo *drive, uint32_t a, uint32_t b)
 {
-    return (a < b ? a : b) / virtual_drive_velocity_scale(drive);
+    return (a < b ? a : b) / servo_velocity_scale(drive);
 }
 
-double virtual_drive_profile_acceleration_mm_s2(const struct virtual_drive *drive)
+double servo_profile_acceleration_mm_s2(const struct servo *drive)
 {
     const struct drive_settings *s = &drive->objects.settings;
     return least_mm(drive, s->profile_acceleration, s->max_acceleration);
 }
 
-double virtual_drive_profile_deceleration_mm_s2(const struct virtual_drive *drive)
+double servo_profile_deceleration_mm_s2(const struct servo *drive)
 {
     const struct drive_settings *s = &drive->objects.settings;
     return least_mm(drive, s->profile_deceleration, s->max_deceleration);
 }
 
-double virtual_drive_motor_velocity_max_mm_s(const struct virtual_drive *drive)
+double servo_motor_velocity_max_mm_s(const struct servo *drive)
 {
     return drive->objects.settings.max_motor_speed_rpm / SECONDS_PER_MIN *
-           drive->config.plant.travel_per_revolution_mm;
+           drive->config.loop.travel_per_revolution_mm;
 }
 
-double virtual_drive_profile_velocity_max_mm_s(const struct virtual_drive *drive)
+double servo_profile_velocity_max_mm_s(const struct servo *drive)
 {
-    return maths_min(drive->objects.settings.max_profile_velocity /
-                         virtual_drive_velocity_scale(drive),
-                     virtual_drive_motor_velocity_max_mm_s(drive));
+    return maths_min(drive->objects.settings.max_profile_velocity / servo_velocity_scale(drive),
+                     servo_motor_velocity_max_mm_s(drive));
 }
 /*
  * What the target of an earlier run was is forgotten: the drive stands, or slows down to stand,
  * until it gets a new one.
  */
-void virtual_drive_hold(struct virtual_drive *drive)
+void servo_hold(struct servo *drive)
 {
     struct drive_process *p = &drive->objects.process;
-    int32_t here_inc = virtual_drive_increments(drive, drive->plant.command_mm - drive->origin_mm);
+    int32_t here_inc = servo_increments(drive, drive->loop.command_mm - drive->origin_mm);
     p->target_position = here_inc;
     p->interpolation_target = here_inc;
-    drive->velocity_mm_s = drive->plant.command_velocity_mm_s;
-    drive->goal_mm = drive->plant.command_mm;
+    drive->velocity_mm_s = drive->loop.command_velocity_mm_s;
+    drive->goal_mm = drive->loop.command_mm;
     drive->steps = 0;
     drive->interpolates = false;
     drive->following_ns = 0;
-    drive->plant.velocity_offset_mm_s = 0;
-    drive->plant.torque_offset_mm_s2 = 0;
+    drive->loop.velocity_offset_mm_s = 0;
+    drive->loop.torque_offset_mm_s2 = 0;
     drive->torque_ratio = 0;
     p->demand_torque = 0;
     drive->setpoints = (struct drive_setpoints){.active_inc = here_inc, .is_reached = true};
@@ -83,7 +82,7 @@ void virtual_drive_hold(struct virtual_drive *drive)
 
 /* ---- Motion of the command ---- */
 
-double virtual_drive_approach(double value, double goal, double by)
+double servo_approach(double value, double goal, double by)
 {
     if (maths_abs(goal - value) <= by)
         return goal;
@@ -91,25 +90,24 @@ double virtual_drive_approach(double value, double goal, double by)
 }
 
 /* x += (v0 + v1) / 2 t */
-static void move_command(struct virtual_drive *drive, double velocity_mm_s, uint32_t cycle_ns)
+static void move_command(struct servo *drive, double velocity_mm_s, uint32_t cycle_ns)
 {
     double mean_mm_s = (drive->velocity_mm_s + velocity_mm_s) / 2;
     drive->velocity_mm_s = velocity_mm_s;
-    drive_plant_follow(&drive->plant, drive->plant.command_mm + mean_mm_s * (cycle_ns * 1e-9),
-                       cycle_ns);
+    servo_loop_follow(&drive->loop, drive->loop.command_mm + mean_mm_s * (cycle_ns * 1e-9),
+                      cycle_ns);
 }
 
-void virtual_drive_run_at(struct virtual_drive *drive, double velocity_mm_s,
-                          double acceleration_mm_s2, uint32_t cycle_ns)
+void servo_run_at(struct servo *drive, double velocity_mm_s, double acceleration_mm_s2,
+                  uint32_t cycle_ns)
 {
     double by_mm_s = acceleration_mm_s2 * (cycle_ns * 1e-9);
-    move_command(drive, virtual_drive_approach(drive->velocity_mm_s, velocity_mm_s, by_mm_s),
-                 cycle_ns);
+    move_command(drive, servo_approach(drive->velocity_mm_s, velocity_mm_s, by_mm_s), cycle_ns);
 }
 
-bool virtual_drive_slow(struct virtual_drive *drive, double deceleration_mm_s2, uint32_t cycle_ns)
+bool servo_slow(struct servo *drive, double deceleration_mm_s2, uint32_t cycle_ns)
 {
-    virtual_drive_run_at(drive, 0, deceleration_mm_s2, cycle_ns);
+    servo_run_at(drive, 0, deceleration_mm_s2, cycle_ns);
     return drive->velocity_mm_s == 0;
 }
 
@@ -137,68 +135,68 @@ static double allowed_velocity(double way_mm, double u_mm_s, const struct ramps 
  * A cycle of a trapezoidal profile to target_mm, as a position of the encoder. Near enough to get
  * there within the next cycle's rounding, it is there.
  */
-static void run_profile(struct virtual_drive *drive, double target_mm, const struct ramps *ramps,
+static void run_profile(struct servo *drive, double target_mm, const struct ramps *ramps,
                         uint32_t cycle_ns)
 {
     double t_s = cycle_ns * 1e-9;
-    double way_mm = target_mm - drive->plant.command_mm;
+    double way_mm = target_mm - drive->loop.command_mm;
     double sign = way_mm < 0 ? -1 : 1;
     double u_mm_s = sign * drive->velocity_mm_s;
     double brake_mm_s = ramps->deceleration_mm_s2 * t_s;
     if (maths_abs(way_mm) <= brake_mm_s * t_s && maths_abs(u_mm_s) <= 2 * brake_mm_s) {
         drive->velocity_mm_s = 0;
-        drive_plant_follow(&drive->plant, target_mm, cycle_ns);
+        servo_loop_follow(&drive->loop, target_mm, cycle_ns);
         return;
     }
     double allowed_mm_s = allowed_velocity(maths_abs(way_mm), u_mm_s, ramps, t_s);
     double wanted_mm_s = maths_min(ramps->velocity_mm_s, allowed_mm_s);
     double by_mm_s =
         wanted_mm_s > u_mm_s && u_mm_s >= 0 ? ramps->acceleration_mm_s2 * t_s : brake_mm_s;
-    move_command(drive, sign * virtual_drive_approach(u_mm_s, wanted_mm_s, by_mm_s), cycle_ns);
+    move_command(drive, sign * servo_approach(u_mm_s, wanted_mm_s, by_mm_s), cycle_ns);
 }
 
 /* ---- Profile position ---- */
 
 /* Without a target behind it the end velocity is 0: nobody would stop the axis. */
-static struct ramps profile_ramps(const struct virtual_drive *drive)
+static struct ramps profile_ramps(const struct servo *drive)
 {
     const struct drive_settings *s = &drive->objects.settings;
-    double per_mm = virtual_drive_velocity_scale(drive);
+    double per_mm = servo_velocity_scale(drive);
     double velocity_mm_s =
-        maths_min(s->profile_velocity / per_mm, virtual_drive_profile_velocity_max_mm_s(drive));
+        maths_min(s->profile_velocity / per_mm, servo_profile_velocity_max_mm_s(drive));
     double end_mm_s = drive->setpoints.has_next ? s->end_velocity / per_mm : 0;
-    return (struct ramps){velocity_mm_s, virtual_drive_profile_acceleration_mm_s2(drive),
-                          virtual_drive_profile_deceleration_mm_s2(drive),
+    return (struct ramps){velocity_mm_s, servo_profile_acceleration_mm_s2(drive),
+                          servo_profile_deceleration_mm_s2(drive),
                           maths_min(end_mm_s, velocity_mm_s)};
 }
 
 /* Object 607D; limits that leave no room are none. */
-static double limited(const struct virtual_drive *drive, double position_inc)
+static double limited(const struct servo *drive, double position_inc)
 {
     const int32_t *limit = drive->objects.settings.position_limit;
     return limit[0] < limit[1] ? maths_clamp(position_inc, limit[0], limit[1]) : position_inc;
 }
 
 /* Where the encoder is to be for a target, as far as the limits let it. */
-static double take_target(struct virtual_drive *drive, double target_inc)
+static double take_target(struct servo *drive, double target_inc)
 {
     double limited_inc = limited(drive, target_inc);
     drive->is_limited = limited_inc != target_inc;
     return limited_inc / drive->increments_per_mm + drive->origin_mm;
 }
 
-static void activate(struct virtual_drive *drive, int64_t target_inc)
+static void activate(struct servo *drive, int64_t target_inc)
 {
     struct drive_setpoints *s = &drive->setpoints;
     s->active_inc = target_inc;
     s->has_next = false;
     s->is_reached = false;
     s->in_window_ns = 0;
-    virtual_drive_tell(drive, DRIVE_EVENT_SETPOINT, (uint32_t)target_inc, 0);
+    servo_tell(drive, DRIVE_EVENT_SETPOINT, (uint32_t)target_inc, 0);
 }
 
 /* A relative target counts from the one before. One target may wait until the active is reached. */
-static void take_setpoint(struct virtual_drive *drive, uint16_t controlword)
+static void take_setpoint(struct servo *drive, uint16_t controlword)
 {
     struct drive_setpoints *s = &drive->setpoints;
     int64_t target_inc = drive->objects.process.target_position;
@@ -216,14 +214,13 @@ static void take_setpoint(struct virtual_drive *drive, uint16_t controlword)
 }
 
 /* The master has taken notice when bit 4 has fallen; then there is room for another one. */
-static void release_setpoint(struct virtual_drive *drive)
+static void release_setpoint(struct servo *drive)
 {
     if (!(drive->controlword & CONTROL_BIT_4) && !drive->setpoints.has_next)
         drive->setpoints.is_acknowledged = false;
 }
 
-void virtual_drive_note_reached(struct virtual_drive *drive, bool is_inside, uint16_t time_ms,
-                                uint32_t cycle_ns)
+void servo_note_reached(struct servo *drive, bool is_inside, uint16_t time_ms, uint32_t cycle_ns)
 {
     struct drive_setpoints *s = &drive->setpoints;
     s->in_window_ns = is_inside ? s->in_window_ns + cycle_ns : 0;
@@ -231,25 +228,25 @@ void virtual_drive_note_reached(struct virtual_drive *drive, bool is_inside, uin
 }
 
 /* Objects 6067 and 6068. */
-static void check_reached(struct virtual_drive *drive, double target_mm, uint32_t cycle_ns)
+static void check_reached(struct servo *drive, double target_mm, uint32_t cycle_ns)
 {
     const struct drive_settings *o = &drive->objects.settings;
-    double window_mm = o->position_window / virtual_drive_scale(drive);
+    double window_mm = o->position_window / servo_scale(drive);
     bool is_inside = o->position_window == WINDOW_ANY ||
-                     maths_abs(target_mm - drive->plant.measured_mm) <= window_mm;
-    virtual_drive_note_reached(drive, is_inside, o->position_window_ms, cycle_ns);
+                     maths_abs(target_mm - drive->loop.measured_mm) <= window_mm;
+    servo_note_reached(drive, is_inside, o->position_window_ms, cycle_ns);
 }
 
 /* With an end velocity the target is passed on the way to the next one, in the cycle that would reach it. */
-static bool passes_target(const struct virtual_drive *drive, double target_mm,
-                          const struct ramps *ramps, uint32_t cycle_ns)
+static bool passes_target(const struct servo *drive, double target_mm, const struct ramps *ramps,
+                          uint32_t cycle_ns)
 {
-    double way_mm = target_mm - drive->plant.command_mm;
+    double way_mm = target_mm - drive->loop.command_mm;
     double step_mm = drive->velocity_mm_s * (cycle_ns * 1e-9);
     return ramps->end_mm_s > 0 && maths_abs(way_mm) <= maths_abs(step_mm);
 }
 
-static void run_position(struct virtual_drive *drive, uint32_t cycle_ns)
+static void run_position(struct servo *drive, uint32_t cycle_ns)
 {
     struct drive_setpoints *s = &drive->setpoints;
     double target_mm = take_target(drive, (double)s->active_inc);
@@ -267,7 +264,7 @@ static void run_position(struct virtual_drive *drive, uint32_t cycle_ns)
 /* ---- Cyclic synchronous and interpolated position ---- */
 
 /* Cycles of a period of object 60C2; mostly one. */
-static uint32_t period_cycles(const struct virtual_drive *drive, uint32_t cycle_ns)
+static uint32_t period_cycles(const struct servo *drive, uint32_t cycle_ns)
 {
     if (2 * drive->interpolation_ns < 3 * (uint64_t)cycle_ns)
         return 1;
@@ -275,7 +272,7 @@ static uint32_t period_cycles(const struct virtual_drive *drive, uint32_t cycle_
 }
 
 /* The command goes to the target in a straight line, within the period after it has changed. */
-static void run_interpolated(struct virtual_drive *drive, double target_inc, uint32_t cycle_ns)
+static void run_interpolated(struct servo *drive, double target_inc, uint32_t cycle_ns)
 {
     double goal_mm = take_target(drive, target_inc);
     double command_mm = goal_mm;
@@ -284,108 +281,107 @@ static void run_interpolated(struct virtual_drive *drive, double target_inc, uin
         drive->steps = period_cycles(drive, cycle_ns);
     }
     if (drive->steps > 1) {
-        double from_mm = drive->plant.command_mm;
+        double from_mm = drive->loop.command_mm;
         command_mm = from_mm + (goal_mm - from_mm) / drive->steps;
         drive->steps--;
     }
-    drive_plant_follow(&drive->plant, command_mm, cycle_ns);
+    servo_loop_follow(&drive->loop, command_mm, cycle_ns);
 }
 
 /* Objects 60B1 and 60B2. */
-void virtual_drive_set_offsets(struct virtual_drive *drive)
+void servo_set_offsets(struct servo *drive)
 {
     const struct drive_process *p = &drive->objects.process;
-    struct drive_plant *plant = &drive->plant;
-    plant->velocity_offset_mm_s = p->velocity_offset ? drive->velocity_sign * p->velocity_offset /
-                                                           virtual_drive_velocity_scale(drive)
-                                                     : 0;
-    plant->torque_offset_mm_s2 = p->torque_offset ? drive->torque_sign * p->torque_offset /
-                                                        TORQUE_PER_RATED * plant->mm_s2_per_rated
-                                                  : 0;
+    struct servo_loop *loop = &drive->loop;
+    loop->velocity_offset_mm_s =
+        p->velocity_offset ? drive->velocity_sign * p->velocity_offset / servo_velocity_scale(drive)
+                           : 0;
+    loop->torque_offset_mm_s2 = p->torque_offset ? drive->torque_sign * p->torque_offset /
+                                                       TORQUE_PER_RATED * loop->mm_s2_per_rated
+                                                 : 0;
 }
 
-static void run_cyclic(struct virtual_drive *drive, uint32_t cycle_ns)
+static void run_cyclic(struct servo *drive, uint32_t cycle_ns)
 {
     const struct drive_process *p = &drive->objects.process;
-    virtual_drive_set_offsets(drive);
+    servo_set_offsets(drive);
     run_interpolated(drive, (double)p->target_position + p->position_offset, cycle_ns);
 }
 
-static void run_ip(struct virtual_drive *drive, uint32_t cycle_ns)
+static void run_ip(struct servo *drive, uint32_t cycle_ns)
 {
     const struct drive_process *p = &drive->objects.process;
     if (!drive->interpolates) {
-        (void)virtual_drive_slow(drive, virtual_drive_profile_deceleration_mm_s2(drive), cycle_ns);
+        (void)servo_slow(drive, servo_profile_deceleration_mm_s2(drive), cycle_ns);
         return;
     }
     run_interpolated(drive, p->interpolation_target, cycle_ns);
-    drive->velocity_mm_s = drive->plant.command_velocity_mm_s;
+    drive->velocity_mm_s = drive->loop.command_velocity_mm_s;
     check_reached(drive, drive->goal_mm, cycle_ns);
 }
 
 /* ---- What all modes have ---- */
 
-static void run_halt(struct virtual_drive *drive, uint32_t cycle_ns)
+static void run_halt(struct servo *drive, uint32_t cycle_ns)
 {
     bool is_quick = drive->objects.settings.halt_option == HALT_QUICK_STOP;
     double deceleration_mm_s2 =
-        is_quick ? drive->quick_stop_mm_s2 : virtual_drive_profile_deceleration_mm_s2(drive);
-    (void)virtual_drive_slow(drive, deceleration_mm_s2, cycle_ns);
+        is_quick ? drive->quick_stop_mm_s2 : servo_profile_deceleration_mm_s2(drive);
+    (void)servo_slow(drive, deceleration_mm_s2, cycle_ns);
     release_setpoint(drive);
 }
 
 /* Modes in which halt is the controller's own business: it sends the targets. */
-static bool run_cyclic_mode(struct virtual_drive *drive, int8_t mode, uint32_t cycle_ns)
+static bool run_cyclic_mode(struct servo *drive, int8_t mode, uint32_t cycle_ns)
 {
     if (mode == CIA402_MODE_CYCLIC_SYNC_POSITION)
         run_cyclic(drive, cycle_ns);
     else if (mode == CIA402_MODE_CYCLIC_SYNC_VELOCITY)
-        virtual_drive_run_cyclic_velocity(drive, cycle_ns);
+        servo_run_cyclic_velocity(drive, cycle_ns);
     else if (mode == CIA402_MODE_CYCLIC_SYNC_TORQUE)
-        virtual_drive_run_cyclic_torque(drive, cycle_ns);
+        servo_run_cyclic_torque(drive, cycle_ns);
     else
         return false;
     return true;
 }
 
 /* Halt takes the torque away by its slope in profile torque; in the others the axis slows down. */
-static void run_other_mode(struct virtual_drive *drive, int8_t mode, uint32_t cycle_ns)
+static void run_other_mode(struct servo *drive, int8_t mode, uint32_t cycle_ns)
 {
     if (mode == CIA402_MODE_PROFILE_TORQUE)
-        virtual_drive_run_profile_torque(drive, cycle_ns);
+        servo_run_profile_torque(drive, cycle_ns);
     else if (drive->is_halted)
         run_halt(drive, cycle_ns);
     else if (mode == CIA402_MODE_PROFILE_POSITION)
         run_position(drive, cycle_ns);
     else if (mode == CIA402_MODE_PROFILE_VELOCITY)
-        virtual_drive_run_profile_velocity(drive, cycle_ns);
+        servo_run_profile_velocity(drive, cycle_ns);
     else if (mode == CIA402_MODE_HOMING)
-        virtual_drive_run_homing(drive, cycle_ns);
+        servo_run_homing(drive, cycle_ns);
     else if (mode == CIA402_MODE_INTERPOLATED_POSITION)
         run_ip(drive, cycle_ns);
     else
-        (void)virtual_drive_slow(drive, virtual_drive_profile_deceleration_mm_s2(drive), cycle_ns);
+        (void)servo_slow(drive, servo_profile_deceleration_mm_s2(drive), cycle_ns);
 }
 
-void virtual_drive_run_mode(struct virtual_drive *drive, uint32_t cycle_ns)
+void servo_run_mode(struct servo *drive, uint32_t cycle_ns)
 {
     int8_t mode = drive->objects.process.mode_display;
     if (!run_cyclic_mode(drive, mode, cycle_ns))
         run_other_mode(drive, mode, cycle_ns);
 }
 
-static void take_interpolation(struct virtual_drive *drive, bool enables)
+static void take_interpolation(struct servo *drive, bool enables)
 {
     if (enables == drive->interpolates)
         return;
     drive->interpolates = enables;
-    drive->goal_mm = drive->plant.command_mm;
+    drive->goal_mm = drive->loop.command_mm;
     drive->steps = 0;
-    drive->velocity_mm_s = drive->plant.command_velocity_mm_s;
+    drive->velocity_mm_s = drive->loop.command_velocity_mm_s;
 }
 
-void virtual_drive_take_mode_controlword(struct virtual_drive *drive, uint16_t before,
-                                         uint16_t controlword)
+void servo_take_mode_controlword(struct servo *drive, uint16_t before, uint16_t controlword)
 {
     bool is_set = controlword & CONTROL_BIT_4;
     bool rises = is_set && !(before & CONTROL_BIT_4);
@@ -398,9 +394,9 @@ void virtual_drive_take_mode_controlword(struct virtual_drive *drive, uint16_t b
         break;
     case CIA402_MODE_HOMING:
         if (rises && is_enabled)
-            virtual_drive_begin_homing(drive);
+            servo_begin_homing(drive);
         else if (!is_set)
-            virtual_drive_interrupt_homing(drive);
+            servo_interrupt_homing(drive);
         break;
     case CIA402_MODE_INTERPOLATED_POSITION:
         take_interpolation(drive, is_set && is_enabled);
@@ -411,7 +407,7 @@ void virtual_drive_take_mode_controlword(struct virtual_drive *drive, uint16_t b
 }
 
 /* Bit 10 is set while nothing is under way: idle drives have reached their target. */
-static uint16_t homing_status(const struct virtual_drive *drive)
+static uint16_t homing_status(const struct servo *drive)
 {
     const struct drive_homing *h = &drive->homing;
     unsigned word = h->is_homed ? STATUS_BIT_12 : 0;
@@ -422,7 +418,7 @@ static uint16_t homing_status(const struct virtual_drive *drive)
     return (uint16_t)word;
 }
 
-static uint16_t position_status(const struct virtual_drive *drive)
+static uint16_t position_status(const struct servo *drive)
 {
     bool is_reached = drive->is_halted ? drive->velocity_mm_s == 0 : drive->setpoints.is_reached;
     unsigned word = is_reached ? STATUS_REACHED : 0;
@@ -432,16 +428,16 @@ static uint16_t position_status(const struct virtual_drive *drive)
 }
 
 /* Bit 12: it stands (606F). */
-static uint16_t velocity_status(const struct virtual_drive *drive)
+static uint16_t velocity_status(const struct servo *drive)
 {
     double threshold_mm_s =
-        drive->objects.settings.velocity_threshold / virtual_drive_velocity_scale(drive);
-    bool stands = maths_abs(drive->plant.measured_velocity_mm_s) <= threshold_mm_s;
+        drive->objects.settings.velocity_threshold / servo_velocity_scale(drive);
+    bool stands = maths_abs(drive->loop.measured_velocity_mm_s) <= threshold_mm_s;
     bool is_reached = drive->is_halted ? drive->velocity_mm_s == 0 : drive->setpoints.is_reached;
     return (uint16_t)((is_reached ? STATUS_REACHED : 0) | (stands ? STATUS_BIT_12 : 0));
 }
 
-uint16_t virtual_drive_mode_status(const struct virtual_drive *drive)
+uint16_t servo_mode_status(const struct servo *drive)
 {
     bool is_enabled = drive->state == CIA402_ENABLED && !drive->is_leaving;
     switch (drive->objects.process.mode_display) {

@@ -3,7 +3,7 @@
  * acknowledgement, the whole value guarded by a checksum.
  */
 #include "canopen/little_endian.h"
-#include "drives/sdo_server_private.h"
+#include "canopen/sdo_server_private.h"
 
 #include <string.h>
 

@@ -4,7 +4,7 @@
  */
 #include "base/maths.h"
 #include "canopen/node.h"
-#include "drives/virtual_drive_private.h"
+#include "servo/servo_private.h"
 
 #include <string.h>
 
@@ -20,67 +20,72 @@ static int32_t signed_round(double value)
     return (int32_t)maths_clamp(maths_round(value), (double)INT32_MIN, (double)INT32_MAX);
 }
 
-static int16_t torque(const struct virtual_drive *drive)
+static int16_t torque(const struct servo *drive)
 {
-    double torque = maths_round(drive->torque_sign * TORQUE_PER_RATED *
-                                drive_plant_torque_ratio(&drive->plant));
+    double torque =
+        maths_round(drive->torque_sign * TORQUE_PER_RATED * servo_loop_torque_ratio(&drive->loop));
     return (int16_t)maths_clamp(torque, INT16_MIN, INT16_MAX);
 }
 
-static void refresh_rest(struct virtual_drive *drive)
+static void refresh_rest(struct servo *drive)
 {
-    const struct drive_plant *plant = &drive->plant;
+    const struct servo_loop *loop = &drive->loop;
     struct drive_process *p = &drive->objects.process;
-    p->demand_position = virtual_drive_increments(drive, plant->command_mm - drive->origin_mm);
-    p->actual_internal = signed_round(plant->measured_mm * plant->encoder_steps_per_mm);
-    double velocity_per_mm = drive->velocity_sign * virtual_drive_velocity_scale(drive);
-    p->actual_velocity = signed_round(plant->measured_velocity_mm_s * velocity_per_mm);
-    p->demand_velocity = signed_round(plant->command_velocity_mm_s * velocity_per_mm);
+    p->demand_position = servo_increments(drive, loop->command_mm - drive->origin_mm);
+    p->actual_internal = signed_round(loop->measured_mm * loop->encoder_steps_per_mm);
+    double velocity_per_mm = drive->velocity_sign * servo_velocity_scale(drive);
+    p->actual_velocity = signed_round(loop->measured_velocity_mm_s * velocity_per_mm);
+    p->demand_velocity = signed_round(loop->command_velocity_mm_s * velocity_per_mm);
     p->actual_torque = torque(drive);
-    p->manufacturer_status = virtual_drive_manufacturer_status(drive);
-    p->high_resolution_us = virtual_drive_high_resolution_us(drive);
-    const struct time_stamp time = virtual_drive_time_of_day(drive);
+    p->manufacturer_status = servo_manufacturer_status(drive);
+    p->high_resolution_us = servo_high_resolution_us(drive);
+    const struct time_stamp time = servo_time_of_day(drive);
     p->time_ms = time.ms;
     p->time_days = time.days;
 }
 
-void virtual_drive_refresh(struct virtual_drive *drive, unsigned groups)
+void servo_refresh_groups(struct servo *drive, unsigned groups)
 {
     struct drive_process *p = &drive->objects.process;
     if (groups & DRIVE_GROUP_STATUS)
-        p->statusword = virtual_drive_statusword(drive);
+        p->statusword = servo_statusword(drive);
     if (groups & DRIVE_GROUP_POSITION)
-        p->actual_position = virtual_drive_increments(drive, virtual_drive_actual_mm(drive));
+        p->actual_position = servo_increments(drive, servo_actual_mm(drive));
     if (groups & DRIVE_GROUP_FOLLOWING)
-        p->following_error =
-            virtual_drive_increments(drive, drive_plant_following_error_mm(&drive->plant));
+        p->following_error = servo_increments(drive, servo_loop_following_error_mm(&drive->loop));
     if (groups & DRIVE_GROUP_INPUTS)
-        p->digital_inputs = virtual_drive_inputs(drive);
+        p->digital_inputs = servo_inputs(drive);
     if (groups & DRIVE_GROUP_REST)
         refresh_rest(drive);
 }
 
-uint32_t virtual_drive_read_row(const struct virtual_drive *drive, const struct object_row *row)
+void servo_refresh(struct servo *drive)
 {
+    servo_refresh_groups(drive, DRIVE_GROUP_ALL);
+}
+
+uint32_t servo_read_row(const struct servo *drive, const struct object_row *row)
+{
+    const struct servo_meddler *m = &drive->meddler;
     uint32_t value;
-    if (drive->faults.overrides > 0 && virtual_drive_overrides(drive, row, &value))
+    if (m->overrides != NULL && m->overrides(m->context, row, &value))
         return value;
     return object_read(row, &drive->objects);
 }
 
 /* The mode first: a controlword that comes with it is meant for it. */
-void virtual_drive_apply_touches(struct virtual_drive *drive, unsigned touches)
+void servo_apply_touches(struct servo *drive, unsigned touches)
 {
     if (touches & DRIVE_TOUCH_MODE)
-        virtual_drive_take_mode(drive, drive->objects.process.mode);
+        servo_take_mode(drive, drive->objects.process.mode);
     if (touches & DRIVE_TOUCH_CONTROLWORD)
-        virtual_drive_take_controlword(drive, drive->objects.process.controlword);
+        servo_take_controlword(drive, drive->objects.process.controlword);
     if (touches & DRIVE_TOUCH_CLOCK)
-        virtual_drive_set_high_resolution_us(drive, drive->objects.process.high_resolution_us);
+        servo_set_high_resolution_us(drive, drive->objects.process.high_resolution_us);
     if (touches & DRIVE_TOUCH_TORQUE)
-        virtual_drive_derive_torque(drive);
+        servo_derive_torque(drive);
     if (touches & DRIVE_TOUCH_PROBE)
-        virtual_drive_take_probe_function(drive);
+        servo_take_probe_function(drive);
 }
 
 static uint32_t check_sync_id(uint32_t value)
@@ -90,7 +95,7 @@ static uint32_t check_sync_id(uint32_t value)
 }
 
 /* An identifier is changed while nobody listens to it. Nodes of this kind never send it (bit 30). */
-static uint32_t check_time_id(const struct virtual_drive *drive, uint32_t value)
+static uint32_t check_time_id(const struct servo *drive, uint32_t value)
 {
     uint32_t old = drive->objects.communication.time_cob_id;
     uint32_t id = value & ~TIME_CONSUMED;
@@ -99,7 +104,7 @@ static uint32_t check_time_id(const struct virtual_drive *drive, uint32_t value)
     return old & value & TIME_CONSUMED && value != old ? SDO_ABORT_VALUE : SDO_ABORT_NONE;
 }
 
-static uint32_t check_emcy_id(const struct virtual_drive *drive, uint32_t value)
+static uint32_t check_emcy_id(const struct servo *drive, uint32_t value)
 {
     uint32_t old = drive->objects.communication.emcy_cob_id;
     uint32_t id = value & 0x7FFFFFFF;
@@ -114,7 +119,7 @@ static uint32_t check_consumer(uint32_t value)
 }
 
 /* SYNC's counter must not change while SYNC has a period. */
-static uint32_t check_overflow(const struct virtual_drive *drive, uint32_t value)
+static uint32_t check_overflow(const struct servo *drive, uint32_t value)
 {
     if (drive->objects.communication.sync_period_us != 0)
         return SDO_ABORT_STATE;
@@ -127,8 +132,8 @@ static uint32_t check_quick_stop(uint32_t value)
     return value == 3 || value == 4 ? SDO_ABORT_VALUE : SDO_ABORT_NONE;
 }
 
-static uint32_t check_communication_write(const struct virtual_drive *drive,
-                                          const struct object_row *row, uint32_t value)
+static uint32_t check_communication_write(const struct servo *drive, const struct object_row *row,
+                                          uint32_t value)
 {
     switch (row->index) {
     case 0x1005:
@@ -149,31 +154,30 @@ static uint32_t check_communication_write(const struct virtual_drive *drive,
         break;
     }
     if (row->index >= 0x1400 && row->index < 0x1C00)
-        return virtual_drive_check_pdo_write(drive, row, value);
+        return servo_check_pdo_write(drive, row, value);
     return SDO_ABORT_NONE;
 }
 
-static uint32_t check_profile_write(const struct virtual_drive *drive, const struct object_row *row,
+static uint32_t check_profile_write(const struct servo *drive, const struct object_row *row,
                                     int64_t value)
 {
     switch (row->index) {
     case 0x605A:
         return check_quick_stop((uint32_t)value);
     case 0x6060:
-        return virtual_drive_has_mode(drive, (int8_t)value) ? SDO_ABORT_NONE : SDO_ABORT_VALUE;
+        return servo_has_mode(drive, (int8_t)value) ? SDO_ABORT_NONE : SDO_ABORT_VALUE;
     case 0x607E:
     case 0x6091:
     case 0x6092:
         return drive->state == CIA402_ENABLED ? SDO_ABORT_STATE : SDO_ABORT_NONE;
     case 0x6098:
-        return virtual_drive_has_homing_method((int32_t)value) ? SDO_ABORT_NONE : SDO_ABORT_VALUE;
+        return servo_has_homing_method((int32_t)value) ? SDO_ABORT_NONE : SDO_ABORT_VALUE;
     default:
         return SDO_ABORT_NONE;
     }
 }
 
-static uint32_t check_number(const struct virtual_drive *drive, const struct object_row *row,
-                             uint32_t raw)
+static uint32_t check_number(const struct servo *drive, const struct object_row *row, uint32_t raw)
 {
     int64_t value = object_type_value((enum object_type)row->type, raw);
     if (row->flags & OBJECT_LIMITED && value < row->min)
@@ -188,7 +192,7 @@ static uint32_t check_number(const struct virtual_drive *drive, const struct obj
  * Objects 1010 and 1011. Stored values are those a reset brings back; whoever keeps them may fail, and then nothing has
  * changed.
  */
-static uint32_t set_stored(struct virtual_drive *drive, const struct drive_objects *values)
+static uint32_t set_stored(struct servo *drive, const struct drive_objects *values)
 {
     const struct drive_objects before = drive->stored;
     drive->objects.process.store = drive->objects.process.restore = 1;
@@ -199,80 +203,79 @@ static uint32_t set_stored(struct virtual_drive *drive, const struct drive_objec
     return SDO_ABORT_HARDWARE;
 }
 
-void virtual_drive_restore(struct virtual_drive *drive, uint16_t last)
+void servo_restore(struct servo *drive, uint16_t last)
 {
     drive->objects.communication = drive->stored.communication;
     dictionary_copy_memory(drive->dictionary, &drive->objects, &drive->stored, last);
     if (last < UINT16_MAX)
         return;
     drive->objects.settings = drive->stored.settings;
-    virtual_drive_derive(drive);
+    servo_derive(drive);
 }
 
-static void follow_communication_write(struct virtual_drive *drive, const struct object_row *row)
+static void follow_communication_write(struct servo *drive, const struct object_row *row)
 {
     switch (row->index) {
     case 0x1003:
-        virtual_drive_clear_history(drive);
+        servo_clear_history(drive);
         break;
     case 0x1005:
     case 0x1012:
-        virtual_drive_set_filter(drive);
+        servo_set_filter(drive);
         break;
     case 0x1006:
         drive->sync_lost_ns = DRIVE_NEVER;
         break;
     case 0x1013:
-        virtual_drive_apply_touches(drive, DRIVE_TOUCH_CLOCK);
+        servo_apply_touches(drive, DRIVE_TOUCH_CLOCK);
         break;
     case 0x1016:
         if (row->sub >= 1 && row->sub <= DRIVE_CONSUMERS)
-            virtual_drive_restart_consumer(drive, row->sub - 1u);
+            servo_restart_consumer(drive, row->sub - 1u);
         break;
     case 0x1017:
-        virtual_drive_restart_heartbeat(drive);
+        servo_restart_heartbeat(drive);
         break;
     default:
         if (row->index >= 0x1400 && row->index < 0x1C00)
-            virtual_drive_update_pdo(drive, row->index);
+            servo_update_pdo(drive, row->index);
         break;
     }
 }
 
-static void follow_profile_write(struct virtual_drive *drive, const struct object_row *row)
+static void follow_profile_write(struct servo *drive, const struct object_row *row)
 {
     switch (row->index) {
     case 0x6040:
-        virtual_drive_apply_touches(drive, DRIVE_TOUCH_CONTROLWORD);
+        servo_apply_touches(drive, DRIVE_TOUCH_CONTROLWORD);
         break;
     case 0x6060:
-        virtual_drive_apply_touches(drive, DRIVE_TOUCH_MODE);
+        servo_apply_touches(drive, DRIVE_TOUCH_MODE);
         break;
     case 0x6072:
-        virtual_drive_apply_touches(drive, DRIVE_TOUCH_TORQUE);
+        servo_apply_touches(drive, DRIVE_TOUCH_TORQUE);
         break;
     case 0x60B8:
-        virtual_drive_apply_touches(drive, DRIVE_TOUCH_PROBE);
+        servo_apply_touches(drive, DRIVE_TOUCH_PROBE);
         break;
     case 0x607E:
     case 0x6091:
     case 0x6092:
-        virtual_drive_derive(drive);
-        virtual_drive_hold(drive);
+        servo_derive(drive);
+        servo_hold(drive);
         break;
     case 0x6065:
     case 0x6085:
     case 0x60C2:
     case 0x60C6:
-        virtual_drive_derive(drive);
+        servo_derive(drive);
         break;
     default:
         break;
     }
 }
 
-static uint32_t write_number(struct virtual_drive *drive, const struct object_row *row,
-                             uint32_t value)
+static uint32_t write_number(struct servo *drive, const struct object_row *row, uint32_t value)
 {
     uint32_t code = check_number(drive, row, value);
     if (code != SDO_ABORT_NONE)
@@ -290,8 +293,8 @@ static uint32_t write_number(struct virtual_drive *drive, const struct object_ro
 }
 
 /* The label is a text, the notes are any bytes. */
-static uint32_t write_bytes(struct virtual_drive *drive, const struct object_row *row,
-                            const uint8_t *bytes, size_t length)
+static uint32_t write_bytes(struct servo *drive, const struct object_row *row, const uint8_t *bytes,
+                            size_t length)
 {
     struct drive_process *p = &drive->objects.process;
     if (row->flags & OBJECT_FIXED)
@@ -310,14 +313,22 @@ static uint32_t write_bytes(struct virtual_drive *drive, const struct object_row
     return SDO_ABORT_NONE;
 }
 
-static uint32_t read_bytes(const struct virtual_drive *drive, const struct object_row *row,
+static size_t length_of(const char *text)
+{
+    size_t length = 0;
+    while (text[length] != '\0')
+        length++;
+    return length;
+}
+
+static uint32_t read_bytes(const struct servo *drive, const struct object_row *row,
                            const uint8_t **bytes, size_t *length)
 {
     const struct drive_objects *o = &drive->objects;
     const char *text = row->flags & OBJECT_FIXED ? row->title : o->settings.label;
     if (row->type == OBJECT_STRING) {
         *bytes = (const uint8_t *)text;
-        *length = strlen(text);
+        *length = length_of(text);
     } else if (row->flags & OBJECT_FIXED) {
         *bytes = (const uint8_t *)drive->eds;
         *length = drive->eds_length;
@@ -329,28 +340,28 @@ static uint32_t read_bytes(const struct virtual_drive *drive, const struct objec
     return SDO_ABORT_NONE;
 }
 
-static uint32_t find(const struct virtual_drive *drive, uint32_t object,
-                     const struct object_row **row)
+static uint32_t find(const struct servo *drive, uint32_t object, const struct object_row **row)
 {
     bool has_index;
     uint32_t code;
     *row = dictionary_find(drive->dictionary, (uint16_t)(object >> 16), (uint8_t)(object >> 8),
                            &has_index);
-    if (drive->faults.in_force && virtual_drive_aborts_sdo(drive, object, &code))
+    const struct servo_meddler *m = &drive->meddler;
+    if (m->aborts_sdo != NULL && m->aborts_sdo(m->context, object, &code))
         return code;
     if (*row)
         return SDO_ABORT_NONE;
     return has_index ? SDO_ABORT_NO_SUB_INDEX : SDO_ABORT_NO_OBJECT;
 }
 
-static uint32_t tell_abort(const struct virtual_drive *drive, uint32_t object, uint32_t code)
+static uint32_t tell_abort(const struct servo *drive, uint32_t object, uint32_t code)
 {
     if (code != SDO_ABORT_NONE)
-        virtual_drive_tell(drive, DRIVE_EVENT_SDO_ABORT, object, code);
+        servo_tell(drive, DRIVE_EVENT_SDO_ABORT, object, code);
     return code;
 }
 
-static uint32_t read_object(struct virtual_drive *drive, uint32_t object, uint8_t number[4],
+static uint32_t read_object(struct servo *drive, uint32_t object, uint8_t number[4],
                             const uint8_t **bytes, size_t *length)
 {
     const struct object_row *row;
@@ -364,22 +375,21 @@ static uint32_t read_object(struct virtual_drive *drive, uint32_t object, uint8_
     *length = object_type_bytes((enum object_type)row->type);
     if (*length == 0)
         return read_bytes(drive, row, bytes, length);
-    virtual_drive_refresh(drive, DRIVE_GROUP_ALL);
-    uint32_t value = virtual_drive_read_row(drive, row);
+    servo_refresh_groups(drive, DRIVE_GROUP_ALL);
+    uint32_t value = servo_read_row(drive, row);
     for (unsigned i = 0; i < 4; i++)
         number[i] = (uint8_t)(value >> 8 * i);
     *bytes = number;
     return SDO_ABORT_NONE;
 }
 
-uint32_t virtual_drive_read_sdo(void *drive, uint32_t object, uint8_t number[4],
-                                const uint8_t **bytes, size_t *length)
+uint32_t servo_read_sdo(void *drive, uint32_t object, uint8_t number[4], const uint8_t **bytes,
+                        size_t *length)
 {
     return tell_abort(drive, object, read_object(drive, object, number, bytes, length));
 }
 
-static uint32_t may_write(const struct virtual_drive *drive, uint32_t object,
-                          const struct object_row **row)
+static uint32_t may_write(const struct servo *drive, uint32_t object, const struct object_row **row)
 {
     uint32_t code = find(drive, object, row);
     if (code == SDO_ABORT_NONE && ((*row)->access == OBJECT_RO || (*row)->access == OBJECT_CONST))
@@ -387,13 +397,13 @@ static uint32_t may_write(const struct virtual_drive *drive, uint32_t object,
     return code;
 }
 
-uint32_t virtual_drive_may_write_sdo(void *drive, uint32_t object)
+uint32_t servo_may_write_sdo(void *drive, uint32_t object)
 {
     const struct object_row *row;
     return tell_abort(drive, object, may_write(drive, object, &row));
 }
 
-static uint32_t write_object(struct virtual_drive *drive, uint32_t object, const uint8_t *bytes,
+static uint32_t write_object(struct servo *drive, uint32_t object, const uint8_t *bytes,
                              size_t length)
 {
     const struct object_row *row;
@@ -411,13 +421,13 @@ static uint32_t write_object(struct virtual_drive *drive, uint32_t object, const
     return write_number(drive, row, value);
 }
 
-uint32_t virtual_drive_write_sdo(void *drive, uint32_t object, const uint8_t *bytes, size_t length)
+uint32_t servo_write_sdo(void *drive, uint32_t object, const uint8_t *bytes, size_t length)
 {
     return tell_abort(drive, object, write_object(drive, object, bytes, length));
 }
 
 /* The number a mapping entry names, and NULL for anything else. */
-static const struct object_row *find_number(const struct virtual_drive *drive, uint32_t object)
+static const struct object_row *find_number(const struct servo *drive, uint32_t object)
 {
     bool has_index;
     const struct object_row *row = dictionary_find(drive->dictionary, (uint16_t)(object >> 16),
@@ -426,17 +436,17 @@ static const struct object_row *find_number(const struct virtual_drive *drive, u
     return bits != 0 && bits == (object & 0xFF) ? row : NULL;
 }
 
-bool virtual_drive_read_object(struct virtual_drive *drive, uint32_t object, uint32_t *value)
+bool servo_read_object(struct servo *drive, uint32_t object, uint32_t *value)
 {
     const struct object_row *row = find_number(drive, object);
     if (!row)
         return false;
-    virtual_drive_refresh(drive, DRIVE_GROUP_ALL);
-    *value = virtual_drive_read_row(drive, row);
+    servo_refresh_groups(drive, DRIVE_GROUP_ALL);
+    *value = servo_read_row(drive, row);
     return true;
 }
 
-bool virtual_drive_write_object(struct virtual_drive *drive, uint32_t object, uint32_t value)
+bool servo_write_object(struct servo *drive, uint32_t object, uint32_t value)
 {
     const struct object_row *row = find_number(drive, object);
     if (!row || row->access == OBJECT_RO || row->access == OBJECT_CONST)

@@ -1,10 +1,10 @@
 /*
- * Memory of a virtual drive: only for sizeof, and for the sources of this room.
+ * Memory of a drive: only for sizeof, and for the sources of this room.
  */
-#ifndef TAKT_DRIVES_VIRTUAL_DRIVE_STATE_H
-#define TAKT_DRIVES_VIRTUAL_DRIVE_STATE_H
+#ifndef TAKT_SERVO_SERVO_STATE_H
+#define TAKT_SERVO_SERVO_STATE_H
 
-#define VIRTUAL_DRIVE_EMCY_QUEUE 8
+#define SERVO_EMCY_QUEUE 8
 
 /* A PDO as it is worked with; made from the objects whenever they change. */
 struct drive_pdo {
@@ -12,7 +12,7 @@ struct drive_pdo {
     uint16_t cob_id;
     uint8_t transmission;
     uint8_t count, length;
-    uint8_t touches;                                    /* RPDO: enum of virtual_drive_private.h */
+    uint8_t touches;                                    /* RPDO: enum of servo_private.h */
     uint8_t groups;                                     /* TPDO: what must be computed first */
     uint8_t events;                                     /* TPDO: whose change sends it */
     const struct object_row *row[DRIVE_PDO_MAPPED_MAX]; /* NULL: a dummy */
@@ -52,6 +52,7 @@ struct drive_lss {
 struct drive_touch_probe {
     bool touches;      /* the input, 60FD bit 16 */
     double begin_mm;   /* what the encoder said at the beginning of the cycle */
+    uint32_t pulses;   /* index pulses before it */
     uint16_t function; /* 60B8 as it was seen last */
 };
 
@@ -72,44 +73,36 @@ struct drive_homing {
     bool is_homed;
     int8_t
         search; /* direction under way, of the drive; the other one after the first end of the axis */
-    bool was_active;   /* the switch, in the cycle before */
-    uint64_t push_ns;  /* that the motor has stood with all the torque it takes */
-    double index_mm;   /* of the motor: where the awaited index pulse is */
-    double encoder_mm; /* what the encoder says at the home position */
-};
-
-struct drive_faults {
-    const struct inject *script;
-    const struct inject_clock *clock;
-    uint64_t in_force; /* bit i: fault i of the script has begun and not ended */
-    uint8_t mute;      /* bit: 1 << enum inject_mute */
-    bool is_hung;
-    unsigned overrides;                /* faults in force that change what an object shows */
-    uint32_t shown[INJECT_FAULTS_MAX]; /* what it shows by fault i */
+    bool was_active;         /* the switch, in the cycle before */
+    uint64_t push_ns;        /* that the motor has stood with all the torque it takes */
+    uint32_t pulses;         /* that have been seen */
+    int32_t index_direction; /* in which the awaited index pulse is passed, by the encoder */
+    double encoder_mm;       /* what the encoder says at the home position */
 };
 
 /* Requests that wait for their time; a master sends one after the other. */
-#define VIRTUAL_DRIVE_REQUESTS 4
+#define SERVO_REQUESTS 4
 
 struct drive_requests {
     unsigned count;
     uint64_t due_ns; /* of the first */
-    struct can_frame frame[VIRTUAL_DRIVE_REQUESTS];
+    struct can_frame frame[SERVO_REQUESTS];
 };
 
 /* Who keeps what object 1010 stores; false: it could not. */
 struct drive_keeper {
-    bool (*keep)(void *context, const struct virtual_drive *drive);
+    bool (*keep)(void *context, const struct servo *drive);
     void *context;
 };
 
-struct virtual_drive {
+struct servo {
     uint8_t number; /* the node id it was made with, by which it is known however it is called */
     uint32_t accepts[64]; /* bit id: frames with this identifier are looked at */
-    struct virtual_drive_config config;
+    struct servo_config config;
     struct can_port port;
     struct drive_observer observer;
-    struct drive_plant plant;
+    struct servo_meddler meddler;
+    struct servo_loop loop;
     struct drive_objects objects;
 
     enum nmt_state nmt;
@@ -169,12 +162,11 @@ struct virtual_drive {
     uint8_t guard_toggle;         /* of the next answer to it */
     uint16_t communication_error; /* 8130, 8700: under way; 0: none */
     unsigned emcy_count;
-    struct emcy emcy[VIRTUAL_DRIVE_EMCY_QUEUE]; /* that wait for the inhibit time */
+    struct emcy emcy[SERVO_EMCY_QUEUE]; /* that wait for the inhibit time */
 
     struct sdo_server sdo;
     const char *eds;
     size_t eds_length;
-    struct drive_faults faults;
     struct drive_lss lss;
 
     /* What a reset brings back, of power-on or stored by object 1010; process values do not count. */

@@ -10,8 +10,8 @@
  *          --block download---> TAKING --last block--> TAKEN --end--> IDLE
  *     from every state: abort, and a request that begins another transfer
  */
-#ifndef TAKT_DRIVES_SDO_SERVER_H
-#define TAKT_DRIVES_SDO_SERVER_H
+#ifndef TAKT_CANOPEN_SDO_SERVER_H
+#define TAKT_CANOPEN_SDO_SERVER_H
 
 #include "canopen/sdo.h"
 

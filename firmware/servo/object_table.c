@@ -1,4 +1,4 @@
-#include "drives/dictionary.h"
+#include "servo/dictionary.h"
 
 #include <string.h>
 

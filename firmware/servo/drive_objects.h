@@ -5,18 +5,21 @@
  * Positions are in increments, velocities in increments/s, accelerations in increments/s2; what an
  * increment is, objects 6091 and 6092 say.
  */
-#ifndef TAKT_DRIVES_DRIVE_OBJECTS_H
-#define TAKT_DRIVES_DRIVE_OBJECTS_H
+#ifndef TAKT_SERVO_DRIVE_OBJECTS_H
+#define TAKT_SERVO_DRIVE_OBJECTS_H
 
 #include <stdint.h>
 
 #define DRIVE_PDO_COUNT      4 /* RPDOs, and as many TPDOs */
 #define DRIVE_PDO_MAPPED_MAX 8
-#define DRIVE_HISTORY_MAX    8     /* object 1003 */
-#define DRIVE_CONSUMERS      2     /* object 1016 */
-#define DRIVE_LABEL_SIZE     32    /* object 2000, with its zero */
-#define DRIVE_NOTES_SIZE     1024  /* object 2001 */
-#define DRIVE_EXTRA_SIZE     32768 /* objects that only a data sheet has */
+#define DRIVE_HISTORY_MAX    8    /* object 1003 */
+#define DRIVE_CONSUMERS      2    /* object 1016 */
+#define DRIVE_LABEL_SIZE     32   /* object 2000, with its zero */
+#define DRIVE_NOTES_SIZE     1024 /* object 2001 */
+/* Bytes of objects that only a data sheet has. */
+#ifndef DRIVE_EXTRA_SIZE
+#define DRIVE_EXTRA_SIZE 32768
+#endif
 
 struct drive_pdo_parameters {
     uint32_t cob_id; /* bit 31: not valid */

@@ -1,21 +1,21 @@
 /*
- * The object dictionary of a virtual drive: takt's own (object_table.h), or that of an electronic data sheet (CiA 306), so
+ * The object dictionary of a drive: takt's own (object_table.h), or that of an electronic data sheet (CiA 306), so
  * that a master can be tried against a drive that is not there.
  *
  * Of a data sheet count: which objects there are, their access, defaults and limits, what may be mapped where, the number
  * of PDOs and of their entries, dummies, and the modes. Objects that takt's own drive has, of the same size, do what they
  * do there; all others are memory.
  */
-#ifndef TAKT_DRIVES_DICTIONARY_H
-#define TAKT_DRIVES_DICTIONARY_H
+#ifndef TAKT_SERVO_DICTIONARY_H
+#define TAKT_SERVO_DICTIONARY_H
 
-#include "drives/object_table.h"
+#include "servo/object_table.h"
 
 struct dictionary {
     const struct object_row *row; /* by rising index and sub-index */
     unsigned count;
     uint8_t dummies;           /* bit n: RPDOs may skip a place of data type n */
-    struct object_row *memory; /* of dictionary_read: the rows and, like them, owned: */
+    struct object_row *memory; /* of one that has been read: the rows, by who read it, and */
     char *names;
 };
 
@@ -24,24 +24,6 @@ extern const struct dictionary dictionary_own;
 extern const struct dictionary dictionary_io;
 #define DICTIONARY_IO_BYTES     2
 #define DICTIONARY_IO_ANALOGUES 4 /* outputs of 16 bits */
-
-#define DICTIONARY_PROBLEM_MAX 120
-
-/* What is wrong with a data sheet. */
-struct dictionary_problem {
-    unsigned line; /* from 1; 0: the whole */
-    char text[DICTIONARY_PROBLEM_MAX + 1];
-};
-
-/*
- * Reads the text of a data sheet, or of a configuration (DCF, with a section DeviceComissioning), whose parameter values
- * count before defaults; in a data sheet they count where there is no default. False:
- * *wrong says why. A value that is not understood counts as none, as it is with the tools that write them.
- */
-bool dictionary_read(struct dictionary *dictionary, const char *text, size_t length,
-                     struct dictionary_problem *wrong);
-/* Of dictionary_read. */
-void dictionary_free(struct dictionary *dictionary);
 
 /* NULL: no such entry. *has_index: the index exists, so the sub-index is what is missing. */
 const struct object_row *dictionary_find(const struct dictionary *dictionary, uint16_t index,

@@ -2,7 +2,7 @@
  * Errors as CiA 301 tells them: error register, history, emergencies, and what an error of the
  * communication does to the node.
  */
-#include "drives/virtual_drive_private.h"
+#include "servo/servo_private.h"
 
 #include <string.h>
 
@@ -18,7 +18,7 @@ static void note(struct drive_process *p, uint16_t code)
         p->history_count++;
 }
 
-void virtual_drive_clear_history(struct virtual_drive *drive)
+void servo_clear_history(struct servo *drive)
 {
     struct drive_process *p = &drive->objects.process;
     memset(p->history, 0, sizeof p->history);
@@ -26,7 +26,7 @@ void virtual_drive_clear_history(struct virtual_drive *drive)
 }
 
 /* The identifier is object 1014's, wherever that points. */
-static void send(struct virtual_drive *drive, const struct emcy *emcy)
+static void send(struct servo *drive, const struct emcy *emcy)
 {
     struct can_frame frame;
     uint32_t cob_id = drive->objects.communication.emcy_cob_id;
@@ -35,11 +35,11 @@ static void send(struct virtual_drive *drive, const struct emcy *emcy)
         return;
     emcy_write(&frame, emcy);
     frame.id = (uint16_t)cob_id;
-    (void)virtual_drive_send(drive, INJECT_MUTE_EMCY, &frame);
+    (void)servo_send(drive, SERVO_FRAME_EMCY, &frame);
     drive->emcy_ns = drive->now_ns + inhibit_100us * UINT64_C(100000);
 }
 
-void virtual_drive_send_waiting_emergencies(struct virtual_drive *drive)
+void servo_send_waiting_emergencies(struct servo *drive)
 {
     while (drive->emcy_count > 0 && drive->now_ns >= drive->emcy_ns) {
         send(drive, &drive->emcy[0]);
@@ -49,31 +49,30 @@ void virtual_drive_send_waiting_emergencies(struct virtual_drive *drive)
 }
 
 /* Within the inhibit time emergencies wait; what is more than the queue holds is lost. */
-static void send_or_wait(struct virtual_drive *drive, const struct emcy *emcy)
+static void send_or_wait(struct servo *drive, const struct emcy *emcy)
 {
     if (drive->emcy_count == 0 && drive->now_ns >= drive->emcy_ns) {
         send(drive, emcy);
-    } else if (drive->emcy_count < VIRTUAL_DRIVE_EMCY_QUEUE) {
+    } else if (drive->emcy_count < SERVO_EMCY_QUEUE) {
         drive->emcy[drive->emcy_count++] = *emcy;
-        virtual_drive_look_soon(drive);
+        servo_look_soon(drive);
     }
 }
 
-void virtual_drive_send_emergency(struct virtual_drive *drive, uint16_t code,
-                                  uint8_t error_register)
+void servo_send_emergency(struct servo *drive, uint16_t code, uint8_t error_register)
 {
     struct drive_process *p = &drive->objects.process;
     const struct emcy emcy = {
         .node = drive->config.node, .code = code, .error_register = error_register};
     if (code != EMCY_NONE)
         note(p, code);
-    virtual_drive_tell(drive, DRIVE_EVENT_EMCY, code, error_register);
+    servo_tell(drive, DRIVE_EVENT_EMCY, code, error_register);
     if (drive->nmt == NMT_OPERATIONAL || drive->nmt == NMT_PREOPERATIONAL)
         send_or_wait(drive, &emcy);
 }
 
 /* Object 1029: what the node does when it has lost the controller. */
-static void behave(struct virtual_drive *drive)
+static void behave(struct servo *drive)
 {
     uint8_t behaviour = drive->objects.communication.error_behaviour;
     if (drive->nmt != NMT_OPERATIONAL)
@@ -84,10 +83,10 @@ static void behave(struct virtual_drive *drive)
         drive->nmt = NMT_STOPPED;
     else
         return;
-    virtual_drive_tell(drive, DRIVE_EVENT_NMT, (uint32_t)drive->nmt, 0);
+    servo_tell(drive, DRIVE_EVENT_NMT, (uint32_t)drive->nmt, 0);
 }
 
-void virtual_drive_set_communication_error(struct virtual_drive *drive, uint16_t code)
+void servo_set_communication_error(struct servo *drive, uint16_t code)
 {
     uint8_t *error_register = &drive->objects.process.error_register;
     if (code == drive->communication_error)
@@ -97,11 +96,11 @@ void virtual_drive_set_communication_error(struct virtual_drive *drive, uint16_t
         *error_register &= (uint8_t)~EMCY_REGISTER_COMMUNICATION;
         if (drive->objects.process.error_code == EMCY_NONE)
             *error_register = 0;
-        virtual_drive_send_emergency(drive, EMCY_NONE, *error_register);
+        servo_send_emergency(drive, EMCY_NONE, *error_register);
         return;
     }
     *error_register |= EMCY_REGISTER_GENERIC | EMCY_REGISTER_COMMUNICATION;
-    virtual_drive_send_emergency(drive, code, *error_register);
+    servo_send_emergency(drive, code, *error_register);
     behave(drive);
-    virtual_drive_lose_connection(drive);
+    servo_lose_connection(drive);
 }

@@ -1,11 +1,11 @@
 /*
- * The object dictionary of the virtual drive as one table: what the SDO server answers by, what PDOs
+ * The object dictionary of the drive as one table: what the SDO server answers by, what PDOs
  * are mapped by, and what the EDS file is written from.
  */
-#ifndef TAKT_DRIVES_OBJECT_TABLE_H
-#define TAKT_DRIVES_OBJECT_TABLE_H
+#ifndef TAKT_SERVO_OBJECT_TABLE_H
+#define TAKT_SERVO_OBJECT_TABLE_H
 
-#include "drives/drive_objects.h"
+#include "servo/drive_objects.h"
 
 #include <stdbool.h>
 #include <stddef.h>

@@ -3,7 +3,7 @@
  */
 #include "canopen/little_endian.h"
 #include "canopen/node.h"
-#include "drives/virtual_drive_private.h"
+#include "servo/servo_private.h"
 
 #include <string.h>
 
@@ -24,13 +24,13 @@
 #define TPDO_MAPPING    0x1A00
 
 /* Bytes of it. */
-static unsigned longest_frame(const struct virtual_drive *drive)
+static unsigned longest_frame(const struct servo *drive)
 {
     return drive->config.is_fd ? CAN_DATA_MAX : CAN_CLASSIC_MAX;
 }
 
 /* Data types as indices: places an RPDO skips. */
-static bool is_dummy(const struct virtual_drive *drive, uint16_t index)
+static bool is_dummy(const struct servo *drive, uint16_t index)
 {
     return index >= OBJECT_INTEGER8 && index <= OBJECT_UNSIGNED32 &&
            drive->dictionary->dummies >> index & 1;
@@ -40,8 +40,8 @@ static bool is_dummy(const struct virtual_drive *drive, uint16_t index)
  * The row of a mapping entry, NULL for a dummy. False: there is no such object, of that length, that
  * may travel this way.
  */
-static bool find_mapped(const struct virtual_drive *drive, uint32_t entry,
-                        enum object_flag direction, const struct object_row **row, uint32_t *code)
+static bool find_mapped(const struct servo *drive, uint32_t entry, enum object_flag direction,
+                        const struct object_row **row, uint32_t *code)
 {
     uint16_t index = (uint16_t)(entry >> 16);
     uint8_t sub = (uint8_t)(entry >> 8);
@@ -98,7 +98,7 @@ static uint8_t group_of(const struct object_row *row)
     }
 }
 
-static void add_mapped(struct virtual_drive *drive, struct drive_pdo *pdo, uint32_t entry,
+static void add_mapped(struct servo *drive, struct drive_pdo *pdo, uint32_t entry,
                        enum object_flag direction)
 {
     const struct object_row *row;
@@ -122,7 +122,7 @@ static void add_mapped(struct virtual_drive *drive, struct drive_pdo *pdo, uint3
         pdo->events |= group_of(row);
 }
 
-static void update_pdo(struct virtual_drive *drive, struct drive_pdo *pdo,
+static void update_pdo(struct servo *drive, struct drive_pdo *pdo,
                        const struct drive_pdo_parameters *parameters,
                        const struct drive_pdo_mapping *mapping, enum object_flag direction)
 {
@@ -140,7 +140,7 @@ static bool is_event_driven(const struct drive_pdo *pdo)
     return pdo->transmission >= TYPE_EVENT_MIN;
 }
 
-static void watch_events(struct virtual_drive *drive)
+static void watch_events(struct servo *drive)
 {
     drive->watched = 0;
     for (unsigned i = 0; i < DRIVE_PDO_COUNT; i++) {
@@ -154,7 +154,7 @@ static void watch_events(struct virtual_drive *drive)
  * The nodes' event timers are shifted by a millisecond each, so that their frames do not come all
  * at once.
  */
-static void start_tpdo(struct virtual_drive *drive, unsigned i)
+static void start_tpdo(struct servo *drive, unsigned i)
 {
     struct drive_pdo *pdo = &drive->tpdo[i];
     const struct drive_pdo_parameters *parameters = &drive->objects.communication.tpdo[i];
@@ -167,17 +167,17 @@ static void start_tpdo(struct virtual_drive *drive, unsigned i)
     pdo->event_ns = DRIVE_NEVER;
     if (period_ns != 0 && is_event_driven(pdo))
         pdo->event_ns = drive->now_ns + period_ns - shift_ns % period_ns;
-    virtual_drive_look_soon(drive);
+    servo_look_soon(drive);
 }
 
-static void update_rpdo(struct virtual_drive *drive, unsigned i)
+static void update_rpdo(struct servo *drive, unsigned i)
 {
     const struct drive_communication *c = &drive->objects.communication;
     update_pdo(drive, &drive->rpdo[i], &c->rpdo[i], &c->rpdo_mapping[i], OBJECT_TO_RPDO);
-    virtual_drive_set_filter(drive);
+    servo_set_filter(drive);
 }
 
-static void update_tpdo(struct virtual_drive *drive, unsigned i)
+static void update_tpdo(struct servo *drive, unsigned i)
 {
     const struct drive_communication *c = &drive->objects.communication;
     update_pdo(drive, &drive->tpdo[i], &c->tpdo[i], &c->tpdo_mapping[i], OBJECT_TO_TPDO);
@@ -185,7 +185,7 @@ static void update_tpdo(struct virtual_drive *drive, unsigned i)
     watch_events(drive);
 }
 
-void virtual_drive_update_pdo(struct virtual_drive *drive, uint16_t index)
+void servo_update_pdo(struct servo *drive, uint16_t index)
 {
     const struct drive_communication *c = &drive->objects.communication;
     unsigned i = index & 0xFFu;
@@ -195,11 +195,11 @@ void virtual_drive_update_pdo(struct virtual_drive *drive, uint16_t index)
         update_tpdo(drive, i);
     else
         update_rpdo(drive, i);
-    virtual_drive_tell(drive, DRIVE_EVENT_PDO, index,
-                       index >= TPDO_PARAMETERS ? c->tpdo[i].cob_id : c->rpdo[i].cob_id);
+    servo_tell(drive, DRIVE_EVENT_PDO, index,
+               index >= TPDO_PARAMETERS ? c->tpdo[i].cob_id : c->rpdo[i].cob_id);
 }
 
-void virtual_drive_update_pdos(struct virtual_drive *drive)
+void servo_update_pdos(struct servo *drive)
 {
     for (unsigned i = 0; i < DRIVE_PDO_COUNT; i++) {
         update_rpdo(drive, i);
@@ -207,7 +207,7 @@ void virtual_drive_update_pdos(struct virtual_drive *drive)
     }
 }
 
-void virtual_drive_start_pdos(struct virtual_drive *drive)
+void servo_start_pdos(struct servo *drive)
 {
     for (unsigned i = 0; i < DRIVE_PDO_COUNT; i++) {
         drive->rpdo[i].is_held = false;
@@ -246,8 +246,7 @@ static void write_bytes(uint8_t *bytes, unsigned count, uint32_t value)
 }
 
 /* All values are written before the first takes effect: they belong together. */
-static void apply(struct virtual_drive *drive, const struct drive_pdo *pdo,
-                  const struct can_frame *frame)
+static void apply(struct servo *drive, const struct drive_pdo *pdo, const struct can_frame *frame)
 {
     const uint8_t *bytes = frame->data;
     for (unsigned i = 0; i < pdo->count; i++) {
@@ -255,23 +254,23 @@ static void apply(struct virtual_drive *drive, const struct drive_pdo *pdo,
         bytes += pdo->bytes[i];
     }
     if (pdo->touches)
-        virtual_drive_apply_touches(drive, pdo->touches);
+        servo_apply_touches(drive, pdo->touches);
 }
 
 /* Object 1007: what is synchronous counts only so long after SYNC. */
-static bool is_too_late(const struct virtual_drive *drive)
+static bool is_too_late(const struct servo *drive)
 {
     uint64_t window_ns = (uint64_t)drive->objects.communication.sync_window_us * 1000;
     return window_ns != 0 && drive->heard_ns - drive->sync_ns > window_ns;
 }
 
-static void take(struct virtual_drive *drive, struct drive_pdo *pdo, const struct can_frame *frame)
+static void take(struct servo *drive, struct drive_pdo *pdo, const struct can_frame *frame)
 {
     if (pdo->count == 0)
         return;
     if (frame->length < pdo->length) {
-        virtual_drive_send_emergency(drive, EMCY_PDO_LENGTH,
-                                     EMCY_REGISTER_GENERIC | EMCY_REGISTER_COMMUNICATION);
+        servo_send_emergency(drive, EMCY_PDO_LENGTH,
+                             EMCY_REGISTER_GENERIC | EMCY_REGISTER_COMMUNICATION);
     } else if (pdo->transmission > TYPE_SYNC_MAX) {
         apply(drive, pdo, frame);
     } else if (!is_too_late(drive)) {
@@ -280,14 +279,14 @@ static void take(struct virtual_drive *drive, struct drive_pdo *pdo, const struc
     }
 }
 
-void virtual_drive_take_rpdo(struct virtual_drive *drive, const struct can_frame *frame)
+void servo_take_rpdo(struct servo *drive, const struct can_frame *frame)
 {
     for (unsigned i = 0; i < DRIVE_PDO_COUNT; i++)
         if (drive->rpdo[i].is_valid && frame->id == drive->rpdo[i].cob_id)
             take(drive, &drive->rpdo[i], frame);
 }
 
-void virtual_drive_apply_held(struct virtual_drive *drive)
+void servo_apply_held(struct servo *drive)
 {
     for (unsigned i = 0; i < DRIVE_PDO_COUNT; i++) {
         if (!drive->rpdo[i].is_held)
@@ -297,19 +296,19 @@ void virtual_drive_apply_held(struct virtual_drive *drive)
     }
 }
 
-static void send(struct virtual_drive *drive, struct drive_pdo *pdo)
+static void send(struct servo *drive, struct drive_pdo *pdo)
 {
     struct can_frame frame = {.id = pdo->cob_id, .length = pdo->length};
     uint8_t *bytes = frame.data;
-    bool is_plain = drive->faults.overrides == 0;
-    virtual_drive_refresh(drive, pdo->groups);
+    bool is_plain = drive->meddler.overrides == NULL;
+    servo_refresh_groups(drive, pdo->groups);
     for (unsigned i = 0; i < pdo->count; i++) {
-        uint32_t value = is_plain ? value_of(pdo->field[i], pdo->bytes[i])
-                                  : virtual_drive_read_row(drive, pdo->row[i]);
+        uint32_t value =
+            is_plain ? value_of(pdo->field[i], pdo->bytes[i]) : servo_read_row(drive, pdo->row[i]);
         write_bytes(bytes, pdo->bytes[i], value);
         bytes += pdo->bytes[i];
     }
-    (void)virtual_drive_send(drive, INJECT_MUTE_TPDO, &frame);
+    (void)servo_send(drive, SERVO_FRAME_TPDO, &frame);
     pdo->is_due = false;
 }
 
@@ -332,7 +331,7 @@ static bool is_due_at_sync(struct drive_pdo *pdo, uint8_t sync_start, const stru
 }
 
 /* The first TPDO, which has the statusword, is the last to be sent: then all of this SYNC is said. */
-void virtual_drive_send_synchronous(struct virtual_drive *drive, const struct can_frame *sync)
+void servo_send_synchronous(struct servo *drive, const struct can_frame *sync)
 {
     for (unsigned i = DRIVE_PDO_COUNT; i-- > 0;) {
         struct drive_pdo *pdo = &drive->tpdo[i];
@@ -343,11 +342,11 @@ void virtual_drive_send_synchronous(struct virtual_drive *drive, const struct ca
     }
 }
 
-void virtual_drive_note_events(struct virtual_drive *drive)
+void servo_note_events(struct servo *drive)
 {
     const struct drive_process *p = &drive->objects.process;
     uint8_t changed = 0;
-    virtual_drive_refresh(drive, drive->watched & (DRIVE_GROUP_STATUS | DRIVE_GROUP_INPUTS));
+    servo_refresh_groups(drive, drive->watched & (DRIVE_GROUP_STATUS | DRIVE_GROUP_INPUTS));
     if (p->error_code != drive->seen_error_code)
         changed |= DRIVE_GROUP_ERROR;
     if (p->mode_display != drive->seen_mode)
@@ -364,10 +363,10 @@ void virtual_drive_note_events(struct virtual_drive *drive)
     drive->seen_inputs = p->digital_inputs;
     for (unsigned i = 0; i < DRIVE_PDO_COUNT; i++)
         drive->tpdo[i].is_due = drive->tpdo[i].is_due || drive->tpdo[i].events & changed;
-    virtual_drive_look_soon(drive);
+    servo_look_soon(drive);
 }
 
-static void send_if_due(struct virtual_drive *drive, unsigned i)
+static void send_if_due(struct servo *drive, unsigned i)
 {
     struct drive_pdo *pdo = &drive->tpdo[i];
     const struct drive_pdo_parameters *parameters = &drive->objects.communication.tpdo[i];
@@ -384,7 +383,7 @@ static void send_if_due(struct virtual_drive *drive, unsigned i)
         pdo->event_ns = drive->now_ns + (uint64_t)parameters->event_ms * MILLISECOND_NS;
 }
 
-void virtual_drive_send_due(struct virtual_drive *drive)
+void servo_send_due(struct servo *drive)
 {
     if (drive->nmt != NMT_OPERATIONAL)
         return;
@@ -392,7 +391,7 @@ void virtual_drive_send_due(struct virtual_drive *drive)
         send_if_due(drive, i);
 }
 
-uint64_t virtual_drive_next_pdo_ns(const struct virtual_drive *drive)
+uint64_t servo_next_pdo_ns(const struct servo *drive)
 {
     uint64_t next_ns = DRIVE_NEVER;
     if (drive->nmt != NMT_OPERATIONAL)
@@ -448,8 +447,7 @@ static uint32_t check_parameters(const struct drive_pdo *pdo, uint8_t sub, uint3
     }
 }
 
-static uint32_t check_entry(const struct virtual_drive *drive, uint32_t entry,
-                            enum object_flag direction)
+static uint32_t check_entry(const struct servo *drive, uint32_t entry, enum object_flag direction)
 {
     const struct object_row *row;
     uint32_t code;
@@ -457,9 +455,8 @@ static uint32_t check_entry(const struct virtual_drive *drive, uint32_t entry,
 }
 
 /* Sub-index 0 makes the entries below it valid: do all of them exist, and fit into a frame? */
-static uint32_t check_count(const struct virtual_drive *drive,
-                            const struct drive_pdo_mapping *mapping, uint32_t count,
-                            enum object_flag direction)
+static uint32_t check_count(const struct servo *drive, const struct drive_pdo_mapping *mapping,
+                            uint32_t count, enum object_flag direction)
 {
     unsigned bits = 0;
     for (unsigned i = 0; i < count; i++) {
@@ -473,7 +470,7 @@ static uint32_t check_count(const struct virtual_drive *drive,
 }
 
 /* A PDO whose identifier cannot be written is always valid. */
-static bool is_fixed(const struct virtual_drive *drive, uint16_t mapping_index)
+static bool is_fixed(const struct servo *drive, uint16_t mapping_index)
 {
     bool has_index;
     const struct object_row *row =
@@ -486,7 +483,7 @@ static bool is_fixed(const struct virtual_drive *drive, uint16_t mapping_index)
  * The mapping changes only while the PDO is not valid, where it may be that; its entries only while
  * none is in use.
  */
-static uint32_t check_mapping(const struct virtual_drive *drive, const struct object_row *row,
+static uint32_t check_mapping(const struct servo *drive, const struct object_row *row,
                               const struct drive_pdo *pdo, const struct drive_pdo_mapping *mapping,
                               enum object_flag direction, uint32_t value)
 {
@@ -497,8 +494,8 @@ static uint32_t check_mapping(const struct virtual_drive *drive, const struct ob
                          : check_entry(drive, value, direction);
 }
 
-uint32_t virtual_drive_check_pdo_write(const struct virtual_drive *drive,
-                                       const struct object_row *row, uint32_t value)
+uint32_t servo_check_pdo_write(const struct servo *drive, const struct object_row *row,
+                               uint32_t value)
 {
     const struct drive_communication *c = &drive->objects.communication;
     unsigned i = row->index & 0xFFu;

@@ -1,10 +1,10 @@
 /*
  * Shared by the sources of the SDO server.
  */
-#ifndef TAKT_DRIVES_SDO_SERVER_PRIVATE_H
-#define TAKT_DRIVES_SDO_SERVER_PRIVATE_H
+#ifndef TAKT_CANOPEN_SDO_SERVER_PRIVATE_H
+#define TAKT_CANOPEN_SDO_SERVER_PRIVATE_H
 
-#include "drives/sdo_server.h"
+#include "canopen/sdo_server.h"
 
 bool sdo_server_send(struct sdo_server *server, const struct can_frame *frame);
 

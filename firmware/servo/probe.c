@@ -2,8 +2,7 @@
  * Touch probes (CiA 402-2, 60B8 ... 60BD): the position is latched at the very moment at which the input changes, or at
  * which the index pulse comes, as the hardware of a drive does it; within a cycle the motor runs evenly.
  */
-#include "base/maths.h"
-#include "drives/virtual_drive_private.h"
+#include "servo/servo_private.h"
 
 /* Bits of touch probe 2 are so much higher than those of 1, and its values so much later. */
 #define SECOND_BITS   8
@@ -15,7 +14,7 @@ static unsigned bits_of(unsigned word, unsigned probe)
 }
 
 /* Enabling begins anew: what has been latched counts no more. Disabled, the status is 0. */
-void virtual_drive_take_probe_function(struct virtual_drive *drive)
+void servo_take_probe_function(struct servo *drive)
 {
     struct drive_process *p = &drive->objects.process;
     unsigned status = p->probe_status;
@@ -32,7 +31,7 @@ void virtual_drive_take_probe_function(struct virtual_drive *drive)
 }
 
 /* An edge of a probe's source. */
-static void latch(struct virtual_drive *drive, unsigned probe, bool rises, int32_t position_inc)
+static void latch(struct servo *drive, unsigned probe, bool rises, int32_t position_inc)
 {
     struct drive_process *p = &drive->objects.process;
     unsigned function = bits_of(p->probe_function, probe);
@@ -45,12 +44,12 @@ static void latch(struct virtual_drive *drive, unsigned probe, bool rises, int32
         return;
     p->probe_status = (uint16_t)(p->probe_status | seen);
     p->probe_latched[SECOND_VALUES * probe + !rises] = position_inc;
-    virtual_drive_tell(drive, DRIVE_EVENT_PROBE, probe + 1, (uint32_t)position_inc);
+    servo_tell(drive, DRIVE_EVENT_PROBE, probe + 1, (uint32_t)position_inc);
 }
 
-static void latch_all(struct virtual_drive *drive, bool is_index, bool rises, double position_mm)
+static void latch_all(struct servo *drive, bool is_index, bool rises, double position_mm)
 {
-    int32_t position_inc = virtual_drive_increments(drive, position_mm);
+    int32_t position_inc = servo_increments(drive, position_mm);
     for (unsigned i = 0; i < DRIVE_TOUCH_PROBES; i++) {
         bool by_index = bits_of(drive->objects.process.probe_function, i) & CIA402_PROBE_AT_INDEX;
         if (by_index == is_index)
@@ -58,37 +57,33 @@ static void latch_all(struct virtual_drive *drive, bool is_index, bool rises, do
     }
 }
 
-double virtual_drive_get_position_at_mm(const struct virtual_drive *drive, double ratio)
+double servo_get_position_at_mm(const struct servo *drive, double ratio)
 {
     double begin_mm = drive->probe.begin_mm;
-    return begin_mm + (drive->plant.measured_mm - begin_mm) * ratio - drive->origin_mm;
+    return begin_mm + (drive->loop.measured_mm - begin_mm) * ratio - drive->origin_mm;
 }
 
-void virtual_drive_touch(struct virtual_drive *drive, bool touches, double ratio)
+void servo_touch(struct servo *drive, bool touches, double ratio)
 {
     if (touches == drive->probe.touches)
         return;
     drive->probe.touches = touches;
-    latch_all(drive, false, touches, virtual_drive_get_position_at_mm(drive, ratio));
+    latch_all(drive, false, touches, servo_get_position_at_mm(drive, ratio));
 }
 
-void virtual_drive_begin_probe(struct virtual_drive *drive)
+void servo_begin_probe(struct servo *drive)
 {
-    drive->probe.begin_mm = drive->plant.measured_mm;
+    drive->probe.begin_mm = drive->loop.measured_mm;
+    drive->probe.pulses = drive->loop.sense.pulses;
 }
 
 /* A pulse is where the motor's angle is 0: its rising and its falling edge are one. The last one of a cycle counts. */
-void virtual_drive_run_probe(struct virtual_drive *drive)
+void servo_run_probe(struct servo *drive)
 {
-    double turn_mm = drive->config.plant.travel_per_revolution_mm;
-    double shift_mm = drive->plant.encoder_shift_mm;
-    double from = (drive->probe.begin_mm - shift_mm) / turn_mm;
-    double to = (drive->plant.measured_mm - shift_mm) / turn_mm;
-    double turns = to > from ? maths_floor(to) : maths_ceil(to);
-    bool is_passed = to > from ? turns > from : turns < from;
-    if (!is_passed || to == from || drive->probe.function == 0)
+    const struct motor_sense *sense = &drive->loop.sense;
+    if (sense->pulses == drive->probe.pulses || drive->probe.function == 0)
         return;
-    double pulse_mm = turns * turn_mm + shift_mm - drive->origin_mm;
+    double pulse_mm = sense->pulse.encoder_mm - drive->origin_mm;
     latch_all(drive, true, true, pulse_mm);
     latch_all(drive, true, false, pulse_mm);
 }

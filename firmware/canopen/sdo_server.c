@@ -1,5 +1,5 @@
 #include "canopen/little_endian.h"
-#include "drives/sdo_server_private.h"
+#include "canopen/sdo_server_private.h"
 
 #include <string.h>
 

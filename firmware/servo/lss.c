@@ -6,7 +6,7 @@
  */
 #include "canopen/little_endian.h"
 #include "canopen/node.h"
-#include "drives/virtual_drive_private.h"
+#include "servo/servo_private.h"
 
 #include <string.h>
 
@@ -33,23 +33,23 @@
 
 #define FASTSCAN_BEGINS 0x80
 
-static uint32_t identity(struct virtual_drive *drive, unsigned part)
+static uint32_t identity(struct servo *drive, unsigned part)
 {
     uint32_t value = 0;
-    (void)virtual_drive_read_object(drive, 0x10180020u | (part + 1) << 8, &value);
+    (void)servo_read_object(drive, 0x10180020u | (part + 1) << 8, &value);
     return value;
 }
 
-static void answer(struct virtual_drive *drive, unsigned command, uint32_t value)
+static void answer(struct servo *drive, unsigned command, uint32_t value)
 {
     struct can_frame frame = {.id = LSS_ANSWER_COB_ID, .length = CAN_CLASSIC_MAX};
     frame.data[0] = (uint8_t)command;
     little_endian_write32(frame.data + 1, value);
-    (void)virtual_drive_send(drive, INJECT_MUTE_SDO, &frame);
+    (void)servo_send(drive, SERVO_FRAME_SDO, &frame);
 }
 
 /* The parts must come one after the other, and be those of this node. */
-static void select_by(struct virtual_drive *drive, unsigned part, uint32_t value)
+static void select_by(struct servo *drive, unsigned part, uint32_t value)
 {
     struct drive_lss *lss = &drive->lss;
     bool is_next = part == lss->matched && value == identity(drive, part);
@@ -62,7 +62,7 @@ static void select_by(struct virtual_drive *drive, unsigned part, uint32_t value
 }
 
 /* Vendor, product, least and most of the revision, least and most of the serial number. */
-static void identify_by(struct virtual_drive *drive, unsigned step, uint32_t value)
+static void identify_by(struct servo *drive, unsigned step, uint32_t value)
 {
     struct drive_lss *lss = &drive->lss;
     unsigned part = step < 2 ? step : 2 + (step - 2) / 2;
@@ -79,8 +79,7 @@ static void identify_by(struct virtual_drive *drive, unsigned step, uint32_t val
  * Nodes without an id say whether the upper bits of a part of their identity are these, down to bit `check`; who has all bits
  * of a part goes on to the next. After the last one there is one node left.
  */
-static void fastscan(struct virtual_drive *drive, uint32_t value, uint8_t check, uint8_t part,
-                     uint8_t next)
+static void fastscan(struct servo *drive, uint32_t value, uint8_t check, uint8_t part, uint8_t next)
 {
     struct drive_lss *lss = &drive->lss;
     if (!lss->is_nameless || lss->configures)
@@ -100,7 +99,7 @@ static void fastscan(struct virtual_drive *drive, uint32_t value, uint8_t check,
     answer(drive, LSS_IDENTIFIED, 0);
 }
 
-static void configure_node(struct virtual_drive *drive, uint8_t node)
+static void configure_node(struct servo *drive, uint8_t node)
 {
     bool is_one = (node >= NODE_MIN && node <= NODE_MAX) || node == LSS_NO_NODE;
     if (is_one)
@@ -109,7 +108,7 @@ static void configure_node(struct virtual_drive *drive, uint8_t node)
 }
 
 /* The node id is kept with what object 1010 has stored. */
-static void store(struct virtual_drive *drive)
+static void store(struct servo *drive)
 {
     const uint8_t before = drive->lss.stored;
     bool is_kept;
@@ -120,7 +119,7 @@ static void store(struct virtual_drive *drive)
     answer(drive, LSS_STORE, is_kept ? LSS_DONE : LSS_NOT_STORED);
 }
 
-static void take_configuration(struct virtual_drive *drive, unsigned command, uint8_t value)
+static void take_configuration(struct servo *drive, unsigned command, uint8_t value)
 {
     switch (command) {
     case LSS_CONFIGURE_NODE:
@@ -142,7 +141,7 @@ static void take_configuration(struct virtual_drive *drive, unsigned command, ui
     }
 }
 
-void virtual_drive_take_lss(struct virtual_drive *drive, const struct can_frame *frame)
+void servo_take_lss(struct servo *drive, const struct can_frame *frame)
 {
     const uint8_t *data = frame->data;
     const uint32_t value = little_endian_read32(data + 1);
@@ -164,7 +163,7 @@ void virtual_drive_take_lss(struct virtual_drive *drive, const struct can_frame 
 }
 
 /* What counts from the node id counts from the new one, where it has not been set to something else. */
-static void renumber(const struct virtual_drive *drive, struct drive_objects *objects, uint8_t to)
+static void renumber(const struct servo *drive, struct drive_objects *objects, uint8_t to)
 {
     const struct dictionary *dictionary = drive->dictionary;
     for (unsigned i = 0; i < dictionary->count; i++) {
@@ -177,7 +176,7 @@ static void renumber(const struct virtual_drive *drive, struct drive_objects *ob
 }
 
 /* A reset: the node id that has been configured, or at one of the whole node the one that has been stored. */
-void virtual_drive_apply_lss(struct virtual_drive *drive, bool whole_node)
+void servo_apply_lss(struct servo *drive, bool whole_node)
 {
     struct drive_lss *lss = &drive->lss;
     const uint8_t node = whole_node ? lss->stored : lss->node;

@@ -3,7 +3,7 @@
  * input is looped back from the output of its number, or is high for good: a closed circuit.
  */
 #include "canopen/objects.h"
-#include "drives/virtual_drive_private.h"
+#include "servo/servo_private.h"
 
 #include <string.h>
 
@@ -14,23 +14,23 @@
 #define ANALOGUES (INPUTS + DICTIONARY_IO_BYTES)
 
 /* A TPDO that is sent when an input changes is also sent when the node becomes operational. */
-static void note_change(struct virtual_drive *drive)
+static void note_change(struct servo *drive)
 {
     uint32_t seen = (uint32_t)drive->nmt << 16;
     for (unsigned i = 0; i < DICTIONARY_IO_BYTES; i++) {
         uint32_t byte = 0;
-        (void)virtual_drive_read_object(drive, PDO_MAPPED(OBJECT_IO_INPUTS, i + 1, 8), &byte);
+        (void)servo_read_object(drive, PDO_MAPPED(OBJECT_IO_INPUTS, i + 1, 8), &byte);
         seen |= byte << 8 * i;
     }
     if (seen == drive->seen_io)
         return;
     drive->seen_io = seen;
     drive->tpdo[0].is_due = true;
-    virtual_drive_look_soon(drive);
+    servo_look_soon(drive);
 }
 
 /* Without a controller all outputs are low, and 0: CiA 401, objects 6206, 6207, 6443 and 6444 by default. */
-void virtual_drive_run_io(struct virtual_drive *drive)
+void servo_run_io(struct servo *drive)
 {
     bool is_controlled = drive->nmt == NMT_OPERATIONAL && drive->communication_error == EMCY_NONE;
     for (unsigned i = 0; i < DICTIONARY_IO_BYTES; i++) {

@@ -1,6 +1,5 @@
-#include "drives/dictionary.h"
+#include "servo/dictionary.h"
 
-#include <stdlib.h>
 #include <string.h>
 
 static uint32_t place(uint16_t index, uint8_t sub)
@@ -54,11 +53,4 @@ void dictionary_copy_memory(const struct dictionary *dictionary, struct drive_ob
         if (row->index <= last && dictionary_is_memory(row))
             object_write(row, to, object_read(row, from));
     }
-}
-
-void dictionary_free(struct dictionary *dictionary)
-{
-    free(dictionary->memory);
-    free(dictionary->names);
-    *dictionary = (struct dictionary){0};
 }

@@ -2,7 +2,7 @@
  * Values of the objects that the machine makes at power-on, and what motion needs to know of the settings.
  */
 #include "base/maths.h"
-#include "drives/virtual_drive_private.h"
+#include "servo/servo_private.h"
 
 #include <string.h>
 
@@ -32,15 +32,15 @@ static uint32_t unsigned_round(double value)
     return (uint32_t)maths_clamp(maths_round(value), 0, (double)UINT32_MAX);
 }
 
-static uint32_t unsigned_increments(const struct virtual_drive *drive, double value_mm)
+static uint32_t unsigned_increments(const struct servo *drive, double value_mm)
 {
-    return unsigned_round(value_mm * virtual_drive_scale(drive));
+    return unsigned_round(value_mm * servo_scale(drive));
 }
 
 /* Of a velocity or an acceleration. */
-static uint32_t unsigned_velocity(const struct virtual_drive *drive, double value_mm_s)
+static uint32_t unsigned_velocity(const struct servo *drive, double value_mm_s)
 {
-    return unsigned_round(value_mm_s * virtual_drive_velocity_scale(drive));
+    return unsigned_round(value_mm_s * servo_velocity_scale(drive));
 }
 
 /* The period as 60C2 tells it: the fewest microseconds that fit, exactly where they do. */
@@ -56,14 +56,14 @@ static void set_interpolation_period(struct drive_settings *s, uint32_t cycle_us
     s->interpolation_index = index;
 }
 
-static bool has_object(const struct virtual_drive *drive, unsigned index, uint8_t sub)
+static bool has_object(const struct servo *drive, unsigned index, uint8_t sub)
 {
     bool has_index;
     return dictionary_find(drive->dictionary, (uint16_t)index, sub, &has_index) != NULL;
 }
 
 /* Values of a data sheet, and PDOs that it has. */
-static void take_data_sheet(struct virtual_drive *drive)
+static void take_data_sheet(struct servo *drive)
 {
     struct drive_communication *c = &drive->objects.communication;
     dictionary_set_initial(drive->dictionary, DICTIONARY_NOT_OF_MACHINE, &drive->objects,
@@ -77,23 +77,23 @@ static void take_data_sheet(struct virtual_drive *drive)
 }
 
 /* What the machine makes of the initial values: everything that is counted in increments. */
-void virtual_drive_init_objects(struct virtual_drive *drive)
+void servo_init_objects(struct servo *drive)
 {
-    const struct drive_plant_config *plant = &drive->config.plant;
+    const struct servo_config *config = &drive->config;
     struct drive_objects *o = &drive->objects;
-    double turn_mm = plant->travel_per_revolution_mm;
+    double turn_mm = config->loop.travel_per_revolution_mm;
     memset(o, 0, sizeof *o);
     dictionary_set_initial(&dictionary_own, DICTIONARY_ALL, o, drive->config.node);
     drive->increments_per_mm = drive->config.increments_per_mm;
     o->identity.serial = drive->config.node;
-    o->identity.encoder_counts = plant->encoder_counts_per_revolution;
+    o->identity.encoder_counts = config->loop.encoder_counts_per_revolution;
     o->settings.following_window =
-        plant->following_error_window_mm > 0
-            ? unsigned_increments(drive, plant->following_error_window_mm)
+        config->following_error_window_mm > 0
+            ? unsigned_increments(drive, config->following_error_window_mm)
             : NOT_WATCHED;
-    o->settings.following_timeout_ms = (uint16_t)plant->following_error_timeout_ms;
+    o->settings.following_timeout_ms = (uint16_t)config->following_error_timeout_ms;
     o->settings.quick_stop_deceleration =
-        unsigned_velocity(drive, plant->quick_stop_deceleration_mm_s2);
+        unsigned_velocity(drive, config->quick_stop_deceleration_mm_s2);
     o->settings.position_window =
         unsigned_increments(drive, DEFAULT_POSITION_WINDOW_TURNS * turn_mm);
     o->settings.max_profile_velocity = unsigned_velocity(drive, DEFAULT_MAX_TURNS_S * turn_mm);
@@ -108,15 +108,15 @@ void virtual_drive_init_objects(struct virtual_drive *drive)
     o->settings.velocity_window = o->settings.velocity_threshold = (uint16_t)maths_min(
         unsigned_velocity(drive, DEFAULT_VELOCITY_TURNS_S * turn_mm), UINT16_MAX);
     o->settings.max_torque = (uint16_t)maths_clamp(
-        maths_round(TORQUE_PER_RATED * plant->torque_max_nm / plant->torque_rated_nm), 0,
-        UINT16_MAX);
+        maths_round(TORQUE_PER_RATED * config->loop.torque_max_nm / config->loop.torque_rated_nm),
+        0, UINT16_MAX);
     set_interpolation_period(&o->settings, drive->config.cycle_us);
     if (drive->dictionary != &dictionary_own)
         take_data_sheet(drive);
 }
 
 /* Object 607E has been changed in this bit; as it was at power-on it is part of what the machine says. */
-static bool is_turned(const struct virtual_drive *drive, unsigned bit)
+static bool is_turned(const struct servo *drive, unsigned bit)
 {
     return (drive->objects.settings.polarity ^ drive->initial.settings.polarity) & bit;
 }
@@ -126,7 +126,7 @@ static bool is_turned(const struct virtual_drive *drive, unsigned bit)
  *     increments/turn = feed / feed_shaft_turns * gear_shaft_turns / gear_motor_turns
  * As they were at power-on they stand for what the machine says, which need not be a whole number.
  */
-static void rescale(struct virtual_drive *drive)
+static void rescale(struct servo *drive)
 {
     const struct drive_settings *s = &drive->objects.settings;
     const struct drive_settings *initial = &drive->initial.settings;
@@ -135,15 +135,15 @@ static void rescale(struct virtual_drive *drive)
     bool is_initial = s->feed_increments == initial->feed_increments &&
                       s->feed_shaft == initial->feed_shaft &&
                       s->gear_motor == initial->gear_motor && s->gear_shaft == initial->gear_shaft;
-    double increments_per_mm = is_initial ? drive->config.increments_per_mm
-                                          : virtual_drive_sign(drive) * turn /
-                                                drive->config.plant.travel_per_revolution_mm;
+    double increments_per_mm =
+        is_initial ? drive->config.increments_per_mm
+                   : servo_sign(drive) * turn / drive->config.loop.travel_per_revolution_mm;
     drive->increments_per_mm = polarity * increments_per_mm;
 }
 
 /* A value of the machine that its object could not hold is used as long as nobody has changed it. */
-static double in_mm(const struct virtual_drive *drive, uint32_t value, uint32_t initial,
-                    double machine, double per_mm)
+static double in_mm(const struct servo *drive, uint32_t value, uint32_t initial, double machine,
+                    double per_mm)
 {
     bool is_initial = value == initial && maths_abs(drive->increments_per_mm) ==
                                               maths_abs(drive->config.increments_per_mm);
@@ -159,44 +159,43 @@ static uint64_t interpolation_ns(const struct drive_settings *s)
     return ns;
 }
 
-static double sign_of(const struct virtual_drive *drive, unsigned bit)
+static double sign_of(const struct servo *drive, unsigned bit)
 {
-    return is_turned(drive, bit) ? -virtual_drive_sign(drive) : virtual_drive_sign(drive);
+    return is_turned(drive, bit) ? -servo_sign(drive) : servo_sign(drive);
 }
 
-static void derive_signs(struct virtual_drive *drive)
+static void derive_signs(struct servo *drive)
 {
     drive->velocity_sign = sign_of(drive, POLARITY_VELOCITY);
     drive->torque_sign = sign_of(drive, POLARITY_TORQUE);
 }
 
 /* Object 6072. As at power-on it stands for what the motor has. */
-void virtual_drive_derive_torque(struct virtual_drive *drive)
+void servo_derive_torque(struct servo *drive)
 {
     const uint16_t max_torque = drive->objects.settings.max_torque;
     bool is_initial = max_torque == drive->initial.settings.max_torque;
-    drive->plant.torque_limit_mm_s2 =
-        is_initial ? drive->plant.acceleration_max_mm_s2
-                   : max_torque / TORQUE_PER_RATED * drive->plant.mm_s2_per_rated;
+    drive->loop.torque_limit_mm_s2 =
+        is_initial ? drive->loop.acceleration_max_mm_s2
+                   : max_torque / TORQUE_PER_RATED * drive->loop.mm_s2_per_rated;
 }
 
-void virtual_drive_derive(struct virtual_drive *drive)
+void servo_derive(struct servo *drive)
 {
     const struct drive_settings *s = &drive->objects.settings;
     const struct drive_settings *initial = &drive->initial.settings;
-    const struct drive_plant_config *plant = &drive->config.plant;
+    const struct servo_config *config = &drive->config;
     rescale(drive);
-    const double per_mm_s = virtual_drive_velocity_scale(drive);
+    const double per_mm_s = servo_velocity_scale(drive);
     drive->interpolation_ns = interpolation_ns(s);
     drive->following_window_mm = 0;
     if (s->following_window != NOT_WATCHED)
-        drive->following_window_mm =
-            in_mm(drive, s->following_window, initial->following_window,
-                  plant->following_error_window_mm, virtual_drive_scale(drive));
+        drive->following_window_mm = in_mm(drive, s->following_window, initial->following_window,
+                                           config->following_error_window_mm, servo_scale(drive));
     drive->quick_stop_mm_s2 = maths_min(
         in_mm(drive, s->quick_stop_deceleration, initial->quick_stop_deceleration,
-              plant->quick_stop_deceleration_mm_s2, per_mm_s),
+              config->quick_stop_deceleration_mm_s2, per_mm_s),
         in_mm(drive, s->max_deceleration, initial->max_deceleration, MATHS_INFINITY, per_mm_s));
     derive_signs(drive);
-    virtual_drive_derive_torque(drive);
+    servo_derive_torque(drive);
 }

@@ -2,7 +2,7 @@
  * CiA 402: what the controlword and the motor make of the drive's state.
  */
 #include "base/maths.h"
-#include "drives/virtual_drive_private.h"
+#include "servo/servo_private.h"
 
 /* Values of the option codes 6007 and 605A to 605E. */
 #define CONNECTION_FAULT           1
@@ -25,20 +25,19 @@
 /* A warning comes before the fault of temperature. */
 #define TEMPERATURE_WARNING_K 10.0
 
-static bool is_hot(const struct virtual_drive *drive, double below_k)
+static bool is_hot(const struct servo *drive, double below_k)
 {
-    double max_c = drive->config.plant.temperature_max_c;
-    return max_c > 0 && drive->plant.temperature_c > max_c - below_k;
+    double max_c = drive->config.temperature_max_c;
+    return max_c > 0 && drive->loop.sense.temperature_c > max_c - below_k;
 }
 
-static bool is_at_torque_limit(const struct virtual_drive *drive)
+static bool is_at_torque_limit(const struct servo *drive)
 {
-    return maths_abs(drive->plant.acceleration_mm_s2) >=
-           drive_plant_torque_limit_mm_s2(&drive->plant);
+    return maths_abs(drive->loop.torque_mm_s2) >= servo_loop_torque_limit_mm_s2(&drive->loop);
 }
 
 /* Object 1002: what is behind the statusword. */
-uint32_t virtual_drive_manufacturer_status(const struct virtual_drive *drive)
+uint32_t servo_manufacturer_status(const struct servo *drive)
 {
     uint32_t word = 0;
     if (is_at_torque_limit(drive))
@@ -52,7 +51,7 @@ uint32_t virtual_drive_manufacturer_status(const struct virtual_drive *drive)
     return word;
 }
 
-uint16_t virtual_drive_statusword(const struct virtual_drive *drive)
+uint16_t servo_statusword(const struct servo *drive)
 {
     unsigned word = cia402_statusword(drive->state) | CIA402_VOLTAGE_ENABLED;
     if (drive->nmt == NMT_OPERATIONAL)
@@ -63,43 +62,43 @@ uint16_t virtual_drive_statusword(const struct virtual_drive *drive)
         word |= STATUS_WARNING;
     if (drive->is_limited || is_at_torque_limit(drive))
         word |= STATUS_INTERNAL_LIMIT;
-    return (uint16_t)(word | virtual_drive_mode_status(drive));
+    return (uint16_t)(word | servo_mode_status(drive));
 }
 
-static void clear_fault(struct virtual_drive *drive)
+static void clear_fault(struct servo *drive)
 {
     drive->objects.process.error_code = EMCY_NONE;
     drive->objects.process.error_register = 0;
     drive->communication_error = 0;
-    virtual_drive_send_emergency(drive, EMCY_NONE, 0);
+    servo_send_emergency(drive, EMCY_NONE, 0);
 }
 
-static double deceleration_of(const struct virtual_drive *drive, int16_t option)
+static double deceleration_of(const struct servo *drive, int16_t option)
 {
     bool is_profile = option == STOP_BY_PROFILE || option == QUICK_STOP_PROFILE_STAYS;
-    return is_profile ? virtual_drive_profile_deceleration_mm_s2(drive) : drive->quick_stop_mm_s2;
+    return is_profile ? servo_profile_deceleration_mm_s2(drive) : drive->quick_stop_mm_s2;
 }
 
-static void enter_state(struct virtual_drive *drive, enum cia402_state state)
+static void enter_state(struct servo *drive, enum cia402_state state)
 {
     const struct drive_settings *s = &drive->objects.settings;
     if (state != drive->state)
-        virtual_drive_tell(drive, DRIVE_EVENT_STATE, (uint32_t)drive->state, (uint32_t)state);
+        servo_tell(drive, DRIVE_EVENT_STATE, (uint32_t)drive->state, (uint32_t)state);
     if (state != CIA402_ENABLED)
-        virtual_drive_interrupt_homing(drive);
+        servo_interrupt_homing(drive);
     drive->state = state;
     drive->is_leaving = false;
     drive->is_stopped = false;
     if (state == CIA402_ENABLED)
-        virtual_drive_hold(drive);
+        servo_hold(drive);
     if (state == CIA402_QUICK_STOP)
-        drive_plant_begin_brake(&drive->plant, deceleration_of(drive, s->quick_stop_option));
+        servo_loop_begin_brake(&drive->loop, deceleration_of(drive, s->quick_stop_option));
     if (state == CIA402_FAULT_REACTION)
-        drive_plant_begin_brake(&drive->plant, deceleration_of(drive, s->fault_reaction_option));
+        servo_loop_begin_brake(&drive->loop, deceleration_of(drive, s->fault_reaction_option));
 }
 
 /* "Shutdown" and "disable operation" may slow the axis down before they take effect. */
-static bool begins_to_leave(struct virtual_drive *drive, enum cia402_state after)
+static bool begins_to_leave(struct servo *drive, enum cia402_state after)
 {
     const struct drive_settings *s = &drive->objects.settings;
     int16_t option = STOP_BY_DISABLING;
@@ -110,14 +109,14 @@ static bool begins_to_leave(struct virtual_drive *drive, enum cia402_state after
     if (drive->state != CIA402_ENABLED || option == STOP_BY_DISABLING)
         return false;
     if (!drive->is_leaving)
-        drive->velocity_mm_s = drive->plant.command_velocity_mm_s;
+        drive->velocity_mm_s = drive->loop.command_velocity_mm_s;
     drive->is_leaving = true;
     drive->leaving_to = after;
     return true;
 }
 
 /* "Enable operation" in "quick stop active", where that stays (transition 16). */
-static enum cia402_state next_state(const struct virtual_drive *drive, uint16_t controlword)
+static enum cia402_state next_state(const struct servo *drive, uint16_t controlword)
 {
     enum cia402_state next = cia402_next_state(drive->state, controlword, drive->controlword);
     bool enables =
@@ -128,15 +127,15 @@ static enum cia402_state next_state(const struct virtual_drive *drive, uint16_t 
     return next;
 }
 
-static void take_halt(struct virtual_drive *drive, uint16_t controlword)
+static void take_halt(struct servo *drive, uint16_t controlword)
 {
     bool halts = controlword & CONTROL_HALT;
     if (halts && !drive->is_halted)
-        drive->velocity_mm_s = drive->plant.command_velocity_mm_s;
+        drive->velocity_mm_s = drive->loop.command_velocity_mm_s;
     drive->is_halted = halts;
 }
 
-void virtual_drive_take_controlword(struct virtual_drive *drive, uint16_t controlword)
+void servo_take_controlword(struct servo *drive, uint16_t controlword)
 {
     enum cia402_state before = drive->state;
     enum cia402_state after = next_state(drive, controlword);
@@ -150,16 +149,16 @@ void virtual_drive_take_controlword(struct virtual_drive *drive, uint16_t contro
             clear_fault(drive);
     } else if (after == CIA402_ENABLED && drive->is_leaving) {
         drive->is_leaving = false;
-        virtual_drive_hold(drive);
+        servo_hold(drive);
     }
-    virtual_drive_take_mode_controlword(drive, previous, controlword);
+    servo_take_mode_controlword(drive, previous, controlword);
 }
 
 /* As object 6502 has them: all but 2, velocity for converters, and 5, which is none. */
 #define MODES_WRITTEN 0x3EDu
 
 /* Object 6502 says which of those that are written here; a sheet without it, or with an empty one, has them all. */
-bool virtual_drive_has_mode(const struct virtual_drive *drive, int8_t mode)
+bool servo_has_mode(const struct servo *drive, int8_t mode)
 {
     bool has_index;
     const struct object_row *row = dictionary_find(drive->dictionary, 0x6502, 0, &has_index);
@@ -169,19 +168,19 @@ bool virtual_drive_has_mode(const struct virtual_drive *drive, int8_t mode)
 }
 
 /* A mode the drive does not have is not taken: 6061 keeps showing the one before. */
-void virtual_drive_take_mode(struct virtual_drive *drive, int8_t mode)
+void servo_take_mode(struct servo *drive, int8_t mode)
 {
     struct drive_process *p = &drive->objects.process;
     p->mode = mode;
-    if (mode == p->mode_display || !virtual_drive_has_mode(drive, mode))
+    if (mode == p->mode_display || !servo_has_mode(drive, mode))
         return;
-    virtual_drive_interrupt_homing(drive);
+    servo_interrupt_homing(drive);
     p->mode_display = mode;
-    virtual_drive_tell(drive, DRIVE_EVENT_MODE, (uint8_t)mode, 0);
-    virtual_drive_hold(drive);
+    servo_tell(drive, DRIVE_EVENT_MODE, (uint8_t)mode, 0);
+    servo_hold(drive);
 }
 
-void virtual_drive_fail(struct virtual_drive *drive, uint16_t code, uint8_t error_register)
+void servo_fail(struct servo *drive, uint16_t code, uint8_t error_register)
 {
     struct drive_process *p = &drive->objects.process;
     if (drive->state == CIA402_FAULT_REACTION || drive->state == CIA402_FAULT)
@@ -189,14 +188,14 @@ void virtual_drive_fail(struct virtual_drive *drive, uint16_t code, uint8_t erro
     enter_state(drive, CIA402_FAULT_REACTION);
     p->error_code = code;
     p->error_register |= error_register;
-    virtual_drive_send_emergency(drive, code, p->error_register);
+    servo_send_emergency(drive, code, p->error_register);
 }
 
 /* Objects 6065 and 6066. */
-static void check_following(struct virtual_drive *drive, uint32_t cycle_ns)
+static void check_following(struct servo *drive, uint32_t cycle_ns)
 {
     double window_mm = drive->following_window_mm;
-    double error_mm = drive_plant_following_error_mm(&drive->plant);
+    double error_mm = servo_loop_following_error_mm(&drive->loop);
     if (!(window_mm > 0 && maths_abs(error_mm) > window_mm)) {
         drive->following_ns = 0;
         return;
@@ -204,31 +203,30 @@ static void check_following(struct virtual_drive *drive, uint32_t cycle_ns)
     uint64_t timeout_ns = (uint64_t)drive->objects.settings.following_timeout_ms * MILLISECOND_NS;
     drive->following_ns += cycle_ns;
     if (timeout_ns == 0 || drive->following_ns > timeout_ns)
-        virtual_drive_fail(drive, EMCY_FOLLOWING_ERROR,
-                           EMCY_REGISTER_GENERIC | EMCY_REGISTER_PROFILE);
+        servo_fail(drive, EMCY_FOLLOWING_ERROR, EMCY_REGISTER_GENERIC | EMCY_REGISTER_PROFILE);
 }
 
-static void run_enabled(struct virtual_drive *drive, uint32_t cycle_ns)
+static void run_enabled(struct servo *drive, uint32_t cycle_ns)
 {
     if (drive->is_leaving) {
-        double deceleration_mm_s2 = virtual_drive_profile_deceleration_mm_s2(drive);
-        if (virtual_drive_slow(drive, deceleration_mm_s2, cycle_ns))
+        double deceleration_mm_s2 = servo_profile_deceleration_mm_s2(drive);
+        if (servo_slow(drive, deceleration_mm_s2, cycle_ns))
             enter_state(drive, drive->leaving_to);
     } else {
-        virtual_drive_run_mode(drive, cycle_ns);
+        servo_run_mode(drive, cycle_ns);
     }
     check_following(drive, cycle_ns);
 }
 
-static void run_quick_stop(struct virtual_drive *drive, uint32_t cycle_ns)
+static void run_quick_stop(struct servo *drive, uint32_t cycle_ns)
 {
     int16_t option = drive->objects.settings.quick_stop_option;
     if (option == STOP_BY_DISABLING) {
         enter_state(drive, CIA402_SWITCH_ON_DISABLED);
-        drive_plant_coast(&drive->plant, cycle_ns);
+        servo_loop_coast(&drive->loop, cycle_ns);
     } else if (drive->is_stopped) {
-        drive_plant_follow(&drive->plant, drive->plant.command_mm, cycle_ns);
-    } else if (drive_plant_brake(&drive->plant, cycle_ns)) {
+        servo_loop_follow(&drive->loop, drive->loop.command_mm, cycle_ns);
+    } else if (servo_loop_brake(&drive->loop, cycle_ns)) {
         if (option >= QUICK_STOP_STAYS)
             drive->is_stopped = true;
         else
@@ -236,17 +234,17 @@ static void run_quick_stop(struct virtual_drive *drive, uint32_t cycle_ns)
     }
 }
 
-static void run_fault_reaction(struct virtual_drive *drive, uint32_t cycle_ns)
+static void run_fault_reaction(struct servo *drive, uint32_t cycle_ns)
 {
     if (drive->objects.settings.fault_reaction_option == STOP_BY_DISABLING) {
         enter_state(drive, CIA402_FAULT);
-        drive_plant_coast(&drive->plant, cycle_ns);
-    } else if (drive_plant_brake(&drive->plant, cycle_ns)) {
+        servo_loop_coast(&drive->loop, cycle_ns);
+    } else if (servo_loop_brake(&drive->loop, cycle_ns)) {
         enter_state(drive, CIA402_FAULT);
     }
 }
 
-void virtual_drive_move(struct virtual_drive *drive, uint32_t cycle_ns)
+void servo_move(struct servo *drive, uint32_t cycle_ns)
 {
     drive->is_limited = false;
     switch (drive->state) {
@@ -264,29 +262,27 @@ void virtual_drive_move(struct virtual_drive *drive, uint32_t cycle_ns)
     case CIA402_READY:
     case CIA402_SWITCHED_ON:
     case CIA402_FAULT:
-        drive_plant_coast(&drive->plant, cycle_ns);
+        servo_loop_coast(&drive->loop, cycle_ns);
         break;
     }
     if (is_hot(drive, 0))
-        virtual_drive_fail(drive, EMCY_TEMPERATURE,
-                           EMCY_REGISTER_GENERIC | EMCY_REGISTER_TEMPERATURE);
+        servo_fail(drive, EMCY_TEMPERATURE, EMCY_REGISTER_GENERIC | EMCY_REGISTER_TEMPERATURE);
 }
 
-void virtual_drive_lose_connection(struct virtual_drive *drive)
+void servo_lose_connection(struct servo *drive)
 {
     int16_t option = drive->objects.settings.abort_connection_option;
     if (drive->state != CIA402_ENABLED)
         return;
     if (option == CONNECTION_FAULT)
-        virtual_drive_fail(drive, EMCY_CONNECTION,
-                           EMCY_REGISTER_GENERIC | EMCY_REGISTER_COMMUNICATION);
+        servo_fail(drive, EMCY_CONNECTION, EMCY_REGISTER_GENERIC | EMCY_REGISTER_COMMUNICATION);
     else if (option == CONNECTION_DISABLE_VOLTAGE)
         enter_state(drive, CIA402_SWITCH_ON_DISABLED);
     else if (option == CONNECTION_QUICK_STOP)
         enter_state(drive, CIA402_QUICK_STOP);
 }
 
-void virtual_drive_reset_profile(struct virtual_drive *drive)
+void servo_reset_profile(struct servo *drive)
 {
     struct drive_process *p = &drive->objects.process;
     if (drive->state != CIA402_SWITCH_ON_DISABLED)
@@ -305,15 +301,10 @@ void virtual_drive_reset_profile(struct virtual_drive *drive)
     p->target_torque = 0;
     p->probe_function = p->probe_status = 0;
     drive->probe.function = 0;
-    virtual_drive_hold(drive);
+    servo_hold(drive);
 }
 
-enum cia402_state virtual_drive_get_state(const struct virtual_drive *drive)
+enum cia402_state servo_get_state(const struct servo *drive)
 {
     return drive->state;
-}
-
-double virtual_drive_get_position_mm(const struct virtual_drive *drive)
-{
-    return drive_plant_table_mm(&drive->plant);
 }

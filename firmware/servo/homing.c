@@ -6,17 +6,16 @@
  *     PUSH --hard stop--> (INDEX --pulse-->) STOP
  *       (fast)                (fast)           (slow)             (slow)
  *
- * The encoder is latched where switch and pulse truly are, as the hardware of a drive does it, not
- * where the cycle happens to see them.
+ * The encoder is latched where switch and pulse truly are (hal/motor.h), not where the cycle happens to see them.
  */
 #include "base/maths.h"
-#include "drives/virtual_drive_private.h"
+#include "servo/servo_private.h"
 
 #include <stddef.h>
 
-#define INPUT_NEGATIVE_LIMIT 0x1u
-#define INPUT_POSITIVE_LIMIT 0x2u
-#define INPUT_HOME           0x4u
+#define INPUT_NEGATIVE_LIMIT MOTOR_NEGATIVE_LIMIT
+#define INPUT_POSITIVE_LIMIT MOTOR_POSITIVE_LIMIT
+#define INPUT_HOME           MOTOR_HOME
 #define INPUT_PROBE          0x10000u
 #define INPUT_STOP           0x20000u /* of methods alone: a hard stop is felt, not seen */
 
@@ -107,84 +106,36 @@ static const struct method *find_method(int32_t number)
     return NULL;
 }
 
-bool virtual_drive_has_homing_method(int32_t method)
+bool servo_has_homing_method(int32_t method)
 {
     return method == METHOD_HERE || method == METHOD_HERE_OLD || find_method(method);
 }
 
-/* How far the table is beyond the beginning of the home switch, in the drive's own direction. */
-static double into_home_mm(const struct virtual_drive *drive)
+uint32_t servo_inputs(const struct servo *drive)
 {
-    double table_mm = drive_plant_table_mm(&drive->plant);
-    return virtual_drive_sign(drive) * (table_mm - drive->config.plant.home_switch_mm);
+    return drive->loop.sense.inputs | (drive->probe.touches ? INPUT_PROBE : 0);
 }
 
-static bool is_in_home(const struct virtual_drive *drive)
+/* The pulse comes once a turn of the motor; the next one that is passed in this direction counts. */
+static void await_index(struct servo *drive, double direction)
 {
-    double length_mm = drive->config.plant.home_switch_length_mm;
-    double into_mm = into_home_mm(drive);
-    return into_mm >= 0 && (length_mm <= 0 || into_mm <= length_mm);
-}
-
-uint32_t virtual_drive_inputs(const struct virtual_drive *drive)
-{
-    const struct drive_plant_config *c = &drive->config.plant;
-    double table_mm = drive_plant_table_mm(&drive->plant);
-    bool is_turned = virtual_drive_sign(drive) < 0;
-    uint32_t inputs = 0;
-    if (table_mm <= c->limit_switch_min_mm)
-        inputs |= is_turned ? INPUT_POSITIVE_LIMIT : INPUT_NEGATIVE_LIMIT;
-    if (table_mm >= c->limit_switch_max_mm)
-        inputs |= is_turned ? INPUT_NEGATIVE_LIMIT : INPUT_POSITIVE_LIMIT;
-    if (is_in_home(drive))
-        inputs |= INPUT_HOME;
-    if (drive->probe.touches)
-        inputs |= INPUT_PROBE;
-    return inputs;
-}
-
-/* How far the table is beyond the edge that has been crossed in this direction of the drive, as the axis counts. */
-static double past_edge_mm(const struct virtual_drive *drive, uint32_t input, int8_t direction,
-                           bool is_active)
-{
-    const struct drive_plant_config *c = &drive->config.plant;
-    double table_mm = drive_plant_table_mm(&drive->plant);
-    double sign = virtual_drive_sign(drive);
-    bool is_far_edge = (direction > 0) != is_active;
-    if (input == INPUT_HOME)
-        return sign * (into_home_mm(drive) - (is_far_edge ? c->home_switch_length_mm : 0));
-    bool is_lower = (input == INPUT_NEGATIVE_LIMIT) == (sign > 0);
-    return table_mm - (is_lower ? c->limit_switch_min_mm : c->limit_switch_max_mm);
-}
-
-/* What the encoder reads at a position of the motor. */
-static double encoder_mm(const struct virtual_drive *drive, double motor_mm)
-{
-    return motor_mm + drive->plant.encoder_shift_mm;
-}
-
-/* The pulse comes once a turn, where the motor's angle is 0. */
-static void await_index(struct virtual_drive *drive, double direction)
-{
-    double turn_mm = drive->config.plant.travel_per_revolution_mm;
-    double turns = drive->plant.position_mm / turn_mm;
-    double next = direction > 0 ? maths_floor(turns) + 1 : maths_ceil(turns) - 1;
-    drive->homing.index_mm = next * turn_mm;
+    drive->homing.index_direction = direction > 0 ? 1 : -1;
+    drive->homing.pulses = drive->loop.sense.pulses;
     drive->homing.phase = HOMING_INDEX;
 }
 
-static void tell(const struct virtual_drive *drive, uint32_t what)
+static void tell(const struct servo *drive, uint32_t what)
 {
-    virtual_drive_tell(drive, DRIVE_EVENT_HOMING, what, (uint8_t)drive->homing.method);
+    servo_tell(drive, DRIVE_EVENT_HOMING, what, (uint8_t)drive->homing.method);
 }
 
-static void latch(struct virtual_drive *drive, double at_encoder_mm)
+static void latch(struct servo *drive, double at_encoder_mm)
 {
     drive->homing.encoder_mm = at_encoder_mm;
     drive->homing.phase = HOMING_STOP;
 }
 
-void virtual_drive_begin_homing(struct virtual_drive *drive)
+void servo_begin_homing(struct servo *drive)
 {
     const struct method *method = find_method(drive->objects.settings.homing_method);
     drive->homing.method = drive->objects.settings.homing_method;
@@ -192,17 +143,17 @@ void virtual_drive_begin_homing(struct virtual_drive *drive)
     drive->homing.push_ns = 0;
     tell(drive, HOMING_BEGUN);
     if (!method) {
-        latch(drive, drive->plant.measured_mm);
+        latch(drive, drive->loop.measured_mm);
         return;
     }
     drive->homing.search = method->search;
     if (!method->input)
-        await_index(drive, method->edge * virtual_drive_sign(drive));
+        await_index(drive, method->edge * servo_sign(drive));
     else
         drive->homing.phase = method->input == INPUT_STOP ? HOMING_PUSH : HOMING_SEARCH;
 }
 
-void virtual_drive_interrupt_homing(struct virtual_drive *drive)
+void servo_interrupt_homing(struct servo *drive)
 {
     if (drive->homing.phase == HOMING_IDLE)
         return;
@@ -211,59 +162,66 @@ void virtual_drive_interrupt_homing(struct virtual_drive *drive)
     drive->homing.phase = HOMING_IDLE;
 }
 
-static double speed_mm_s(const struct virtual_drive *drive, unsigned i)
+static double speed_mm_s(const struct servo *drive, unsigned i)
 {
-    return drive->objects.settings.homing_velocity[i] / virtual_drive_velocity_scale(drive);
+    return drive->objects.settings.homing_velocity[i] / servo_velocity_scale(drive);
 }
 
-static void run_towards(struct virtual_drive *drive, int8_t direction, double velocity_mm_s,
+static void run_towards(struct servo *drive, int8_t direction, double velocity_mm_s,
                         uint32_t cycle_ns)
 {
     double acceleration_mm_s2 =
-        drive->objects.settings.homing_acceleration / virtual_drive_velocity_scale(drive);
-    virtual_drive_run_at(drive, direction * virtual_drive_sign(drive) * velocity_mm_s,
-                         acceleration_mm_s2, cycle_ns);
+        drive->objects.settings.homing_acceleration / servo_velocity_scale(drive);
+    servo_run_at(drive, direction * servo_sign(drive) * velocity_mm_s, acceleration_mm_s2,
+                 cycle_ns);
 }
 
 /* Directions of a method are those of the drive. An end of the axis that the method does not want is where it fails. */
-static bool hits_other_end(const struct virtual_drive *drive, const struct method *method,
-                           int8_t direction)
+static bool hits_other_end(const struct servo *drive, const struct method *method, int8_t direction)
 {
     uint32_t end = direction < 0 ? INPUT_NEGATIVE_LIMIT : INPUT_POSITIVE_LIMIT;
-    return method->input != end && virtual_drive_inputs(drive) & end;
+    return method->input != end && servo_inputs(drive) & end;
 }
 
-static bool moves_in(const struct virtual_drive *drive, int8_t direction)
+/* What was latched when the switch of the method changed last. */
+static const struct motor_latch *edge_of(const struct servo *drive, const struct method *method)
 {
-    return drive->plant.velocity_mm_s * direction * virtual_drive_sign(drive) > 0;
+    const struct motor_latch *edge = drive->loop.sense.edge;
+    if (method->input == INPUT_HOME)
+        return &edge[2];
+    return method->input == INPUT_POSITIVE_LIMIT ? &edge[1] : &edge[0];
 }
 
-static void fail(struct virtual_drive *drive)
+static bool moved_in(const struct servo *drive, const struct method *method, int8_t direction)
+{
+    return edge_of(drive, method)->direction * direction * servo_sign(drive) > 0;
+}
+
+static void fail(struct servo *drive)
 {
     drive->homing.phase = HOMING_FAILED;
     tell(drive, HOMING_WENT_WRONG);
 }
 
-static bool is_active(const struct virtual_drive *drive, const struct method *method)
+static bool is_active(const struct servo *drive, const struct method *method)
 {
-    return virtual_drive_inputs(drive) & method->input;
+    return servo_inputs(drive) & method->input;
 }
 
 /*
  * The switch has just become so, and the motor runs in this direction. Where it has overrun a short one it meets the other
  * edge first, and in the other direction.
  */
-static bool becomes(struct virtual_drive *drive, const struct method *method, bool level,
-                    int8_t direction)
+static bool becomes(struct servo *drive, const struct method *method, bool level, int8_t direction)
 {
     bool was = drive->homing.was_active;
     bool is = is_active(drive, method);
     drive->homing.was_active = is;
-    return is == level && was != level && moves_in(drive, direction);
+    return is == level && was != level && moved_in(drive, method, direction);
 }
 
 /* An end of the axis that is met turns the search round, once, where the method says so. */
-static void meet_end(struct virtual_drive *drive, const struct method *method)
+static void meet_end(struct servo *drive, const struct method *method)
 {
     if (method->turns_round && drive->homing.search == method->search)
         drive->homing.search = (int8_t)-method->search;
@@ -271,7 +229,7 @@ static void meet_end(struct virtual_drive *drive, const struct method *method)
         fail(drive);
 }
 
-static void search(struct virtual_drive *drive, const struct method *method, uint32_t cycle_ns)
+static void search(struct servo *drive, const struct method *method, uint32_t cycle_ns)
 {
     drive->homing.was_active = is_active(drive, method);
     if (drive->homing.was_active == method->search_until) {
@@ -284,7 +242,7 @@ static void search(struct virtual_drive *drive, const struct method *method, uin
 }
 
 /* Out of the switch, on the side from which its edge counts. */
-static void pass(struct virtual_drive *drive, const struct method *method, uint32_t cycle_ns)
+static void pass(struct servo *drive, const struct method *method, uint32_t cycle_ns)
 {
     run_towards(drive, method->pass, speed_mm_s(drive, 0), cycle_ns);
     if (hits_other_end(drive, method, method->pass))
@@ -294,7 +252,7 @@ static void pass(struct virtual_drive *drive, const struct method *method, uint3
 }
 
 /* The edge counts when it is crossed in the direction of the method. */
-static void find_edge(struct virtual_drive *drive, const struct method *method, uint32_t cycle_ns)
+static void find_edge(struct servo *drive, const struct method *method, uint32_t cycle_ns)
 {
     bool level = method->pass != 0 ? method->search_until : !method->search_until;
     run_towards(drive, method->edge, speed_mm_s(drive, 1), cycle_ns);
@@ -304,30 +262,27 @@ static void find_edge(struct virtual_drive *drive, const struct method *method, 
     }
     if (!becomes(drive, method, level, method->edge))
         return;
-    double past_mm = past_edge_mm(drive, method->input, method->edge, level);
     if (method->has_index)
-        await_index(drive, method->edge * virtual_drive_sign(drive));
+        await_index(drive, method->edge * servo_sign(drive));
     else
-        latch(drive, encoder_mm(drive, drive->plant.position_mm - past_mm));
+        latch(drive, edge_of(drive, method)->encoder_mm);
 }
 
-/* The command has gone on while the motor stood: it comes back, and nothing pushes any more. */
-static void leave_stop(struct virtual_drive *drive)
+static void leave_stop(struct servo *drive)
 {
-    drive->plant.command_mm = drive->plant.measured_mm;
-    drive->plant.command_velocity_mm_s = drive->velocity_mm_s = 0;
-    drive->plant.integral_mm_s2 = 0;
+    servo_loop_let_go(&drive->loop);
+    drive->velocity_mm_s = 0;
 }
 
 /* Until the motor stands with the torque of 2003. */
-static void push(struct virtual_drive *drive, const struct method *method, uint32_t cycle_ns)
+static void push(struct servo *drive, const struct method *method, uint32_t cycle_ns)
 {
-    const struct drive_plant *plant = &drive->plant;
-    double sign = method->search * virtual_drive_sign(drive);
+    const struct servo_loop *loop = &drive->loop;
+    double sign = method->search * servo_sign(drive);
     double threshold = drive->objects.settings.homing_torque / TORQUE_PER_RATED;
     run_towards(drive, method->search, speed_mm_s(drive, 0), cycle_ns);
-    bool pushes = sign * drive_plant_torque_ratio(plant) >= threshold &&
-                  maths_abs(plant->measured_velocity_mm_s) <= plant->standstill_mm_s;
+    bool pushes = sign * servo_loop_torque_ratio(loop) >= threshold &&
+                  maths_abs(loop->measured_velocity_mm_s) <= loop->standstill_mm_s;
     drive->homing.push_ns = pushes ? drive->homing.push_ns + cycle_ns : 0;
     if (drive->homing.push_ns < PUSH_NS)
         return;
@@ -335,21 +290,24 @@ static void push(struct virtual_drive *drive, const struct method *method, uint3
     if (method->has_index)
         await_index(drive, -sign);
     else
-        latch(drive, plant->measured_mm);
+        latch(drive, loop->measured_mm);
 }
 
-static void find_index(struct virtual_drive *drive, const struct method *method, uint32_t cycle_ns)
+static void find_index(struct servo *drive, const struct method *method, uint32_t cycle_ns)
 {
-    double index_mm = drive->homing.index_mm;
+    const struct motor_sense *sense = &drive->loop.sense;
     run_towards(drive, method->edge, speed_mm_s(drive, 1), cycle_ns);
-    if ((drive->plant.position_mm - index_mm) * method->edge * virtual_drive_sign(drive) >= 0)
-        latch(drive, encoder_mm(drive, index_mm));
+    bool is_passed = sense->pulses != drive->homing.pulses &&
+                     sense->pulse.direction == drive->homing.index_direction;
+    drive->homing.pulses = sense->pulses;
+    if (is_passed)
+        latch(drive, sense->pulse.encoder_mm);
     else if (hits_other_end(drive, method, method->edge))
         fail(drive);
 }
 
 /* Position 0 is where home offset (607C) says: home itself is at minus the offset. */
-static void stop(struct virtual_drive *drive, uint32_t cycle_ns)
+static void stop(struct servo *drive, uint32_t cycle_ns)
 {
     run_towards(drive, 1, 0, cycle_ns);
     if (drive->velocity_mm_s != 0)
@@ -358,11 +316,11 @@ static void stop(struct virtual_drive *drive, uint32_t cycle_ns)
         drive->homing.encoder_mm + drive->objects.settings.home_offset / drive->increments_per_mm;
     drive->homing.is_homed = true;
     drive->homing.phase = HOMING_IDLE;
-    virtual_drive_hold(drive);
+    servo_hold(drive);
     tell(drive, HOMING_ATTAINED);
 }
 
-void virtual_drive_run_homing(struct virtual_drive *drive, uint32_t cycle_ns)
+void servo_run_homing(struct servo *drive, uint32_t cycle_ns)
 {
     const struct method *method = find_method(drive->homing.method);
     switch (drive->homing.phase) {
