@@ -10,7 +10,14 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-#define CAN_DATA_MAX 8
+/*
+ * Bytes of the longest frame: 64 with CAN FD. A build for a controller that has classical CAN alone says 8, and has smaller
+ * queues.
+ */
+#ifndef CAN_DATA_MAX
+#define CAN_DATA_MAX 64
+#endif
+#define CAN_CLASSIC_MAX 8
 
 /*
  * Of an id: a remote frame, which asks for the frame of that identifier. It has no data; its length is that of what it
@@ -20,8 +27,9 @@
 #define CAN_ID_MASK 0x07FFU
 
 struct can_frame {
-    uint16_t id;    /* 11 bits, and CAN_REMOTE */
-    uint8_t length; /* 0 ... CAN_DATA_MAX */
+    uint16_t id; /* 11 bits, and CAN_REMOTE */
+    uint8_t
+        length; /* 0 ... CAN_CLASSIC_MAX; of a port that speaks CAN FD also 12, 16, 20, 24, 32, 48, 64 */
     uint8_t data[CAN_DATA_MAX];
 };
 
@@ -42,6 +50,10 @@ static inline unsigned can_rank(uint16_t id)
     return (id & CAN_ID_MASK) << 1 | ((id & CAN_REMOTE) != 0);
 }
 
+/*
+ * All data frames of a port are of one kind: classical, or CAN FD with the data at the higher rate. Remote frames are always
+ * classical.
+ */
 struct can_port {
     /* Queues a frame for sending. False: no room; the frame is not sent and the caller decides what that means.
      * Must not wait. */

@@ -10,7 +10,8 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-#define PDO_MAPPED_MAX CAN_DATA_MAX
+/* Objects in a PDO that takt maps or understands, with CAN FD too; a power of two. */
+#define PDO_MAPPED_MAX 8
 
 /* Default identifiers, each plus the node id (CiA 301, 7.3.5). */
 #define PDO_TPDO1_FUNCTION 0x180

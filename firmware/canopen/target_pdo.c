@@ -1,13 +1,19 @@
 #include "canopen/target_pdo.h"
 #include "canopen/cia402.h"
 
-void target_pdo_set(struct pdo *pdo, const uint8_t node[], unsigned count, unsigned index)
+unsigned target_pdo_members(unsigned count, unsigned index, unsigned group)
 {
-    unsigned first = index & ~1u;
-    bool paired = first + 1 < count;
-    uint32_t objects[2] = {PDO_DUMMY_32, PDO_DUMMY_32};
-    objects[index - first] = CIA402_TARGET_POSITION;
-    pdo->cob_id = (uint16_t)(PDO_RPDO2_FUNCTION + node[first]);
+    const unsigned left = count - (index - index % group);
+    return left < group ? left : group;
+}
+
+void target_pdo_set(struct pdo *pdo, const uint8_t node[], unsigned count, unsigned index,
+                    unsigned group)
+{
+    uint32_t objects[TARGET_PDO_FD];
+    for (unsigned i = 0; i < TARGET_PDO_FD; i++)
+        objects[i] = i == index % group ? CIA402_TARGET_POSITION : PDO_DUMMY_32;
+    pdo->cob_id = (uint16_t)(PDO_RPDO2_FUNCTION + node[index - index % group]);
     pdo->transmission = PDO_EVERY_SYNC;
-    (void)pdo_map(&pdo->mapping, objects, paired ? 2 : 1);
+    (void)pdo_map(&pdo->mapping, objects, target_pdo_members(count, index, group));
 }

@@ -73,6 +73,11 @@ uint32_t lines_room(const struct lines *l)
     return free_bytes(l) / EMPTY_LINE;
 }
 
+uint32_t lines_capacity(const struct lines *l)
+{
+    return l->size / EMPTY_LINE - 1U;
+}
+
 /* A line that is too long leaves its mark alone. */
 static void finish_line(struct lines *l)
 {

@@ -70,6 +70,8 @@ void lines_init(struct lines *l, uint8_t *byte, uint32_t size);
 
 /* Bytes of text that find room; each of its lines may be as short as its end. */
 uint32_t lines_room(const struct lines *l);
+/* Of those, what a sender may count on while it waits for nothing. */
+uint32_t lines_capacity(const struct lines *l);
 /* A byte of a line, which ends with '\n'. False: no room, it is lost. */
 bool lines_put(struct lines *l, uint8_t byte);
 /* Drops everything; no program reads. */

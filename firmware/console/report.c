@@ -345,15 +345,21 @@ static void report_axes(struct console *c)
     console_line_end(c);
 }
 
+/*
+ * Grbl's letters of what it has been built with: variable spindle, mist; $RST=*, $RST=$ and $I=text are not there, and power-on
+ * is no alarm although there is homing.
+ */
+#define OPTIONS "VM*$IL"
+
 void console_report_build(struct console *c, bool extended)
 {
-    const uint32_t room = lines_room(c->config.lines);
+    const uint32_t room = lines_capacity(c->config.lines);
 
     text(c, "[VER:1.1h.takt-");
     text(c, c->config.version);
     text(c, ":");
     text(c, c->config.machine->name);
-    text(c, "]\r\n[OPT:VM,");
+    text(c, "]\r\n[OPT:" OPTIONS ",");
     number(c, room / BYTES_PER_LINE);
     text(c, ",");
     number(c, room);

@@ -138,7 +138,7 @@ void controller_drives_config(const struct machine *machine, const struct concis
 {
     memset(config, 0, sizeof(*config));
     config->cycle_us = machine->cycle_us;
-    config->bitrate = machine->can_bitrate;
+    config->rates = machine_get_rates(machine);
     config->controller_node = machine->controller_node;
     config->heartbeat_ms = (uint16_t)machine->heartbeat_ms;
     config->boot_timeout_cycles = cycles_in(machine, 1e-3 * machine->boot_timeout_ms);

@@ -1,6 +1,7 @@
 #include "base/maths.h"
 #include "canopen/cia402.h"
 #include "canopen/emcy.h"
+#include "canopen/target_pdo.h"
 #include "drive/drives_private.h"
 #include "drive/word.h"
 
@@ -15,7 +16,7 @@ static_assert(DRIVES_HISTORY > DRIVES_LATENCY_CYCLES, "the history is as long as
 static void init_axis(struct drives *d, unsigned index)
 {
     struct drives_axis *axis = &d->axis[index];
-    axis->is_paired = (index | 1) < d->count;
+    axis->is_paired = target_pdo_members(d->count, index, d->group) > 1;
     axis->reported = d->cycle - 1;
     axis->beaten = d->cycle - 1;
     axis->follow_mode = axis->mode = CIA402_MODE_CYCLIC_SYNC_POSITION;
@@ -58,7 +59,7 @@ static void take_config(struct drives *d, unsigned index, const struct drives_co
 static void check_load(struct drives *d, const struct drives_config *config)
 {
     struct drives_load load;
-    if (drives_predict_whole_load(config->count, config->wiring, config->io_count, config->bitrate,
+    if (drives_predict_whole_load(config->count, config->wiring, config->io_count, &config->rates,
                                   config->cycle_us, &load))
         return;
     d->state = DRIVES_FAULTED;
@@ -72,7 +73,9 @@ void drives_init(struct drives *d, const struct drives_config *config)
     memset(d->axis_of_node, AXIS_COUNT, sizeof d->axis_of_node);
     d->count = config->count;
     d->controller_node = config->controller_node;
-    d->bitrate = config->bitrate;
+    d->rates = config->rates;
+    d->frame_max = config->rates.data > 0 ? CAN_DATA_MAX : CAN_CLASSIC_MAX;
+    d->group = (uint8_t)drives_group_of(&config->rates);
     d->homed = config->homed;
     d->position_gain_per_s = config->position_gain_per_s;
     take_times(d, config);

@@ -17,6 +17,7 @@
 #include "base/point.h"
 #include "canopen/concise_dcf.h"
 #include "drive/io_wiring.h"
+#include "drive/rates.h"
 #include "hal/can.h"
 #include "hal/inputs.h"
 #include "hal/outputs.h"
@@ -81,7 +82,7 @@ struct drives_config {
     const struct io_wiring *wiring; /* of these. Must outlive the drives */
     bool homed; /* all axes have been homed since power-on: they are not homed again */
     uint32_t cycle_us;
-    uint32_t bitrate;             /* of the bus, bit/s */
+    struct drives_rates rates;    /* of the bus */
     double position_gain_per_s;   /* of drives that follow by velocity: drives_velocity.c; > 0 */
     uint8_t controller_node;      /* our own node id, for the heartbeat; none of the drives' */
     uint16_t heartbeat_ms;        /* period, of the drives and our own; 0: no heartbeats */
@@ -232,13 +233,14 @@ const struct diagnostic *drives_get_fault(const struct drives *d);
 /*
  * Data lengths, in bytes, of the frames a cycle puts on the bus at most while nothing is wrong: SYNC, the targets, a
  * status per drive, and of the frames that are sent now and then a TPDO2 and a heartbeat, since nodes send theirs in
- * different cycles. Returns their number. count: drives, 1 ... AXIS_COUNT.
+ * different cycles. Returns their number. count: drives, 1 ... AXIS_COUNT; group: drives to a frame of targets.
  */
 #define DRIVES_CYCLE_FRAMES_MAX (3 + AXIS_COUNT + (AXIS_COUNT + 1) / 2)
-unsigned drives_cycle_frames(unsigned count, uint8_t length[DRIVES_CYCLE_FRAMES_MAX]);
+unsigned drives_cycle_frames(unsigned count, unsigned group,
+                             uint8_t length[DRIVES_CYCLE_FRAMES_MAX]);
 
 /*
- * The PDOs as the start has found them: a frame of each drive's status, position and target, of targets in pairs one; of
+ * The PDOs as the start has found them: a frame of each drive's status, position and target, of targets in groups one; of
  * what I/O nodes hear and say; and of the drives' error codes, of which one comes in a cycle. Returns their number.
  */
 enum drives_pdo_kind {
@@ -267,23 +269,24 @@ enum drives_report {
 };
 unsigned drives_get_report(const struct drives *d, uint16_t id);
 
-/* What a cycle takes of the bus. */
+/* What a cycle takes of the bus, in bits of the nominal rate. */
 struct drives_load {
     uint32_t bits;          /* of all frames of a cycle, each with worst-case stuffing */
-    uint32_t capacity_bits; /* of a cycle at the bitrate */
+    uint32_t capacity_bits; /* of a cycle */
     double percent;
 };
 
 /* The same for the PDOs that the start has found: of the last start, complete once the drives are enabled. */
 void drives_get_load(const struct drives *d, struct drives_load *load);
 
-/* True: the bus carries the cycle, two targets in a frame. count: drives. */
-bool drives_predict_load(unsigned count, uint32_t bitrate, uint32_t cycle_us,
+/* True: the bus carries the cycle, with targets in groups. count: drives. */
+bool drives_predict_load(unsigned count, const struct drives_rates *rates, uint32_t cycle_us,
                          struct drives_load *load);
 
 /* And of I/O nodes beside them, with as many inputs and outputs as are wired. */
 bool drives_predict_whole_load(unsigned count, const struct io_wiring *wiring, unsigned io_count,
-                               uint32_t bitrate, uint32_t cycle_us, struct drives_load *load);
+                               const struct drives_rates *rates, uint32_t cycle_us,
+                               struct drives_load *load);
 
 /* BUS_OVERLOAD, with the figures, in words for *fault. */
 void drives_set_overload(const struct drives_load *load, struct diagnostic *fault);

@@ -69,5 +69,5 @@ uint32_t drives_guard_bits(const struct drives *d)
         is_any = is_any || d->axis[i].guard.is_on;
     for (unsigned i = 0; i < d->io_count; i++)
         is_any = is_any || d->io[i].guard.is_on;
-    return is_any ? drives_frame_bits(0) + drives_frame_bits(ANSWER_LENGTH) : 0;
+    return is_any ? drives_remote_bits() + drives_bits(d, ANSWER_LENGTH) : 0;
 }

@@ -231,7 +231,7 @@ static void take_value(struct drives *d, unsigned i, uint32_t value)
         break;
     case STEP_OUTPUT_BYTES:
         io->output_bytes = (uint8_t)value;
-        require(d, i, value >= bytes_of(wiring->output) && value <= CAN_DATA_MAX, value);
+        require(d, i, value >= bytes_of(wiring->output) && value <= d->frame_max, value);
         break;
     case STEP_OUTPUTS:
         require(d, i, value == PDO_MAPPED(OBJECT_IO_OUTPUTS, 1, BITS_PER_BYTE), value);
@@ -245,7 +245,7 @@ static void take_value(struct drives *d, unsigned i, uint32_t value)
         break;
     case STEP_INPUT_BYTES:
         io->input_bytes = (uint8_t)value;
-        require(d, i, value >= bytes_of(wiring->input) && value <= CAN_DATA_MAX, value);
+        require(d, i, value >= bytes_of(wiring->input) && value <= d->frame_max, value);
         break;
     case STEP_INPUTS:
         require(d, i, value == PDO_MAPPED(OBJECT_IO_INPUTS, 1, BITS_PER_BYTE), value);
@@ -543,16 +543,16 @@ struct io_load {
     uint32_t cyclic_bits, output_bits;
 };
 
-static uint32_t bits_of(unsigned bytes)
+static uint32_t bits_of(const struct drives_rates *rates, unsigned bytes)
 {
-    return bytes > 0 ? drives_frame_bits(bytes) : 0;
+    return bytes > 0 ? drives_frame_bits(rates, bytes) : 0;
 }
 
-static void add_load(struct io_load *load, unsigned input_bytes, unsigned output_bytes,
-                     unsigned analogues)
+static void add_load(struct io_load *load, const struct drives_rates *rates, unsigned input_bytes,
+                     unsigned output_bytes, unsigned analogues)
 {
-    const uint32_t output_bits = bits_of(output_bytes);
-    load->cyclic_bits += bits_of(input_bytes) + bits_of(2 * analogues);
+    const uint32_t output_bits = bits_of(rates, output_bytes);
+    load->cyclic_bits += bits_of(rates, input_bytes) + bits_of(rates, 2 * analogues);
     load->output_bits = output_bits > load->output_bits ? output_bits : load->output_bits;
 }
 
@@ -560,15 +560,16 @@ uint32_t drives_io_bits(const struct drives *d)
 {
     struct io_load load = {0};
     for (unsigned i = 0; i < d->io_count; i++)
-        add_load(&load, d->io[i].input_bytes, d->io[i].output_bytes, d->io[i].analogues);
+        add_load(&load, &d->rates, d->io[i].input_bytes, d->io[i].output_bytes, d->io[i].analogues);
     return load.cyclic_bits + load.output_bits;
 }
 
-uint32_t drives_io_wired_bits(const struct io_wiring *wiring, unsigned count)
+uint32_t drives_io_wired_bits(const struct io_wiring *wiring, unsigned count,
+                              const struct drives_rates *rates)
 {
     struct io_load load = {0};
     for (unsigned i = 0; i < count; i++)
-        add_load(&load, bytes_of(wiring[i].input), bytes_of(wiring[i].output),
+        add_load(&load, rates, bytes_of(wiring[i].input), bytes_of(wiring[i].output),
                  io_wired_analogues(&wiring[i]));
     return load.cyclic_bits + load.output_bits;
 }

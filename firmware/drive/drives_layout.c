@@ -67,9 +67,10 @@ static void take_received(struct drives *d)
         drives_give_up(d, d->at_axis, DRIVES_NO_SYNC_TARGET);
 }
 
-void drives_count_bits(struct drives_axis *axis, unsigned length)
+void drives_count_bits(struct drives *d, unsigned length)
 {
-    axis->bits = (uint16_t)(axis->bits + drives_frame_bits(length));
+    struct drives_axis *axis = &d->axis[d->at_axis];
+    axis->bits = (uint16_t)(axis->bits + drives_bits(d, length));
 }
 
 /* An unwanted TPDO stays. */
@@ -77,11 +78,13 @@ void drives_suffer(struct drives *d)
 {
     drives_give_up(d, d->at_axis, DRIVES_NO_SILENCE);
     if (d->mapping.pdo.transmission <= PDO_SYNC_MAX)
-        drives_count_bits(&d->axis[d->at_axis], d->mapping.pdo.mapping.length);
+        drives_count_bits(d, d->mapping.pdo.mapping.length);
 }
 
-static void take_transmitted(struct drives_axis *axis, const struct drives_mapping *m)
+static void take_transmitted(struct drives *d)
 {
+    struct drives_axis *axis = &d->axis[d->at_axis];
+    const struct drives_mapping *m = &d->mapping;
     const struct pdo *pdo = &m->pdo;
     uint8_t status = drives_byte_of(pdo, CIA402_STATUSWORD),
             position = drives_byte_of(pdo, CIA402_POSITION_ACTUAL);
@@ -101,26 +104,26 @@ static void take_transmitted(struct drives_axis *axis, const struct drives_mappi
     if (!is_cyclic && drives_byte_of(pdo, CIA402_ERROR_CODE) == 0)
         axis->error_id = pdo->cob_id;
     if (is_cyclic && drives_uses(axis, pdo))
-        drives_count_bits(axis, pdo->mapping.length);
+        drives_count_bits(d, pdo->mapping.length);
 }
 
 /* Of entries: a drive may have mapped more than a frame holds only by mistake. */
-static uint8_t length_of(const struct pdo_mapping *mapping)
+static uint8_t length_of(const struct pdo_mapping *mapping, unsigned most)
 {
     unsigned bits = 0;
     for (unsigned i = 0; i < mapping->count; i++)
         bits += mapping->object[i] & 0xFF;
-    return (uint8_t)(bits <= 8 * CAN_DATA_MAX ? bits / 8 : 0);
+    return (uint8_t)(bits <= 8 * most ? bits / 8 : 0);
 }
 
 void drives_take_layout(struct drives *d)
 {
     struct drives_mapping *m = &d->mapping;
-    m->pdo.mapping.length = length_of(&m->pdo.mapping);
+    m->pdo.mapping.length = length_of(&m->pdo.mapping, d->frame_max);
     if (m->pdo.mapping.length == 0)
         m->pdo.mapping.count = 0;
     else if (drives_is_transmitted(m))
-        take_transmitted(&d->axis[d->at_axis], m);
+        take_transmitted(d);
     else
         take_received(d);
     m->entry = 0;

@@ -34,7 +34,7 @@ void drives_suffer(struct drives *d);
 /* The drive's value of what else is in a frame. */
 void drives_store_rest(struct drives_frame *frame, const struct pdo *pdo, uint32_t object,
                        uint32_t value);
-/* A frame of this length is sent in every cycle. */
-void drives_count_bits(struct drives_axis *axis, unsigned length);
+/* A frame of this length is sent in every cycle, of the drive that is being configured. */
+void drives_count_bits(struct drives *d, unsigned length);
 
 #endif

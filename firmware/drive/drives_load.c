@@ -1,4 +1,5 @@
 /* The frames of a cycle, and how much of the bus they take. */
+#include "canopen/target_pdo.h"
 #include "drive/drives_private.h"
 #include "drive/word.h"
 
@@ -6,14 +7,20 @@
 
 #define HEARTBEAT_LENGTH 1
 
-unsigned drives_cycle_frames(unsigned count, uint8_t length[DRIVES_CYCLE_FRAMES_MAX])
+unsigned drives_group_of(const struct drives_rates *rates)
+{
+    return rates->data > 0 ? TARGET_PDO_FD : TARGET_PDO_PAIR;
+}
+
+unsigned drives_cycle_frames(unsigned count, unsigned group,
+                             uint8_t length[DRIVES_CYCLE_FRAMES_MAX])
 {
     unsigned frames = 0;
     if (count > AXIS_COUNT)
         count = AXIS_COUNT;
     length[frames++] = 0;
-    for (unsigned i = 0; i < count; i += 2)
-        length[frames++] = i + 1 < count ? 8 : 4;
+    for (unsigned i = 0; i < count; i += group)
+        length[frames++] = (uint8_t)(4 * target_pdo_members(count, i, group));
     for (unsigned i = 0; i < count; i++)
         length[frames++] = DRIVES_STATUS_LENGTH;
     length[frames++] = DRIVES_STATUS_LENGTH;
@@ -27,9 +34,27 @@ unsigned drives_cycle_frames(unsigned count, uint8_t length[DRIVES_CYCLE_FRAMES_
  *     C = 47 + 8 n + floor((34 + 8 n - 1) / 4)
  * Davis, Burns, Bril, Lukkien: Controller Area Network schedulability analysis, Real-Time Systems 35 (2007), eq. 1.
  */
-uint32_t drives_frame_bits(uint32_t n)
+static uint32_t classical_bits(uint32_t n)
 {
     return 47 + 8 * n + (34 + 8 * n - 1) / 4;
+}
+
+/*
+ * The same of CAN FD (ISO 11898-1:2015), in bits of the nominal rate, rounded up: 32 of these, and at the data rate
+ *     D = 33 + 10 n,  n <= 16;  38 + 10 n above
+ * The derivation is in host/bus/frame_bits.c.
+ */
+uint32_t drives_frame_bits(const struct drives_rates *rates, uint32_t n)
+{
+    if (rates->data == 0)
+        return classical_bits(n);
+    const uint32_t data_bits = (n <= 16 ? 33 : 38) + 10 * n;
+    return 32 + (uint32_t)(((uint64_t)data_bits * rates->nominal + rates->data - 1) / rates->data);
+}
+
+uint32_t drives_remote_bits(void)
+{
+    return classical_bits(0);
 }
 
 /* True: the bus carries it. */
@@ -42,47 +67,47 @@ static bool set_share(struct drives_load *load, uint32_t bitrate, uint32_t cycle
 }
 
 bool drives_predict_whole_load(unsigned count, const struct io_wiring *wiring, unsigned io_count,
-                               uint32_t bitrate, uint32_t cycle_us, struct drives_load *load)
+                               const struct drives_rates *rates, uint32_t cycle_us,
+                               struct drives_load *load)
 {
     uint8_t length[DRIVES_CYCLE_FRAMES_MAX];
-    unsigned frames = drives_cycle_frames(count, length);
-    load->bits = drives_io_wired_bits(wiring, io_count);
+    unsigned frames = drives_cycle_frames(count, drives_group_of(rates), length);
+    load->bits = drives_io_wired_bits(wiring, io_count, rates);
     for (unsigned i = 0; i < frames; i++)
-        load->bits += drives_frame_bits(length[i]);
-    return set_share(load, bitrate, cycle_us);
+        load->bits += drives_frame_bits(rates, length[i]);
+    return set_share(load, rates->nominal, cycle_us);
 }
 
-bool drives_predict_load(unsigned count, uint32_t bitrate, uint32_t cycle_us,
+bool drives_predict_load(unsigned count, const struct drives_rates *rates, uint32_t cycle_us,
                          struct drives_load *load)
 {
-    return drives_predict_whole_load(count, NULL, 0, bitrate, cycle_us, load);
+    return drives_predict_whole_load(count, NULL, 0, rates, cycle_us, load);
 }
 
 /* Of a TPDO with something that ends at this byte: one that the drive keeps may hold more. */
-static uint8_t length_at_most(const struct drives_axis *axis, unsigned end)
+static uint8_t length_at_most(const struct drives *d, unsigned i, unsigned end)
 {
+    const struct drives_axis *axis = &d->axis[i];
     bool is_kept = axis->config.keeps_settings || drives_has_given_up(axis, DRIVES_NO_MAPPING);
-    return (uint8_t)(is_kept ? CAN_DATA_MAX : end);
-}
-
-static uint32_t longer(uint32_t bits, unsigned length)
-{
-    const uint32_t other = drives_frame_bits(length);
-    return bits > other ? bits : other;
+    return (uint8_t)(is_kept ? d->frame_max : end);
 }
 
 void drives_get_load(const struct drives *d, struct drives_load *load)
 {
-    uint32_t error_bits = 0;
-    load->bits = drives_frame_bits(0) + drives_frame_bits(HEARTBEAT_LENGTH) + drives_io_bits(d) +
+    unsigned error_length = 0;
+    bool has_error = false;
+    load->bits = drives_bits(d, 0) + drives_bits(d, HEARTBEAT_LENGTH) + drives_io_bits(d) +
                  drives_guard_bits(d);
     for (unsigned i = 0; i < d->count; i++) {
+        const unsigned length = length_at_most(d, i, DRIVES_STATUS_LENGTH);
         load->bits += d->axis[i].bits;
-        if (!drives_has_given_up(&d->axis[i], DRIVES_NO_ERROR_PDO))
-            error_bits = longer(error_bits, length_at_most(&d->axis[i], DRIVES_STATUS_LENGTH));
+        if (drives_has_given_up(&d->axis[i], DRIVES_NO_ERROR_PDO))
+            continue;
+        has_error = true;
+        error_length = length > error_length ? length : error_length;
     }
-    load->bits += error_bits;
-    (void)set_share(load, d->bitrate, d->cycle_us);
+    load->bits += has_error ? drives_bits(d, error_length) : 0;
+    (void)set_share(load, d->rates.nominal, d->cycle_us);
 }
 
 static unsigned add_pdo(struct drives_pdo pdo[], unsigned count, unsigned id, unsigned length,
@@ -98,16 +123,16 @@ static unsigned add_axis(const struct drives *d, unsigned i, struct drives_pdo p
     const struct drives_axis *axis = &d->axis[i];
     const struct drives_frame *target = &axis->target_frame;
     bool is_one = axis->status_id == axis->position_id;
-    uint8_t status = length_at_most(axis, axis->status_end);
-    uint8_t position = length_at_most(axis, axis->position_end);
+    uint8_t status = length_at_most(d, i, axis->status_end);
+    uint8_t position = length_at_most(d, i, axis->position_end);
     if (!is_one)
         count = add_pdo(pdo, count, axis->status_id, status, DRIVES_PDO_REPORT);
     count = add_pdo(pdo, count, axis->position_id, is_one && status > position ? status : position,
                     DRIVES_PDO_REPORT);
-    if (!axis->is_paired || i & 1)
+    if (!axis->is_paired || drives_ends_group(d, i))
         count = add_pdo(pdo, count, target->cob_id, target->length, DRIVES_PDO_TARGET);
     if (!drives_has_given_up(axis, DRIVES_NO_ERROR_PDO))
-        count = add_pdo(pdo, count, axis->error_id, length_at_most(axis, DRIVES_STATUS_LENGTH),
+        count = add_pdo(pdo, count, axis->error_id, length_at_most(d, i, DRIVES_STATUS_LENGTH),
                         DRIVES_PDO_ERROR);
     return count;
 }

@@ -3,7 +3,7 @@
  *
  *     pass   PDO     wanted                                            type
  *     0      RPDO1   controlword, mode                                 at once
- *     1      RPDO2   target, and a dummy for that of the neighbour     SYNC
+ *     1      RPDO2   target, and dummies for those of its group        SYNC
  *     2, 3   RPDO3,4 what has found no place so far, else not valid
  *     4      RPDO1   again, if the target has found no place: target, controlword
  *     5      TPDO1   statusword, position                              every SYNC
@@ -82,8 +82,8 @@ static void want_target(const struct drives *d, struct pdo *pdo)
         add(pdo, drives_target_of(axis), true);
         return;
     }
-    target_pdo_set(pdo, d->node, d->count, d->at_axis);
-    pdo->mapping.object[d->at_axis & 1] = drives_target_of(axis);
+    target_pdo_set(pdo, d->node, d->count, d->at_axis, d->group);
+    pdo->mapping.object[d->at_axis % d->group] = drives_target_of(axis);
 }
 
 static void want_received(const struct drives *d, struct pdo *pdo)
@@ -264,11 +264,12 @@ static bool find_reading(const struct drives *d, struct drives_step *step)
 
 /* ---- What is made of it ---- */
 
-/* Neither of them shares a frame any more; the first of them is told so from its beginning. */
-static void part_pair(struct drives *d)
+/* None of a group shares a frame any more; the first of them is told so from its beginning. */
+static void part_group(struct drives *d)
 {
-    unsigned first = d->at_axis & ~1u;
-    for (unsigned i = first; i < first + 2; i++) {
+    unsigned first = d->at_axis - d->at_axis % d->group;
+    unsigned members = target_pdo_members(d->count, first, d->group);
+    for (unsigned i = first; i < first + members; i++) {
         d->axis[i].is_paired = false;
         drives_give_up(d, i, DRIVES_NO_PAIR);
     }
@@ -512,12 +513,12 @@ static void take_mode(struct drives *d)
     check_watch(d);
 }
 
-/* Its target is where a pair has it: halves of one frame (target_pdo.h). */
+/* Its target is where a group has it: parts of one frame (target_pdo.h). */
 static bool shares_frame(const struct drives *d)
 {
     const struct drives_frame *frame = &d->axis[d->at_axis].target_frame;
     struct pdo pdo;
-    target_pdo_set(&pdo, d->node, d->count, d->at_axis);
+    target_pdo_set(&pdo, d->node, d->count, d->at_axis, d->group);
     return frame->cob_id == pdo.cob_id && frame->length == pdo.mapping.length &&
            frame->target == drives_byte_of(&pdo, CIA402_TARGET_POSITION);
 }
@@ -537,7 +538,7 @@ static bool finish(struct drives *d)
     struct drives_axis *axis = &d->axis[d->at_axis];
     axis->mode = axis->follow_mode;
     if (axis->is_paired && !shares_frame(d)) {
-        part_pair(d);
+        part_group(d);
         return false;
     }
     if (axis->target_frame.length == 0)
@@ -556,10 +557,10 @@ static bool finish(struct drives *d)
     if (axis->error_id == NO_TPDO)
         drives_give_up(d, d->at_axis, DRIVES_NO_ERROR_PDO);
     axis->sends = axis->target_frame.is_mixed ? DRIVES_SENDS_MIXED : DRIVES_SENDS;
-    if (axis->is_paired && !(d->at_axis & 1))
+    if (axis->is_paired && !drives_ends_group(d, d->at_axis))
         axis->sends = DRIVES_WAITS;
     else
-        drives_count_bits(axis, axis->target_frame.length);
+        drives_count_bits(d, axis->target_frame.length);
     set_report(axis);
     return false;
 }

@@ -136,7 +136,8 @@ void drives_io_send_resets(struct drives *d, const struct can_port *port);
 /* Of its frames in a cycle, at worst. */
 uint32_t drives_io_bits(const struct drives *d);
 /* The same of nodes that have no more than what is wired. */
-uint32_t drives_io_wired_bits(const struct io_wiring *wiring, unsigned count);
+uint32_t drives_io_wired_bits(const struct io_wiring *wiring, unsigned count,
+                              const struct drives_rates *rates);
 /*
  * Node guarding. Every node that is guarded is asked in one cycle of so many: a heartbeat's period, or as many as there are
  * nodes. life_ms: after which the node takes us for lost, and too soon where that is less than two periods.
@@ -188,8 +189,20 @@ static inline const char *drives_nmt_text(enum nmt_state state)
     return state == NMT_STOPPED ? "stopped" : "pre-operational";
 }
 
-/* Bits of a frame with n bytes at worst. */
-uint32_t drives_frame_bits(uint32_t n);
+/* Bits of a frame with n bytes at worst. A remote one is classical on any bus. */
+uint32_t drives_frame_bits(const struct drives_rates *rates, uint32_t n);
+uint32_t drives_remote_bits(void);
+static inline uint32_t drives_bits(const struct drives *d, uint32_t n)
+{
+    return drives_frame_bits(&d->rates, n);
+}
+
+/* Drives to a frame of targets. */
+unsigned drives_group_of(const struct drives_rates *rates);
+static inline bool drives_ends_group(const struct drives *d, unsigned i)
+{
+    return (i + 1) % d->group == 0 || i + 1 == d->count;
+}
 
 /* A cycle of the phases DRIVES_SELECT, DRIVES_HOME and DRIVES_FOLLOW. */
 void drives_select(struct drives *d);

@@ -157,7 +157,7 @@ static void check_shared(struct drives *d, unsigned i)
     const struct drives_axis *axis = &d->axis[i];
     for (unsigned k = 0; k < d->count; k++) {
         const struct drives_axis *other = &d->axis[k];
-        const bool is_pair = k == (i ^ 1U) && axis->is_paired && other->is_paired;
+        const bool is_pair = k / d->group == i / d->group && axis->is_paired && other->is_paired;
         if (k == i || is_pair)
             continue;
         if (other->target_frame.length > 0 && takes(axis, other->target_frame.cob_id))

@@ -8,6 +8,7 @@
 #include "canopen/pdo.h"
 #include "canopen/sdo_client.h"
 #include "drive/io_wiring.h"
+#include "drive/rates.h"
 
 /*
  * Setpoints remembered until the position they led to is reported; a power of two above
@@ -54,7 +55,7 @@ struct drives_mapping {
 /* What is done with the frame of a target once it has been written. */
 enum drives_sends {
     DRIVES_SENDS,      /* it is sent */
-    DRIVES_WAITS,      /* its other half is that of the next drive */
+    DRIVES_WAITS,      /* the next drive's is in it, too */
     DRIVES_SENDS_MIXED /* there is more in it */
 };
 
@@ -102,7 +103,7 @@ struct drives_axis {
     uint8_t status_end, position_end; /* byte behind them */
     bool beats_by_status;             /* it has no heartbeat: its status counts for one */
     struct drives_guard guard;
-    bool is_paired;      /* its target shares a frame with that of its neighbour */
+    bool is_paired;      /* its target shares a frame with those of its group */
     uint8_t follow_mode; /* in which it follows targets */
     uint8_t told_mode;   /* by SDO */
     uint16_t modes;      /* object 6502 */
@@ -166,7 +167,9 @@ struct drives {
 
     enum drives_phase phase;
     uint32_t phase_cycles; /* spent in the phase */
-    uint32_t bitrate;
+    struct drives_rates rates;
+    uint8_t group;      /* drives to a frame of targets */
+    uint8_t frame_max;  /* bytes of the longest frame */
     uint8_t at_axis;    /* that is being configured or asked */
     uint8_t at_part;    /* of its configuration, enum drives_part */
     uint8_t at_step;    /* of that part */

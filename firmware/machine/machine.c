@@ -51,6 +51,11 @@ void machine_set_default(struct machine *machine)
     }
 }
 
+struct drives_rates machine_get_rates(const struct machine *machine)
+{
+    return (struct drives_rates){machine->can_bitrate, machine->can_data_bitrate};
+}
+
 unsigned machine_axes(const struct machine *machine)
 {
     unsigned axes = 0;

@@ -9,6 +9,7 @@
 #include "correction/need.h"
 #include "correction/settings.h"
 #include "drive/io_wiring.h"
+#include "drive/rates.h"
 #include "plan/limits.h"
 
 #include <stdbool.h>
@@ -100,6 +101,8 @@ struct machine {
     double tool_change_s;      /* longest change of the tool by a changer at I/O nodes; > 0 */
     uint32_t can_bitrate;      /* bit/s */
     uint32_t
+        can_data_bitrate; /* of CAN FD, bit/s, can_bitrate ... MACHINE_DATA_BITRATE_MAX; 0: classical CAN */
+    uint32_t
         heartbeat_ms; /* period of all heartbeats on the bus, up to 20,000; 0: there are none */
     uint32_t boot_timeout_ms; /* a drive boots within, after a reset */
     uint32_t sdo_timeout_ms;  /* a drive answers a request within */
@@ -117,6 +120,9 @@ struct machine {
  * spindle 24,000 rpm with an encoder, CAN at 1 Mbit/s.
  */
 void machine_set_default(struct machine *machine);
+
+#define MACHINE_DATA_BITRATE_MAX 8000000
+struct drives_rates machine_get_rates(const struct machine *machine);
 
 /* Bit i set: the machine has axis i. */
 unsigned machine_axes(const struct machine *machine);

@@ -222,9 +222,10 @@ static bool check_bus(const struct machine *machine, struct diagnostic *wrong)
     struct drives_load load;
     uint8_t node[MACHINE_NODES_MAX];
     const unsigned drives = machine_drive_nodes(machine, node);
+    const struct drives_rates rates = machine_get_rates(machine);
 
-    if (drives_predict_whole_load(drives, machine->io, machine_io_count(machine),
-                                  machine->can_bitrate, machine->cycle_us, &load))
+    if (drives_predict_whole_load(drives, machine->io, machine_io_count(machine), &rates,
+                                  machine->cycle_us, &load))
         return true;
     drives_set_overload(&load, wrong);
     return false;
@@ -250,6 +251,20 @@ static bool check_forms(const struct machine *machine, struct diagnostic *wrong)
            check_form(all || machine->landing != LANDING_SCALE, landing, sizeof landing, wrong);
 }
 
+/* CAN FD is of the build, and no slower than the rest of a frame. */
+static bool check_rates(const struct machine *machine, struct diagnostic *wrong)
+{
+    const uint32_t data = machine->can_data_bitrate;
+
+    if (data > 0 && CAN_DATA_MAX == CAN_CLASSIC_MAX)
+        diagnostic_set(wrong, TAKT_ERROR_MACHINE_FD, 0, 0, "", 0, data);
+    else if (data > 0 && data < machine->can_bitrate)
+        diagnostic_set(wrong, TAKT_ERROR_MACHINE_DATA_RATE, 0, 0, "", 0, data);
+    else
+        return true;
+    return false;
+}
+
 bool machine_check(const struct machine *machine, struct diagnostic *wrong)
 {
     if (machine_axes(machine) == 0) {
@@ -261,5 +276,5 @@ bool machine_check(const struct machine *machine, struct diagnostic *wrong)
             return false;
     }
     return check_forms(machine, wrong) && check_gantries(machine, wrong) &&
-           check_io(machine, wrong) && check_bus(machine, wrong);
+           check_io(machine, wrong) && check_rates(machine, wrong) && check_bus(machine, wrong);
 }

@@ -68,18 +68,42 @@ static float go(const struct worth_window *now, struct passed *last)
     return time;
 }
 
-/* What is known behind the pieces, at its nominal feed: no curve is quicker. */
-static float time_left(const struct worth_window *now)
+/* Of a stretch at its nominal feed: neither a curve nor the path is quicker. */
+static float time_between(const struct worth_window *now, uint32_t element, double from_mm,
+                          double to_mm)
 {
     const struct route *r = now->route;
-    double from_mm = now->window->at_mm[now->pieces + 1];
     float time = 0.0f;
 
-    for (uint32_t i = now->window->element[now->pieces + 1]; i < r->count; i++) {
-        const double end_mm = route_end_of(r, i);
+    for (uint32_t i = element; i < r->count && from_mm < to_mm; i++) {
+        const double end_mm = maths_min(route_end_of(r, i), to_mm);
 
         time += (float)(maths_max(end_mm, from_mm) - from_mm) / route_element(r, i)->feed_mm_s;
-        from_mm = end_mm;
+        from_mm = maths_max(end_mm, from_mm);
+    }
+    return time;
+}
+
+/* What the path takes to where the pieces end, all of it at nominal feed but for getting going. */
+static float time_to(const struct worth_window *now)
+{
+    const struct route_element *e = route_element(now->route, now->window->element[0]);
+
+    return time_between(now, now->window->element[0], now->window->at_mm[0],
+                        now->window->at_mm[now->pieces + 1]) +
+           ramp(now, now->window->element[0], e->feed_mm_s);
+}
+
+/* What all rests ahead cost it, beyond that. */
+static float time_of_rests(const struct worth_window *now)
+{
+    uint32_t rest = next_rest(now, now->window->element[0]);
+    float time = 0.0f;
+
+    while (rest < now->route->count) {
+        time += ramp(now, rest - 1, route_element(now->route, rest - 1)->feed_mm_s) +
+                ramp(now, rest, route_element(now->route, rest)->feed_mm_s);
+        rest = next_rest(now, rest);
     }
     return time;
 }
@@ -93,13 +117,21 @@ bool worth_path_from_rest(const struct worth_window *now, double *to_mm)
     const float time = go(now, &last);
 
     *to_mm = route_end(r);
-    if (now->finished && exact_time(r, now->machine, at_mm, w->element[0], r->count) <
-                             time + time_left(now) + now->standing_s) {
+    if (now->finished &&
+        exact_time(r, now->machine, at_mm, w->element[0], r->count) <
+            time + now->standing_s +
+                time_between(now, w->element[now->pieces + 1], w->at_mm[now->pieces + 1], *to_mm)) {
         return true;
     }
     *to_mm = last.element < r->count ? route_element(r, last.element)->start_mm : *to_mm;
-    return exact_time(r, now->machine, at_mm, w->element[0], last.element) <
-           (last.time > 0.0f ? last.time - ramp(now, last.element, last.feed) : time);
+    if (last.time > 0.0f) {
+        return exact_time(r, now->machine, at_mm, w->element[0], last.element) <
+               last.time - ramp(now, last.element, last.feed);
+    }
+    const float gained = now->finished ? time_of_rests(now) - now->standing_s : now->standing_s;
+
+    return time_to(now) + gained < time ||
+           exact_time(r, now->machine, at_mm, w->element[0], last.element) < time;
 }
 
 /* From rest at the start of an element to where the pieces end, of the last element a part. */
@@ -115,7 +147,7 @@ static float path_time(const struct worth_window *now, uint32_t first)
            (float)part * exact_time(r, now->machine, 0.0, last, last + 1);
 }
 
-/* To change over the curve must first come to rest, and the path get going from there. */
+/* To change over the curve must first come to rest, and the path get going from there. Where a stretch begins nothing can be told. */
 bool worth_path(const struct worth_window *now, struct worth_since *since)
 {
     const struct window *w = now->window;
@@ -134,5 +166,5 @@ bool worth_path(const struct worth_window *now, struct worth_since *since)
     const float spent = since->spent_s;
 
     since->spent_s += last.kept;
-    return path_time(now, first) + change < spent + time;
+    return spent > 0.0f && path_time(now, first) + change < spent + time;
 }

@@ -66,6 +66,7 @@ const struct settings_field settings_fields[] = {
     ABOVE(25, thread_tolerance_mm, 0, 100),
     ABOVE(26, tool_change_s, 0, 3600),
     FROM(27, position_gain_per_s, 0, 1e4),
+    COUNT(28, can_data_bitrate, 0, MACHINE_DATA_BITRATE_MAX),
     COUNT(30, can_bitrate, 10000, 1000000),
     COUNT(31, heartbeat_ms, 0, 20000),
     ROW(32, false, SETTINGS_U8, offsetof(struct machine, controller_node), 1, 1, 127, false, "controller_node"),

@@ -9,6 +9,7 @@
 static struct {
     struct embedded_console console;
     struct uart uart;
+    struct service_lines lines;
 } line;
 
 /* The line's interrupt makes room. */
@@ -25,9 +26,10 @@ static void take(void *context, uint8_t byte)
     embedded_console_take_byte(&line.console, byte);
 }
 
-struct service_lines console_line_get_lines(void)
+const struct service_lines *console_line_get_lines(void)
 {
-    return embedded_console_get_lines(&line.console);
+    line.lines = embedded_console_get_lines(&line.console);
+    return &line.lines;
 }
 
 void console_line_open(struct embedded *embedded)

@@ -6,8 +6,8 @@
 
 #include "port/embedded.h"
 
-/* For embedded_config. */
-struct service_lines console_line_get_lines(void);
+/* For embedded_config: NULL: there is no console. */
+const struct service_lines *console_line_get_lines(void);
 
 /* After embedded_init. */
 void console_line_open(struct embedded *embedded);

@@ -162,9 +162,9 @@ void port_systick(void)
     embedded_cycle(&board.embedded, &inputs, false);
 }
 
-STARTUP_INTERRUPTS(board_interrupts, 20) = {
-    uart_0_receive, uart_0_send,    uart_1_receive,        uart_1_send,
-    uart_2_receive, uart_2_send,    [18] = uart_3_receive, uart_3_send};
+STARTUP_INTERRUPTS(board_interrupts,
+                   20) = {uart_0_receive, uart_0_send, uart_1_receive,        uart_1_send,
+                          uart_2_receive, uart_2_send, [18] = uart_3_receive, uart_3_send};
 
 /* -- start -- */
 

@@ -4,7 +4,7 @@
 
 /* "t" or "r", three digits, the length, two digits a byte, the end. */
 #define HEAD      5
-#define LINE_MOST (HEAD + 2 * CAN_DATA_MAX + 1)
+#define LINE_MOST (HEAD + 2 * CAN_CLASSIC_MAX + 1)
 
 #define SYNC_ID    0x080U
 #define REQUEST_ID 0x600U /* of an SDO, and its answer */
@@ -99,7 +99,7 @@ static bool read_frame(const char *text, unsigned length, struct can_frame *fram
     const int32_t id = length >= HEAD && text[0] == 't' ? read_digits(text + 1, 3) : -1;
     const int32_t bytes = id >= 0 ? read_digits(text + 4, 1) : -1;
 
-    if (bytes < 0 || bytes > CAN_DATA_MAX || length < HEAD + 2U * (unsigned)bytes)
+    if (bytes < 0 || bytes > CAN_CLASSIC_MAX || length < HEAD + 2U * (unsigned)bytes)
         return false;
     *frame = (struct can_frame){.id = (uint16_t)id, .length = (uint8_t)bytes};
     for (int32_t i = 0; i < bytes; i++) {

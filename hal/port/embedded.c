@@ -68,7 +68,7 @@ static void hear(void *context)
 static void init_service(struct embedded *e)
 {
     const struct embedded_config *config = &e->config;
-    const struct service_config service = {
+    struct service_config service = {
         .machine = config->machine,
         .step = config->step,
         .can = config->can,
@@ -80,9 +80,10 @@ static void init_service(struct embedded *e)
         .dcf = config->dcf,
         .programs = {text_queue_open, text_queue_adopt, &e->config.core->queue},
         .plans = plan_queue_get_plans(&e->config.core->plan),
-        .lines = config->lines,
     };
 
+    if (config->lines != NULL)
+        service.lines = *config->lines;
     parameters_clear(&e->config.core->parameters);
     service_init(&e->service, &service);
 }

@@ -65,7 +65,8 @@ struct embedded_config {
     const struct correction_tables *correction; /* NULL: none */
     const struct concise_dcf *dcf;              /* as of struct controller_config */
     struct embedded_port port;
-    struct service_lines lines;  /* of a console (port/embedded_console.h); open is NULL: none */
+    const struct service_lines
+        *lines;                  /* copied: of a console (port/embedded_console.h); NULL: none */
     struct panel_store settings; /* where settings are brought to; begin is NULL: nowhere */
     uint8_t unit;                /* of the panel's line, 1 ... 247 */
     uint32_t gap_us;             /* that ends a frame on it: modbus_rtu_gap_us, or more */

@@ -34,7 +34,7 @@ struct embedded_console {
     uint8_t text[EMBEDDED_CONSOLE_TEXT];
 };
 
-/* For embedded_config: before embedded_init. */
+/* For embedded_config: before embedded_init, which copies them. */
 struct service_lines embedded_console_get_lines(struct embedded_console *c);
 
 /* After embedded_init; the sender is welcomed. */

@@ -17,6 +17,7 @@
 
 #include <assert.h>
 #include <stdint.h>
+#include <string.h>
 
 #define REMOTE_MAGIC 0x334D5254U /* "TRM3" */
 
@@ -66,13 +67,36 @@ struct remote_ready {
     uint32_t clock_hz; /* of the costs below; 0: they are not measured */
 };
 
+/* A classical frame, as a struct can_frame whose data are as long as in any build. */
+struct remote_frame {
+    uint16_t id;
+    uint8_t length;
+    uint8_t data[CAN_CLASSIC_MAX];
+    uint8_t unused;
+};
+
+static inline void remote_frame_set(struct remote_frame *to, const struct can_frame *from)
+{
+    to->id = from->id;
+    to->length = from->length;
+    memcpy(to->data, from->data, sizeof to->data);
+    to->unused = 0;
+}
+
+static inline void remote_frame_get(const struct remote_frame *from, struct can_frame *to)
+{
+    to->id = from->id;
+    to->length = from->length;
+    memcpy(to->data, from->data, sizeof from->data);
+}
+
 /* The desk, every cycle. */
 struct remote_inputs {
     uint32_t go_on; /* 0: the image ends */
     uint32_t frames;
     struct inputs inputs;
     double rise_k[AXIS_COUNT]; /* for the thermal layer of the correction */
-    struct can_frame frame[REMOTE_FRAMES_MAX];
+    struct remote_frame frame[REMOTE_FRAMES_MAX];
 };
 
 /* The image answers, after background and cycle. */
@@ -86,10 +110,10 @@ struct remote_outputs {
     uint32_t blocks;     /* that the background has put on the path so far */
     uint32_t has_record; /* the record is of this cycle */
     struct cycle_record record;
-    struct can_frame frame[REMOTE_FRAMES_MAX];
+    struct remote_frame frame[REMOTE_FRAMES_MAX];
 };
 
-static_assert(sizeof(struct can_frame) == 12, "as on every side");
+static_assert(sizeof(struct remote_frame) == 12, "as on every side");
 static_assert(sizeof(struct inputs) == 88, "as on every side");
 static_assert(sizeof(struct cycle_record) == 200, "as on every side");
 

@@ -298,9 +298,9 @@ static bool read_head(const struct bxcan *can, struct can_frame *frame)
     if ((identifier & (BXCAN_I_LONG | BXCAN_I_REMOTE)) != 0)
         return false;
     *frame = (struct can_frame){.id = (uint16_t)BXCAN_ID_OF(identifier)};
-    frame->length = (uint8_t)(length < CAN_DATA_MAX ? length : CAN_DATA_MAX);
+    frame->length = (uint8_t)(length < CAN_CLASSIC_MAX ? length : CAN_CLASSIC_MAX);
     unpack(frame, read(can, BXCAN_RDL), read(can, BXCAN_RDH));
-    memset(frame->data + frame->length, 0, (size_t)CAN_DATA_MAX - frame->length);
+    memset(frame->data + frame->length, 0, (size_t)CAN_CLASSIC_MAX - frame->length);
     return true;
 }
 

@@ -7,14 +7,24 @@
 
 static_assert((BUS_RECEIVE_MAX & (BUS_RECEIVE_MAX - 1)) == 0, "receive indices are masked");
 
-#define SECOND_NS 1000000000u
-
 bool bus_init(struct bus *bus, uint32_t bitrate)
 {
-    if (bitrate < BUS_BITRATE_MIN || bitrate > BUS_BITRATE_MAX)
+    return bus_init_rates(bus, &(struct frame_rates){bitrate, 0});
+}
+
+static bool are_good(const struct frame_rates *rates)
+{
+    return rates->nominal >= BUS_BITRATE_MIN && rates->nominal <= BUS_BITRATE_MAX &&
+           (rates->data == 0 ||
+            (rates->data >= rates->nominal && rates->data <= BUS_DATA_BITRATE_MAX));
+}
+
+bool bus_init_rates(struct bus *bus, const struct frame_rates *rates)
+{
+    if (!are_good(rates))
         return false;
     memset(bus, 0, sizeof *bus);
-    bus->bit_ns = (SECOND_NS + bitrate / 2) / bitrate;
+    bus->times = frame_bits_times(rates);
     bus->fault_from_ns = UINT64_MAX;
     frame_bits_init(&bus->tables);
     return true;
@@ -33,6 +43,14 @@ void bus_insert_waiting(struct bus *bus, const struct bus_waiting *waiting)
     bus->port[waiting->port].waiting++;
 }
 
+/* There is not every length of CAN FD. */
+static void fill_up(struct can_frame *frame)
+{
+    const uint8_t length = wire_frame_fd_length(frame->length);
+    for (; frame->length < length; frame->length++)
+        frame->data[frame->length] = 0;
+}
+
 static bool port_send(void *context, const struct can_frame *frame)
 {
     struct bus_port *port = context;
@@ -46,6 +64,8 @@ static bool port_send(void *context, const struct can_frame *frame)
         bus->counts.refused++;
         return false;
     }
+    if (bus_is_fd(bus) && !can_is_remote(frame))
+        fill_up(&waiting.frame);
     bus->sent++;
     bus_insert_waiting(bus, &waiting);
     return true;
@@ -75,14 +95,14 @@ void bus_observe(struct bus *bus, const struct bus_listener *listener)
     bus->observer = listener ? *listener : (struct bus_listener){0};
 }
 
-void bus_put_on_wire(struct bus *bus, unsigned index, uint64_t start_ns, unsigned bits)
+void bus_put_on_wire(struct bus *bus, unsigned index, uint64_t start_ns, uint64_t length_ns)
 {
-    uint64_t space_ns = FRAME_BITS_INTERMISSION * bus->bit_ns;
+    uint64_t space_ns = FRAME_BITS_INTERMISSION * bus->times.bit_ns;
     bus->wire = bus->waiting[index];
     for (bus->waiting_count--; index < bus->waiting_count; index++)
         bus->waiting[index] = bus->waiting[index + 1];
     bus->port[bus->wire.port].waiting--;
-    bus->frame_end_ns = start_ns + bits * bus->bit_ns;
+    bus->frame_end_ns = start_ns + length_ns;
     bus->idle_ns = bus->frame_end_ns + space_ns;
     bus->counts.busy_ns += bus->idle_ns - start_ns;
     bus->on_wire = true;
@@ -93,8 +113,9 @@ static void begin_frame(struct bus *bus)
 {
     unsigned winner = bus->waiting_count - 1;
     uint64_t start_ns = bus->idle_ns > bus->now_ns ? bus->idle_ns : bus->now_ns;
-    bus_put_on_wire(bus, winner, start_ns,
-                    frame_bits_count(&bus->tables, &bus->waiting[winner].frame));
+    const struct frame_length length =
+        frame_bits_count_port(&bus->tables, &bus->waiting[winner].frame, bus_is_fd(bus));
+    bus_put_on_wire(bus, winner, start_ns, frame_bits_ns(&bus->times, &length));
 }
 
 static void collect(struct bus *bus, struct bus_port *port, const struct can_frame *frame)

@@ -31,8 +31,9 @@
 #define BUS_FAULTS_MAX 64
 #define BUS_ID_COUNT   2048
 
-#define BUS_BITRATE_MIN 10000
-#define BUS_BITRATE_MAX 1000000
+#define BUS_BITRATE_MIN      10000
+#define BUS_BITRATE_MAX      1000000
+#define BUS_DATA_BITRATE_MAX 8000000 /* of CAN FD */
 
 /*
  * What a node does with a frame, at the moment the frame ends. It may send through its own port; it
@@ -99,7 +100,7 @@ struct bus_verdict {
 struct bus {
     struct bus_counts counts;
     uint64_t now_ns;
-    uint64_t bit_ns;
+    struct frame_times times;
     uint64_t idle_ns; /* the bus is free from here on */
     uint64_t sent;    /* send calls that were accepted */
 
@@ -129,6 +130,16 @@ struct bus {
  * False: out of range, and the bus unusable.
  */
 bool bus_init(struct bus *bus, uint32_t bitrate);
+/*
+ * The same; with rates->data > 0 for ports that speak CAN FD: every data frame is one, with the data at that rate, from the
+ * nominal one to BUS_DATA_BITRATE_MAX.
+ */
+bool bus_init_rates(struct bus *bus, const struct frame_rates *rates);
+/* Its ports speak CAN FD. */
+static inline bool bus_is_fd(const struct bus *bus)
+{
+    return bus->times.data_ns > 0;
+}
 
 /*
  * A port for one more node. listener: copied; NULL: received frames are collected for receive(). A

@@ -12,6 +12,7 @@
  * until it has seen 128 times 11 recessive bits.
  */
 #include "bus/bus_private.h"
+#include "bus/frame_levels.h"
 
 #include <string.h>
 
@@ -225,29 +226,39 @@ static void draw_verdict(struct bus *bus, const struct bus_waiting *frame, uint6
     }
 }
 
-/*
- * Bits from the start of a frame to the end of the error frame that follows when bit k of it is
- * flipped.
- *
- *     k + 1 + flags + 8     flags: 6 ... 12
- *
- * The sender sees the wrong bit and begins its flag of 6 dominant bits at once. Receivers see 6
- * equal bits in a row where stuffing allows 5, and then begin theirs: with r dominant bits at the
- * end of the frame so far, 6 - r later. A bit that is fixed (end of frame), or that makes 6 equal
- * bits itself, is seen by all at once.
- */
-static unsigned bits_until_error_ends(const struct bus *bus, const struct can_frame *frame,
-                                      unsigned k)
+/* Of the first bits of a frame. */
+static uint64_t first_bits_ns(const struct bus *bus, const struct frame_levels *levels,
+                              unsigned count)
 {
-    uint8_t level[FRAME_BITS_MAX];
-    unsigned stuffed = frame_bits_levels(&bus->tables, frame, level);
-    unsigned run = 1, flags = ERROR_FLAG_BITS;
+    unsigned data = 0;
+    if (count > levels->data_begin)
+        data = (count < levels->data_end ? count : levels->data_end) - levels->data_begin;
+    return frame_bits_ns(&bus->times, &(struct frame_length){count - data, data});
+}
+
+/*
+ * Time from the start of a frame to the end of the error frame that follows when bit k of it is flipped.
+ *
+ *     k + 1 + wait + 6 + 8 bits     wait: 0 ... 6
+ *
+ * The sender sees the wrong bit and begins its flag of 6 dominant bits at once, at the nominal rate. Receivers see 6
+ * equal bits in a row where stuffing allows 5, and then begin theirs: with r dominant bits at the
+ * end of the frame so far, 6 - r later, by the rate at which they read. A bit that is fixed (end of frame), or that makes 6
+ * equal bits itself, is seen by all at once.
+ */
+static uint64_t until_error_ends_ns(const struct bus *bus, struct frame_levels *levels, unsigned k)
+{
+    uint8_t *level = levels->level;
+    unsigned run = 1, wait = 0;
+    bool is_data = k >= levels->data_begin && k < levels->data_end;
     level[k] = !level[k];
     while (run <= k && level[k - run] == level[k])
         run++;
-    if (k < stuffed && run < 6)
-        flags += 6 - (level[k] == 0 ? run : 0);
-    return k + 1 + flags + ERROR_DELIMITER;
+    if (k < levels->stuffed && run < 6)
+        wait = 6 - (level[k] == 0 ? run : 0);
+    return first_bits_ns(bus, levels, k + 1) +
+           wait * (is_data ? bus->times.data_ns : bus->times.bit_ns) +
+           (ERROR_FLAG_BITS + ERROR_DELIMITER) * bus->times.bit_ns;
 }
 
 /*
@@ -269,18 +280,23 @@ static bool begin_next(struct bus *bus, uint64_t time_ns)
     }
     if (first_ns > time_ns)
         return false;
-    unsigned bits = frame_bits_count(&bus->tables, &bus->waiting[winner].frame);
-    draw_verdict(bus, &bus->waiting[winner], first_ns, bits);
-    if (bus->verdict.corrupt_bit != 0)
-        bits = bits_until_error_ends(bus, &bus->waiting[winner].frame, bus->verdict.corrupt_bit);
-    bus_put_on_wire(bus, winner, first_ns, bits);
+    const struct can_frame *frame = &bus->waiting[winner].frame;
+    const struct frame_length length = frame_bits_count_port(&bus->tables, frame, bus_is_fd(bus));
+    uint64_t length_ns = frame_bits_ns(&bus->times, &length);
+    draw_verdict(bus, &bus->waiting[winner], first_ns, length.nominal + length.data);
+    if (bus->verdict.corrupt_bit != 0) {
+        struct frame_levels levels;
+        frame_levels_set(&levels, frame, bus_is_fd(bus));
+        length_ns = until_error_ends_ns(bus, &levels, bus->verdict.corrupt_bit);
+    }
+    bus_put_on_wire(bus, winner, first_ns, length_ns);
     return true;
 }
 
 static void suspend_if_passive(struct bus *bus, unsigned port)
 {
     if (bus_get_confinement(bus, port) == BUS_PASSIVE)
-        bus->port[port].suspend_until_ns = bus->idle_ns + SUSPEND_BITS * bus->bit_ns;
+        bus->port[port].suspend_until_ns = bus->idle_ns + SUSPEND_BITS * bus->times.bit_ns;
 }
 
 /*
@@ -294,7 +310,7 @@ static void send_again(struct bus *bus, unsigned errors)
     p->transmit_errors += errors;
     bus->is_unwell = true;
     if (p->transmit_errors >= OFF_ERRORS)
-        p->off_until_ns = bus->idle_ns + RECOVERY_BITS * bus->bit_ns;
+        p->off_until_ns = bus->idle_ns + RECOVERY_BITS * bus->times.bit_ns;
     if (bus_get_confinement(bus, port) == BUS_OFF) {
         lose_waiting(bus, port);
         bus->counts.off_lost++;
@@ -346,7 +362,7 @@ static void end_good(struct bus *bus)
     if (sender->transmit_errors > 0)
         sender->transmit_errors--;
     if (bus->verdict.is_duplicated) {
-        uint64_t error_ns = bus->bit_ns * (ERROR_FLAG_BITS + ERROR_DELIMITER);
+        uint64_t error_ns = bus->times.bit_ns * (ERROR_FLAG_BITS + ERROR_DELIMITER);
         bus->counts.duplicated++;
         bus->idle_ns += error_ns;
         bus->counts.busy_ns += error_ns;

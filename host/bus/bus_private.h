@@ -11,10 +11,9 @@
 void bus_insert_waiting(struct bus *bus, const struct bus_waiting *waiting);
 
 /*
- * Takes the waiting frame at this index onto the wire, which it holds from start_ns on for so many
- * bits.
+ * Takes the waiting frame at this index onto the wire, which it holds from start_ns on for so long.
  */
-void bus_put_on_wire(struct bus *bus, unsigned index, uint64_t start_ns, unsigned bits);
+void bus_put_on_wire(struct bus *bus, unsigned index, uint64_t start_ns, uint64_t length_ns);
 
 /* The frame on the wire has ended: it counts and the observer sees it. */
 void bus_count_frame(struct bus *bus);

@@ -1,19 +1,20 @@
 #include "bus/bus_response.h"
 
-#include "bus/frame_bits.h"
-
 /* Iterations stop here: no answer later than this is of any use. */
 #define RESPONSE_MAX_NS UINT64_C(60000000000)
 
 struct analysis {
     const struct bus_message *messages;
     unsigned count;
-    uint64_t bit_ns;
+    struct frame_times times;
 };
 
 static uint64_t longest_ns(const struct analysis *a, unsigned i)
 {
-    return frame_bits_worst(a->messages[i].length) * a->bit_ns;
+    const struct bus_message *message = &a->messages[i];
+    const bool fd = a->times.data_ns > 0 && !message->is_remote;
+    const struct frame_length worst = frame_bits_worst(message->length, fd);
+    return frame_bits_ns(&a->times, &worst);
 }
 
 static uint64_t divide_up(uint64_t a, uint64_t b)
@@ -75,7 +76,7 @@ static uint64_t wait_ns(const struct analysis *a, unsigned m, uint64_t q)
     uint64_t before_ns = UINT64_MAX, now_ns = fixed_ns;
     while (now_ns != before_ns && now_ns < RESPONSE_MAX_NS) {
         before_ns = now_ns;
-        now_ns = fixed_ns + interference_ns(a, m, before_ns, a->bit_ns, false);
+        now_ns = fixed_ns + interference_ns(a, m, before_ns, a->times.bit_ns, false);
     }
     return now_ns;
 }
@@ -98,19 +99,19 @@ static uint64_t response_ns(const struct analysis *a, unsigned m)
 }
 
 double bus_response_utilisation(const struct bus_message messages[], unsigned count,
-                                uint32_t bitrate)
+                                const struct frame_rates *rates)
 {
+    const struct analysis analysis = {messages, count, frame_bits_times(rates)};
     double sum = 0;
     for (unsigned i = 0; i < count; i++)
-        sum += 1e9 * frame_bits_worst(messages[i].length) /
-               ((double)bitrate * (double)messages[i].period_ns);
+        sum += (double)longest_ns(&analysis, i) / (double)messages[i].period_ns;
     return sum;
 }
 
-bool bus_response_predict(const struct bus_message messages[], unsigned count, uint32_t bitrate,
-                          uint64_t worst_ns[])
+bool bus_response_predict(const struct bus_message messages[], unsigned count,
+                          const struct frame_rates *rates, uint64_t worst_ns[])
 {
-    struct analysis analysis = {messages, count, (1000000000u + bitrate / 2) / bitrate};
+    const struct analysis analysis = {messages, count, frame_bits_times(rates)};
     bool all_bounded = true;
     for (unsigned m = 0; m < count; m++) {
         worst_ns[m] = response_ns(&analysis, m);

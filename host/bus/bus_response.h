@@ -8,6 +8,8 @@
 #ifndef TAKT_BUS_BUS_RESPONSE_H
 #define TAKT_BUS_BUS_RESPONSE_H
 
+#include "bus/frame_bits.h"
+
 #include <stdbool.h>
 #include <stdint.h>
 
@@ -18,6 +20,7 @@
 struct bus_message {
     uint16_t id;
     uint8_t length;     /* bytes of data */
+    bool is_remote;     /* a classical frame on any bus */
     uint64_t period_ns; /* shortest time between two of them */
     uint64_t jitter_ns; /* how much later than on time it may be given at most */
 };
@@ -27,14 +30,14 @@ struct bus_message {
  * included; UINT64_MAX: no bound, as with all that rank behind a bus at its limit. False: there is
  * one without a bound.
  */
-bool bus_response_predict(const struct bus_message messages[], unsigned count, uint32_t bitrate,
-                          uint64_t worst_ns[]);
+bool bus_response_predict(const struct bus_message messages[], unsigned count,
+                          const struct frame_rates *rates, uint64_t worst_ns[]);
 
 /*
  * Part of the time that the bus is occupied, with worst-case stuffing; from 1 on it cannot carry
  * them.
  */
 double bus_response_utilisation(const struct bus_message messages[], unsigned count,
-                                uint32_t bitrate);
+                                const struct frame_rates *rates);
 
 #endif

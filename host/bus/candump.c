@@ -16,7 +16,7 @@
 void candump_init(struct candump *log, FILE *file, const char *interface)
 {
     log->file = file;
-    log->failed = false;
+    log->failed = log->is_fd = false;
     log->used = 0;
     log->interface_length = 0;
     while (interface[log->interface_length] && log->interface_length < CANDUMP_INTERFACE_MAX)
@@ -70,36 +70,42 @@ static void end_line(struct candump *log, char *text, const uint8_t *data, unsig
     log->used = (size_t)(text - log->buffer);
 }
 
-void candump_frame(void *context, const struct can_frame *frame, uint64_t time_ns)
+static char *put_identifier(char *text, const struct wire_frame *frame)
 {
-    struct candump *log = context;
-    char *text = hex_put(begin_line(log, time_ns), frame->id & CAN_ID_MASK, 3);
-    *text++ = '#';
-    if (can_is_remote(frame)) {
-        *text++ = 'R';
-        *text++ = (char)('0' + frame->length);
-    }
-    end_line(log, text, frame->data, can_data_length(frame));
+    if (frame->flags & WIRE_ERROR)
+        return hex_put(text, frame->id | ERROR_FLAG, 8);
+    return hex_put(text, frame->id, frame->flags & WIRE_EXTENDED ? 8 : 3);
 }
 
-void candump_wire(void *context, const struct wire_frame *frame, uint64_t time_ns)
+/* "#", "##1" or "#R2". */
+static char *put_kind(char *text, const struct wire_frame *frame)
 {
-    struct candump *log = context;
-    bool is_long = frame->flags & (WIRE_EXTENDED | WIRE_ERROR);
-    char *text = hex_put(begin_line(log, time_ns),
-                         frame->id | (frame->flags & WIRE_ERROR ? ERROR_FLAG : 0), is_long ? 8 : 3);
     *text++ = '#';
     if (frame->flags & WIRE_FD) {
         *text++ = '#';
-        text = hex_put(
-            text,
-            (frame->flags & WIRE_RATE_SWITCH ? 1u : 0) | (frame->flags & WIRE_PASSIVE ? 2u : 0), 1);
+        *text++ = (char)('0' + (frame->flags & WIRE_RATE_SWITCH ? 1 : 0) +
+                         (frame->flags & WIRE_PASSIVE ? 2 : 0));
     }
     if (frame->flags & WIRE_REMOTE) {
         *text++ = 'R';
         *text++ = (char)('0' + frame->length);
     }
+    return text;
+}
+
+void candump_wire(void *context, const struct wire_frame *frame, uint64_t time_ns)
+{
+    struct candump *log = context;
+    char *text = put_kind(put_identifier(begin_line(log, time_ns), frame), frame);
     end_line(log, text, frame->data, frame->flags & WIRE_REMOTE ? 0 : frame->length);
+}
+
+void candump_frame(void *context, const struct can_frame *frame, uint64_t time_ns)
+{
+    const struct candump *log = context;
+    struct wire_frame wire;
+    wire_frame_from_can(&wire, frame, log->is_fd);
+    candump_wire(context, &wire, time_ns);
 }
 
 bool candump_flush(struct candump *log)

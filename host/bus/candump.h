@@ -17,6 +17,7 @@
 struct candump {
     FILE *file;
     bool failed;
+    bool is_fd; /* of ports: they speak CAN FD; false at first */
     char interface[CANDUMP_INTERFACE_MAX + 1];
     size_t interface_length;
     size_t used;

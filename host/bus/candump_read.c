@@ -79,7 +79,7 @@ static void take_remote(struct cursor *c, struct wire_frame *frame)
 
 static const char *take_bytes(struct cursor *c, struct wire_frame *frame)
 {
-    unsigned most = frame->flags & WIRE_FD ? WIRE_DATA_MAX : CAN_DATA_MAX;
+    unsigned most = frame->flags & WIRE_FD ? WIRE_DATA_MAX : CAN_CLASSIC_MAX;
     while (c->end - c->at >= 2 && frame->length < most &&
            hex_get_bytes(c->at, 1, frame->data + frame->length)) {
         frame->length++;

@@ -13,7 +13,7 @@
  */
 #include "bus/frame_bits.h"
 
-#include <string.h>
+#define SECOND_NS 1000000000u
 
 /* x^15 + x^14 + x^10 + x^8 + x^7 + x^4 + x^3 + 1, aligned to the upper 15 bits of 16. */
 #define POLYNOMIAL (0x4599u << 1)
@@ -39,12 +39,12 @@ static unsigned state_of(unsigned run, unsigned value)
     return run << 1 | value;
 }
 
-/* The bits of a byte after a state; a stuffed bit begins a run of its own value. */
-static uint8_t stuffing_of_byte(unsigned state, unsigned byte)
+/* The low bits of value after a state; a stuffed bit begins a run of its own value. */
+static uint8_t stuffing_of_bits(unsigned state, unsigned bits_of, unsigned bits)
 {
     unsigned run = state >> 1, value = state & 1, stuffed = 0;
-    for (unsigned bit = 8; bit-- > 0;) {
-        unsigned next = byte >> bit & 1;
+    while (bits-- > 0) {
+        unsigned next = bits_of >> bits & 1;
         run = next == value ? run + 1 : 1;
         value = next;
         if (run == RUN_TO_STUFF) {
@@ -61,7 +61,7 @@ void frame_bits_init(struct frame_bits *tables)
     for (unsigned byte = 0; byte < 256; byte++) {
         tables->checksum[byte] = checksum_of_byte(byte);
         for (unsigned state = 0; state < FRAME_BITS_STATES; state++)
-            tables->stuffing[state][byte] = stuffing_of_byte(state, byte);
+            tables->stuffing[state][byte] = stuffing_of_bits(state, byte, 8);
     }
 }
 
@@ -155,73 +155,108 @@ static unsigned count_standard(const struct frame_bits *tables, const struct wir
 }
 
 /*
- * Nominal and data bits: 33 + (34 + 10n) for n <= 16, 33 + (39 + 10n) above; 18 identifier bits
- * more, with their stuffing, when it is extended.
+ * CAN FD, ISO 11898-1:2015, 10.4.2; frame_levels.c has the picture. At the nominal rate start to BRS (17 bits, 36 with a
+ * 29-bit identifier), acknowledge, its delimiter, end of frame: 9; at the data rate ESI and DLC, the data, the CRC's field of 27
+ * bits up to 16 bytes and 32 above (stuff count 4, CRC 17 or 21, fixed stuff bits 6 or 7), its delimiter.
  */
-static unsigned count_fd(const struct wire_frame *frame)
+#define FD_HEADER          17u
+#define FD_HEADER_EXTENDED 36u
+#define FD_CONTROL         5u
+#define FD_END             9u
+#define FD_SHORT_MAX       16u
+#define FD_FDF             4u /* of FDF, res, BRS */
+
+static unsigned crc_field(unsigned length)
 {
-    unsigned bits = 33 + (frame->length <= 16 ? 34u : 39u) + 10u * frame->length;
-    return bits + (frame->flags & WIRE_EXTENDED ? 25 : 0) - FRAME_BITS_INTERMISSION;
+    return length <= FD_SHORT_MAX ? 27 : 32;
 }
 
-unsigned frame_bits_count_wire(const struct frame_bits *tables, const struct wire_frame *frame)
+/* SOF, identifier, the reserved bits, FDF 1, res 0, BRS. */
+static uint64_t fd_header(const struct wire_frame *frame)
+{
+    const uint64_t end = FD_FDF | (frame->flags & WIRE_RATE_SWITCH ? 1u : 0);
+    if (frame->flags & WIRE_EXTENDED)
+        return (uint64_t)(frame->id >> 18) << 24 | (uint64_t)3 << 22 |
+               (uint64_t)(frame->id & 0x3FFFFu) << 4 | end;
+    return (uint64_t)frame->id << 5 | end;
+}
+
+static unsigned fd_control(const struct wire_frame *frame)
+{
+    return (frame->flags & WIRE_PASSIVE ? 1u << 4 : 0) | wire_frame_fd_code(frame->length);
+}
+
+/* The low bits of value, one by one, behind an entry of the table. */
+static unsigned add_single_bits(unsigned entry, uint64_t value, unsigned bits)
+{
+    while (bits-- > 0)
+        entry = (entry & ~15u) + stuffing_of_bits(entry & 15u, (unsigned)(value >> bits) & 1, 1);
+    return entry;
+}
+
+/* A stuffed bit at the very end is not sent, since a fixed one follows. It would be opposite to the last. */
+static bool is_stuffed_last(unsigned entry, unsigned last)
+{
+    return (entry & 1u) != (last & 1u);
+}
+
+static struct frame_length count_fd(const struct frame_bits *tables, const struct wire_frame *frame)
+{
+    const unsigned header = frame->flags & WIRE_EXTENDED ? FD_HEADER_EXTENDED : FD_HEADER;
+    const unsigned length = wire_frame_fd_length(frame->length), control = fd_control(frame);
+    unsigned entry = add_single_bits(state_of(1, 1), fd_header(frame), header);
+    const unsigned early = entry / STUFFED_STEP;
+    entry = add_single_bits(entry, control, FD_CONTROL);
+    for (unsigned i = 0; i < length; i++)
+        entry = add_stuffing(tables, entry, frame->data[i]);
+    const unsigned last = length > 0 ? frame->data[length - 1] : control;
+    const unsigned late = entry / STUFFED_STEP - early - is_stuffed_last(entry, last);
+    const struct frame_length bits = {header + early + FD_END,
+                                      FD_CONTROL + 8u * length + late + crc_field(length) + 1u};
+    return frame->flags & WIRE_RATE_SWITCH ? bits
+                                           : (struct frame_length){bits.nominal + bits.data, 0};
+}
+
+struct frame_length frame_bits_count_wire(const struct frame_bits *tables,
+                                          const struct wire_frame *frame)
 {
     if (frame->flags & WIRE_FD)
-        return count_fd(frame);
-    return frame->flags & WIRE_EXTENDED ? count_extended(tables, frame)
-                                        : count_standard(tables, frame);
+        return count_fd(tables, frame);
+    return (struct frame_length){frame->flags & WIRE_EXTENDED ? count_extended(tables, frame)
+                                                              : count_standard(tables, frame),
+                                 0};
 }
 
-/* Bits as they are sent, with stuffing. */
-struct bit_writer {
-    uint8_t *level;
-    unsigned count, run;
-};
-
-static void put_level(struct bit_writer *writer, uint8_t level)
+struct frame_length frame_bits_count_port(const struct frame_bits *tables,
+                                          const struct can_frame *frame, bool fd)
 {
-    bool is_same = writer->count > 0 && writer->level[writer->count - 1] == level;
-    writer->run = is_same ? writer->run + 1 : 1;
-    writer->level[writer->count++] = level;
+    struct wire_frame wire;
+    if (!fd || can_is_remote(frame))
+        return (struct frame_length){frame_bits_count(tables, frame), 0};
+    wire_frame_from_can(&wire, frame, true);
+    return count_fd(tables, &wire);
 }
 
-/* The lowest bits of value, the highest of them first. */
-static void put_bits(struct bit_writer *writer, unsigned value, unsigned bits)
+/*
+ * Classical: Davis, Burns, Bril, Lukkien: Controller Area Network schedulability analysis, Real-Time Systems 35 (2007).
+ *
+ * CAN FD: of its 17 first bits the last that is stuffed behind is the 13th, since FDF, res and BRS differ from each other;
+ * ESI begins a run of its own, and nothing is stuffed behind the last of the 5 + 8n bits from it on:
+ *     nominal  17 + floor((14 - 1) / 4) + 9 + 3 = 32
+ *     data     5 + 8n + floor((5 + 8n - 2) / 4) + 27 or 32 + 1 = 33 + 10n, 38 + 10n above 16 bytes
+ * (for n = 0: 33, too). As in Bordoloi, Samii: The frame packing problem for CAN-FD, RTSS 2014, with the five bits of stuff
+ * count that ISO has added since.
+ */
+struct frame_length frame_bits_worst(unsigned length, bool fd)
 {
-    while (bits-- > 0) {
-        uint8_t level = value >> bits & 1;
-        put_level(writer, level);
-        if (writer->run == RUN_TO_STUFF)
-            put_level(writer, !level);
-    }
+    if (!fd)
+        return (struct frame_length){55 + 10 * length, 0};
+    length = wire_frame_fd_length(length);
+    return (struct frame_length){32, 6 + crc_field(length) + 10 * length};
 }
 
-/* Delimiter, acknowledge (which receivers make dominant), delimiter, seven bits of end of frame. */
-static const uint8_t end_of_frame[] = {1, 0, 1, 1, 1, 1, 1, 1, 1, 1};
-
-unsigned frame_bits_levels(const struct frame_bits *tables, const struct can_frame *frame,
-                           uint8_t level[FRAME_BITS_MAX])
+struct frame_times frame_bits_times(const struct frame_rates *rates)
 {
-    struct bit_writer writer = {.level = level};
-    unsigned header = header_of(frame);
-    unsigned checksum = 0;
-    for (unsigned shift = 24; shift > 0; shift -= 8)
-        checksum = add_checksum(tables, checksum, header >> (shift - 8));
-    put_bits(&writer, header, HEADER_BITS);
-    for (unsigned i = 0; i < can_data_length(frame); i++) {
-        checksum = add_checksum(tables, checksum, frame->data[i]);
-        put_bits(&writer, frame->data[i], 8);
-    }
-    put_bits(&writer, checksum >> 1, 15);
-    memcpy(level + writer.count, end_of_frame, sizeof end_of_frame);
-    return writer.count;
-}
-
-unsigned frame_bits_worst(unsigned length)
-{
-    /*
-     * Davis, Burns, Bril, Lukkien: Controller Area Network schedulability analysis, Real-Time
-     * Systems 35 (2007)
-     */
-    return 55 + 10 * length;
+    return (struct frame_times){(SECOND_NS + rates->nominal / 2) / rates->nominal,
+                                rates->data > 0 ? (SECOND_NS + rates->data / 2) / rates->data : 0};
 }

@@ -34,28 +34,44 @@ struct frame_bits {
 void frame_bits_init(struct frame_bits *tables);
 
 /*
- * Bit times from start of frame to the end of the frame, without intermission. frame->length <=
- * CAN_DATA_MAX.
+ * Bit times from start of frame to the end of the frame, without intermission, of a classical frame. frame->length <=
+ * CAN_CLASSIC_MAX.
  */
 unsigned frame_bits_count(const struct frame_bits *tables, const struct can_frame *frame);
 
 /*
- * The same for a frame of any kind: classical ones exactly, CAN FD ones at most, as if the nominal
- * rate were used throughout.
+ * Bit times at either rate. The rate is switched within a bit, at its sample point: to the higher one in BRS, back in the
+ * CRC delimiter. What the one has at the nominal rate the other lacks, so together they are one bit of each; here BRS counts
+ * for nominal, and the delimiter for data.
  */
-unsigned frame_bits_count_wire(const struct frame_bits *tables, const struct wire_frame *frame);
+struct frame_length {
+    unsigned nominal, data;
+};
 
-/* For a frame of 8 bytes with worst-case stuffing, without intermission. */
-#define FRAME_BITS_MAX 132
+/* The bit rates of a bus, bit/s. data: of CAN FD behind the rate switch; 0: the bus has classical frames alone. */
+struct frame_rates {
+    uint32_t nominal, data;
+};
 
-/*
- * The levels on the wire, bit by bit, stuffed bits included: 0 dominant, 1 recessive; as many as
- * frame_bits_count says. Returns how many of them, from the start, obey stuffing.
- */
-unsigned frame_bits_levels(const struct frame_bits *tables, const struct can_frame *frame,
-                           uint8_t level[FRAME_BITS_MAX]);
+/* Of a frame of any kind, exactly; without intermission. */
+struct frame_length frame_bits_count_wire(const struct frame_bits *tables,
+                                          const struct wire_frame *frame);
+/* Of a frame of a port; fd: one that speaks CAN FD. */
+struct frame_length frame_bits_count_port(const struct frame_bits *tables,
+                                          const struct can_frame *frame, bool fd);
 
-/* Bit times with worst-case stuffing and intermission: 55 + 10 length. */
-unsigned frame_bits_worst(unsigned length);
+/* With worst-case stuffing and intermission, of a data frame with an 11-bit identifier; README.md has the formulas. */
+struct frame_length frame_bits_worst(unsigned length, bool fd);
+
+/* One bit of each rate, rounded to a nanosecond; data_ns 0: there is none. */
+struct frame_times {
+    uint64_t bit_ns, data_ns;
+};
+struct frame_times frame_bits_times(const struct frame_rates *rates);
+static inline uint64_t frame_bits_ns(const struct frame_times *times,
+                                     const struct frame_length *length)
+{
+    return length->nominal * times->bit_ns + length->data * times->data_ns;
+}
 
 #endif

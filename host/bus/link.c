@@ -107,6 +107,7 @@ struct link *link_open(const char *spec, const struct link_config *config, struc
         return NULL;
     }
     link->config = *config;
+    link->config.fd = config->fd || config->data_bitrate > 0;
     (void)snprintf(link->address, sizeof link->address, "%s", spec);
     if (open_kind(link, &parts, error))
         return link;
@@ -193,16 +194,20 @@ bool link_flush(struct link *link, uint64_t until_ns)
 static bool port_send(void *context, const struct can_frame *frame)
 {
     struct wire_frame wire;
-    wire_frame_from_can(&wire, frame);
-    return link_send(context, &wire);
+    struct link *link = context;
+    wire_frame_from_can(&wire, frame, link->config.data_bitrate > 0);
+    return link_send(link, &wire);
 }
 
 static bool port_receive(void *context, struct can_frame *frame)
 {
+    const uint8_t kind = ((const struct link *)context)->config.data_bitrate > 0 ? WIRE_FD : 0;
     struct wire_frame wire;
-    while (link_receive(context, &wire))
-        if (wire_frame_to_can(&wire, frame))
+    while (link_receive(context, &wire)) {
+        const uint8_t others = wire.flags & WIRE_REMOTE ? 0 : WIRE_FD & ~kind;
+        if (!(wire.flags & others) && wire_frame_to_can(&wire, frame))
             return true;
+    }
     return false;
 }
 

@@ -236,13 +236,26 @@ static const struct link_kind_ops ops = {
     .close = slcan_close,
 };
 
+#define MEGABIT        1000000u
+#define DATA_MBIT_ELSE 5u
+
+/* "Y5\r": data of CAN FD at 5 Mbit/s. */
+static void write_data_rate(const struct link *link, char text[8])
+{
+    const uint32_t given = link->config.data_bitrate / MEGABIT;
+    text[0] = '\0';
+    if (link->config.fd)
+        (void)snprintf(text, 8, "Y%u\r",
+                       given > 0 && given <= 9 ? (unsigned)given : DATA_MBIT_ELSE);
+}
+
 /*
  * An adapter that was left open is closed first; the carriage returns end whatever it had got half
  * of.
  */
 static bool greet_adapter(struct link *link, struct slcan_link *s, struct link_error *error)
 {
-    char hello[32];
+    char hello[32], data_rate[8];
     char digit = slcan_bitrate_digit(link->config.bitrate);
     if (digit == 0) {
         (void)link_refuse(
@@ -253,7 +266,8 @@ static bool greet_adapter(struct link *link, struct slcan_link *s, struct link_e
         error->is_environment = false;
         return false;
     }
-    (void)snprintf(hello, sizeof hello, "\r\rC\rS%c\r%sO\r", digit, link->config.fd ? "Y5\r" : "");
+    write_data_rate(link, data_rate);
+    (void)snprintf(hello, sizeof hello, "\r\rC\rS%c\r%sO\r", digit, data_rate);
     reply(s, hello);
     s->channel_open = true;
     return true;

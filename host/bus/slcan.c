@@ -18,16 +18,16 @@ static char letter_of(uint8_t flags)
 /* DLC of a CAN FD frame: 9 ... 15 stand for 12, 16, 20, 24, 32, 48, 64. */
 static unsigned dlc_of(uint8_t length)
 {
-    unsigned dlc = length <= CAN_DATA_MAX ? length : CAN_DATA_MAX;
-    for (unsigned bytes = CAN_DATA_MAX; bytes < length; dlc++)
+    unsigned dlc = length <= CAN_CLASSIC_MAX ? length : CAN_CLASSIC_MAX;
+    for (unsigned bytes = CAN_CLASSIC_MAX; bytes < length; dlc++)
         bytes = wire_frame_fd_length(bytes + 1);
     return dlc;
 }
 
 static uint8_t length_of(unsigned dlc)
 {
-    uint8_t length = (uint8_t)(dlc <= CAN_DATA_MAX ? dlc : CAN_DATA_MAX);
-    for (unsigned i = CAN_DATA_MAX; i < dlc; i++)
+    uint8_t length = (uint8_t)(dlc <= CAN_CLASSIC_MAX ? dlc : CAN_CLASSIC_MAX);
+    for (unsigned i = CAN_CLASSIC_MAX; i < dlc; i++)
         length = wire_frame_fd_length(length + 1u);
     return length;
 }
@@ -82,7 +82,7 @@ bool slcan_read(const char *line, size_t length, struct wire_frame *frame)
         return false;
     if (frame->id > (extended ? 0x1FFFFFFFu : 0x7FFu))
         return false;
-    if (dlc > CAN_DATA_MAX && !(frame->flags & WIRE_FD))
+    if (dlc > CAN_CLASSIC_MAX && !(frame->flags & WIRE_FD))
         return false;
     frame->length = length_of(dlc);
     if (frame->flags & WIRE_REMOTE)

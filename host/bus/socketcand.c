@@ -129,7 +129,7 @@ static bool take_length(struct words *words, struct wire_frame *frame)
         length = 10 * length + (unsigned)(word.text[i] - '0');
     }
     frame->length = (uint8_t)length;
-    return length <= (frame->flags & WIRE_FD ? WIRE_DATA_MAX : CAN_DATA_MAX);
+    return length <= (frame->flags & WIRE_FD ? WIRE_DATA_MAX : CAN_CLASSIC_MAX);
 }
 
 static bool take_fd_flags(struct words *words, struct wire_frame *frame)
@@ -209,7 +209,7 @@ bool socketcand_read_frame(const char *text, size_t length, struct wire_frame *f
     if (!skip_time(&words) || !take_data(&words, frame, &count) || !is_fd_length(count))
         return false;
     frame->length = (uint8_t)count;
-    return count <= (frame->flags & WIRE_FD ? WIRE_DATA_MAX : CAN_DATA_MAX);
+    return count <= (frame->flags & WIRE_FD ? WIRE_DATA_MAX : CAN_CLASSIC_MAX);
 }
 
 size_t socketcand_find(const char *bytes, size_t count, size_t *begin)

@@ -2,32 +2,45 @@
 
 #include <string.h>
 
-void wire_frame_from_can(struct wire_frame *wire, const struct can_frame *can)
+void wire_frame_from_can(struct wire_frame *wire, const struct can_frame *can, bool fd)
 {
+    const unsigned length = can_data_length(can);
     wire->id = can->id & CAN_ID_MASK;
-    wire->flags = can_is_remote(can) ? WIRE_REMOTE : 0;
-    wire->length = can->length;
-    memcpy(wire->data, can->data, can_data_length(can));
+    wire->flags = can_is_remote(can) ? WIRE_REMOTE : fd ? WIRE_KIND_FD : 0;
+    wire->length = can_is_remote(can) ? can->length : wire_frame_fd_length(length);
+    memcpy(wire->data, can->data, length);
+    if (!can_is_remote(can))
+        memset(wire->data + length, 0, wire->length - length);
 }
 
 bool wire_frame_to_can(const struct wire_frame *wire, struct can_frame *can)
 {
-    if ((wire->flags & ~WIRE_REMOTE) != 0 || wire->id > CAN_ID_MASK || wire->length > CAN_DATA_MAX)
+    if ((wire->flags & (WIRE_EXTENDED | WIRE_ERROR)) != 0 || wire->id > CAN_ID_MASK ||
+        wire->length > CAN_DATA_MAX)
         return false;
-    can->id = (uint16_t)(wire->id | (wire->flags != 0 ? CAN_REMOTE : 0));
+    can->id = (uint16_t)(wire->id | (wire->flags & WIRE_REMOTE ? CAN_REMOTE : 0));
     can->length = wire->length;
     memset(can->data, 0, sizeof can->data);
     memcpy(can->data, wire->data, can_data_length(can));
     return true;
 }
 
+/* Of codes above CAN_CLASSIC_MAX. */
+static const uint8_t long_lengths[] = {12, 16, 20, 24, 32, 48, WIRE_DATA_MAX};
+#define LONG_LENGTHS (sizeof long_lengths - 1)
+
+unsigned wire_frame_fd_code(unsigned length)
+{
+    unsigned i = 0;
+    if (length <= CAN_CLASSIC_MAX)
+        return length;
+    while (i < LONG_LENGTHS && long_lengths[i] < length)
+        i++;
+    return CAN_CLASSIC_MAX + 1 + i;
+}
+
 uint8_t wire_frame_fd_length(unsigned bytes)
 {
-    static const uint8_t lengths[] = {12, 16, 20, 24, 32, 48};
-    if (bytes <= CAN_DATA_MAX)
-        return (uint8_t)bytes;
-    for (unsigned i = 0; i < sizeof lengths; i++)
-        if (bytes <= lengths[i])
-            return lengths[i];
-    return WIRE_DATA_MAX;
+    unsigned code = wire_frame_fd_code(bytes);
+    return (uint8_t)(code <= CAN_CLASSIC_MAX ? code : long_lengths[code - CAN_CLASSIC_MAX - 1]);
 }

@@ -1,6 +1,6 @@
 /*
  * A CAN frame of any kind, as adapters, sockets and logs know it. The firmware itself speaks
- * classical frames with 11-bit identifiers only (hal/can.h); everything else passes by it.
+ * data frames with 11-bit identifiers, all of one kind, and remote ones (hal/can.h); everything else passes by it.
  */
 #ifndef TAKT_BUS_WIRE_FRAME_H
 #define TAKT_BUS_WIRE_FRAME_H
@@ -34,12 +34,16 @@ struct wire_listener {
     void *context;
 };
 
-void wire_frame_from_can(struct wire_frame *wire, const struct can_frame *can);
+/* Of a port that speaks CAN FD: with these flags, filled up with zeros to a length that there is. A remote frame never is. */
+#define WIRE_KIND_FD (WIRE_FD | WIRE_RATE_SWITCH)
+void wire_frame_from_can(struct wire_frame *wire, const struct can_frame *can, bool fd);
 
 /* False: the frame is none that the firmware knows. */
 bool wire_frame_to_can(const struct wire_frame *wire, struct can_frame *can);
 
 /* The least FD length that holds so many bytes; WIRE_DATA_MAX above it. */
 uint8_t wire_frame_fd_length(unsigned bytes);
+/* The code of such a length, 0 ... 15. */
+unsigned wire_frame_fd_code(unsigned length);
 
 #endif

@@ -52,6 +52,7 @@ bool data_sheet_set_machine(struct virtual_drives_config *config, const struct m
                             struct dictionary sheet[DATA_SHEETS_MAX])
 {
     config->count = 0;
+    config->is_fd = setup->machine.can_data_bitrate > 0;
     for (unsigned i = 0; i < AXIS_COUNT; i++) {
         if (machine_axis_is_on_can(&setup->machine.axis[i]) &&
             !add_drive(config, setup, i, &sheet[i]))

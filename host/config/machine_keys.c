@@ -195,6 +195,8 @@ const struct machine_key machine_keys[] = {
 
     COUNT(SECTION_BUS, "bitrate", KEY_UINT32, IN_SETUP(machine.can_bitrate), BUS_BITRATE_MIN, BUS_BITRATE_MAX,
           "CAN, bit/s"),
+    COUNT(SECTION_BUS, "data_bitrate", KEY_UINT32, IN_SETUP(machine.can_data_bitrate), 0, BUS_DATA_BITRATE_MAX,
+          "CAN FD: every frame has its data at this rate, bit/s, and targets of all drives share one; 0: classical CAN"),
     COUNT(SECTION_BUS, "heartbeat_ms", KEY_UINT32, IN_SETUP(machine.heartbeat_ms), 0, 20000,
           "period of the heartbeats of drives and controller; three missed are an alarm; 0: none"),
     COUNT(SECTION_BUS, "boot_timeout_ms", KEY_UINT32, IN_SETUP(machine.boot_timeout_ms), 1, 600000,

@@ -1,6 +1,7 @@
 #include "config/machine_setup.h"
 
 #include "base/maths.h"
+#include "config/bus_advice.h"
 #include "drive/drives.h"
 #include "machine/machine_check.h"
 
@@ -67,7 +68,7 @@ void machine_setup_set_default(struct machine_setup *setup)
 
 __attribute__((format(printf, 1, 2))) static const char *problem(const char *format, ...)
 {
-    static _Thread_local char text[256];
+    static _Thread_local char text[512];
     va_list arguments;
 
     va_start(arguments, format);
@@ -93,19 +94,30 @@ static unsigned count_drives(const struct machine *machine)
     return machine_drive_nodes(machine, node);
 }
 
+static bool predict_load(const struct machine *machine, struct drives_load *load)
+{
+    const struct drives_rates rates = machine_get_rates(machine);
+
+    return drives_predict_whole_load(count_drives(machine), machine->io, machine_io_count(machine),
+                                     &rates, machine->cycle_us, load);
+}
+
 static const char *check_bus(const struct machine *machine)
 {
+    char advice[BUS_ADVICE_MAX + 1];
+    char rate[32] = "";
     struct drives_load load;
-    unsigned drives = count_drives(machine);
 
-    if (drives_predict_whole_load(drives, machine->io, machine_io_count(machine),
-                                  machine->can_bitrate, machine->cycle_us, &load))
+    if (predict_load(machine, &load))
         return NULL;
+    bus_advice_write(machine, advice);
+    if (machine->can_data_bitrate > 0)
+        (void)snprintf(rate, sizeof rate, " (data %u)", (unsigned)machine->can_data_bitrate);
     return problem(
         "the bus cannot carry a cycle: %u drives take %u of %u bits at worst, load %.1f %%, at %u "
-        "bit/s and %u us",
-        drives, (unsigned)load.bits, (unsigned)load.capacity_bits, load.percent,
-        (unsigned)machine->can_bitrate, (unsigned)machine->cycle_us);
+        "bit/s%s and %u us; %s",
+        count_drives(machine), (unsigned)load.bits, (unsigned)load.capacity_bits, load.percent,
+        (unsigned)machine->can_bitrate, rate, (unsigned)machine->cycle_us, advice);
 }
 
 /* What the controller itself refuses; of the bus with the figures that a machine file has. */
@@ -189,12 +201,16 @@ const char *machine_setup_check(const struct machine_setup *setup)
     return wrong;
 }
 
+struct frame_rates machine_setup_get_rates(const struct machine *machine)
+{
+    return (struct frame_rates){machine->can_bitrate, machine->can_data_bitrate};
+}
+
 double machine_setup_predict_load_percent(const struct machine *machine)
 {
     struct drives_load load;
 
-    (void)drives_predict_whole_load(count_drives(machine), machine->io, machine_io_count(machine),
-                                    machine->can_bitrate, machine->cycle_us, &load);
+    (void)predict_load(machine, &load);
     return load.percent;
 }
 

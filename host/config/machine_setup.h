@@ -4,6 +4,7 @@
 #ifndef TAKT_HOST_MACHINE_SETUP_H
 #define TAKT_HOST_MACHINE_SETUP_H
 
+#include "bus/frame_bits.h"
 #include "config/chain_text.h"
 #include "deviation/deviation.h"
 #include "dialect/dialect.h"
@@ -81,6 +82,9 @@ const char *machine_setup_chain(const struct machine_setup *setup, struct unit_c
 struct virtual_spindle_config machine_setup_get_spindle(const struct machine_setup *setup);
 
 /* Bus load with worst-case stuffing of a cycle's frames, percent. */
+/* Of the bus. */
+struct frame_rates machine_setup_get_rates(const struct machine *machine);
+
 double machine_setup_predict_load_percent(const struct machine *machine);
 
 #endif

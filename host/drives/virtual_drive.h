@@ -34,6 +34,7 @@ struct virtual_drive_config {
     uint32_t cycle_us; /* between two targets at power-on (object 60C2); 0: a millisecond */
     uint32_t boot_us;  /* from a reset to the boot-up message */
     uint32_t sdo_us;   /* from a request to its answer */
+    bool is_fd;        /* its bus is CAN FD: PDOs of up to 64 bytes */
     bool
         is_nameless; /* it has no node id before it gets one by LSS; node is then its serial number alone */
     const struct dictionary *dictionary; /* must stay; NULL: takt's own */

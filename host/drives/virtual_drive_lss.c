@@ -42,7 +42,7 @@ static uint32_t identity(struct virtual_drive *drive, unsigned part)
 
 static void answer(struct virtual_drive *drive, unsigned command, uint32_t value)
 {
-    struct can_frame frame = {.id = LSS_ANSWER_COB_ID, .length = CAN_DATA_MAX};
+    struct can_frame frame = {.id = LSS_ANSWER_COB_ID, .length = CAN_CLASSIC_MAX};
     frame.data[0] = (uint8_t)command;
     little_endian_write32(frame.data + 1, value);
     (void)virtual_drive_send(drive, INJECT_MUTE_SDO, &frame);
@@ -147,7 +147,7 @@ void virtual_drive_take_lss(struct virtual_drive *drive, const struct can_frame 
     const uint8_t *data = frame->data;
     const uint32_t value = little_endian_read32(data + 1);
     const unsigned command = data[0];
-    if (frame->length != CAN_DATA_MAX)
+    if (frame->length != CAN_CLASSIC_MAX)
         return;
     if (command == LSS_SWITCH_GLOBAL)
         drive->lss.configures = data[1] == 1;

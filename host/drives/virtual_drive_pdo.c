@@ -23,6 +23,12 @@
 #define TPDO_PARAMETERS 0x1800
 #define TPDO_MAPPING    0x1A00
 
+/* Bytes of it. */
+static unsigned longest_frame(const struct virtual_drive *drive)
+{
+    return drive->config.is_fd ? CAN_DATA_MAX : CAN_CLASSIC_MAX;
+}
+
 /* Data types as indices: places an RPDO skips. */
 static bool is_dummy(const struct virtual_drive *drive, uint16_t index)
 {
@@ -98,7 +104,7 @@ static void add_mapped(struct virtual_drive *drive, struct drive_pdo *pdo, uint3
     const struct object_row *row;
     uint32_t code;
     if (!find_mapped(drive, entry, direction, &row, &code) ||
-        pdo->length + (entry & 0xFF) / 8 > CAN_DATA_MAX)
+        pdo->length + (entry & 0xFF) / 8 > longest_frame(drive))
         return;
     pdo->row[pdo->count] = row;
     if (row && !(row->flags & OBJECT_FIXED))
@@ -463,7 +469,7 @@ static uint32_t check_count(const struct virtual_drive *drive,
             return code;
         bits += mapping->entry[i] & 0xFF;
     }
-    return bits > 8 * CAN_DATA_MAX ? SDO_ABORT_PDO_LENGTH : SDO_ABORT_NONE;
+    return bits > 8 * longest_frame(drive) ? SDO_ABORT_PDO_LENGTH : SDO_ABORT_NONE;
 }
 
 /* A PDO whose identifier cannot be written is always valid. */

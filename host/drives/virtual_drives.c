@@ -37,6 +37,7 @@ static void on_frame(void *context, const struct can_frame *frame, uint64_t time
 void virtual_drives_init(struct virtual_drives *set, struct bus *bus,
                          const struct virtual_drives_config *config)
 {
+    const unsigned group = bus_is_fd(bus) ? TARGET_PDO_FD : TARGET_PDO_PAIR;
     uint8_t node[VIRTUAL_DRIVES_MAX];
     start(set, config);
     for (unsigned i = 0; i < set->count; i++)
@@ -45,9 +46,11 @@ void virtual_drives_init(struct virtual_drives *set, struct bus *bus,
         struct virtual_drive *drive = &set->drive[i];
         struct pdo target;
         if (i < set->motors)
-            target_pdo_set(&target, node, set->motors, i);
+            target_pdo_set(&target, node, set->motors, i, group);
         struct can_port port = bus_attach(bus, &(struct bus_listener){on_frame, drive});
-        virtual_drive_init(drive, &config->drive[i], i < set->motors ? &target : NULL, &port);
+        struct virtual_drive_config own = config->drive[i];
+        own.is_fd = bus_is_fd(bus);
+        virtual_drive_init(drive, &own, i < set->motors ? &target : NULL, &port);
         virtual_drive_boot(drive);
     }
 }
@@ -78,8 +81,10 @@ void virtual_drives_open(struct virtual_drives *set, const struct can_port *port
     set->port = *port;
     for (unsigned i = 0; i < set->count; i++) {
         set->way[i] = (struct virtual_drives_port){set, i};
-        const struct can_port own = {send_own, receive_nothing, &set->way[i]};
-        virtual_drive_init(&set->drive[i], &config->drive[i], NULL, &own);
+        const struct can_port port_own = {send_own, receive_nothing, &set->way[i]};
+        struct virtual_drive_config own = config->drive[i];
+        own.is_fd = config->is_fd;
+        virtual_drive_init(&set->drive[i], &own, NULL, &port_own);
     }
 }
 

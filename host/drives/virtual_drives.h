@@ -20,6 +20,7 @@
 
 struct virtual_drives_config {
     unsigned count; /* 0 ... VIRTUAL_DRIVES_MAX */
+    bool is_fd;     /* of an outside bus: it is CAN FD */
     struct virtual_drive_config drive
         [VIRTUAL_DRIVES_MAX]; /* in the machine's order: it makes the pairs; I/O nodes come last */
 };

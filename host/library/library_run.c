@@ -261,8 +261,8 @@ static bool can_be_set(const struct takt_inputs *inputs)
 
 static bool set_overrides(struct simulation *s, const struct takt_inputs *inputs)
 {
-    const bool good = simulation_set_overrides(s, inputs->feed_override_percent,
-                                               inputs->rapid_override_percent);
+    const bool good =
+        simulation_set_overrides(s, inputs->feed_override_percent, inputs->rapid_override_percent);
 
     if (!good)
         message_command_error("overrides %g %% and %g %%: the feed override is 0 ... 120 %%, the "

@@ -136,7 +136,8 @@ static bool make_all_eds(struct drive_service *service)
 
 static enum command_status open_link(struct drive_service *service)
 {
-    struct link_config config = {.bitrate = service->config->bitrate};
+    struct link_config config = {.bitrate = service->config->rates.nominal,
+                                 .data_bitrate = service->config->rates.data};
     struct link_error error;
 
     service->link = link_open(service->config->bus, &config, &error);

@@ -9,6 +9,7 @@
 #ifndef TAKT_HOST_DRIVE_SERVICE_H
 #define TAKT_HOST_DRIVE_SERVICE_H
 
+#include "bus/frame_bits.h"
 #include "bus/link.h"
 #include "cli/status.h"
 #include "drives/virtual_drives.h"
@@ -19,7 +20,7 @@
 
 struct drive_service_config {
     const char *bus; /* bus/link.h */
-    uint32_t bitrate;
+    struct frame_rates rates;
     uint32_t cycle_us;
     bool is_paced;
     const struct virtual_drives_config *drives;

@@ -5,6 +5,7 @@
 #include "canopen/pdo.h"
 #include "canopen/sdo.h"
 #include "canopen/sync.h"
+#include "config/machine_setup.h"
 
 #include <string.h>
 
@@ -73,6 +74,7 @@ static void add_states(struct bus_plan *plan, const struct drives *drives)
     add_message(plan, "heartbeat", id, HEARTBEAT_LENGTH, BUS_PLAN_STATES);
     if (drives_are_guarding(drives)) {
         add_message(plan, "guarding", id + 1, 0, BUS_PLAN_STATES);
+        plan->message[plan->count - 1].is_remote = true;
         add_message(plan, "its answer", id + 2, HEARTBEAT_LENGTH, BUS_PLAN_STATES);
     }
 }
@@ -93,20 +95,20 @@ void bus_plan_set(struct bus_plan *plan, const struct machine *machine, const st
     unsigned count = drives_get_pdos(drives, pdo);
 
     memset(plan, 0, sizeof *plan);
-    plan->bitrate = machine->can_bitrate;
+    plan->rates = machine_setup_get_rates(machine);
     plan->cycle_ns = (uint64_t)machine->cycle_us * 1000;
     add_message(plan, "SYNC", SYNC_COB_ID, 0, BUS_PLAN_ALONE);
     for (unsigned i = 0; i < count; i++)
         add_pdo(plan, &pdo[i]);
     add_errors(plan);
     if (drives_have_probed(drives)) {
-        add_message(plan, "SDO answer", SDO_RESPONSE_FUNCTION + NODE_MIN, CAN_DATA_MAX,
+        add_message(plan, "SDO answer", SDO_RESPONSE_FUNCTION + NODE_MIN, CAN_CLASSIC_MAX,
                     BUS_PLAN_SDO);
-        add_message(plan, "SDO request", SDO_REQUEST_FUNCTION + NODE_MIN, CAN_DATA_MAX,
+        add_message(plan, "SDO request", SDO_REQUEST_FUNCTION + NODE_MIN, CAN_CLASSIC_MAX,
                     BUS_PLAN_SDO);
     }
     add_states(plan, drives);
-    (void)bus_response_predict(plan->message, plan->count, plan->bitrate, plan->worst_ns);
+    (void)bus_response_predict(plan->message, plan->count, &plan->rates, plan->worst_ns);
     level_groups(plan);
 }
 

@@ -23,7 +23,7 @@
 enum bus_plan_group { BUS_PLAN_ALONE, BUS_PLAN_ERRORS, BUS_PLAN_SDO, BUS_PLAN_STATES };
 
 struct bus_plan {
-    uint32_t bitrate; /* bit/s */
+    struct frame_rates rates;
     uint64_t cycle_ns;
     unsigned count;
     struct bus_message message[BUS_PLAN_MAX];

@@ -1,5 +1,7 @@
 #include "simulation/drives_table.h"
 
+#include "canopen/sdo.h"
+
 #include <string.h>
 
 /* In the order of enum drives_given_up. */
@@ -160,14 +162,23 @@ const char *drives_table_remedy(const struct diagnostic *fault)
     case TAKT_ERROR_DRIVE_MODES:
         return "choose another firmware or set-up of the drive; home_order = 0 for one that cannot "
                "home";
+    case TAKT_ERROR_DRIVE_NOT_ENABLED:
+        return "look at its power stage, enable and safe torque off (STO) inputs, and at its "
+               "manual on what it waits for";
+    case TAKT_ERROR_DRIVE_SILENT:
+        return "look at its cable and power; if it has never sent one, at its first TPDO (1800, "
+               "1A00) and at SYNC (1005)";
     case TAKT_ERROR_DRIVE_MODE:
         return "look at the set-up of the drive, objects 6060 and 6502";
     case TAKT_ERROR_DRIVE_REFUSES:
         return "set it up with the maker's tool; homing is home_order, home_method and "
                "home_offset_mm, ramps (6083, 6084) must not be slower than max_acceleration_mm_s2";
     case TAKT_ERROR_DRIVE_UNMAPPED:
-        return "map it with the maker's tool into a PDO that is valid and of transmission type 1, "
-               "and store that";
+        return sdo_says_absent((uint32_t)fault->value)
+                   ? "choose a drive, or with the maker's tool a mode or a firmware, that has a "
+                     "target position (607A) or velocity (60FF) and 6041 and 6064 for its PDOs"
+                   : "map it with the maker's tool into a PDO that is valid and of transmission "
+                     "type 1, and store that";
     case TAKT_ERROR_DRIVE_SHARES:
         return "give each drive a PDO with an identifier of its own with the maker's tool, or "
                "drive_is_set_up = 0";

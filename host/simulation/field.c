@@ -102,7 +102,9 @@ static bool open_inside(struct field *field, const struct machine_setup *setup)
 {
     struct virtual_drives_config drives;
 
-    (void)bus_init(&field->bus, setup->machine.can_bitrate); /* checked with the machine */
+    const struct frame_rates rates = machine_setup_get_rates(&setup->machine);
+
+    (void)bus_init_rates(&field->bus, &rates); /* checked with the machine */
     field->port = bus_attach(&field->bus, NULL);
     if (!data_sheet_set_machine(&drives, setup, field->sheet))
         return false;
@@ -116,7 +118,10 @@ static void count_frame(void *context, const struct wire_frame *frame, uint64_t 
 
     if (!(frame->flags & WIRE_ERROR)) {
         traffic->frames++;
-        traffic->bits += frame_bits_count_wire(&traffic->tables, frame) + FRAME_BITS_INTERMISSION;
+        struct frame_length length = frame_bits_count_wire(&traffic->tables, frame);
+
+        length.nominal += FRAME_BITS_INTERMISSION;
+        traffic->busy_ns += frame_bits_ns(&traffic->times, &length);
     }
     if (traffic->next.on_frame != NULL)
         traffic->next.on_frame(traffic->next.context, frame, time_ns);
@@ -125,7 +130,8 @@ static void count_frame(void *context, const struct wire_frame *frame, uint64_t 
 static enum command_status open_outside(struct field *field, const struct machine_setup *setup,
                                         const char *bus)
 {
-    struct link_config config = {.bitrate = setup->machine.can_bitrate};
+    const struct frame_rates rates = machine_setup_get_rates(&setup->machine);
+    struct link_config config = {.bitrate = rates.nominal, .data_bitrate = rates.data};
     struct link_error error;
     uint8_t nodes[MACHINE_NODES_MAX];
     const unsigned count = machine_drive_nodes(&setup->machine, nodes);
@@ -136,6 +142,7 @@ static enum command_status open_outside(struct field *field, const struct machin
         return error.is_environment ? STATUS_ENVIRONMENT : STATUS_INPUT;
     }
     frame_bits_init(&field->traffic.tables);
+    field->traffic.times = frame_bits_times(&rates);
     link_observe(field->link, &(struct wire_listener){count_frame, &field->traffic});
     bus_return_init(&field->way_back, bus, &config);
     lockstep_init(&field->lockstep, field->link, field->cycle_ns, nodes, count);
@@ -168,7 +175,6 @@ enum command_status field_open(struct field *field, const struct machine_setup *
 
     memset(field, 0, sizeof *field);
     field->cycle_ns = (uint64_t)setup->machine.cycle_us * 1000;
-    field->bit_ns = 1000000000u / setup->machine.can_bitrate;
     field->script = options->script;
     field->returns = options->returns;
     start_steppers(field, setup);
@@ -305,6 +311,5 @@ double field_get_load_percent(const struct field *field)
         return bus_load_percent(&field->bus);
     if (field->cycles == 0)
         return 0;
-    return 100.0 * (double)(field->traffic.bits * field->bit_ns) /
-           (double)(field->cycles * field->cycle_ns);
+    return 100.0 * (double)field->traffic.busy_ns / (double)(field->cycles * field->cycle_ns);
 }

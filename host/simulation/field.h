@@ -25,7 +25,8 @@
 struct field_traffic {
     struct frame_bits tables;
     uint64_t frames;
-    uint64_t bits;             /* intermissions included */
+    struct frame_times times;
+    uint64_t busy_ns;          /* intermissions included */
     struct wire_listener next; /* sees them too */
 };
 
@@ -47,7 +48,6 @@ struct field {
     struct can_port port;
     uint64_t cycles; /* ended */
     uint64_t cycle_ns;
-    uint64_t bit_ns;
     bool is_paced;
     struct pace pace;
     struct pace_permission permission;
@@ -105,8 +105,8 @@ void field_observe_outside(struct field *field, const struct wire_listener *list
 
 uint64_t field_get_frames(const struct field *field);
 /*
- * Percent of the cycles' time; of an outside bus: as if its frames took what the machine's bit rate
- * says.
+ * Percent of the cycles' time; of an outside bus: as if its frames took what the machine's bit rates
+ * say.
  */
 double field_get_load_percent(const struct field *field);
 

@@ -17,6 +17,7 @@ void frame_buffer_attach(struct frame_buffer *buffer, struct bus *bus, struct ca
 
     buffer->count = 0;
     buffer->log = log;
+    log->is_fd = bus_is_fd(bus);
     bus_observe(bus, &listener);
 }
 

@@ -272,7 +272,7 @@ static enum command_status serve(const struct drives_command *command)
         return STATUS_ENVIRONMENT;
     status = drive_service_run(&(struct drive_service_config){
         .bus = options->bus,
-        .bitrate = command->setup.machine.can_bitrate,
+        .rates = machine_setup_get_rates(&command->setup.machine),
         .cycle_us = command->setup.machine.cycle_us,
         .is_paced = options->realtime,
         .drives = &command->drives,

@@ -201,7 +201,7 @@ static bool port_send(void *context, const struct can_frame *frame)
 
     if (t->own_count == REMOTE_FRAMES_MAX)
         return false;
-    t->own[t->own_count++] = *frame;
+    remote_frame_set(&t->own[t->own_count++], frame);
     return true;
 }
 
@@ -211,7 +211,7 @@ static bool port_receive(void *context, struct can_frame *frame)
 
     if (t->taken == t->given.frames)
         return false;
-    *frame = t->given.frame[t->taken++];
+    remote_frame_get(&t->given.frame[t->taken++], frame);
     return true;
 }
 
@@ -225,14 +225,14 @@ struct can_port target_get_port(struct target *t)
 bool target_begin_cycle(struct target *t, const struct inputs *inputs, const double *rise_k)
 {
     struct remote_inputs *given = &t->given;
+    struct can_frame frame;
 
     given->go_on = 1;
     given->inputs = *inputs;
     memcpy(given->rise_k, rise_k, sizeof given->rise_k);
     given->frames = 0;
-    while (given->frames < REMOTE_FRAMES_MAX &&
-           t->bus.receive(t->bus.context, &given->frame[given->frames]))
-        given->frames++;
+    while (given->frames < REMOTE_FRAMES_MAX && t->bus.receive(t->bus.context, &frame))
+        remote_frame_set(&given->frame[given->frames++], &frame);
     t->taken = 0;
     t->own_count = 0;
     if (wire_write(t->to, given,
@@ -250,7 +250,7 @@ static bool read_outputs(struct target *t)
            wire_read(t->from, done->frame, done->frames * sizeof done->frame[0]);
 }
 
-static bool is_same_frame(const struct can_frame *a, const struct can_frame *b)
+static bool is_same_frame(const struct remote_frame *a, const struct remote_frame *b)
 {
     return a->id == b->id && a->length == b->length && memcmp(a->data, b->data, a->length) == 0;
 }
@@ -319,6 +319,8 @@ static void add_cost(struct target *t)
 
 bool target_end_cycle(struct target *t, const struct controller *here)
 {
+    struct can_frame frame;
+
     if (!read_outputs(t))
         return fail(t, "QEMU has ended in the middle of the run");
     if (!is_same(t, here) && t->differences++ == 0)
@@ -326,7 +328,8 @@ bool target_end_cycle(struct target *t, const struct controller *here)
     t->cycles++;
     add_cost(t);
     for (uint32_t i = 0; i < t->done.frames; i++) {
-        if (!t->bus.send(t->bus.context, &t->done.frame[i]))
+        remote_frame_get(&t->done.frame[i], &frame);
+        if (!t->bus.send(t->bus.context, &frame))
             return fail(t, "the bus has no room for the frames of the image");
     }
     return true;

@@ -51,7 +51,7 @@ static void init_master(uint16_t heartbeat_ms)
     struct drives_config config = {
         .count = DRIVES,
         .cycle_us = 1000,
-        .bitrate = 1000000,
+        .rates = {1000000, 0},
         .controller_node = 127,
         .heartbeat_ms = heartbeat_ms,
         .boot_timeout_cycles = 500,

@@ -40,6 +40,12 @@ HABITS = {
     "no modes told": (Habits(absent=[0x6502]), {"modes"}),
     "no mode shown": (Habits(absent=[0x6061]), {"mode_display"}),
     "boots after 1.2 s": (Habits(boots_after=1.2), set()),
+    "starts itself, and takes no mapping then": (Habits(starts_itself=True), set()),
+    "in fault at power-on, reset by the fourth edge": (Habits(resets=4), set()),
+    "a brake that opens 0.3 s after operation enabled": (Habits(brake=300), set()),
+    "no bit 12": (Habits(tells_following=False), set()),
+    "emergencies with the boot-up": (Habits(emergencies=40), set()),
+    "200 ms from each controlword to its state": (Habits(slow=200), set()),
 }
 
 

@@ -32,7 +32,7 @@ static unsigned count_bits(const struct frame_bits *tables, const struct wire_fr
     struct can_frame can;
     if (wire_frame_to_can(frame, &can))
         return frame_bits_count(tables, &can);
-    return frame_bits_count_wire(tables, frame);
+    return frame_bits_count_wire(tables, frame).nominal;
 }
 
 int main(int argc, char **argv)

@@ -45,12 +45,19 @@ class Habits:
     its objects, access, limits, dummies and PDOs are those of that."""
 
     def __init__(self, absent=(), read_only=(), not_mappable=(), limits=(), entries=8, maps=None, dummies=True, pdos=2,
-                 modes=0xA0, boots_after=0.0, code=0x06090030, sheet=None):
+                 modes=0xA0, boots_after=0.0, code=0x06090030, sheet=None, starts_itself=False, resets=0, brake=0,
+                 tells_following=True, emergencies=0, slow=0):
         self.sheet = sheet
         self.absent, self.read_only, self.not_mappable = set(absent), set(read_only), set(not_mappable)
         self.limits = dict(limits)  # highest value of an object
         self.entries, self.maps, self.dummies, self.pdos = entries, maps, dummies, pdos
         self.modes, self.boots_after, self.code = modes, boots_after, code
+        self.starts_itself = starts_itself  # operational from its boot-up on, where it takes no mapping
+        self.resets = resets  # edges of fault reset that it needs after power-on
+        self.brake = brake  # SYNCs from "operation enabled" until it follows
+        self.tells_following = tells_following  # bit 12 of the statusword
+        self.emergencies = emergencies  # sent with its boot-up
+        self.slow = slow  # SYNCs from a controlword to its state
 
     def has(self, index, sub):
         return index not in self.absent and (index, sub) not in self.absent
@@ -143,6 +150,7 @@ class Drive:
         self.node.add_write_callback(self.on_write)
         self.network, self.number = network, number
         self.state, self.mode, self.controlword = "off", 0, 0
+        self.resets, self.opening, self.waits, self.asked = 0, self.habits.brake, 0, 0
         self.at = self.goal = at
         self.velocity = 0  # increments per second
         self.home_at = None  # increments the home has on the motor's own scale
@@ -165,6 +173,8 @@ class Drive:
         value, habits = int.from_bytes(data, "little"), self.habits
         if habits.sheet is not None:
             check_by_sheet(self.node.object_dictionary, index, subindex, value)
+        if habits.starts_itself and 0x1400 <= index < 0x1C00 and self.node.nmt.state == "OPERATIONAL":
+            raise canopen.SdoAbortedError(0x08000022)
         is_entry = (0x1600 <= index < 0x1800 or 0x1A00 <= index < 0x1C00) and subindex > 0
         if index in habits.read_only or (index, subindex) in habits.read_only:
             raise canopen.SdoAbortedError(0x06010002)
@@ -204,9 +214,12 @@ class Drive:
     def reset(self):
         for index in [i for i in self.node.data_store if 0x1000 <= i < 0x2000]:
             del self.node.data_store[index]
-        self.state, self.guarded.toggle = "off", 0
+        self.guarded.toggle, self.resets = 0, self.habits.resets
+        self.state = "fault" if self.resets else "off"
         self.node.nmt.send_command(130)  # sends the boot-up message
-        self.node.nmt.send_command(128)
+        self.node.nmt.send_command(1 if self.habits.starts_itself else 128)
+        for number in range(self.habits.emergencies):
+            self.node.emcy.send(0x3220 if number % 2 == 0 else 0, 0x04)
 
     def connect(self):
         """Operational: PDOs are what the master has written into the dictionary."""
@@ -223,8 +236,11 @@ class Drive:
         self.node.data_store.setdefault(0x6061, {})[0] = struct.pack("<b", mode)
 
     def set_control(self, word):
-        before, self.controlword = self.controlword, word
-        self.obey(before)
+        if self.habits.slow and word != self.asked:
+            self.asked, self.waits = word, self.habits.slow
+        if self.waits == 0:
+            before, self.controlword = self.controlword, word
+            self.obey(before)
 
     def on_rpdo(self, pdo):
         values = {var.index: var.raw for var in pdo.map}
@@ -240,7 +256,8 @@ class Drive:
         word = self.controlword
         if self.state == "fault":
             if word & 0x80 and not before & 0x80:
-                self.state = "off"
+                self.resets -= 1
+                self.state = "fault" if self.resets > 0 else "off"
         elif not word & 0x02:
             self.state = "off"
         elif not word & 0x04:
@@ -257,13 +274,20 @@ class Drive:
         if self.mode == 6:
             word |= 0x0400 if self.homing_syncs == 0 else 0
             word |= 0x1000 if self.is_homed else 0
-        elif self.state == "enabled" and (self.mode != 7 or self.controlword & 0x10):
+        elif self.is_following() and self.habits.tells_following:
             word |= 0x1000
         return word
+
+    def is_following(self):
+        return self.state == "enabled" and self.opening == 0 and (self.mode != 7 or self.controlword & 0x10)
 
     def on_sync(self, *_):
         if self.node.nmt.state != "OPERATIONAL":
             return
+        if self.waits > 0:
+            self.waits -= 1
+            if self.waits == 0:
+                self.set_control(self.asked)
         self.move()
         if self.silent_after is not None and len(self.targets) >= self.silent_after:
             return
@@ -278,6 +302,11 @@ class Drive:
         if self.state == "stopping":
             self.state = "off"
         if self.state != "enabled":
+            self.opening = self.habits.brake
+            return
+        if self.opening > 0:
+            self.opening -= 1
+            self.pending = None
             return
         if self.mode == 6:
             self.home()

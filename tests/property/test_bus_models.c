@@ -83,10 +83,10 @@ static void record_frame(void *context, const struct can_frame *frame, uint64_t 
     record->seen[record->count++] = (struct seen){*frame, time_ns};
 }
 
-static void run_bus(struct bus *bus, bool is_full, struct record *record)
+static void run_bus(struct bus *bus, bool is_full, uint32_t data_bitrate, struct record *record)
 {
     struct can_port port[PORTS];
-    TEST_ASSERT_TRUE(bus_init(bus, 1000000));
+    TEST_ASSERT_TRUE(bus_init_rates(bus, &(struct frame_rates){1000000, data_bitrate}));
     memset(record, 0, sizeof *record);
     for (unsigned i = 0; i < PORTS; i++)
         port[i] = bus_attach(bus, NULL);
@@ -139,7 +139,7 @@ static void load(struct transmitter *t, const struct can_frame *frame)
     count = put(plain, count, frame->id, 11);
     count = put(plain, count, 0, 3);
     count = put(plain, count, frame->length, 4);
-    for (unsigned i = 0; i < frame->length; i++)
+    for (unsigned i = 0; i < frame->length && i < CAN_CLASSIC_MAX; i++)
         count = put(plain, count, frame->data[i], 8);
     count = put(plain, count, naive_checksum(plain, count), 15);
     memset(t, 0, sizeof *t);
@@ -247,28 +247,48 @@ static void expect_same_received(unsigned port)
         TEST_ASSERT_EQUAL_HEX16(fast.port[port].received[i].id, full.port[port].received[i].id);
 }
 
+static void expect_same_buses(const struct record *by_fast, const struct record *by_full)
+{
+    expect_same(by_fast, by_full);
+    TEST_ASSERT_EQUAL_MEMORY(&fast.counts, &full.counts, sizeof fast.counts);
+    TEST_ASSERT_EQUAL_MEMORY(fast.response_max_ns, full.response_max_ns,
+                             sizeof fast.response_max_ns);
+    for (unsigned i = 0; i < PORTS; i++)
+        expect_same_received(i);
+}
+
 static void test_fast_path_full_model_and_single_bits_agree_to_the_nanosecond(void)
 {
     static struct record by_fast, by_full, by_bits;
     for (unsigned round = 0; round < ROUNDS; round++) {
         state = round;
         make_traffic();
-        run_bus(&fast, false, &by_fast);
-        run_bus(&full, true, &by_full);
+        run_bus(&fast, false, 0, &by_fast);
+        run_bus(&full, true, 0, &by_full);
         run_bits(&by_bits);
         expect_same(&by_bits, &by_fast);
-        expect_same(&by_fast, &by_full);
-        TEST_ASSERT_EQUAL_MEMORY(&fast.counts, &full.counts, sizeof fast.counts);
-        TEST_ASSERT_EQUAL_MEMORY(fast.response_max_ns, full.response_max_ns,
-                                 sizeof fast.response_max_ns);
-        for (unsigned i = 0; i < PORTS; i++)
-            expect_same_received(i);
+        expect_same_buses(&by_fast, &by_full);
+    }
+}
+
+static void test_with_can_fd_fast_path_and_full_model_agree_to_the_nanosecond(void)
+{
+    static const uint32_t rates[] = {1000000, 2000000, 5000000, 8000000};
+    static struct record by_fast, by_full;
+    for (unsigned round = 0; round < ROUNDS; round++) {
+        state = round;
+        make_traffic();
+        run_bus(&fast, false, rates[round % 4], &by_fast);
+        run_bus(&full, true, rates[round % 4], &by_full);
+        TEST_ASSERT_EQUAL_UINT(sendings, by_fast.count);
+        expect_same_buses(&by_fast, &by_full);
     }
 }
 
 int main(void)
 {
     UNITY_BEGIN();
+    RUN_TEST(test_with_can_fd_fast_path_and_full_model_agree_to_the_nanosecond);
     RUN_TEST(test_fast_path_full_model_and_single_bits_agree_to_the_nanosecond);
     return UNITY_END();
 }

@@ -82,7 +82,7 @@ static void init(uint64_t seed)
     struct drives_config config = {
         .count = DRIVES,
         .cycle_us = 1000,
-        .bitrate = 1000000,
+        .rates = {1000000, 0},
         .controller_node = 127,
         .heartbeat_ms = 100,
         .boot_timeout_cycles = 100,

@@ -204,6 +204,25 @@ def no_modes(sheet, _):
     drop(sheet, "6502")
 
 
+def no_modes_and_no_target(sheet, _):
+    no_modes(sheet, None)
+    no_target_position(sheet, None)
+
+
+def mapped_all_the_same(sheet, _):
+    """The sheet maps it, and says that it cannot be mapped."""
+    sheet["607A"]["PDOMapping"] = "0"
+
+
+def other_sync(sheet, _):
+    """By an identifier that somebody has stored."""
+    sheet["1005"]["DefaultValue"] = "0x81"
+
+
+def no_sync_object(sheet, _):
+    drop(sheet, "1005", "1019")
+
+
 def no_mode_display(sheet, _):
     drop(sheet, "6061")
     map_default(sheet, "1A02", [])
@@ -262,6 +281,10 @@ HABITS = {
     "no target position in a PDO": (no_target_position, {"pair", "position"}),
     "1000 of another type": (no_type, {"type"}),
     "6502 absent": (no_modes, {"modes"}),
+    "6502 absent, no target position in a PDO": (no_modes_and_no_target, {"modes", "pair", "position"}),
+    "607A mapped, though not mappable": (mapped_all_the_same, set()),
+    "SYNC by another identifier": (other_sync, set()),
+    "1005 absent": (no_sync_object, set()),
     "6061 absent": (no_mode_display, {"mode_display"}),
     "identifiers read-only": (fixed_identifiers, {"pair"}),
     "two PDOs": (two_pdos, set()),
@@ -272,7 +295,7 @@ HABITS = {
 
 
 # Habits of PDOs: a drive has one of them.
-OF_PDOS = ("no target position in a PDO", "one entry a PDO", "one entry in the first PDOs", "fixed mapping", "fixed mapping without a mode", "6060 not mappable", "6040 not mappable",
+OF_PDOS = ("no target position in a PDO", "6502 absent, no target position in a PDO", "one entry a PDO", "one entry in the first PDOs", "fixed mapping", "fixed mapping without a mode", "6060 not mappable", "6040 not mappable",
            "identifiers read-only", "two PDOs", "one PDO")
 
 

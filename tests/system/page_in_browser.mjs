@@ -16,7 +16,7 @@ const mistakes = [];
 
 async function open(size) {
   const [width, height, colorScheme] = SIZES[size];
-  const page = await (await browser.newContext({ viewport: { width, height }, colorScheme })).newPage();
+  const page = await (await browser.newContext({ viewport: { width, height }, colorScheme, hasTouch: size === "phone" })).newPage();
   page.setDefaultTimeout(Number(process.env.PATIENCE_MS || 60000));
   page.on("pageerror", (error) => mistakes.push(error.stack));
   page.on("console", (message) => { if (["error", "warning"].includes(message.type())) mistakes.push(message.text()); });
@@ -140,6 +140,26 @@ const steps = {
     await page.keyboard.up("PageUp");
     await state(page, "idle");
     await page.uncheck("#jogkeys");
+  },
+  async "a finger on a phone jogs until it is lifted"(page) {
+    const other = await open("phone");
+    await tab(other, "Jog");
+    const button = other.locator("[data-jog='Y+']"), touches = await other.context().newCDPSession(other);
+    await button.scrollIntoViewIfNeeded();
+    const place = await button.boundingBox(), before = await value(page, "POSITION_Y");
+    const finger = { x: place.x + place.width / 2, y: place.y + place.height / 2 };
+    await touches.send("Input.dispatchTouchEvent", { type: "touchStart", touchPoints: [finger] });
+    await until(page, "POSITION_Y", before + 0.5, 1000);
+    await touches.send("Input.dispatchTouchEvent", { type: "touchEnd", touchPoints: [] });
+    await state(page, "idle");
+    check(await other.evaluate(() => document.documentElement.scrollWidth <= innerWidth), "nothing is wider than the phone");
+    for (const title of ["Offsets", "Tools"]) {
+      await tab(other, title);
+      const box = other.locator("[role=tabpanel]:not([hidden]) .scroll");
+      check(await box.evaluate((table) => table.scrollWidth <= table.clientWidth), `${title} are as wide as the phone`);
+    }
+    await other.context().close();
+    check(await value(page, "ALARM") === 0, "no alarm");
   },
   async "homing"(page) {
     await page.click("#home");

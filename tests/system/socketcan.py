@@ -90,8 +90,22 @@ def check_log_against_candump():
     t.check(sorted(theirs[start : start + len(ours)]) == sorted(ours), "the log has the frames candump has seen")
 
 
+def check_fd():
+    """Frames of CAN FD, to drives of another process: the setpoints and reports of the embedded bus."""
+    machine = t.write("fd.ini", "[bus]\ndata_bitrate = 5000000\n" + "".join(f"[axis {a}]\ndrive_node = {n}\n" for n, a in enumerate("XYZ", 1)))
+    status, embedded, err = bus_pair.run_controller("embedded", "--machine", machine)
+    t.check(status == 0, "the embedded bus runs CAN FD", err)
+    drives = bus_pair.Drives("socketcan:vcan0", "--machine", machine)
+    status, summary, err = bus_pair.run_controller("vcan", "--machine", machine, "--bus", "socketcan:vcan0", "--bus-log", "fd.log")
+    drives.stop()
+    if t.check(status == 0, "CAN FD on an interface of the kernel", err):
+        bus_pair.compare("vcan", embedded, summary)
+        t.check(all("##1" in frame for frame in frames("fd.log")), "every frame switches its rate")
+
+
 def main():
     check_frames(sys.argv[1])
+    check_fd()
     bus_pair.check_pair("socketcan", "socketcan:vcan0", "")
     check_log()
     check_log_against_candump()

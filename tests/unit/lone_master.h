@@ -9,6 +9,7 @@
 #include "canopen/emcy.h"
 #include "canopen/little_endian.h"
 #include "canopen/nmt.h"
+#include "canopen/target_pdo.h"
 #include "drive/drives.h"
 #include "fake_nodes.h"
 #include "unity.h"
@@ -52,7 +53,7 @@ static inline struct drives_config three_axes(void)
     struct drives_config config = {
         .count = 3,
         .cycle_us = 1000,
-        .bitrate = 1000000,
+        .rates = {1000000, 0},
         .controller_node = 127,
         .boot_timeout_cycles = 100,
         .start_timeout_cycles = START_CYCLES,

@@ -124,7 +124,7 @@ void setUp(void)
     config = (struct drives_config){
         .count = DRIVES,
         .cycle_us = 1000,
-        .bitrate = 1000000,
+        .rates = {1000000, 0},
         .controller_node = 127,
         .heartbeat_ms = 100,
         .boot_timeout_cycles = 500,

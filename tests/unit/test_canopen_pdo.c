@@ -38,7 +38,7 @@ static unsigned random_mapping(uint32_t *seed, uint32_t objects[PDO_MAPPED_MAX])
     unsigned count = 0, length = 0;
     for (;;) {
         unsigned bytes = 1u << lcg(seed) % 3;
-        if (length + bytes > CAN_DATA_MAX)
+        if (length + bytes > CAN_CLASSIC_MAX)
             return count;
         objects[count] = PDO_MAPPED(0x2000 + count, 0, bytes * 8);
         count++;
@@ -63,16 +63,15 @@ static void test_any_mapping_unpacks_what_it_packed(void)
     }
 }
 
-static void test_a_mapping_that_is_too_long_or_not_of_bytes_is_refused_and_empty(void)
+static void test_a_mapping_of_too_many_or_not_of_bytes_is_refused_and_empty(void)
 {
     static const uint32_t nine[] = {CIA402_TARGET_POSITION, CIA402_TARGET_POSITION, CIA402_MODE};
     static const uint32_t bit[] = {PDO_MAPPED(0x2000, 0, 1)};
     static const uint32_t wide[] = {PDO_MAPPED(0x2000, 0, 64)};
     struct pdo_mapping mapping;
-    TEST_ASSERT_FALSE(pdo_map(&mapping, nine, 3));
+    TEST_ASSERT_FALSE(pdo_map(&mapping, bit, 1));
     TEST_ASSERT_EQUAL_INT(0, mapping.count);
     TEST_ASSERT_EQUAL_INT(0, mapping.length);
-    TEST_ASSERT_FALSE(pdo_map(&mapping, bit, 1));
     TEST_ASSERT_FALSE(pdo_map(&mapping, wide, 1));
     TEST_ASSERT_FALSE(pdo_map(&mapping, nine, PDO_MAPPED_MAX + 1));
     TEST_ASSERT_TRUE(pdo_map(&mapping, nine, 2));
@@ -108,8 +107,8 @@ static void test_two_drives_read_their_own_target_from_one_frame(void)
     struct pdo first, second;
     struct can_frame frame;
     uint32_t value[PDO_MAPPED_MAX];
-    target_pdo_set(&first, nodes, 2, 0);
-    target_pdo_set(&second, nodes, 2, 1);
+    target_pdo_set(&first, nodes, 2, 0, TARGET_PDO_PAIR);
+    target_pdo_set(&second, nodes, 2, 1, TARGET_PDO_PAIR);
     TEST_ASSERT_EQUAL_HEX16(0x304, first.cob_id);
     TEST_ASSERT_EQUAL_HEX16(0x304, second.cob_id);
     pdo_pack(&first, targets, &frame);
@@ -124,6 +123,20 @@ static void test_two_drives_read_their_own_target_from_one_frame(void)
     TEST_ASSERT_EQUAL_HEX32(targets[1], value[1]);
 }
 
+/* Six targets to a frame, each drive with its own; no length that CAN FD does not have. */
+static void test_with_can_fd_the_drives_of_a_machine_share_a_frame(void)
+{
+    static const uint8_t nodes[] = {7, 2, 9, 4, 5, 6};
+    for (unsigned count = 1; count <= 6; count++)
+        for (unsigned i = 0; i < count; i++) {
+            struct pdo pdo;
+            target_pdo_set(&pdo, nodes, count, i, TARGET_PDO_FD);
+            TEST_ASSERT_EQUAL_HEX16(0x307, pdo.cob_id);
+            TEST_ASSERT_EQUAL_INT(4 * count, pdo.mapping.length);
+            TEST_ASSERT_EQUAL_INT(4 * i, pdo_offset(&pdo.mapping, CIA402_TARGET_POSITION));
+        }
+}
+
 static void test_drives_are_paired_in_their_order_and_a_last_one_is_alone(void)
 {
     static const uint8_t nodes[] = {7, 5, 3, 2, 1};
@@ -132,7 +145,7 @@ static void test_drives_are_paired_in_their_order_and_a_last_one_is_alone(void)
     static const uint8_t lengths[] = {8, 8, 8, 8, 4};
     for (unsigned i = 0; i < 5; i++) {
         struct pdo pdo;
-        target_pdo_set(&pdo, nodes, 5, i);
+        target_pdo_set(&pdo, nodes, 5, i, TARGET_PDO_PAIR);
         TEST_ASSERT_EQUAL_HEX16(cob_ids[i], pdo.cob_id);
         TEST_ASSERT_EQUAL_INT(offsets[i], pdo_offset(&pdo.mapping, CIA402_TARGET_POSITION));
         TEST_ASSERT_EQUAL_INT(lengths[i], pdo.mapping.length);
@@ -145,10 +158,11 @@ int main(void)
     UNITY_BEGIN();
     RUN_TEST(test_objects_are_packed_one_after_the_other_least_significant_byte_first);
     RUN_TEST(test_any_mapping_unpacks_what_it_packed);
-    RUN_TEST(test_a_mapping_that_is_too_long_or_not_of_bytes_is_refused_and_empty);
+    RUN_TEST(test_a_mapping_of_too_many_or_not_of_bytes_is_refused_and_empty);
     RUN_TEST(test_a_frame_may_be_longer_than_its_mapping_but_not_shorter);
     RUN_TEST(test_an_object_is_found_at_its_byte);
     RUN_TEST(test_two_drives_read_their_own_target_from_one_frame);
+    RUN_TEST(test_with_can_fd_the_drives_of_a_machine_share_a_frame);
     RUN_TEST(test_drives_are_paired_in_their_order_and_a_last_one_is_alone);
     return UNITY_END();
 }

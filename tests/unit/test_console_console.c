@@ -275,6 +275,17 @@ static void test_settings_are_read_and_only_those_of_reports_are_set(void)
     ask("$Q", "error:3");
 }
 
+static void test_it_tells_what_it_has_been_built_with_in_the_letters_of_grbl(void)
+{
+    forget();
+    ask("$I", "ok");
+    expect("[VER:1.1h.takt-test:");
+    expect("[OPT:VM*$IL,127,1023]"); /* not what is free just now */
+    ask("$RST=$", "error:3");
+    ask("$RST=*", "error:3");
+    ask("$I=mill", "error:3");
+}
+
 static void test_offsets_are_told_and_set_to_zero(void)
 {
     ask("G10 L2 P2 X12.5 Y-3", "ok");
@@ -415,6 +426,7 @@ int main(void)
     RUN_TEST(test_overrides_are_those_of_the_panel);
     RUN_TEST(test_the_spindle_stands_in_a_hold_and_turns_before_the_axes_go_on);
     RUN_TEST(test_settings_are_read_and_only_those_of_reports_are_set);
+    RUN_TEST(test_it_tells_what_it_has_been_built_with_in_the_letters_of_grbl);
     RUN_TEST(test_offsets_are_told_and_set_to_zero);
     RUN_TEST(test_homing_is_answered_when_the_axes_are_there);
     RUN_TEST(test_sleep_ends_by_a_reset);

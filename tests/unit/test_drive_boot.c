@@ -217,7 +217,7 @@ static void test_periods_of_any_length_are_told_as_value_and_power_of_ten(void)
     for (unsigned i = 0; i < sizeof periods / sizeof periods[0]; i++) {
         setUp();
         config.cycle_us = periods[i][0];
-        config.bitrate = 10000000;
+        config.rates.nominal = 10000000;
         config.count = 1;
         run_start();
         assert_told(1, SDO_OBJECT(0x60C2, 1), periods[i][1]);
@@ -507,13 +507,15 @@ static void test_a_bus_that_cannot_carry_the_cycle_is_refused_with_figures_befor
     config.count = 4;
     config.axis[3] = config.axis[2];
     config.axis[3].node = 4;
-    config.bitrate = 500000;
+    config.rates.nominal = 500000;
     drives_init(&drives, &config);
     TEST_ASSERT_EQUAL_INT(DRIVES_FAULTED, drives_get_state(&drives));
     TEST_ASSERT_EQUAL_INT(TAKT_ERROR_BUS_OVERLOAD, drives_get_fault(&drives)->code);
     assert_text("the bus cannot carry a cycle: it takes 965 of 500 bits at worst, 193 percent");
     TEST_ASSERT_EQUAL_UINT(0, frames_sent);
 }
+
+static const struct drives_rates megabit = {1000000, 0};
 
 /* 55 + 10 n bits a frame: SYNC, pairs of targets, a status of each drive, a TPDO2 and a heartbeat. */
 static void test_the_load_is_that_of_the_worst_stuffed_frames(void)
@@ -522,13 +524,13 @@ static void test_the_load_is_that_of_the_worst_stuffed_frames(void)
                                     55 + 135 + 95 + 345 + 180, 785 + 180};
     struct drives_load load;
     for (unsigned count = 1; count <= 4; count++) {
-        TEST_ASSERT_TRUE(drives_predict_load(count, 1000000, 1000, &load));
+        TEST_ASSERT_TRUE(drives_predict_load(count, &megabit, 1000, &load));
         TEST_ASSERT_EQUAL_UINT32(bits[count - 1], load.bits);
         TEST_ASSERT_EQUAL_UINT32(1000, load.capacity_bits);
         TEST_ASSERT_TRUE(load.percent == bits[count - 1] / 10.0);
     }
-    TEST_ASSERT_FALSE(drives_predict_load(6, 1000000, 1000, &load));
-    TEST_ASSERT_TRUE(drives_predict_load(6, 1000000, 2000, &load));
+    TEST_ASSERT_FALSE(drives_predict_load(6, &megabit, 1000, &load));
+    TEST_ASSERT_TRUE(drives_predict_load(6, &megabit, 2000, &load));
 }
 
 int main(void)

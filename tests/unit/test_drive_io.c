@@ -366,8 +366,9 @@ static void test_analogue_outputs_load_every_cycle(void)
     const struct io_wiring plain = {.node = IO_NODE, .input = {IO_PROGRAM}};
     struct io_wiring wired = plain;
     wired.analogue[0] = 0x21;
-    (void)drives_predict_whole_load(3, &plain, 1, 1000000, 1000, &without);
-    (void)drives_predict_whole_load(3, &wired, 1, 1000000, 1000, &with);
+    (void)drives_predict_whole_load(3, &plain, 1, &(struct drives_rates){1000000, 0}, 1000,
+                                    &without);
+    (void)drives_predict_whole_load(3, &wired, 1, &(struct drives_rates){1000000, 0}, 1000, &with);
     TEST_ASSERT_EQUAL_UINT32(without.bits + 55 + 10 * 4, with.bits);
 }
 

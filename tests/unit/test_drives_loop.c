@@ -31,7 +31,7 @@ static void init_loop(unsigned count, uint32_t bitrate, double start_mm)
     struct drives_config config = {
         .count = count,
         .cycle_us = 1000,
-        .bitrate = 1000000,
+        .rates = {1000000, 0},
         .controller_node = 127,
         .heartbeat_ms = 100,
         .boot_timeout_cycles = 500,
@@ -224,7 +224,8 @@ static void assert_fits(unsigned count)
 {
     struct point setpoint = {{0}};
     struct drives_load predicted;
-    TEST_ASSERT_TRUE(drives_predict_load(count, 1000000, 1000, &predicted));
+    TEST_ASSERT_TRUE(
+        drives_predict_load(count, &(struct drives_rates){1000000, 0}, 1000, &predicted));
     init_loop(count, 1000000, 0);
     start(&setpoint);
     for (unsigned k = 0; k < CYCLES; k++) {

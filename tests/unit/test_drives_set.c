@@ -56,7 +56,7 @@ void setUp(void)
     virtual_drives_set_default(&drives_config, DRIVES);
     master_config = (struct drives_config){.count = DRIVES,
                                            .cycle_us = 1000,
-                                           .bitrate = 1000000,
+                                           .rates = {1000000, 0},
                                            .controller_node = 127,
                                            .heartbeat_ms = 100,
                                            .boot_timeout_cycles = 500,

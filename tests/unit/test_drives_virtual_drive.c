@@ -43,7 +43,7 @@ static void init_drive(double following_error_window_mm)
     drive_plant_set_default(&config.plant);
     config.plant.start_mm = 2.5;
     config.plant.following_error_window_mm = following_error_window_mm;
-    target_pdo_set(&target, nodes, 1, 0);
+    target_pdo_set(&target, nodes, 1, 0, TARGET_PDO_PAIR);
     virtual_drive_init(&drive, &config, &target, &port);
     virtual_drive_boot(&drive);
 }

@@ -31,13 +31,13 @@ class Runner:
         self.kept = kept
 
     def _path(self, given: Any) -> Any:
-        there = isinstance(given, str) and "\n" not in given and (self.folder / given).exists()
+        there = isinstance(given, (str, Path)) and "\n" not in str(given) and (self.folder / given).exists()
         return self.folder / given if there else given
 
     def __call__(self, program: Any, *, verify: bool = True, **options: Any) -> Any:
         import takt
 
-        paths = {"machine", "inject", "overrides", "probe", "tools", "parameters", "plan"}
+        paths = {"machine", "inject", "overrides", "rapid_overrides", "probe", "tools", "parameters", "plan", "subroutines"}
         given = {name: self._path(value) if name in paths else value for name, value in options.items()}
         result = takt.run(self._path(program), **given)
         if verify and not result.held:

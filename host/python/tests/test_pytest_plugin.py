@@ -26,6 +26,22 @@ def test_a_marker_gives_the_run(pytester):
     """).assert_outcomes(passed=1)
 
 
+def test_paths_are_those_beside_the_test(pytester):
+    pytester.mkdir("sub").joinpath("part.ngc").write_text(GOOD)
+    pytester.path.joinpath("sub", "test_it.py").write_text("""
+import pathlib
+import pytest
+@pytest.mark.takt("part.ngc")
+def test_word(takt_run):
+    assert takt_run.held
+@pytest.mark.takt(pathlib.Path("part.ngc"))
+def test_path(takt_run):
+    assert takt_run.held
+""")
+    words = ["-p", "takt.pytest_plugin", "-p", "no:cacheprovider", "--strict-markers"]
+    pytester.runpytest_inprocess(*words).assert_outcomes(passed=2)
+
+
 def test_a_broken_run_fails(pytester):
     text = """
         import pytest

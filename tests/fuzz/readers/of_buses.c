@@ -123,7 +123,7 @@ static void open_master(struct drives *drives)
     struct drives_config config = {
         .count = DRIVES,
         .cycle_us = 1000,
-        .bitrate = 1000000,
+        .rates = {1000000, 0},
         .controller_node = 127,
         .heartbeat_ms = 100,
         .boot_timeout_cycles = 100,

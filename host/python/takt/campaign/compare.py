@@ -17,6 +17,10 @@ LIMIT_PART = 1e-3
 LIMIT_NEAR = 1 - 1e-3
 #: Rows before and after, and whether the scenario has faults.
 Judge = Callable[[Mapping[str, Any], Mapping[str, Any], bool], tuple[str, ...]]
+#: An error is larger when it is by more than this part of it, and by more than a thousandth of a millimetre.
+ERROR_PART = 0.1
+ERROR_MM = 1e-3
+ERRORS = ("following_error_mm", "path_error_mm", "landing_error_mm")
 RATIOS = ("velocity_ratio", "acceleration_ratio", "jerk_ratio")
 
 
@@ -43,6 +47,9 @@ def worse_of(before: Mapping[str, Any], after: Mapping[str, Any], has_faults: bo
     for name in RATIOS:
         if after[name] > max(before[name] + LIMIT_PART, LIMIT_NEAR + LIMIT_PART):
             said.append(f"{name.replace('_ratio', '')} {100 * after[name]:.2f} % of the limit")
+    for name in ERRORS:
+        if after[name] > before[name] * (1 + ERROR_PART) + ERROR_MM:
+            said.append(f"{name[:-3].replace('_', ' ')} {after[name]:.6f} mm instead of {before[name]:.6f} mm")
     return tuple(said)
 
 

@@ -21,8 +21,8 @@ AHEAD = 3
 #: Workers that a scenario may end before it is given up.
 DEATHS = 3
 #: s between two looks at what has ended, and looks until the workers are counted.
-LOOK_S = 0.02
-LOOKS = 500
+LOOK_S = 0.05
+LOOKS = 200
 
 
 #: Of Dask's own: what its workers do all the time beside the tasks, and how many deaths of workers a task survives.
@@ -190,7 +190,7 @@ def connect(scheduler: str | None, workers: int) -> Any:
     if scheduler is not None:
         return Client(scheduler, timeout="60s")
     cluster = LocalCluster(
-        n_workers=workers, threads_per_worker=1, processes=True, dashboard_address=None, silence_logs=50
+        n_workers=workers, threads_per_worker=1, processes=True, dashboard_address=":0", silence_logs=50
     )
     return Client(cluster)
 
