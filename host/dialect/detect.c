@@ -1,6 +1,7 @@
 /*
  * What a program is written for. Only what LinuxCNC cannot read counts, so that a program that it reads is never read as
- * another dialect; names in comments choose where that leaves several.
+ * another dialect, and not what is a mistake as likely (H without G43, G96 without S, G53 before any motion, T1.5): those are
+ * read where something else has told the dialect. Names in comments choose where that leaves several.
  */
 #include "dialect/dialect.h"
 #include "dialect/difference.h"
@@ -268,8 +269,6 @@ static void look_at_motion(struct look *k)
     line_look_for_motion(l, &motion, &other);
     if (!motion && !other && d->ended_cycle && line_has_axis(l) && line_is_plain(l))
         note(k, INDUSTRY, NULL);
-    if ((!d->moves || d->ended_cycle) && line_is_bare_machine(l))
-        note(k, INDUSTRY, line_find_code(l, 'g', 530));
     d->ended_cycle = line_ends_cycle(l) || (d->ended_cycle && !motion);
     if (!motion && !other && !d->moves && d->bare_line == 0 && line_has_axis(l) &&
         line_is_plain(l)) {
@@ -301,8 +300,6 @@ static void look_at_unused(struct look *k)
     struct line *l = &k->line;
     struct line_word *p = line_find(l, 'p', 0);
     struct line_word *s = line_find(l, 's', 0);
-    struct line_word *t = line_find(l, 't', 0);
-    struct line_word *h = line_find(l, 'h', 0);
 
     for (size_t i = 0; i < sizeof cycles / sizeof cycles[0]; i++) {
         if (p != NULL && line_find_code(l, 'g', cycles[i]) != NULL)
@@ -315,15 +312,9 @@ static void look_at_unused(struct look *k)
         note(k, BIT(DIALECT_FANUC) | BIT(DIALECT_HAAS), line_find_code(l, 'g', 40));
     if (p != NULL && line_find_code(l, 'g', 80) != NULL)
         note(k, BIT(DIALECT_FANUC) | BIT(DIALECT_HAAS), p);
-    if (h != NULL && line_find_code(l, 'g', 100) == NULL && line_find_code(l, 'g', 430) == NULL &&
-        line_find_code(l, 'g', 432) == NULL && line_find_code(l, 'g', 760) == NULL &&
-        line_find_code(l, 'g', 370) == NULL && line_is_plain(l))
-        note(k, BIT(DIALECT_FANUC) | BIT(DIALECT_HAAS), h);
     if ((p == NULL && line_find_code(l, 'm', 980) != NULL && line_find(l, 'q', 0) != NULL) ||
         turning_tells(l))
         note(k, BIT(DIALECT_FANUC) | BIT(DIALECT_HAAS), NULL);
-    if (s == NULL && line_find_code(l, 'g', 960) != NULL)
-        note(k, BIT(DIALECT_FANUC) | BIT(DIALECT_HAAS), line_find_code(l, 'g', 960));
     if (l->words > 1 && l->word[0].letter == 'n' && line_find(l, 'n', 1) != NULL)
         note(k, BIT(DIALECT_GRBL), line_find(l, 'n', 1));
     if (line_find_code(l, 'g', 430) != NULL && line_find_code(l, 'g', 410) == NULL &&
@@ -331,8 +322,6 @@ static void look_at_unused(struct look *k)
         note(k, BIT(DIALECT_FANUC) | BIT(DIALECT_HAAS), line_find(l, 'd', 0));
     if (line_unit(l) != NULL)
         note(k, INDUSTRY, line_unit(l));
-    if (t != NULL && t->is_number && t->has_point && t->value != floor(t->value))
-        note(k, BIT(DIALECT_FANUC), t);
     if (s != NULL && line_find(l, 's', (unsigned)(s - l->word) + 1) != NULL)
         note(k, BIT(DIALECT_GRBL), s);
 }
