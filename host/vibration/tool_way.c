@@ -9,6 +9,8 @@ static const struct point *kept(const struct tool_way *w, uint64_t n)
 
 void tool_way_add(struct tool_way *w, const struct point *commanded)
 {
+    if (w->count > 0 && point_is_same(kept(w, w->count - 1), commanded))
+        return; /* standing is no way: the tool would be looked for in it */
     w->kept[w->count % TOOL_WAY_KEPT] = *commanded;
     w->count++;
 }

@@ -56,6 +56,13 @@ static void test_positions_fit_the_drives_32_bits(void)
 }
 
 /* X = 500 mm, t = 1 ms: 5e-12 X / t^2 = 0.0025, 1e-12 X / t^3 = 0.5. */
+static void test_data_of_can_fd_are_as_fast_as_the_rest(void)
+{
+    machine.can_data_bitrate = machine.can_bitrate / 2;
+    expect(TAKT_ERROR_MACHINE_DATA_RATE,
+           "data_bitrate 500000 is below bitrate: data of CAN FD are as fast at least");
+}
+
 static void test_limits_stand_above_the_rounding_of_setpoints(void)
 {
     axis_y()->max_acceleration_mm_s2 = 0.0024;
@@ -184,6 +191,7 @@ int main(void)
     RUN_TEST(test_a_gantry_has_a_second_drive_on_can_and_an_alarm);
     RUN_TEST(test_a_travel_has_two_ends_and_zero_between_them);
     RUN_TEST(test_positions_fit_the_drives_32_bits);
+    RUN_TEST(test_data_of_can_fd_are_as_fast_as_the_rest);
     RUN_TEST(test_limits_stand_above_the_rounding_of_setpoints);
     RUN_TEST(test_steps_come_no_faster_than_the_drive_takes_them);
     RUN_TEST(test_every_node_has_its_own_number);

@@ -184,6 +184,17 @@ static void test_a_corner_is_measured_from_both_of_its_sides(void)
                               tool_way_rms_mm(&way) * tool_way_rms_mm(&way));
 }
 
+static void test_a_long_standstill_does_not_lose_the_tool(void)
+{
+    for (int k = 0; k < 3 * TOOL_WAY_KEPT; k++)
+        add(0, 0);
+    for (int k = 0; k < 200; k++) {
+        add(k, 0);
+        measure(k, 0.125);
+    }
+    TEST_ASSERT_DOUBLE_WITHIN(1e-12, 0.125, way.max_mm);
+}
+
 static void test_a_tool_that_is_left_behind_is_measured_from_the_oldest_point(void)
 {
     for (int k = 0; k < 3 * TOOL_WAY_KEPT; k++)
@@ -203,6 +214,7 @@ int main(void)
     RUN_TEST(test_modes_that_make_no_sense_are_told_with_their_axis);
     RUN_TEST(test_what_is_behind_along_the_way_does_not_count);
     RUN_TEST(test_a_corner_is_measured_from_both_of_its_sides);
+    RUN_TEST(test_a_long_standstill_does_not_lose_the_tool);
     RUN_TEST(test_a_tool_that_is_left_behind_is_measured_from_the_oldest_point);
     return UNITY_END();
 }
