@@ -415,7 +415,8 @@ static struct pace fastest(const struct route *r, const struct order *order,
  * The order along a piece, and whose feed is its: at each place of it the curve is on some motion of that feed or more. Its
  * first place from which there is no way on, or 0.
  */
-static unsigned follow(struct window *w, const struct route *r, unsigned piece, struct order *order)
+static unsigned follow_piece(struct window *w, const struct route *r, unsigned piece,
+                             struct order *order)
 {
     const struct look look = look_of(w, r, piece);
     struct order_chord chord = {.within_mm = look.within_mm,
@@ -458,7 +459,7 @@ static bool is_end(const struct window *w, unsigned piece)
 void judge_order(struct window *w, const struct route *r, unsigned count, struct order *order)
 {
     for (unsigned i = 0; i < count; i++) {
-        (void)follow(w, r, i, order);
+        (void)follow_piece(w, r, i, order);
     }
 }
 
@@ -473,7 +474,7 @@ void judge_pieces(struct window *w, const struct route *r, unsigned count, unsig
     v->followed = 0;
     v->order = o;
     while (v->good < count) {
-        const unsigned bad = follow(w, r, v->good, &o);
+        const unsigned bad = follow_piece(w, r, v->good, &o);
         const bool whole = order_reaches(&o, w->at_mm[v->good + 2]);
 
         if (bad > 0) {
