@@ -216,13 +216,10 @@ static bool waits_for_text(struct controller *c)
 /* Reads more only when the look-ahead has become shorter by this part of it: a ceiling is then made for many blocks. */
 #define TOP_UP_PART 8
 
-static uint32_t look_ahead(const struct controller *c)
-{
-    return path_look_ahead(&c->path, c->machine.look_ahead_blocks);
-}
-
 void controller_background(struct controller *c)
 {
+    const uint32_t wanted = c->machine.look_ahead_blocks;
+
     take_answer(c);
     if (c->replays) {
         replay_read(&c->replay, &c->path.limits);
@@ -233,8 +230,8 @@ void controller_background(struct controller *c)
     path_go_on(&c->path);
     take_held(c);
     c->program_late = false;
-    if (motion_ahead(&c->motion) + look_ahead(c) / TOP_UP_PART <= look_ahead(c)) {
-        while (can_read(c) && motion_ahead(&c->motion) < look_ahead(c)) {
+    if (motion_ahead(&c->motion) + wanted / TOP_UP_PART <= wanted) {
+        while (can_read(c) && motion_ahead(&c->motion) < wanted) {
             read_move(c);
         }
     }

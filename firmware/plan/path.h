@@ -86,14 +86,6 @@ void path_init(struct path *p, const struct plan_limits *limits, const struct po
 void *path_lend(struct path *p, size_t size);
 /* Room for one more move? */
 bool path_has_room(const struct path *p);
-/*
- * How many blocks there should be ahead where so many are asked for: pieces of a smoothed chain are not blocks of the
- * program, and are needed to brake on.
- */
-static inline uint32_t path_look_ahead(const struct path *p, uint32_t blocks)
-{
-    return p->smooth.open && blocks < SMOOTH_AHEAD_PIECES ? SMOOTH_AHEAD_PIECES : blocks;
-}
 /* Appends the next move; a motion without length is counted and dropped. Needs room. */
 void path_push(struct path *p, const struct move *move);
 /* Background: appends pieces of a long motion that had no room before. */

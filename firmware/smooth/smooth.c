@@ -1,11 +1,10 @@
 #include "smooth/smooth.h"
 
 #include "base/maths.h"
-#include "smooth/exact.h"
 #include "smooth/interval.h"
-#include "smooth/piece.h"
+#include "smooth/nominal.h"
 #include "smooth/single.h"
-#include "smooth/worth.h"
+#include "smooth/straight.h"
 
 #include <assert.h>
 #include <string.h>
@@ -19,6 +18,10 @@
 
 /* Lines are merged within this part of the tolerance at most. */
 #define MERGED 0.05
+
+/* How long the axes stand at both ends: a part of the rounding of changes of rate, and cycles. */
+#define STANDING        1.75
+#define STANDING_CYCLES 4.0
 
 /* Smoothing aims at this part of the tolerance. */
 #define AIM 0.90
@@ -75,10 +78,18 @@ static double merged_within(const struct move *move)
     return maths_min(move->merge_mm, MERGED * move->tolerance_mm);
 }
 
-/* The time between samples, and what depends on it; the window is empty. */
-static void set_interval(struct smooth *s)
+/* Near a place where the curve stood no axis comes far; elsewhere none is to need many windows for its ramps. */
+static double interval_for(const struct smooth *s, double tolerance_mm)
 {
-    const double interval_s = interval_of(&s->limits, &s->route);
+    const bool near = stall_is_near(&s->stall, s->route.tolerance_mm);
+
+    return interval_of(&s->limits, &s->route, tolerance_mm, near ? 0 : window_capacity(&s->route));
+}
+
+/* The time between samples, and what depends on it; the window is empty. */
+static void set_interval(struct smooth *s, double tolerance_mm)
+{
+    const double interval_s = interval_for(s, tolerance_mm);
     struct smooth_limits limits = s->limits;
 
     smooth_limit(&limits, s->route.tolerance_mm);
@@ -106,24 +117,27 @@ static void begin(struct smooth *s, const struct move *move)
     s->told = 0;
     s->proved = 0;
     s->stops = false;
-    s->exact = false;
-    s->since = (struct worth_since){.element = 0};
+    s->anew_mm = 0.0;
     s->starts = true;
     s->standing = 0;
     order_start(&s->order, 0.0, 0);
     s->known_mm = 0.0;
     s->tried_mm = 0.0;
     s->tried = 0;
+    stall_start(&s->stall, tolerance_mm);
     s->merge.open = false;
 }
 
-/* Where the axes stand: whatever ends there, a curve may begin anew. */
-static void begin_anew(struct smooth *s)
+/* Another tolerance from here on, where the axes stand. */
+static void begin_anew(struct smooth *s, double tolerance_mm)
 {
-    set_interval(s);
+    struct smooth_limits limits = s->limits;
+
+    smooth_limit(&limits, tolerance_mm);
+    route_limit(&s->route, &limits, tolerance_mm);
+    nominal_again(&s->route);
+    set_interval(s, tolerance_mm);
     s->window.count = SMOOTH_FIXED;
-    s->starts = true;
-    s->proved = 0;
 }
 
 /* The newest line will not grow any more. */
@@ -199,15 +213,6 @@ static void forget_end(struct smooth *s)
     }
 }
 
-/* Has an axis begun to move whose ramps are longer? */
-static bool needs_other_interval(struct smooth *s)
-{
-    const bool more = s->moved != s->route.moved;
-
-    s->moved = s->route.moved;
-    return more && interval_of(&s->limits, &s->route) > s->window.interval_s;
-}
-
 /* Fills the window; false when more of the route must be known first. */
 static bool fill(struct smooth *s)
 {
@@ -218,10 +223,8 @@ static bool fill(struct smooth *s)
         return false;
     }
     if (w->count == 0) {
-        set_interval(s);
+        set_interval(s, s->merge.move.tolerance_mm);
         window_start(w, &s->route);
-    } else if (s->head.proved == 0 && needs_other_interval(s)) {
-        begin_anew(s);
     }
     forget_end(s);
     const unsigned before = w->count;
@@ -311,8 +314,8 @@ static void keep_head(struct smooth *s)
 }
 
 /*
- * No way on has been found in motion, or none that is worth it: what was proved the last time is gone to its end, and come
- * to rest there.
+ * No way on has been found in motion: what was proved the last time is gone to its end, and come to rest there. From rest,
+ * inside the tolerance, every way is open again; and where there seems to be none, straight on is one.
  */
 static void fall_back(struct smooth *s)
 {
@@ -323,6 +326,10 @@ static void fall_back(struct smooth *s)
     s->ready = h->proved;
     s->proved = 0;
     s->stops = true;
+    if (s->ready == 0) {
+        s->ready = straight_on(w, &s->route);
+        return;
+    }
     memcpy(w->origin, h->origin, sizeof h->origin);
     w->count = h->proved + SMOOTH_FIXED;
     w->at_end = false;
@@ -386,44 +393,31 @@ static void follow_ready(struct smooth *s, const struct judge_verdict *v)
     }
 }
 
-/* The path itself is taken from where the axes rest: to that place at least. */
-static void take_path(struct smooth *s, double to_mm)
+/* Has an axis begun to move whose ramps are longer? */
+static bool needs_other_interval(struct smooth *s)
 {
-    s->exact = true;
-    s->exact_mm = to_mm;
-    s->ready = 0;
-    s->proved = 0;
-    s->window.count = SMOOTH_FIXED;
-    s->window.at_end = false;
+    const bool more = s->moved != s->route.moved;
+
+    s->moved = s->route.moved;
+    return more && interval_for(s, s->route.tolerance_mm) > s->window.interval_s;
 }
 
-/*
- * Whether the window goes on. Where it does not, or the path itself is quicker, what was proved last is gone to its end; and
- * from rest, where every way is open again, the path itself is taken.
- */
-static void choose(struct smooth *s, unsigned good)
+/* Must the axes rest where what was proved last ends: because no way on has been found, or for another tolerance? */
+static bool does_not_go_on(struct smooth *s, const struct judge_verdict *v)
 {
-    const bool rests = s->head.proved == 0;
-    const struct worth_window now = {.window = &s->window,
-                                     .route = &s->route,
-                                     .machine = &s->limits,
-                                     .change = &s->change,
-                                     .pieces = good,
-                                     .kept = s->ready,
-                                     .standing_s = (float)smooth_standing_s(s),
-                                     .starts = rests,
-                                     .finished = s->finished};
-    const bool stops = s->ready == 0 || (s->proved == 0 && !is_end(s, good));
-    const bool slower = worth_path(&now, &s->since);
-    double to_mm;
+    const unsigned whole = v->whole[v->good];
+    const bool rests = s->ready == 0 || (s->proved == 0 && !is_end(s, whole));
+    const struct stall_window now = {
+        .rests = rests, .ready = s->ready, .most = kept_most(s), .good = v->good, .whole = whole};
+    const bool stands = stall_stands(&s->stall, &s->window, &s->route, &now);
 
-    if (rests) {
-        if (worth_path_from_rest(&now, &to_mm) || slower || stops) {
-            take_path(s, to_mm);
-        }
-    } else if (stops || slower || needs_other_interval(s)) {
-        fall_back(s);
+    s->anew_mm = stands || s->head.proved > 0
+                     ? stall_tolerance(&s->stall, &s->window, &s->route, s->ready, stands)
+                     : 0.0;
+    if (s->anew_mm == 0.0 && needs_other_interval(s)) {
+        s->anew_mm = s->route.tolerance_mm;
     }
+    return rests || stands || s->anew_mm > 0.0;
 }
 
 /* What comes well before a piece that leaves the tolerance is kept, the rest is tried again with the next window. */
@@ -446,9 +440,101 @@ static void smooth_window(struct smooth *s, union smooth_scratch *scratch)
 
     s->ready = v.whole[kept(s, good)];
     s->proved = good - s->ready;
-    choose(s, good);
-    if (s->ready > 0) {
-        follow_ready(s, &v);
+    if (does_not_go_on(s, &v)) {
+        fall_back(s);
+    }
+    follow_ready(s, &v);
+}
+
+/* Control point of a piece; exactly the programmed end where it is that. */
+static void set_control(const struct smooth *s, unsigned i, struct point *control)
+{
+    const struct window *w = &s->window;
+    const bool end = s->ends && w->at_end && i + SMOOTH_FIXED >= w->count;
+    double p[AXIS_COUNT];
+
+    window_sample(w, &s->route, i, p);
+    memset(control, 0, sizeof(*control));
+    for (unsigned k = 0; k < s->route.slots.count; k++) {
+        control->at[s->route.slots.axis[k]] = end ? s->route.end[k] : p[k];
+    }
+}
+
+/* After a stop the curve goes on from where it can have come to, which may be before where it was thought to be. */
+static uint32_t latest_told(struct smooth *s, uint32_t element)
+{
+    s->told = element < s->told ? s->told : element;
+    return s->told;
+}
+
+static void set_piece(struct smooth *s, struct smooth_piece *piece)
+{
+    const struct window *w = &s->window;
+    const unsigned i = s->taken;
+    const uint32_t element = w->element[i + 1];
+    const uint32_t told = latest_told(s, element);
+    struct judge_need need;
+    struct judge_rate rate;
+
+    route_move(&s->route, told, &s->move);
+    piece->move = &s->move;
+    piece->number = route_element(&s->route, told)->number;
+    piece->rotary = route_element(&s->route, element)->rotary;
+    piece->interval_s = w->interval_s;
+    for (unsigned k = 0; k < 4; k++) {
+        set_control(s, i + k, &piece->control[k]);
+    }
+    judge_need(w, &s->route, i, &need);
+    judge_rate(&need, &s->route, s->route.first + w->paced[i], &s->change, &rate);
+    piece->rate.most = maths_min((double)rate.most, 1.0);
+    piece->rate.programmed = (double)rate.programmed;
+    piece->change.by =
+        (double)judge_change_on(&need, &s->route, &s->change, (float)piece->rate.most);
+    piece->change.rounded = piece->change.by / s->change.rounding_s;
+    piece->stop = s->stops && s->taken + 1 == s->ready;
+    piece->last = s->finished && w->at_end && i + 4 == w->count;
+}
+
+/*
+ * At both ends of what begins and ends at rest by itself the axes stand for a while, and the rate of nominal time rises and
+ * falls: in half of what it is rounded over, and as long again until the setpoint has come so far.
+ */
+static unsigned standing_pieces(const struct smooth *s)
+{
+    const double needed_s = STANDING * s->change.rounding_s + STANDING_CYCLES * s->limits.cycle_s;
+
+    return (unsigned)(needed_s / s->window.interval_s) + 1;
+}
+
+/* at: where the axes stand; of: the piece before or behind. */
+static void stand(struct smooth *s, const struct smooth_piece *of, const struct point *at,
+                  bool leaves)
+{
+    s->stand_rotary = of->rotary;
+    s->stand_number = of->number;
+    s->stand_at = *at;
+    s->standing = standing_pieces(s);
+    s->leaves = leaves;
+}
+
+static void take_standing(struct smooth *s, struct smooth_piece *piece)
+{
+    const double change_per_s = 2.0 / s->change.rounding_s;
+    const struct point at = s->stand_at;
+
+    s->standing--;
+    *piece = (struct smooth_piece){
+        .move = &s->move,
+        .number = s->stand_number,
+        .control = {at, at, at, at},
+        .interval_s = s->window.interval_s,
+        .rate = {.most = 1.0, .programmed = MATHS_INFINITY},
+        .change = {.by = change_per_s, .rounded = change_per_s / s->change.rounding_s},
+        .rotary = s->stand_rotary,
+        .last = s->standing == 0 && !s->leaves,
+    };
+    if (piece->last) {
+        smooth_reset(s);
     }
 }
 
@@ -460,8 +546,14 @@ static void drop_taken(struct smooth *s)
     s->ready = 0;
     if (s->stops) {
         window_rest(&s->window, &s->route, &s->order);
+        stall_rest(&s->stall, s->window.at_mm[0]);
         s->stops = false;
-        begin_anew(s);
+        s->starts = true;
+        s->proved = 0;
+    }
+    if (s->anew_mm > 0.0) {
+        begin_anew(s, s->anew_mm);
+        s->anew_mm = 0.0;
     }
     if (s->window.count > 0) {
         route_forget(&s->route, s->window.at_mm[0]);
@@ -471,6 +563,7 @@ static void drop_taken(struct smooth *s)
 /* The window for the next pieces; false when more must be known first. */
 static bool next_window(struct smooth *s, union smooth_scratch *scratch)
 {
+    drop_taken(s);
     keep_head(s);
     if (!fill(s)) {
         return false;
@@ -479,91 +572,29 @@ static bool next_window(struct smooth *s, union smooth_scratch *scratch)
     return true;
 }
 
-/* Where the path has come to the end of an element. It is left where it rests. */
-static void end_element(struct smooth *s)
+bool smooth_take(struct smooth *s, union smooth_scratch *scratch, struct smooth_piece *piece)
 {
-    struct window *w = &s->window;
-    const uint32_t next = w->element[0] + 1;
-
-    if (next == s->route.count) {
-        smooth_reset(s);
-        return;
+    if (!s->open) {
+        return false;
     }
-    for (unsigned i = 0; i < SMOOTH_FIXED; i++) {
-        w->element[i] = next;
+    if (s->standing > 0) {
+        take_standing(s, piece);
+        return true;
     }
-    if (w->at_mm[0] < s->exact_mm || !exact_rests(&s->route, &s->limits, next)) {
-        return;
+    if (s->taken == s->ready && !next_window(s, scratch)) {
+        return false;
     }
-    s->exact = false;
-    s->tried_mm = w->at_mm[0];
-    s->tried = next;
-    s->since = (struct worth_since){.element = next};
-    order_start(&s->order, w->at_mm[0], next);
-    begin_anew(s);
-}
-
-/* The next motion of the path itself; false: the axes are at its end. */
-static bool take_motion(struct smooth *s, struct smooth_piece *piece, struct curve *curve)
-{
-    const uint32_t element = s->window.element[0];
-    const bool goes = exact_next(&s->window, &s->route, &s->move, curve);
-
-    piece->move = &s->move;
-    piece->number = route_element(&s->route, smooth_tell(s, element))->number;
-    piece->starts = s->starts;
-    s->starts = s->starts && !goes;
-    piece->continues = s->window.at_mm[0] < route_end_of(&s->route, element);
-    if (!piece->continues) {
-        end_element(s);
-    }
-    return goes;
-}
-
-static void take_piece(struct smooth *s, struct smooth_piece *piece)
-{
-    smooth_set_piece(s, piece);
+    set_piece(s, piece);
     if (s->starts) {
         s->starts = false;
-        smooth_stand(s, piece, &piece->control[0], true);
-        smooth_take_standing(s, piece);
-        return;
+        stand(s, piece, &piece->control[0], true);
+        take_standing(s, piece);
+        return true;
     }
     s->taken++;
     if (piece->last) {
-        smooth_stand(s, piece, &piece->control[3], false);
+        stand(s, piece, &piece->control[3], false);
         piece->last = false;
     }
-}
-
-/* Is what the path does at the end of the element known? */
-static bool is_element_known(const struct smooth *s)
-{
-    return s->finished || s->window.element[0] + 1 < s->route.count;
-}
-
-enum smooth_taken smooth_take(struct smooth *s, union smooth_scratch *scratch,
-                              struct smooth_piece *piece, struct curve *curve)
-{
-    while (s->open) {
-        if (s->standing > 0) {
-            smooth_take_standing(s, piece);
-            return SMOOTH_PIECE;
-        }
-        if (s->taken < s->ready) {
-            take_piece(s, piece);
-            return SMOOTH_PIECE;
-        }
-        drop_taken(s);
-        if (!s->exact) {
-            if (!next_window(s, scratch)) {
-                return SMOOTH_NONE;
-            }
-        } else if (!is_element_known(s)) {
-            return SMOOTH_NONE;
-        } else if (take_motion(s, piece, curve)) {
-            return SMOOTH_MOTION;
-        }
-    }
-    return SMOOTH_NONE;
+    return true;
 }

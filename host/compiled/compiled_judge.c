@@ -106,11 +106,6 @@ static void read_move(struct trial *t)
     path_finish(&t->path);
 }
 
-static uint32_t look_ahead(const struct trial *t)
-{
-    return path_look_ahead(&t->path, t->look_ahead);
-}
-
 static void background(struct trial *t)
 {
     if (!t->on_board)
@@ -118,8 +113,8 @@ static void background(struct trial *t)
     if (motion_wanted(&t->motion) == NULL)
         return;
     path_go_on(&t->path);
-    if (motion_ahead(&t->motion) + look_ahead(t) / TOP_UP_PART <= look_ahead(t)) {
-        while (!t->ended && path_has_room(&t->path) && motion_ahead(&t->motion) < look_ahead(t))
+    if (motion_ahead(&t->motion) + t->look_ahead / TOP_UP_PART <= t->look_ahead) {
+        while (!t->ended && path_has_room(&t->path) && motion_ahead(&t->motion) < t->look_ahead)
             read_move(t);
     }
     motion_build(&t->motion);
