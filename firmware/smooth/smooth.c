@@ -15,7 +15,6 @@
 
 /* So many sixteenths of the window's pieces are kept each time. */
 #define KEPT_SIXTEENTHS 9U
-
 /* Lines are merged within this part of the tolerance at most. */
 #define MERGED 0.05
 

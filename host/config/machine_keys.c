@@ -45,7 +45,7 @@
     VECTOR(SECTION_GEOMETRY, name, SCALE_NONE, IN_SETUP(geometry.field), count, -1e9, 1e9, meaning)
 #define OF_VIBRATION(name, axis, meaning)                                                          \
     VECTOR(SECTION_GEOMETRY, name, SCALE_NONE, IN_SETUP(vibration.mode[axis]),                     \
-           VIBRATION_MODES *VIBRATION_NUMBERS, -1e9, 1e9, meaning)
+           (size_t)VIBRATION_MODES *VIBRATION_NUMBERS, -1e9, 1e9, meaning)
 /* The six errors of an axis: E_XX and so on. */
 #define ERRORS(letter, number)                                                                     \
     OF_GEOMETRY("ex" letter, axis[number][0], DEVIATION_CURVE_NUMBERS,                             \

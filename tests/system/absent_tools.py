@@ -17,7 +17,7 @@ TESTS = {
     "clang": "fuzz_short|fuzz_modbus_short|style_tidy|style_format",
     "cross-compiler": "build_image_.*|target_.*",
     "linuxcnc": "canon_against_linuxcnc|events_against_linuxcnc|spindle_with_linuxcnc",
-    "packages": "controller_with_canopen|drives_with_canopen|panel_with_pymodbus|python",
+    "packages": "controller_with_canopen|drives_with_canopen|panel_with_pymodbus|python_api",
     "qemu": "target_(digests|arithmetic|cost|refusal|storage_stops|live|grbl|stm32_start|stm32_rehearsal)",
     "user-mode-linux": "socketcan|drives_with_canopen_on_socketcan",
 }

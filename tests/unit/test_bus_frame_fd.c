@@ -44,7 +44,7 @@ static void add(struct naive *n, unsigned value, unsigned bits, bool is_fast)
 {
     for (unsigned mask = 1u << (bits - 1); bits > 0 && mask > 0; mask >>= 1) {
         n->bit[n->count] = value & mask ? '1' : '0';
-        n->fast[n->count++] = is_fast;
+        n->fast[n->count++] = is_fast ? 1 : 0;
     }
 }
 
@@ -115,7 +115,7 @@ static void make_naive(const struct wire_frame *frame, struct naive *n)
     add(&summed, crc, crc_bits, switches);
     for (unsigned i = 0, first = n->count; i < 4 + crc_bits; i++) {
         if (i % 4 == 0)
-            add(n, n->bit[n->count - 1] == '0', 1, switches);
+            add(n, n->count > 0 && n->bit[n->count - 1] == '0', 1, switches);
         add(n, summed.bit[first + i] == '1', 1, switches);
     }
     add(n, 1, 1, switches); /* delimiter of the CRC */
