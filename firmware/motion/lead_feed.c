@@ -61,6 +61,21 @@ static bool is_far(const struct place *p, double w)
     return lead_square(w + p->a) * (1.0 + LEAD_ENERGY_SLACK) <= 2.0 * p->a * p->gap_mm;
 }
 
+/* The longest way of a cycle that the ceilings allow in all of the pieces that have been braked for. */
+static double cycle_way(const struct lead *l, const struct lead_brake *b)
+{
+    double way_mm = b->low;
+
+    for (uint32_t i = 0; i < b->pieces; i++) {
+        const struct ceiling_piece *p = lead_piece(l, l->here.piece + i);
+
+        if (p->feed_mm_s > 0.0F) {
+            way_mm = maths_min(way_mm, lead_feed(l, p->feed_mm_s));
+        }
+    }
+    return maths_max(way_mm, l->feed);
+}
+
 /*
  * Brakes for it. True: it is to be come to rest at in this cycle, a little early perhaps, so that no feed is left that is
  * lost in the rounding of positions; but not by a longer way than a cycle may have, where the axes could do much more.
@@ -71,9 +86,8 @@ static bool brake_for(const struct lead *l, const struct place *p, struct lead_b
 
     b->a = maths_max(b->a, p->a);
     b->feed = maths_min(b->feed, feed);
-    return p->feed == 0.0 && p->gap_mm <= maths_max(b->way_mm, l->feed) &&
-           feed < maths_max(LEAD_REST_PART * p->a, l->feed - p->a) &&
-           l->feed < p->a * (1.0 + 2.0 * LEAD_REST_PART);
+    return p->feed == 0.0 && feed < maths_max(LEAD_REST_PART * p->a, l->feed - p->a) &&
+           l->feed < p->a * (1.0 + 2.0 * LEAD_REST_PART) && p->gap_mm <= cycle_way(l, b);
 }
 
 static void rest_at(const struct lead *l, uint64_t position, struct lead_brake *b)
@@ -168,7 +182,8 @@ void lead_brake_ahead(const struct lead *l, double low, struct lead_brake *b)
 
     b->at_mm = s;
     b->feed = maths_min(l->feed, low);
-    b->way_mm = low;
+    b->low = low;
+    b->pieces = 0;
     b->a = lead_acceleration(l);
     b->rest = false;
     if (l->here.late) {
@@ -178,9 +193,7 @@ void lead_brake_ahead(const struct lead *l, double low, struct lead_brake *b)
         const struct ceiling_piece *p = lead_piece(l, k);
         const double gap_mm = lead_end_mm(l, k) - s;
 
-        if (p->feed_mm_s > 0.0F) {
-            b->way_mm = maths_min(b->way_mm, lead_feed(l, p->feed_mm_s));
-        }
+        b->pieces = k - l->here.piece + 1;
         if (!l->here.late || p->stop) {
             brake_for_piece(l, k, gap_mm, b);
         }

@@ -23,7 +23,8 @@
 struct lead_brake {
     double at_mm; /* the lead point, from the ceiling's origin */
     double feed;
-    double way_mm; /* in a cycle, by the ceilings there */
+    double low;      /* the feed it may have at most here, */
+    uint32_t pieces; /* and so many from here on that have been braked for */
     double a;
     bool rest;
     uint64_t rest_at;
