@@ -108,9 +108,9 @@ static bool is_prepared(struct correction *c, unsigned i)
     return layers[i]->prepare == NULL || layers[i]->prepare(c);
 }
 
-static __attribute__((noinline)) void fade_layers(struct correction *c)
+/* on: the layers that are wanted. */
+static __attribute__((noinline)) void fade_layers(struct correction *c, unsigned on)
 {
-    const unsigned on = wanted(c);
     const unsigned before = c->running;
     unsigned rest = (on ^ before) | c->fading;
 
@@ -182,8 +182,10 @@ void correction_cycle(struct correction *c, const struct point *cmd, const struc
         c->program_off = move->correction_off;
     }
     follow(c);
-    if (c->fading != 0 || c->running != wanted(c)) {
-        fade_layers(c);
+    const unsigned on = wanted(c);
+
+    if (c->fading != 0 || c->running != on) {
+        fade_layers(c, on);
     }
     if (c->running != 0) {
         add_layers(c, set);

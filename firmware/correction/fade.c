@@ -11,9 +11,6 @@
  */
 #define FADE_DONE_X 8.406
 
-/* Nearer than this the value is taken for its target: far below a drive's increment, whatever it is multiplied by. */
-#define FADE_NEAR 1e-9
-
 /*
  * Bounds of responses to a target that jumps between 0 and 1 at the worst times: half the integral of the absolute
  * impulse response. In units of p, p^2, p^3 (tests/unit/test_correction_fade.c tries to exceed them).
@@ -26,26 +23,6 @@ void fade_pace_set(struct fade_pace *pace, double time_s, double cycle_s)
 {
     pace->cycle_s = cycle_s;
     pace->rate = FADE_DONE_X * cycle_s / maths_max(time_s, FADE_CYCLES_MIN * cycle_s);
-}
-
-/*
- * The differential equation w''' = p^3 (target - w) - 3 p^2 w' - 3 p w'', in steps of a cycle; p in 1/cycle. The third
- * difference of the values is the step itself, so it is bounded as the jerk of the equation is.
- */
-bool fade_cycle(struct fade *f, double target, const struct fade_pace *pace)
-{
-    const double p = pace->rate;
-    const double gap = target - f->value;
-
-    if (maths_abs(gap) + maths_abs(f->slope) + maths_abs(f->bend) <
-        FADE_NEAR * maths_max(1.0, maths_abs(target))) {
-        *f = (struct fade){target, 0.0, 0.0};
-        return false;
-    }
-    f->bend += p * (p * (p * gap - 3.0 * f->slope) - 3.0 * f->bend);
-    f->slope += f->bend;
-    f->value += f->slope;
-    return true;
 }
 
 static double per_s(const struct fade_pace *pace)

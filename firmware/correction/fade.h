@@ -6,6 +6,8 @@
 #ifndef TAKT_CORRECTION_FADE_H
 #define TAKT_CORRECTION_FADE_H
 
+#include "base/maths.h"
+
 #include <stdbool.h>
 
 struct fade {
@@ -26,8 +28,29 @@ struct fade_pace {
 /* time_s: until 99 % of a step are done; at least FADE_CYCLES_MIN cycles are taken. */
 void fade_pace_set(struct fade_pace *pace, double time_s, double cycle_s);
 
-/* One cycle. True while the value moves; when it has come it is the target itself, to the last bit. */
-bool fade_cycle(struct fade *f, double target, const struct fade_pace *pace);
+/* Nearer than this the value is taken for its target: far below a drive's increment, whatever it is multiplied by. */
+#define FADE_NEAR 1e-9
+
+/*
+ * One cycle. True while the value moves; when it has come it is the target itself, to the last bit.
+ * The differential equation w''' = p^3 (target - w) - 3 p^2 w' - 3 p w'', in steps of a cycle; p in 1/cycle. The third
+ * difference of the values is the step itself, so it is bounded as the jerk of the equation is.
+ */
+static inline bool fade_cycle(struct fade *f, double target, const struct fade_pace *pace)
+{
+    const double p = pace->rate;
+    const double gap = target - f->value;
+
+    if (maths_abs(gap) + maths_abs(f->slope) + maths_abs(f->bend) <
+        FADE_NEAR * maths_max(1.0, maths_abs(target))) {
+        *f = (struct fade){target, 0.0, 0.0};
+        return false;
+    }
+    f->bend += p * (p * (p * gap - 3.0 * f->slope) - 3.0 * f->bend);
+    f->slope += f->bend;
+    f->value += f->slope;
+    return true;
+}
 
 /* Has it come to target? */
 static inline bool fade_is_at(const struct fade *f, double target)

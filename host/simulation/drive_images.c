@@ -24,6 +24,11 @@ bool drive_images_open(struct drive_images *images, const char *name, const char
 {
     images->name = name;
     images->count = 0;
+    if (drives->is_fd) {
+        message_command_error(
+            "bus.data_bitrate: images of drives speak classical CAN alone, so it must be 0");
+        return false;
+    }
     for (unsigned i = 0; i < drives->count; i++) {
         struct virtual_drive_config *drive = &drives->drive[i];
 

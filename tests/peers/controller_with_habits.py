@@ -55,7 +55,7 @@ def main():
     digest = peer.setpoints_of_embedded_run()
     for name, (habits, given_up) in HABITS.items():
         is_guarded = "guarded" in given_up  # by remote frames, which python-can has on SLCAN
-        bench = peer.Bench(habits=habits, **(dict(by_slcan=True, heartbeat_ms=200) if is_guarded else {}))
+        bench = peer.Bench(habits=habits, **(dict(by_slcan=True, heartbeat_ms=100) if is_guarded else {}))
         status, message, summary = bench.finish()
         missing = {"stop_option"}  # 6007 and 605E, which none of these drives has
         peer.expect(f"{name}: the program completes", (status, message), (0, ""))

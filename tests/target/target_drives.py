@@ -122,5 +122,6 @@ refused("an image that is not there is said", ("drive 1", "nowhere.elf"), "--dri
 refused("an image that is no drive's is said", ("drive 1",), "--drives", "m4f", "--drive-image", target.image("m4f", "takt-arithmetic"))
 refused("the image has its option", ("--drive-image",), "--drives", "m4f")
 refused("and the option its drives", ("--drive-image",), "--drive-image", m4f)
+refused("an image on CAN FD is refused", ("bus.data_bitrate", "classical"), "--drives", "m4f", "--drive-image", m4f, "--set", "bus.data_bitrate=4000000")
 refused("images are on the embedded bus", ("external",), "--drives", "m4f", "--drive-image", m4f, "--bus", "slcan:pty")
 t.finish()
