@@ -47,32 +47,11 @@ void nmt_write_heartbeat(struct can_frame *frame, uint8_t node, enum nmt_state s
     frame->data[0] = (uint8_t)state;
 }
 
-static bool state_from_byte(uint8_t byte, enum nmt_state *state)
-{
-    switch (byte) {
-    case NMT_BOOTED:
-        *state = NMT_BOOTED;
-        return true;
-    case NMT_STOPPED:
-        *state = NMT_STOPPED;
-        return true;
-    case NMT_OPERATIONAL:
-        *state = NMT_OPERATIONAL;
-        return true;
-    case NMT_PREOPERATIONAL:
-        *state = NMT_PREOPERATIONAL;
-        return true;
-    default:
-        return false;
-    }
-}
-
 bool nmt_read_heartbeat(const struct can_frame *frame, uint8_t *node, enum nmt_state *state)
 {
     *node = node_id(frame->id);
-    if (node_function(frame->id) != NMT_HEARTBEAT_FUNCTION || *node == 0 || frame->length != 1)
-        return false;
-    return state_from_byte(frame->data[0] & (uint8_t)~NMT_TOGGLE, state);
+    return node_function(frame->id) == NMT_HEARTBEAT_FUNCTION && *node != 0 &&
+           nmt_read_state(frame, state);
 }
 
 void nmt_write_guard(struct can_frame *frame, uint8_t node)

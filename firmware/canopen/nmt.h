@@ -41,12 +41,19 @@ void nmt_write_command(struct can_frame *frame, enum nmt_command command, uint8_
 bool nmt_read_command(const struct can_frame *frame, enum nmt_command *command, uint8_t *node);
 
 void nmt_write_heartbeat(struct can_frame *frame, uint8_t node, enum nmt_state state);
-/*
- * False: the frame is no heartbeat. An answer to a guarding master is the same frame with the toggle bit, which changes from
- * each answer to the next (7.2.8.3.2.1).
- */
+/* False: the frame is no heartbeat. */
 bool nmt_read_heartbeat(const struct can_frame *frame, uint8_t *node, enum nmt_state *state);
+/* An answer to a guarding master is the same frame with this bit, which changes from each answer to the next (7.2.8.3.2.1). */
 #define NMT_TOGGLE 0x80u
+/* Of a frame that has the identifier of a heartbeat. False: its length or its state is none that CiA 301 knows. */
+static inline bool nmt_read_state(const struct can_frame *frame, enum nmt_state *state)
+{
+    if (frame->length != 1)
+        return false;
+    *state = (enum nmt_state)(frame->data[0] & ~NMT_TOGGLE);
+    return *state == NMT_OPERATIONAL || *state == NMT_PREOPERATIONAL || *state == NMT_STOPPED ||
+           *state == NMT_BOOTED;
+}
 
 /* Node guarding: the remote frame by which a master asks a node for its state, of whatever length. */
 void nmt_write_guard(struct can_frame *frame, uint8_t node);

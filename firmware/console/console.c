@@ -19,7 +19,7 @@ void console_init(struct console *c, const struct console_config *config)
 
 bool console_has_room(const struct console *c)
 {
-    return lines_room(c->config.lines) > 1;
+    return lines_room(c->config.lines) > 0;
 }
 
 bool console_is_waiting(const struct console *c)

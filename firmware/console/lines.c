@@ -68,14 +68,20 @@ static uint32_t free_bytes(const struct lines *l)
     return l->size - (l->at - l->collected);
 }
 
+/* A line begins where more than an empty one finds room. */
+static uint32_t room_of(uint32_t bytes)
+{
+    return bytes > 0 ? (bytes - 1U) / EMPTY_LINE : 0;
+}
+
 uint32_t lines_room(const struct lines *l)
 {
-    return free_bytes(l) / EMPTY_LINE;
+    return room_of(free_bytes(l));
 }
 
 uint32_t lines_capacity(const struct lines *l)
 {
-    return l->size / EMPTY_LINE - 1U;
+    return room_of(l->size);
 }
 
 /* A line that is too long leaves its mark alone. */
@@ -113,6 +119,11 @@ bool lines_put(struct lines *l, uint8_t byte)
         return put_character(l, byte);
     finish_line(l);
     return true;
+}
+
+void lines_spoil(struct lines *l)
+{
+    l->is_long = true;
 }
 
 void lines_clear(struct lines *l)

@@ -70,10 +70,12 @@ void lines_init(struct lines *l, uint8_t *byte, uint32_t size);
 
 /* Bytes of text that find room; each of its lines may be as short as its end. */
 uint32_t lines_room(const struct lines *l);
-/* Of those, what a sender may count on while it waits for nothing. */
+/* The same while nothing is there: what a sender may count on. */
 uint32_t lines_capacity(const struct lines *l);
 /* A byte of a line, which ends with '\n'. False: no room, it is lost. */
 bool lines_put(struct lines *l, uint8_t byte);
+/* Bytes have been lost before the next one: their line is refused as one that is too long. */
+void lines_spoil(struct lines *l);
 /* Drops everything; no program reads. */
 void lines_clear(struct lines *l);
 

@@ -357,8 +357,7 @@ static void take_heartbeat(struct drives *d, unsigned i, const struct can_frame 
 {
     struct drives_io *io = &d->io[i];
     enum nmt_state state;
-    uint8_t node;
-    if (!nmt_read_heartbeat(frame, &node, &state))
+    if (!nmt_read_state(frame, &state))
         return;
     if (drives_takes_beat(&io->guard, frame))
         io->beaten = d->cycle;

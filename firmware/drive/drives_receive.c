@@ -66,9 +66,8 @@ static void take_error_code(struct drives *d, unsigned index, const struct can_f
 static void take_heartbeat(struct drives *d, unsigned index, const struct can_frame *frame)
 {
     struct drives_axis *axis = &d->axis[index];
-    uint8_t node;
     enum nmt_state state;
-    if (!nmt_read_heartbeat(frame, &node, &state))
+    if (!nmt_read_state(frame, &state))
         return;
     if (drives_takes_beat(&axis->guard, frame))
         axis->beaten = d->cycle;

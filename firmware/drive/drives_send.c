@@ -76,7 +76,7 @@ static void send_controlword(struct drives_axis *axis, const struct can_port *po
 }
 
 /*
- * The drives of a pair write into one frame; it is sent when its second drive has written. While
+ * The drives of a group write into one frame; it is sent when the last of them has written. While
  * drives are being enabled nothing is lost by a refused frame, in operation a setpoint is.
  */
 static void send_targets(struct drives *d, const struct can_port *port)

@@ -300,11 +300,13 @@ static void send(struct servo *drive, struct drive_pdo *pdo)
 {
     struct can_frame frame = {.id = pdo->cob_id, .length = pdo->length};
     uint8_t *bytes = frame.data;
-    bool is_plain = drive->meddler.overrides == NULL;
+    bool is_meddled = drive->meddler.overrides != NULL;
     servo_refresh_groups(drive, pdo->groups);
     for (unsigned i = 0; i < pdo->count; i++) {
-        uint32_t value =
-            is_plain ? value_of(pdo->field[i], pdo->bytes[i]) : servo_read_row(drive, pdo->row[i]);
+        /* What never changes has no field. */
+        uint32_t value = is_meddled || pdo->field[i] == NULL
+                             ? servo_read_row(drive, pdo->row[i])
+                             : value_of(pdo->field[i], pdo->bytes[i]);
         write_bytes(bytes, pdo->bytes[i], value);
         bytes += pdo->bytes[i];
     }

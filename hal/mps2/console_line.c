@@ -10,14 +10,31 @@ static struct {
     struct embedded_console console;
     struct uart uart;
     struct service_lines lines;
+    bool is_unread;
 } line;
 
-/* The line's interrupt makes room. */
+/* After so many interrupts without a byte sent nobody reads: a control cycle has at least one, so that is 0.2 s at 1 ms. */
+#define STILL_MAX 200
+
+/*
+ * The line's interrupt makes room. While nobody reads what does not fit is dropped, since the panel would have to wait; the
+ * first piece that fits shows that somebody does again.
+ */
 static void write(void *context, const char *text, size_t length)
 {
+    uint32_t sent = line.uart.sent;
+    unsigned still = 0;
+
     (void)context;
-    while (!uart_send(&line.uart, text, length))
+    while (!uart_send(&line.uart, text, length)) {
+        if (line.is_unread)
+            return;
         cortex_sleep();
+        still = line.uart.sent == sent ? still + 1 : 0;
+        sent = line.uart.sent;
+        line.is_unread = still == STILL_MAX;
+    }
+    line.is_unread = false;
 }
 
 static void take(void *context, uint8_t byte)

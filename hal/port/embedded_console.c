@@ -99,13 +99,17 @@ void embedded_console_init(struct embedded_console *c, const struct embedded_con
 
 void embedded_console_take_byte(struct embedded_console *c, uint8_t byte)
 {
-    (void)line_ring_put(&c->received, byte, 0);
+    c->has_lost = c->has_lost || !line_ring_put(&c->received, byte, 0);
 }
 
 void embedded_console_background(struct embedded_console *c)
 {
     bool is_silent;
 
+    if (c->has_lost && line_ring_is_empty(&c->received)) {
+        lines_spoil(&c->lines);
+        c->has_lost = false;
+    }
     while (!line_ring_is_empty(&c->received) && console_has_room(&c->console))
         console_take(&c->console, line_ring_take(&c->received, &is_silent));
     console_step(&c->console);

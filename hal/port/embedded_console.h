@@ -13,13 +13,16 @@
 #include "console/console.h"
 #include "port/embedded.h"
 
-/* A power of two; half of it is told to senders. */
-#define EMBEDDED_CONSOLE_TEXT 2048
+/*
+ * A power of two; half of it is told to senders. As much may come before the background looks, and what its interrupt keeps
+ * until then is a ring.
+ */
+#define EMBEDDED_CONSOLE_TEXT (2 * LINE_RING_MAX)
 
 struct embedded_console_config {
     struct embedded *embedded; /* has been initialised; must stay */
     const char *version;       /* of the firmware; must stay */
-    /* A piece of an answer, copied or sent; it may wait for room, since cycles interrupt it. */
+    /* A piece of an answer, copied or sent. It may wait for room, but not for a sender that does not read: the panel waits too. */
     void (*write)(void *context, const char *text, size_t length);
     void *context; /* owned by whoever made it */
 };
@@ -30,6 +33,8 @@ struct embedded_console {
     struct console console;
     struct panel_client client; /* of the panel */
     struct line_ring received;
+    volatile bool
+        has_lost; /* bytes behind those that the ring has; until the background knows, more of them */
     struct lines lines;
     uint8_t text[EMBEDDED_CONSOLE_TEXT];
 };

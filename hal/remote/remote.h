@@ -11,7 +11,7 @@
 #define TAKT_REMOTE_REMOTE_H
 
 #include "controller/controller.h"
-#include "hal/can.h"
+#include "hal/classical_frame.h"
 #include "hal/inputs.h"
 #include "motion/cycle_record.h"
 
@@ -67,44 +67,13 @@ struct remote_ready {
     uint32_t clock_hz; /* of the costs below; 0: they are not measured */
 };
 
-/* A classical frame, as a struct can_frame whose data are as long as in any build. */
-struct remote_frame {
-    uint16_t id;
-    uint8_t length;
-    uint8_t data[CAN_CLASSIC_MAX];
-    uint8_t unused;
-};
-
-static inline void remote_frame_set(struct remote_frame *to, const struct can_frame *from)
-{
-    if (sizeof *from == sizeof *to) {
-        memcpy(to, from, sizeof *to); /* of a build that has classical CAN alone, at once */
-        return;
-    }
-    to->id = from->id;
-    to->length = from->length;
-    memcpy(to->data, from->data, sizeof to->data);
-    to->unused = 0;
-}
-
-static inline void remote_frame_get(const struct remote_frame *from, struct can_frame *to)
-{
-    if (sizeof *from == sizeof *to) {
-        memcpy(to, from, sizeof *from);
-        return;
-    }
-    to->id = from->id;
-    to->length = from->length;
-    memcpy(to->data, from->data, sizeof from->data);
-}
-
 /* The desk, every cycle. */
 struct remote_inputs {
     uint32_t go_on; /* 0: the image ends */
     uint32_t frames;
     struct inputs inputs;
     double rise_k[AXIS_COUNT]; /* for the thermal layer of the correction */
-    struct remote_frame frame[REMOTE_FRAMES_MAX];
+    struct classical_frame frame[REMOTE_FRAMES_MAX];
 };
 
 /* The image answers, after background and cycle. */
@@ -118,10 +87,9 @@ struct remote_outputs {
     uint32_t blocks;     /* that the background has put on the path so far */
     uint32_t has_record; /* the record is of this cycle */
     struct cycle_record record;
-    struct remote_frame frame[REMOTE_FRAMES_MAX];
+    struct classical_frame frame[REMOTE_FRAMES_MAX];
 };
 
-static_assert(sizeof(struct remote_frame) == 12, "as on every side");
 static_assert(sizeof(struct inputs) == 88, "as on every side");
 static_assert(sizeof(struct cycle_record) == 200, "as on every side");
 

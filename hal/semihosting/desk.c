@@ -21,8 +21,8 @@
 
 /* The frames of a cycle: of those received, what the controller has not had; and room for those it sends. */
 struct bus {
-    const struct remote_frame *received, *received_end;
-    struct remote_frame *sent, *sent_end;
+    const struct classical_frame *received, *received_end;
+    struct classical_frame *sent, *sent_end;
     uint32_t refused;
 };
 
@@ -68,7 +68,7 @@ static bool bus_send(void *context, const struct can_frame *frame)
         bus->refused++;
         return false;
     }
-    remote_frame_set(bus->sent++, frame);
+    classical_frame_set(bus->sent++, frame);
     return true;
 }
 
@@ -78,7 +78,7 @@ static bool bus_receive(void *context, struct can_frame *frame)
 
     if (bus->received == bus->received_end)
         return false;
-    remote_frame_get(bus->received++, frame);
+    classical_frame_get(bus->received++, frame);
     return true;
 }
 

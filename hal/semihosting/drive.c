@@ -43,8 +43,11 @@ static struct twin_reply ask(const struct twin_ask *question)
 
 static bool send(void *context, const struct can_frame *frame)
 {
+    struct twin_ask question = {.kind = TWIN_SEND};
+
     (void)context;
-    return ask(&(struct twin_ask){.kind = TWIN_SEND, .frame = twin_frame_of(frame)}).yes != 0;
+    classical_frame_set(&question.frame, frame);
+    return ask(&question).yes != 0;
 }
 
 /* Frames come as orders. */
@@ -90,13 +93,6 @@ static bool overrides(void *context, const struct object_row *row, uint32_t *val
     (void)context;
     *value = reply.value;
     return reply.yes != 0;
-}
-
-static bool keep(void *context, const struct servo *drive)
-{
-    (void)context;
-    (void)drive;
-    return ask(&(struct twin_ask){.kind = TWIN_KEEP}).yes != 0;
 }
 
 /* -- start -- */
@@ -159,16 +155,15 @@ static void carry_out_special(const struct twin_order *order)
         (void)servo_write_object(servo, order->a, order->b);
     else if (order->kind == TWIN_MEDDLE)
         meddle();
-    else if (order->kind == TWIN_KEEPER)
-        servo_keep(servo, &(struct drive_keeper){.keep = keep});
     else if (order->kind == TWIN_EDS)
         take_eds(order->a);
 }
 
 static void take_frame(const struct twin_order *order)
 {
-    const struct can_frame frame = twin_frame_get(&order->frame);
+    struct can_frame frame;
 
+    classical_frame_get(&order->frame, &frame);
     servo_on_frame_at(&node.servo, &frame, order->time_ns);
 }
 

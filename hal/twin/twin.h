@@ -12,7 +12,7 @@
 #define TAKT_TWIN_TWIN_H
 
 #include "canopen/pdo.h"
-#include "hal/can.h"
+#include "hal/classical_frame.h"
 #include "hal/motor.h"
 #include "servo/servo.h"
 
@@ -54,38 +54,13 @@ enum twin_order_kind {
     TWIN_REBOOT,    /* servo_reboot */
     TWIN_WRITE,     /* servo_write_object: a object, b value */
     TWIN_MEDDLE,    /* servo_meddle: from now on the image asks */
-    TWIN_KEEPER,    /* servo_keep: the same */
     TWIN_EDS        /* servo_set_eds: a bytes follow */
 };
-
-/* A classical frame: as long in every build. */
-struct twin_frame {
-    uint16_t id;
-    uint8_t length;
-    uint8_t data[CAN_CLASSIC_MAX];
-    uint8_t unused;
-};
-
-static inline struct twin_frame twin_frame_of(const struct can_frame *frame)
-{
-    struct twin_frame own = {.id = frame->id, .length = frame->length};
-
-    memcpy(own.data, frame->data, sizeof own.data);
-    return own;
-}
-
-static inline struct can_frame twin_frame_get(const struct twin_frame *own)
-{
-    struct can_frame frame = {.id = own->id, .length = own->length};
-
-    memcpy(frame.data, own->data, sizeof own->data);
-    return frame;
-}
 
 struct twin_order {
     uint32_t kind;
     uint32_t a, b;
-    struct twin_frame frame;
+    struct classical_frame frame;
     uint64_t time_ns;
     double ratio;
 };
@@ -98,14 +73,13 @@ enum twin_ask_kind {
     TWIN_HOLDS_BACK, /* a enum servo_frame */
     TWIN_ABORTS_SDO, /* a object */
     TWIN_OVERRIDES,  /* a index, b sub-index */
-    TWIN_KEEP,
     TWIN_ASK_KINDS
 };
 
 struct twin_ask {
     uint32_t kind;
     uint32_t a, b;
-    struct twin_frame frame;
+    struct classical_frame frame;
     double x, y;
 };
 

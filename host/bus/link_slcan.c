@@ -237,16 +237,27 @@ static const struct link_kind_ops ops = {
 };
 
 #define MEGABIT        1000000u
+#define DATA_MBIT_MAX  9u
 #define DATA_MBIT_ELSE 5u
 
-/* "Y5\r": data of CAN FD at 5 Mbit/s. */
-static void write_data_rate(const struct link *link, char text[8])
+/* "Y5\r": data of CAN FD at 5 Mbit/s. False: there is no digit for the rate. */
+static bool write_data_rate(const struct link *link, char text[8])
 {
-    const uint32_t given = link->config.data_bitrate / MEGABIT;
+    const uint32_t given = link->config.data_bitrate;
+    const unsigned mbit = given > 0 ? given / MEGABIT : DATA_MBIT_ELSE;
     text[0] = '\0';
     if (link->config.fd)
-        (void)snprintf(text, 8, "Y%u\r",
-                       given > 0 && given <= 9 ? (unsigned)given : DATA_MBIT_ELSE);
+        (void)snprintf(text, 8, "Y%u\r", mbit % 10);
+    return !link->config.fd || (given % MEGABIT == 0 && mbit <= DATA_MBIT_MAX);
+}
+
+static bool refuse_rate(const struct link *link, const char *what, uint32_t rate, const char *known,
+                        struct link_error *error)
+{
+    (void)link_refuse(error, "bus %s: serial adapters know no %s %u bit/s; they know %s",
+                      link->address, what, (unsigned)rate, known);
+    error->is_environment = false;
+    return false;
 }
 
 /*
@@ -257,16 +268,14 @@ static bool greet_adapter(struct link *link, struct slcan_link *s, struct link_e
 {
     char hello[32], data_rate[8];
     char digit = slcan_bitrate_digit(link->config.bitrate);
-    if (digit == 0) {
-        (void)link_refuse(
-            error,
-            "bus %s: serial adapters know no %u bit/s; they know 10000, 20000, 50000, "
-            "100000, 125000, 250000, 500000, 800000 and 1000000",
-            link->address, (unsigned)link->config.bitrate);
-        error->is_environment = false;
-        return false;
-    }
-    write_data_rate(link, data_rate);
+    if (digit == 0)
+        return refuse_rate(link, "bit rate", link->config.bitrate,
+                           "10000, 20000, 50000, 100000, 125000, 250000, 500000, 800000 and "
+                           "1000000",
+                           error);
+    if (!write_data_rate(link, data_rate))
+        return refuse_rate(link, "data rate", link->config.data_bitrate,
+                           "1000000 to 9000000 in whole millions", error);
     (void)snprintf(hello, sizeof hello, "\r\rC\rS%c\r%sO\r", digit, data_rate);
     reply(s, hello);
     s->channel_open = true;

@@ -98,7 +98,7 @@ static bool use_difference(struct translator *t, struct line_word *w, const stru
         return true;
     }
     if (line_code(w) == 1170) /* M117 shows the rest of its line */
-        translate_add(&t->behind, "(msg,%.200s)", &t->line.text[w->end]);
+        translate_message(t, &t->line.text[w->end], t->line.length - w->end);
     (void)line_read(&t->line, "", 0);
     return false;
 }

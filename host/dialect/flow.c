@@ -253,7 +253,7 @@ static void take_alarm(struct translator *t)
         translate_add(&t->behind, "(abort,%.200s)", text);
         return;
     }
-    translate_add(&t->behind, "(msg,%.200s)", text);
+    translate_message(t, text, strlen(text));
     translate_add(&t->behind, "M0");
 }
 

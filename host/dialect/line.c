@@ -308,12 +308,15 @@ const char *line_checksum(const struct line *l)
 const char *line_message(const struct line *l, size_t *length)
 {
     const size_t begin = skip_spaces(l, 0);
-    const size_t quote = skip_spaces(l, begin + 3);
-    const char *end;
 
-    if (!line_begins(&l->text[begin], "msg") || l->text[quote] != '"')
+    if (!line_begins(&l->text[begin], "msg"))
         return NULL;
-    end = strchr(&l->text[quote + 1], '"');
+    const size_t quote = skip_spaces(l, begin + 3);
+
+    if (l->text[quote] != '"')
+        return NULL;
+    const char *end = strchr(&l->text[quote + 1], '"');
+
     *length = end != NULL ? (size_t)(end - &l->text[quote + 1]) : l->length - quote - 1;
     return &l->text[quote + 1];
 }

@@ -5,7 +5,22 @@
 
 #include <stdio.h>
 
-/* D beside G43 is for the compensation that follows. */
+/*
+ * The word's value for later lines, by the letter that it has there. False: it is too long, so that the word stays where it
+ * is and is told as an error there.
+ */
+static bool keep(const struct line *l, const struct line_word *w, char letter, char *kept,
+                 size_t size)
+{
+    const size_t length = w->end - w->value_begin;
+
+    if (length + 2 > size)
+        return false;
+    (void)snprintf(kept, size, "%c%.*s", letter, (int)length, &l->text[w->value_begin]);
+    return true;
+}
+
+/* D is that of the compensation that follows, of this line or of a later one. */
 static void translate_radius(struct translator *t)
 {
     struct line *l = &t->line;
@@ -13,16 +28,16 @@ static void translate_radius(struct translator *t)
     const bool compensates =
         line_find_code(l, 'g', 410) != NULL || line_find_code(l, 'g', 420) != NULL;
 
-    if (compensates && d == NULL) {
+    if (compensates && d == NULL)
         (void)line_append(l, t->radius);
-    } else if (!compensates && d != NULL && line_find_code(l, 'g', 430) != NULL) {
-        (void)snprintf(t->radius, sizeof t->radius, "D%.*s", (int)(d->end - d->value_begin),
-                       &l->text[d->value_begin]);
+    else if (compensates)
+        (void)keep(l, d, 'D', t->radius, sizeof t->radius);
+    else if (d != NULL && line_find_code(l, 'g', 430) != NULL &&
+             keep(l, d, 'D', t->radius, sizeof t->radius))
         line_blank(l, d);
-    }
 }
 
-/* H alone is the length in use, or the one of the G43 that follows. */
+/* H alone is the length in use, or the one of the G43 that follows; on a lathe it is a way of C. */
 static void translate_length(struct translator *t)
 {
     static const uint16_t codes[] = {100, 370, 431, 432, 434, 650, 760};
@@ -30,14 +45,14 @@ static void translate_length(struct translator *t)
     struct line_word *h = line_find(l, 'h', 0);
     const bool begins = line_find_code(l, 'g', 430) != NULL;
 
+    if (t->survey.lathe)
+        return;
     for (size_t i = 0; i < sizeof codes / sizeof codes[0]; i++) {
         if (line_find_code(l, 'g', codes[i]) != NULL)
             return;
     }
     t->has_length = (t->has_length || begins) && line_find_code(l, 'g', 490) == NULL;
-    if (h != NULL && !begins) {
-        (void)snprintf(t->length, sizeof t->length, "H%.*s", (int)(h->end - h->value_begin),
-                       &l->text[h->value_begin]);
+    if (h != NULL && !begins && keep(l, h, 'H', t->length, sizeof t->length)) {
         if (t->has_length)
             (void)line_append(l, "G43");
         else
@@ -111,14 +126,12 @@ void registers_translate_speed(struct translator *t)
                          line_find_code(l, 'g', 970) == NULL;
     w = line_find_code(l, 'g', 500);
     s = line_find(l, 's', 0);
-    if (w != NULL) {
+    if (w != NULL && s == NULL) {
         line_blank(l, w);
-        if (s != NULL) {
-            (void)snprintf(t->speed_limit, sizeof t->speed_limit, "D%.*s",
-                           (int)(s->end - s->value_begin), &l->text[s->value_begin]);
-            line_blank(l, s);
-        }
-    } else if (line_find_code(l, 'g', 960) != NULL && line_find(l, 'd', 0) == NULL) {
+    } else if (w != NULL && keep(l, s, 'D', t->speed_limit, sizeof t->speed_limit)) {
+        line_blank(l, w);
+        line_blank(l, s);
+    } else if (w == NULL && line_find_code(l, 'g', 960) != NULL && line_find(l, 'd', 0) == NULL) {
         (void)line_append(l, t->speed_limit);
     }
 }

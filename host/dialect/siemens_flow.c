@@ -331,10 +331,7 @@ static void take_text(struct scan *s)
     clear(s->t);
     if (end == NULL)
         return;
-    (void)snprintf(s->out, sizeof s->out, "%.*s", (int)(end - begin - 1), begin + 1);
-    for (char *c = s->out; *c != '\0'; c++)
-        *c = (char)(*c == '(' ? '[' : *c == ')' ? ']' : *c);
-    translate_add(&s->t->behind, "(msg,%.200s)", s->out);
+    translate_message(s->t, begin + 1, (size_t)(end - begin - 1));
 }
 
 /* TRANS without axes takes all away. */

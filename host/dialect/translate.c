@@ -11,6 +11,8 @@
 /* A dwell written without a point is in milliseconds from here on: nobody waits for less than that, or for minutes. */
 #define DWELL_MS_MIN  100.0
 #define LINE_TEXT_MAX 2304
+/* So much of a message is shown: with its parentheses it is a comment of a line that every control reads. */
+#define MESSAGE_MAX 201
 
 void translate_add(struct dialect_text *t, const char *format, ...)
 {
@@ -40,6 +42,16 @@ void translate_note(struct translator *t, const struct line_word *w, const char 
     }
     if (r->notes < DIALECT_NOTES_MAX)
         r->note[r->notes++] = note;
+}
+
+void translate_message(struct translator *t, const char *text, size_t length)
+{
+    char shown[MESSAGE_MAX];
+
+    (void)snprintf(shown, sizeof shown, "%.*s", (int)length, text);
+    for (char *c = shown; *c != '\0'; c++)
+        *c = (char)(*c == '(' ? '[' : *c == ')' ? ']' : *c);
+    translate_add(&t->behind, "(msg,%s)", shown);
 }
 
 static bool is(const struct translator *t, unsigned dialects)
@@ -106,7 +118,7 @@ static void translate_start(struct translator *t)
         clear_line(t);
     message = line_message(l, &length);
     if (message != NULL) {
-        translate_add(&t->behind, "(msg,%.*s)", (int)length, message);
+        translate_message(t, message, length);
         clear_line(t);
     }
     drop_checksum(l);

@@ -104,6 +104,9 @@ struct translator {
 /* Tells of a word that is left out, once for each. */
 void translate_note(struct translator *t, const struct line_word *w, const char *meaning);
 
+/* Shows text to the operator: a comment, so parentheses in it become brackets. */
+void translate_message(struct translator *t, const char *text, size_t length);
+
 /* Adds a line; the first of all lines that one becomes loses its DIALECT_GOES_ON. */
 __attribute__((format(printf, 2, 3))) void translate_add(struct dialect_text *t, const char *format,
                                                          ...);
@@ -123,7 +126,7 @@ void polar_translate(struct translator *t);
 /* What becomes of the G and M words of the line. */
 void codes_translate(struct translator *t);
 
-/* G70, G71, G72, G75 and G76 of lathes. */
+/* G70, G71, G72, G74, G75 and G76 of lathes. */
 void turning_translate(struct translator *t);
 /* Distances of a cycle that are whole thousandths, since nothing is that large. */
 bool turning_is_whole(struct line *l);

@@ -228,7 +228,10 @@ static void take_finish(struct translator *t, double from, double to)
         translate_add(&t->behind, "G%u", t->side);
 }
 
-/* Down to `end` in steps, a little back after each: where the tool is stands in #<_turning_at>. */
+/*
+ * To `end` in steps, a little back after each: where the tool is stands in #<_turning_at>, and in #<_turning_way> 1 where that
+ * falls, -1 where it rises (a groove from inside).
+ */
 static void put_pecks(struct translator *t, char axis, const char *end, const char *step,
                       const char *back)
 {
@@ -237,13 +240,15 @@ static void put_pecks(struct translator *t, char axis, const char *end, const ch
     leave_feed(t);
     begin_at(t);
     translate_add(&t->behind, "#<_turning_at>=#<_turning_%c>", axis);
-    translate_add(&t->behind, "o%u repeat [FUP[[#<_turning_at>-[%s]]/[%s]]]", label, end, step);
-    translate_add(&t->behind, "#<_turning_at>=[#<_turning_at>-[%s]]", step);
-    translate_add(&t->behind, "o%u if [#<_turning_at> LT [%s]]", label + 1000000U, end);
+    translate_add(&t->behind, "#<_turning_way>=[1-2*[[%s] GT #<_turning_at>]]", end);
+    translate_add(&t->behind, "o%u repeat [FUP[ABS[#<_turning_at>-[%s]]/[%s]]]", label, end, step);
+    translate_add(&t->behind, "#<_turning_at>=[#<_turning_at>-#<_turning_way>*[%s]]", step);
+    translate_add(&t->behind, "o%u if [#<_turning_way>*[#<_turning_at>-[%s]] LT 0]",
+                  label + 1000000U, end);
     translate_add(&t->behind, "#<_turning_at>=[%s]", end);
     translate_add(&t->behind, "o%u endif", label + 1000000U);
     translate_add(&t->behind, "G1 %c#<_turning_at>", axis);
-    translate_add(&t->behind, "G0 %c[#<_turning_at>+[%s]]", axis, back);
+    translate_add(&t->behind, "G0 %c[#<_turning_at>+#<_turning_way>*[%s]]", axis, back);
     translate_add(&t->behind, "o%u endrepeat", label);
     go_back(t);
 }

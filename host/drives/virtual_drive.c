@@ -1,5 +1,6 @@
 #include "drives/virtual_drive_private.h"
 
+#include <assert.h>
 #include <string.h>
 
 static struct servo_config servo_config_of(const struct virtual_drive_config *config)
@@ -63,19 +64,10 @@ void virtual_drive_set_eds(struct virtual_drive *drive, const char *eds, size_t 
     servo_set_eds(&drive->servo, eds, length);
     if (twin == NULL)
         return;
+    assert(length <=
+           TWIN_EDS_MAX); /* an image has takt's own objects, so this is takt's own sheet */
     twin->begin(twin->context, &(struct twin_order){.kind = TWIN_EDS, .a = (uint32_t)length}, eds);
     twin->end(twin->context);
-}
-
-void virtual_drive_keep(struct virtual_drive *drive, const struct drive_keeper *keeper)
-{
-    const struct virtual_drive_twin *twin = drive->twin;
-    struct drive_keeper both = *keeper;
-    virtual_drive_begin(drive, &(struct twin_order){.kind = TWIN_KEEPER});
-    if (twin != NULL)
-        both = twin->keep(twin->context, keeper);
-    servo_keep(&drive->servo, &both);
-    virtual_drive_end(drive);
 }
 
 void virtual_drive_boot(struct virtual_drive *drive)
@@ -96,9 +88,9 @@ void virtual_drive_on_frame_at(struct virtual_drive *drive, const struct can_fra
 {
     if (!is_heard(drive, frame))
         return;
-    virtual_drive_begin(drive, &(struct twin_order){.kind = TWIN_FRAME,
-                                                    .frame = twin_frame_of(frame),
-                                                    .time_ns = time_ns});
+    struct twin_order order = {.kind = TWIN_FRAME, .time_ns = time_ns};
+    classical_frame_set(&order.frame, frame);
+    virtual_drive_begin(drive, &order);
     servo_on_frame_at(&drive->servo, frame, time_ns);
     virtual_drive_end(drive);
 }

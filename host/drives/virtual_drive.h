@@ -59,7 +59,6 @@ void virtual_drive_init(struct virtual_drive *drive, const struct virtual_drive_
 /* As those of servo.h. */
 void virtual_drive_observe(struct virtual_drive *drive, const struct drive_observer *observer);
 void virtual_drive_set_eds(struct virtual_drive *drive, const char *eds, size_t length);
-void virtual_drive_keep(struct virtual_drive *drive, const struct drive_keeper *keeper);
 void virtual_drive_boot(struct virtual_drive *drive);
 void virtual_drive_on_frame(struct virtual_drive *drive, const struct can_frame *frame);
 void virtual_drive_on_frame_at(struct virtual_drive *drive, const struct can_frame *frame,

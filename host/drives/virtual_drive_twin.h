@@ -18,9 +18,8 @@ struct virtual_drive_twin {
     /* The same order is now given to the drive here; end: it has been carried out. bytes: of TWIN_EDS, else NULL. */
     void (*begin)(void *context, const struct twin_order *order, const char *bytes);
     void (*end)(void *context);
-    /* Over which meddler and keeper of the drive here are asked. */
+    /* Over which the meddler of the drive here is asked. */
     struct servo_meddler (*meddle)(void *context, const struct servo_meddler *meddler);
-    struct drive_keeper (*keep)(void *context, const struct drive_keeper *keeper);
     void *context;
 };
 

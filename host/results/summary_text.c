@@ -104,17 +104,20 @@ static void write_pace(FILE *stream, const struct summary *summary)
 static void write_drive_images(FILE *stream, const struct summary *summary)
 {
     const struct drive_images *images = summary->drive_images;
+    char first[DRIVE_IMAGES_FIRST_MAX];
     uint64_t differences;
 
     if (images == NULL)
         return;
     differences = drive_images_differences(images);
     (void)fprintf(stream, "  drives        %u on %s: ", images->count, images->name);
-    if (differences == 0)
+    if (differences == 0) {
         (void)fprintf(stream, "every frame and torque as on the host, bit for bit\n");
-    else
-        (void)fprintf(stream, "%" PRIu64 " frames and torques differ from the host's\n",
-                      differences);
+        return;
+    }
+    drive_images_write_first(images, first);
+    (void)fprintf(stream, "%" PRIu64 " frames and torques differ from the host's, first %s\n",
+                  differences, first);
 }
 
 static void write_target(FILE *stream, const struct summary *summary)

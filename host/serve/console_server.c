@@ -240,7 +240,7 @@ static bool send_output(struct console_server *s)
 /* As many as find room, so that none is lost. False: the sender is gone. */
 static bool receive(struct console_server *s)
 {
-    const uint32_t room = lines_room(&s->lines) - 1;
+    const uint32_t room = lines_room(&s->lines);
     uint8_t bytes[INPUT_MAX];
     const ssize_t received =
         read(s->sender, bytes, room < sizeof bytes ? (size_t)room : sizeof bytes);

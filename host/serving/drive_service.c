@@ -223,11 +223,16 @@ static void keep_time(struct drive_service *service)
 static bool check_images(struct drive_service *service)
 {
     const char *problem = drive_images_problem(&service->images);
+    char first[DRIVE_IMAGES_FIRST_MAX];
 
-    if (problem == NULL && drive_images_differences(&service->images) == 0)
+    if (problem != NULL) {
+        message_command_error("%s", problem);
+        return false;
+    }
+    if (drive_images_differences(&service->images) == 0)
         return true;
-    message_command_error(
-        "%s", problem != NULL ? problem : "an image sends or turns what the drive here does not");
+    drive_images_write_first(&service->images, first);
+    message_command_error("%s: the image sends or turns what the drive here does not", first);
     return false;
 }
 

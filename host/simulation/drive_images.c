@@ -74,3 +74,20 @@ uint64_t drive_images_differences(const struct drive_images *images)
         differences += images->image[i].differences;
     return differences;
 }
+
+void drive_images_write_first(const struct drive_images *images, char text[DRIVE_IMAGES_FIRST_MAX])
+{
+    unsigned first = images->count;
+
+    for (unsigned i = 0; i < images->count; i++) {
+        const struct drive_image *image = &images->image[i];
+
+        if (image->differences > 0 &&
+            (first == images->count ||
+             image->first_difference_ns < images->image[first].first_difference_ns))
+            first = i;
+    }
+    (void)snprintf(text, DRIVE_IMAGES_FIRST_MAX, "drive %u at %.6f s",
+                   (unsigned)images->node[first],
+                   (double)images->image[first].first_difference_ns * 1e-9);
+}

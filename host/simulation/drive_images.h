@@ -12,6 +12,7 @@
 #include <stdint.h>
 
 #define DRIVE_IMAGES_PROBLEM_MAX (DRIVE_IMAGE_PROBLEM_MAX + 64)
+#define DRIVE_IMAGES_FIRST_MAX   48
 
 /* It must not be moved once opened. count 0: the drives are none. */
 struct drive_images {
@@ -35,5 +36,7 @@ const char *drive_images_problem(struct drive_images *images);
 
 /* Frames and torques that were not those of the drives here, to the bit. */
 uint64_t drive_images_differences(const struct drive_images *images);
+/* "drive 2 at 0.001 s": the earliest of them. There is at least one. */
+void drive_images_write_first(const struct drive_images *images, char text[DRIVE_IMAGES_FIRST_MAX]);
 
 #endif

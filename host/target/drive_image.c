@@ -17,7 +17,6 @@ static const char *const ask_names[TWIN_ASK_KINDS] = {
     [TWIN_HOLDS_BACK] = "looks whether a frame is held back",
     [TWIN_ABORTS_SDO] = "looks whether an SDO request is aborted",
     [TWIN_OVERRIDES] = "looks whether an object is overridden",
-    [TWIN_KEEP] = "has its objects stored",
 };
 
 /* The talk is over; `problem` says why. */
@@ -40,7 +39,9 @@ static bool is_gone(struct drive_image *image)
 
 bool drive_image_is_known(const char *name)
 {
-    return process_board(name) != NULL;
+    const struct process_board *board = process_board(name);
+
+    return board != NULL && board->has_drives;
 }
 
 /* -- the image does what the drive here does -- */
@@ -97,12 +98,15 @@ static bool is_same_frame(const struct can_frame *a, const struct can_frame *b)
 static bool send(void *context, const struct can_frame *frame)
 {
     struct drive_image *image = context;
+    struct can_frame sent;
     struct twin_ask ask;
     bool is_sent;
 
-    if (!next_ask(image, TWIN_SEND, &ask))
+    if (next_ask(image, TWIN_SEND, &ask) && !classical_frame_is_valid(&ask.frame))
+        (void)say(image, "it sends a frame that there is not");
+    if (!image->is_talking)
         return image->bus.send(image->bus.context, frame);
-    const struct can_frame sent = twin_frame_get(&ask.frame);
+    classical_frame_get(&ask.frame, &sent);
     compare(image, is_same_frame(frame, &sent));
     is_sent = image->bus.send(image->bus.context, &sent);
     reply(image, &(struct twin_reply){.yes = is_sent});
@@ -185,17 +189,6 @@ static bool overrides(void *context, const struct object_row *row, uint32_t *val
     return has;
 }
 
-static bool keep(void *context, const struct servo *drive)
-{
-    struct drive_image *image = context;
-    const bool is_kept = image->keeper.keep(image->keeper.context, drive);
-    struct twin_ask ask;
-
-    if (next_ask(image, TWIN_KEEP, &ask))
-        reply(image, &(struct twin_reply){.yes = is_kept});
-    return is_kept;
-}
-
 static struct servo_meddler meddle(void *context, const struct servo_meddler *meddler)
 {
     struct drive_image *image = context;
@@ -205,14 +198,6 @@ static struct servo_meddler meddle(void *context, const struct servo_meddler *me
                                   .aborts_sdo = aborts_sdo,
                                   .overrides = overrides,
                                   .context = image};
-}
-
-static struct drive_keeper set_keeper(void *context, const struct drive_keeper *keeper)
-{
-    struct drive_image *image = context;
-
-    image->keeper = *keeper;
-    return (struct drive_keeper){.keep = keep, .context = image};
 }
 
 /* -- orders -- */
@@ -278,12 +263,8 @@ bool drive_image_open(struct drive_image *image, const char *name, const char *p
     const struct process_board *board = process_board(name);
 
     memset(image, 0, sizeof *image);
-    image->twin = (struct virtual_drive_twin){.open = open,
-                                              .begin = begin,
-                                              .end = end,
-                                              .meddle = meddle,
-                                              .keep = set_keeper,
-                                              .context = image};
+    image->twin = (struct virtual_drive_twin){
+        .open = open, .begin = begin, .end = end, .meddle = meddle, .context = image};
     (void)signal(SIGPIPE, SIG_IGN);
     if (!process_start(&image->process, board, path, (int[PROCESS_FILES]){PROCESS_TALK, -1})) {
         (void)snprintf(image->problem, sizeof image->problem,

@@ -25,7 +25,6 @@ struct drive_image {
     struct can_port bus;
     struct motor_port motor;
     struct servo_meddler meddler;
-    struct drive_keeper keeper;
     bool is_talking;
     bool is_in_order; /* one is being carried out */
     uint64_t differences;
@@ -33,7 +32,7 @@ struct drive_image {
     char problem[DRIVE_IMAGE_PROBLEM_MAX + 1]; /* "": none */
 };
 
-/* Is there a target of that name? */
+/* Is there a target of that name that drives are built for? */
 bool drive_image_is_known(const char *name);
 
 /*

@@ -28,9 +28,9 @@
 extern char **environ;
 
 static const struct process_board boards[] = {
-    {"m4f", "qemu-system-arm", "qemu-system-arm", {"-M", "mps2-an386"}},
-    {"m7", "qemu-system-arm", "qemu-system-arm", {"-M", "mps2-an500"}},
-    {"rv64", "qemu-system-riscv64", "qemu-system-misc", {"-M", "virt", "-bios", "none"}},
+    {"m4f", "qemu-system-arm", "qemu-system-arm", {"-M", "mps2-an386"}, true},
+    {"m7", "qemu-system-arm", "qemu-system-arm", {"-M", "mps2-an500"}, true},
+    {"rv64", "qemu-system-riscv64", "qemu-system-misc", {"-M", "virt", "-bios", "none"}, false},
 };
 
 const struct process_board *process_board(const char *name)

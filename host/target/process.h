@@ -17,6 +17,7 @@ struct process_board {
     const char *qemu; /* the program */
     const char *package;
     const char *options[5]; /* up to the first NULL */
+    bool has_drives;        /* takt-drive is built for it, too */
 };
 
 /* The board that a target's name stands for; NULL: none. */

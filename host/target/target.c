@@ -171,7 +171,7 @@ static bool port_send(void *context, const struct can_frame *frame)
 
     if (t->own_count == REMOTE_FRAMES_MAX)
         return false;
-    remote_frame_set(&t->own[t->own_count++], frame);
+    classical_frame_set(&t->own[t->own_count++], frame);
     return true;
 }
 
@@ -181,7 +181,7 @@ static bool port_receive(void *context, struct can_frame *frame)
 
     if (t->taken == t->given.frames)
         return false;
-    remote_frame_get(&t->given.frame[t->taken++], frame);
+    classical_frame_get(&t->given.frame[t->taken++], frame);
     return true;
 }
 
@@ -202,7 +202,7 @@ bool target_begin_cycle(struct target *t, const struct inputs *inputs, const dou
     memcpy(given->rise_k, rise_k, sizeof given->rise_k);
     given->frames = 0;
     while (given->frames < REMOTE_FRAMES_MAX && t->bus.receive(t->bus.context, &frame))
-        remote_frame_set(&given->frame[given->frames++], &frame);
+        classical_frame_set(&given->frame[given->frames++], &frame);
     t->taken = 0;
     t->own_count = 0;
     if (wire_write(t->process.to, given,
@@ -220,7 +220,7 @@ static bool read_outputs(struct target *t)
            wire_read(t->process.from, done->frame, done->frames * sizeof done->frame[0]);
 }
 
-static bool is_same_frame(const struct remote_frame *a, const struct remote_frame *b)
+static bool is_same_frame(const struct classical_frame *a, const struct classical_frame *b)
 {
     return a->id == b->id && a->length == b->length && memcmp(a->data, b->data, a->length) == 0;
 }
@@ -298,7 +298,9 @@ bool target_end_cycle(struct target *t, const struct controller *here)
     t->cycles++;
     add_cost(t);
     for (uint32_t i = 0; i < t->done.frames; i++) {
-        remote_frame_get(&t->done.frame[i], &frame);
+        if (!classical_frame_is_valid(&t->done.frame[i]))
+            return fail(t, "the image sends a frame that there is not");
+        classical_frame_get(&t->done.frame[i], &frame);
         if (!t->bus.send(t->bus.context, &frame))
             return fail(t, "the bus has no room for the frames of the image");
     }

@@ -64,7 +64,7 @@ struct target {
     struct remote_outputs done;
     uint32_t taken;     /* frames given that the controller here has had */
     uint32_t own_count; /* frames it has sent in this cycle */
-    struct remote_frame own[REMOTE_FRAMES_MAX];
+    struct classical_frame own[REMOTE_FRAMES_MAX];
     uint64_t differences;      /* cycles */
     uint64_t first_difference; /* cycle since power-on */
     uint64_t cycles;

@@ -21,6 +21,8 @@ BaseNode402.TIMEOUT_SWITCH_OP_MODE = PATIENCE_S
 BaseNode402.TIMEOUT_SWITCH_STATE_SINGLE = PATIENCE_S
 BaseNode402.TIMEOUT_SWITCH_STATE_FINAL = PATIENCE_S
 canopen.sdo.SdoClient.RESPONSE_TIMEOUT = PATIENCE_S
+# In a fast scan a bit that is one has no answer: each costs this time.
+canopen.lss.LssMaster.RESPONSE_TIMEOUT = 2.5
 
 # It warns of every object that it reads by SDO for want of a PDO.
 logging.getLogger("canopen.profiles.p402").setLevel(logging.ERROR)

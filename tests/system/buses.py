@@ -64,6 +64,7 @@ def check_refusals():
         (["--bus", "slcan:localhost"], 2, "expected slcan:PATH"),
         (["--drives", "external"], 2, "needs a bus"),
         (["--drives", "elsewhere"], 2, "internal, external, or m4f or m7 is expected"),
+        (["--drives", "rv64"], 2, "internal, external, or m4f or m7 is expected"),
         (["--drives", "internal", "--bus", "slcan:/dev/null"], 2, "are on the embedded bus"),
         (["--bus", "slcan:/no/such/device"], 3, "cannot be used"),
         (["--bus", "socketcand:127.0.0.1:1"], 3, "no connection"),

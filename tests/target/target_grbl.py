@@ -13,7 +13,7 @@ import serial_pair
 import takt_test as t
 
 PART = "G21 G90 G64 P0.01 F1200\n" + "".join(f"G1 X{0.2 * i:.1f} Y{i % 3}\n" for i in range(1, 41)) + "M2\n"
-WINDOW = 1000
+WINDOW = 500
 
 
 def ask_states(sender):

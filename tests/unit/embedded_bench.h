@@ -148,7 +148,8 @@ static inline bool receive(void *context, struct can_frame *frame)
     return bus_port.receive(bus_port.context, frame);
 }
 
-static inline void power_on(void)
+/* lines: of a console; NULL: there is none. */
+static inline void power_on_with(const struct service_lines *lines)
 {
     const struct embedded_config config = {
         .machine = &machine,
@@ -165,12 +166,18 @@ static inline void power_on(void)
         .unit = UNIT,
         .gap_us = 10000,
         .name = "takt in a test",
+        .lines = lines,
     };
 
     embedded_init(&embedded, &config);
 }
 
-static inline void bench_set_up(void)
+static inline void power_on(void)
+{
+    power_on_with(NULL);
+}
+
+static inline void bench_set_up_with(const struct service_lines *lines)
 {
     struct virtual_drives_config virtual;
 
@@ -186,7 +193,12 @@ static inline void bench_set_up(void)
     is_locked = false;
     last = velocity = acceleration = (struct point){{0}};
     most_velocity = most_acceleration = most_jerk = 0;
-    power_on();
+    power_on_with(lines);
+}
+
+static inline void bench_set_up(void)
+{
+    bench_set_up_with(NULL);
 }
 
 /* ---- the panel ---- */

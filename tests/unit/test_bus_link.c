@@ -193,6 +193,9 @@ static void test_a_bit_rate_that_adapters_do_not_know_is_refused(void)
     TEST_ASSERT_NULL(link_open(spec, &odd, &error));
     TEST_ASSERT_NOT_NULL_MESSAGE(strstr(error.text, "123456"), error.text);
     TEST_ASSERT_FALSE(error.is_environment);
+    odd = (struct link_config){.bitrate = 500000, .fd = true, .data_bitrate = 2500000};
+    TEST_ASSERT_NULL(link_open(spec, &odd, &error));
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(error.text, "no data rate 2500000"), error.text);
     link_close(adapter);
 }
 

@@ -75,7 +75,7 @@ static void test_the_ring_goes_round_and_lines_keep_their_order_and_answers(void
         TEST_ASSERT_EQUAL_UINT8(i % 3 == 0 ? 20 : 0, answer);
         lines_take_why(&lines, &told);
         TEST_ASSERT_EQUAL_INT(i % 3 == 0 ? TAKT_ERROR_WORD_UNKNOWN : TAKT_OK, told.code);
-        TEST_ASSERT_EQUAL_UINT32(SIZE / 2, lines_room(&lines));
+        TEST_ASSERT_EQUAL_UINT32(lines_capacity(&lines), lines_room(&lines));
     }
 }
 

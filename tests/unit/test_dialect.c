@@ -348,23 +348,32 @@ static void test_distances_of_cycles_can_be_whole_thousandths(void)
 
 static void test_pecks_along_the_axis_of_a_lathe_become_a_loop(void)
 {
-    expect(
-        DIALECT_FANUC, "G50 S9\nG74 R0.5\nG74 Z-12. Q5000 F0.1\n",
-        "G18 G7\n        \n"
-        "#<_turning_x>=[2*#<_x>] #<_turning_z>=#<_z>\n"
-        "|                F0.1\n"
-        "|#<_turning_at>=#<_turning_z>\n"
-        "|o94000003 repeat [FUP[[#<_turning_at>-[-12.]]/[1*[5000*[0.001-0.0009*#<_imperial>]]]]]\n"
-        "|#<_turning_at>=[#<_turning_at>-[1*[5000*[0.001-0.0009*#<_imperial>]]]]\n"
-        "|o95000003 if [#<_turning_at> LT [-12.]]\n|#<_turning_at>=[-12.]\n|o95000003 endif\n"
-        "|G1 z#<_turning_at>\n|G0 z[#<_turning_at>+[1.0*[0.5]]]\n|o94000003 endrepeat\n"
-        "|G0 X#<_turning_x>\n|Z#<_turning_z>\n");
+    expect(DIALECT_FANUC, "G50 S9\nG74 R0.5\nG74 Z-12. Q5000 F0.1\n",
+           "G18 G7\n        \n"
+           "#<_turning_x>=[2*#<_x>] #<_turning_z>=#<_z>\n"
+           "|                F0.1\n"
+           "|#<_turning_at>=#<_turning_z>\n|#<_turning_way>=[1-2*[[-12.] GT #<_turning_at>]]\n"
+           "|o94000003 repeat "
+           "[FUP[ABS[#<_turning_at>-[-12.]]/[1*[5000*[0.001-0.0009*#<_imperial>]]]]]\n"
+           "|#<_turning_at>="
+           "[#<_turning_at>-#<_turning_way>*[1*[5000*[0.001-0.0009*#<_imperial>]]]]\n"
+           "|o95000003 if [#<_turning_way>*[#<_turning_at>-[-12.]] LT 0]\n|#<_turning_at>=[-12.]\n"
+           "|o95000003 endif\n|G1 z#<_turning_at>\n"
+           "|G0 z[#<_turning_at>+#<_turning_way>*[1.0*[0.5]]]\n|o94000003 endrepeat\n"
+           "|G0 X#<_turning_x>\n|Z#<_turning_z>\n");
 }
 
 static void test_registers_hold_what_later_lines_mean(void)
 {
     expect(DIALECT_FANUC, "G43 H1 D51 Z5\nG41 X1\nG28 Z0\nG40\nG28 Z0\n",
            "G43 H1     Z5\nG41 X1 D51\nG40\n|G28 Z0\n|G41 D51\nG40\nG28 Z0\n");
+    expect(DIALECT_FANUC, "G43 H1 D1\nG41 D5 X1\nG28 Z0\n",
+           "G43 H1   \nG41 D5 X1\nG40\n|G28 Z0\n|G41 D5\n");
+    expect(DIALECT_FANUC, "G43 H1 D[#100+#101+#102+#103+#104]\n",
+           "G43 H1 D[#100+#101+#102+#103+#104]\n");
+    expect(DIALECT_FANUC, "G50 S[#100+#101+#102+#103+#104]\n",
+           "G18 G7\n|G50 S[#100+#101+#102+#103+#104]\n");
+    expect(DIALECT_FANUC, "G50 S9\nG0 H90.\n", "G18 G7\nG0 H90.\n");
     expect(DIALECT_FANUC, "H8\nG43 Z5\nH9\nG49 H0\n", "  \nG43 Z5 H8\nH9 G43\nG49   \n");
     expect(DIALECT_FANUC, "T1.1 M6\nG4 X2.\n", "T1   M6\nG4 P2.000000\n");
     expect(DIALECT_FANUC, "G96 M3\nS200 F1\nS300\n", "    M3\nS200 F1 G96 \nS300\n");
@@ -374,6 +383,7 @@ static void test_other_names_of_what_linuxcnc_has(void)
 {
     expect(DIALECT_FANUC, "%O3 (A)\n[BILLET X62\nG71 G90\nG53 Z0\nN10 N10 X1\n%\n",
            "%\n\nG21 G90\nG53 Z0 G0\nN10     X1\n%\n");
+    expect(DIALECT_GRBL, "MSG \"a) M3 S1000 (b\"\n", "(msg,a] M3 S1000 [b)\n");
     expect(DIALECT_GRBL, "MSG \"tool 3\"\nG0 X1*52\n#1=#2*3\n", "(msg,tool 3)\nG0 X1\n#1=#2*3\n");
     expect(DIALECT_HAAS, "O1\nM98 Q30\nM30\nN30 X2\nM99\n",
            "O1\nM98 P97000030\nM30\nO97000030\n|N30 X2\nM99\n");

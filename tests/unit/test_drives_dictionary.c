@@ -162,6 +162,23 @@ static void test_a_mapping_of_a_sheet_that_is_longer_than_a_frame_ends_with_the_
     TEST_ASSERT_EQUAL_UINT(8, lone_find(&lone, 0x180 + LONE_NODE)->length);
 }
 
+/* A sheet may map by default what never changes and has no place in memory. */
+static void test_a_constant_that_a_sheet_maps_is_sent(void)
+{
+    read_sheet("[1000]\nDataType=7\nAccessType=const\n[6040]\nDataType=6\nAccessType=rww\n"
+               "[6502]\nDataType=7\nAccessType=ro\nDefaultValue=0x80\n"
+               "[1800sub1]\nDataType=7\nDefaultValue=$NODEID+0x180\n"
+               "[1800sub2]\nDataType=5\nDefaultValue=1\n"
+               "[1A00sub0]\nDataType=5\nDefaultValue=1\n"
+               "[1A00sub1]\nDataType=7\nDefaultValue=0x65020020\n");
+    lone_set_default(&lone);
+    lone.config.dictionary = &sheet;
+    lone_start(&lone);
+    lone_nmt(&lone, NMT_START);
+    lone_sync(&lone);
+    TEST_ASSERT_EQUAL_HEX8(0x80, lone_find(&lone, 0x180 + LONE_NODE)->data[0]);
+}
+
 /* Bit 30 of 1005 says that a node sends SYNC; the identifier is below it. */
 static void test_bits_above_the_identifier_of_sync_do_not_count(void)
 {
@@ -285,6 +302,7 @@ int main(void)
     RUN_TEST(test_what_is_no_data_sheet_is_told_so);
     RUN_TEST(test_a_drive_of_a_sheet_has_its_objects_and_no_others);
     RUN_TEST(test_a_mapping_of_a_sheet_that_is_longer_than_a_frame_ends_with_the_frame);
+    RUN_TEST(test_a_constant_that_a_sheet_maps_is_sent);
     RUN_TEST(test_bits_above_the_identifier_of_sync_do_not_count);
     RUN_TEST(test_booting_and_answering_take_their_time);
     RUN_TEST(test_any_bytes_are_read_or_refused);

@@ -168,7 +168,7 @@ static void test_what_is_behind_along_the_way_does_not_count(void)
     TEST_ASSERT_DOUBLE_WITHIN(1e-12, 0.25, tool_way_rms_mm(&way));
 }
 
-/* Out along X and back 0.1 beside it: the tool that is late is measured from where it is, not from what lies near. */
+/* Along X, then along Y: the tool that is late is measured from where it is, not from what lies near. */
 static void test_a_corner_is_measured_from_both_of_its_sides(void)
 {
     for (int k = 0; k <= 20; k++)
