@@ -51,9 +51,21 @@ void drives_enter_phase(struct drives *d, enum drives_phase phase)
         drives_begin_axis(d, 0);
 }
 
+/* It is to be configured, which many drives take while they are pre-operational alone. */
+static void hold(struct drives_axis *axis)
+{
+    axis->hold_pending = true;
+    axis->started = false;
+    axis->heard = false;
+    axis->controlword = 0;
+    axis->told_mode = CIA402_MODE_NONE;
+}
+
 /* A request to another drive is waited for: its answer would be taken for that to the next one. */
 static void begin_again(struct drives *d, uint8_t booted)
 {
+    for (unsigned i = 0; i < d->count; i++)
+        hold(&d->axis[i]);
     bool is_stale = d->phase <= DRIVES_IO && sdo_client_is_busy(&d->sdo) && d->sdo.node != booted;
     drives_enter_phase(d, DRIVES_CONFIGURE);
     d->is_stale = is_stale;
@@ -67,11 +79,7 @@ void drives_start_again(struct drives *d, unsigned index)
     if (axis->reset_pending)
         return; /* it does not know of its reset yet, and will boot again */
     axis->booted = true;
-    axis->hold_pending = true;
-    axis->started = false;
-    axis->heard = false;
-    axis->controlword = 0;
-    axis->told_mode = CIA402_MODE_NONE;
+    hold(axis);
     if (d->phase >= DRIVES_SELECT || d->restarts++ == RESTARTS_MAX)
         drives_raise(d, index, TAKT_ERROR_DRIVE_REBOOTED, 0, NULL);
     else if (d->phase != DRIVES_BOOT)
@@ -311,13 +319,16 @@ bool drives_tells_mode(const struct drives_axis *axis)
     return drives_has_given_up(axis, DRIVES_NO_MODE_PDO) && axis->told_mode != axis->mode;
 }
 
-/* A fault is reset by an edge; one that has come too early for the drive does nothing, so it comes again and again. */
-#define RESET_CYCLES 32
+/*
+ * A fault is reset by an edge; one that has come too early for the drive does nothing, so it comes again and again. The times
+ * between are long beside those in which drives look at their controlword, 0.25 to 10 ms, whatever the cycle is.
+ */
+#define RESET_US 32000U
 
 uint16_t drives_controlword(const struct drives *d, const struct drives_axis *axis)
 {
     enum cia402_state state = cia402_state(axis->statusword);
-    if (state == CIA402_FAULT && d->phase_cycles / RESET_CYCLES % 2 == 1)
+    if (state == CIA402_FAULT && d->phase_cycles / (RESET_US / d->cycle_us + 1) % 2 == 1)
         return CIA402_DISABLE_VOLTAGE;
     uint16_t command = state == CIA402_ENABLED ? axis->command : 0;
     return (uint16_t)(cia402_step_to_enabled(state) | command);

@@ -490,8 +490,10 @@ static void test_a_drive_that_boots_while_it_is_configured_is_configured_again(v
     nmt_write_heartbeat(fake_nodes_add(&nodes), 2, NMT_BOOTED);
     run_until(DRIVES_ENABLED);
     TEST_ASSERT_EQUAL_UINT(2 * written, nodes.written_count);
-    TEST_ASSERT_EQUAL_UINT(2, nodes.starts[2]);
-    TEST_ASSERT_EQUAL_UINT(1, nodes.starts[1]);
+    for (unsigned node = 1; node <= 3; node++) {
+        TEST_ASSERT_EQUAL_UINT(2, nodes.holds[node]);
+        TEST_ASSERT_EQUAL_UINT(2, nodes.starts[node]);
+    }
 }
 
 static void test_a_drive_that_does_not_show_its_mode_is_refused(void)
