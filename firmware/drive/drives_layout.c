@@ -89,8 +89,7 @@ static void take_transmitted(struct drives *d)
     uint8_t status = drives_byte_of(pdo, CIA402_STATUSWORD),
             position = drives_byte_of(pdo, CIA402_POSITION_ACTUAL);
     bool has_both = status != DRIVES_NOWHERE && position != DRIVES_NOWHERE;
-    bool is_timed =
-        m->pass >= PASS_APART && pdo->transmission >= PDO_EVENT_MIN && m->is_timed;
+    bool is_timed = m->pass >= PASS_APART && pdo->transmission >= PDO_EVENT_MIN && m->is_timed;
     bool is_cyclic = pdo->transmission == PDO_EVERY_SYNC || is_timed;
     bool is_taken = is_cyclic && (has_both || m->pass >= PASS_APART);
     if (node_id(pdo->cob_id) != axis->config.node)

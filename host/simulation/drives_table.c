@@ -209,6 +209,9 @@ const char *drives_table_remedy(const struct diagnostic *fault)
     case TAKT_ERROR_DRIVE_SCALING:
         return "correct increments_per_mm or travel_per_turn_mm, or objects 608F, 6091 and 6092 "
                "with the maker's tool";
+    case TAKT_ERROR_DRIVE_FOLLOWING:
+        return "look at increments_per_mm and the gains of the drive; what it cannot follow is too "
+               "much for it: max_acceleration_mm_s2, max_velocity_mm_s";
     case TAKT_ERROR_DRIVE_SKEW:
         return "look at the switches of both drives, and at home_offset_mm and skew_max_mm in "
                "[gantry]";
