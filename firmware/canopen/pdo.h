@@ -24,6 +24,7 @@
 
 /* Transmission types: every SYNC; at an event of the node (TPDO), at once (RPDO). */
 #define PDO_EVERY_SYNC 1
+#define PDO_EVENT_MIN  254 /* that, or an event of the maker's */
 #define PDO_EVENT      255
 
 /*

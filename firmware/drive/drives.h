@@ -137,9 +137,10 @@ enum drives_given_up {
     DRIVES_NO_TOUCH_PROBE,  /* it latches no position (60B8): a probing move has that of a cycle */
     DRIVES_NO_SCALING, /* it does not tell its scaling (6092, 608F): increments_per_mm is believed */
     DRIVES_GUARDED, /* it has no heartbeat (1017), and is asked for its state instead (100C, 100D) */
-    DRIVES_NO_POSITION, /* it follows velocities: the position loop is ours */
-    DRIVES_NO_RAMPS,    /* its ramps to a velocity (6083, 6084) are as they are set up */
-    DRIVES_NO_TYPE,     /* its type (1000) is not that of a drive: it is taken for one */
+    DRIVES_NO_POSITION,    /* it follows velocities: the position loop is ours */
+    DRIVES_NO_RAMPS,       /* its ramps to a velocity (6083, 6084) are as they are set up */
+    DRIVES_NO_TYPE,        /* its type (1000) is not that of a drive: it is taken for one */
+    DRIVES_NO_SYNC_REPORT, /* its reports come by a timer, not by SYNC: they are up to a cycle older */
     DRIVES_GIVEN_UP_COUNT
 };
 

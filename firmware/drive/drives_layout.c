@@ -77,7 +77,7 @@ void drives_count_bits(struct drives *d, unsigned length)
 void drives_suffer(struct drives *d)
 {
     drives_give_up(d, d->at_axis, DRIVES_NO_SILENCE);
-    if (d->mapping.pdo.transmission <= PDO_SYNC_MAX)
+    if (d->mapping.pdo.transmission <= PDO_SYNC_MAX || d->mapping.is_timed)
         drives_count_bits(d, d->mapping.pdo.mapping.length);
 }
 
@@ -89,7 +89,8 @@ static void take_transmitted(struct drives *d)
     uint8_t status = drives_byte_of(pdo, CIA402_STATUSWORD),
             position = drives_byte_of(pdo, CIA402_POSITION_ACTUAL);
     bool has_both = status != DRIVES_NOWHERE && position != DRIVES_NOWHERE;
-    bool is_cyclic = pdo->transmission == PDO_EVERY_SYNC;
+    bool is_timed = m->pass >= PASS_APART && pdo->transmission >= PDO_EVENT_MIN && m->is_timed;
+    bool is_cyclic = pdo->transmission == PDO_EVERY_SYNC || is_timed;
     bool is_taken = is_cyclic && (has_both || m->pass >= PASS_APART);
     if (node_id(pdo->cob_id) != axis->config.node)
         return;
@@ -103,8 +104,11 @@ static void take_transmitted(struct drives *d)
     }
     if (!is_cyclic && drives_byte_of(pdo, CIA402_ERROR_CODE) == 0)
         axis->error_id = pdo->cob_id;
-    if (is_cyclic && drives_uses(axis, pdo))
-        drives_count_bits(d, pdo->mapping.length);
+    if (!is_cyclic || !drives_uses(axis, pdo))
+        return;
+    drives_count_bits(d, pdo->mapping.length);
+    if (is_timed)
+        drives_give_up(d, d->at_axis, DRIVES_NO_SYNC_REPORT);
 }
 
 /* Of entries: a drive may have mapped more than a frame holds only by mistake. */

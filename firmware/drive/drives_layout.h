@@ -34,6 +34,8 @@ void drives_suffer(struct drives *d);
 /* The drive's value of what else is in a frame. */
 void drives_store_rest(struct drives_frame *frame, const struct pdo *pdo, uint32_t object,
                        uint32_t value);
+/* Nothing is left to be mapped: what goes by SDO, and whether the rest suffices. True: there is more to map after all. */
+bool drives_finish_map(struct drives *d);
 /* A frame of this length is sent in every cycle, of the drive that is being configured. */
 void drives_count_bits(struct drives *d, unsigned length);
 

@@ -8,7 +8,7 @@
  *     4      RPDO1   again, if the target has found no place: target, controlword
  *     5      TPDO1   statusword, position                              every SYNC
  *     6 - 8  TPDO2-4 the same, if they have found no place in one PDO; error code, following error (event, 100 ms)
- *     9 - 12 TPDO1-4 again, if they have found no such place: each in one of its own
+ *     9 - 12 TPDO1-4 anew, if they have found no such place: each in one of its own, without SYNC by the timer, once a cycle
  *
  * A PDO is told as CiA 301, 7.5.2.36 has it: not valid, type, no mapping, entries, their number, inhibit time, valid. An entry that is
  * refused is left out, and so is the last one as long as their number is. Is anything else refused, the PDO is read: its
@@ -49,7 +49,8 @@ enum step {
     READ_TYPE,
     READ_COUNT,
     READ_ENTRY,
-    SET_TYPE, /* by what has been found in it */
+    SET_TYPE,   /* by what has been found in it */
+    READ_TIMER, /* of a report that does not come by SYNC */
     FOUND,
     READ_REST, /* values of what takt does not know */
     SILENCE,   /* a TPDO with nothing that is wanted */
@@ -105,7 +106,8 @@ static void want_received(const struct drives *d, struct pdo *pdo)
 static void want_transmitted(const struct drives *d, struct pdo *pdo)
 {
     const struct drives_axis *axis = &d->axis[d->at_axis];
-    bool has_no_error = axis->error_id == NO_TPDO && d->mapping.pass < PASS_APART;
+    bool has_room = d->mapping.pass < PASS_APART || axis->status_id == axis->position_id;
+    bool has_no_error = axis->error_id == NO_TPDO && has_room;
     add(pdo, CIA402_STATUSWORD, axis->status_id == NO_TPDO);
     add(pdo, CIA402_POSITION_ACTUAL, axis->position_id == NO_TPDO);
     if (pdo->mapping.count > 0) {
@@ -137,6 +139,7 @@ static void begin(struct drives *d)
     m->id = m->pdo.cob_id | (drives_is_transmitted(m) ? OBJECT_PDO_NO_RTR : 0);
     m->entry = 0;
     m->is_taken = !keeps;
+    m->is_timed = false;
     m->step = keeps ? READ_ID : OFF;
     if (m->pass == PASS_AGAIN && (m->pdo.mapping.count == 0 || keeps)) {
         m->step = DONE;
@@ -147,6 +150,7 @@ static void begin(struct drives *d)
         m->pass = PASSES;
     } else if (m->pass == PASS_APART) {
         axis->bits = 0;
+        axis->error_id = NO_TPDO;
         axis->given_up &= ~(1u << DRIVES_NO_SILENCE);
     }
 }
@@ -165,19 +169,36 @@ static bool set_read(struct drives_step *step, unsigned index, unsigned sub)
     return set_write(step, index, sub, 0, 0);
 }
 
+static bool has(const struct pdo *pdo, uint32_t object)
+{
+    return drives_byte_of(pdo, object) != DRIVES_NOWHERE;
+}
+
+static bool is_report(const struct pdo *pdo)
+{
+    return has(pdo, CIA402_STATUSWORD) || has(pdo, CIA402_POSITION_ACTUAL);
+}
+
 static bool is_event_driven(const struct drives_mapping *m)
 {
-    return drives_is_transmitted(m) && m->pdo.transmission == PDO_EVENT;
+    return drives_is_transmitted(m) && m->pdo.transmission >= PDO_EVENT_MIN;
 }
 
-/* Reports of a cycle are not held back; a following error changes in every cycle, and is not to be told as often. */
-static uint32_t inhibit_of(const struct drives_mapping *m)
+/* A report that does not come by SYNC comes once a cycle; a following error changes as often, and is not to be told so. */
+static uint32_t event_ms_of(const struct drives *d)
 {
-    return is_event_driven(m) ? DRIVES_EVENT_MS * OBJECT_PDO_INHIBIT_PER_MS : 0;
+    return is_report(&d->mapping.pdo) ? (d->cycle_us + 999) / 1000 : DRIVES_EVENT_MS;
 }
 
-static bool find_telling(const struct drives_mapping *m, struct drives_step *step)
+/* Reports of every SYNC are not held back; others do not come more often than their timer has them. */
+static uint32_t inhibit_of(const struct drives *d)
 {
+    return is_event_driven(&d->mapping) ? event_ms_of(d) * OBJECT_PDO_INHIBIT_PER_MS : 0;
+}
+
+static bool find_telling(const struct drives *d, struct drives_step *step)
+{
+    const struct drives_mapping *m = &d->mapping;
     const unsigned parameters = parameters_of(m), mapping = parameters + MAPPING_OFFSET;
     const struct pdo *pdo = &m->pdo;
     const unsigned count = pdo->mapping.count;
@@ -195,26 +216,21 @@ static bool find_telling(const struct drives_mapping *m, struct drives_step *ste
     case COUNT:
         return set_write(step, mapping, 0, 1, count) && count > 0;
     case INHIBIT:
-        return set_write(step, parameters, OBJECT_PDO_INHIBIT, 2, inhibit_of(m)) && count > 0 &&
+        return set_write(step, parameters, OBJECT_PDO_INHIBIT, 2, inhibit_of(d)) && count > 0 &&
                drives_is_transmitted(m);
     case TIMER:
-        return set_write(step, parameters, OBJECT_PDO_EVENT_TIMER, 2, DRIVES_EVENT_MS) &&
+        return set_write(step, parameters, OBJECT_PDO_EVENT_TIMER, 2, event_ms_of(d)) &&
                count > 0 && is_event_driven(m);
     default:
         return set_write(step, parameters, OBJECT_PDO_COB_ID, 4, m->id) && count > 0;
     }
 }
 
-static bool has(const struct pdo *pdo, uint32_t object)
-{
-    return drives_byte_of(pdo, object) != DRIVES_NOWHERE;
-}
-
 static uint8_t type_for(const struct drives *d)
 {
     const struct pdo *pdo = &d->mapping.pdo;
     bool has_cyclic = drives_is_transmitted(&d->mapping)
-                          ? has(pdo, CIA402_STATUSWORD) || has(pdo, CIA402_POSITION_ACTUAL)
+                          ? is_report(pdo)
                           : has(pdo, drives_target_of(&d->axis[d->at_axis]));
     return has_cyclic ? PDO_EVERY_SYNC : PDO_EVENT;
 }
@@ -253,6 +269,9 @@ static bool find_reading(const struct drives *d, struct drives_step *step)
         return m->pdo.transmission != type_for(d) && m->pdo.mapping.count > 0 &&
                !axis->config.keeps_settings &&
                set_write(step, parameters, OBJECT_PDO_TYPE, 1, type_for(d));
+    case READ_TIMER:
+        return m->pass >= PASS_APART && is_event_driven(m) && is_report(&m->pdo) && !m->is_timed &&
+               set_read(step, parameters, OBJECT_PDO_EVENT_TIMER);
     case READ_REST:
         return is_entry && !drives_is_transmitted(m) && drives_uses(axis, &m->pdo) &&
                is_rest(axis, object) && set_read(step, object >> 16, object >> 8 & 0xFF);
@@ -263,18 +282,6 @@ static bool find_reading(const struct drives *d, struct drives_step *step)
 }
 
 /* ---- What is made of it ---- */
-
-/* None of a group shares a frame any more; the first of them is told so from its beginning. */
-static void part_group(struct drives *d)
-{
-    unsigned first = d->at_axis - d->at_axis % d->group;
-    unsigned members = target_pdo_members(d->count, first, d->group);
-    for (unsigned i = first; i < first + members; i++) {
-        d->axis[i].is_paired = false;
-        drives_give_up(d, i, DRIVES_NO_PAIR);
-    }
-    drives_begin_axis(d, first);
-}
 
 /* Everything that could be told has been. */
 static void take_told(struct drives *d)
@@ -322,6 +329,12 @@ static bool take_refusal(struct drives *d, uint32_t abort_code)
         if (drop_no_rtr(m))
             return false;
         break;
+    case TYPE: /* without SYNC, then */
+        if (m->pass >= PASS_APART && m->pdo.transmission == PDO_EVERY_SYNC) {
+            m->pdo.transmission = PDO_EVENT;
+            return false;
+        }
+        break;
     case CLEAR:
         if (mapping->count > 0)
             drives_give_up(d, d->at_axis, DRIVES_NO_MAPPING);
@@ -336,6 +349,8 @@ static bool take_refusal(struct drives *d, uint32_t abort_code)
     case INHIBIT:
         return true; /* it has none, or keeps it */
     case TIMER:
+        if (is_report(&m->pdo))
+            break;
         drives_give_up(d, d->at_axis, DRIVES_NO_EVENT_TIMER);
         return true;
     default:
@@ -348,12 +363,14 @@ static bool take_refusal(struct drives *d, uint32_t abort_code)
 static void take_telling(struct drives *d, const struct drives_answer *answer)
 {
     struct drives_mapping *m = &d->mapping;
-    bool is_done = answer->abort_code == SDO_ABORT_NONE || take_refusal(d, answer->abort_code);
+    bool is_good = answer->abort_code == SDO_ABORT_NONE;
+    bool is_done = is_good || take_refusal(d, answer->abort_code);
+    m->is_timed = m->is_timed || (m->step == TIMER && is_good && is_report(&m->pdo));
     if (m->step == ENTRY)
         m->entry = (uint8_t)(m->entry + is_done);
     else
         m->step = (uint8_t)(m->step + is_done);
-    if (m->step == ENTRY && m->pdo.mapping.count == 0 && answer->abort_code == SDO_ABORT_NONE)
+    if (m->step == ENTRY && m->pdo.mapping.count == 0 && is_good)
         m->is_taken = true; /* it cannot be made not valid, but is empty */
 }
 
@@ -401,6 +418,9 @@ static void take_reading(struct drives *d, const struct drives_answer *answer)
         break;
     case SET_TYPE:
         m->pdo.transmission = is_good ? type_for(d) : m->pdo.transmission;
+        break;
+    case READ_TIMER:
+        m->is_timed = is_good && answer->value > 0 && answer->value <= event_ms_of(d);
         break;
     case READ_REST:
         m->step = READ_REST;
@@ -464,105 +484,8 @@ static bool find_request(const struct drives *d, struct drives_step *step)
     case DONE:
         return false;
     default:
-        return d->mapping.step < TOLD ? find_telling(&d->mapping, step) : find_reading(d, step);
+        return d->mapping.step < TOLD ? find_telling(d, step) : find_reading(d, step);
     }
-}
-
-static bool raise_unmapped(struct drives *d, uint32_t object)
-{
-    drives_raise_object(d, d->at_axis, object, TAKT_ERROR_DRIVE_UNMAPPED, d->read[0],
-                        sdo_abort_text(d->read[0]));
-    return false;
-}
-
-/* The target of another mode may have found a place. True: it is told everything anew, for that mode. */
-static bool try_next_mode(struct drives *d)
-{
-    struct drives_axis *axis = &d->axis[d->at_axis];
-    const uint8_t next = drives_mode_after(axis, axis->follow_mode);
-    if (next == CIA402_MODE_NONE)
-        return false;
-    axis->follow_mode = next;
-    drives_forget_pdos(axis);
-    d->mapping.pass = d->mapping.step = 0;
-    d->at_part = DRIVES_SET;
-    d->at_step = 0;
-    return true;
-}
-
-/* With a target that is a velocity a drive that watches nobody would go on for ever. */
-static void check_watch(struct drives *d)
-{
-    const struct drives_axis *axis = &d->axis[d->at_axis];
-    if (d->heartbeat_ms > 0 && !drives_has_given_up(axis, DRIVES_NO_WATCH))
-        return;
-    drives_raise_object(d, d->at_axis, SDO_OBJECT(OBJECT_CONSUMER_HEARTBEAT, 1),
-                        TAKT_ERROR_DRIVE_UNWATCHED, 0, NULL);
-}
-
-/* A mode that costs something. */
-static void take_mode(struct drives *d)
-{
-    const struct drives_axis *axis = &d->axis[d->at_axis];
-    if (axis->follow_mode == CIA402_MODE_INTERPOLATED_POSITION)
-        drives_give_up(d, d->at_axis, DRIVES_NO_CSP);
-    if (!drives_is_by_velocity(axis))
-        return;
-    drives_give_up(d, d->at_axis, DRIVES_NO_POSITION);
-    d->steers = true;
-    check_watch(d);
-}
-
-/* Its target is where a group has it: parts of one frame (target_pdo.h). */
-static bool shares_frame(const struct drives *d)
-{
-    const struct drives_frame *frame = &d->axis[d->at_axis].target_frame;
-    struct pdo pdo;
-    target_pdo_set(&pdo, d->node, d->count, d->at_axis, d->group);
-    return frame->cob_id == pdo.cob_id && frame->length == pdo.mapping.length &&
-           frame->target == drives_byte_of(&pdo, CIA402_TARGET_POSITION);
-}
-
-/* The plain form, see drives_receive.c; without a heartbeat more is to be done. */
-static void set_report(struct drives_axis *axis)
-{
-    axis->beats_by_status = drives_has_given_up(axis, DRIVES_NO_HEARTBEAT);
-    if (axis->status_id == axis->position_id && axis->status_end == 2 &&
-        axis->position_end == DRIVES_STATUS_LENGTH && !axis->beats_by_status)
-        axis->report_id = axis->status_id;
-}
-
-/* Nothing is left to be mapped: what goes by SDO, and whether the rest suffices. True: there is more to map after all. */
-static bool finish(struct drives *d)
-{
-    struct drives_axis *axis = &d->axis[d->at_axis];
-    axis->mode = axis->follow_mode;
-    if (axis->is_paired && !shares_frame(d)) {
-        part_group(d);
-        return false;
-    }
-    if (axis->target_frame.length == 0)
-        return try_next_mode(d) || raise_unmapped(d, drives_target_of(axis));
-    if (axis->status_id == NO_TPDO)
-        return raise_unmapped(d, CIA402_STATUSWORD);
-    if (axis->position_id == NO_TPDO)
-        return raise_unmapped(d, CIA402_POSITION_ACTUAL);
-    if (axis->status_id != axis->position_id)
-        drives_give_up(d, d->at_axis, DRIVES_NO_ONE_REPORT);
-    take_mode(d);
-    if (axis->control_frame.length == 0)
-        drives_give_up(d, d->at_axis, DRIVES_NO_CONTROL_PDO);
-    if (axis->control_frame.mode == DRIVES_NOWHERE && axis->target_frame.mode == DRIVES_NOWHERE)
-        drives_give_up(d, d->at_axis, DRIVES_NO_MODE_PDO);
-    if (axis->error_id == NO_TPDO)
-        drives_give_up(d, d->at_axis, DRIVES_NO_ERROR_PDO);
-    axis->sends = axis->target_frame.is_mixed ? DRIVES_SENDS_MIXED : DRIVES_SENDS;
-    if (axis->is_paired && !drives_ends_group(d, d->at_axis))
-        axis->sends = DRIVES_WAITS;
-    else
-        drives_count_bits(d, axis->target_frame.length);
-    set_report(axis);
-    return false;
 }
 
 bool drives_next_map(struct drives *d, struct drives_step *step)
@@ -573,6 +496,6 @@ bool drives_next_map(struct drives *d, struct drives_step *step)
                 return true;
             pass_step(d);
         }
-    } while (d->at_part == DRIVES_MAP && finish(d));
+    } while (d->at_part == DRIVES_MAP && drives_finish_map(d));
     return false;
 }

@@ -46,10 +46,11 @@ struct drives_frame {
 struct drives_mapping {
     uint8_t pass; /* which one, see drives_map.c */
     uint8_t step;
-    uint8_t entry;  /* that is being told or read */
-    bool is_taken;  /* the drive has taken everything so far */
-    uint32_t id;    /* 1400:01 ff. as the drive has it */
-    struct pdo pdo; /* as it is told, then as the drive has it */
+    uint8_t entry;     /* that is being told or read */
+    bool is_taken : 1; /* the drive has taken everything so far */
+    bool is_timed : 1; /* a TPDO: its event timer is a cycle at most */
+    uint32_t id;       /* 1400:01 ff. as the drive has it */
+    struct pdo pdo;    /* as it is told, then as the drive has it */
 };
 
 /* What is done with the frame of a target once it has been written. */

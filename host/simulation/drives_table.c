@@ -48,6 +48,9 @@ static const struct {
                             "a mode of velocity: the controller closes the position loop"},
     [DRIVES_NO_RAMPS] = {"ramps", "6083 6084", "the drive goes to a velocity as it is set up"},
     [DRIVES_NO_TYPE] = {"type", "1000", "the type is not that of a drive: it is taken for one"},
+    [DRIVES_NO_SYNC_REPORT] =
+        {"sync_report", "1800:02",
+         "reports by its timer (1800:05), not by SYNC: positions are up to a cycle older"},
     [DRIVES_GUARDED] = {"guarded", "1017", "no heartbeat: the drive is asked for its state (100C)"},
 };
 
@@ -144,6 +147,13 @@ void drives_table_add_json(cJSON *root, const struct drives_table *table,
             add_drive(drives, table, i, machine->axis[i].drive_node);
 }
 
+static bool is_of(const struct diagnostic *fault, const char *index)
+{
+    const char *object = strstr(fault->word, "object ");
+
+    return object != NULL && strncmp(object + strlen("object "), index, strlen(index)) == 0;
+}
+
 const char *drives_table_remedy(const struct diagnostic *fault)
 {
     switch ((int)fault->code) {
@@ -160,8 +170,9 @@ const char *drives_table_remedy(const struct diagnostic *fault)
         return "look at drive_node and the node ids of the drives; drive_vendor, drive_product, "
                "drive_revision and drive_serial say what is expected";
     case TAKT_ERROR_DRIVE_MODES:
-        return "choose another firmware or set-up of the drive; home_order = 0 for one that cannot "
-               "home";
+        return "choose a firmware or set-up of the drive with mode 8, 7, 9 or 3, since profile "
+               "position (1) comes to rest at every target and velocity of converters (2) knows "
+               "whole rpm alone; home_order = 0 for a drive that cannot home";
     case TAKT_ERROR_DRIVE_NOT_ENABLED:
         return "look at its power stage, enable and safe torque off (STO) inputs, and at its "
                "manual on what it waits for";
@@ -171,9 +182,17 @@ const char *drives_table_remedy(const struct diagnostic *fault)
     case TAKT_ERROR_DRIVE_MODE:
         return "look at the set-up of the drive, objects 6060 and 6502";
     case TAKT_ERROR_DRIVE_REFUSES:
+        if (is_of(fault, "6083") || is_of(fault, "6084"))
+            return "set velocity_units_per_mm_s to the unit of the drive (rpm: 60 by the travel of "
+                   "a turn), make max_acceleration_mm_s2 lower, or these ramps steeper with the "
+                   "maker's tool";
         return "set it up with the maker's tool; homing is home_order, home_method and "
-               "home_offset_mm, ramps (6083, 6084) must not be slower than max_acceleration_mm_s2";
+               "home_offset_mm";
     case TAKT_ERROR_DRIVE_UNMAPPED:
+        if (is_of(fault, "6041") || is_of(fault, "6064"))
+            return "map it with the maker's tool into a TPDO that is valid, and of transmission "
+                   "type 1 or with an event timer (1800:05) of the cycle, and store that; a drive "
+                   "that has it for no PDO cannot be used";
         return sdo_says_absent((uint32_t)fault->value)
                    ? "choose a drive, or with the maker's tool a mode or a firmware, that has a "
                      "target position (607A) or velocity (60FF) and 6041 and 6064 for its PDOs"
@@ -190,6 +209,9 @@ const char *drives_table_remedy(const struct diagnostic *fault)
     case TAKT_ERROR_DRIVE_SCALING:
         return "correct increments_per_mm or travel_per_turn_mm, or objects 608F, 6091 and 6092 "
                "with the maker's tool";
+    case TAKT_ERROR_DRIVE_FOLLOWING:
+        return "look at increments_per_mm and the gains of the drive; what it cannot follow is too "
+               "much for it: max_acceleration_mm_s2, max_velocity_mm_s";
     case TAKT_ERROR_DRIVE_SKEW:
         return "look at the switches of both drives, and at home_offset_mm and skew_max_mm in "
                "[gantry]";

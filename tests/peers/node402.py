@@ -292,11 +292,16 @@ class Drive:
         if self.silent_after is not None and len(self.targets) >= self.silent_after:
             return
         for tpdo in self.node.tpdo.map.values():
-            if not tpdo.enabled or tpdo.trans_type != 1:
+            if not tpdo.enabled or not self.is_due(tpdo):
                 continue
             for var in tpdo.map:
                 var.raw = {0x6041: self.statusword(), 0x6064: self.at, 0x6061: self.mode}.get(var.index, 0)
             tpdo.transmit()
+
+    @staticmethod
+    def is_due(tpdo):
+        """By SYNC, or by an event timer of its period."""
+        return tpdo.trans_type == 1 or (tpdo.trans_type >= 254 and tpdo.event_timer == 1)
 
     def move(self):
         if self.state == "stopping":

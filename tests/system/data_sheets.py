@@ -249,6 +249,40 @@ def targets_at_once(sheet, _):
         sheet[f"140{number}sub2"].update(DefaultValue="255", LowLimit="254", HighLimit="255")
 
 
+def fixed_telegrams(sheet, _):
+    """Of the maker: fields in its order, some that takt knows nothing of, in PDOs that cannot be changed."""
+    maps = {"1600": [0x60720010, 0x60600008, 0x60400010], "1601": [0x60710010, 0x607A0020], "1602": [], "1603": [],
+            "1A00": [0x60770010, 0x60640020, 0x60410010], "1A01": [0x60610008, 0x603F0010], "1A02": [], "1A03": []}
+    for index, objects in maps.items():
+        map_default(sheet, index, objects)
+        set_access(sheet, "ro", *(f"{index}sub{sub}" for sub in range(9)))
+        set_access(sheet, "ro", f"{int(index, 16) - 0x200:04X}sub1")
+
+
+def reports_at_events(sheet, _, pdos=PDOS):
+    """TPDOs that know nothing of SYNC, but have an event timer."""
+    for number in pdos:
+        sheet[f"180{number}sub2"].update(DefaultValue="255", LowLimit="254", HighLimit="255")
+
+
+def reports_by_timer(sheet, draw):
+    """As the drive has it, once a millisecond."""
+    reports_at_events(sheet, draw)
+    for number in PDOS:
+        set_access(sheet, "ro", f"180{number}sub2", default=draw.choice(["254", "255"]))
+        set_access(sheet, "ro", f"180{number}sub5", default="1")
+
+
+def first_report_at_events(sheet, draw):
+    reports_at_events(sheet, draw, PDOS[:1])
+
+
+def reports_at_changes(sheet, draw):
+    """Neither by SYNC nor by a timer: nobody can be asked for more."""
+    reports_at_events(sheet, draw)
+    no_event_timer(sheet, draw)
+
+
 def no_options(sheet, _):
     drop(sheet, "6007", "605A", "605B", "605C", "605D", "605E", "1006", "60C2")
 
@@ -290,12 +324,16 @@ HABITS = {
     "two PDOs": (two_pdos, set()),
     "one PDO": (one_pdo, {"pair", "mode_pdo", "error_pdo"}),
     "RPDOs without SYNC": (targets_at_once, {"sync_target"}),
+    "telegrams of the maker": (fixed_telegrams, {"pair", "mapping", "silence", "error_pdo"}),
+    "TPDOs without SYNC": (reports_at_events, {"sync_report"}),
+    "TPDOs by a timer of their own": (reports_by_timer, {"sync_report", "event_timer"}),
+    "first TPDO without SYNC": (first_report_at_events, set()),
     "nothing optional": (no_options, {"sync_period", "period", "stop_option"}),
 }
 
 
 # Habits of PDOs: a drive has one of them.
-OF_PDOS = ("no target position in a PDO", "6502 absent, no target position in a PDO", "one entry a PDO", "one entry in the first PDOs", "fixed mapping", "fixed mapping without a mode", "6060 not mappable", "6040 not mappable",
+OF_PDOS = ("no target position in a PDO", "6502 absent, no target position in a PDO", "one entry a PDO", "one entry in the first PDOs", "fixed mapping", "fixed mapping without a mode", "telegrams of the maker", "6060 not mappable", "6040 not mappable",
            "identifiers read-only", "two PDOs", "one PDO")
 
 

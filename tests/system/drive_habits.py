@@ -93,6 +93,8 @@ refused("a drive that cannot follow", "6502", "set-up", "drive.1.eds=" + sheet_o
 refused("ramps that are too slow", "6083", "maker's tool", *all_drives(sheet_of(1, data_sheets.own_ramps)))
 refused("a drive of velocity that watches nobody", "1016", "maker's tool", *all_drives(
     sheet_of(1, data_sheets.velocity_only, data_sheets.nobody_watched)))
+refused("reports by SYNC or a timer from none of its TPDOs", "object 6041:00", "1800:05", "maker's tool", *all_drives(sheet_of(
+    1, data_sheets.reports_at_changes)))
 refused("a drive of velocity without heartbeats", "heartbeat_ms", "bus.heartbeat_ms=0", *all_drives(sheet_of(1, data_sheets.velocity_only)))
 refused("a drive that is slower than allowed", "boot_timeout_ms", "drive.3.boot_time_ms=20000")
 refused("a drive that answers later than allowed", "_timeout_ms", "drive.3.sdo_time_ms=15000")
@@ -174,10 +176,10 @@ def random_machine(seed):
 
 def lag_most(cycle_us, habits):
     """mm or degrees that an axis may be off on its way: a drive of velocity lags, the slower the cycle the lower its gain; one that
-    takes targets as they come is up to a cycle ahead, at 180 degrees per second. Where a direction or a scale is wrong it is
+    takes targets as they come is up to a cycle ahead, and what comes by a timer up to a cycle old, at 180 degrees per second. Where a direction or a scale is wrong it is
     all of the way, of 2 mm and of 20 degrees."""
-    is_ahead = any("RPDOs without SYNC" in names for names in habits)
-    return 0.1 + 5e-5 * cycle_us + (180e-6 * cycle_us if is_ahead else 0)
+    cycles = sum(any(name in names for names in habits) for name in ("RPDOs without SYNC", "TPDOs without SYNC", "TPDOs by a timer of their own"))
+    return 0.1 + 5e-5 * cycle_us + 180e-6 * cycle_us * cycles
 
 
 def actual_and_set():

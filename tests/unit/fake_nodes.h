@@ -22,6 +22,7 @@ struct fake_rule {
     uint32_t value;      /* of a reading request */
     uint32_t abort_code; /* not 0: the request is aborted */
     uint32_t write_code; /* not 0: so it is if it writes */
+    uint32_t taken_from; /* not 0: what it writes is taken all the same from this value on */
     unsigned silent;     /* so many requests are not answered */
 };
 
@@ -98,7 +99,9 @@ static inline void fake_nodes_answer(struct fake_nodes *nodes, const struct can_
         rule->silent--;
         return;
     }
-    uint32_t code = !rule                                 ? 0
+    bool is_taken = rule && !is_upload && rule->taken_from != 0 &&
+                    little_endian_read32(frame->data + 4) >= rule->taken_from;
+    uint32_t code = !rule || is_taken                     ? 0
                     : !is_upload && rule->write_code != 0 ? rule->write_code
                                                           : rule->abort_code;
     if (code != 0) {

@@ -406,6 +406,23 @@ static void test_a_drive_that_cannot_report_in_every_cycle_is_refused(void)
                    "refuses: 06010002, object can only be read");
 }
 
+static void test_reports_that_do_not_come_by_sync_come_by_a_timer_of_the_cycle(void)
+{
+    config.cycle_us = 1500; /* a timer counts in ms */
+    for (uint16_t index = 0x1800; index < 0x1804; index++)
+        set_rule((struct fake_rule){.node = 3,
+                                    .object = SDO_OBJECT(index, 2),
+                                    .write_code = SDO_ABORT_VALUE,
+                                    .taken_from = 254});
+    run_start();
+    TEST_ASSERT_EQUAL_INT(DRIVES_ENABLED, drives_get_state(&drives));
+    TEST_ASSERT_EQUAL_HEX32(1U << DRIVES_NO_SYNC_REPORT, drives_get_given_up(&drives, AXIS_Z));
+    TEST_ASSERT_EQUAL_UINT32(20, fake_nodes_told(&nodes, 3, SDO_OBJECT(0x1800, 3))->value);
+    TEST_ASSERT_EQUAL_UINT32(2, fake_nodes_told(&nodes, 3, SDO_OBJECT(0x1800, 5))->value);
+    TEST_ASSERT_EQUAL_HEX32(0x603F0010, fake_nodes_told(&nodes, 3, SDO_OBJECT(0x1A01, 1))->value);
+    TEST_ASSERT_EQUAL_UINT32(100, fake_nodes_told(&nodes, 3, SDO_OBJECT(0x1801, 5))->value);
+}
+
 static void test_scaling_is_checked_by_the_travel_of_a_turn(void)
 {
     config.axis[1].travel_per_turn_mm = 10;
@@ -568,6 +585,7 @@ int main(void)
     RUN_TEST(test_axes_of_drives_without_dummies_have_frames_of_their_own);
     RUN_TEST(test_the_load_is_that_of_the_frames_that_were_found);
     RUN_TEST(test_a_drive_that_cannot_report_in_every_cycle_is_refused);
+    RUN_TEST(test_reports_that_do_not_come_by_sync_come_by_a_timer_of_the_cycle);
     RUN_TEST(test_scaling_is_checked_by_the_travel_of_a_turn);
     RUN_TEST(test_a_drive_that_boots_slowly_is_reset_once);
     RUN_TEST(test_a_drive_that_has_been_set_up_is_told_nothing);
