@@ -68,6 +68,12 @@ static const float ease_part[EASES] = {0.85f, 0.4f, 0.15f};
 
 /* -- the pieces -- */
 
+/* The highest rate on a block, whatever the overrides are: pieces a cycle. */
+static float top_rate(const struct hold *h, const struct path *path, uint32_t block)
+{
+    return (float)path_block_top(path_at(path, block)) * h->per_mm_s * (1.0f + TOP_SLACK);
+}
+
 /* Of a uniform cubic B-spline: x' = (c2 - c0)/2, x'' = c0 - 2 c1 + c2 where the piece begins. */
 static void read_piece(struct hold *h, const struct path *path, uint32_t block)
 {
@@ -75,6 +81,7 @@ static void read_piece(struct hold *h, const struct path *path, uint32_t block)
     struct point c[4];
 
     ring_control(&path->ring, block, c);
+    p->top = top_rate(h, path, block);
     for (unsigned i = 0; i < h->axes; i++) {
         const unsigned axis = h->axis[i];
         const double step0 = c[1].at[axis] - c[0].at[axis];
@@ -142,12 +149,6 @@ static void try_advance(struct hold_trial *s, float w, float t)
     s->at += t * (s->rate + t * (0.5f * s->change + t * w * (1.0f / 6.0f)));
     s->rate = single_max(0.0f, s->rate + t * (s->change + 0.5f * t * w));
     s->change += t * w;
-}
-
-/* The highest rate on a block, whatever the overrides are: pieces a cycle. */
-static float top_rate(const struct hold *h, const struct path *path, uint32_t block)
-{
-    return (float)path_block_top(path_at(path, block)) * h->per_mm_s * (1.0f + TOP_SLACK);
 }
 
 /* Does the curve end before a block? */
@@ -230,6 +231,28 @@ static bool can_change(const struct hold *h, struct hold_trial *s, float to, flo
     return true;
 }
 
+/*
+ * To come to rest the change goes to 0 at no higher a rate than it would have if nothing better was found, r + q^2/2e: where the
+ * axes could be far faster than the feed, a softer ease would exceed that. It takes over from a lead point that has that
+ * rate already, half a window ahead.
+ */
+static float highest_rate(const struct hold *h, const struct lead *l)
+{
+    const double rate = h->place.rate;
+    const double change = h->place.change;
+    const double ahead = l->feed * PATH_UNITS_PER_MM / h->length;
+    const double peak = h->ending.ease > 0.0 ? rate + change * change / (2.0 * h->ending.ease)
+                                             : maths_max(rate, ahead);
+
+    return (float)(change > 0.0 ? peak : rate) * (1.0f + TOP_SLACK);
+}
+
+/* Does a change above 0 go there? */
+static bool can_turn(const struct hold *h, struct hold_trial *s, float e)
+{
+    return s->change <= 0.0f || (can_change(h, s, 0.0f, -e) && s->rate <= h->most);
+}
+
 /* So hard that braking ends at rest at the latest: r = q^2/2e. At rest: any. */
 static float least_ease(const struct hold_trial *s)
 {
@@ -243,8 +266,8 @@ static bool can_rest(const struct hold *h, struct hold_trial s, float e, struct 
 
     ending->ease = (double)e;
     ending->peak = (double)peak;
-    return (s.change <= 0.0f || can_change(h, &s, 0.0f, -e)) &&
-           (-s.change >= peak || can_change(h, &s, -peak, -e)) && can_change(h, &s, 0.0f, e);
+    return can_turn(h, &s, e) && (-s.change >= peak || can_change(h, &s, -peak, -e)) &&
+           can_change(h, &s, 0.0f, e);
 }
 
 /* The change goes to 0 by e, at a rate and place from which the lead point could go on. */
@@ -253,7 +276,7 @@ static bool can_ease(struct hold *h, const struct path *path, const struct lead 
 {
     ending->ease = (double)e;
     ending->peak = 0.0;
-    if (!(s.change < 0.0f ? can_change(h, &s, 0.0f, e) : can_change(h, &s, 0.0f, -e))) {
+    if (!(s.change < 0.0f ? can_change(h, &s, 0.0f, e) : can_turn(h, &s, e))) {
         return false;
     }
     if (h->refusals < REFUSALS_MAX && lead_can_take(h, path, l, &s, stop)) {
@@ -302,7 +325,7 @@ static bool try_step(struct hold *h, const struct path *path, const struct lead 
     advance(&place, by, 1.0);
     const struct hold_trial next = {(float)place.at, (float)place.rate, (float)place.change};
 
-    if (!hold_can_go(h, &here, &next, (float)by)) {
+    if (next.rate > h->most || !hold_can_go(h, &here, &next, (float)by)) {
         return false;
     }
     if (!find_ending(h, path, l, &next, hardest, stop, first, &ending)) {
@@ -359,6 +382,7 @@ static bool find_step(struct hold *h, const struct path *path, const struct lead
 
     h->turn++;
     h->refusals = 0;
+    h->most = stop ? highest_rate(h, l) : SINGLE_INFINITY;
     if (stop && rate <= 2.0f * hardest &&
         try_step(h, path, l, -rate - 1.5f * change, hardest, stop, true)) {
         return true;

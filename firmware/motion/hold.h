@@ -24,6 +24,7 @@
 
 /* Of a piece of the curve, by axis: mm (rad) per piece and per piece^2. The second derivative is straight between its ends. */
 struct hold_piece {
+    float top; /* highest rate, whatever the overrides are */
     float first[AXIS_COUNT];
     float second[2][AXIS_COUNT];
 };
@@ -56,6 +57,7 @@ struct hold {
     struct hold_state place;
     double moved; /* pieces, in the last cycle */
     struct hold_ending ending;
+    float most;        /* no higher does the rate get in coming to rest */
     float step;        /* the hardest w that was found last, in parts of the hardest the axes can */
     unsigned turn;     /* counts cycles */
     unsigned refusals; /* of the lead point, in this cycle */

@@ -10,8 +10,9 @@
 #define REACH_TOLERANCES 20
 
 /*
- * Where the setpoint is within the tolerance of the path up to so many pieces beyond the motion that is executed, no more are
- * gone to; so many behind it are not left yet. What the planner on board rounds at once is shorter (smooth/route.h).
+ * Where the setpoint is within the tolerance of the path up to so many motions beyond the one that is executed, no more are
+ * gone to; so many behind it are not left yet. What the planner on board rounds at once has fewer (smooth/route.h), and there
+ * a circle is one, which is cut into many pieces here.
  */
 #define CROWD 128
 
@@ -174,16 +175,21 @@ static bool has_piece(struct tube_judge *t, size_t k)
     return k < t->path.count || tube_path_extend(&t->path);
 }
 
+/* Does a piece belong to a motion far ahead of another? */
+static bool is_far(const struct tube_piece *piece, uint32_t motion)
+{
+    return piece->motion.number > motion && piece->motion.number - motion > CROWD;
+}
+
 /* All places that the setpoint may be at now. False: there is none; *n is then the nearest of those that were left. */
 static bool follow(struct tube_judge *t, const struct stride *step, struct nearest *n)
 {
     double entered = NOT_ENTERED;
-    size_t active = 0, said = 0;
+    size_t active = 0;
 
     for (size_t k = 0; (k < t->active || entered >= 0) && has_piece(t, k); k++) {
-        if (tube_path_at(&t->path, k)->motion.number <= step->motion)
-            said = k;
-        if (k >= t->active && k > said + CROWD && n->of_tolerance <= 1)
+        if (k >= t->active && is_far(tube_path_at(&t->path, k), step->motion) &&
+            n->of_tolerance <= 1)
             break;
         if (entered < 0 && !tube_path_at(&t->path, k)->reached)
             continue;
@@ -350,17 +356,33 @@ static bool is_believed(const struct tube_piece *piece, const struct stride *ste
                piece->motion.tolerance_mm;
 }
 
+/* Of the pieces far ahead of the first one, the first that is believed; t->active: there is none. */
+static size_t find_believed(struct tube_judge *t, const struct stride *step)
+{
+    const uint32_t first = tube_path_at(&t->path, 0)->motion.number;
+    size_t k = t->active;
+
+    if (!is_far(tube_path_at(&t->path, k - 1), first))
+        return k;
+    for (k = 0; k < t->active; k++) {
+        const struct tube_piece *piece = tube_path_at(&t->path, k);
+
+        if (is_far(piece, first) && is_believed(piece, step))
+            break;
+    }
+    return k;
+}
+
 /* Pieces far behind the motion that is executed are not gone back to, if their ends have been come to. */
 static void leave_crowd(struct tube_judge *t, const struct stride *step)
 {
-    size_t k = CROWD + 1;
+    size_t k = find_believed(t, step);
 
-    while (k < t->active && !is_believed(tube_path_at(&t->path, k), step))
-        k++;
-    for (; k < t->active && k > CROWD; k--) {
+    for (; k < t->active && k > 0; k--) {
         const struct tube_piece *piece = tube_path_at(&t->path, 0);
 
-        if (piece->ends && piece->corner_mm > allowed_mm(t, piece))
+        if (!is_far(tube_path_at(&t->path, k), piece->motion.number) ||
+            (piece->ends && piece->corner_mm > allowed_mm(t, piece)))
             return;
         settle_corner(t);
         tube_path_drop(&t->path);

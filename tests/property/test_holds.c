@@ -22,6 +22,10 @@
 /* A program that takes longer stands still for ever. */
 #define CYCLES_MAX 2000000
 
+/* Of a program at a feed far below what the axes can do so many cycles are looked at, and setpoints have this rounding. */
+#define SLOW_CYCLES 20000
+#define ROUNDING_MM 1e-10
+
 /*
  * A hold takes up to so many parts of V/A + A/J, and cycles beside it; so many of a thousand holds may take more. Not counted
  * are those of machines that stop in less than HOLD_CYCLES_MIN: what rounds to cycles is most of them.
@@ -49,9 +53,13 @@ struct run {
     unsigned pushed;
     double hold_cycles; /* V/A + A/J of the slowest axis */
     bool holds;
-    bool moved;      /* the axes did when it began */
-    uint64_t change; /* cycle of the next hold, or in which the present one began */
-    double longest;  /* in parts of that */
+    bool moved;       /* the axes did when it began */
+    uint64_t change;  /* cycle of the next hold, or in which the present one began */
+    double feed_mm_s; /* of all motions; 0: their own */
+    uint64_t cycles_max;
+    struct point last; /* setpoint */
+    double feed_part;  /* the highest feed that was gone along with, as a part of that */
+    double longest;    /* in parts of that */
     unsigned held;
     struct chain_judge judge;
 };
@@ -103,6 +111,22 @@ static void set_up_run(struct run *r, unsigned seed)
     r->tolerance_mm = chain_decades(&r->chain, -3, -0.3);
     r->moves = (unsigned)chain_decades(&r->chain, 1, 2);
     r->change = 1 + (uint64_t)(r->hold_cycles * chain_decades(&r->chance, -1, 1));
+    r->cycles_max = CYCLES_MAX;
+}
+
+/* Where the axes could be far too fast within a few cycles: so soon are the holds. */
+static void set_up_slow_run(struct run *r, unsigned seed)
+{
+    double v = MATHS_INFINITY;
+
+    set_up_run(r, seed);
+    for (int i = 0; i < CHAIN_AXES; i++) {
+        v = maths_min(v, r->limits.velocity_mm_s[i]);
+    }
+    r->feed_mm_s = v * chain_decades(&r->chance, -4, -1);
+    r->hold_cycles = 8.0;
+    r->change = 1 + (uint64_t)chain_decades(&r->chance, 0, 2);
+    r->cycles_max = SLOW_CYCLES;
 }
 
 static void push_next(struct run *r)
@@ -113,6 +137,10 @@ static void push_next(struct run *r)
         m = chain_next(&r->chain, r->family, r->pushed);
         m.path = PATH_BLEND;
         m.tolerance_mm = r->tolerance_mm;
+        if (r->feed_mm_s > 0.0) {
+            m.kind = m.kind == MOVE_RAPID ? MOVE_FEED : m.kind;
+            m.feed_mm_s = r->feed_mm_s;
+        }
         r->pushed++;
     } else {
         memset(&m, 0, sizeof(m));
@@ -168,6 +196,21 @@ static void follow(struct run *r)
     }
 }
 
+/* No chord is longer than the curve between its ends. */
+static void judge_feed(struct run *r, const struct point *cmd)
+{
+    double square = 0.0;
+
+    for (int i = 0; i < CHAIN_AXES; i++) {
+        square += (cmd->at[i] - r->last.at[i]) * (cmd->at[i] - r->last.at[i]);
+    }
+    if (r->feed_mm_s > 0.0) {
+        r->feed_part = maths_max(r->feed_part, (maths_sqrt(square) - ROUNDING_MM) /
+                                                   (r->feed_mm_s * r->limits.cycle_s));
+    }
+    r->last = *cmd;
+}
+
 static enum motion_result run_program(struct run *r)
 {
     const struct point start = {{0}};
@@ -184,8 +227,9 @@ static enum motion_result run_program(struct run *r)
         result = motion_cycle(&motion, &now, &record);
         if (result == MOTION_CYCLE) {
             chain_judge_setpoint(&r->judge, &r->limits, &record.cmd);
+            judge_feed(r, &record.cmd);
         }
-    } while ((result == MOTION_CYCLE || result == MOTION_NOT_YET) && motion.cycles < CYCLES_MAX);
+    } while ((result == MOTION_CYCLE || result == MOTION_NOT_YET) && motion.cycles < r->cycles_max);
     return result;
 }
 
@@ -221,10 +265,28 @@ static void test_axes_come_to_rest_within_what_their_limits_tell_and_break_none(
     TEST_ASSERT_LESS_OR_EQUAL_UINT(holds * SLOW_OF_THOUSAND, 1000 * slow);
 }
 
+/* Also where a hold begins while the axes speed up after another. */
+static void test_no_programmed_feed_is_exceeded(void)
+{
+    unsigned failed = 0;
+
+    for (unsigned seed = first_seed; seed < first_seed + programs; seed++) {
+        set_up_slow_run(&run, seed);
+        (void)run_program(&run);
+        if (run.feed_part > 1.001 || run.judge.acceleration > 1.0001 || run.judge.jerk > 1.001) {
+            failed++;
+            printf("seed %u: %u holds, %.5f of the feed, a %.5f j %.5f\n", seed, run.held,
+                   run.feed_part, run.judge.acceleration, run.judge.jerk);
+        }
+    }
+    TEST_ASSERT_EQUAL_UINT(0, failed);
+}
+
 int main(int argc, char **argv)
 {
     read_number_and_first(argc, argv, &programs, &first_seed);
     UNITY_BEGIN();
     RUN_TEST(test_axes_come_to_rest_within_what_their_limits_tell_and_break_none);
+    RUN_TEST(test_no_programmed_feed_is_exceeded);
     return UNITY_END();
 }

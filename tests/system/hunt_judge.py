@@ -33,10 +33,10 @@ def path(*ends, step=STEP):
     return to([(0.0, 0.0, 0.0)], *ends, step=step)
 
 
-def judge(program, points, completed=True, most=()):
-    machine = hunt_programs.Machine({a: (1e5, 1e7, 1e10) for a in "XYZ"}, 1000)
-    rows = ["cycle,set_X_mm,act_X_mm,set_Y_mm,set_Z_mm"]
-    rows += [f"{k},{x:.9f},0,{y:.9f},{z:.9f}" for k, (x, y, z) in enumerate(points[1:])]
+def judge(program, points, completed=True, most=(), axes="XYZ"):
+    machine = hunt_programs.Machine({a: (1e5, 1e7, 1e10) for a in axes}, 1000)
+    rows = ["cycle,act_X_mm," + ",".join(f"set_{a}_{'mm' if a in 'XYZ' else 'deg'}" for a in axes)]
+    rows += [f"{k},0," + ",".join(f"{x:.9f}" for x in point) for k, point in enumerate(points[1:])]
     t.write("t.csv", "\n".join(rows) + "\n")
     motions = hunt_path.read(program, machine, False)
     t.write("case", hunt_path.case(machine, motions, 1.0, completed))
@@ -149,6 +149,24 @@ f = judge(EXACT, path((5, 0, 0), (5, 5, 0), step=5 / 499))
 t.check(near(f["feed"], 500 / 499, 1e-5), "a feed 0.2 % too high is seen in exact path", f)
 f = judge(CORNER, path((5, 0, 0), (5, 5, 0), step=5 / 499))
 t.check(near(f["feed"], 500 / 499, 1e-5), "and within a tolerance", f)
+
+TURN = HEAD + "G1 A10\nG1 A10 X1\n"
+
+
+def turned(points, deg, over_s, x_mm=0.0):
+    """Evenly, a cycle of 1 ms each."""
+    count, (x, a) = round(over_s * 1000), points[-1]
+    return points + [(x + x_mm * k / count, a + (deg - a) * k / count) for k in range(1, count + 1)]
+
+
+# F600: 10 degrees a second, and behind them 10 mm a second.
+f = judge(TURN, turned(turned([(0.0, 0.0)], 10, 1), 10, 0.1, 1), axes="XA")
+t.check(f["order"] == 1 and f["feed"] <= 1.0000001, "rotary axes alone at their feed", f)
+f = judge(TURN, turned(turned([(0.0, 0.0)], 10, 0.998), 10, 0.1, 1), axes="XA")
+t.check(near(f["feed"], 1 / 0.998, 1e-4), "and 0.2 % above it", f)
+# Farther from the end than P, a radian for a mm: no place of the next motion is near.
+f = judge(TURN, turned(turned(turned([(0.0, 0.0)], 4, 0.4, 0.9 * P), 10, 0.6), 10, 0.1, 1 - 0.9 * P), axes="XA")
+t.check(f["order"] == 1 and f["feed"] <= 1.0000001, "what rounding moves other axes by is no feed of rotary axes alone", f)
 f = judge(CORNER, path((5, 0, 0), (5, 5 - 1e-6, 0)))
 t.check(near(f["end"], 1e-6), "an end that is missed is seen", f)
 points = path((5, 0, 0))

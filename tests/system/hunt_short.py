@@ -13,6 +13,7 @@ import sys
 
 import takt_test as t
 
+os.environ["HUNT_RUN"] = sys.argv[2]
 HUNT = os.path.join(t.SOURCE, "tests", "bench", "hunt")
 KINDS = "velocity,acceleration,jerk,outside,corner,order,exact,end,feed,refused,fault,crash"
 
@@ -36,4 +37,10 @@ for seed in ("251327", "252650"):
 hunt("a curve does not creep where one axis needs a long interval", "1", "901166", "--operator", "--kinds", KINDS + ",endless")
 hunt("no way to rest is longer than a cycle's feed where the axes could do far more", "1", "901142", "--operator", "--exact")
 hunt("corners of exact paths are not cut where a cycle is long", "1", "40033", "--exact")
+for seed in ("921759", "930658"):
+    hunt(f"circles of many turns within the tolerance are judged as motions, not as pieces: {seed}", "1", seed, "--operator")
+hunt("a rotary axis alone, rounded into linear ones, keeps its feed", "1", "1070140", "--hands", "--kinds", KINDS)
+for seed in ("1070690", "1070701", "1080141", "1082075"):
+    hunt(f"a hold while the axes speed up after another exceeds no feed: {seed}", "1", seed, "--hands", "--kinds", KINDS)
+hunt("single block and holds at any cycle break nothing", "12", "1060001", "--hands", "--kinds", KINDS)
 t.finish()

@@ -187,7 +187,11 @@ static void judge_exact_feed(const struct judge *j, struct walk *w, size_t k, un
     }
 }
 
-/* Within a tolerance by the step's length, where all motions it may belong to are of one kind. */
+/*
+ * Within a tolerance by the step's length, where all motions it may belong to are of one kind: over the axes that a feed of that
+ * kind counts, X Y Z, or A B C of motions of those alone, as time_s does. What rounding moves the others by, on the way to a
+ * motion of theirs, is bounded by the tolerance, and is no part of F.
+ */
 static void judge_feed(const struct judge *j, struct walk *w, size_t k)
 {
     double step[AXES_MAX], most = 0;
@@ -205,8 +209,11 @@ static void judge_feed(const struct judge *j, struct walk *w, size_t k)
     if (linear == turning)
         return;
     step_of(j, k, step);
+    const double counted =
+        linear ? length_of(step, 0, j->linear_axes) : length_of(step, j->linear_axes, j->axes);
+
     note(&w->feed_ratio, &w->feed_line,
-         (length_of(step, 0, j->axes) - 4 * ROUNDING) / j->cycle_s / most / j->feed_factor,
+         (counted - 4 * ROUNDING) / j->cycle_s / most / j->feed_factor,
          j->motion[j->piece[w->first].motion].line);
 }
 
