@@ -118,6 +118,7 @@ struct options {
     bool unconfigured;
     const char *log;
     const char *bus_log;
+    const char *pulse_log; /* of `takt run`: of step drives */
     const char *report;
     const char *json;
     const char *junit;

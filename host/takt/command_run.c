@@ -233,6 +233,8 @@ static const struct option_row rows[] = {
      "adaptive (default) or proportional: see firmware/motion"},
     {"bus-log", OPTION_TEXT, offsetof(struct options, bus_log), "FILE",
      "every CAN frame, as candump -L writes it"},
+    {"pulse-log", OPTION_TEXT, offsetof(struct options, pulse_log), "FILE",
+     "every pulse of step drives: FILE.vcd for viewers of logic analysers, FILE.csv"},
     {"report", OPTION_TEXT, offsetof(struct options, report), "FILE.html",
      "path, feed and limits as pictures"},
     {"json", OPTION_TEXT, offsetof(struct options, json), "FILE", "the summary as JSON"},
