@@ -225,6 +225,9 @@ static const struct option_row rows[] = {
      "scripted faults of bus and drives; takt help inject explains them"},
     {"probe", OPTION_TEXT, offsetof(struct options, probe), "FILE",
      "what the probe touches, and inputs over time: box, ball, input; see host/probe"},
+    {"stock", OPTION_TEXT, offsetof(struct options, stock), "FILE",
+     "top of the material over X and Y: the depth of each cut, for the spindle's load; see "
+     "host/spindle"},
     {"override", OPTION_TEXT, offsetof(struct options, override), "FILE",
      "feed override over time: lines of seconds and percent, 0 ... 120"},
     {"rapid-override", OPTION_TEXT, offsetof(struct options, rapid_override), "FILE",
