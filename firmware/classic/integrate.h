@@ -16,9 +16,8 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-/* The last N = 2^k cycles of a block share what is left of it, by a shift. */
-#define INTEGRATE_END_SHIFT  4
-#define INTEGRATE_END_CYCLES (1 << INTEGRATE_END_SHIFT)
+/* The last N = 2^k cycles of a block share what is left of it, by a shift: k where nothing else is said. */
+#define INTEGRATE_END_SHIFT 4
 
 struct integrate {
     double unit_mm;               /* of position, and per cycle of velocity */

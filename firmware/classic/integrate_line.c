@@ -8,6 +8,12 @@ static double braking_way(const struct integrate_line_config *c, double way_mm)
     return 0.5 * (way_mm - c->end_mm) * (way_mm + c->end_mm) / c->acceleration_mm;
 }
 
+/* N */
+static double end_cycles(const struct integrate_line *l)
+{
+    return (double)(1U << l->config.end_shift);
+}
+
 static void measure_left(struct integrate_line *l)
 {
     const unsigned n = l->leading;
@@ -35,7 +41,7 @@ void integrate_line_begin(struct integrate_line *l, const struct integrate_line_
 static bool must_brake(const struct integrate_line *l, double way_mm)
 {
     const struct integrate_line_config *c = &l->config;
-    const double ahead = braking_way(c, way_mm) + INTEGRATE_END_CYCLES * c->end_mm;
+    const double ahead = braking_way(c, way_mm) + end_cycles(l) * c->end_mm;
 
     return l->left_mm - way_mm <= ahead;
 }
@@ -74,20 +80,26 @@ static void brake(struct integrate_line *l)
 /* The end rule: way left <= N V_end, and V has come down to V_end. */
 static void look_for_end(struct integrate_line *l)
 {
-    const double reach = l->config.end_mm * INTEGRATE_END_CYCLES;
+    const double reach = l->config.end_mm * end_cycles(l);
 
     if (l->phase == INTEGRATE_ENDING && l->config.end_mm > 0.0 && l->left_mm <= reach) {
-        integrate_aim(&l->axes, INTEGRATE_END_CYCLES);
+        integrate_aim(&l->axes, end_cycles(l));
         l->phase = INTEGRATE_AIMED;
     }
+}
+
+/* Words too short for the velocity do not move any more: the exact end is all that is left to do. */
+static bool stands(const struct integrate_line *l)
+{
+    return l->phase != INTEGRATE_ACCELERATING && l->axes.velocity[l->leading] == 0;
 }
 
 static bool ends_now(const struct integrate_line *l)
 {
     if (l->phase == INTEGRATE_AIMED) {
-        return l->aimed_cycles == INTEGRATE_END_CYCLES - 1;
+        return l->aimed_cycles + 1U == 1U << l->config.end_shift;
     }
-    return l->left_mm <= l->way_mm;
+    return l->left_mm <= l->way_mm || stands(l);
 }
 
 static void choose_velocity(struct integrate_line *l)

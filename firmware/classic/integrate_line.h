@@ -21,6 +21,7 @@ struct integrate_line_config {
     double length_mm;
     double start_mm, feed_mm, end_mm;
     double acceleration_mm;
+    unsigned end_shift; /* k of N = 2^k */
 };
 
 enum integrate_phase {

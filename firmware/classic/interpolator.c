@@ -14,6 +14,21 @@ void interpolator_init(struct interpolator *i, const struct interpolator_config 
     i->config = *config;
 }
 
+/* range < unit 2^(m-1) */
+double interpolator_unit_mm(double increment_mm, double range_mm, unsigned word_bits)
+{
+    const double most = (double)(INT64_C(1) << (word_bits - 1U));
+    double unit_mm = increment_mm;
+
+    while (range_mm >= unit_mm * most) {
+        unit_mm *= 2.0;
+    }
+    while (range_mm < 0.5 * unit_mm * most) {
+        unit_mm *= 0.5;
+    }
+    return unit_mm;
+}
+
 const struct interpolator_errors *interpolator_get_errors(const struct interpolator *i)
 {
     return &i->errors;
@@ -34,9 +49,18 @@ static bool is_for(enum interpolator_kind kind, const struct curve *c)
 
 static void begin_line(struct interpolator *i)
 {
-    const double unit_mm = i->config.increment_mm / (double)(INT64_C(1) << i->config.bits);
+    integrate_begin(&i->integrate, i->config.unit_mm, &i->curve.start, &i->curve.end,
+                    i->curve.length_mm);
+}
 
-    integrate_begin(&i->integrate, unit_mm, &i->curve.start, &i->curve.end, i->curve.length_mm);
+/* The last bit of a word of angles, all of which are at most dphi = V_max dt / R (3.17). */
+static double quantum_rad(const struct interpolator *i)
+{
+    if (i->config.angle_bits == 0U) {
+        return 0.0;
+    }
+    return i->config.way_max_mm / i->curve.arc.radius_start_mm /
+           (double)(1U << i->config.angle_bits);
 }
 
 static void begin_circle(struct interpolator *i)
@@ -44,7 +68,7 @@ static void begin_circle(struct interpolator *i)
     const struct curve *c = &i->curve;
 
     rotate_begin(&i->rotate, c->start.at[c->arc.first] - c->arc.centre_mm[0],
-                 c->start.at[c->arc.second] - c->arc.centre_mm[1], 0.0);
+                 c->start.at[c->arc.second] - c->arc.centre_mm[1], quantum_rad(i));
 }
 
 static void begin_block(struct interpolator *i, const struct curve *curve, uint32_t block)
@@ -94,7 +118,7 @@ static void choose_velocity(struct interpolator *i, double way_mm, double left_m
         integrate_accelerate(&i->integrate, change);
     } else if (i->aimed) {
         return;
-    } else if (left_mm <= way_mm * INTEGRATE_END_CYCLES) {
+    } else if (left_mm <= way_mm * (double)(1U << i->config.end_shift)) {
         integrate_aim(&i->integrate, left_mm / way_mm);
         i->aimed = true;
     } else {
@@ -137,7 +161,10 @@ static void integrate_to(struct interpolator *i, double part, struct point *cmd)
     raise_to(&i->errors.loss_ulp, i->integrate.loss_ulp);
 }
 
-/* Sums of R dphi^3 / 6 along, dphi^4 / 8 across: bounds_rotation_... of accuracy/bounds.h for angles that change. */
+/*
+ * Sums of R dphi^3 / 6 along, dphi^4 / 8 across: bounds_rotation_... of accuracy/bounds.h for angles that change. Angles in
+ * words are late or early by half of the last bit besides.
+ */
 static void add_rotation_bounds(struct interpolator *i, double angle_rad)
 {
     const double radius = i->curve.arc.radius_start_mm;
@@ -145,7 +172,7 @@ static void add_rotation_bounds(struct interpolator *i, double angle_rad)
 
     i->along_rad += square * maths_abs(angle_rad) / 6.0;
     i->growth += square * square / 8.0;
-    raise_to(&i->errors.along_bound_mm, radius * i->along_rad);
+    raise_to(&i->errors.along_bound_mm, radius * (i->along_rad + 0.5 * i->rotate.quantum_rad));
     raise_to(&i->errors.contour_bound_mm, radius * (maths_exp(i->growth) - 1.0));
 }
 

@@ -22,12 +22,26 @@ enum interpolator_kind { INTERPOLATOR_EXACT, INTERPOLATOR_INTEGRATE, INTERPOLATO
 
 struct interpolator_config {
     enum interpolator_kind kind;
-    double increment_mm; /* > 0: position increment of the controller */
-    unsigned bits;       /* integrate: of a word behind the increment */
+    uint8_t end_shift;  /* integrate: the last 2^k cycles of a block share what is left */
+    uint8_t angle_bits; /* rotate: of an angle's word; 0: any angle */
+    double unit_mm;     /* integrate: the last bit of a position, > 0 */
+    double way_max_mm;  /* rotate: the farthest way in a cycle, V_max dt; > 0 */
 };
 
-/* The default of bits: a ramp of 60,000 cycles loses less than an increment (N^2 units, up and down). */
-#define INTERPOLATOR_BITS 32
+/* Bits of a signed word for every position, and its default: with 1 m in steps of 1 um there are 32 bits behind it. A ramp
+ * of 60,000 cycles then loses less than that (N^2 units, up and down). */
+#define INTERPOLATOR_WORD_BITS_MIN 8
+#define INTERPOLATOR_WORD_BITS_MAX 62
+#define INTERPOLATOR_WORD_BITS     53
+
+#define INTERPOLATOR_END_SHIFT_MAX  8
+#define INTERPOLATOR_ANGLE_BITS_MAX 24
+
+/*
+ * What the last bit of a signed word of so many bits is worth, when it counts a range: the increment times a power of two,
+ * the least with which the range fits. All > 0.
+ */
+double interpolator_unit_mm(double increment_mm, double range_mm, unsigned word_bits);
 
 /* Largest deviations from the exact setpoints, and what was to be expected; mm. */
 struct interpolator_errors {
@@ -39,9 +53,11 @@ struct interpolator_errors {
 };
 
 struct interpolator {
+#ifdef CLASSIC_IS_ABSENT
+    bool is_absent; /* C has no empty struct */
+#else
     struct interpolator_config config;
     struct interpolator_errors errors;
-#ifndef CLASSIC_IS_ABSENT
     bool active; /* this block is not left exact */
     uint32_t block;
     struct curve curve;
@@ -60,7 +76,11 @@ void interpolator_init(struct interpolator *i, const struct interpolator_config 
 /* Does it leave all setpoints as they are? */
 static inline bool interpolator_is_exact(const struct interpolator *i)
 {
+#ifdef CLASSIC_IS_ABSENT
+    return i->is_absent;
+#else
     return i->config.kind == INTERPOLATOR_EXACT;
+#endif
 }
 
 /*

@@ -133,7 +133,8 @@ static void limit_axes(struct product *p, const struct motion *m, const struct p
     for (int i = 0; i < AXIS_COUNT; i++) {
         velocity.at[i] = (at->at[i] - m->at.at[i]) / (p->config.cycle_s * p->limiter);
     }
-    p->limiter = limiter_factor(p->config.limiter, &velocity, m->path->limits.velocity_mm_s);
+    p->limiter = limiter_factor(p->config.limiter, &velocity, m->path->limits.velocity_mm_s,
+                                p->config.band_percent);
 }
 
 /* Without a limiter of the source: the block's own ceiling, in this cycle. */

@@ -18,10 +18,12 @@
 #include "motion/motion.h"
 
 #include <stdbool.h>
+#include <stdint.h>
 
 struct product_config {
     enum limiter_form limiter; /* LIMITER_CEILING: K keeps every block's own ceiling, at once */
     double cycle_s;
+    uint8_t band_percent[AXIS_COUNT]; /* of LIMITER_SMOOTH */
 };
 
 /* The effective override, on its way to what the operator wants. */
@@ -31,8 +33,10 @@ struct product_override {
 };
 
 struct product {
+#ifdef CLASSIC_IS_ABSENT
+    bool is_absent; /* C has no empty struct */
+#else
     struct product_config config;
-#ifndef CLASSIC_IS_ABSENT
     bool moves;  /* a diagram is being executed */
     bool landed; /* and the last cycle has ended its block */
     struct diagram diagram;

@@ -71,21 +71,11 @@ void controller_program_config(const struct controller_config *config,
     program->waits = true;
 }
 
-static void start_interpolator(struct controller *c)
-{
-    const struct interpolator_config config = {
-        .kind = (enum interpolator_kind)c->machine.interpolator,
-        .increment_mm = 1.0 / c->machine.resolution_per_mm,
-        .bits = INTERPOLATOR_BITS,
-    };
-
-    interpolator_init(&c->interpolator, &config);
-}
-
 void controller_init(struct controller *c, const struct controller_config *config)
 {
     const struct point start = {0};
     struct drives_config drives;
+    struct interpolator_config interpolator;
 
     memset(c, 0, sizeof(*c));
     c->machine = *config->machine;
@@ -104,7 +94,8 @@ void controller_init(struct controller *c, const struct controller_config *confi
     drives_init(&c->drives, &drives);
     controller_steps_init(c, &config->step);
     (void)controller_cycle_is_enough(&c->machine, &c->warning);
-    start_interpolator(c);
+    controller_interpolator_config(&c->machine, &interpolator);
+    interpolator_init(&c->interpolator, &interpolator);
     approach_init(&c->approach, &start);
 }
 

@@ -118,6 +118,10 @@ bool controller_cycle_is_enough(const struct machine *machine, struct diagnostic
  */
 const struct diagnostic *controller_get_warning(const struct controller *c);
 
+/* The machine's interpolator: what controller_init itself uses. */
+void controller_interpolator_config(const struct machine *machine,
+                                    struct interpolator_config *config);
+
 /* What the machine's interpolator erred by so far; all 0 for the exact one. */
 const struct interpolator_errors *controller_get_interpolator_errors(const struct controller *c);
 

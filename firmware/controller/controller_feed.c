@@ -4,9 +4,12 @@
 
 void controller_feed_init(struct controller *c, const struct replay_source *compiled)
 {
-    const struct product_config config = {.limiter = (enum limiter_form)c->machine.limiter,
-                                          .cycle_s = 1e-6 * (double)c->machine.cycle_us};
+    struct product_config config = {.limiter = (enum limiter_form)c->machine.limiter,
+                                    .cycle_s = 1e-6 * (double)c->machine.cycle_us};
 
+    for (unsigned i = 0; i < AXIS_COUNT; i++) {
+        config.band_percent[i] = c->machine.axis[i].limiter_band_percent;
+    }
     handover_allow(&c->motion);
     if (c->machine.landing == LANDING_SCALE || c->machine.limiter != LIMITER_CEILING) {
         handover_allow_all(&c->motion);

@@ -49,15 +49,16 @@ struct controller {
     struct path path;
     struct motion motion;
     struct correction correction;
-    struct interpolator interpolator;
     bool replays; /* a compiled program */
     struct replay replay;
-    struct product product; /* of the feed, where the machine has one for comparison */
     struct drives drives;
     struct step_port step_port;
     struct steps steps;
     struct controller_probe probe;
     struct approach approach;
+    /* For comparison, of setpoints and of the feed: last, so that what is used in every cycle lies close together. */
+    struct interpolator interpolator;
+    struct product product;
 };
 
 #endif

@@ -2,6 +2,8 @@
 
 #include "base/maths.h"
 #include "canopen/node.h"
+#include "classic/interpolator.h"
+#include "classic/limiter.h"
 
 #include <string.h>
 
@@ -24,6 +26,8 @@ void machine_set_default(struct machine *machine)
     machine->boot_timeout_ms = 3000;
     machine->sdo_timeout_ms = 2000;
     machine->controller_node = 127;
+    machine->interpolator_word_bits = INTERPOLATOR_WORD_BITS;
+    machine->interpolator_end_shift = INTEGRATE_END_SHIFT;
     for (unsigned i = 0; i < MACHINE_GANTRIES_MAX; i++) {
         machine->gantry[i].axis = AXIS_COUNT;
         machine->gantry[i].drive_node = (uint8_t)(NODE_MAX - 1 - i);
@@ -35,6 +39,7 @@ void machine_set_default(struct machine *machine)
             .max_velocity_mm_s = 100.0,
             .max_acceleration_mm_s2 = 1000.0,
             .max_jerk_mm_s3 = 50000.0,
+            .limiter_band_percent = LIMITER_BAND_PERCENT,
             .travel_min_mm = -500.0,
             .travel_max_mm = 500.0,
             .drive_node = (uint8_t)(i + 1),

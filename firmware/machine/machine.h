@@ -32,6 +32,7 @@ struct machine_axis {
     uint8_t home_order;      /* 1 first; axes of an order together; 0: not homed at start */
     int8_t home_method;      /* CiA 402, object 6098: 1 ... 37; below 0 its maker's; not 0 */
     uint8_t home_offset_is_position; /* 1: its drive takes 607C for the position at its home */
+    uint8_t limiter_band_percent;    /* delta of LIMITER_SMOOTH, of max_velocity_mm_s; 0 ... 99 */
     uint32_t drive_type;             /* enum machine_drive_type */
 
     /* Object 1018 of its drive, checked at start. 0: whatever it is. */
@@ -109,6 +110,10 @@ struct machine {
     double
         position_gain_per_s; /* of drives that follow by velocity; 0: by the limits of the axes */
     uint8_t controller_node; /* the controller's own node id, 1 ... 127, of no drive */
+    uint8_t
+        interpolator_word_bits; /* classic/interpolator.h; INTERPOLATOR_WORD_BITS_MIN ... _MAX */
+    uint8_t interpolator_end_shift;  /* 0 ... INTERPOLATOR_END_SHIFT_MAX */
+    uint8_t interpolator_angle_bits; /* 0 (any angle) ... INTERPOLATOR_ANGLE_BITS_MAX */
     struct machine_gantry gantry[MACHINE_GANTRIES_MAX]; /* from the first on */
     struct io_wiring io[IO_NODES_MAX]; /* I/O nodes on the bus, from the first on */
     struct correction_settings correction;

@@ -1,10 +1,12 @@
 /*
- * What leads is whatever steps most often just here: the arc, max(|a|, |b|) steps a radian, or the straight axis with the
- * largest increment. It steps at every tick; everything else follows the place it has come to. That place is an angle,
- * not the leading coordinate of the arc: in proportion to the latter a straight axis would be off by 4.2 % of its travel
- * in an octant.
+ * Improved: what leads is whatever steps most often just here, the arc, max(|a|, |b|) steps a radian, or the straight axis
+ * with the largest increment. It steps at every tick; everything else follows the place it has come to. That place is an
+ * angle, not the leading coordinate of the arc: in proportion to the latter a straight axis would be off by 4.2 % of its
+ * travel in an octant.
  *
- * The plain form makes the same steps one after another; without a straight axis it is the plain arc.
+ * Plain: as the plain line, with the plain arc as one of the axes. What has the longer way leads, the arc with R sweep
+ * steps or the straight axis. One axis steps at a tick: whichever is behind the place of what leads, else that one. So the
+ * point keeps to its circle as the plain arc does, and nothing gets farther than a step from its place.
  */
 #include "step/evaluate_helix.h"
 
@@ -43,10 +45,16 @@ static double arc_progress(const struct evaluate_helix *h)
     return maths_clamp(evaluate_arc_angle(&h->arc) / h->arc.sweep_rad, 0.0, 1.0);
 }
 
+/* Steps of the arc on the whole way, if it made them as often as here. */
+static double arc_steps(const struct evaluate_helix *h)
+{
+    return evaluate_arc_rate(&h->arc) * h->arc.radius * h->arc.sweep_rad;
+}
+
 /* Part of the way that one step of the arc makes here; that of the leading straight axis. */
 static double arc_spacing(const struct evaluate_helix *h)
 {
-    return 1.0 / (evaluate_arc_rate(&h->arc) * h->arc.radius * h->arc.sweep_rad);
+    return 1.0 / arc_steps(h);
 }
 
 static double straight_spacing(const struct evaluate_helix *h)
@@ -111,73 +119,73 @@ static void follow(struct evaluate_helix *h, double progress, struct evaluate_ti
 }
 
 /*
- * Halfway to the next step of what leads. A lattice point is up to a step before or behind its place on the arc, and ticks
- * that went after it would come in bursts. So the distance from one tick to the next is the even one, and goes after the
- * lattice by a part of what it is off, PACE_GAIN, at most by PACE_ROOM of itself. Where arc and straight axes take turns
- * at leading there are more ticks than either has steps: there the room is wider.
+ * Halfway to the next tick: at is the place that has been reached, spacing its part of the way. A lattice point is up to a
+ * step before or behind its place on the arc, and ticks that went after it would come in bursts. So the distance from one
+ * tick to the next is the even one, and goes after the lattice by a part of what it is off, PACE_GAIN, at most by
+ * PACE_ROOM of itself. Where arc and straight axes take turns there are more ticks than either has steps: there the room
+ * is wider.
  */
-static void set_due(struct evaluate_helix *h)
+static void pace(struct evaluate_helix *h, double at, double spacing)
 {
-    const bool arc = arc_leads(h);
-    const double spacing = arc ? arc_spacing(h) : straight_spacing(h);
-    const double at = arc ? arc_progress(h) : (double)h->done[h->leading] * spacing;
-    const double off = at - 0.5 * spacing - h->group_due;
+    const double off = at - 0.5 * spacing - h->due;
     const double room = (h->size[h->leading] > 0 ? PACE_ROOM_HELIX : PACE_ROOM) * spacing;
 
     if (at >= 1.0) {
-        h->group_due = 1.0;
+        h->due = 1.0;
         return;
     }
-    h->group_due += spacing + maths_clamp(PACE_GAIN * off, -room, room);
-    h->group_due = maths_min(h->group_due, 1.0);
+    h->due += spacing + maths_clamp(PACE_GAIN * off, -room, room);
+    h->due = maths_min(h->due, 1.0);
+}
+
+static void pace_improved(struct evaluate_helix *h)
+{
+    const bool arc = arc_leads(h);
+    const double spacing = arc ? arc_spacing(h) : straight_spacing(h);
+
+    pace(h, arc ? arc_progress(h) : (double)h->done[h->leading] * spacing, spacing);
+}
+
+/* Every step of any axis is a tick: the place is the part of all of them that has been made. */
+static void pace_plain(struct evaluate_helix *h)
+{
+    double all = arc_steps(h);
+    double made = arc_progress(h) * all;
+
+    for (unsigned i = 0; i < AXIS_COUNT; i++) {
+        all += (double)h->size[i];
+        made += (double)h->done[i];
+    }
+    pace(h, all > 0.0 ? made / all : 1.0, 1.0 / all);
+}
+
+static void set_due(struct evaluate_helix *h)
+{
+    if (h->form == EVALUATE_PLAIN) {
+        pace_plain(h);
+    } else {
+        pace_improved(h);
+    }
 }
 
 void evaluate_helix_begin(struct evaluate_helix *h, const struct evaluate_arc_config *arc,
                           const unsigned plane[2], const int64_t delta[AXIS_COUNT])
 {
-    struct evaluate_arc_config inside = *arc;
-
     memset(h, 0, sizeof(*h));
     h->form = arc->form;
     h->plane[0] = plane[0];
     h->plane[1] = plane[1];
     set_straight(h, delta);
-    if (h->size[h->leading] > 0) {
-        inside.form = EVALUATE_IMPROVED;
-    }
-    evaluate_arc_begin(&h->arc, &inside);
+    evaluate_arc_begin(&h->arc, arc);
     h->arc_done = h->arc.straight && h->arc.rest.left == 0;
-    h->group_due = arc_leads(h) ? -0.5 * arc_spacing(h) : 0.0;
+    h->due = arc_leads(h) ? -0.5 * arc_spacing(h) : 0.0;
     set_due(h);
-    h->due = h->group_due;
 }
 
-static double count_axes(unsigned mask)
-{
-    double count = 0.0;
-
-    for (; mask != 0U; mask &= mask - 1U) {
-        count += 1.0;
-    }
-    return count;
-}
-
-/* Plain form: the lowest axis of a group now, the others at the next ticks, evenly until the next group is due. */
-static void take_one(struct evaluate_helix *h, struct evaluate_tick *tick)
-{
-    const uint8_t lowest = (uint8_t)(h->queued.axes & (0U - h->queued.axes));
-
-    tick->axes = lowest;
-    tick->direction = h->queued.direction & lowest;
-    h->queued.axes = (uint8_t)(h->queued.axes & ~lowest);
-    h->due = h->queued.axes != 0U ? h->due + h->gap : h->group_due;
-}
-
-static bool next_together(struct evaluate_helix *h, struct evaluate_tick *tick)
+static bool next_improved(struct evaluate_helix *h, struct evaluate_tick *tick)
 {
     double progress;
 
-    *tick = (struct evaluate_tick){0};
     if (arc_leads(h)) {
         step_arc(h, tick);
         progress = arc_progress(h);
@@ -191,32 +199,85 @@ static bool next_together(struct evaluate_helix *h, struct evaluate_tick *tick)
         return false;
     }
     follow(h, progress, tick);
-    set_due(h);
     return true;
+}
+
+/* The leader of the plain form: the place it has come to, and its steps on the whole way. */
+struct leader {
+    unsigned axis; /* AXIS_COUNT: the arc */
+    double place;
+    double steps;
+};
+
+static struct leader find_leader(const struct evaluate_helix *h)
+{
+    const unsigned i = h->leading;
+    const double arc = h->arc.radius * h->arc.sweep_rad;
+
+    if (arc >= (double)h->size[i]) {
+        return (struct leader){AXIS_COUNT, arc_progress(h), arc};
+    }
+    return (struct leader){i, (double)h->done[i] / (double)h->size[i], (double)h->size[i]};
+}
+
+/*
+ * With r steps for one of the leader's, and a step taken as soon as the lag is above t, the lag stays above t - 1 and at
+ * most t + r: evenly on both sides, (1 + r) / 2 <= 1, with t = (1 - r) / 2.
+ */
+static bool is_behind(double lag, double steps, const struct leader *leader)
+{
+    return lag > 0.5 * (1.0 - steps / leader->steps);
+}
+
+/* A straight axis that is behind the leader; AXIS_COUNT: none is. */
+static unsigned straight_behind(const struct evaluate_helix *h, const struct leader *leader)
+{
+    for (unsigned i = 0; i < AXIS_COUNT; i++) {
+        const double size = (double)h->size[i];
+
+        if (i != leader->axis && h->done[i] < h->size[i] &&
+            is_behind(size * leader->place - (double)h->done[i], size, leader)) {
+            return i;
+        }
+    }
+    return AXIS_COUNT;
+}
+
+/* At the end of the leader's way the arc makes the rest of its own. */
+static bool arc_is_behind(const struct evaluate_helix *h, const struct leader *leader)
+{
+    const double steps = h->arc.radius * h->arc.sweep_rad;
+    const double lag = (leader->place - arc_progress(h)) * steps;
+
+    return !h->arc_done && (is_behind(lag, steps, leader) || leader->place >= 1.0);
 }
 
 static bool next_plain(struct evaluate_helix *h, struct evaluate_tick *tick)
 {
-    if (h->queued.axes == 0U) {
-        if (!next_together(h, &h->queued)) {
-            *tick = (struct evaluate_tick){0};
-            return false;
-        }
-        h->gap = (h->group_due - h->due) / count_axes(h->queued.axes);
+    const struct leader leader = find_leader(h);
+    const bool arc = leader.axis == AXIS_COUNT;
+    const unsigned behind = straight_behind(h, &leader);
+
+    if (behind < AXIS_COUNT) {
+        step_straight(h, behind, tick);
+    } else if (arc ? !h->arc_done : arc_is_behind(h, &leader)) {
+        step_arc(h, tick);
+    } else if (!arc && h->done[leader.axis] < h->size[leader.axis]) {
+        step_straight(h, leader.axis, tick);
+    } else {
+        return false;
     }
-    take_one(h, tick);
     return true;
 }
 
 bool evaluate_helix_next(struct evaluate_helix *h, struct evaluate_tick *tick)
 {
-    if (h->form == EVALUATE_PLAIN) {
-        return next_plain(h, tick);
+    *tick = (struct evaluate_tick){0};
+    if (!(h->form == EVALUATE_PLAIN ? next_plain(h, tick) : next_improved(h, tick))) {
+        return false;
     }
-    const bool any = next_together(h, tick);
-
-    h->due = h->group_due;
-    return any;
+    set_due(h);
+    return true;
 }
 
 double evaluate_helix_due(const struct evaluate_helix *h)

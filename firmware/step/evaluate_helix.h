@@ -1,5 +1,6 @@
 /*
  * An arc of unit steps with any number of further axes that move in proportion to its angle: a helix, over any octants.
+ * Radially, and on every straight axis, the error stays below one step; and so does that along the arc.
  */
 #ifndef TAKT_STEP_EVALUATE_HELIX_H
 #define TAKT_STEP_EVALUATE_HELIX_H
@@ -12,15 +13,12 @@ struct evaluate_helix {
     enum evaluate_form form;
     struct evaluate_arc arc;
     bool arc_done;
-    unsigned plane[2];           /* the arc's axes */
-    unsigned leading;            /* straight axis with the largest increment */
-    uint8_t direction;           /* of the straight axes */
-    int64_t size[AXIS_COUNT];    /* increments of the straight axes; 0 in the plane */
-    int64_t done[AXIS_COUNT];    /* steps of them made */
-    struct evaluate_tick queued; /* plain form: what the last tick has left for the next ones */
-    double due;                  /* of the next tick */
-    double group_due;            /* of the next tick that does not come out of queued */
-    double gap;                  /* plain form: between the ticks of a group */
+    unsigned plane[2];        /* the arc's axes */
+    unsigned leading;         /* straight axis with the largest increment */
+    uint8_t direction;        /* of the straight axes */
+    int64_t size[AXIS_COUNT]; /* increments of the straight axes; 0 in the plane */
+    int64_t done[AXIS_COUNT]; /* steps of them made */
+    double due;               /* of the next tick */
 };
 
 /* plane: the arc's axes, different ones. delta: increments in steps; those of the plane are the arc's affair. */

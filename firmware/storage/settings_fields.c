@@ -1,6 +1,8 @@
 #include "storage/settings_fields.h"
 
 #include "base/maths.h"
+#include "classic/interpolator.h"
+#include "classic/limiter.h"
 #include "machine/machine.h"
 #include "storage/little_words.h"
 
@@ -20,6 +22,8 @@ static_assert(sizeof(double) == 8, "stored as IEEE-754");
     }
 #define COUNT(number, field, least, most)                                                          \
     ROW(number, false, SETTINGS_U32, offsetof(struct machine, field), 1, least, most, false, #field)
+#define BYTE(number, field, least, most)                                                           \
+    ROW(number, false, SETTINGS_U8, offsetof(struct machine, field), 1, least, most, false, #field)
 #define FROM(number, field, least, most)                                                           \
     ROW(number, false, SETTINGS_DOUBLE, offsetof(struct machine, field), 1, least, most, false,    \
         #field)
@@ -69,9 +73,12 @@ const struct settings_field settings_fields[] = {
     COUNT(28, can_data_bitrate, 0, MACHINE_DATA_BITRATE_MAX),
     COUNT(30, can_bitrate, 10000, 1000000),
     COUNT(31, heartbeat_ms, 0, 20000),
-    ROW(32, false, SETTINGS_U8, offsetof(struct machine, controller_node), 1, 1, 127, false, "controller_node"),
+    BYTE(32, controller_node, 1, 127),
     COUNT(33, boot_timeout_ms, 1, 600000),
     COUNT(34, sdo_timeout_ms, 1, 600000),
+    BYTE(74, interpolator_word_bits, INTERPOLATOR_WORD_BITS_MIN, INTERPOLATOR_WORD_BITS_MAX),
+    BYTE(75, interpolator_end_shift, 0, INTERPOLATOR_END_SHIFT_MAX),
+    BYTE(76, interpolator_angle_bits, 0, INTERPOLATOR_ANGLE_BITS_MAX),
     GANTRY(0, 36, 37, 38, 39, 60, 61),
     GANTRY(1, 62, 63, 64, 65, 66, 67),
     GANTRY(2, 68, 69, 70, 71, 72, 73),
@@ -125,6 +132,7 @@ const struct settings_field settings_fields[] = {
     OF_AXIS(124, SETTINGS_DOUBLE, travel_per_turn_mm, 0, 1e6, false),
     OF_AXIS(125, SETTINGS_U8, drive_is_set_up, 0, 1, false),
     OF_AXIS(126, SETTINGS_DOUBLE, velocity_units_per_mm_s, 0, 1e11, false),
+    OF_AXIS(127, SETTINGS_U8, limiter_band_percent, 0, LIMITER_BAND_PERCENT_MAX, false),
 };
 /* clang-format on */
 

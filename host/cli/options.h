@@ -86,6 +86,7 @@ struct options {
     uint32_t lines_max; /* read again; 0: OPTIONS_LINES_MAX */
     bool save_parameters;
     const char *probe;
+    const char *stock; /* of `takt run`: what is cut */
     const char *override;
     const char *rapid_override;
     const char *override_method;
@@ -118,6 +119,7 @@ struct options {
     bool unconfigured;
     const char *log;
     const char *bus_log;
+    const char *pulse_log; /* of `takt run`: of step drives */
     const char *report;
     const char *json;
     const char *junit;

@@ -1,6 +1,8 @@
 #include "config/machine_keys.h"
 
 #include "bus/bus.h"
+#include "classic/interpolator.h"
+#include "classic/limiter.h"
 
 #define IN_SETUP(field)   offsetof(struct machine_setup, field)
 #define IN_AXIS(field)    offsetof(struct machine_axis, field)
@@ -87,6 +89,12 @@ const struct machine_key machine_keys[] = {
            "adaptive: the override scales the programmed feed; proportional: every feed"),
     CHOICE(SECTION_MACHINE, "interpolator", KEY_INTERPOLATOR, IN_SETUP(machine.interpolator),
            "exact; for comparison integrate (lines by digital integration) or rotate (arcs by rotating the radius vector)"),
+    COUNT(SECTION_MACHINE, "interpolator_word_bits", KEY_UINT8, IN_SETUP(machine.interpolator_word_bits),
+          INTERPOLATOR_WORD_BITS_MIN, INTERPOLATOR_WORD_BITS_MAX, "integrate: bits of a signed word for positions over the travel"),
+    COUNT(SECTION_MACHINE, "interpolator_end_shift", KEY_UINT8, IN_SETUP(machine.interpolator_end_shift), 0,
+          INTERPOLATOR_END_SHIFT_MAX, "integrate: k of N = 2^k, the cycles that share what is left at the end of a line"),
+    COUNT(SECTION_MACHINE, "interpolator_angle_bits", KEY_UINT8, IN_SETUP(machine.interpolator_angle_bits), 0,
+          INTERPOLATOR_ANGLE_BITS_MAX, "rotate: bits of a cycle's angle, of which the largest is that of the axes' full feed; 6 to 8 as the source has it; 0: any angle"),
     CHOICE(SECTION_MACHINE, "step_form", KEY_STEP_FORM, IN_SETUP(machine.step_form),
            "pulses of step drives: even (each axis at its own times); by evaluation functions improved or plain (one axis at a time)"),
     ABOVE(SECTION_MACHINE, "tool_change_s", SCALE_NONE, IN_SETUP(machine.tool_change_s), 0, 3600,
@@ -106,6 +114,8 @@ const struct machine_key machine_keys[] = {
           "limit of acceleration"),
     ABOVE(SECTION_AXIS, "max_jerk_mm_s3", SCALE_LENGTH, IN_AXIS(max_jerk_mm_s3), 0, 1e10,
           "limit of jerk"),
+    COUNT(SECTION_AXIS, "limiter_band_percent", KEY_UINT8, IN_AXIS(limiter_band_percent), 0, LIMITER_BAND_PERCENT_MAX,
+          "limiter=smooth bends the feed so far below and above max_velocity, in percent of it; 0: as threshold does"),
     FROM(SECTION_AXIS, "travel_min_mm", SCALE_LENGTH, IN_AXIS(travel_min_mm), -1e6, 0,
          "lower end of the travel, machine coordinates"),
     FROM(SECTION_AXIS, "travel_max_mm", SCALE_LENGTH, IN_AXIS(travel_max_mm), 0, 1e6,

@@ -1,6 +1,7 @@
 #include "config/machine_setup.h"
 
 #include "base/maths.h"
+#include "classic/limiter.h"
 #include "config/bus_advice.h"
 #include "drive/drives.h"
 #include "machine/machine_check.h"
@@ -21,6 +22,7 @@ static const struct machine_axis rotary_default = {
     .max_velocity_mm_s = 180.0 * DEGREE,
     .max_acceleration_mm_s2 = 1800.0 * DEGREE,
     .max_jerk_mm_s3 = 90000.0 * DEGREE,
+    .limiter_band_percent = LIMITER_BAND_PERCENT,
     .travel_min_mm = -3600.0 * DEGREE,
     .travel_max_mm = 3600.0 * DEGREE,
     .increments_per_mm = 100000.0 * (1.0 / DEGREE), /* as a file's 100000 per degree is read */

@@ -10,7 +10,7 @@
 #include <sys/stat.h>
 
 static const char *const option_names[RUN_OUTPUT_COUNT] = {
-    "trace", "bus-log", "report", "json", "junit", "save-parameters", "rests"};
+    "trace", "bus-log", "report", "json", "junit", "save-parameters", "rests", "pulse-log"};
 
 /* Both exist and are the same, whatever links lead to them. */
 static bool is_same_file(const char *a, const char *b)
@@ -65,6 +65,31 @@ static bool check_rests(const struct session *session)
     return point.is_watched;
 }
 
+/* The axes with step drives. */
+static unsigned stepped_axes(const struct machine *machine)
+{
+    unsigned axes = 0;
+
+    for (unsigned i = 0; i < AXIS_COUNT; i++)
+        axes |= machine_axis_is_stepped(&machine->axis[i]) ? 1u << i : 0;
+    return axes;
+}
+
+static bool check_pulse_log(const struct session *session)
+{
+    const char *path = session->options->pulse_log;
+    enum pulse_log_form form;
+
+    if (stepped_axes(&session->setup.machine) == 0)
+        message_command_error("--pulse-log needs a step drive: --drive-type step, or drive_type of "
+                              "an axis in the machine file");
+    else if (!pulse_log_form_of(path, &form))
+        message_command_error("--pulse-log %s: a name that ends in .vcd or .csv is expected", path);
+    else
+        return true;
+    return false;
+}
+
 bool run_outputs_plan(struct run_outputs *o, const struct session *session)
 {
     const struct options *options = session->options;
@@ -80,7 +105,9 @@ bool run_outputs_plan(struct run_outputs *o, const struct session *session)
         }
     }
     o->path[RUN_RESTS] = options->rests;
-    if (options->rests != NULL && !check_rests(session))
+    o->path[RUN_PULSE_LOG] = options->pulse_log;
+    if ((options->rests != NULL && !check_rests(session)) ||
+        (options->pulse_log != NULL && !check_pulse_log(session)))
         return false;
     for (unsigned i = 0; i < RUN_OUTPUT_COUNT; i++) {
         if (o->path[i] != NULL && (!check_inputs(o, session, i) || !check_pairs(o, i)))
@@ -157,6 +184,22 @@ static bool open_rests(struct run_outputs *o, struct simulation *simulation)
     return true;
 }
 
+/* Written by the drives, each pulse as they take it. */
+static void open_pulse_log(struct run_outputs *o, const struct machine *machine,
+                           struct simulation *simulation)
+{
+    struct pulse_log_config config = {.axes = stepped_axes(machine)};
+
+    if (o->path[RUN_PULSE_LOG] == NULL)
+        return;
+    (void)pulse_log_form_of(o->path[RUN_PULSE_LOG], &config.form);
+    for (unsigned i = 0; i < AXIS_COUNT; i++)
+        config.rate_max_hz[i] = machine->axis[i].step_rate_max_hz;
+    pulse_log_begin(&o->pulse_log, o->file[RUN_PULSE_LOG].stream, &config);
+    virtual_steppers_listen(&simulation->field.steppers,
+                            &(struct virtual_steppers_listener){pulse_log_take, &o->pulse_log});
+}
+
 bool run_outputs_open(struct run_outputs *o, const struct session *session,
                       struct simulation *simulation)
 {
@@ -170,6 +213,7 @@ bool run_outputs_open(struct run_outputs *o, const struct session *session,
         run_outputs_close(o);
         return false;
     }
+    open_pulse_log(o, &session->setup.machine, simulation);
     if (open_writers(o, &session->setup.machine, simulation))
         return true;
     message_command_error("out of memory");
@@ -192,7 +236,8 @@ void run_outputs_add(struct run_outputs *o, const struct cycle_record *record,
 
 bool run_outputs_failed(const struct run_outputs *o)
 {
-    return (o->trace != NULL && o->trace->failed) || (o->bus_log != NULL && o->bus_log->failed);
+    return (o->trace != NULL && o->trace->failed) || (o->bus_log != NULL && o->bus_log->failed) ||
+           (o->path[RUN_PULSE_LOG] != NULL && pulse_log_has_failed(&o->pulse_log));
 }
 
 void run_outputs_drop(struct run_outputs *o, enum run_output which)
@@ -260,6 +305,8 @@ bool run_outputs_commit(struct run_outputs *o, const struct summary *summary,
         good = trace_writer_flush(o->trace) && good;
     if (o->bus_log != NULL)
         good = candump_flush(o->bus_log) && good;
+    if (o->path[RUN_PULSE_LOG] != NULL)
+        good = pulse_log_end(&o->pulse_log) && good;
     if (!good) {
         message_command_error("the output files cannot be written: %s",
                               errno != 0 ? strerror(errno) : "out of memory");
@@ -270,8 +317,8 @@ bool run_outputs_commit(struct run_outputs *o, const struct summary *summary,
 
 void run_outputs_list(const struct run_outputs *o, FILE *stream)
 {
-    static const char *const labels[RUN_OUTPUT_COUNT] = {"trace", "bus log", "report",
-                                                         "JSON",  "JUnit",   "parameters"};
+    static const char *const labels[RUN_OUTPUT_COUNT] = {
+        "trace", "bus log", "report", "JSON", "JUnit", "parameters", "rests", "pulse log"};
 
     for (unsigned i = 0; i < RUN_OUTPUT_COUNT; i++) {
         if (o->path[i] != NULL)

@@ -1,5 +1,5 @@
 /*
- * The files a run leaves: trace, bus log, report, JSON, JUnit, parameters.
+ * The files a run leaves: trace, logs of bus and pulses, report, JSON, JUnit, parameters.
  *
  * All are opened before anything moves and put in place together at the end; until then nothing of them can be seen.
  */
@@ -14,6 +14,7 @@
 #include "session/session.h"
 #include "simulation/frame_buffer.h"
 #include "simulation/simulation.h"
+#include "stepper/pulse_log.h"
 
 #include <stdbool.h>
 
@@ -25,6 +26,7 @@ enum run_output {
     RUN_JUNIT,
     RUN_PARAMETERS,
     RUN_RESTS,
+    RUN_PULSE_LOG,
     RUN_OUTPUT_COUNT
 };
 
@@ -34,6 +36,7 @@ struct run_outputs {
     struct trace_writer *trace; /* NULL: not wanted */
     struct candump *bus_log;
     struct frame_buffer *frames;
+    struct pulse_log pulse_log; /* of RUN_PULSE_LOG */
     struct report *report;
     const struct point *tool; /* its point in each cycle, the simulation's; NULL: it is not known */
     char *shares;             /* of the time at each limit, as JSON; NULL: none. Owned */

@@ -85,8 +85,9 @@ struct spindle_feedback serving_spindle_cycle(struct serving_spindle *s, double 
 {
     if (s->is_outside)
         return inverter_cycle(&s->inverter, &s->port, commanded_rpm);
-    return virtual_spindle_step(&s->inside, s->cycle_s, commanded_rpm,
-                                virtual_spindle_cut_nm(&s->inside, cut_mm_s));
+    return virtual_spindle_step(
+        &s->inside, s->cycle_s, commanded_rpm,
+        virtual_spindle_cut_nm(&s->inside, cut_mm_s, s->inside.config.cut_depth_mm));
 }
 
 bool serving_spindle_stop(struct serving_spindle *s)

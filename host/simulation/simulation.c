@@ -5,6 +5,7 @@
 #include "compiled/compiled.h"
 #include "config/inject_file.h"
 #include "config/probe_file.h"
+#include "config/stock_file.h"
 #include "simulation/cutting_feed.h"
 #include "simulation/target_setup.h"
 
@@ -101,8 +102,9 @@ static enum command_status load_faults(struct simulation *s, const struct sessio
     return STATUS_INPUT;
 }
 
-static void free_overrides(struct simulation *s)
+static void free_files(struct simulation *s)
 {
+    stock_file_free(&s->stock);
     override_file_free(&s->feed_override);
     override_file_free(&s->rapid_override);
 }
@@ -130,7 +132,8 @@ enum command_status simulation_open(const struct session *session, struct simula
     if (options->inject != NULL)
         field.script = &s->script;
     status = load_faults(s, session);
-    if (status == STATUS_DONE && !probe_file_load(&s->probe, options->probe))
+    if (status == STATUS_DONE &&
+        !(probe_file_load(&s->probe, options->probe) && stock_file_load(&s->stock, options->stock)))
         status = STATUS_INPUT;
     if (status == STATUS_DONE &&
         !(override_file_load(&s->feed_override, options->override, FEED_PERCENT_MAX) &&
@@ -139,7 +142,7 @@ enum command_status simulation_open(const struct session *session, struct simula
     if (status == STATUS_DONE)
         status = field_open(&s->field, &session->setup, &field);
     if (status != STATUS_DONE) {
-        free_overrides(s);
+        free_files(s);
         free(s);
         return status;
     }
@@ -166,7 +169,7 @@ void simulation_close(struct simulation *s)
         target_close(&s->target);
     announcer_close(&s->announcer);
     field_close(&s->field);
-    free_overrides(s);
+    free_files(s);
     free(s);
 }
 
@@ -250,11 +253,22 @@ static void watch_correction(struct simulation *s)
                              s->program);
 }
 
+static double cut_depth_mm(const struct simulation *s)
+{
+    const struct cycle_record *record = controller_get_record(&s->controller);
+
+    if (s->stock.rows == 0 || record == NULL)
+        return s->spindle.config.cut_depth_mm;
+    return stock_depth_mm(&s->stock, record->cmd.at[AXIS_X], record->cmd.at[AXIS_Y],
+                          record->cmd.at[AXIS_Z]);
+}
+
 /* The spindle turns on by a cycle, and reports. */
 static void step_spindle(struct simulation *s)
 {
     const double cycle_s = 1e-6 * (double)s->controller.machine.cycle_us;
-    const double cut_nm = virtual_spindle_cut_nm(&s->spindle, cutting_feed_mm_s(&s->controller));
+    const double cut_nm =
+        virtual_spindle_cut_nm(&s->spindle, cutting_feed_mm_s(&s->controller), cut_depth_mm(s));
 
     s->inputs.spindle = virtual_spindle_step(
         &s->spindle, cycle_s, controller_get_outputs(&s->controller)->spindle_speed_rpm, cut_nm);

@@ -17,6 +17,7 @@
 #include "simulation/field.h"
 #include "simulation/probe_contact.h"
 #include "simulation/tool_point.h"
+#include "spindle/stock.h"
 #include "spindle/virtual_spindle.h"
 #include "target/target.h"
 
@@ -38,6 +39,7 @@ struct simulation {
     struct override_file feed_override, rapid_override;
     struct inputs inputs; /* of the next cycle */
     struct virtual_spindle spindle;
+    struct stock stock; /* that it cuts; empty: every cut is as deep as the machine file says */
     bool has_target;
     struct target target;
     double rise_k[AXIS_COUNT];    /* that the controllers have been told of the axes */

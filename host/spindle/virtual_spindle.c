@@ -85,12 +85,12 @@ void virtual_spindle_init(struct virtual_spindle *s, const struct virtual_spindl
  * Milling: power = specific force x volume removed a second = k_c a_e a_p v_f, torque = power / angular velocity.
  * (Mean cutting force; DIN 6580 and 6584 name the quantities.)
  */
-double virtual_spindle_cut_nm(const struct virtual_spindle *s, double feed_mm_s)
+double virtual_spindle_cut_nm(const struct virtual_spindle *s, double feed_mm_s, double depth_mm)
 {
     const struct virtual_spindle_config *c = &s->config;
     const double speed_rad_s = maths_abs(s->speed_rad_s);
     const double power_nmm_s =
-        c->cutting_force_n_per_mm2 * c->cut_width_mm * c->cut_depth_mm * maths_abs(feed_mm_s);
+        c->cutting_force_n_per_mm2 * c->cut_width_mm * depth_mm * maths_abs(feed_mm_s);
 
     if (speed_rad_s < STANDSTILL_RPM * RAD_S_PER_RPM)
         return 0.0;

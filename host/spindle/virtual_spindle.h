@@ -32,7 +32,7 @@ struct virtual_spindle_config {
 
     /* The cut: what milling takes off. Depth 0: the spindle turns in air. */
     double cut_width_mm; /* radial engagement; >= 0 */
-    double cut_depth_mm; /* axial engagement; >= 0 */
+    double cut_depth_mm; /* axial engagement, where no stock says it; >= 0 */
     double
         cutting_force_n_per_mm2; /* specific cutting force of the material: steel 2000, aluminium 700; >= 0 */
 };
@@ -68,8 +68,8 @@ const char *virtual_spindle_check(const struct virtual_spindle_config *config);
 /* config has passed virtual_spindle_check. It stands still at angle 0. */
 void virtual_spindle_init(struct virtual_spindle *s, const struct virtual_spindle_config *config);
 
-/* Torque that cutting takes at a feed along the path, N m, >= 0; 0 when the spindle stands. */
-double virtual_spindle_cut_nm(const struct virtual_spindle *s, double feed_mm_s);
+/* Torque that cutting takes at a feed along the path and a depth, N m, >= 0; 0 when the spindle stands. */
+double virtual_spindle_cut_nm(const struct virtual_spindle *s, double feed_mm_s, double depth_mm);
 
 /*
  * The next dt_s seconds: dt_s > 0, a control cycle. commanded_rpm: signed, positive clockwise; 0: stop. load_nm:

@@ -1,6 +1,7 @@
 #include "studies/precision.h"
 
 #include "base/maths.h"
+#include "controller/controller.h"
 
 #include <string.h>
 
@@ -28,14 +29,16 @@ static void init_form(struct precision_form *form, const struct machine *machine
 
 void precision_init(struct precision *p, const struct machine *machine)
 {
-    struct interpolator_config config = {INTERPOLATOR_INTEGRATE, 1 / machine->resolution_per_mm,
-                                         INTERPOLATOR_BITS};
+    struct interpolator_config config;
 
+    controller_interpolator_config(machine, &config);
     memset(p, 0, sizeof *p);
     p->machine = *machine;
     for (unsigned i = 0; i < PRECISION_FORMS; i++)
         init_form(&p->form[i], machine, (enum steps_form)i);
+    config.kind = INTERPOLATOR_INTEGRATE;
     interpolator_init(&p->integrate, &config);
+    ramps_init(&p->ramps, machine, config.unit_mm);
     config.kind = INTERPOLATOR_ROTATE;
     interpolator_init(&p->rotate, &config);
 }
@@ -103,6 +106,7 @@ void precision_add(struct precision *p, const struct cycle_record *record,
     const struct curve *curve = block_is_motion(block) ? &block->curve : NULL;
 
     p->setpoints++;
+    ramps_add(&p->ramps, record, block);
     for (unsigned i = 0; i < PRECISION_FORMS; i++)
         step(&p->form[i], record, curve);
     if (curve == NULL)
@@ -110,4 +114,9 @@ void precision_add(struct precision *p, const struct cycle_record *record,
     look_at_curve(p, curve, record->block);
     interpolate(&p->integrate, record, curve);
     interpolate(&p->rotate, record, curve);
+}
+
+void precision_finish(struct precision *p)
+{
+    ramps_finish(&p->ramps);
 }

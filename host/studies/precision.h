@@ -13,6 +13,7 @@
 #include "plan/block.h"
 #include "step/steps.h"
 #include "stepper/virtual_steppers.h"
+#include "studies/ramps.h"
 
 #define PRECISION_FORMS 3
 
@@ -28,6 +29,7 @@ struct precision {
     struct machine machine;
     struct precision_form form[PRECISION_FORMS]; /* by enum steps_form */
     struct interpolator integrate, rotate;
+    struct ramps ramps;
     double longest_mm[AXIS_COUNT]; /* way of an axis in one line */
     double radius_mm;              /* largest of an arc; 0: there is none */
     double cycles_max;             /* of one line */
@@ -41,5 +43,7 @@ void precision_init(struct precision *p, const struct machine *machine);
 /* One cycle of the program. */
 void precision_add(struct precision *p, const struct cycle_record *record,
                    const struct block *block);
+/* After the last one. */
+void precision_finish(struct precision *p);
 
 #endif

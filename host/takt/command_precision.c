@@ -138,6 +138,19 @@ static void print_step_words(const struct precision *p)
         bounds_axis_speed_mm_s(step_mm, 1000), bounds_path_speed_mm_s(axes, step_mm, 1000));
 }
 
+/* Lines driven with a feed of their own, beside what the run took for them. */
+static void print_ramps(const struct ramps *r)
+{
+    print_row("ramps", "off lines, with ramps of its own", r->off_mm, r->off_bound_mm, "mm");
+    (void)printf("             %u lines in %llu cycles, the run took %llu; acceleration changes by "
+                 "%.4g mm/s2 in a cycle\n",
+                 r->lines, (unsigned long long)r->cycles, (unsigned long long)r->run_cycles,
+                 r->step_mm_s2);
+    if (r->slowest > 0)
+        (void)printf("             end rule, N = %u: %.4f to %.4f of V_end\n", 1u << r->end_shift,
+                     r->slowest, r->fastest);
+}
+
 static void print_integrate(const struct precision *p)
 {
     const struct interpolator_errors *errors = interpolator_get_errors(&p->integrate);
@@ -150,11 +163,13 @@ static void print_integrate(const struct precision *p)
     }
     print_row("integrate", "position on lines", errors->along_mm, errors->along_bound_mm, "mm");
     (void)printf(
-        "             lost by truncation: up to %.4g units of the last place; with %d bits "
-        "behind the increment\n"
+        "             lost by truncation: up to %.4g units of the last place, which is %.3g mm in "
+        "words of %u bits\n"
         "             words: %u bits behind the increment keep that below one; with the "
         "travel %u bits\n",
-        errors->loss_ulp, INTERPOLATOR_BITS, fraction, whole + fraction);
+        errors->loss_ulp, p->integrate.config.unit_mm, p->machine.interpolator_word_bits, fraction,
+        whole + fraction);
+    print_ramps(&p->ramps);
 }
 
 static void print_rotate(const struct precision *p)
@@ -232,12 +247,13 @@ static bool watch(struct precision_job *job)
     return true;
 }
 
-static enum command_status finish(const struct precision_job *job)
+static enum command_status finish(struct precision_job *job)
 {
     const struct controller *controller = &job->simulation->controller;
     const struct diagnostic *fault = controller_get_fault(controller);
     char text[DIAGNOSTIC_TEXT_MAX];
 
+    precision_finish(&job->precision);
     print_precision(&job->session, &job->precision);
     if (controller_get_state(controller) == CONTROLLER_COMPLETED)
         return STATUS_DONE;
@@ -297,9 +313,12 @@ const struct command command_precision = {
     .summary = "errors of every interpolator on a program, with bounds and word lengths",
     .help = "Runs the program exactly and computes every setpoint by the other forms of "
             "interpolation as well: digital\n"
-            "integration of lines, rotation of the radius vector on arcs, and the step forms, with "
-            "the steps_per_mm of\n"
-            "each axis. For each: the largest error measured, its bound, and the word length in "
+            "integration of lines, behind the same feed and with ramps of its own, rotation of the "
+            "radius vector on arcs,\n"
+            "and the step forms, with the steps_per_mm of each axis. Words are those of the keys "
+            "interpolator_word_bits,\n"
+            "interpolator_end_shift and interpolator_angle_bits. For each: the largest error "
+            "measured, its bound, and the word length in "
             "bits. See README.md of\n"
             "firmware/classic and firmware/step.\n"
             "\n"

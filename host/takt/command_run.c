@@ -225,6 +225,9 @@ static const struct option_row rows[] = {
      "scripted faults of bus and drives; takt help inject explains them"},
     {"probe", OPTION_TEXT, offsetof(struct options, probe), "FILE",
      "what the probe touches, and inputs over time: box, ball, input; see host/probe"},
+    {"stock", OPTION_TEXT, offsetof(struct options, stock), "FILE",
+     "top of the material over X and Y: the depth of each cut, for the spindle's load; see "
+     "host/spindle"},
     {"override", OPTION_TEXT, offsetof(struct options, override), "FILE",
      "feed override over time: lines of seconds and percent, 0 ... 120"},
     {"rapid-override", OPTION_TEXT, offsetof(struct options, rapid_override), "FILE",
@@ -233,6 +236,8 @@ static const struct option_row rows[] = {
      "adaptive (default) or proportional: see firmware/motion"},
     {"bus-log", OPTION_TEXT, offsetof(struct options, bus_log), "FILE",
      "every CAN frame, as candump -L writes it"},
+    {"pulse-log", OPTION_TEXT, offsetof(struct options, pulse_log), "FILE",
+     "every pulse of step drives: FILE.vcd for viewers of logic analysers, FILE.csv"},
     {"report", OPTION_TEXT, offsetof(struct options, report), "FILE.html",
      "path, feed and limits as pictures"},
     {"json", OPTION_TEXT, offsetof(struct options, json), "FILE", "the summary as JSON"},

@@ -184,6 +184,7 @@ static struct line_case random_line(unsigned n)
     c.config.feed_mm = random_between(1, 100) * CYCLE_S;
     c.config.acceleration_mm = random_decades(2, 3.5) * CYCLE_S * CYCLE_S;
     c.config.start_mm = n % 3 == 0 ? 0 : random_between(0, 0.2) * c.config.feed_mm;
+    c.config.end_shift = 3 + n % 3;
     c.config.end_mm = n % 2 == 0 ? 0 : random_between(0.2, 0.5) * c.config.feed_mm;
     (void)snprintf(shape, sizeof shape, "line %u: %g mm, feed %g, end %g, a %g", n,
                    c.config.length_mm, c.config.feed_mm, c.config.end_mm, c.config.acceleration_mm);
@@ -217,7 +218,8 @@ static double length_of(const struct point *p)
 static struct {
     double off_ratio; /* of the truncation bound */
     double jump_mm;   /* beyond acceleration: change of way per cycle while the end rule acts */
-    double slowest, fastest; /* way in an aimed cycle, of V_end */
+    double slowest[INTERPOLATOR_END_SHIFT_MAX + 1]; /* way in an aimed cycle, of V_end, by k */
+    double fastest;
     unsigned aimed;
 } lines;
 
@@ -225,14 +227,13 @@ static struct {
 static void check_aimed(const struct line_case *c, double way_mm, double loss_ulp)
 {
     double ratio = way_mm / c->config.end_mm;
-    double room = maths_sqrt(AXIS_COUNT) * (loss_ulp + 40) * c->config.unit_mm /
-                  (INTEGRATE_END_CYCLES * c->config.end_mm);
+    double cycles = (double)(1U << c->config.end_shift);
+    double room =
+        maths_sqrt(AXIS_COUNT) * (loss_ulp + 40) * c->config.unit_mm / (cycles * c->config.end_mm);
 
-    lines.slowest = maths_min(lines.slowest, ratio);
+    lines.slowest[c->config.end_shift] = maths_min(lines.slowest[c->config.end_shift], ratio);
     lines.fastest = maths_max(lines.fastest, ratio);
-    TEST_ASSERT_TRUE_MESSAGE(ratio > (INTEGRATE_END_CYCLES - 1.0) / INTEGRATE_END_CYCLES - room &&
-                                 ratio <= 1 + room,
-                             shape);
+    TEST_ASSERT_TRUE_MESSAGE(ratio > (cycles - 1.0) / cycles - room && ratio <= 1 + room, shape);
 }
 
 static void run_line(const struct line_case *c)
@@ -258,9 +259,9 @@ static void run_line(const struct line_case *c)
         /* The last step also makes good what truncation has taken. */
         TEST_ASSERT_TRUE_MESSAGE(length_of(&step) <= c->config.feed_mm + loss_mm, shape);
         if (line.phase != INTEGRATE_LANDED)
-            lines.jump_mm = maths_max(lines.jump_mm, maths_abs(length_of(&step) - feed) -
-                                                         c->config.acceleration_mm -
-                                                         c->config.end_mm / INTEGRATE_END_CYCLES);
+            lines.jump_mm = maths_max(
+                lines.jump_mm, maths_abs(length_of(&step) - feed) - c->config.acceleration_mm -
+                                   c->config.end_mm / (double)(1U << c->config.end_shift));
         feed = length_of(&step);
     }
     TEST_ASSERT_EQUAL_MEMORY_MESSAGE(line.axes.end, line.axes.position, sizeof line.axes.end,
@@ -269,18 +270,56 @@ static void run_line(const struct line_case *c)
 
 static void test_lines_stay_straight_within_truncation_and_end_exactly_without_a_jump(void)
 {
-    lines.slowest = 1;
+    for (unsigned k = 0; k <= INTERPOLATOR_END_SHIFT_MAX; k++)
+        lines.slowest[k] = 1;
     for (unsigned n = 0; n < CASES; n++) {
         struct line_case c = random_line(n);
 
         run_line(&c);
     }
-    (void)printf("integration, %d lines: off by at most %.3f of the truncation bound; at the end "
-                 "%.4f ... %.4f of V_end (rule: %.4f ... 1)\n",
-                 CASES, lines.off_ratio, lines.slowest, lines.fastest,
-                 (INTEGRATE_END_CYCLES - 1.0) / INTEGRATE_END_CYCLES);
+    (void)printf("integration, %d lines: off by at most %.3f of the truncation bound\n", CASES,
+                 lines.off_ratio);
+    for (unsigned k = 3; k <= 5; k++)
+        (void)printf("k = %u: at the end %.4f ... %.4f of V_end (rule: %.4f ... 1)\n", k,
+                     lines.slowest[k], lines.fastest, 1 - 1.0 / (double)(1U << k));
     TEST_ASSERT_TRUE(lines.aimed > 1000);
     TEST_ASSERT_TRUE(lines.jump_mm < 1e-4);
+}
+
+/* Words with few bits, in which a cycle's acceleration or the feed itself is less than the last one: every line still ends. */
+static void test_lines_in_short_words_end_too(void)
+{
+    for (unsigned n = 0; n < 300; n++) {
+        struct line_case c = random_line(n);
+        struct integrate_line line;
+        unsigned cycles = 0;
+
+        c.config.unit_mm = random_decades(-5, 1);
+        integrate_line_begin(&line, &c.config, &c.start, &c.end);
+        while (integrate_line_cycle(&line) && cycles < 1000000)
+            cycles++;
+        TEST_ASSERT_TRUE_MESSAGE(cycles < 1000000, shape);
+        TEST_ASSERT_EQUAL_MEMORY_MESSAGE(line.axes.end, line.axes.position, sizeof line.axes.end,
+                                         shape);
+    }
+}
+
+/* The least power of two times the increment with which the range fits into a signed word. */
+static void test_a_word_of_m_bits_counts_the_whole_range(void)
+{
+    for (unsigned n = 0; n < 2000; n++) {
+        const double increment = random_decades(-9, 0), range = random_decades(-3, 6);
+        const unsigned bits = INTERPOLATOR_WORD_BITS_MIN +
+                              (unsigned)random_between(0, INTERPOLATOR_WORD_BITS_MAX -
+                                                              INTERPOLATOR_WORD_BITS_MIN + 1);
+        const double unit = interpolator_unit_mm(increment, range, bits);
+        const double most = maths_power(2.0, (double)bits - 1.0);
+
+        TEST_ASSERT_TRUE(range < unit * most * (1 + 1e-12));
+        TEST_ASSERT_TRUE(range >= 0.5 * unit * most * (1 - 1e-12));
+    }
+    TEST_ASSERT_TRUE(interpolator_unit_mm(1e-3, 1000, INTERPOLATOR_WORD_BITS) == 0x1p-32 * 1e-3);
+    TEST_ASSERT_TRUE(interpolator_unit_mm(1e-3, 1000, 16) == 32e-3);
 }
 
 /* The interpolators behind a planner's feed: an S-curve from rest to a feed and, one time in two, back to rest. */
@@ -334,7 +373,8 @@ static bool random_curve(struct curve *curve, enum interpolator_kind kind)
 
 static void check_behind_feed(enum interpolator_kind kind, const char *name)
 {
-    struct interpolator_config config = {kind, 1e-3, INTERPOLATOR_BITS};
+    const struct interpolator_config config = {
+        .kind = kind, .end_shift = INTEGRATE_END_SHIFT, .unit_mm = 0x1p-32 * 1e-3};
     double along = 0, contour = 0;
 
     for (unsigned n = 0; n < 300; n++) {
@@ -375,6 +415,8 @@ int main(void)
     RUN_TEST(test_a_turn_within_an_acceleration_errs_by_less_than_a_third_of_pi_a_dt_squared);
     RUN_TEST(test_few_bits_of_the_angle_cost_evenness_and_no_contour);
     RUN_TEST(test_lines_stay_straight_within_truncation_and_end_exactly_without_a_jump);
+    RUN_TEST(test_lines_in_short_words_end_too);
+    RUN_TEST(test_a_word_of_m_bits_counts_the_whole_range);
     RUN_TEST(test_integrate_behind_a_planned_feed_errs_by_less_than_its_bound);
     RUN_TEST(test_rotate_behind_a_planned_feed_errs_by_less_than_its_bound);
     return UNITY_END();

@@ -341,8 +341,8 @@ static void run_helix(const struct arc_case *c, const unsigned plane[2],
     while (evaluate_helix_next(&h, &tick)) {
         take(at, &tick);
         TEST_ASSERT_TRUE_MESSAGE(c->config.form == EVALUATE_IMPROVED || is_one_axis(&tick), shape);
-        if (c->config.form == EVALUATE_IMPROVED || h.queued.axes == 0)
-            check_on_helix(c, at, plane, delta, &part);
+        TEST_ASSERT_TRUE_MESSAGE(c->config.form == EVALUATE_IMPROVED || is_one_axis(&tick), shape);
+        check_on_helix(c, at, plane, delta, &part);
     }
     TEST_ASSERT_EQUAL_INT64_MESSAGE(c->config.end[0], at[plane[0]], shape);
     TEST_ASSERT_EQUAL_INT64_MESSAGE(c->config.end[1], at[plane[1]], shape);

@@ -18,6 +18,7 @@ TESTS = {
     "cross-compiler": "build_image_.*|target_.*",
     "linuxcnc": "canon_against_linuxcnc|events_against_linuxcnc|spindle_with_linuxcnc",
     "packages": "controller_with_canopen|drives_with_canopen|panel_with_pymodbus|python_api",
+    "sigrok": "pulse_log_with_sigrok",
     "qemu": "target_(digests|arithmetic|cost|refusal|storage_stops|live|grbl|stm32_start|stm32_rehearsal)",
     "user-mode-linux": "socketcan|drives_with_canopen_on_socketcan",
 }

@@ -11,6 +11,8 @@ VELOCITY, JERK = 100.0, 50000.0
 
 # X runs near its limit, and beyond it from 106 % on.
 FAST = "G21 G61 F5700\nG1 X60 Y8\nG1 X160 Y8\nG1 X0 Y0\nM2\n"
+# One axis after the other.
+BOTH = "G21 G61 F5700\nG1 X100\nG1 Y100\nG1 X0 Y0\nM2\n"
 # Tangent blocks of different feeds and lengths: each is a number of cycles and a part of one.
 JOINTS = "G21 G61 F3000\nG1 X10.01\nG1 X20.02 F6000\nG1 X30.37 F2000\nG2 X30.37 Y0 I0 J-5\nG1 X40.005\nG0 X0\nM2\n"
 
@@ -42,6 +44,36 @@ def limiter(form):
     return status, velocity - VELOCITY, jerk * CYCLE_S
 
 
+def factor(velocity, most, band):
+    """K of seed 003 (15), (16) for one axis, its S-curve written as a Bezier curve: ends 0 and 1/2, in between 0, 1/6, 3/8."""
+    part = min(max((velocity - (most - band)) / (2 * band), 0), 1) if band > 0 else float(velocity > most)
+    weights = (1 - part) ** 4, 4 * part * (1 - part) ** 3, 6 * (part * (1 - part)) ** 2, 4 * part**3 * (1 - part), part**4
+    kappa = sum(weight * height for weight, height in zip(weights, (0, 0, 1 / 6, 3 / 8, 1 / 2)))
+    if part == 0:
+        return 1.0
+    return most / velocity if part == 1 else (most - band + (1 - kappa) * 2 * band * part) / velocity
+
+
+def bands(percent):
+    """K of a run from the positions of its trace, two axes with a band of their own, beside the K that it used a cycle later."""
+    sets = [f"axis.{axis}.limiter_band_percent={value}" for axis, value in percent.items()]
+    run(BOTH, "limiter", "smooth", "--override", "fast.txt", *(word for text in sets for word in ("--set", text)))
+    trace = t.read_trace("trace.csv")
+    used = trace["limiter"]
+    off, governs = 0.0, dict.fromkeys(percent, 0)
+    for n in range(2, len(used)):
+        steps = {axis: abs(trace[f"cmd_{axis}_mm"][n - 1] - trace[f"cmd_{axis}_mm"][n - 2]) for axis in percent}
+        if max(steps.values()) == 0 or all(trace[f"cmd_{axis}_mm"][n] == trace[f"cmd_{axis}_mm"][n - 1] for axis in percent):
+            continue
+        found = {axis: factor(step / (CYCLE_S * used[n - 1]), VELOCITY, percent[axis] / 100 * VELOCITY) for axis, step in steps.items()}
+        least = min(found, key=found.get)
+        governs[least] += found[least] < 1
+        off = max(off, abs(min(found.values()) - used[n]))
+    t.check(off < 3e-6, f"K in the bands {percent} is that of the source's formula", off)
+    t.check(all(governs.values()), "each axis is limited by its own band", governs)
+    return min(used)
+
+
 def landing(form):
     """Status and the largest step of the feed at a joint."""
     status, summary = run(JOINTS, "landing", form)
@@ -59,6 +91,18 @@ t.check(status == 0 and kept, "the planner keeps X's limits at 120 %", above, st
 for form in "threshold", "smooth":
     status, above, step = limiter(form)
     t.check(status == 1 and above > 0.5 and step > 2 * JERK * CYCLE_S, f"{form}: what is passed is told", above, step)
+
+# The width of the band is each axis's own: wider, it bends earlier; without one it is the threshold.
+bands({"X": 20, "Y": 3})
+bands({"X": 0, "Y": 60})
+for wrong, said in ("100", "99"), ("-1", "0"), ("some", "some"):
+    status, _, err = t.run("run", "part.ngc", "--set", f"axis.X.limiter_band_percent={wrong}")
+    t.check(status == 2 and said in err, f"a band of {wrong} % is refused", status, err)
+status, out, err = t.run("machine", "--set", "axis.Y.limiter_band_percent=12")
+t.check(out.count("limiter_band_percent = 5") == 2 and "limiter_band_percent = 12" in out, "takt machine shows the bands", out, err)
+t.check(t.run("machine", t.write("bands.ini", out), "--pack", "-o", "bands.settings")[0] == 0, "they are packed")
+status, again, err = t.run("machine", "bands.settings", "--unpack")
+t.check(again.count("limiter_band_percent = 5") == 2 and "limiter_band_percent = 12" in again, "and unpacked", again, err)
 
 print("                             parts of the limits")
 print(f"{'landing':12} {'joint mm/s':>12} {'acceleration':>14} {'jerk':>8} {'time s':>9} {'status':>7}")

@@ -115,16 +115,16 @@ static void test_reach_is_the_feed_whose_ramp_is_as_long_as_the_block(void)
 
 static void test_the_threshold_cuts_and_nothing_else(void)
 {
-    TEST_ASSERT_TRUE(limiter_axis(LIMITER_THRESHOLD, 99.9, 100.0) == 1.0);
-    TEST_ASSERT_EQUAL_DOUBLE(100.0 / 120.0, limiter_axis(LIMITER_THRESHOLD, 120.0, 100.0));
-    TEST_ASSERT_TRUE(limiter_axis(LIMITER_CEILING, 120.0, 100.0) == 1.0);
+    TEST_ASSERT_TRUE(limiter_axis(LIMITER_THRESHOLD, 99.9, 100.0, 5) == 1.0);
+    TEST_ASSERT_EQUAL_DOUBLE(100.0 / 120.0, limiter_axis(LIMITER_THRESHOLD, 120.0, 100.0, 5));
+    TEST_ASSERT_TRUE(limiter_axis(LIMITER_CEILING, 120.0, 100.0, 5) == 1.0);
 }
 
 /* What comes out, F K: with slope 1 below the band and 0 above it, both of them without a bend. */
-static void test_the_smooth_form_bends_twice_without_a_corner(void)
+static void check_bends(double band, uint8_t band_percent)
 {
-    const double h = 1e-3;
-    const double ends[] = {95.0, 105.0};
+    const double h = 1e-4 * band;
+    const double ends[] = {100.0 - band, 100.0 + band};
 
     for (unsigned i = 0; i < 2; i++) {
         double out[5];
@@ -132,13 +132,44 @@ static void test_the_smooth_form_bends_twice_without_a_corner(void)
         for (int k = 0; k < 5; k++) {
             const double f = ends[i] + (k - 2) * h;
 
-            out[k] = f * limiter_axis(LIMITER_SMOOTH, f, 100.0);
+            out[k] = f * limiter_axis(LIMITER_SMOOTH, f, 100.0, band_percent);
         }
         TEST_ASSERT_DOUBLE_WITHIN(1e-3, i == 0 ? 1.0 : 0.0, (out[3] - out[1]) / (2.0 * h));
-        TEST_ASSERT_DOUBLE_WITHIN(1e-3, 0.0, (out[3] - 2.0 * out[2] + out[1]) / (h * h));
+        TEST_ASSERT_DOUBLE_WITHIN(1e-3, 0.0, (out[3] - 2.0 * out[2] + out[1]) / (h * h) * band);
     }
-    TEST_ASSERT_EQUAL_DOUBLE(95.0, 95.0 * limiter_axis(LIMITER_SMOOTH, 95.0, 100.0));
-    TEST_ASSERT_EQUAL_DOUBLE(100.0, 105.0 * limiter_axis(LIMITER_SMOOTH, 105.0, 100.0));
+    TEST_ASSERT_DOUBLE_WITHIN(1e-9, 100.0 - band,
+                              (100.0 - band) *
+                                  limiter_axis(LIMITER_SMOOTH, 100.0 - band, 100.0, band_percent));
+    TEST_ASSERT_DOUBLE_WITHIN(1e-9, 100.0,
+                              (100.0 + band) *
+                                  limiter_axis(LIMITER_SMOOTH, 100.0 + band, 100.0, band_percent));
+}
+
+static void test_the_smooth_form_bends_twice_without_a_corner(void)
+{
+    check_bends(5.0, 5);
+    check_bends(1.0, 1);
+    check_bends(50.0, 50);
+    check_bends(99.0, LIMITER_BAND_PERCENT_MAX);
+}
+
+/* At F_max, x = 1/2 and k = 1/4 - 1/16: F K = F_max - d + 13/16 d. */
+static void test_at_the_limit_the_smooth_form_takes_three_sixteenths_of_its_band(void)
+{
+    TEST_ASSERT_DOUBLE_WITHIN(1e-12, 1.0 - 0.05 * 3.0 / 16.0,
+                              limiter_axis(LIMITER_SMOOTH, 100.0, 100.0, 5));
+    TEST_ASSERT_DOUBLE_WITHIN(1e-12, 1.0 - 0.40 * 3.0 / 16.0,
+                              limiter_axis(LIMITER_SMOOTH, 3.0, 3.0, 40));
+}
+
+static void test_a_band_without_width_is_a_threshold(void)
+{
+    for (unsigned k = 1; k < 400; k++) {
+        const double f = 0.5 * (double)k;
+
+        TEST_ASSERT_TRUE(limiter_axis(LIMITER_SMOOTH, f, 100.0, 0) ==
+                         limiter_axis(LIMITER_THRESHOLD, f, 100.0, 0));
+    }
 }
 
 static void test_the_least_factor_of_the_axes_counts(void)
@@ -146,7 +177,12 @@ static void test_the_least_factor_of_the_axes_counts(void)
     const double most[AXIS_COUNT] = {100.0, 50.0, 0.0};
     const struct point velocity = {{-110.0, 60.0, 1000.0}};
 
-    TEST_ASSERT_EQUAL_DOUBLE(50.0 / 60.0, limiter_factor(LIMITER_THRESHOLD, &velocity, most));
+    const uint8_t narrow[AXIS_COUNT] = {0}, wide_x[AXIS_COUNT] = {99, 0};
+
+    TEST_ASSERT_EQUAL_DOUBLE(50.0 / 60.0,
+                             limiter_factor(LIMITER_THRESHOLD, &velocity, most, narrow));
+    TEST_ASSERT_EQUAL_DOUBLE(50.0 / 60.0, limiter_factor(LIMITER_SMOOTH, &velocity, most, narrow));
+    TEST_ASSERT_TRUE(limiter_factor(LIMITER_SMOOTH, &velocity, most, wide_x) < 50.0 / 60.0);
 }
 
 int main(void)
@@ -160,6 +196,8 @@ int main(void)
     RUN_TEST(test_reach_is_the_feed_whose_ramp_is_as_long_as_the_block);
     RUN_TEST(test_the_threshold_cuts_and_nothing_else);
     RUN_TEST(test_the_smooth_form_bends_twice_without_a_corner);
+    RUN_TEST(test_at_the_limit_the_smooth_form_takes_three_sixteenths_of_its_band);
+    RUN_TEST(test_a_band_without_width_is_a_threshold);
     RUN_TEST(test_the_least_factor_of_the_axes_counts);
     return UNITY_END();
 }

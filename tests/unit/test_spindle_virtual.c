@@ -101,9 +101,10 @@ static void test_a_cut_takes_the_torque_of_its_chips(void)
     config.cut_width_mm = 5;
     config.cut_depth_mm = 2;
     start_anew();
-    TEST_ASSERT_EQUAL_DOUBLE(0, virtual_spindle_cut_nm(&spindle, 50));
+    TEST_ASSERT_EQUAL_DOUBLE(0, virtual_spindle_cut_nm(&spindle, 50, config.cut_depth_mm));
     run_for(3, 12000, 0);
-    TEST_ASSERT_DOUBLE_WITHIN(1e-4, 350 / 1256.637, virtual_spindle_cut_nm(&spindle, 50));
+    TEST_ASSERT_DOUBLE_WITHIN(1e-4, 350 / 1256.637,
+                              virtual_spindle_cut_nm(&spindle, 50, config.cut_depth_mm));
 }
 
 static void test_the_torque_stays_within_its_limit_and_the_speed_gives_way(void)
