@@ -4,6 +4,14 @@
 
 #include <string.h>
 
+#define IDENTITY                                                                                   \
+    "look at drive_node and the node ids of the drives; drive_vendor, drive_product, "             \
+    "drive_revision and drive_serial say what is expected"
+#define IO_WIRING "look at its power, bit rate and termination, and at node in its section [io N]"
+#define IO_DEFAULTS                                                                                \
+    "give the node the defaults of its maker (object 1011), or wire fewer bits in its section "    \
+    "[io N]"
+
 /* In the order of enum drives_given_up. */
 static const struct {
     const char *name;   /* in JSON */
@@ -147,85 +155,91 @@ void drives_table_add_json(cJSON *root, const struct drives_table *table,
             add_drive(drives, table, i, machine->axis[i].drive_node);
 }
 
-static bool is_of(const struct diagnostic *fault, const char *index)
+/* What helps after a fault: the first row that fits. */
+static const struct remedy {
+    enum takt_error code;
+    const char *objects; /* NULL: whichever it is */
+    bool is_absent;      /* the drive does not have the object, in some of its forms */
+    const char *text;
+} remedies[] = {
+    {TAKT_ERROR_DRIVE_ABSENT, NULL, false,
+     "look at its power, node id, bit rate and termination; if it boots more slowly, make "
+     "boot_timeout_ms in [bus] longer"},
+    {TAKT_ERROR_DRIVE_UNANSWERED, NULL, false,
+     "if it answers more slowly, make sdo_timeout_ms in [bus] longer, if it boots more slowly, "
+     "boot_timeout_ms"},
+    {TAKT_ERROR_DRIVE_TYPE, NULL, false, IDENTITY},
+    {TAKT_ERROR_DRIVE_IDENTITY, NULL, false, IDENTITY},
+    {TAKT_ERROR_DRIVE_MODES, NULL, false,
+     "choose a firmware or set-up of the drive with mode 8, 7, 9 or 3, since profile position (1) "
+     "comes to rest at every target and velocity of converters (2) knows whole rpm alone; "
+     "home_order = 0 for a drive that cannot home"},
+    {TAKT_ERROR_DRIVE_NOT_ENABLED, NULL, false,
+     "look at its power stage, enable and safe torque off (STO) inputs, and at its manual on what "
+     "it waits for"},
+    {TAKT_ERROR_DRIVE_SILENT, NULL, false,
+     "look at its cable and power; if it has never sent one, at its first TPDO (1800, 1A00) and at "
+     "SYNC (1005)"},
+    {TAKT_ERROR_DRIVE_MODE, NULL, false, "look at the set-up of the drive, objects 6060 and 6502"},
+    {TAKT_ERROR_DRIVE_REFUSES, "6083 6084", false,
+     "set velocity_units_per_mm_s to the unit of the drive (rpm: 60 by the travel of a turn), make "
+     "max_acceleration_mm_s2 lower, or these ramps steeper with the maker's tool"},
+    {TAKT_ERROR_DRIVE_REFUSES, NULL, false,
+     "set it up with the maker's tool; homing is home_order, home_method and home_offset_mm"},
+    {TAKT_ERROR_DRIVE_UNMAPPED, "6041 6064", false,
+     "map it with the maker's tool into a TPDO that is valid, and of transmission type 1 or with "
+     "an event timer (1800:05) of the cycle, and store that; a drive that has it for no PDO cannot "
+     "be used"},
+    {TAKT_ERROR_DRIVE_UNMAPPED, NULL, true,
+     "choose a drive, or with the maker's tool a mode or a firmware, that has a target position "
+     "(607A) or velocity (60FF) and 6041 and 6064 for its PDOs"},
+    {TAKT_ERROR_DRIVE_UNMAPPED, NULL, false,
+     "map it with the maker's tool into a PDO that is valid and of transmission type 1, and store "
+     "that"},
+    {TAKT_ERROR_DRIVE_SHARES, NULL, false,
+     "give each drive a PDO with an identifier of its own with the maker's tool, or "
+     "drive_is_set_up = 0"},
+    {TAKT_ERROR_DRIVE_UNWATCHED, NULL, false,
+     "set up its consumer heartbeat (1016) or guarding (100C and 100D) with the maker's tool; "
+     "heartbeat_ms in [bus] must not be 0"},
+    {TAKT_ERROR_DRIVE_PERIOD, NULL, false,
+     "set cycle_us in [machine] to that time, or 60C2 with the maker's tool"},
+    {TAKT_ERROR_DRIVE_SCALING, NULL, false,
+     "correct increments_per_mm or travel_per_turn_mm, or objects 608F, 6091 and 6092 with the "
+     "maker's tool"},
+    {TAKT_ERROR_DRIVE_FOLLOWING, NULL, false,
+     "look at increments_per_mm and the gains of the drive; what it cannot follow is too much for "
+     "it: max_acceleration_mm_s2, max_velocity_mm_s"},
+    {TAKT_ERROR_DRIVE_SKEW, NULL, false,
+     "look at the switches of both drives, and at home_offset_mm and skew_max_mm in [gantry]"},
+    {TAKT_ERROR_IO_ABSENT, NULL, false, IO_WIRING},
+    {TAKT_ERROR_IO_TYPE, NULL, false, IO_WIRING},
+    {TAKT_ERROR_IO_UNANSWERED, NULL, false, IO_WIRING},
+    {TAKT_ERROR_IO_REFUSES, NULL, false, IO_DEFAULTS},
+    {TAKT_ERROR_IO_UNMAPPED, NULL, false, IO_DEFAULTS},
+    {TAKT_ERROR_BUS_OVERLOAD, NULL, false,
+     "make cycle_us in [machine] longer, or bitrate in [bus] higher"},
+};
+
+/* Is the object of the fault, "object 6083:00", one of these? */
+static bool is_one_of(const struct diagnostic *fault, const char *objects)
 {
     const char *object = strstr(fault->word, "object ");
+    char index[5] = "";
 
-    return object != NULL && strncmp(object + strlen("object "), index, strlen(index)) == 0;
+    if (object != NULL)
+        (void)snprintf(index, sizeof index, "%.4s", object + strlen("object "));
+    return index[0] != '\0' && strstr(objects, index) != NULL;
 }
 
 const char *drives_table_remedy(const struct diagnostic *fault)
 {
-    switch ((int)fault->code) {
-    case TAKT_ERROR_DRIVE_ABSENT:
-        return "look at its power, node id, bit rate and termination; if it boots more slowly, "
-               "make "
-               "boot_timeout_ms in [bus] longer";
-    case TAKT_ERROR_DRIVE_UNANSWERED:
-        return "if it answers more slowly, make sdo_timeout_ms in [bus] longer, if it boots more "
-               "slowly, "
-               "boot_timeout_ms";
-    case TAKT_ERROR_DRIVE_TYPE:
-    case TAKT_ERROR_DRIVE_IDENTITY:
-        return "look at drive_node and the node ids of the drives; drive_vendor, drive_product, "
-               "drive_revision and drive_serial say what is expected";
-    case TAKT_ERROR_DRIVE_MODES:
-        return "choose a firmware or set-up of the drive with mode 8, 7, 9 or 3, since profile "
-               "position (1) comes to rest at every target and velocity of converters (2) knows "
-               "whole rpm alone; home_order = 0 for a drive that cannot home";
-    case TAKT_ERROR_DRIVE_NOT_ENABLED:
-        return "look at its power stage, enable and safe torque off (STO) inputs, and at its "
-               "manual on what it waits for";
-    case TAKT_ERROR_DRIVE_SILENT:
-        return "look at its cable and power; if it has never sent one, at its first TPDO (1800, "
-               "1A00) and at SYNC (1005)";
-    case TAKT_ERROR_DRIVE_MODE:
-        return "look at the set-up of the drive, objects 6060 and 6502";
-    case TAKT_ERROR_DRIVE_REFUSES:
-        if (is_of(fault, "6083") || is_of(fault, "6084"))
-            return "set velocity_units_per_mm_s to the unit of the drive (rpm: 60 by the travel of "
-                   "a turn), make max_acceleration_mm_s2 lower, or these ramps steeper with the "
-                   "maker's tool";
-        return "set it up with the maker's tool; homing is home_order, home_method and "
-               "home_offset_mm";
-    case TAKT_ERROR_DRIVE_UNMAPPED:
-        if (is_of(fault, "6041") || is_of(fault, "6064"))
-            return "map it with the maker's tool into a TPDO that is valid, and of transmission "
-                   "type 1 or with an event timer (1800:05) of the cycle, and store that; a drive "
-                   "that has it for no PDO cannot be used";
-        return sdo_says_absent((uint32_t)fault->value)
-                   ? "choose a drive, or with the maker's tool a mode or a firmware, that has a "
-                     "target position (607A) or velocity (60FF) and 6041 and 6064 for its PDOs"
-                   : "map it with the maker's tool into a PDO that is valid and of transmission "
-                     "type 1, and store that";
-    case TAKT_ERROR_DRIVE_SHARES:
-        return "give each drive a PDO with an identifier of its own with the maker's tool, or "
-               "drive_is_set_up = 0";
-    case TAKT_ERROR_DRIVE_UNWATCHED:
-        return "set up its consumer heartbeat (1016) or guarding (100C and 100D) with the maker's "
-               "tool; heartbeat_ms in [bus] must not be 0";
-    case TAKT_ERROR_DRIVE_PERIOD:
-        return "set cycle_us in [machine] to that time, or 60C2 with the maker's tool";
-    case TAKT_ERROR_DRIVE_SCALING:
-        return "correct increments_per_mm or travel_per_turn_mm, or objects 608F, 6091 and 6092 "
-               "with the maker's tool";
-    case TAKT_ERROR_DRIVE_FOLLOWING:
-        return "look at increments_per_mm and the gains of the drive; what it cannot follow is too "
-               "much for it: max_acceleration_mm_s2, max_velocity_mm_s";
-    case TAKT_ERROR_DRIVE_SKEW:
-        return "look at the switches of both drives, and at home_offset_mm and skew_max_mm in "
-               "[gantry]";
-    case TAKT_ERROR_IO_ABSENT:
-    case TAKT_ERROR_IO_TYPE:
-    case TAKT_ERROR_IO_UNANSWERED:
-        return "look at its power, bit rate and termination, and at node in its section [io N]";
-    case TAKT_ERROR_IO_REFUSES:
-    case TAKT_ERROR_IO_UNMAPPED:
-        return "give the node the defaults of its maker (object 1011), or wire fewer bits in its "
-               "section [io N]";
-    case TAKT_ERROR_BUS_OVERLOAD:
-        return "make cycle_us in [machine] longer, or bitrate in [bus] higher";
-    default:
-        return "";
+    for (size_t i = 0; i < sizeof remedies / sizeof remedies[0]; i++) {
+        const struct remedy *row = &remedies[i];
+
+        if (fault->code == row->code && (row->objects == NULL || is_one_of(fault, row->objects)) &&
+            (!row->is_absent || sdo_says_absent((uint32_t)fault->value)))
+            return row->text;
     }
+    return "";
 }
