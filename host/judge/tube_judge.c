@@ -15,6 +15,8 @@
  * a circle is one, which is cut into many pieces here.
  */
 #define CROWD 128
+/* And no more than so many pieces: circles of many turns within the tolerance would make the work grow with their square. */
+#define CROWD_PIECES 1024
 
 /* The motion that is said to be executed may be so many off: curves over several have the number of one. */
 #define NUMBER_ROOM 16
@@ -175,21 +177,24 @@ static bool has_piece(struct tube_judge *t, size_t k)
     return k < t->path.count || tube_path_extend(&t->path);
 }
 
-/* Does a piece belong to a motion far ahead of another? */
-static bool is_far(const struct tube_piece *piece, uint32_t motion)
+/* Is piece k far ahead of piece `from`, which belongs to a motion? */
+static bool is_far(const struct tube_judge *t, size_t k, size_t from, uint32_t motion)
 {
-    return piece->motion.number > motion && piece->motion.number - motion > CROWD;
+    const uint32_t number = tube_path_at(&t->path, k)->motion.number;
+
+    return (number > motion && number - motion > CROWD) || k > from + CROWD_PIECES;
 }
 
 /* All places that the setpoint may be at now. False: there is none; *n is then the nearest of those that were left. */
 static bool follow(struct tube_judge *t, const struct stride *step, struct nearest *n)
 {
     double entered = NOT_ENTERED;
-    size_t active = 0;
+    size_t active = 0, said = 0;
 
     for (size_t k = 0; (k < t->active || entered >= 0) && has_piece(t, k); k++) {
-        if (k >= t->active && is_far(tube_path_at(&t->path, k), step->motion) &&
-            n->of_tolerance <= 1)
+        if (tube_path_at(&t->path, k)->motion.number <= step->motion)
+            said = k;
+        if (k >= t->active && is_far(t, k, said, step->motion) && n->of_tolerance <= 1)
             break;
         if (entered < 0 && !tube_path_at(&t->path, k)->reached)
             continue;
@@ -362,12 +367,12 @@ static size_t find_believed(struct tube_judge *t, const struct stride *step)
     const uint32_t first = tube_path_at(&t->path, 0)->motion.number;
     size_t k = t->active;
 
-    if (!is_far(tube_path_at(&t->path, k - 1), first))
+    if (!is_far(t, k - 1, 0, first))
         return k;
     for (k = 0; k < t->active; k++) {
         const struct tube_piece *piece = tube_path_at(&t->path, k);
 
-        if (is_far(piece, first) && is_believed(piece, step))
+        if (is_far(t, k, 0, first) && is_believed(piece, step))
             break;
     }
     return k;
@@ -381,7 +386,7 @@ static void leave_crowd(struct tube_judge *t, const struct stride *step)
     for (; k < t->active && k > 0; k--) {
         const struct tube_piece *piece = tube_path_at(&t->path, 0);
 
-        if (!is_far(tube_path_at(&t->path, k), piece->motion.number) ||
+        if (!is_far(t, k, 0, piece->motion.number) ||
             (piece->ends && piece->corner_mm > allowed_mm(t, piece)))
             return;
         settle_corner(t);
