@@ -209,8 +209,6 @@ static bool waits_for_text(struct controller *c)
 
 void controller_background(struct controller *c)
 {
-    const uint32_t wanted = c->machine.look_ahead_blocks;
-
     take_answer(c);
     if (c->replays) {
         replay_read(&c->replay, &c->path.limits);
@@ -221,6 +219,8 @@ void controller_background(struct controller *c)
     path_go_on(&c->path);
     take_held(c);
     c->program_late = false;
+    const uint32_t wanted = path_look_ahead(&c->path, c->machine.look_ahead_blocks);
+
     if (motion_ahead(&c->motion) + wanted / TOP_UP_PART <= wanted) {
         while (can_read(c) && motion_ahead(&c->motion) < wanted) {
             read_move(c);

@@ -17,7 +17,9 @@ static_assert(SHARE_BLOCKS_MAX <= PATH_MODES_MAX,
 /* Path counts as much as the fastest axis goes in that time: a length that looks like mm. */
 static void init_smooth(struct path *p)
 {
-    struct smooth_limits limits = {.axes = p->limits.axes, .cycle_s = p->limits.cycle_s};
+    struct smooth_limits limits = {.axes = p->limits.axes,
+                                   .cycle_s = p->limits.cycle_s,
+                                   .windows = 0.5 + 0.5 * law_boxes(p->limits.law)};
 
     for (int i = 0; i < AXIS_COUNT; i++) {
         limits.velocity_mm_s[i] = p->limits.velocity_mm_s[i];
@@ -66,6 +68,11 @@ bool path_has_room(const struct path *p)
 
     return has_slot(p, RECORD_SHORT_MAX) && !is_splitting(p) && !p->has_next &&
            ahead < SCALE_LENGTH_UNITS && smooth_has_room(&p->smooth);
+}
+
+uint32_t path_look_ahead(const struct path *p, uint32_t blocks)
+{
+    return p->smooth.open && blocks < SMOOTH_AHEAD_PIECES ? SMOOTH_AHEAD_PIECES : blocks;
 }
 
 /* The newest block, or the one that becomes it. */
@@ -131,15 +138,10 @@ static void push_wait(struct path *p, const struct move *move)
     handoff_set_count(&p->closed, p->pushed);
 }
 
-/* The next piece of the motion being split. */
-static void push_piece(struct path *p, const struct curve *curve, double to_mm)
+/* The newest block but for its start, joined to the one before. */
+static void append_joined(struct path *p, struct block *b)
 {
-    struct block *b = edge(p, p->pushed);
-
-    block_set_motion(b, &p->split, curve, &p->limits);
-    b->number = p->motions;
     b->start = p->position;
-    b->continues = to_mm < p->length_mm;
     if (p->closed < p->pushed) {
         joint_form(edge(p, p->pushed - 1), b, &p->limits);
         share_note(p, p->pushed - 1, edge(p, p->pushed - 1));
@@ -148,6 +150,17 @@ static void push_piece(struct path *p, const struct curve *curve, double to_mm)
     if (p->pushed - p->closed > 1) {
         share_spread(p);
     }
+}
+
+/* The next piece of the motion being split. */
+static void push_piece(struct path *p, const struct curve *curve, double to_mm)
+{
+    struct block *b = edge(p, p->pushed);
+
+    block_set_motion(b, &p->split, curve, &p->limits);
+    b->number = p->motions;
+    b->continues = to_mm < p->length_mm;
+    append_joined(p, b);
     p->split_mm = to_mm;
 }
 
@@ -216,17 +229,53 @@ static void push_smooth_piece(struct path *p, const struct smooth_piece *piece)
     }
 }
 
-static void push_smooth_pieces(struct path *p)
+/* The next motion of a chain that is taken as it is programmed. */
+static void push_smooth_motion(struct path *p, const struct smooth_piece *piece,
+                               const struct curve *curve)
+{
+    struct block *b = edge(p, p->pushed);
+
+    if (piece->starts) {
+        close_newest(p);
+    }
+    block_set_motion(b, piece->move, curve, &p->limits);
+    b->number = piece->number;
+    b->continues = piece->continues;
+    append_joined(p, b);
+}
+
+/* The next of the smoothed chain; false: there is none. */
+static bool push_smooth(struct path *p, union smooth_scratch *scratch)
 {
     struct smooth_piece piece;
+    struct curve curve;
 
+    switch (smooth_take(&p->smooth, scratch, &piece, &curve)) {
+    case SMOOTH_NONE:
+        return false;
+    case SMOOTH_PIECE:
+        push_smooth_piece(p, &piece);
+        break;
+    case SMOOTH_MOTION:
+        push_smooth_motion(p, &piece, &curve);
+        break;
+    }
+    return true;
+}
+
+/* Nothing joins the end of a chain. */
+static void push_smooth_pieces(struct path *p)
+{
     if (p->spare == PATH_NO_SPARE) {
         return;
     }
     union path_spare *spare = p->spare == 0 ? &p->area.high.spare : &p->area.low.spare;
+    const bool open = p->smooth.open;
 
-    while (has_slot(p, RECORD_MAX) && smooth_take(&p->smooth, &spare->scratch, &piece)) {
-        push_smooth_piece(p, &piece);
+    while (has_slot(p, RECORD_MAX) && push_smooth(p, &spare->scratch)) {
+    }
+    if (open && !p->smooth.open) {
+        close_newest(p);
     }
 }
 

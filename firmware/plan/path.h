@@ -57,7 +57,6 @@ struct path {
     bool divides_rotary;      /* the axes stand where motion of rotary axes begins or ceases */
     bool newest_turns;        /* the newest motion moves rotary axes */
     struct point end;         /* where everything pushed ends */
-    struct smooth smooth;     /* motions that are not in the ring yet: a chain being smoothed */
     bool lent;      /* where the chain is kept belongs to somebody else: nothing is smoothed */
     bool has_next;  /* a move that is not part of that chain waits until it has been taken: split */
     bool smoothing; /* the newest block is a piece of a chain that goes on */
@@ -71,6 +70,7 @@ struct path {
         edge[2]; /* the newest block, whose end may still change, and the one before or behind it */
     struct share_block open[SHARE_BLOCKS_MAX]; /* those that are not closed */
     struct path_ring ring;
+    struct smooth smooth; /* motions that are not in the ring yet: a chain being smoothed */
     union path_area area; /* of the ceiling in use and the next one */
     unsigned
         spare; /* the one of them that is no ceiling: motions are smoothed as long as there is one; PATH_NO_SPARE */
@@ -86,6 +86,11 @@ void path_init(struct path *p, const struct plan_limits *limits, const struct po
 void *path_lend(struct path *p, size_t size);
 /* Room for one more move? */
 bool path_has_room(const struct path *p);
+/*
+ * How many blocks there should be ahead where so many are asked for: pieces of a smoothed chain are not blocks of the
+ * program, and are needed to brake on.
+ */
+uint32_t path_look_ahead(const struct path *p, uint32_t blocks);
 /* Appends the next move; a motion without length is counted and dropped. Needs room. */
 void path_push(struct path *p, const struct move *move);
 /* Background: appends pieces of a long motion that had no room before. */

@@ -1,6 +1,7 @@
 #include "smooth/interval.h"
 
 #include "base/maths.h"
+#include "smooth/window.h"
 
 /*
  * Nominal time between samples, as a part of the time that a way of the tolerance takes: cbrt(P/J) where jerk binds,
@@ -48,15 +49,11 @@ static double soonest_interval(const struct smooth_limits *curve, unsigned axes,
     return maths_max(curve->cycle_s, soonest);
 }
 
-double interval_of(const struct smooth_limits *machine, const struct route *r, double tolerance_mm,
-                   unsigned samples)
+double interval_of(const struct smooth_limits *machine, const struct route *r, double tolerance_mm)
 {
     struct smooth_limits curve = *machine;
 
     smooth_limit(&curve, r->tolerance_mm);
-    const double interval_s = soonest_interval(&curve, r->moved, tolerance_mm);
-
-    return samples == 0
-               ? interval_s
-               : maths_max(interval_s, longest_ramp(machine, r->moved) * WINDOW_OF_RAMP / samples);
+    return maths_max(soonest_interval(&curve, r->moved, tolerance_mm),
+                     longest_ramp(machine, r->moved) * WINDOW_OF_RAMP / window_capacity(r));
 }

@@ -7,10 +7,9 @@
 #include "smooth/route.h"
 
 /*
- * What a way of the tolerance takes the quickest of the axes that move on the route, by the limits of its curve; at least a cycle,
- * and so long that none of them needs many windows of so many samples to reach its velocity (0: they need not). s.
+ * What a way of a tolerance takes the quickest of the axes that move on the route, by the limits of its curve; at least a cycle,
+ * and so long that none of them needs many windows to reach its velocity. s.
  */
-double interval_of(const struct smooth_limits *machine, const struct route *r, double tolerance_mm,
-                   unsigned samples);
+double interval_of(const struct smooth_limits *machine, const struct route *r, double tolerance_mm);
 
 #endif

@@ -32,6 +32,8 @@ struct smooth_limits {
     double jerk_mm_s3[AXIS_COUNT];
     double cycle_s; /* control cycle */
     double
+        windows; /* in all windows of its ramp law there are so many of the first one (plan/law.h) */
+    double
         chord_mm; /* the line through setpoints leaves the curve by it: A cycle^2/8; the smoother's */
 };
 

@@ -271,13 +271,3 @@ void nominal_update(struct route *r)
     }
     find_binding(r, changed);
 }
-
-void nominal_again(struct route *r)
-{
-    for (uint32_t i = r->first + 1; i < r->count; i++) {
-        set_corner(r, i);
-    }
-    if (r->count > r->first) {
-        find_binding(r, r->first);
-    }
-}

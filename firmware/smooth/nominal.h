@@ -12,9 +12,6 @@ void nominal_set(struct route_element *e, const struct curve *curve, float per_m
 /* The corner before the newest element, the corners that now have more behind them, and the energies of all. */
 void nominal_update(struct route *r);
 
-/* All corners, and the energies of all, for another tolerance. */
-void nominal_again(struct route *r);
-
 /* At this feed and acceleration, can all be met that is known to follow? */
 bool nominal_allows(const struct route *r, uint32_t element, double at_mm, float feed,
                     float acceleration);

@@ -8,6 +8,9 @@
 
 #define NEWTON_STEPS 3
 
+/* What is missing of a whole number of turns by rounding does not make it one more. */
+#define WHOLE_TURNS (1.0 - 1e-9)
+
 /* Part of the tolerance by which the neighbour of an element must be nearer. */
 #define NEARER 0.2f
 
@@ -33,7 +36,7 @@ static void set_slots(struct route_slots *s, const struct smooth_limits *limits)
     s->groups = (s->count + SMOOTH_LANES - 1) / SMOOTH_LANES;
 }
 
-void route_limit(struct route *r, const struct smooth_limits *limits, double tolerance_mm)
+static void route_limit(struct route *r, const struct smooth_limits *limits, double tolerance_mm)
 {
     r->chord_mm = (float)limits->chord_mm;
     set_slots(&r->slots, limits);
@@ -97,7 +100,7 @@ static void gather(const struct route *r, const struct point *p, double by_slot[
     }
 }
 
-static void scatter(const struct route *r, const double by_slot[], struct point *p)
+void route_scatter(const struct route *r, const double by_slot[], struct point *p)
 {
     memset(p, 0, sizeof(*p));
     for (unsigned i = 0; i < r->slots.count; i++) {
@@ -141,7 +144,7 @@ void route_move(const struct route *r, uint32_t index, struct move *move)
     *move = r->mode[e->mode].move;
     move->line = e->line;
     move->feed_mm_s = move->kind == MOVE_RAPID ? move->feed_mm_s : (double)e->programmed_mm_s;
-    scatter(r, end_point(r, index), &move->end);
+    route_scatter(r, end_point(r, index), &move->end);
 }
 
 float route_programmed(const struct route *r, uint32_t index)
@@ -256,8 +259,8 @@ static void bent_curve(const struct route *r, uint32_t index, struct curve *c)
     c->kind = b->kind;
     c->rotary = e->rotary;
     c->length_mm = (route_end_of(r, index) - e->start_mm) / (double)b->per_mm;
-    scatter(r, route_start(r, index), &c->start);
-    scatter(r, end_point(r, index), &c->end);
+    route_scatter(r, route_start(r, index), &c->start);
+    route_scatter(r, end_point(r, index), &c->end);
     for (int axis = 0; axis < AXIS_COUNT; axis++) {
         c->slope.at[axis] = (c->end.at[axis] - c->start.at[axis]) / c->length_mm;
     }
@@ -277,29 +280,50 @@ static void bent_curve(const struct route *r, uint32_t index, struct curve *c)
     }
 }
 
-void route_point(const struct route *r, double at_mm, uint32_t *hint, double p[])
+void route_place(const struct route *r, uint32_t index, double at_mm, double p[])
 {
-    *hint = route_find(r, at_mm, *hint);
-    const struct route_element *e = route_element(r, *hint);
-    const double length = route_end_of(r, *hint) - e->start_mm;
-    const double s = maths_clamp(at_mm - e->start_mm, 0.0, length);
+    const struct route_element *e = route_element(r, index);
+    const double length = route_end_of(r, index) - e->start_mm;
+    const double part = maths_clamp(at_mm - e->start_mm, 0.0, length) / length;
+    const double *start = route_start(r, index);
+    const double *end = end_point(r, index);
 
-    if (e->bent) {
+    if (e->bent && part < 1.0) {
         struct curve c;
         struct point q;
 
-        bent_curve(r, *hint, &c);
-        curve_point(&c, bent_place(r, *hint, &c, at_mm), &q);
+        bent_curve(r, index, &c);
+        curve_point(&c, bent_place(r, index, &c, at_mm), &q);
         gather(r, &q, p);
         return;
     }
-    const double *start = route_start(r, *hint);
-    const double *end = end_point(r, *hint);
-    const double part = s / length;
-
     for (unsigned i = 0; i < r->slots.count; i++) {
         p[i] = part < 1.0 ? start[i] + part * (end[i] - start[i]) : end[i];
     }
+}
+
+void route_point(const struct route *r, double at_mm, uint32_t *hint, double p[])
+{
+    *hint = route_find(r, at_mm, *hint);
+    route_place(r, *hint, at_mm, p);
+}
+
+bool route_arc(const struct route *r, uint32_t index, double at_mm, struct move *move)
+{
+    const struct route_element *e = route_element(r, index);
+
+    route_move(r, index, move);
+    if (!e->bent || r->bent[e->bent_number % SMOOTH_BENT_MAX].kind != CURVE_ARC) {
+        return false;
+    }
+    const struct curve_arc *arc = &r->bent[e->bent_number % SMOOTH_BENT_MAX].arc;
+    const double left = (route_end_of(r, index) - at_mm) / (route_end_of(r, index) - e->start_mm);
+    const double turns = maths_abs(arc->sweep_rad) * left / (2.0 * MATHS_PI);
+
+    move->centre_mm[0] = arc->centre_mm[0];
+    move->centre_mm[1] = arc->centre_mm[1];
+    move->turns = 1U + (uint32_t)(turns * WHOLE_TURNS);
+    return true;
 }
 
 static void bent_direction(const struct route *r, uint32_t index, double at_mm, float direction[])
@@ -344,24 +368,34 @@ float route_direction(const struct route *r, uint32_t index, double at_mm, float
     return weighted / length;
 }
 
-/* s^2 |x''| / 2 = within */
-float route_straight(const struct route *r, uint32_t index, double at_mm, float within_mm)
+float route_curvature(const struct route *r, uint32_t index, double at_mm, float curvature[])
 {
     struct curve c;
     struct point k;
     float square = 0.0f;
 
+    memset(curvature, 0, r->slots.count * sizeof curvature[0]);
     if (!route_element(r, index)->bent) {
-        return SINGLE_INFINITY;
+        return 0.0f;
     }
+    const float per_mm = per_mm_of(r, index);
+
     bent_curve(r, index, &c);
     curve_curvature(&c, bent_place(r, index, &c, at_mm), &k);
     for (unsigned i = 0; i < r->slots.count; i++) {
-        const float d = r->slots.weight[i] * (float)k.at[r->slots.axis[i]];
-
-        square += d * d;
+        curvature[i] = r->slots.weight[i] * (float)k.at[r->slots.axis[i]] / (per_mm * per_mm);
+        square += curvature[i] * curvature[i];
     }
-    return per_mm_of(r, index) * single_sqrt(2.0f * within_mm / single_sqrt(square));
+    return single_sqrt(square);
+}
+
+/* s^2 |x''| / 2 = within */
+float route_straight(const struct route *r, uint32_t index, double at_mm, float within_mm)
+{
+    float k[AXIS_COUNT];
+    const float curvature = route_curvature(r, index, at_mm, k);
+
+    return curvature > 0.0f ? single_sqrt(2.0f * within_mm / curvature) : SINGLE_INFINITY;
 }
 
 void route_corner(const struct route *r, uint32_t index, float before[], float after[])

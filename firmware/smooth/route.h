@@ -99,8 +99,6 @@ struct route_foot {
 };
 
 void route_init(struct route *r, const struct smooth_limits *limits, double tolerance_mm);
-/* Other limits and another tolerance from here on. */
-void route_limit(struct route *r, const struct smooth_limits *limits, double tolerance_mm);
 bool route_has_room(const struct route *r);
 /* Appends a curve that begins where the last one ended. Needs room. */
 void route_push(struct route *r, const struct move *move, uint32_t number,
@@ -133,6 +131,13 @@ float route_programmed(const struct route *r, uint32_t index);
 /* Index of the element at a place; the later one at a joint. hint: an index near by. */
 uint32_t route_find(const struct route *r, double at_mm, uint32_t hint);
 void route_point(const struct route *r, double at_mm, uint32_t *hint, double p[]);
+/* On an element; a place outside is its nearer end. */
+void route_place(const struct route *r, uint32_t index, double at_mm, double p[]);
+void route_scatter(const struct route *r, const double by_slot[], struct point *p);
+/* The motion of an element, if it is an arc with its centre and the turns from a place on; false: it is none. */
+bool route_arc(const struct route *r, uint32_t index, double at_mm, struct move *move);
+/* Second derivative by the route, weighted; 0 on lines. Returns its size, 1/mm. */
+float route_curvature(const struct route *r, uint32_t index, double at_mm, float curvature[]);
 /* Unit vector (weighted) along an element; a place outside is its nearer end. Weighted length for a mm of it. */
 float route_direction(const struct route *r, uint32_t index, double at_mm, float direction[]);
 /* How far from that place to both sides an element leaves its tangent by no more than so much. */

@@ -1,10 +1,12 @@
 #include "smooth/smooth.h"
 
 #include "base/maths.h"
+#include "smooth/exact.h"
+#include "smooth/head.h"
 #include "smooth/interval.h"
-#include "smooth/nominal.h"
+#include "smooth/piece.h"
 #include "smooth/single.h"
-#include "smooth/straight.h"
+#include "smooth/worth.h"
 
 #include <assert.h>
 #include <string.h>
@@ -17,10 +19,6 @@
 #define KEPT_SIXTEENTHS 9U
 /* Lines are merged within this part of the tolerance at most. */
 #define MERGED 0.05
-
-/* How long the axes stand at both ends: a part of the rounding of changes of rate, and cycles. */
-#define STANDING        1.75
-#define STANDING_CYCLES 4.0
 
 /* Smoothing aims at this part of the tolerance. */
 #define AIM 0.90
@@ -77,27 +75,33 @@ static double merged_within(const struct move *move)
     return maths_min(move->merge_mm, MERGED * move->tolerance_mm);
 }
 
-/* Near a place where the curve stood no axis comes far; elsewhere none is to need many windows for its ramps. */
-static double interval_for(const struct smooth *s, double tolerance_mm)
+/* How the rate may change: as the axes allow that move on the route. What others do is nothing to it. */
+static void find_change(const struct smooth *s, double interval_s, struct judge_change *change)
 {
-    const bool near = stall_is_near(&s->stall, s->route.tolerance_mm);
+    struct smooth_limits limits = s->limits;
 
-    return interval_of(&s->limits, &s->route, tolerance_mm, near ? 0 : window_capacity(&s->route));
+    limits.axes &= s->route.moved;
+    smooth_limit(&limits, s->route.tolerance_mm);
+    judge_change(&limits, interval_s, change);
+}
+
+/* What merging uses of the tolerance makes no interval shorter. */
+static double find_interval(const struct smooth *s)
+{
+    return interval_of(&s->limits, &s->route, s->merge.move.tolerance_mm);
 }
 
 /* The time between samples, and what depends on it; the window is empty. */
-static void set_interval(struct smooth *s, double tolerance_mm)
+static void set_interval(struct smooth *s)
 {
-    const double interval_s = interval_for(s, tolerance_mm);
-    struct smooth_limits limits = s->limits;
+    const double interval_s = find_interval(s);
 
-    smooth_limit(&limits, s->route.tolerance_mm);
     s->moved = s->route.moved;
-    judge_change(&limits, interval_s, &s->change);
+    find_change(s, interval_s, &s->change);
     s->route.slots.change_per_s = (float)s->change.by;
     s->route.slots.rounded_per_s2 = (float)s->change.rounded;
     s->route.chord_per_bend =
-        (float)(limits.cycle_s * limits.cycle_s / (8.0 * interval_s * interval_s));
+        (float)(s->limits.cycle_s * s->limits.cycle_s / (8.0 * interval_s * interval_s));
     window_init(&s->window, &s->route, interval_s);
 }
 
@@ -116,27 +120,24 @@ static void begin(struct smooth *s, const struct move *move)
     s->told = 0;
     s->proved = 0;
     s->stops = false;
-    s->anew_mm = 0.0;
+    s->exact = false;
+    s->since = (struct worth_since){.element = 0};
     s->starts = true;
     s->standing = 0;
     order_start(&s->order, 0.0, 0);
     s->known_mm = 0.0;
     s->tried_mm = 0.0;
     s->tried = 0;
-    stall_start(&s->stall, tolerance_mm);
     s->merge.open = false;
 }
 
-/* Another tolerance from here on, where the axes stand. */
-static void begin_anew(struct smooth *s, double tolerance_mm)
+/* Where the axes stand: whatever ends there, a curve may begin anew. */
+static void begin_anew(struct smooth *s)
 {
-    struct smooth_limits limits = s->limits;
-
-    smooth_limit(&limits, tolerance_mm);
-    route_limit(&s->route, &limits, tolerance_mm);
-    nominal_again(&s->route);
-    set_interval(s, tolerance_mm);
+    set_interval(s);
     s->window.count = SMOOTH_FIXED;
+    s->starts = true;
+    s->proved = 0;
 }
 
 /* The newest line will not grow any more. */
@@ -212,6 +213,21 @@ static void forget_end(struct smooth *s)
     }
 }
 
+/* Has an axis begun to move whose ramps are longer, or that must change its rate more slowly? */
+static bool needs_other_interval(struct smooth *s)
+{
+    const bool more = s->moved != s->route.moved;
+    struct judge_change change;
+
+    s->moved = s->route.moved;
+    if (!more) {
+        return false;
+    }
+    find_change(s, s->window.interval_s, &change);
+    return find_interval(s) > s->window.interval_s || change.by < s->change.by ||
+           change.rounding_s > s->change.rounding_s;
+}
+
 /* Fills the window; false when more of the route must be known first. */
 static bool fill(struct smooth *s)
 {
@@ -222,8 +238,10 @@ static bool fill(struct smooth *s)
         return false;
     }
     if (w->count == 0) {
-        set_interval(s, s->merge.move.tolerance_mm);
+        set_interval(s);
         window_start(w, &s->route);
+    } else if (s->head.proved == 0 && needs_other_interval(s)) {
+        begin_anew(s);
     }
     forget_end(s);
     const unsigned before = w->count;
@@ -294,51 +312,16 @@ static unsigned kept(const struct smooth *s, unsigned good)
     return good > MARGIN ? good - MARGIN : 0;
 }
 
-static void keep_head(struct smooth *s)
-{
-    struct smooth_head *h = &s->head;
-    const struct window *w = &s->window;
-
-    const unsigned most = SMOOTH_HEAD_MAX / s->route.slots.groups;
-
-    h->proved = s->proved + SMOOTH_FIXED < most ? s->proved : most - SMOOTH_FIXED;
-    memcpy(h->origin, w->origin, sizeof h->origin);
-    for (unsigned i = 0; i < most && i < w->count; i++) {
-        h->at_mm[i] = w->at_mm[i];
-        h->element[i] = w->element[i];
-        for (unsigned g = 0; g < s->route.slots.groups; g++) {
-            h->x[g * most + i] = w->x[g * w->capacity + i];
-        }
-    }
-}
-
 /*
- * No way on has been found in motion: what was proved the last time is gone to its end, and come to rest there. From rest,
- * inside the tolerance, every way is open again; and where there seems to be none, straight on is one.
+ * No way on has been found in motion, or none that is worth it: what was proved the last time is gone to its end, and come
+ * to rest there.
  */
 static void fall_back(struct smooth *s)
 {
-    const struct smooth_head *h = &s->head;
-    const unsigned most = SMOOTH_HEAD_MAX / s->route.slots.groups;
-    struct window *w = &s->window;
-
-    s->ready = h->proved;
+    s->ready = s->head.proved;
     s->proved = 0;
     s->stops = true;
-    if (s->ready == 0) {
-        s->ready = straight_on(w, &s->route);
-        return;
-    }
-    memcpy(w->origin, h->origin, sizeof h->origin);
-    w->count = h->proved + SMOOTH_FIXED;
-    w->at_end = false;
-    for (unsigned i = 0; i < w->count; i++) {
-        w->at_mm[i] = h->at_mm[i];
-        w->element[i] = h->element[i];
-        for (unsigned g = 0; g < s->route.slots.groups; g++) {
-            w->x[g * w->capacity + i] = h->x[g * most + i];
-        }
-    }
+    head_take(&s->head, &s->window, &s->route);
 }
 
 /* The curve as it is, timed once more: where it does not keep the tolerance so, it stays as it was. */
@@ -392,148 +375,86 @@ static void follow_ready(struct smooth *s, const struct judge_verdict *v)
     }
 }
 
-/* Has an axis begun to move whose ramps are longer? */
-static bool needs_other_interval(struct smooth *s)
+/* The path itself is taken from where the axes rest: to that place at least. */
+static void take_path(struct smooth *s, double to_mm)
 {
-    const bool more = s->moved != s->route.moved;
-
-    s->moved = s->route.moved;
-    return more && interval_for(s, s->route.tolerance_mm) > s->window.interval_s;
+    s->exact = true;
+    s->exact_mm = to_mm;
+    s->ready = 0;
+    s->proved = 0;
+    s->window.count = SMOOTH_FIXED;
+    s->window.at_end = false;
 }
 
-/* Must the axes rest where what was proved last ends: because no way on has been found, or for another tolerance? */
-static bool does_not_go_on(struct smooth *s, const struct judge_verdict *v)
+/* Does no way lead on? */
+static bool is_stuck(const struct smooth *s)
 {
-    const unsigned whole = v->whole[v->good];
-    const bool rests = s->ready == 0 || (s->proved == 0 && !is_end(s, whole));
-    const struct stall_window now = {
-        .rests = rests, .ready = s->ready, .most = kept_most(s), .good = v->good, .whole = whole};
-    const bool stands = stall_stands(&s->stall, &s->window, &s->route, &now);
+    return s->ready == 0 || (s->proved == 0 && !is_end(s, s->ready));
+}
 
-    s->anew_mm = stands || s->head.proved > 0
-                     ? stall_tolerance(&s->stall, &s->window, &s->route, s->ready, stands)
-                     : 0.0;
-    if (s->anew_mm == 0.0 && needs_other_interval(s)) {
-        s->anew_mm = s->route.tolerance_mm;
+/*
+ * Whether the window goes on. Where it does not, or the path itself is quicker, what was proved last is gone to its end; and
+ * from rest, where every way is open again, the path itself is taken.
+ */
+static void choose(struct smooth *s)
+{
+    const bool rests = s->head.proved == 0;
+    const struct worth_window now = {.window = &s->window,
+                                     .route = &s->route,
+                                     .machine = &s->limits,
+                                     .change = &s->change,
+                                     .pieces = s->ready + s->proved,
+                                     .kept = s->ready,
+                                     .standing_s = (float)smooth_standing_s(s),
+                                     .starts = rests,
+                                     .finished = s->finished};
+    const bool slower = worth_path(&now, &s->since);
+    double to_mm;
+
+    if (rests) {
+        if (worth_path_from_rest(&now, &to_mm) || slower || is_stuck(s)) {
+            take_path(s, to_mm);
+        }
+    } else if (is_stuck(s) || slower || needs_other_interval(s)) {
+        fall_back(s);
     }
-    return rests || stands || s->anew_mm > 0.0;
 }
 
 /* What comes well before a piece that leaves the tolerance is kept, the rest is tried again with the next window. */
-static void smooth_window(struct smooth *s, union smooth_scratch *scratch)
+static void find_way(struct smooth *s, union smooth_scratch *scratch, unsigned rounds,
+                     struct judge_verdict *v)
 {
-    const bool goes_on = s->head.proved > 0;
-    const unsigned rounds = goes_on ? ROUNDS : ROUNDS_FIRST;
-    struct judge_verdict v;
-
     for (unsigned i = 0; i < rounds; i++) {
         relax_and_locate(s, scratch);
         timing_again(&scratch->timing, &s->window, &s->route);
         window_extend(&s->window, &s->route);
     }
     relax_and_locate(s, scratch);
-    slow_down(s, scratch, &v);
-    time_last(s, scratch, &v);
+    slow_down(s, scratch, v);
+    time_last(s, scratch, v);
     s->ends = s->finished && s->window.at_end;
-    const unsigned good = v.whole[v.good];
+    const unsigned good = v->whole[v->good];
 
-    s->ready = v.whole[kept(s, good)];
+    s->ready = v->whole[kept(s, good)];
     s->proved = good - s->ready;
-    if (does_not_go_on(s, &v)) {
-        fall_back(s);
+}
+
+/* In motion the window begins with what was found before. Where no way leads on from that, one is looked for from nothing. */
+static void smooth_window(struct smooth *s, union smooth_scratch *scratch)
+{
+    const bool goes_on = s->head.proved > 0;
+    struct judge_verdict v;
+
+    find_way(s, scratch, goes_on ? ROUNDS : ROUNDS_FIRST, &v);
+    if (goes_on && is_stuck(s)) {
+        s->window.count = SMOOTH_FIXED;
+        s->window.at_end = false;
+        window_extend(&s->window, &s->route);
+        find_way(s, scratch, ROUNDS_FIRST, &v);
     }
-    follow_ready(s, &v);
-}
-
-/* Control point of a piece; exactly the programmed end where it is that. */
-static void set_control(const struct smooth *s, unsigned i, struct point *control)
-{
-    const struct window *w = &s->window;
-    const bool end = s->ends && w->at_end && i + SMOOTH_FIXED >= w->count;
-    double p[AXIS_COUNT];
-
-    window_sample(w, &s->route, i, p);
-    memset(control, 0, sizeof(*control));
-    for (unsigned k = 0; k < s->route.slots.count; k++) {
-        control->at[s->route.slots.axis[k]] = end ? s->route.end[k] : p[k];
-    }
-}
-
-/* After a stop the curve goes on from where it can have come to, which may be before where it was thought to be. */
-static uint32_t latest_told(struct smooth *s, uint32_t element)
-{
-    s->told = element < s->told ? s->told : element;
-    return s->told;
-}
-
-static void set_piece(struct smooth *s, struct smooth_piece *piece)
-{
-    const struct window *w = &s->window;
-    const unsigned i = s->taken;
-    const uint32_t element = w->element[i + 1];
-    const uint32_t told = latest_told(s, element);
-    struct judge_need need;
-    struct judge_rate rate;
-
-    route_move(&s->route, told, &s->move);
-    piece->move = &s->move;
-    piece->number = route_element(&s->route, told)->number;
-    piece->rotary = route_element(&s->route, element)->rotary;
-    piece->interval_s = w->interval_s;
-    for (unsigned k = 0; k < 4; k++) {
-        set_control(s, i + k, &piece->control[k]);
-    }
-    judge_need(w, &s->route, i, &need);
-    judge_rate(&need, &s->route, s->route.first + w->paced[i], &s->change, &rate);
-    piece->rate.most = maths_min((double)rate.most, 1.0);
-    piece->rate.programmed = (double)rate.programmed;
-    piece->change.by =
-        (double)judge_change_on(&need, &s->route, &s->change, (float)piece->rate.most);
-    piece->change.rounded = piece->change.by / s->change.rounding_s;
-    piece->stop = s->stops && s->taken + 1 == s->ready;
-    piece->last = s->finished && w->at_end && i + 4 == w->count;
-}
-
-/*
- * At both ends of what begins and ends at rest by itself the axes stand for a while, and the rate of nominal time rises and
- * falls: in half of what it is rounded over, and as long again until the setpoint has come so far.
- */
-static unsigned standing_pieces(const struct smooth *s)
-{
-    const double needed_s = STANDING * s->change.rounding_s + STANDING_CYCLES * s->limits.cycle_s;
-
-    return (unsigned)(needed_s / s->window.interval_s) + 1;
-}
-
-/* at: where the axes stand; of: the piece before or behind. */
-static void stand(struct smooth *s, const struct smooth_piece *of, const struct point *at,
-                  bool leaves)
-{
-    s->stand_rotary = of->rotary;
-    s->stand_number = of->number;
-    s->stand_at = *at;
-    s->standing = standing_pieces(s);
-    s->leaves = leaves;
-}
-
-static void take_standing(struct smooth *s, struct smooth_piece *piece)
-{
-    const double change_per_s = 2.0 / s->change.rounding_s;
-    const struct point at = s->stand_at;
-
-    s->standing--;
-    *piece = (struct smooth_piece){
-        .move = &s->move,
-        .number = s->stand_number,
-        .control = {at, at, at, at},
-        .interval_s = s->window.interval_s,
-        .rate = {.most = 1.0, .programmed = MATHS_INFINITY},
-        .change = {.by = change_per_s, .rounded = change_per_s / s->change.rounding_s},
-        .rotary = s->stand_rotary,
-        .last = s->standing == 0 && !s->leaves,
-    };
-    if (piece->last) {
-        smooth_reset(s);
+    choose(s);
+    if (s->ready > 0) {
+        follow_ready(s, &v);
     }
 }
 
@@ -545,14 +466,8 @@ static void drop_taken(struct smooth *s)
     s->ready = 0;
     if (s->stops) {
         window_rest(&s->window, &s->route, &s->order);
-        stall_rest(&s->stall, s->window.at_mm[0]);
         s->stops = false;
-        s->starts = true;
-        s->proved = 0;
-    }
-    if (s->anew_mm > 0.0) {
-        begin_anew(s, s->anew_mm);
-        s->anew_mm = 0.0;
+        begin_anew(s);
     }
     if (s->window.count > 0) {
         route_forget(&s->route, s->window.at_mm[0]);
@@ -562,8 +477,7 @@ static void drop_taken(struct smooth *s)
 /* The window for the next pieces; false when more must be known first. */
 static bool next_window(struct smooth *s, union smooth_scratch *scratch)
 {
-    drop_taken(s);
-    keep_head(s);
+    head_keep(&s->head, &s->window, &s->route, s->proved);
     if (!fill(s)) {
         return false;
     }
@@ -571,29 +485,91 @@ static bool next_window(struct smooth *s, union smooth_scratch *scratch)
     return true;
 }
 
-bool smooth_take(struct smooth *s, union smooth_scratch *scratch, struct smooth_piece *piece)
+/* Where the path has come to the end of an element. It is left where it rests. */
+static void end_element(struct smooth *s)
 {
-    if (!s->open) {
-        return false;
+    struct window *w = &s->window;
+    const uint32_t next = w->element[0] + 1;
+
+    if (next == s->route.count) {
+        smooth_reset(s);
+        return;
     }
-    if (s->standing > 0) {
-        take_standing(s, piece);
-        return true;
+    for (unsigned i = 0; i < SMOOTH_FIXED; i++) {
+        w->element[i] = next;
     }
-    if (s->taken == s->ready && !next_window(s, scratch)) {
-        return false;
+    if (w->at_mm[0] < s->exact_mm || !exact_rests(&s->route, &s->limits, next)) {
+        return;
     }
-    set_piece(s, piece);
+    s->exact = false;
+    s->tried_mm = w->at_mm[0];
+    s->tried = next;
+    s->since = (struct worth_since){.element = next};
+    order_start(&s->order, w->at_mm[0], next);
+    begin_anew(s);
+}
+
+/* The next motion of the path itself; false: the axes are at its end. */
+static bool take_motion(struct smooth *s, struct smooth_piece *piece, struct curve *curve)
+{
+    const uint32_t element = s->window.element[0];
+    const bool goes = exact_next(&s->window, &s->route, &s->limits, &s->move, curve);
+
+    piece->move = &s->move;
+    piece->number = route_element(&s->route, smooth_tell(s, element))->number;
+    piece->starts = s->starts;
+    s->starts = s->starts && !goes;
+    piece->continues = s->window.at_mm[0] < route_end_of(&s->route, element);
+    if (!piece->continues) {
+        end_element(s);
+    }
+    return goes;
+}
+
+static void take_piece(struct smooth *s, struct smooth_piece *piece)
+{
+    smooth_set_piece(s, piece);
     if (s->starts) {
         s->starts = false;
-        stand(s, piece, &piece->control[0], true);
-        take_standing(s, piece);
-        return true;
+        smooth_stand(s, piece, &piece->control[0], true);
+        smooth_take_standing(s, piece);
+        return;
     }
     s->taken++;
     if (piece->last) {
-        stand(s, piece, &piece->control[3], false);
+        smooth_stand(s, piece, &piece->control[3], false);
         piece->last = false;
     }
-    return true;
+}
+
+/* Is what the path does at the end of the element known? */
+static bool is_element_known(const struct smooth *s)
+{
+    return s->finished || s->window.element[0] + 1 < s->route.count;
+}
+
+enum smooth_taken smooth_take(struct smooth *s, union smooth_scratch *scratch,
+                              struct smooth_piece *piece, struct curve *curve)
+{
+    while (s->open) {
+        if (s->standing > 0) {
+            smooth_take_standing(s, piece);
+            return SMOOTH_PIECE;
+        }
+        if (s->taken < s->ready) {
+            take_piece(s, piece);
+            return SMOOTH_PIECE;
+        }
+        drop_taken(s);
+        if (!s->exact) {
+            if (!next_window(s, scratch)) {
+                return SMOOTH_NONE;
+            }
+        } else if (!is_element_known(s)) {
+            return SMOOTH_NONE;
+        } else if (take_motion(s, piece, curve)) {
+            return SMOOTH_MOTION;
+        }
+    }
+    return SMOOTH_NONE;
 }

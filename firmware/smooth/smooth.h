@@ -2,17 +2,20 @@
  * Smooths chains of motions within a tolerance (G64 P): curves in, pieces of one smooth curve out. See README.md.
  *
  *     push -> [ route ] -> [ window of samples ] -> take
+ *
+ * Where the path as it is programmed is quicker, its motions are handed on between two rests.
  */
 #ifndef TAKT_SMOOTH_SMOOTH_H
 #define TAKT_SMOOTH_SMOOTH_H
 
+#include "smooth/head.h"
 #include "smooth/judge.h"
 #include "smooth/merge.h"
 #include "smooth/relax.h"
 #include "smooth/route.h"
-#include "smooth/stall.h"
 #include "smooth/timing.h"
 #include "smooth/window.h"
+#include "smooth/worth.h"
 
 #include <stdbool.h>
 #include <stdint.h>
@@ -37,21 +40,19 @@ struct smooth_piece {
     double interval_s;
     struct smooth_rate rate;
     struct smooth_change
-        change;  /* rounded over the same time in all pieces in which the axes move */
-    bool stop;   /* comes to rest at its end, though the chain goes on: no way on was found */
-    bool rotary; /* no linear axis moves in that motion */
-    bool last;   /* of the chain: ends at rest, in the end of the last motion */
+        change;     /* rounded over the same time in all pieces in which the axes move */
+    bool stop;      /* comes to rest at its end, though the chain goes on: no way on was found */
+    bool rotary;    /* no linear axis moves in that motion */
+    bool starts;    /* begins at rest */
+    bool continues; /* more of the motion follows */
+    bool last;      /* of the chain: ends at rest, in the end of the last motion */
 };
 
-/* Samples at the window's beginning as they were proved, to fall back on; half as many where the window has half. */
-#define SMOOTH_HEAD_MAX 16
-
-struct smooth_head {
-    unsigned proved; /* pieces */
-    double origin[AXIS_COUNT];
-    double at_mm[SMOOTH_HEAD_MAX];
-    uint32_t element[SMOOTH_HEAD_MAX];
-    lanes_int x[SMOOTH_HEAD_MAX]; /* one group of lanes after the other */
+/* What has been taken. */
+enum smooth_taken {
+    SMOOTH_NONE, /* more motions, or the chain's end, must come first, or the chain has been taken to its end */
+    SMOOTH_PIECE, /* a piece of the curve */
+    SMOOTH_MOTION /* a motion of the path itself: of the piece move, number, starts and continues count */
 };
 
 /* What it computes with: holds nothing between calls. */
@@ -77,8 +78,9 @@ struct smooth {
     double known_mm;  /* end of the route when the window was filled */
     double tried_mm;  /* place its last sample had when the route was not known far enough yet, */
     uint32_t tried;   /* and the element there */
-    double anew_mm;   /* tolerance that is used from the next rest on; 0: the same */
-    struct stall stall;
+    double exact_mm;  /* to this place the path itself is taken, and on to where it rests */
+    bool exact;       /* it is */
+    struct worth_since since;
     unsigned standing; /* pieces that are still to come, in which the axes stand */
     bool starts;       /* the next piece begins at rest */
     bool leaves;       /* after those the chain goes on; else they end it, or a part of it */
@@ -110,10 +112,10 @@ bool smooth_is_line(const struct smooth *s);
 /* Nothing follows in this chain: it ends at rest. */
 void smooth_finish(struct smooth *s);
 /*
- * The next piece. False: more motions, or the chain's end, must come first, or the chain has been taken to its end. scratch:
- * no matter what is in it.
+ * The next piece, or the next motion: that is a curve, its end the one of piece->move. scratch: no matter what is in it.
  */
-bool smooth_take(struct smooth *s, union smooth_scratch *scratch, struct smooth_piece *piece);
+enum smooth_taken smooth_take(struct smooth *s, union smooth_scratch *scratch,
+                              struct smooth_piece *piece, struct curve *curve);
 /* Forgets everything. */
 void smooth_reset(struct smooth *s);
 

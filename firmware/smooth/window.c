@@ -127,14 +127,24 @@ static void append(struct window *w, const struct route *r, double at_mm)
     w->count++;
 }
 
+void window_stand(struct window *w, const struct route *r, const double p[], double at_mm,
+                  uint32_t element)
+{
+    static const struct window_spot nowhere;
+
+    w->at_end = false;
+    w->count = SMOOTH_FIXED;
+    memcpy(w->origin, p, r->slots.count * sizeof w->origin[0]);
+    for (unsigned i = 0; i < SMOOTH_FIXED; i++) {
+        w->at_mm[i] = at_mm;
+        w->element[i] = element;
+        window_set(w, r, i, &nowhere);
+    }
+}
+
 void window_start(struct window *w, const struct route *r)
 {
-    w->count = 0;
-    w->at_end = false;
-    memcpy(w->origin, route_start(r, r->first), r->slots.count * sizeof w->origin[0]);
-    for (unsigned i = 0; i < SMOOTH_FIXED; i++) {
-        append(w, r, 0.0);
-    }
+    window_stand(w, r, route_start(r, r->first), 0.0, r->first);
 }
 
 /*
@@ -149,21 +159,14 @@ void window_rest(struct window *w, const struct route *r, const struct order *or
     const uint32_t found = route_find(r, at, w->element[1]);
     const uint32_t element = found < w->element[1] ? found : w->element[1];
     double p[3][AXIS_COUNT];
-    static const struct window_spot nowhere;
 
     for (unsigned i = 0; i < SMOOTH_FIXED; i++) {
         window_sample(w, r, i, p[i]);
     }
     for (unsigned k = 0; k < r->slots.count; k++) {
-        w->origin[k] = p[1][k] + (p[0][k] - 2.0 * p[1][k] + p[2][k]) / 6.0;
+        p[1][k] += (p[0][k] - 2.0 * p[1][k] + p[2][k]) / 6.0;
     }
-    w->at_end = false;
-    w->count = SMOOTH_FIXED;
-    for (unsigned i = 0; i < SMOOTH_FIXED; i++) {
-        w->at_mm[i] = at;
-        w->element[i] = element;
-        window_set(w, r, i, &nowhere);
-    }
+    window_stand(w, r, p[1], at, element);
 }
 
 /* Halvings in search of the next acceleration. */

@@ -113,8 +113,10 @@ static void background(struct trial *t)
     if (motion_wanted(&t->motion) == NULL)
         return;
     path_go_on(&t->path);
-    if (motion_ahead(&t->motion) + t->look_ahead / TOP_UP_PART <= t->look_ahead) {
-        while (!t->ended && path_has_room(&t->path) && motion_ahead(&t->motion) < t->look_ahead)
+    const uint32_t wanted = path_look_ahead(&t->path, t->look_ahead);
+
+    if (motion_ahead(&t->motion) + wanted / TOP_UP_PART <= wanted) {
+        while (!t->ended && path_has_room(&t->path) && motion_ahead(&t->motion) < wanted)
             read_move(t);
     }
     motion_build(&t->motion);

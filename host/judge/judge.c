@@ -68,6 +68,8 @@ static bool next_motion(struct judge *j)
         .number = ++j->read,
         .end = move.end,
         .landed = true,
+        .rounded = move.path == PATH_BLEND && move.tolerance_mm > 0 && move.kind < MOVE_THREAD &&
+                   move.feed_rev_mm == 0,
         .probing = move.kind == MOVE_PROBE,
         .turning_mm = move.kind == MOVE_TAP ? TUBE_TURNING_REV * move.feed_rev_mm : 0};
     j->block.has_length = move_curve(&move, &j->read_end, &j->block.curve);
@@ -205,11 +207,11 @@ static void judge_axes(struct judge *j, const struct cycle_record *record)
     }
 }
 
-/* A setpoint of a smoothed path, which the tube judges: only a chain's last end is hit exactly. */
+/* A setpoint of a path within a tolerance, which the tube judges: only ends of programmed motions are hit exactly. */
 static void judge_smoothed(struct judge *j, const struct cycle_record *record,
                            const struct block *block)
 {
-    if (record->landed && point_is_same(&block->curve.end, &block->move.end))
+    if (record->landed && !block->continues && point_is_same(&block->curve.end, &block->move.end))
         raise_to(&j->figures.landing_error_mm, judge_distance(&record->cmd, &j->block.end));
     j->block.landed = true;
     j->block.fraction = 1;
@@ -218,10 +220,11 @@ static void judge_smoothed(struct judge *j, const struct cycle_record *record,
 
 bool judge_add(struct judge *j, const struct cycle_record *record, const struct block *block)
 {
-    const bool smoothed = block->curve.kind == CURVE_SPLINE && block_is_motion(block);
-
     if (record->block != j->block.number && !j->strayed)
         enter_block(j, record);
+    const bool smoothed =
+        block_is_motion(block) && (block->curve.kind == CURVE_SPLINE || j->block.rounded);
+
     if (!smoothed && !j->block.ending && !block->continues && !j->block.landed)
         begin_ending(j, block);
     j->sent[j->figures.cycles % JUDGE_HISTORY] = record->set;

@@ -63,9 +63,10 @@ struct judge_block {
     bool probing;    /* it may end early: judge_answer */
     double
         turning_mm; /* into a hole the axes turn round with the spindle, so far above its end at most; 0: no hole */
-    bool landed;      /* a cycle has ended it exactly */
-    bool ending;      /* its last piece is being executed */
-    bool passed;      /* then: it is to be left without a cycle at its end */
+    bool rounded; /* a tolerance is programmed: the tube judges it, whether it is a curve or not */
+    bool landed;  /* a cycle has ended it exactly */
+    bool ending;  /* its last piece is being executed */
+    bool passed;  /* then: it is to be left without a cycle at its end */
     double passed_mm; /* then: distance of the end of its evaluated path from its end */
 };
 

@@ -77,7 +77,9 @@ static void fill_path(struct planner *p)
     if (motion_wanted(&p->motion) == NULL)
         return;
     path_go_on(&p->path);
-    while (!p->ended && path_has_room(&p->path) && motion_ahead(&p->motion) < p->look_ahead)
+    const uint32_t wanted = path_look_ahead(&p->path, p->look_ahead);
+
+    while (!p->ended && path_has_room(&p->path) && motion_ahead(&p->motion) < wanted)
         read_move(p);
     motion_build(&p->motion);
 }

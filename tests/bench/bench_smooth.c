@@ -30,7 +30,8 @@
 /* What one round has brought. */
 struct yield {
     unsigned long pieces;
-    double nominal_s; /* at the rates the pieces allow */
+    unsigned long motions; /* of the path itself */
+    double nominal_s;      /* at the rates the pieces allow */
 };
 
 static struct program program;
@@ -114,8 +115,14 @@ static void read_moves(FILE *file)
 static void take_all(struct yield *yield)
 {
     struct smooth_piece piece;
+    struct curve curve;
+    enum smooth_taken taken;
 
-    while (smooth_take(&smooth, &scratch, &piece)) {
+    while ((taken = smooth_take(&smooth, &scratch, &piece, &curve)) != SMOOTH_NONE) {
+        if (taken == SMOOTH_MOTION) {
+            yield->motions++;
+            continue;
+        }
         yield->pieces++;
         yield->nominal_s += piece.interval_s / fmin(piece.rate.most, piece.rate.programmed);
     }
@@ -169,6 +176,7 @@ static void set_limits(struct smooth_limits *limits)
     memset(limits, 0, sizeof(*limits));
     limits->axes = 7U;
     limits->cycle_s = CYCLE_S;
+    limits->windows = 1.0;
     for (int i = 0; i < AXIS_COUNT; i++) {
         limits->velocity_mm_s[i] = VELOCITY_MM_S;
         limits->acceleration_mm_s2[i] = ACCELERATION_MM_S2;
@@ -188,7 +196,7 @@ static double now_s(void)
 static double one_round(struct yield *yield)
 {
     struct smooth_limits limits;
-    const struct yield nothing = {0, 0.0};
+    const struct yield nothing = {0, 0, 0.0};
 
     set_limits(&limits);
     *yield = nothing;
@@ -213,7 +221,7 @@ static FILE *opened(const char *path)
 int main(int argc, char **argv)
 {
     FILE *file = argc > 1 ? opened(argv[1]) : made_program();
-    struct yield yield = {0, 0.0};
+    struct yield yield = {0, 0, 0.0};
     double best_s = HUGE_VAL;
 
     read_moves(file);
@@ -226,8 +234,9 @@ int main(int argc, char **argv)
         (void)fprintf(stderr, "nothing to smooth: the program must ask for G64 P\n");
         return 1;
     }
-    printf("%zu blocks, %lu pieces, %.3f s nominal: %.0f blocks/s, %.2f us a piece\n", move_count,
-           yield.pieces, yield.nominal_s, (double)move_count / best_s,
+    printf("%zu blocks, %lu pieces, %lu motions as programmed, %.3f s nominal: %.0f blocks/s, %.2f "
+           "us a piece\n",
+           move_count, yield.pieces, yield.motions, yield.nominal_s, (double)move_count / best_s,
            best_s * 1e6 / (double)yield.pieces);
     return 0;
 }

@@ -17,6 +17,7 @@ static const struct smooth_limits mill = {
     .acceleration_mm_s2 = {1000.0, 1000.0, 1000.0},
     .jerk_mm_s3 = {50000.0, 50000.0, 50000.0},
     .cycle_s = 1e-3,
+    .windows = 1.0,
 };
 
 static struct smooth smooth;
@@ -66,9 +67,13 @@ static void follow_circle(const struct smooth_piece *piece)
 static void take_all(void)
 {
     struct smooth_piece piece;
+    struct curve curve;
+    enum smooth_taken taken;
 
-    while (smooth_take(&smooth, &scratch, &piece)) {
-        follow_circle(&piece);
+    while ((taken = smooth_take(&smooth, &scratch, &piece, &curve)) != SMOOTH_NONE) {
+        if (taken == SMOOTH_PIECE) {
+            follow_circle(&piece);
+        }
         backward += piece.number < number ? 1 : 0;
         number = piece.number;
     }

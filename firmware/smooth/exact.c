@@ -1,0 +1,437 @@
+#include "smooth/exact.h"
+
+#include "smooth/single.h"
+
+/* What plan leaves to joints that are passed: parts of jerk and of acceleration (plan/block.h, joint.c). */
+#define JOINT_JERK         0.5f
+#define JOINT_ACCELERATION 0.1f
+
+/* A joint is no joint below so many times jerk x cycle^2: the axes rest; and so many cycles belong to one. */
+#define LEAST_CYCLES 4.0f
+#define APART_CYCLES 6.0f
+
+/* To be passed a joint takes less than this part of the time of a stop (plan/joint.c). */
+#define PASSING_WORTH 0.75f
+
+/* Of acceleration and jerk that an arc at constant feed may take; of jerk for ramps on it, across and along (plan/block.c). */
+#define ARC_ACCELERATION 0.9f
+#define ARC_JERK         0.5f
+#define RAMP_NORMAL      0.6f
+#define RAMP_ALONG       0.8f
+
+/* Limits are found for this override (plan/block.h). */
+#define OVERRIDE 1.2f
+
+/* Steps in which a feed is looked for that can be held. */
+#define SLOWER     0.9f
+#define SLOWER_MAX 64
+
+/* A bent element that is no arc is gone along in lines that leave it by this part of the tolerance. */
+#define STRAIGHT_PART 0.02f
+
+/* What bounds the exact path on an element: mm of route and s. */
+struct course {
+    float length;
+    float feed;
+    float acceleration;
+    float jerk;
+};
+
+/* Of a line: what each axis leaves along it. */
+static void bound_line(const struct route *r, const struct smooth_limits *machine, uint32_t index,
+                       struct course *c)
+{
+    float d[AXIS_COUNT];
+
+    (void)route_direction(r, index, route_element(r, index)->start_mm, d);
+    c->acceleration = SINGLE_INFINITY;
+    c->jerk = SINGLE_INFINITY;
+    for (unsigned i = 0; i < r->slots.count; i++) {
+        const unsigned axis = r->slots.axis[i];
+        const float part = single_abs(d[i]) / r->slots.weight[i];
+
+        if (part > 0.0f) {
+            c->acceleration =
+                single_min(c->acceleration, (float)machine->acceleration_mm_s2[axis] / part);
+            c->jerk = single_min(c->jerk, (float)machine->jerk_mm_s3[axis] / part);
+        }
+    }
+}
+
+/* The highest feed at a joint: D v / cycle^2 + 3/4 K v^2 / cycle within a part of J, D v / cycle of A (plan/joint.c). */
+static float alone_feed(const struct route *r, const struct smooth_limits *machine, uint32_t index,
+                        float reach)
+{
+    const float cycle = (float)machine->cycle_s;
+    float d[2][AXIS_COUNT];
+    float k[2][AXIS_COUNT];
+    float feed = SINGLE_INFINITY;
+
+    route_corner(r, index, d[0], d[1]);
+    (void)route_curvature(r, index - 1, route_element(r, index)->start_mm, k[0]);
+    (void)route_curvature(r, index, route_element(r, index)->start_mm, k[1]);
+    for (unsigned i = 0; i < r->slots.count; i++) {
+        const unsigned axis = r->slots.axis[i];
+        const float turn = single_abs(d[1][i] - d[0][i]) / r->slots.weight[i];
+        const float bend = single_abs(k[1][i] - k[0][i]) / r->slots.weight[i];
+        const float j = JOINT_JERK * (float)machine->jerk_mm_s3[axis] * cycle;
+        const float a = JOINT_ACCELERATION * (float)machine->acceleration_mm_s2[axis] * cycle;
+
+        if (turn > 0.0f) {
+            const float most = single_min(j * cycle, a) / turn;
+
+            feed = single_min(feed, most > reach ? single_sqrt(most * reach) : most);
+        }
+        if (bend > 0.0f) {
+            feed = single_min(feed, single_sqrt(j / (0.75f * bend)));
+        }
+    }
+    return feed;
+}
+
+static float length_of(const struct route *r, uint32_t index)
+{
+    return (float)(route_end_of(r, index) - route_element(r, index)->start_mm);
+}
+
+/* May the joint at the start of an element be passed, and take of the jerk beside it? What came before may be forgotten. */
+static bool may_pass(const struct route *r, const struct smooth_limits *machine, uint32_t index)
+{
+    const float cycle = (float)machine->cycle_s;
+
+    if (index == 0 || index == r->count) {
+        return false;
+    }
+    if (index == r->first) {
+        return true;
+    }
+    const float shorter = single_min(length_of(r, index - 1), length_of(r, index));
+    const float jerk = route_element(r, index - 1)->along.jerk;
+
+    return alone_feed(r, machine, index, shorter / (APART_CYCLES * cycle)) >=
+           LEAST_CYCLES * jerk * cycle * cycle;
+}
+
+/* What a bent element leaves in any direction, and how much of a circle it is. */
+struct bend {
+    float jerk;
+    float acceleration;
+    float radius;
+};
+
+/* An axis in its plane may have all of the acceleration for itself, others but their part of it. */
+static float bend_acceleration(const struct route *r, const struct smooth_limits *machine,
+                               uint32_t index, const float k[])
+{
+    float d[AXIS_COUNT];
+    float most = SINGLE_INFINITY;
+
+    (void)route_direction(r, index, route_element(r, index)->start_mm, d);
+    for (unsigned i = 0; i < r->slots.count; i++) {
+        const float part = k[i] != 0.0f ? 1.0f : single_abs(d[i]);
+        const float a = r->slots.weight[i] * (float)machine->acceleration_mm_s2[r->slots.axis[i]];
+
+        most = part > 0.0f ? single_min(most, a / part) : most;
+    }
+    return most;
+}
+
+/* a^2 + (v^2 / R)^2 <= A^2, 3 v a / R <= RAMP_NORMAL J and j + v^3 / R^2 <= RAMP_ALONG J. */
+static void bound_ramps(const struct bend *b, struct course *c)
+{
+    const float normal = c->feed * c->feed / b->radius;
+    const float square = b->acceleration * b->acceleration - normal * normal;
+
+    c->acceleration = single_min(single_sqrt(single_max(0.0f, square)),
+                                 RAMP_NORMAL * b->jerk * b->radius / (3.0f * c->feed));
+    c->jerk = RAMP_ALONG * b->jerk - c->feed * normal / b->radius;
+}
+
+/* To rest from its feed while the axes speed up, by a law of w windows: v/a + 2 w a/j, a^2 <= v j/w. */
+static float rest_time(const struct course *c, float windows)
+{
+    const float j = c->jerk / windows;
+    const float a = single_min(c->acceleration, single_sqrt(c->feed * j));
+
+    return c->feed / a + 2.0f * a / j;
+}
+
+/* How long a hold takes at a feed, at worst: plan keeps what the highest override needs. */
+static float hold_time(const struct bend *b, float feed, float windows)
+{
+    struct course c = {.feed = OVERRIDE * feed};
+
+    bound_ramps(b, &c);
+    c.feed = feed;
+    return c.jerk > 0.0f && c.acceleration > 0.0f ? rest_time(&c, windows) : SINGLE_INFINITY;
+}
+
+/* How long one takes on a line at the highest feed, of the slowest axis that moves. */
+static float hold_time_on_line(const struct route *r, const struct smooth_limits *machine)
+{
+    float longest = 0.0f;
+
+    for (unsigned i = 0; i < AXIS_COUNT; i++) {
+        const struct course c = {.feed = (float)machine->velocity_mm_s[i],
+                                 .acceleration = (float)machine->acceleration_mm_s2[i],
+                                 .jerk = (float)machine->jerk_mm_s3[i]};
+
+        if ((r->moved >> i & 1U) != 0) {
+            longest = single_max(longest, rest_time(&c, (float)machine->windows));
+        }
+    }
+    return longest;
+}
+
+/*
+ * v^3 / R^2 <= ARC_JERK J, v^2 / R <= ARC_ACCELERATION A. A turn leaves the less for braking the faster it is: it is gone along no
+ * faster than it can be held on in the time that a line takes.
+ */
+static void bound_bent(const struct route *r, const struct smooth_limits *machine, uint32_t index,
+                       struct course *c)
+{
+    const struct route_element *e = route_element(r, index);
+    float k[AXIS_COUNT];
+    const bool joined = may_pass(r, machine, index) || may_pass(r, machine, index + 1);
+    const struct bend b = {.jerk = (joined ? 1.0f - JOINT_JERK : 1.0f) * e->along.jerk,
+                           .radius = 1.0f / route_curvature(r, index, e->start_mm, k),
+                           .acceleration = bend_acceleration(r, machine, index, k)};
+    const float most = hold_time_on_line(r, machine);
+
+    c->feed = single_min(c->feed, single_cbrt(ARC_JERK * b.jerk * b.radius * b.radius));
+    c->feed = single_min(c->feed, single_sqrt(ARC_ACCELERATION * b.acceleration * b.radius));
+    for (unsigned i = 0; i < SLOWER_MAX && hold_time(&b, c->feed, (float)machine->windows) > most;
+         i++) {
+        c->feed *= SLOWER;
+    }
+    bound_ramps(&b, c);
+}
+
+static struct course course_of(const struct route *r, const struct smooth_limits *machine,
+                               double from_mm, uint32_t index)
+{
+    const struct route_element *e = route_element(r, index);
+    struct course c = {.length = (float)(route_end_of(r, index) - maths_max(from_mm, e->start_mm)),
+                       .feed = e->feed_mm_s};
+
+    if (e->bent) {
+        bound_bent(r, machine, index, &c);
+    } else {
+        bound_line(r, machine, index, &c);
+    }
+    return c;
+}
+
+/* Time of a ramp from one feed to another: F/A + A/J, or 2 sqrt(F/J) where full acceleration is not reached. */
+static float ramp_time(float change, float a, float j)
+{
+    return change * j >= a * a ? change / a + a / j : 2.0f * single_sqrt(change / j);
+}
+
+/* Does it take so much less time to pass a joint than to rest there (plan/joint.c)? */
+static bool is_worth_passing(const struct course *before, const struct course *after, float feed)
+{
+    const float a = single_min(before->acceleration, after->acceleration);
+    const float j = single_min(before->jerk, after->jerk);
+    const float length = single_min(before->length, after->length);
+    const float over = single_min(single_sqrt(2.0f * length * a), single_cbrt(length * length * j));
+    const float top = single_min(single_min(before->feed, after->feed), over);
+    const float fall = single_max(0.0f, top - feed);
+
+    return fall * ramp_time(fall, a, (1.0f - JOINT_JERK) * j) <=
+           PASSING_WORTH * top * ramp_time(top, a, j);
+}
+
+/* 0: the axes rest. */
+static float joint_feed(const struct route *r, const struct smooth_limits *machine, uint32_t index)
+{
+    const struct course before = course_of(r, machine, 0.0, index - 1);
+    const struct course after = course_of(r, machine, 0.0, index);
+    const float cycle = (float)machine->cycle_s;
+    const float reach = single_min(before.length, after.length) / (APART_CYCLES * cycle);
+    const float feed = alone_feed(r, machine, index, reach);
+
+    return feed < LEAST_CYCLES * before.jerk * cycle * cycle ||
+                   !is_worth_passing(&before, &after, feed)
+               ? 0.0f
+               : feed;
+}
+
+bool exact_rests(const struct route *r, const struct smooth_limits *machine, uint32_t index)
+{
+    return joint_feed(r, machine, index) == 0.0f;
+}
+
+/* Elements between two joints that are not passed at full feed, and the feeds there. */
+struct span {
+    uint32_t first, end;
+    double from_mm;
+    float start, stop;
+    float length;
+    float feed; /* the highest */
+    float acceleration, jerk;
+};
+
+/* Time of a ramp from one feed to another beyond what its way takes at the higher one. */
+static float lost(float low, float high, float a)
+{
+    const float change = single_max(0.0f, high - low);
+
+    return change * change / (2.0f * a * high);
+}
+
+/*
+ * With ramps of acceleration a, rounded over a window of cycles of a/J, times what the law makes of it: the window is lost
+ * once, but for what is gone in it at both ends (plan/span.c).
+ */
+static float time_with(const struct route *r, const struct smooth_limits *machine,
+                       const struct span *s, float a)
+{
+    const float peak =
+        single_sqrt(a * s->length + 0.5f * (s->start * s->start + s->stop * s->stop));
+    float time = 0.0f;
+    float first = 0.0f;
+    float last = 0.0f;
+
+    for (uint32_t i = s->first; i < s->end; i++) {
+        const struct course c = course_of(r, machine, s->from_mm, i);
+
+        last = single_min(c.feed, peak);
+        first = i == s->first ? last : first;
+        time += c.length / last;
+    }
+    const float window = (float)machine->windows * a / s->jerk;
+
+    return time + lost(s->start, first, a) + lost(s->stop, last, a) +
+           window * (1.0f - 0.5f * (s->start / first + s->stop / last));
+}
+
+/*
+ * The best acceleration for ramps by a law of w windows, from rest to rest: of v/a + w a/j it is sqrt(v j/w), and of
+ * 2 sqrt(L/a) + w a/j, where the feed is not reached, cbrt(L (j/w)^2).
+ */
+static float least_time(const struct route *r, const struct smooth_limits *machine,
+                        const struct span *s)
+{
+    const float j = s->jerk / (float)machine->windows;
+    const float full = single_min(s->acceleration, single_sqrt(s->feed * j));
+    const float low = single_min(s->acceleration, single_cbrt(s->length * j * j));
+
+    return single_min(time_with(r, machine, s, full), time_with(r, machine, s, low));
+}
+
+/* The elements from the first one on to the next joint that is not passed at full feed. */
+static void find_span(const struct route *r, const struct smooth_limits *machine, uint32_t end,
+                      struct span *s)
+{
+    struct course c = course_of(r, machine, s->from_mm, s->first);
+
+    s->length = c.length;
+    s->feed = c.feed;
+    s->acceleration = c.acceleration;
+    s->jerk = c.jerk;
+    s->stop = 0.0f;
+    for (s->end = s->first + 1; s->end < end; s->end++) {
+        const struct course next = course_of(r, machine, 0.0, s->end);
+        const float joint = joint_feed(r, machine, s->end);
+
+        if (joint < single_min(c.feed, next.feed)) {
+            s->stop = joint;
+            return;
+        }
+        c = next;
+        s->length += c.length;
+        s->feed = single_max(s->feed, c.feed);
+        s->acceleration = single_min(s->acceleration, c.acceleration);
+        s->jerk = single_min(s->jerk, c.jerk);
+    }
+}
+
+float exact_time(const struct route *r, const struct smooth_limits *machine, double at_mm,
+                 uint32_t element, uint32_t end)
+{
+    struct span s = {.first = element, .from_mm = at_mm};
+    float time = 0.0f;
+
+    while (s.first < end) {
+        find_span(r, machine, end, &s);
+        time += s.length > 0.0f ? least_time(r, machine, &s) : 0.0f;
+        s.first = s.end;
+        s.start = s.stop;
+    }
+    return time;
+}
+
+/* As far as the element is straight, if it is no arc. */
+static double straight_end(const struct route *r, uint32_t element, double at_mm)
+{
+    const float straight =
+        route_straight(r, element, at_mm, STRAIGHT_PART * (float)r->tolerance_mm);
+
+    return maths_min(route_end_of(r, element), at_mm + (double)straight);
+}
+
+/*
+ * Must the axes be on it before they go along it? Of an arc so that it is one; where rotary axes move, because a feed counts the
+ * way of the linear ones alone.
+ */
+static bool begins_on_route(const struct route *r, uint32_t element, bool arc)
+{
+    float d[AXIS_COUNT];
+    bool turns = false;
+
+    (void)route_direction(r, element, route_element(r, element)->start_mm, d);
+    for (unsigned i = 0; i < r->slots.count; i++) {
+        turns = turns || (r->slots.axis[i] >= AXIS_LINEAR_COUNT && d[i] != 0.0f);
+    }
+    return arc || turns;
+}
+
+/* The feed of an arc from a place on: route goes by for its length. */
+static void limit_arc(const struct route *r, const struct smooth_limits *machine, uint32_t element,
+                      double at_mm, const struct curve *arc, struct move *move)
+{
+    const double feed = (double)course_of(r, machine, 0.0, element).feed;
+
+    move->feed_mm_s =
+        maths_min(move->feed_mm_s, feed * arc->length_mm / (route_end_of(r, element) - at_mm));
+}
+
+/* To a place of an element: as it is programmed, or in a line. False: the axes are there. */
+static bool go_to(const struct route *r, uint32_t element, double to_mm, const struct point *start,
+                  double p[], struct move *move, struct curve *curve)
+{
+    route_place(r, element, to_mm, p);
+    route_scatter(r, p, &move->end);
+    return move_curve(move, start, curve);
+}
+
+bool exact_next(struct window *w, const struct route *r, const struct smooth_limits *machine,
+                struct move *move, struct curve *curve)
+{
+    const uint32_t element = w->element[0];
+    const double at_mm = w->at_mm[0];
+    const bool arc = route_arc(r, element, at_mm, move);
+    const enum move_kind kind = move->kind;
+    const enum move_kind line = kind == MOVE_RAPID ? MOVE_RAPID : MOVE_FEED;
+    const bool beside = begins_on_route(r, element, arc);
+    double to_mm = beside ? at_mm : straight_end(r, element, at_mm);
+    struct point start;
+    double p[AXIS_COUNT];
+
+    window_sample(w, r, 0, p);
+    route_scatter(r, p, &start);
+    move->kind = line;
+    bool goes = go_to(r, element, to_mm, &start, p, move, curve);
+
+    if (!goes && beside) {
+        to_mm = arc ? route_end_of(r, element) : straight_end(r, element, at_mm);
+        move->kind = arc ? kind : line;
+        goes = go_to(r, element, to_mm, &start, p, move, curve);
+    }
+    if (arc && goes && move->kind == kind) {
+        limit_arc(r, machine, element, at_mm, curve, move);
+    }
+    window_stand(w, r, p, to_mm, element);
+    return goes;
+}

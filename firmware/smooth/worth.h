@@ -1,0 +1,37 @@
+/*
+ * Whether a curve is worth it: whether it is as quick as the path that it smooths, which comes to rest where it turns.
+ */
+#ifndef TAKT_SMOOTH_WORTH_H
+#define TAKT_SMOOTH_WORTH_H
+
+#include "smooth/judge.h"
+#include "smooth/window.h"
+
+/* The first so many pieces of a window. */
+struct worth_window {
+    const struct window *window;
+    const struct route *route;
+    const struct smooth_limits *machine;
+    const struct judge_change *change;
+    unsigned pieces;
+    unsigned kept;    /* of them: these are handed on */
+    float standing_s; /* what a curve takes longer where it begins and ends at rest */
+    bool starts;      /* the first one begins at rest */
+    bool finished;    /* nothing follows in the chain */
+};
+
+/* What the curve has taken since it came to the stretch of path between two rests that it is on. */
+struct worth_since {
+    uint32_t element; /* the first one of that */
+    float spent_s;
+};
+
+/*
+ * From rest, is the path itself quicker: to the chain's end, if that is known, or to the last place in the window where it rests?
+ * to_mm: that place, or the next one where there is none.
+ */
+bool worth_path_from_rest(const struct worth_window *now, double *to_mm);
+/* Is the path so much quicker to where the pieces end, with what has been taken on the first stretch before, that a change is worth it? */
+bool worth_path(const struct worth_window *now, struct worth_since *since);
+
+#endif

@@ -1,0 +1,100 @@
+"""How long a path within a tolerance (G64 P) takes: smoothed_time.py [PROGRAMS].
+
+It should not take longer than the exact path, which is inside every tolerance, nor for a wider tolerance. Some strokes and some
+random programs on random machines (tests/bench/hunting; seeds are fixed) still do: how many, and by how much at most, is
+bounded here.
+"""
+
+import json
+import os
+import random
+import re
+import subprocess
+import sys
+import tempfile
+
+import takt_test as t
+
+sys.dont_write_bytecode = True
+sys.path.insert(0, os.path.join(t.SOURCE, "tests", "bench", "hunting"))
+# pylint: disable=wrong-import-position
+import hunt_path
+import hunt_programs
+
+FIRST = 880001
+# Strokes are longer by this at most.
+STROKES_MOST = 1.15
+# Of random programs this part is slower, and by this at most.
+SLOWER_PART = 0.12
+SLOWER_MOST = 2.0
+WIDER_PART = 0.25
+WIDER_MOST = 2.4
+
+STROKES = """G21 G90 G17 G64 P{} F6000
+G1 X4 Y1
+G1 X1 Y3
+G1 X6 Y4
+G1 X2 Y6
+G1 X7 Y7
+M2
+"""
+
+
+def time_of(program, machine, *arguments):
+    """Program time, s."""
+    with tempfile.TemporaryDirectory() as folder:
+        paths = [os.path.join(folder, name) for name in ("p.ngc", "m.ini", "s.json")]
+        for path, text in zip(paths, (program, machine.text())):
+            with open(path, "w", encoding="utf-8") as file:
+                file.write(text)
+        done = subprocess.run([t.TAKT, "run", paths[0], "--machine", paths[1], "--quiet", "--json", paths[2], *arguments],
+                              capture_output=True, text=True, check=False)
+        if done.returncode != 0:
+            return None
+        with open(paths[2], encoding="utf-8") as file:
+            return json.load(file)["program_time_s"]
+
+
+def draw(seed):
+    rng = random.Random(seed)
+    machine = hunt_programs.random_machine(rng) if seed % 3 else hunt_programs.built_in()
+    return hunt_programs.random_program(rng, machine, rng.choice(list(hunt_programs.FAMILIES))), machine
+
+
+def wider(program):
+    return re.sub(r"G64 P([0-9.]+)", lambda p: f"G64 P{2 * float(p.group(1)):.6f}", program)
+
+
+def strokes_take_no_longer(acceleration):
+    machine = hunt_programs.Machine({a: (100.0, acceleration, 50000.0) for a in "XYZ"}, 1000)
+    exact_s = time_of(STROKES.format(0.01), machine, "--exact-path")
+    times = [(p, time_of(STROKES.format(p), machine)) for p in (0.001, 0.01, 0.05, 0.1, 0.2, 0.5, 1, 2)]
+    slow = [(p, s) for p, s in times if s is None or s > STROKES_MOST * exact_s]
+    t.check(not slow, f"no tolerance makes strokes of some mm much slower at {acceleration} mm/s2", exact_s, slow)
+
+
+def compare(pairs, part, most, claim):
+    """(time, the one it should not exceed, cycle) each."""
+    ratios = sorted((time / least for time, least, cycle in pairs if time > 1.01 * least + 3 * cycle), reverse=True)
+    t.check(len(ratios) <= part * len(pairs) and max(ratios, default=1) <= most, claim, len(pairs), ratios)
+
+
+def random_programs(number):
+    slower, widened = [], []
+    for seed in range(FIRST, FIRST + number):
+        program, machine = draw(seed)
+        if "G64" not in program or not hunt_path.read(program, machine, False):
+            continue
+        cycle_s = machine.cycle_us * 1e-6
+        exact_s, time_s, wide_s = (time_of(program, machine, "--exact-path"), time_of(program, machine), time_of(wider(program), machine))
+        t.check(None not in (exact_s, time_s, wide_s), f"a random program runs to its end: {seed}", exact_s, time_s, wide_s)
+        slower.append((time_s, exact_s, cycle_s))
+        widened.append((wide_s, time_s, cycle_s))
+    compare(slower, SLOWER_PART, SLOWER_MOST, "few paths within a tolerance are slower than exact ones, none much")
+    compare(widened, WIDER_PART, WIDER_MOST, "few paths are slower within a wider tolerance, none much")
+
+
+for mm_s2 in (250.0, 500.0, 1000.0, 5000.0):
+    strokes_take_no_longer(mm_s2)
+random_programs(int(sys.argv[1]) if len(sys.argv) > 1 else 50)
+t.finish()
