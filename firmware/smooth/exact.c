@@ -193,8 +193,9 @@ static void bound_bent(const struct route *r, const struct smooth_limits *machin
     const struct route_element *e = route_element(r, index);
     float k[AXIS_COUNT];
     const bool joined = may_pass(r, machine, index) || may_pass(r, machine, index + 1);
+    const float curvature = route_curvature(r, index, e->start_mm, k); /* k is used below */
     const struct bend b = {.jerk = (joined ? 1.0f - JOINT_JERK : 1.0f) * e->along.jerk,
-                           .radius = 1.0f / route_curvature(r, index, e->start_mm, k),
+                           .radius = 1.0f / curvature,
                            .acceleration = bend_acceleration(r, machine, index, k)};
     const float most = hold_time_on_line(r, machine);
 
