@@ -139,7 +139,7 @@ void bus_count_frame(struct bus *bus)
 {
     uint64_t response_ns = bus->now_ns - bus->wire.since_ns;
     uint32_t *most_ns = &bus->response_max_ns[bus->wire.frame.id % BUS_ID_COUNT];
-    if (response_ns > *most_ns)
+    if (response_ns > *most_ns && !bus->has_ended_responses)
         *most_ns = response_ns < UINT32_MAX ? (uint32_t)response_ns : UINT32_MAX;
     bus->counts.frames++;
     if (bus->observer.on_frame)
@@ -198,6 +198,12 @@ uint32_t bus_get_response_max_ns(const struct bus *bus, unsigned id)
 void bus_clear_responses(struct bus *bus)
 {
     memset(bus->response_max_ns, 0, sizeof bus->response_max_ns);
+    bus->has_ended_responses = false;
+}
+
+void bus_end_responses(struct bus *bus)
+{
+    bus->has_ended_responses = true;
 }
 
 double bus_load_percent(const struct bus *bus)

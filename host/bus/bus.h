@@ -120,8 +120,9 @@ struct bus {
 
     unsigned fault_count;
     struct bus_fault_state fault[BUS_FAULTS_MAX];
-    uint64_t fault_from_ns; /* no fault does anything before */
-    bool is_unwell;         /* faults have left something behind: error counters, late frames */
+    uint64_t fault_from_ns;   /* no fault does anything before */
+    bool is_unwell;           /* faults have left something behind: error counters, late frames */
+    bool has_ended_responses; /* no more count */
     uint32_t response_max_ns[BUS_ID_COUNT];
 };
 
@@ -167,10 +168,11 @@ enum bus_confinement bus_get_confinement(const struct bus *bus, unsigned port);
 
 /*
  * Longest time from a send call to the end of the frame, of frames with this identifier, since
- * bus_init or bus_clear_responses, ns; 0: none was sent. id: below BUS_ID_COUNT.
+ * bus_init or bus_clear_responses and before bus_end_responses, ns; 0: none was sent. id: below BUS_ID_COUNT.
  */
 uint32_t bus_get_response_max_ns(const struct bus *bus, unsigned id);
 void bus_clear_responses(struct bus *bus);
+void bus_end_responses(struct bus *bus);
 
 /* Virtual time: within on_frame the end of that frame, else the time bus_run_until reached. */
 uint64_t bus_now_ns(const struct bus *bus);

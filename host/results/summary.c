@@ -119,7 +119,10 @@ static void set_cost(struct summary *summary, const struct cycle_cost *cost)
     summary->cost_max_ns = (double)cost->max_ns;
 }
 
-/* Predicted and observed; what faults of the bus and frames that nobody wants have done is no fault of the prediction. */
+/*
+ * Predicted and observed; what faults of the bus, and frames that nobody wants or that come by a timer of the drive, have done
+ * is no fault of the prediction.
+ */
 static void set_responses(struct summary *summary, const struct field *field,
                           const struct drives *drives)
 {
@@ -134,7 +137,8 @@ static void set_responses(struct summary *summary, const struct field *field,
         nearest = maths_max(nearest, 100.0 * (double)summary->response_ns[i] /
                                          (double)summary->bus_plan.worst_ns[i]);
     bool is_planned = !drives_table_has(&summary->drives, DRIVES_NO_SILENCE) &&
-                      !drives_table_has(&summary->drives, DRIVES_NO_ONE_REPORT);
+                      !drives_table_has(&summary->drives, DRIVES_NO_ONE_REPORT) &&
+                      !drives_table_has(&summary->drives, DRIVES_NO_SYNC_REPORT);
     if (field->bus.fault_count == 0 && is_planned)
         add_check(summary, "bus_response", AXIS_COUNT, "%", nearest, 100);
 }

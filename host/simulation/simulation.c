@@ -298,16 +298,24 @@ const struct point *simulation_get_tool(const struct simulation *s)
     return s->tool_point.is_watched ? &s->tool_point.tool : NULL;
 }
 
+/* Drives that boot, or are switched off, are another matter than operation: other frames come then. */
+static void count_responses(struct simulation *s)
+{
+    if (!s->has_begun && controller_get_record(&s->controller) != NULL) {
+        s->has_begun = true;
+        bus_clear_responses(&s->field.bus);
+    }
+    if (s->has_begun && drives_get_state(controller_get_drives(&s->controller)) != DRIVES_ENABLED)
+        bus_end_responses(&s->field.bus);
+}
+
 bool simulation_step(struct simulation *s)
 {
     if (!control(s))
         return false;
     note_contact(s);
     step_spindle(s);
-    if (!s->has_begun && controller_get_record(&s->controller) != NULL) {
-        s->has_begun = true;
-        bus_clear_responses(&s->field.bus); /* booting drives are another matter than operation */
-    }
+    count_responses(s);
     s->cycles++;
     if (controller_get_state(&s->controller) == CONTROLLER_STARTING)
         s->begun = s->cycles;

@@ -285,6 +285,24 @@ static void test_the_size_of_the_steps_does_not_matter(void)
     TEST_ASSERT_EQUAL_INT(0, memcmp(whole.time_ns, seen.time_ns, 20 * sizeof seen.time_ns[0]));
 }
 
+static void test_responses_count_from_one_moment_to_another(void)
+{
+    struct can_port port = bus_attach(&bus, NULL);
+
+    TEST_ASSERT_TRUE(send_frame(&port, 0x123, 8));
+    bus_run_until(&bus, 1000 * BIT_NS);
+    bus_clear_responses(&bus);
+    TEST_ASSERT_TRUE(send_frame(&port, 0x124, 8));
+    bus_run_until(&bus, 2000 * BIT_NS);
+    bus_end_responses(&bus);
+    TEST_ASSERT_TRUE(send_frame(&port, 0x125, 8));
+    bus_run_until(&bus, 3000 * BIT_NS);
+    TEST_ASSERT_EQUAL_UINT(3, seen.count);
+    TEST_ASSERT_EQUAL_UINT32(0, bus_get_response_max_ns(&bus, 0x123));
+    TEST_ASSERT_EQUAL_UINT32(length_ns(0x124, 8), bus_get_response_max_ns(&bus, 0x124));
+    TEST_ASSERT_EQUAL_UINT32(0, bus_get_response_max_ns(&bus, 0x125));
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -305,5 +323,6 @@ int main(void)
     RUN_TEST(test_load_is_the_occupied_part_of_the_time);
     RUN_TEST(test_predicted_load_of_four_axes_is_785_bits_of_1000);
     RUN_TEST(test_the_size_of_the_steps_does_not_matter);
+    RUN_TEST(test_responses_count_from_one_moment_to_another);
     return UNITY_END();
 }
