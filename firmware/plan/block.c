@@ -20,11 +20,6 @@
 
 #include <string.h>
 
-#define ARC_ACCELERATION 0.9
-#define ARC_JERK         0.5
-#define RAMP_NORMAL      0.6
-#define RAMP_ALONG       0.8
-
 /* A joint that uses a share of the jerk uses at most this part of it of the acceleration (joint.c). */
 #define ACCELERATION_PER_SHARE 0.2
 

@@ -10,6 +10,7 @@
 #include "geometry/curve.h"
 #include "plan/limits.h"
 #include "program/move.h"
+#include "smooth/exact_parts.h"
 #include "smooth/smooth.h"
 
 #include <stdbool.h>
@@ -75,12 +76,6 @@ struct block {
     double share;    /* part left to joints: BLOCK_SHARE_MAX until the block is closed */
     double feed_joint_mm_s; /* highest feed at which the joint at the end may be passed */
 };
-
-/* Part of the jerk limit that changes of direction and curvature at joints may use; ramps then have the rest. */
-#define BLOCK_SHARE_MAX 0.5
-
-/* The highest feed override: limits on arcs are found for the programmed feed times this. */
-#define BLOCK_OVERRIDE_MAX 1.2
 
 /* Fills b from a motion's curve. Its end is a stop until a joint is formed. */
 void block_set_motion(struct block *b, const struct move *move, const struct curve *curve,

@@ -30,21 +30,6 @@
 
 #include "base/maths.h"
 
-/* Part of the acceleration limit a joint may use, when its share of jerk is BLOCK_SHARE_MAX. */
-#define JOINT_ACCELERATION 0.1
-
-/* Twice JOINT_CYCLES_NEAR: joints whose blocks last less are crowded, by the proof above. */
-#define JOINT_CYCLES_APART (2.0 * JOINT_CYCLES_NEAR)
-
-/*
- * A joint feed below so many times jerk x cycle^2, the jerk that the largest share leaves, is too slow to be landed at: the
- * axes stop.
- */
-#define LEAST_CYCLES 4.0
-
-/* To be passed a joint must take less than this part of the time of a stop: landing on it takes some as well. */
-#define WORTH 0.75
-
 struct joint_steps {
     double p_s_mm;   /* P, s/mm */
     double q_s2_mm2; /* Q, s2/mm2 */
@@ -91,7 +76,7 @@ static void joint_measure(const struct block *before, const struct block *after,
             const double j = limits->jerk_mm_s3[i] * cycle;
 
             steps->p_s_mm = maths_max(steps->p_s_mm, d / (j * cycle));
-            steps->q_s2_mm2 = maths_max(steps->q_s2_mm2, 0.75 * k / j);
+            steps->q_s2_mm2 = maths_max(steps->q_s2_mm2, JOINT_BEND * k / j);
             steps->r_s_mm = maths_max(steps->r_s_mm, d / (limits->acceleration_mm_s2[i] * cycle));
         }
     }
@@ -187,7 +172,7 @@ static double feed_over(double length_mm, double a, double j)
 static bool is_worth_passing(const struct block *before, const struct block *after, double v,
                              double share, double cycle_s)
 {
-    if (v < LEAST_CYCLES * before->j_mm_s3 * cycle_s * cycle_s) {
+    if (v < JOINT_LEAST_CYCLES * before->j_mm_s3 * cycle_s * cycle_s) {
         return false;
     }
     const double a = maths_min(before->a_mm_s2, after->a_mm_s2);
@@ -198,7 +183,7 @@ static bool is_worth_passing(const struct block *before, const struct block *aft
                                  feed_over(length_mm, a, j));
     const double fall = maths_max(0.0, top - v);
 
-    return ramp_s(fall, a, j * (1.0 - share)) * fall <= WORTH * ramp_s(top, a, j) * top;
+    return ramp_s(fall, a, j * (1.0 - share)) * fall <= JOINT_WORTH * ramp_s(top, a, j) * top;
 }
 
 /*

@@ -7,9 +7,6 @@
 #include "plan/block.h"
 #include "plan/limits.h"
 
-/* Joints that are passed within so many cycles show in the same differences of setpoints. */
-#define JOINT_CYCLES_NEAR 3.0
-
 /*
  * Forms the joint between two motions that follow each other: sets before->end, feed_joint_mm_s, share_joint and, for
  * blocks of few cycles, the ceiling of both.

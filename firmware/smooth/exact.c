@@ -1,26 +1,19 @@
 #include "smooth/exact.h"
 
+#include "smooth/exact_parts.h"
 #include "smooth/single.h"
 
-/* What plan leaves to joints that are passed: parts of jerk and of acceleration (plan/block.h, joint.c). */
-#define JOINT_JERK         0.5f
-#define JOINT_ACCELERATION 0.1f
-
-/* A joint is no joint below so many times jerk x cycle^2: the axes rest; and so many cycles belong to one. */
-#define LEAST_CYCLES 4.0f
-#define APART_CYCLES 6.0f
-
-/* To be passed a joint takes less than this part of the time of a stop (plan/joint.c). */
-#define PASSING_WORTH 0.75f
-
-/* Of acceleration and jerk that an arc at constant feed may take; of jerk for ramps on it, across and along (plan/block.c). */
-#define ARC_ACCELERATION 0.9f
-#define ARC_JERK         0.5f
-#define RAMP_NORMAL      0.6f
-#define RAMP_ALONG       0.8f
-
-/* Limits are found for this override (plan/block.h). */
-#define OVERRIDE 1.2f
+/* In single precision. */
+static const float joint_share = (float)BLOCK_SHARE_MAX;
+static const float joint_acceleration = (float)JOINT_ACCELERATION;
+static const float arc_acceleration = (float)ARC_ACCELERATION;
+static const float arc_jerk = (float)ARC_JERK;
+static const float ramp_normal = (float)RAMP_NORMAL;
+static const float ramp_along = (float)RAMP_ALONG;
+static const float override_max = (float)BLOCK_OVERRIDE_MAX;
+static const float cycles_apart = (float)JOINT_CYCLES_APART;
+static const float least_cycles = (float)JOINT_LEAST_CYCLES;
+static const float worth = (float)JOINT_WORTH;
 
 /* Steps in which a feed is looked for that can be held. */
 #define SLOWER     0.9f
@@ -74,8 +67,8 @@ static float alone_feed(const struct route *r, const struct smooth_limits *machi
         const unsigned axis = r->slots.axis[i];
         const float turn = single_abs(d[1][i] - d[0][i]) / r->slots.weight[i];
         const float bend = single_abs(k[1][i] - k[0][i]) / r->slots.weight[i];
-        const float j = JOINT_JERK * (float)machine->jerk_mm_s3[axis] * cycle;
-        const float a = JOINT_ACCELERATION * (float)machine->acceleration_mm_s2[axis] * cycle;
+        const float j = joint_share * (float)machine->jerk_mm_s3[axis] * cycle;
+        const float a = joint_acceleration * (float)machine->acceleration_mm_s2[axis] * cycle;
 
         if (turn > 0.0f) {
             const float most = single_min(j * cycle, a) / turn;
@@ -83,7 +76,7 @@ static float alone_feed(const struct route *r, const struct smooth_limits *machi
             feed = single_min(feed, most > reach ? single_sqrt(most * reach) : most);
         }
         if (bend > 0.0f) {
-            feed = single_min(feed, single_sqrt(j / (0.75f * bend)));
+            feed = single_min(feed, single_sqrt(j / ((float)JOINT_BEND * bend)));
         }
     }
     return feed;
@@ -108,8 +101,8 @@ static bool may_pass(const struct route *r, const struct smooth_limits *machine,
     const float shorter = single_min(length_of(r, index - 1), length_of(r, index));
     const float jerk = route_element(r, index - 1)->along.jerk;
 
-    return alone_feed(r, machine, index, shorter / (APART_CYCLES * cycle)) >=
-           LEAST_CYCLES * jerk * cycle * cycle;
+    return alone_feed(r, machine, index, shorter / (cycles_apart * cycle)) >=
+           least_cycles * jerk * cycle * cycle;
 }
 
 /* What a bent element leaves in any direction, and how much of a circle it is. */
@@ -143,8 +136,8 @@ static void bound_ramps(const struct bend *b, struct course *c)
     const float square = b->acceleration * b->acceleration - normal * normal;
 
     c->acceleration = single_min(single_sqrt(single_max(0.0f, square)),
-                                 RAMP_NORMAL * b->jerk * b->radius / (3.0f * c->feed));
-    c->jerk = RAMP_ALONG * b->jerk - c->feed * normal / b->radius;
+                                 ramp_normal * b->jerk * b->radius / (3.0f * c->feed));
+    c->jerk = ramp_along * b->jerk - c->feed * normal / b->radius;
 }
 
 /* To rest from its feed while the axes speed up, by a law of w windows: v/a + 2 w a/j, a^2 <= v j/w. */
@@ -159,7 +152,7 @@ static float rest_time(const struct course *c, float windows)
 /* How long a hold takes at a feed, at worst: plan keeps what the highest override needs. */
 static float hold_time(const struct bend *b, float feed, float windows)
 {
-    struct course c = {.feed = OVERRIDE * feed};
+    struct course c = {.feed = override_max * feed};
 
     bound_ramps(b, &c);
     c.feed = feed;
@@ -194,13 +187,13 @@ static void bound_bent(const struct route *r, const struct smooth_limits *machin
     float k[AXIS_COUNT];
     const bool joined = may_pass(r, machine, index) || may_pass(r, machine, index + 1);
     const float curvature = route_curvature(r, index, e->start_mm, k); /* k is used below */
-    const struct bend b = {.jerk = (joined ? 1.0f - JOINT_JERK : 1.0f) * e->along.jerk,
+    const struct bend b = {.jerk = (joined ? 1.0f - joint_share : 1.0f) * e->along.jerk,
                            .radius = 1.0f / curvature,
                            .acceleration = bend_acceleration(r, machine, index, k)};
     const float most = hold_time_on_line(r, machine);
 
-    c->feed = single_min(c->feed, single_cbrt(ARC_JERK * b.jerk * b.radius * b.radius));
-    c->feed = single_min(c->feed, single_sqrt(ARC_ACCELERATION * b.acceleration * b.radius));
+    c->feed = single_min(c->feed, single_cbrt(arc_jerk * b.jerk * b.radius * b.radius));
+    c->feed = single_min(c->feed, single_sqrt(arc_acceleration * b.acceleration * b.radius));
     for (unsigned i = 0; i < SLOWER_MAX && hold_time(&b, c->feed, (float)machine->windows) > most;
          i++) {
         c->feed *= SLOWER;
@@ -239,8 +232,8 @@ static bool is_worth_passing(const struct course *before, const struct course *a
     const float top = single_min(single_min(before->feed, after->feed), over);
     const float fall = single_max(0.0f, top - feed);
 
-    return fall * ramp_time(fall, a, (1.0f - JOINT_JERK) * j) <=
-           PASSING_WORTH * top * ramp_time(top, a, j);
+    return fall * ramp_time(fall, a, (1.0f - joint_share) * j) <=
+           worth * top * ramp_time(top, a, j);
 }
 
 /* 0: the axes rest. */
@@ -249,10 +242,10 @@ static float joint_feed(const struct route *r, const struct smooth_limits *machi
     const struct course before = course_of(r, machine, 0.0, index - 1);
     const struct course after = course_of(r, machine, 0.0, index);
     const float cycle = (float)machine->cycle_s;
-    const float reach = single_min(before.length, after.length) / (APART_CYCLES * cycle);
+    const float reach = single_min(before.length, after.length) / (cycles_apart * cycle);
     const float feed = alone_feed(r, machine, index, reach);
 
-    return feed < LEAST_CYCLES * before.jerk * cycle * cycle ||
+    return feed < least_cycles * before.jerk * cycle * cycle ||
                    !is_worth_passing(&before, &after, feed)
                ? 0.0f
                : feed;

@@ -1,113 +1,63 @@
 #include "config/stock_file.h"
 
 #include "cli/message.h"
-#include "cli/text.h"
+#include "config/rows.h"
 
-#include <ctype.h>
-#include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
-struct reader {
-    const char *name;
-    const char *line; /* where it begins */
-    const char *at;
-    unsigned number;
-    struct stock *stock;
-};
-
-static bool refuse(const struct reader *r, const char *what)
+static bool read_number(struct rows *rows, double *value)
 {
-    message_error(r->name, r->number, (unsigned)(r->at - r->line) + 1, "%s", what);
-    return false;
-}
-
-static void skip_blanks(struct reader *r)
-{
-    while (*r->at == ' ' || *r->at == '\t' || *r->at == '\r')
-        r->at++;
-}
-
-static bool at_end(struct reader *r)
-{
-    skip_blanks(r);
-    return *r->at == '\0' || *r->at == '\n' || *r->at == '#';
-}
-
-static bool read_number(struct reader *r, double *value)
-{
-    char *end;
-
-    if (at_end(r))
-        return refuse(r, "a number is missing: a row has its Y and a top for each X");
-    *value = strtod(r->at, &end);
-    if (end == r->at || !isfinite(*value) ||
-        (!isspace((unsigned char)*end) && *end != '\0' && *end != '#'))
-        return refuse(r, "this is not a number");
-    r->at = end;
-    return true;
+    return rows_read_number(rows, "a number is missing: a row has its Y and a top for each X",
+                            value);
 }
 
 /* The next value of a row or column of coordinates. */
-static bool read_rising(struct reader *r, double *values, size_t count)
+static bool read_rising(struct rows *rows, double *values, size_t count)
 {
     const char *start;
 
-    skip_blanks(r);
-    start = r->at;
-    if (!read_number(r, &values[count]))
+    (void)rows_is_at_end(rows);
+    start = rows->at;
+    if (!read_number(rows, &values[count]))
         return false;
     if (count == 0 || values[count] > values[count - 1])
         return true;
-    r->at = start;
-    return refuse(r, "coordinates must rise");
+    rows->at = start;
+    return rows_refuse(rows, "coordinates must rise");
 }
 
-static bool read_columns(struct reader *r)
+static bool read_columns(struct rows *rows, struct stock *s)
 {
-    while (!at_end(r)) {
-        if (!read_rising(r, r->stock->x_mm, r->stock->columns))
+    while (!rows_is_at_end(rows)) {
+        if (!read_rising(rows, s->x_mm, s->columns))
             return false;
-        r->stock->columns++;
+        s->columns++;
     }
-    return r->stock->columns >= 2 || refuse(r, "two columns are the least");
+    return s->columns >= 2 || rows_refuse(rows, "two columns are the least");
 }
 
-static bool read_row(struct reader *r)
+static bool read_row(struct rows *rows, struct stock *s)
 {
-    struct stock *s = r->stock;
-
-    if (!read_rising(r, s->y_mm, s->rows))
+    if (!read_rising(rows, s->y_mm, s->rows))
         return false;
     for (size_t i = 0; i < s->columns; i++) {
-        if (!read_number(r, &s->top_mm[s->rows * s->columns + i]))
+        if (!read_number(rows, &s->top_mm[s->rows * s->columns + i]))
             return false;
     }
     s->rows++;
-    return at_end(r) || refuse(r, "a row has its Y and a top for each X, and no more");
+    return rows_is_at_end(rows) ||
+           rows_refuse(rows, "a row has its Y and a top for each X, and no more");
 }
 
-static bool read_line(struct reader *r)
+static bool read_rows(struct rows *rows, struct stock *s)
 {
-    if (at_end(r))
-        return true;
-    return r->stock->columns == 0 ? read_columns(r) : read_row(r);
-}
-
-static bool read_lines(struct reader *r)
-{
-    const char *next;
-
-    for (; r->line != NULL; r->line = next, r->number++) {
-        r->at = r->line;
-        next = strchr(r->line, '\n');
-        next = next != NULL ? next + 1 : NULL;
-        if (!read_line(r))
+    while (rows_next(rows)) {
+        if (!(s->columns == 0 ? read_columns(rows, s) : read_row(rows, s)))
             return false;
     }
-    if (r->stock->rows >= 2)
+    if (s->rows >= 2)
         return true;
-    message_error(r->name, r->number - 1, 1, "a line of X and two rows are the least");
+    message_error(rows->text.name, rows->number, 1, "a line of X and two rows are the least");
     return false;
 }
 
@@ -124,21 +74,19 @@ static bool make_room(struct stock *stock, size_t length)
 
 bool stock_file_load(struct stock *stock, const char *path)
 {
-    struct text text;
+    struct rows rows;
     bool good;
 
     *stock = (struct stock){0};
     if (path == NULL)
         return true;
-    if (!text_read(&text, path))
+    if (!rows_open(&rows, path))
         return false;
-    struct reader reader = {.name = text.name, .line = text.bytes, .number = 1, .stock = stock};
-
-    good = make_room(stock, text.length) && strlen(text.bytes) == text.length;
+    good = make_room(stock, rows.text.length);
     if (!good)
-        message_command_error("%s: out of memory, or not a text", text.name);
-    good = good && read_lines(&reader);
-    text_free(&text);
+        message_command_error("%s: out of memory", path);
+    good = good && read_rows(&rows, stock);
+    rows_close(&rows);
     if (!good)
         stock_file_free(stock);
     return good;
