@@ -30,8 +30,6 @@
 #define PASS_AGAIN  4
 #define PASSES      13
 
-#define COB_ID_MASK 0x7FFu
-
 #define MAPPING_OFFSET (OBJECT_RPDO_MAPPING - OBJECT_RPDO)
 
 enum step {
@@ -388,7 +386,7 @@ static void take_rest(struct drives *d, const struct drives_answer *answer)
 /* A PDO that is not valid, or not of this kind of identifiers, is none. */
 static bool is_usable(uint32_t id)
 {
-    return (id & ~(uint32_t)OBJECT_PDO_NO_RTR) <= COB_ID_MASK;
+    return (id & ~(uint32_t)OBJECT_PDO_NO_RTR) <= CAN_ID_MASK;
 }
 
 static void take_reading(struct drives *d, const struct drives_answer *answer)
@@ -400,7 +398,7 @@ static void take_reading(struct drives *d, const struct drives_answer *answer)
     switch (step) {
     case READ_ID:
         m->id = answer->value;
-        m->pdo.cob_id = (uint16_t)(answer->value & COB_ID_MASK);
+        m->pdo.cob_id = (uint16_t)(answer->value & CAN_ID_MASK);
         mapping->count = 0;
         if (!is_good || !is_usable(answer->value))
             m->step = DONE;

@@ -24,8 +24,6 @@
 #define HOMING_INTERRUPTED 2
 #define HOMING_WENT_WRONG  3
 
-#define TORQUE_PER_RATED 1000.0
-
 #define METHOD_HERE     37
 #define METHOD_HERE_OLD 35
 

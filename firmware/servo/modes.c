@@ -12,10 +12,9 @@
 #define STATUS_BIT_12  0x1000 /* set-point acknowledged, homing attained, follows the target */
 #define STATUS_BIT_13  0x2000 /* following error, homing error */
 
-#define WINDOW_ANY       UINT32_MAX
-#define HALT_QUICK_STOP  2
-#define SECONDS_PER_MIN  60.0
-#define TORQUE_PER_RATED 1000.0
+#define WINDOW_ANY      UINT32_MAX
+#define HALT_QUICK_STOP 2
+#define SECONDS_PER_MIN 60.0
 
 #define INCREMENTS_MAX 2147483647.0
 

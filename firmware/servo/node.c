@@ -12,8 +12,6 @@
 #define LAST_COMMUNICATION 0x1FFF
 
 /* Object 1012. */
-#define TIME_CONSUMED 0x80000000u
-#define COB_ID_MASK   0x7FFu
 
 /* SYNC counts as lost after this many of its periods (object 1006). */
 #define SYNC_LOST_PERIODS 3
@@ -53,7 +51,7 @@ void servo_tell(const struct servo *drive, enum drive_event_kind kind, uint32_t 
 /* Of an object that says more about it in its upper bits. */
 static unsigned identifier_of(uint32_t cob_id)
 {
-    return cob_id & COB_ID_MASK;
+    return cob_id & CAN_ID_MASK;
 }
 
 static void accept(struct servo *drive, uint32_t cob_id)

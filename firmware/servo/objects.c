@@ -11,10 +11,6 @@
 #define SIGNATURE_SAVE 0x65766173u /* "save", the first letter in the lowest byte */
 #define SIGNATURE_LOAD 0x64616F6Cu /* "load" */
 
-#define TIME_CONSUMED 0x80000000u /* object 1012 */
-
-#define TORQUE_PER_RATED 1000.0
-
 static int32_t signed_round(double value)
 {
     return (int32_t)maths_clamp(maths_round(value), (double)INT32_MIN, (double)INT32_MAX);

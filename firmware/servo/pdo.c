@@ -10,7 +10,6 @@
 #define COB_NOT_VALID 0x80000000u
 #define COB_NO_RTR    0x40000000u
 #define COB_EXTENDED  0x20000000u
-#define COB_ID_MASK   0x7FFu
 
 /* Transmission types: up to this one by SYNC; 0 at the SYNC after an event. */
 #define TYPE_SYNC_MAX  240
@@ -128,7 +127,7 @@ static void update_pdo(struct servo *drive, struct drive_pdo *pdo,
 {
     memset(pdo, 0, sizeof *pdo);
     pdo->is_valid = !(parameters->cob_id & COB_NOT_VALID);
-    pdo->cob_id = (uint16_t)(parameters->cob_id & COB_ID_MASK);
+    pdo->cob_id = (uint16_t)(parameters->cob_id & CAN_ID_MASK);
     pdo->transmission = parameters->transmission;
     pdo->event_ns = DRIVE_NEVER;
     for (unsigned i = 0; i < mapping->count; i++)
@@ -420,7 +419,7 @@ static bool is_restricted(uint32_t id)
 static uint32_t check_cob_id(const struct drive_pdo *pdo, uint32_t value)
 {
     uint32_t id = value & ~(COB_NOT_VALID | COB_NO_RTR);
-    if (id > COB_ID_MASK || value & COB_EXTENDED)
+    if (id > CAN_ID_MASK || value & COB_EXTENDED)
         return SDO_ABORT_VALUE;
     if (value & COB_NOT_VALID)
         return SDO_ABORT_NONE;

@@ -12,6 +12,9 @@
 #define DRIVE_NEVER    UINT64_MAX
 #define MILLISECOND_NS 1000000u
 
+#define TORQUE_PER_RATED 1000.0      /* 6071, 6077: so many are the rated torque */
+#define TIME_CONSUMED    0x80000000u /* object 1012 */
+
 /* Groups of objects that are computed when they are asked for. */
 enum drive_group {
     DRIVE_GROUP_STATUS = 1, /* 6041, 6061 */

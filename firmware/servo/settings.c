@@ -25,7 +25,6 @@
 #define DEFAULT_POSITION_WINDOW_TURNS 1e-3
 #define DEFAULT_VELOCITY_TURNS_S      0.05 /* window and threshold */
 #define DEFAULT_CYCLE_US              1000
-#define TORQUE_PER_RATED              1000.0
 
 static uint32_t unsigned_round(double value)
 {

@@ -5,8 +5,6 @@
 #include "base/maths.h"
 #include "servo/servo_private.h"
 
-#define TORQUE_PER_RATED 1000.0
-
 /* ---- Velocity ---- */
 
 static double target_velocity_mm_s(const struct servo *drive)

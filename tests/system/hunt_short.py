@@ -39,6 +39,8 @@ hunt("no way to rest is longer than a cycle's feed where the axes could do far m
 hunt("corners of exact paths are not cut where a cycle is long", "1", "40033", "--exact")
 for seed in ("921759", "930658"):
     hunt(f"circles of many turns within the tolerance are judged as motions, not as pieces: {seed}", "1", seed, "--operator")
+hunt("a chain that ends with a motion of the path itself comes to rest there", "1", "934887", "--operator", "--kinds", KINDS)
+hunt("motions of the path itself keep the feed where rotary axes move too", "1", "920587", "--operator", "--kinds", KINDS)
 hunt("a rotary axis alone, rounded into linear ones, keeps its feed", "1", "1070140", "--hands", "--kinds", KINDS)
 for seed in ("1070690", "1070701", "1080141", "1082075"):
     hunt(f"a hold while the axes speed up after another exceeds no feed: {seed}", "1", seed, "--hands", "--kinds", KINDS)
