@@ -68,12 +68,6 @@ static const float ease_part[EASES] = {0.85f, 0.4f, 0.15f};
 
 /* -- the pieces -- */
 
-/* The highest rate on a block, whatever the overrides are: pieces a cycle. */
-static float top_rate(const struct hold *h, const struct path *path, uint32_t block)
-{
-    return (float)path_block_top(path_at(path, block)) * h->per_mm_s * (1.0f + TOP_SLACK);
-}
-
 /* Of a uniform cubic B-spline: x' = (c2 - c0)/2, x'' = c0 - 2 c1 + c2 where the piece begins. */
 static void read_piece(struct hold *h, const struct path *path, uint32_t block)
 {
@@ -81,7 +75,6 @@ static void read_piece(struct hold *h, const struct path *path, uint32_t block)
     struct point c[4];
 
     ring_control(&path->ring, block, c);
-    p->top = top_rate(h, path, block);
     for (unsigned i = 0; i < h->axes; i++) {
         const unsigned axis = h->axis[i];
         const double step0 = c[1].at[axis] - c[0].at[axis];
@@ -149,6 +142,12 @@ static void try_advance(struct hold_trial *s, float w, float t)
     s->at += t * (s->rate + t * (0.5f * s->change + t * w * (1.0f / 6.0f)));
     s->rate = single_max(0.0f, s->rate + t * (s->change + 0.5f * t * w));
     s->change += t * w;
+}
+
+/* The highest rate on a block, whatever the overrides are: pieces a cycle. */
+static float top_rate(const struct hold *h, const struct path *path, uint32_t block)
+{
+    return (float)path_block_top(path_at(path, block)) * h->per_mm_s * (1.0f + TOP_SLACK);
 }
 
 /* Does the curve end before a block? */

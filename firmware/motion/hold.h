@@ -24,7 +24,6 @@
 
 /* Of a piece of the curve, by axis: mm (rad) per piece and per piece^2. The second derivative is straight between its ends. */
 struct hold_piece {
-    float top; /* highest rate, whatever the overrides are */
     float first[AXIS_COUNT];
     float second[2][AXIS_COUNT];
 };

@@ -97,9 +97,6 @@ static bool axis_can(const struct hold *h, const struct hold_piece *piece, unsig
 
 static bool axes_can(const struct hold *h, uint32_t block, float f, float g, const struct part *p)
 {
-    if (p->rate.high > hold_piece_at(h, block)->top) {
-        return false;
-    }
     for (unsigned i = 0; i < h->axes; i++) {
         if (!axis_can(h, hold_piece_at(h, block), i, f, g, p)) {
             return false;
