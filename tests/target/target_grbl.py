@@ -58,6 +58,27 @@ def hold_and_reset(sender, panel):
     t.check(sender.ask("G0 X1") == "error:9", "after an emergency stop it moves nothing")
 
 
+def read_nothing(sender, panel):
+    """More is asked than all buffers hold of the answers; what is left of them is read when the panel has shown that it goes on."""
+    sender.line.write(b"$$\n" * (WINDOW // 3))
+    end = panel.number("CYCLES") + 2000
+    goes_on = any(panel.number("CYCLES") >= end for _ in range(2000))
+    t.check(goes_on, "the controller goes on while nobody reads")
+    if not goes_on:
+        return
+    looks = 0
+    while looks < 3:  # each is longer than a piece of text is on its way
+        while sender.line.has_data():
+            sender.line.read()
+            looks = 0
+        panel.number("CYCLES")
+        looks += 1
+    sender.text = b""
+    sender.realtime(g.RESET)
+    sender.expect("Grbl 1.1h ['$' for help]")
+    t.check(sender.ask("G4 P0") == "ok", "a sender that has read nothing for a while is served again")
+
+
 def blind_sheet():
     """Of drives that do not watch when SYNC comes: it is the console that is tried here, not the time a busy computer has."""
     t.check(t.run("drives", "--nodes", "1", "--eds", "own.eds")[0] == 0, "our own data sheet is written")
@@ -83,6 +104,7 @@ def main():
         digest = t.json.loads(out)["setpoint_digest"]
         stream(sender, panel, digest, WINDOW, "counting characters")
         stream(sender, panel, digest, 0, "line by line")
+        read_nothing(sender, panel)
         hold_and_reset(sender, panel)
     finally:
         board.stop()
