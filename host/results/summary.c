@@ -173,6 +173,13 @@ static void set_drive_images(struct summary *summary, const struct simulation *s
               (double)drive_images_differences(images), 0);
 }
 
+/* A spindle that cuts and has tripped has stood in the material. */
+static void check_spindle(struct summary *summary, const struct virtual_spindle *spindle)
+{
+    if (spindle->config.cut_width_mm > 0)
+        add_check(summary, "spindle_trip", AXIS_COUNT, "", (double)spindle->trip, 0);
+}
+
 static void set_fault(struct summary *summary, const struct diagnostic *fault)
 {
     const char *remedy = drives_table_remedy(fault);
@@ -223,5 +230,6 @@ void summary_set(struct summary *summary, const struct summary_source *source)
     set_pace(summary, &simulation->field);
     set_target(summary, simulation);
     set_drive_images(summary, simulation);
+    check_spindle(summary, &simulation->spindle);
     add_check(summary, "fault", AXIS_COUNT, "", source->outcome == OUTCOME_FAULTED ? 1 : 0, 0);
 }

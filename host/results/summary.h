@@ -22,7 +22,7 @@ enum summary_outcome {
 };
 
 #define SUMMARY_CHECK_NAME_MAX 31
-#define SUMMARY_CHECKS_MAX     (5 * AXIS_COUNT + 9)
+#define SUMMARY_CHECKS_MAX     (5 * AXIS_COUNT + 10)
 
 struct summary_check {
     char name[SUMMARY_CHECK_NAME_MAX + 1];

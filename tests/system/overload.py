@@ -80,6 +80,14 @@ t.check(0 < worst < 0.03, "it is passed by as much as the law of the feed says",
 shallow = [feed for x, y, feed, _ in held if 118 < x < 125 and abs(y) in (24, 0)]
 t.check(len(shallow) > 500 and min(shallow) > FEED - 1, "the feed comes back", min(shallow))
 
+# Overloaded for longer than its drive bears it, the spindle stands in the material; a stock that is cut with the limit does not.
+bears = ("--set", "spindle.overload_s=2", "--stock", STOCK, "--quiet", "--json", "trip.json")
+for limit, trip in (("0", 5), ("100", 0)):
+    status, _, err = t.run("run", PROGRAM, "--machine", MACHINE, "--set", f"spindle.load_limit_percent={limit}", *bears)
+    check = [check for check in t.load_json("trip.json")["checks"] if check["name"] == "spindle_trip"]
+    t.check(len(check) == 1 and check[0]["value"] == trip, "a spindle that trips is told", limit, check)
+    t.check(status == (1 if trip else 0), "and the run ends as one that has failed", limit, status, err)
+
 for text, place, said in (
     ("0 10\n0 1 2\n", ":3:", "two rows"),
     ("0\n0 1\n1 1\n", ":1:", "two columns"),
