@@ -173,6 +173,6 @@ void bore_picture_write(FILE *file, const struct bore_picture *picture)
     }
     for (size_t row = 0; row < ROWS; row++)
         draw_row(file, picture, &rows[row], top + ROW_HEIGHT * (double)row, time_s);
-    draw_removal(file, picture, top + ROW_HEIGHT * (double)ROWS);
+    draw_removal(file, picture, top + (double)(curves - ROW_HEIGHT));
     (void)fputs("</svg>\n", file);
 }

@@ -147,6 +147,7 @@ static void test_engaged_angle_of_a_late_turn(void)
 /* ---- a picture whose points are counted ---- */
 
 #define SIDE     1000
+#define MIDDLE   500
 #define POINT_MM (2.2 * (RADIUS_MM + CUTTER_MM) / SIDE)
 
 static unsigned char picture[SIDE][SIDE];
@@ -156,13 +157,13 @@ static double paint(const double at_mm[2])
     size_t fresh = 0;
 
     for (int y = 0; y < SIDE; y++) {
-        double v = (y - SIDE / 2) * POINT_MM - at_mm[1];
+        double v = (y - MIDDLE) * POINT_MM - at_mm[1];
 
         if (v * v > CUTTER_MM * CUTTER_MM)
             continue;
         double half = maths_sqrt(CUTTER_MM * CUTTER_MM - v * v);
-        int first = (int)((at_mm[0] - half) / POINT_MM) + SIDE / 2;
-        int last = (int)((at_mm[0] + half) / POINT_MM) + SIDE / 2;
+        int first = (int)((at_mm[0] - half) / POINT_MM) + MIDDLE;
+        int last = (int)((at_mm[0] + half) / POINT_MM) + MIDDLE;
 
         for (int x = first; x <= last; x++) {
             fresh += picture[y][x] == 0;

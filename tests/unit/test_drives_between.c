@@ -70,7 +70,8 @@ static void test_a_parabola_stays_one(void)
     between_take(&between, 0, 0, piece);
     for (int k = 1; k < 20; k++)
         between_take(&between, between.target_mm[2], 0.5 * k * k, piece);
-    for (double u = 0; u <= 1; u += 0.125) {
+    for (int i = 0; i <= 8; i++) {
+        double u = i / 8.0;
         between_at(piece, u, at);
         TEST_ASSERT_DOUBLE_WITHIN(1e-10, 0.5 * (17 + u) * (17 + u), at[0]);
         TEST_ASSERT_DOUBLE_WITHIN(1e-10, 17 + u, at[1]);
