@@ -66,6 +66,7 @@ struct drive_settings {
     uint32_t profile_acceleration;        /* 6083 */
     uint32_t profile_deceleration;        /* 6084 */
     uint32_t quick_stop_deceleration;     /* 6085 */
+    uint32_t profile_jerk;                /* 60A4:1 */
     uint32_t torque_slope;                /* 6087: 0.1 % of the rated torque in a second */
     uint32_t max_acceleration;            /* 60C5 */
     uint32_t max_deceleration;            /* 60C6 */

@@ -119,6 +119,27 @@ void servo_loop_follow(struct servo_loop *loop, double command_mm, uint32_t cycl
     look(loop, cycle_ns);
 }
 
+void servo_loop_follow_piece(struct servo_loop *loop, const double piece[BETWEEN_COEFFICIENTS],
+                             double end_mm, uint32_t cycle_ns)
+{
+    struct cycle cycle = begin_cycle(loop, cycle_ns);
+    double place[3];
+    for (uint32_t i = 0; i < loop->steps; i++) {
+        between_at(piece, i * loop->step_s * loop->per_cycle_s, place);
+        double velocity_mm_s = place[1] * loop->per_cycle_s;
+        double acceleration_mm_s2 = place[2] * loop->per_cycle_s * loop->per_cycle_s;
+        cycle.forward_mm_s =
+            loop->config.velocity_feed_forward_ratio * velocity_mm_s + loop->velocity_offset_mm_s;
+        cycle.forward_mm_s2 =
+            loop->config.torque_feed_forward_ratio * acceleration_mm_s2 + loop->torque_offset_mm_s2;
+        step(loop, &cycle, place[0]);
+    }
+    between_at(piece, 1, place);
+    loop->command_mm = end_mm;
+    loop->command_velocity_mm_s = place[1] * loop->per_cycle_s;
+    look(loop, cycle_ns);
+}
+
 /* Where the motor is at the end of a cycle. */
 static void stay_with_motor(struct servo_loop *loop, double velocity_mm_s)
 {

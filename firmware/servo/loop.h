@@ -7,6 +7,7 @@
 #define TAKT_SERVO_LOOP_H
 
 #include "hal/motor.h"
+#include "servo/between.h"
 
 #include <stdbool.h>
 #include <stdint.h>
@@ -70,6 +71,10 @@ void servo_loop_look(struct servo_loop *loop);
 
 /* One cycle with torque, in which the command moves from where it is to command_mm at a constant velocity. */
 void servo_loop_follow(struct servo_loop *loop, double command_mm, uint32_t cycle_ns);
+
+/* The same along a piece of curve from where it is, over the part of the cycle; acceleration is fed forward all along it. */
+void servo_loop_follow_piece(struct servo_loop *loop, const double piece[BETWEEN_COEFFICIENTS],
+                             double end_mm, uint32_t cycle_ns);
 
 /* One cycle of the velocity loop alone: the command stays with the motor. */
 void servo_loop_turn(struct servo_loop *loop, double velocity_mm_s, uint32_t cycle_ns);

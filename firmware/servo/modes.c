@@ -14,7 +14,13 @@
 
 #define WINDOW_ANY      UINT32_MAX
 #define HALT_QUICK_STOP 2
-#define SECONDS_PER_MIN 60.0
+
+/* Object 60C0; 0: straight lines. */
+#define INTERPOLATION_SMOOTH (-1)
+
+/* Object 6086. */
+#define PROFILE_JERK_LIMITED 3
+#define SECONDS_PER_MIN      60.0
 
 #define INCREMENTS_MAX 2147483647.0
 
@@ -81,13 +87,6 @@ void servo_hold(struct servo *drive)
 
 /* ---- Motion of the command ---- */
 
-double servo_approach(double value, double goal, double by)
-{
-    if (maths_abs(goal - value) <= by)
-        return goal;
-    return goal > value ? value + by : value - by;
-}
-
 /* x += (v0 + v1) / 2 t */
 static void move_command(struct servo *drive, double velocity_mm_s, uint32_t cycle_ns)
 {
@@ -101,7 +100,7 @@ void servo_run_at(struct servo *drive, double velocity_mm_s, double acceleration
                   uint32_t cycle_ns)
 {
     double by_mm_s = acceleration_mm_s2 * (cycle_ns * 1e-9);
-    move_command(drive, servo_approach(drive->velocity_mm_s, velocity_mm_s, by_mm_s), cycle_ns);
+    move_command(drive, course_approach(drive->velocity_mm_s, velocity_mm_s, by_mm_s), cycle_ns);
 }
 
 bool servo_slow(struct servo *drive, double deceleration_mm_s2, uint32_t cycle_ns)
@@ -110,63 +109,20 @@ bool servo_slow(struct servo *drive, double deceleration_mm_s2, uint32_t cycle_n
     return drive->velocity_mm_s == 0;
 }
 
-struct ramps {
-    double velocity_mm_s, acceleration_mm_s2, deceleration_mm_s2;
-    double end_mm_s; /* velocity at the target */
-};
-
-/*
- * The highest velocity u' at the end of a cycle t from which the rest of the way s can still be
- * braked to e by d, when the cycle itself begins with u towards the target:
- *     s - (u + u') t / 2 >= (u'^2 - e^2) / (2 d)
- * so  u' = -d t / 2 + sqrt((d t / 2)^2 + d (2 s - u t) + e^2)
- */
-static double allowed_velocity(double way_mm, double u_mm_s, const struct ramps *ramps, double t_s)
-{
-    double d_mm_s2 = ramps->deceleration_mm_s2;
-    double half = d_mm_s2 * t_s / 2;
-    double square =
-        half * half + d_mm_s2 * (2 * way_mm - u_mm_s * t_s) + ramps->end_mm_s * ramps->end_mm_s;
-    return square > half * half ? maths_sqrt(square) - half : 0;
-}
-
-/*
- * A cycle of a trapezoidal profile to target_mm, as a position of the encoder. Near enough to get
- * there within the next cycle's rounding, it is there.
- */
-static void run_profile(struct servo *drive, double target_mm, const struct ramps *ramps,
-                        uint32_t cycle_ns)
-{
-    double t_s = cycle_ns * 1e-9;
-    double way_mm = target_mm - drive->loop.command_mm;
-    double sign = way_mm < 0 ? -1 : 1;
-    double u_mm_s = sign * drive->velocity_mm_s;
-    double brake_mm_s = ramps->deceleration_mm_s2 * t_s;
-    if (maths_abs(way_mm) <= brake_mm_s * t_s && maths_abs(u_mm_s) <= 2 * brake_mm_s) {
-        drive->velocity_mm_s = 0;
-        servo_loop_follow(&drive->loop, target_mm, cycle_ns);
-        return;
-    }
-    double allowed_mm_s = allowed_velocity(maths_abs(way_mm), u_mm_s, ramps, t_s);
-    double wanted_mm_s = maths_min(ramps->velocity_mm_s, allowed_mm_s);
-    double by_mm_s =
-        wanted_mm_s > u_mm_s && u_mm_s >= 0 ? ramps->acceleration_mm_s2 * t_s : brake_mm_s;
-    move_command(drive, sign * servo_approach(u_mm_s, wanted_mm_s, by_mm_s), cycle_ns);
-}
-
 /* ---- Profile position ---- */
 
 /* Without a target behind it the end velocity is 0: nobody would stop the axis. */
-static struct ramps profile_ramps(const struct servo *drive)
+static struct course_ramps profile_ramps(const struct servo *drive)
 {
     const struct drive_settings *s = &drive->objects.settings;
     double per_mm = servo_velocity_scale(drive);
     double velocity_mm_s =
         maths_min(s->profile_velocity / per_mm, servo_profile_velocity_max_mm_s(drive));
     double end_mm_s = drive->setpoints.has_next ? s->end_velocity / per_mm : 0;
-    return (struct ramps){velocity_mm_s, servo_profile_acceleration_mm_s2(drive),
-                          servo_profile_deceleration_mm_s2(drive),
-                          maths_min(end_mm_s, velocity_mm_s)};
+    return (struct course_ramps){
+        velocity_mm_s, servo_profile_acceleration_mm_s2(drive),
+        servo_profile_deceleration_mm_s2(drive), maths_min(end_mm_s, velocity_mm_s),
+        s->motion_profile_type == PROFILE_JERK_LIMITED ? s->profile_jerk / per_mm : 0};
 }
 
 /* Object 607D; limits that leave no room are none. */
@@ -237,26 +193,48 @@ static void check_reached(struct servo *drive, double target_mm, uint32_t cycle_
 }
 
 /* With an end velocity the target is passed on the way to the next one, in the cycle that would reach it. */
-static bool passes_target(const struct servo *drive, double target_mm, const struct ramps *ramps,
-                          uint32_t cycle_ns)
+static bool passes_target(const struct course *course, double target_mm,
+                          const struct course_ramps *ramps, uint32_t cycle_ns)
 {
-    double way_mm = target_mm - drive->loop.command_mm;
-    double step_mm = drive->velocity_mm_s * (cycle_ns * 1e-9);
+    double way_mm = target_mm - course->at_mm;
+    double step_mm = course->velocity_mm_s * (cycle_ns * 1e-9);
     return ramps->end_mm_s > 0 && maths_abs(way_mm) <= maths_abs(step_mm);
+}
+
+/* The trapezoid under way: the command itself, or what is averaged to it. */
+static struct course trapezoid(const struct servo *drive, const struct course *command,
+                               const struct course_ramps *ramps)
+{
+    bool is_own = ramps->jerk_mm_s3 == 0 || course_is_elsewhere(&drive->average, command);
+    return is_own ? *command : drive->average.course;
+}
+
+/* A cycle of the profile to target_mm, as a position of the encoder. */
+static void run_profile(struct servo *drive, struct course *command, double target_mm,
+                        const struct course_ramps *ramps, uint32_t cycle_ns)
+{
+    if (ramps->jerk_mm_s3 > 0)
+        course_step_average(&drive->average, command, target_mm, ramps, cycle_ns * 1e-9);
+    else
+        course_step(command, target_mm, ramps, cycle_ns * 1e-9);
+    drive->velocity_mm_s = command->velocity_mm_s;
+    servo_loop_follow(&drive->loop, command->at_mm, cycle_ns);
 }
 
 static void run_position(struct servo *drive, uint32_t cycle_ns)
 {
     struct drive_setpoints *s = &drive->setpoints;
     double target_mm = take_target(drive, (double)s->active_inc);
-    struct ramps ramps = profile_ramps(drive);
-    if (s->has_next && (s->is_reached || passes_target(drive, target_mm, &ramps, cycle_ns))) {
+    struct course_ramps ramps = profile_ramps(drive);
+    struct course command = {drive->loop.command_mm, drive->velocity_mm_s};
+    struct course course = trapezoid(drive, &command, &ramps);
+    if (s->has_next && (s->is_reached || passes_target(&course, target_mm, &ramps, cycle_ns))) {
         activate(drive, s->next_inc);
         target_mm = take_target(drive, (double)s->active_inc);
         ramps = profile_ramps(drive);
     }
     release_setpoint(drive);
-    run_profile(drive, target_mm, &ramps, cycle_ns);
+    run_profile(drive, &command, target_mm, &ramps, cycle_ns);
     check_reached(drive, target_mm, cycle_ns);
 }
 
@@ -268,6 +246,13 @@ static uint32_t period_cycles(const struct servo *drive, uint32_t cycle_ns)
     if (2 * drive->interpolation_ns < 3 * (uint64_t)cycle_ns)
         return 1;
     return (uint32_t)((drive->interpolation_ns + cycle_ns / 2) / cycle_ns);
+}
+
+static void follow_smoothly(struct servo *drive, double command_mm, uint32_t cycle_ns)
+{
+    double piece[BETWEEN_COEFFICIENTS];
+    between_take(&drive->between, drive->loop.command_mm, command_mm, piece);
+    servo_loop_follow_piece(&drive->loop, piece, drive->between.target_mm[2], cycle_ns);
 }
 
 /* The command goes to the target in a straight line, within the period after it has changed. */
@@ -284,7 +269,10 @@ static void run_interpolated(struct servo *drive, double target_inc, uint32_t cy
         command_mm = from_mm + (goal_mm - from_mm) / drive->steps;
         drive->steps--;
     }
-    servo_loop_follow(&drive->loop, command_mm, cycle_ns);
+    if (drive->objects.settings.interpolation_submode == INTERPOLATION_SMOOTH)
+        follow_smoothly(drive, command_mm, cycle_ns);
+    else
+        servo_loop_follow(&drive->loop, command_mm, cycle_ns);
 }
 
 /* Objects 60B1 and 60B2. */

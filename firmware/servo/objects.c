@@ -122,6 +122,12 @@ static uint32_t check_overflow(const struct servo *drive, uint32_t value)
     return value == 1 ? SDO_ABORT_VALUE : SDO_ABORT_NONE;
 }
 
+/* 0 trapezoid, 3 jerk limited; 1 and 2 would be other laws. */
+static uint32_t check_profile_type(uint32_t value)
+{
+    return value == 1 || value == 2 ? SDO_ABORT_VALUE : SDO_ABORT_NONE;
+}
+
 /* 3 and 4 would be limits of current and voltage, 7 and 8 the same and staying. */
 static uint32_t check_quick_stop(uint32_t value)
 {
@@ -160,6 +166,8 @@ static uint32_t check_profile_write(const struct servo *drive, const struct obje
     switch (row->index) {
     case 0x605A:
         return check_quick_stop((uint32_t)value);
+    case 0x6086:
+        return check_profile_type((uint32_t)value);
     case 0x6060:
         return servo_has_mode(drive, (int8_t)value) ? SDO_ABORT_NONE : SDO_ABORT_VALUE;
     case 0x607E:

@@ -162,8 +162,6 @@ double servo_profile_velocity_max_mm_s(const struct servo *drive);
 double servo_motor_velocity_max_mm_s(const struct servo *drive);
 /* Has it been within the window of the target for the time of that? Notes it. */
 void servo_note_reached(struct servo *drive, bool is_inside, uint16_t time_ms, uint32_t cycle_ns);
-/* Value goes to goal, by so much at most. */
-double servo_approach(double value, double goal, double by);
 /* Velocity and torque that are added (60B1, 60B2). */
 void servo_set_offsets(struct servo *drive);
 

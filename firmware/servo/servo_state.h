@@ -130,10 +130,12 @@ struct servo {
     uint64_t following_ns;     /* how long the following error has been outside its window */
 
     /* Motion of the command. */
-    double velocity_mm_s; /* profile position, homing, halt */
-    double goal_mm;       /* cyclic and interpolated position */
-    uint32_t steps;       /* cycles until the goal is to be reached */
-    bool is_leaving;      /* slows down, then takes the state leaving_to */
+    double velocity_mm_s;          /* profile position, homing, halt */
+    struct course_average average; /* profile position with limited jerk */
+    struct between between;        /* with object 60C0 = -1 */
+    double goal_mm;                /* cyclic and interpolated position */
+    uint32_t steps;                /* cycles until the goal is to be reached */
+    bool is_leaving;               /* slows down, then takes the state leaving_to */
     bool is_halted;
     bool is_stopped;   /* quick stop has come to rest and stays */
     bool interpolates; /* mode 7, by controlword bit 4 */

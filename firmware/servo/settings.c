@@ -18,6 +18,7 @@
 /* Turns of the motor per second, and per second squared, a drive starts with. */
 #define DEFAULT_PROFILE_TURNS_S       5.0
 #define DEFAULT_PROFILE_TURNS_S2      50.0
+#define DEFAULT_PROFILE_TURNS_S3      1000.0
 #define DEFAULT_MAX_TURNS_S           50.0
 #define DEFAULT_HOMING_TURNS_S        2.0
 #define DEFAULT_HOMING_SLOW_TURNS_S   0.2
@@ -99,6 +100,7 @@ void servo_init_objects(struct servo *drive)
     o->settings.profile_velocity = unsigned_velocity(drive, DEFAULT_PROFILE_TURNS_S * turn_mm);
     o->settings.profile_acceleration = unsigned_velocity(drive, DEFAULT_PROFILE_TURNS_S2 * turn_mm);
     o->settings.profile_deceleration = o->settings.profile_acceleration;
+    o->settings.profile_jerk = unsigned_velocity(drive, DEFAULT_PROFILE_TURNS_S3 * turn_mm);
     o->settings.homing_velocity[0] = unsigned_velocity(drive, DEFAULT_HOMING_TURNS_S * turn_mm);
     o->settings.homing_velocity[1] =
         unsigned_velocity(drive, DEFAULT_HOMING_SLOW_TURNS_S * turn_mm);

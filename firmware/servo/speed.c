@@ -46,7 +46,7 @@ void servo_run_profile_velocity(struct servo *drive, uint32_t cycle_ns)
     bool speeds_up = maths_abs(goal_mm_s) > maths_abs(now_mm_s);
     double ramp_mm_s2 = speeds_up ? servo_profile_acceleration_mm_s2(drive)
                                   : servo_profile_deceleration_mm_s2(drive);
-    turn(drive, servo_approach(now_mm_s, goal_mm_s, ramp_mm_s2 * (cycle_ns * 1e-9)), cycle_ns);
+    turn(drive, course_approach(now_mm_s, goal_mm_s, ramp_mm_s2 * (cycle_ns * 1e-9)), cycle_ns);
     check_velocity(drive, target_mm_s, cycle_ns);
 }
 
@@ -87,7 +87,7 @@ void servo_run_profile_torque(struct servo *drive, uint32_t cycle_ns)
     const struct drive_objects *o = &drive->objects;
     double target = drive->is_halted ? 0 : ratio_of(drive, o->process.target_torque);
     double by = o->settings.torque_slope / TORQUE_PER_RATED * (cycle_ns * 1e-9);
-    drive->torque_ratio = servo_approach(drive->torque_ratio, target, by);
+    drive->torque_ratio = course_approach(drive->torque_ratio, target, by);
     push(drive, drive->torque_ratio, cycle_ns);
     drive->setpoints.is_reached = drive->torque_ratio == target;
 }

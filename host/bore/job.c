@@ -54,39 +54,67 @@ static const char *check_hole(const struct bore_job *job)
     return NULL;
 }
 
+/* The pass that begins where the job says. */
+static enum bore_pass begun(const struct bore_job *job)
+{
+    return job->pass == BORE_ROUGHING ? BORE_ROUGHING : BORE_FINISHING;
+}
+
+/* n = ceil(R / step): no turn is farther out than asked for. */
+static double turns_of(const struct bore_job *job, enum bore_pass pass)
+{
+    if (pass == BORE_FINISHING)
+        return job->turns;
+    return maths_ceil(circle_mm(job, BORE_ROUGHING) / job->step_mm * (1 - WHOLE_SLACK));
+}
+
+/* The cutter goes round the centre, and what it leaves there stands as a core. */
+static const char *check_helix(const struct bore_job *job)
+{
+    double radius_mm = circle_mm(job, BORE_ROUGHING);
+
+    if (!(job->depth_mm > 0))
+        return wrong("a helix goes down: it needs a depth");
+    if (radius_mm > 0.5 * job->cutter_mm)
+        return wrong("a helix of radius %g mm leaves a core: the cutter of %g mm must be at least "
+                     "%g mm",
+                     radius_mm, job->cutter_mm, 0.5 * job->hole_mm - job->allowance_mm);
+    return NULL;
+}
+
 static const char *check_roughing(const struct bore_job *job)
 {
-    double turns;
-
     if (!does(job, BORE_ROUGHING))
         return NULL;
+    if (job->as == BORE_AS_HELIX)
+        return check_helix(job);
     if (!(job->step_mm > 0))
         return wrong("the radial step is %g mm: it must be greater than 0", job->step_mm);
-    turns = circle_mm(job, BORE_ROUGHING) / job->step_mm;
-    if (turns > BORE_TURNS_MAX)
+    if (turns_of(job, BORE_ROUGHING) > BORE_TURNS_MAX)
         return wrong("the radial step of %g mm makes %.0f turns: more than %d", job->step_mm,
-                     maths_ceil(turns), BORE_TURNS_MAX);
+                     turns_of(job, BORE_ROUGHING), BORE_TURNS_MAX);
     return NULL;
 }
 
 static const char *check_start(const struct bore_job *job)
 {
-    double radius_mm = circle_mm(job, BORE_FINISHING);
+    double radius_mm = circle_mm(job, begun(job));
     double distance_mm =
         maths_sqrt(job->start_mm[0] * job->start_mm[0] + job->start_mm[1] * job->start_mm[1]);
-    double length_mm = MATHS_PI * radius_mm * job->turns; /* from the centre: R n pi */
+    double length_mm =
+        MATHS_PI * radius_mm * turns_of(job, begun(job)); /* from the centre: R n pi */
 
     if (job->begin == BORE_AT_POINT && !(distance_mm < radius_mm))
         return wrong("the start %g,%g is %g mm from the hole's centre: it must be inside the "
                      "circle of %g mm that the cutter's centre goes on",
                      job->start_mm[0], job->start_mm[1], distance_mm, radius_mm);
     if (job->begin == BORE_AT_RADIUS && !(job->start_radius_mm < radius_mm))
-        return wrong("the approach begins with a radius of %g mm: it must be less than the %g mm "
+        return wrong("the spiral begins with a radius of %g mm: it must be less than the %g mm "
                      "of the circle",
                      job->start_radius_mm, radius_mm);
     if (job->begin == BORE_AT_LENGTH &&
         !(job->start_length_mm > 0 && job->start_length_mm <= length_mm))
-        return wrong("the approach is %g mm long: from the hole's centre it would be %g mm, and "
+        return wrong("the spiral is %g mm long: from the hole's centre it would be %g mm, and "
                      "it cannot be longer",
                      job->start_length_mm, length_mm);
     return NULL;
@@ -99,7 +127,7 @@ static const char *check_finishing(const struct bore_job *job)
     if (job->turns < 1 || job->turns > BORE_TURNS_MAX)
         return wrong("the approach makes %u turns: 1 to %d are possible", job->turns,
                      BORE_TURNS_MAX);
-    return check_start(job);
+    return NULL;
 }
 
 static const char *check_depth(const struct bore_job *job)
@@ -125,7 +153,8 @@ static const char *check_technology(const struct bore_job *job)
         return wrong("the feed down is %g mm/min: it must be greater than 0", job->plunge_mm_min);
     if (!(job->spindle_rpm >= 0))
         return wrong("the spindle's speed is %g rpm: it must be 0 or more", job->spindle_rpm);
-    if (job->as != BORE_AS_INVOLUTE && !(job->tolerance_mm >= BORE_TOLERANCE_MIN))
+    if ((job->as == BORE_AS_ARCS || job->as == BORE_AS_LINES) &&
+        !(job->tolerance_mm >= BORE_TOLERANCE_MIN))
         return wrong("the tolerance is %g mm: it must be %g or more", job->tolerance_mm,
                      BORE_TOLERANCE_MIN);
     return NULL;
@@ -134,7 +163,7 @@ static const char *check_technology(const struct bore_job *job)
 const char *bore_check(const struct bore_job *job)
 {
     static const char *(*const checks[])(const struct bore_job *job) = {
-        check_hole, check_roughing, check_finishing, check_depth, check_technology};
+        check_hole, check_roughing, check_finishing, check_start, check_depth, check_technology};
     const char *problem = NULL;
 
     for (size_t i = 0; i < sizeof checks / sizeof checks[0] && problem == NULL; i++)
@@ -142,17 +171,12 @@ const char *bore_check(const struct bore_job *job)
     return problem;
 }
 
-/* n = ceil(R / step): no turn is farther out than asked for. */
 void bore_set_spiral(const struct bore_job *job, enum bore_pass pass, struct bore_spiral *s)
 {
-    double radius_mm = circle_mm(job, pass);
-
-    if (pass == BORE_ROUGHING) {
-        bore_spiral_set(s, radius_mm,
-                        (unsigned)maths_ceil(radius_mm / job->step_mm * (1 - WHOLE_SLACK)));
+    bore_spiral_set(s, circle_mm(job, pass), (unsigned)turns_of(job, pass));
+    s->turned_rad = job->direction_rad;
+    if (pass != begun(job))
         return;
-    }
-    bore_spiral_set(s, radius_mm, job->turns);
     if (job->begin == BORE_AT_POINT)
         bore_spiral_begin_at(s, job->start_mm);
     else if (job->begin == BORE_AT_RADIUS)
@@ -196,6 +220,7 @@ static void add_spiral(const struct bore_job *job, const struct bore_spiral *s, 
     double end = MATHS_TWO_PI * s->turns;
 
     switch (job->as) {
+    case BORE_AS_HELIX: /* of roughing; this is a finishing pass */
     case BORE_AS_INVOLUTE:
         bore_spiral_point(s, end, piece.to_mm);
         bore_spiral_base_centre(s, piece.centre_mm);
@@ -223,12 +248,28 @@ static void add_circle(const struct bore_job *job, const struct bore_spiral *s, 
         bore_path_arc(p, bore_path_start(p, p->count), centre);
 }
 
+/* A turn for each depth, and the circle. */
+static void make_helix(const struct bore_job *job, struct bore_path *p)
+{
+    double from[2] = {0, -circle_mm(job, BORE_ROUGHING)};
+    unsigned turns = bore_depth_steps(job);
+
+    bore_path_begin(p, from);
+    for (unsigned i = 0; i < turns; i++)
+        bore_path_helix(p, job->depth_mm / turns);
+    bore_path_helix(p, 0);
+}
+
 void bore_make_path(const struct bore_job *job, enum bore_pass pass, struct bore_path *p)
 {
     struct bore_spiral s;
     double from[2];
     size_t approach;
 
+    if (pass == BORE_ROUGHING && job->as == BORE_AS_HELIX) {
+        make_helix(job, p);
+        return;
+    }
     bore_set_spiral(job, pass, &s);
     bore_spiral_point(&s, s.start_rad, from);
     bore_path_begin(p, from);

@@ -11,10 +11,10 @@
 
 enum bore_pass { BORE_ROUGHING, BORE_FINISHING, BORE_BOTH };
 
-/* What the spiral is written as. */
-enum bore_form_kind { BORE_AS_INVOLUTE, BORE_AS_ARCS, BORE_AS_LINES };
+/* What the spiral is written as; a helix is of roughing alone. */
+enum bore_form_kind { BORE_AS_INVOLUTE, BORE_AS_ARCS, BORE_AS_LINES, BORE_AS_HELIX };
 
-/* Where a finishing pass begins. */
+/* Where the spiral of a pass alone begins; of both passes that of finishing. */
 enum bore_begin { BORE_AT_POINT, BORE_AT_RADIUS, BORE_AT_LENGTH };
 
 #define BORE_TURNS_MAX       10000
@@ -31,9 +31,10 @@ struct bore_job {
         allowance_mm; /* left on the radius: by roughing for finishing; by a finishing pass alone */
     unsigned turns;   /* finishing, >= 1 */
     enum bore_begin begin;
-    double start_mm[2];     /* finishing, from the hole's centre: nearer to it than the circle */
+    double start_mm[2];     /* from the hole's centre: nearer to it than the circle */
     double start_radius_mm; /* BORE_AT_RADIUS: radius of curvature at the start */
-    double start_length_mm; /* BORE_AT_LENGTH: of the approach, > 0 */
+    double start_length_mm; /* BORE_AT_LENGTH: of the way to the circle, > 0 */
+    double direction_rad;   /* psi: the spiral leaves the centre so */
     double depth_mm;        /* >= 0; 0: at Z 0 */
     double depth_step_mm;   /* > 0: one turn of the work is at most so deep; 0: all at once */
     double height_mm;       /* above Z 0, where a plunge begins; > 0 */

@@ -52,6 +52,14 @@ void bore_path_arc(struct bore_path *p, const double to_mm[2], const double cent
     bore_path_add(p, &piece);
 }
 
+void bore_path_helix(struct bore_path *p, double down_mm)
+{
+    const double *at_mm = bore_path_start(p, p->count);
+    struct bore_piece piece = {.kind = BORE_ARC, .to_mm = {at_mm[0], at_mm[1]}, .down_mm = down_mm};
+
+    bore_path_add(p, &piece);
+}
+
 const double *bore_path_start(const struct bore_path *p, size_t piece)
 {
     return piece == 0 ? p->from_mm : p->piece[piece - 1].to_mm;

@@ -17,6 +17,7 @@ struct bore_piece {
     double to_mm[2];
     double centre_mm[2]; /* of an arc, or of an involute's base circle */
     double base_mm;      /* radius of an involute's base circle */
+    double down_mm;      /* of an arc: so much lower at its end, a helix */
 };
 
 struct bore_path {
@@ -32,6 +33,9 @@ void bore_path_add(struct bore_path *p, const struct bore_piece *piece);
 void bore_path_line(struct bore_path *p, double x_mm, double y_mm);
 /* An arc from where the path ends; ending there too it is a full circle. */
 void bore_path_arc(struct bore_path *p, const double to_mm[2], const double centre_mm[2]);
+
+/* A full circle about the origin, so much lower at its end. */
+void bore_path_helix(struct bore_path *p, double down_mm);
 
 /* Where the piece begins; the end of the path is the beginning of piece number count. */
 const double *bore_path_start(const struct bore_path *p, size_t piece);

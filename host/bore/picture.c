@@ -99,6 +99,46 @@ static void draw_row(FILE *file, const struct bore_picture *p, const struct row 
     }
 }
 
+static double width_of(const struct bore_removal *r, double turns)
+{
+    double most = 0;
+
+    for (size_t i = 0; i < r->count; i++)
+        if (r->window[i].turn >= 1 && r->window[i].turn <= turns)
+            most = maths_max(most, bore_window_width(&r->window[i]));
+    return most;
+}
+
+/* Chip area by depth and way, over the turns of the spiral and its circle. */
+static void draw_removal(FILE *file, const struct bore_picture *p, double top)
+{
+    double top_mm = 0;
+    double end = p->turns + 1.5;
+    char words[64];
+
+    for (unsigned i = 0; i < p->tracks; i++)
+        top_mm = maths_max(top_mm, 1.05 * width_of(&p->removal[i], end));
+    for (unsigned i = 0; i < p->tracks; i++) {
+        const struct bore_removal *r = &p->removal[i];
+        double left = MARGIN + COLUMN_WIDTH * (double)i;
+
+        (void)fprintf(file,
+                      "<rect x=\"%.1f\" y=\"%.1f\" width=\"%d\" height=\"%d\" class=\"frame\"/>\n",
+                      left, top, PLOT_WIDTH, PLOT_HEIGHT);
+        (void)fputs("<polyline fill=\"none\" stroke=\"#2a7d46\" points=\"", file);
+        for (size_t k = 0; k < r->count && r->window[k].turn <= end; k++)
+            (void)fprintf(file, "%.2f,%.2f ", left + PLOT_WIDTH * r->window[k].turn / end,
+                          top + PLOT_HEIGHT *
+                                    (1 - maths_min(1, bore_window_width(&r->window[k]) / top_mm)));
+        (void)fputs("\"/>\n", file);
+        text(file, left, top - 6, "label", "chip area / depth [mm]");
+        (void)snprintf(words, sizeof words, "%.4g", top_mm);
+        text(file, left - 6, top + 8, "scale", words);
+        (void)snprintf(words, sizeof words, "%.4g turns", end);
+        text(file, left + PLOT_WIDTH, top + PLOT_HEIGHT + 14, "scale", words);
+    }
+}
+
 static void draw_head(FILE *file, const struct bore_picture *p, double height)
 {
     (void)fprintf(
@@ -115,7 +155,7 @@ static void draw_head(FILE *file, const struct bore_picture *p, double height)
 void bore_picture_write(FILE *file, const struct bore_picture *picture)
 {
     double top = HEAD + PLOT_WIDTH + 40;
-    size_t curves = ROWS * ROW_HEIGHT;
+    size_t curves = (ROWS + 1) * ROW_HEIGHT;
     double time_s = 0;
 
     for (unsigned i = 0; i < picture->tracks; i++)
@@ -133,5 +173,6 @@ void bore_picture_write(FILE *file, const struct bore_picture *picture)
     }
     for (size_t row = 0; row < ROWS; row++)
         draw_row(file, picture, &rows[row], top + ROW_HEIGHT * (double)row, time_s);
+    draw_removal(file, picture, top + (double)(curves - ROW_HEIGHT));
     (void)fputs("</svg>\n", file);
 }

@@ -61,16 +61,26 @@ static void involute(struct bore_path *p, double radius_mm, unsigned turns)
     bore_path_add(p, &piece);
 }
 
+static void helix(struct bore_path *p, double radius_mm, double down_mm)
+{
+    double to[2] = {0, -radius_mm};
+    double centre[2] = {0, -0.5 * radius_mm};
+
+    bore_path_arc(p, to, centre);
+    bore_path_helix(p, down_mm);
+}
+
 const char *bore_rival_name(enum bore_rival rival)
 {
-    static const char *const names[BORE_RIVALS] = {
-        "involute", "semicircles, 2 poles", "quarter circles, 4 poles", "Archimedean spiral"};
+    static const char *const names[BORE_RIVALS] = {"involute", "semicircles, 2 poles",
+                                                   "quarter circles, 4 poles", "Archimedean spiral",
+                                                   "helix"};
 
     return names[rival];
 }
 
 void bore_rival_path(enum bore_rival rival, double radius_mm, unsigned turns, double tolerance_mm,
-                     struct bore_path *p)
+                     double down_mm, struct bore_path *p)
 {
     double a = radius_mm / (MATHS_TWO_PI * turns);
     struct bore_curve archimedes = {&a, archimedes_at};
@@ -89,6 +99,9 @@ void bore_rival_path(enum bore_rival rival, double radius_mm, unsigned turns, do
         break;
     case BORE_RIVAL_ARCHIMEDES:
         bore_approximate_arcs(p, &archimedes, 0, MATHS_TWO_PI * turns, tolerance_mm);
+        break;
+    case BORE_RIVAL_HELIX:
+        helix(p, radius_mm, down_mm);
         break;
     case BORE_RIVALS:
         break;

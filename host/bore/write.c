@@ -31,13 +31,17 @@ static void point(FILE *file, const double at_mm[2])
     word(file, " Y", at_mm[1]);
 }
 
-static void write_piece(FILE *file, const double from_mm[2], const struct bore_piece *piece)
+/* z_mm: its height at the end. */
+static void write_piece(FILE *file, const double from_mm[2], const struct bore_piece *piece,
+                        double z_mm)
 {
     static const char *const codes[] = {"G1", "G3", "G3.2"};
     double base[2] = {piece->centre_mm[0] - from_mm[0], piece->centre_mm[1] - from_mm[1]};
 
     (void)fputs(codes[piece->kind], file);
     point(file, piece->to_mm);
+    if (piece->down_mm != 0)
+        word(file, " Z", z_mm);
     if (piece->kind != BORE_LINE) {
         word(file, " I", base[0]);
         word(file, " J", base[1]);
@@ -49,8 +53,12 @@ static void write_piece(FILE *file, const double from_mm[2], const struct bore_p
 
 static void write_pieces(FILE *file, const struct bore_path *p)
 {
-    for (size_t i = 0; i < p->count; i++)
-        write_piece(file, bore_path_start(p, i), &p->piece[i]);
+    double z_mm = 0;
+
+    for (size_t i = 0; i < p->count; i++) {
+        z_mm -= p->piece[i].down_mm;
+        write_piece(file, bore_path_start(p, i), &p->piece[i], z_mm);
+    }
 }
 
 static void go(FILE *file, const char *code, const double to_mm[2])
@@ -93,18 +101,28 @@ static void describe(FILE *file, const struct bore_job *job, enum bore_pass pass
                   MATHS_TWO_PI * s.radius_mm);
 }
 
+static void describe_helix(FILE *file, const struct bore_job *job, const struct bore_path *p)
+{
+    (void)fprintf(file, "(roughing: a helix, R %.9g, %u turns of %.9g mm, and the circle)\n",
+                  -p->from_mm[1], bore_depth_steps(job), p->piece[0].down_mm);
+}
+
 static bool write_pass(FILE *file, const struct bore_job *job, enum bore_pass pass)
 {
-    unsigned steps = bore_depth_steps(job);
+    bool helix = pass == BORE_ROUGHING && job->as == BORE_AS_HELIX;
+    unsigned steps = helix ? 1 : bore_depth_steps(job);
     struct bore_path p;
     bool good;
 
     bore_make_path(job, pass, &p);
     good = !p.failed;
-    describe(file, job, pass);
+    if (helix && good)
+        describe_helix(file, job, &p);
+    else
+        describe(file, job, pass);
     go(file, "G0", p.from_mm);
     for (unsigned i = 1; i <= steps && good; i++) {
-        plunge(file, job, job->depth_mm * i / steps);
+        plunge(file, job, helix ? 0 : job->depth_mm * i / steps);
         write_pieces(file, &p);
         if (i < steps)
             go(file, "G1", p.from_mm);
@@ -121,13 +139,13 @@ static bool write_pass(FILE *file, const struct bore_job *job, enum bore_pass pa
 
 static void write_head(FILE *file, const struct bore_job *job)
 {
-    static const char *const forms[] = {"involutes", "arcs", "lines"};
+    static const char *const forms[] = {"involutes", "arcs", "lines", "a helix"};
 
     word(file, "(hole ", job->hole_mm);
     word(file, ", cutter ", job->cutter_mm);
     word(file, ", allowance ", job->allowance_mm);
     (void)fprintf(file, " mm; as %s", forms[job->as]);
-    if (job->as != BORE_AS_INVOLUTE)
+    if (job->as == BORE_AS_ARCS || job->as == BORE_AS_LINES)
         word(file, " within ", job->tolerance_mm);
     (void)fprintf(file, ")\n%s", modes);
     if (job->spindle_rpm > 0) {

@@ -23,6 +23,7 @@ struct option_bore {
     const char *start;
     double hole, cutter, step, allowance;
     double start_radius, start_length, turns;
+    double direction_deg;
     double depth, depth_step, height;
     double feed, plunge, spindle;
     bool compare;

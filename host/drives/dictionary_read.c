@@ -326,6 +326,7 @@ static bool is_of_motor(uint16_t index)
     case 0x6083:
     case 0x6084:
     case 0x6085:
+    case 0x60A4:
     case 0x6099:
     case 0x609A:
     case 0x60C5:

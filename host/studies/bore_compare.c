@@ -2,7 +2,9 @@
 
 #include "studies/bore_compare.h"
 
+#include "base/maths.h"
 #include "bore/picture.h"
+#include "bore/removal.h"
 #include "bore/rival.h"
 #include "bore/write.h"
 #include "cli/interrupt.h"
@@ -24,6 +26,9 @@ struct comparison {
     struct session session; /* of one program after the other */
     struct bore_track track[BORE_RIVALS];
     double length_mm[BORE_RIVALS];
+    struct bore_removal removal[BORE_RIVALS];
+    unsigned rivals; /* that are run */
+    double down_mm;  /* of the helix */
 };
 
 static enum command_status out_of_memory(void)
@@ -41,7 +46,7 @@ static bool write_rival(struct comparison *c, enum bore_rival rival)
     bool good = stream != NULL;
 
     bore_rival_path(rival, c->spiral.radius_mm, (unsigned)c->spiral.turns, c->job->tolerance_mm,
-                    &path);
+                    c->down_mm, &path);
     text->name = bore_rival_name(rival);
     c->session.program.name = text->name;
     if (good) {
@@ -110,6 +115,9 @@ static enum command_status run_rival(struct comparison *c, enum bore_rival rival
     status = session_check(&c->session, 1, &totals);
     if (status == STATUS_DONE)
         status = run_checked(c, rival);
+    if (status == STATUS_DONE && rival != BORE_RIVAL_HELIX &&
+        !bore_removal_make(&c->removal[rival], &c->track[rival], 0.5 * c->job->cutter_mm))
+        status = out_of_memory();
     program_text_close(&c->session.program);
     return status;
 }
@@ -128,10 +136,54 @@ static struct bore_motion limits_of(const struct machine *machine)
     };
 }
 
-static void print_helix(FILE *stream, const struct bore_job *job)
+/* The first turn has none before it; the last joined arc ends part of a turn before the circle begins. */
+#define FIRST_TURN     1.25
+#define BEFORE_CIRCLE  0.5
+#define DEGREES(angle) (180.0 / MATHS_PI * (angle))
+
+/*
+ * A helix: at every moment all of a turn's cut is under way, each level at its own stage of it. So nothing changes along
+ * the way; pi (R + c)^2 by 2 pi R of way, and at the cutter's end its whole front.
+ */
+static void helix_evenness(const struct comparison *c, struct bore_evenness *e)
 {
-    if (2 * job->cutter_mm > job->hole_mm)
+    const double radius_mm = c->spiral.radius_mm;
+    const double outer_mm = radius_mm + 0.5 * c->job->cutter_mm;
+    const double width_mm = 0.5 * outer_mm * outer_mm / radius_mm;
+
+    *e = (struct bore_evenness){
+        {c->job->cutter_mm, c->job->cutter_mm}, {width_mm, width_mm}, {MATHS_PI, MATHS_PI}};
+}
+
+static void print_removal(FILE *stream, const struct comparison *c)
+{
+    (void)fprintf(stream, "\n  %-26s %22s %26s %20s\n", "removed", "layer [mm]",
+                  "chip area/depth [mm]", "engaged [deg]");
+    for (unsigned i = 0; i < c->rivals; i++) {
+        struct bore_evenness e;
+
+        if (i == BORE_RIVAL_HELIX)
+            helix_evenness(c, &e);
+        else
+            bore_removal_evenness(&c->removal[i], FIRST_TURN, c->spiral.turns - BEFORE_CIRCLE, &e);
+        if (!(e.layer_mm.most >= e.layer_mm.least))
+            continue;
+        (void)fprintf(stream, "  %-26s %10.4f .. %8.4f %14.4f .. %8.4f %10.2f .. %6.2f\n",
+                      c->track[i].name, e.layer_mm.least, e.layer_mm.most, e.width_mm.least,
+                      e.width_mm.most, DEGREES(e.engaged_rad.least), DEGREES(e.engaged_rad.most));
+    }
+}
+
+static void print_helix(FILE *stream, const struct comparison *c)
+{
+    const struct bore_job *job = c->job;
+
+    if (c->rivals == BORE_RIVALS)
         return;
+    if (2 * c->spiral.radius_mm <= job->cutter_mm) {
+        (void)fprintf(stream, "  A helix is not among them: it needs --depth.\n");
+        return;
+    }
     (void)fprintf(
         stream,
         "  A helix is not among them: it leaves a core unless the cutter exceeds half the "
@@ -151,7 +203,7 @@ static void print_table(FILE *stream, const struct comparison *c)
                   c->job->feed_mm_min, c->session.setup.machine.name, limit.acceleration_mm_s2,
                   limit.jerk_mm_s3, "spiral", "time [s]", "length [mm]",
                   "peak acceleration [mm/s2]", "peak jerk [mm/s3]");
-    for (unsigned i = 0; i < BORE_RIVALS; i++) {
+    for (unsigned i = 0; i < c->rivals; i++) {
         const struct bore_track *t = &c->track[i];
         struct bore_motion most = bore_track_peaks(t, 0, t->count);
 
@@ -160,14 +212,17 @@ static void print_table(FILE *stream, const struct comparison *c)
                       100 * most.acceleration_mm_s2 / limit.acceleration_mm_s2, most.jerk_mm_s3,
                       100 * most.jerk_mm_s3 / limit.jerk_mm_s3);
     }
-    print_helix(stream, c->job);
+    print_removal(stream, c);
+    print_helix(stream, c);
 }
 
 static enum command_status draw(const struct comparison *c, const char *path)
 {
     struct bore_picture picture = {
         .track = c->track,
-        .tracks = BORE_RIVALS,
+        .removal = c->removal,
+        .tracks = c->rivals,
+        .turns = c->spiral.turns,
         .radius_mm = c->spiral.radius_mm,
         .limit = limits_of(&c->session.setup.machine),
     };
@@ -191,7 +246,7 @@ static enum command_status compare(struct comparison *c, const struct options *o
     parameters_clear(&c->session.parameters.values);
     if (!machine_file_load(&c->session.setup, options))
         return STATUS_INPUT;
-    for (unsigned i = 0; i < BORE_RIVALS && status == STATUS_DONE; i++)
+    for (unsigned i = 0; i < c->rivals && status == STATUS_DONE; i++)
         status = run_rival(c, (enum bore_rival)i);
     if (status == STATUS_DONE && options->output != NULL)
         status = draw(c, options->output);
@@ -209,9 +264,14 @@ enum command_status bore_compare(const struct bore_job *job, const struct option
         return out_of_memory();
     c->job = job;
     bore_set_spiral(job, BORE_ROUGHING, &c->spiral);
+    c->down_mm = job->depth_mm / bore_depth_steps(job);
+    c->rivals = c->down_mm > 0 && 2 * c->spiral.radius_mm <= job->cutter_mm ? BORE_RIVALS
+                                                                            : BORE_RIVAL_HELIX;
     status = compare(c, options);
-    for (unsigned i = 0; i < BORE_RIVALS; i++)
+    for (unsigned i = 0; i < BORE_RIVALS; i++) {
         bore_track_free(&c->track[i]);
+        bore_removal_free(&c->removal[i]);
+    }
     free(c);
     return status;
 }

@@ -8,6 +8,7 @@ import takt_test as t
 
 HOLE = "--hole", "200", "--cutter", "40"
 ROUGH = (*HOLE, "--step", "4", "--allowance", "1")
+WIDE = "--hole", "30", "--cutter", "20"
 SMALL = "--hole", "30", "--cutter", "10", "--step", "2.5", "--allowance", "0.2"
 
 
@@ -54,6 +55,21 @@ for form in ("arcs", "lines"):
     summary = summary_of(program)
     t.check(abs(summary["path_length_mm"] / exact["path_length_mm"] - 1) < 1e-3, f"as long as {form}", summary["path_length_mm"])
 
+# Roughing from a place that is open already, and in another direction.
+opened = bore(*SMALL, "--start", "3,4")
+t.check("G0 X3 Y4\n" in opened and summary_of(opened)["path_length_mm"] < summary["path_length_mm"], "roughing from a start", opened)
+turned = bore(*SMALL, "--direction", "90")
+t.check("G3.2 X9.8 Y0 I0" in turned, "out in another direction", turned)
+summary_of(turned)
+
+# A helix: a turn for each depth, then the circle at the bottom.
+helix = bore(*WIDE, "--as", "helix", "--depth", "6", "--depth-step", "2.5")
+t.check(re.findall(r"^G3 X0 Y-5( Z-\d)? I0 J5$", helix, re.M) == [" Z-2", " Z-4", " Z-6", ""], "turns of a helix", helix)
+expected = 3 * ((10 * 3.141592653589793) ** 2 + 4) ** 0.5 + 10 * 3.141592653589793 + 5 + 5 + 2 + 2 + 6 + 2
+t.check(abs(summary_of(helix)["path_length_mm"] - expected) < 1e-6, "as long as it is", summary_of(helix)["path_length_mm"], expected)
+both = bore(*WIDE, "--as", "helix", "--depth", "6", "--allowance", "0.3", "--pass", "both")
+t.check("a helix, R 4.7" in both and both.count("G3.2") == 2, "finished by involutes", both)
+
 # A file is written whole, or not at all.
 bore(*ROUGH, "-o", "rough.ngc")
 t.check(open("rough.ngc").read() == rough, "-o writes what standard output gets")
@@ -80,9 +96,14 @@ for words, said in (
     ((*ROUGH, "--depth", "9", "--depth-step", "0"), "--depth-step 0: it must be above 0"),
     ((*ROUGH, "--feed", "0"), "--feed 0: it must be above 0"),
     ((*HOLE, "--pass", "finishing", "--start", "1,1", "--start-radius", "9"), "only one of"),
-    ((*ROUGH, "--start", "1,1"), "of the finishing pass"),
+    ((*ROUGH, "--turns", "2"), "--turns is of the finishing pass"),
+    ((*ROUGH, "--start", "79,0"), "must be inside the circle of 79 mm"),
+    ((*HOLE, "--as", "helix", "--depth", "5"), "a helix of radius 80 mm leaves a core: the cutter of 40 mm must be at least 100 mm"),
+    ((*WIDE, "--as", "helix"), "a helix goes down: it needs a depth"),
+    ((*WIDE, "--as", "helix", "--depth", "5", "--start", "1,1"), "a helix begins on its circle"),
+    ((*ROUGH, "--start", "1,1", "--compare"), "--compare begins at the centre"),
     ((*ROUGH, "--pass", "rough"), "--pass rough: roughing, finishing or both"),
-    ((*ROUGH, "--as", "spline"), "--as spline: involute, arcs or lines"),
+    ((*ROUGH, "--as", "spline"), "--as spline: involute, arcs, lines or helix"),
     ((*ROUGH, "--as", "lines", "--tolerance", "1e-9"), "the tolerance is 1e-09 mm"),
     ((*ROUGH, "--depth-step", "2"), "needs --depth"),
     ((*ROUGH, "--pass", "both", "--compare"), "--compare is about roughing"),
@@ -103,8 +124,19 @@ for name, time_s, _, acceleration, _, jerk, percent in rows:
 length = float(re.search(r"involute ([\d.]+) mm", bore(*SMALL))[1]) + circle
 t.check(abs(float(rows[0][2]) / length - 1) < 1e-3, "the involute's length", rows[0], length)
 t.check("15 mm" in out.splitlines()[-1], "what a helix would need", out)
+removed = dict(re.findall(r"^  (\S.+?)  +([\d.]+ .. +[\d.]+ .*)$", out, re.M))
+layer = {name: [float(x) for x in re.findall(r"[\d.]*\d", words)] for name, words in removed.items()}
+step = 9.8 / 4
+for name in ("involute", "semicircles, 2 poles", "quarter circles, 4 poles"):
+    t.check(max(abs(x / step - 1) for x in layer[name][:2]) < 2e-3, f"{name}: a layer as thick as a step, everywhere", out)
+t.check(layer["Archimedean spiral"][0] < 0.95 * step, "Archimedes' spiral takes less where it is steep", out)
+t.check(all(row[3] > 1.3 * row[2] for row in layer.values()), "the load of none is even: the wall is longer where it bends more", out)
+wide = bore(*WIDE, "--step", "1", "--depth", "3", "--feed", "6000", "--compare")
+t.check(len(re.findall("^  helix ", wide, re.M)) == 2 and "not among them" not in wide, "a helix where the cutter is wide enough", wide)
+t.check("22.5000 ..  22.5000" in wide, "which is even: 15 mm squared by 2 times 5 mm", wide)
+t.check("it needs --depth" in bore(*WIDE, "--step", "1", "--compare"), "what it needs besides")
 picture = xml.etree.ElementTree.parse("spirals.svg").getroot()
-t.check(picture.tag.endswith("svg") and len(picture.findall(".//{*}polyline")) == 16, "the picture: four paths, twelve curves")
+t.check(picture.tag.endswith("svg") and len(picture.findall(".//{*}polyline")) == 20, "the picture: four paths, sixteen curves")
 status, out, err = t.run("bore", *SMALL, "--compare", "-o", "-")
 t.check(status == 0 and out.startswith("<svg") and "Archimedean" in err, "a picture on standard output", err)
 t.finish()

@@ -178,7 +178,7 @@ static void test_lines_stay_within_the_tolerance(void)
 static void test_every_spiral_leads_from_the_centre_around_the_circle(void)
 {
     for (unsigned rival = 0; rival < BORE_RIVALS; rival++) {
-        bore_rival_path((enum bore_rival)rival, 24.0, 8, 1e-3, &path);
+        bore_rival_path((enum bore_rival)rival, 24.0, 8, 1e-3, 0.0, &path);
         const struct curve circle = curve_of(path.count - 1);
 
         TEST_ASSERT_DOUBLE_WITHIN(1e-9, MATHS_TWO_PI * 24.0, circle.length_mm);
@@ -193,13 +193,13 @@ static void test_every_spiral_leads_from_the_centre_around_the_circle(void)
 /* Of two poles: 2 n - 1 half circles whose radii grow by R / (2 n). */
 static void test_joined_arcs_grow_evenly(void)
 {
-    bore_rival_path(BORE_RIVAL_TWO_POLES, 24.0, 8, 1e-3, &path);
+    bore_rival_path(BORE_RIVAL_TWO_POLES, 24.0, 8, 1e-3, 0.0, &path);
     TEST_ASSERT_EQUAL_UINT(16, path.count);
     for (size_t i = 0; i + 1 < path.count; i++) {
         TEST_ASSERT_DOUBLE_WITHIN(1e-9, MATHS_PI * 1.5 * (double)(i + 1), curve_of(i).length_mm);
     }
     bore_path_free(&path);
-    bore_rival_path(BORE_RIVAL_FOUR_POLES, 24.0, 8, 1e-3, &path);
+    bore_rival_path(BORE_RIVAL_FOUR_POLES, 24.0, 8, 1e-3, 0.0, &path);
     TEST_ASSERT_EQUAL_UINT(32, path.count);
     TEST_ASSERT_DOUBLE_WITHIN(1e-9, MATHS_HALF_PI * 0.75, curve_of(0).length_mm);
 }
@@ -211,7 +211,7 @@ static void test_the_archimedean_spiral_keeps_its_distance(void)
     double turned = 0.0;
     double last = 0.0;
 
-    bore_rival_path(BORE_RIVAL_ARCHIMEDES, 24.0, 8, 1e-3, &path);
+    bore_rival_path(BORE_RIVAL_ARCHIMEDES, 24.0, 8, 1e-3, 0.0, &path);
     for (size_t i = 0; i + 1 < path.count; i++) {
         const struct curve c = curve_of(i);
 

@@ -124,6 +124,33 @@ static void test_at_the_centre_the_spiral_is_whole(void)
     TEST_ASSERT_EQUAL_DOUBLE(0.0, spiral.turned_rad);
 }
 
+static void test_roughing_begins_where_it_is_told(void)
+{
+    double p[2];
+
+    job.start_mm[0] = 30.0;
+    job.start_mm[1] = 40.0;
+    bore_set_spiral(&job, BORE_ROUGHING, &spiral);
+    bore_spiral_point(&spiral, spiral.start_rad, p);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-12, 30.0, p[0]);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-12, 40.0, p[1]);
+    job.pass = BORE_BOTH; /* the start is that of finishing then */
+    job.turns = 1;
+    bore_set_spiral(&job, BORE_ROUGHING, &spiral);
+    TEST_ASSERT_EQUAL_DOUBLE(0.0, spiral.start_rad);
+}
+
+static void test_the_direction_turns_the_whole_spiral(void)
+{
+    double p[2];
+
+    job.direction_rad = MATHS_HALF_PI;
+    bore_set_spiral(&job, BORE_ROUGHING, &spiral);
+    bore_spiral_point(&spiral, MATHS_TWO_PI * spiral.turns, p);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-9, spiral.radius_mm, p[0]);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-9, 0.0, p[1]);
+}
+
 static void expect_problem(const char *said)
 {
     const char *problem = bore_check(&job);
@@ -159,11 +186,11 @@ static void test_bad_jobs_are_refused_with_the_value_that_is_wrong(void)
     job.pass = BORE_FINISHING;
     job.begin = BORE_AT_RADIUS;
     job.start_radius_mm = 79;
-    expect_problem("the approach begins with a radius of 79 mm");
+    expect_problem("the spiral begins with a radius of 79 mm");
     job.pass = BORE_FINISHING;
     job.begin = BORE_AT_LENGTH;
     job.start_length_mm = 300;
-    expect_problem("the approach is 300 mm long");
+    expect_problem("the spiral is 300 mm long");
     job.depth_mm = -1;
     expect_problem("the depth is -1 mm");
     job.depth_mm = 1;
@@ -214,6 +241,8 @@ int main(void)
     RUN_TEST(test_a_start_radius_and_a_length_give_the_same_spiral_as_the_point);
     RUN_TEST(test_the_start_may_be_in_any_direction);
     RUN_TEST(test_at_the_centre_the_spiral_is_whole);
+    RUN_TEST(test_roughing_begins_where_it_is_told);
+    RUN_TEST(test_the_direction_turns_the_whole_spiral);
     RUN_TEST(test_bad_jobs_are_refused_with_the_value_that_is_wrong);
     RUN_TEST(test_with_both_passes_the_allowance_is_only_roughings);
     RUN_TEST(test_the_depth_is_reached_in_equal_steps);

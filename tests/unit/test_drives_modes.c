@@ -104,6 +104,90 @@ static void test_a_profile_keeps_velocity_and_accelerations_and_never_overshoots
     TEST_ASSERT_TRUE(down < -890 && down > -1810); /* the last cycle may brake by two */
 }
 
+/* ---- with limited jerk (6086: 3, 60A4) ---- */
+
+struct peaks {
+    double velocity_mm_s, acceleration_mm_s2, jerk_mm_s3, place_mm;
+};
+
+/* Of the command, by differences over so many cycles, from rest at x on. */
+static struct peaks follow_command(unsigned cycles)
+{
+    struct peaks most = {0, 0, 0, 0};
+    static double x, v, a;
+    if (cycles == 0)
+        x = v = a = 0;
+    for (unsigned k = 0; k < cycles; k++) {
+        lone_step(&lone, 1);
+        double v_now = (command_mm() - x) / 1e-3;
+        double a_now = (v_now - v) / 1e-3;
+        most.jerk_mm_s3 = fmax(most.jerk_mm_s3, fabs(a_now - a) / 1e-3);
+        most.acceleration_mm_s2 = fmax(most.acceleration_mm_s2, fabs(a_now));
+        most.velocity_mm_s = fmax(most.velocity_mm_s, fabs(v_now));
+        most.place_mm = fmax(most.place_mm, command_mm());
+        x = command_mm();
+        v = v_now;
+        a = a_now;
+    }
+    return most;
+}
+
+/* The command's places are whole 1e-9 mm: 4e-9 mm / cycle^3 of jerk are their rounding, by the average of 100 or so less. */
+#define ROUNDING_MM_S3 1.0
+
+static void limit_jerk(uint32_t jerk_inc_s3)
+{
+    TEST_ASSERT_EQUAL_HEX32(0, lone_write(&lone, 0x6081, 0, 4, 80000));
+    TEST_ASSERT_EQUAL_HEX32(0, lone_write(&lone, 0x6083, 0, 4, 400000));
+    TEST_ASSERT_EQUAL_HEX32(0, lone_write(&lone, 0x6084, 0, 4, 900000));
+    TEST_ASSERT_EQUAL_HEX32(0, lone_write(&lone, 0x6086, 0, 2, 3));
+    TEST_ASSERT_EQUAL_HEX32(0, lone_write(&lone, 0x60A4, 1, 4, jerk_inc_s3));
+    lone_enable(&lone, PP);
+    (void)follow_command(0);
+}
+
+/* (400 + 2 900) mm/s2 by 20,000 mm/s3: 110 cycles longer than v / 2a + v / 2d + s / v = 0.1 + 0.0444 + 0.375 s. */
+static void test_a_profile_of_limited_jerk_lands_exactly_and_later_by_its_average(void)
+{
+    limit_jerk(20000000);
+    go(30000, 0);
+    struct peaks most = follow_command(300);
+    struct peaks rest = follow_command(250);
+    TEST_ASSERT_TRUE(command_mm() < 30);
+    struct peaks last = follow_command(110);
+    TEST_ASSERT_TRUE(command_mm() == 30);
+    TEST_ASSERT_TRUE(fmax(rest.place_mm, last.place_mm) <= 30 + 1e-9);
+    TEST_ASSERT_TRUE(fabs(rest.velocity_mm_s - 80) < 1e-4);
+    TEST_ASSERT_TRUE(fmax(rest.acceleration_mm_s2, last.acceleration_mm_s2) < 901);
+    TEST_ASSERT_TRUE(most.acceleration_mm_s2 < 401);
+    double jerk = fmax(most.jerk_mm_s3, fmax(rest.jerk_mm_s3, last.jerk_mm_s3));
+    TEST_ASSERT_TRUE(jerk <= 20000 + ROUNDING_MM_S3);
+    TEST_ASSERT_TRUE(jerk > 5000);
+}
+
+/* Back and forth, at whatever moment. */
+static void test_jerk_is_limited_when_targets_change_on_the_way(void)
+{
+    limit_jerk(20000000);
+    uint32_t random = 25;
+    double jerk = 0;
+    for (int i = 0; i < 40; i++) {
+        random = random * 1664525U + 1013904223U;
+        go((int32_t)(random >> 16), NOW);
+        jerk = fmax(jerk, follow_command(1 + (random >> 8) % 400).jerk_mm_s3);
+    }
+    jerk = fmax(jerk, follow_command(3000).jerk_mm_s3);
+    TEST_ASSERT_TRUE(jerk > 10000 && jerk <= 20000 + ROUNDING_MM_S3);
+    TEST_ASSERT_TRUE(command_mm() == (double)(random >> 16) / 1000);
+}
+
+static void test_profiles_of_other_laws_are_refused(void)
+{
+    TEST_ASSERT_EQUAL_HEX32(0x06090030, lone_write(&lone, 0x6086, 0, 2, 1));
+    TEST_ASSERT_EQUAL_HEX32(0x06090030, lone_write(&lone, 0x6086, 0, 2, 2));
+    TEST_ASSERT_EQUAL_HEX32(0, lone_write(&lone, 0x6086, 0, 2, 0));
+}
+
 static void test_velocity_is_the_least_of_6081_607F_and_6080(void)
 {
     double fastest_mm_s = 0;
@@ -263,6 +347,25 @@ static void test_cyclic_targets_are_held_within_the_software_limits(void)
     lone_control(&lone, CIA402_SHUTDOWN, CSP);
     lone_step(&lone, 1);
     TEST_ASSERT_FALSE(lone_statusword(&lone) & LIMITED);
+}
+
+/* Targets of an even acceleration of 1000 mm/s2, a cycle late; between them the motor gets no steps of torque. */
+static void test_cyclic_targets_are_followed_smoothly_if_60C0_says_so(void)
+{
+    TEST_ASSERT_EQUAL_HEX32(0, lone_write(&lone, 0x60C0, 0, 2, 0xFFFF));
+    TEST_ASSERT_EQUAL_HEX32(0x06090031, lone_write(&lone, 0x60C0, 0, 2, 1));
+    TEST_ASSERT_EQUAL_HEX32(0x06090032, lone_write(&lone, 0x60C0, 0, 2, 0xFFFE));
+    lone_enable(&lone, CSP);
+    for (unsigned k = 1; k <= 100; k++) {
+        double before = 5e-4 * (k - 1) * (k - 1);
+        target_by_pdo((int32_t)lround(0.5 * k * k));
+        lone_step(&lone, 1);
+        TEST_ASSERT_DOUBLE_WITHIN(1e-3, before, command_mm());
+    }
+    lone_step(&lone, 1);
+    TEST_ASSERT_TRUE(command_mm() == 5);
+    lone_step(&lone, 1);
+    TEST_ASSERT_TRUE(command_mm() == 5);
 }
 
 static void test_interpolated_position_follows_60C1_while_bit_4_is_set(void)
@@ -429,6 +532,9 @@ int main(void)
     UNITY_BEGIN();
     RUN_TEST(test_a_profile_takes_the_time_of_its_trapezoid);
     RUN_TEST(test_a_profile_keeps_velocity_and_accelerations_and_never_overshoots);
+    RUN_TEST(test_a_profile_of_limited_jerk_lands_exactly_and_later_by_its_average);
+    RUN_TEST(test_jerk_is_limited_when_targets_change_on_the_way);
+    RUN_TEST(test_profiles_of_other_laws_are_refused);
     RUN_TEST(test_velocity_is_the_least_of_6081_607F_and_6080);
     RUN_TEST(test_a_second_target_waits_for_the_first);
     RUN_TEST(test_change_immediately_turns_round_on_the_way);
@@ -439,6 +545,7 @@ int main(void)
     RUN_TEST(test_a_target_is_reached_in_the_interpolation_period);
     RUN_TEST(test_offsets_add_to_target_velocity_and_torque);
     RUN_TEST(test_cyclic_targets_are_held_within_the_software_limits);
+    RUN_TEST(test_cyclic_targets_are_followed_smoothly_if_60C0_says_so);
     RUN_TEST(test_interpolated_position_follows_60C1_while_bit_4_is_set);
     RUN_TEST(test_a_mode_the_drive_does_not_have_is_not_taken);
     RUN_TEST(test_every_mode_of_6502_is_taken);
