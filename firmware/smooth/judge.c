@@ -33,9 +33,12 @@
 /* Places looked at in a piece, at most. */
 #define PLACES_MAX 8
 
-/* Of a group of slots. The derivative is a parabola in a piece: it exceeds both its ends by |third difference| / 8 at most. */
+/*
+ * Of a group of slots. The derivative is a parabola in a piece: it exceeds both its ends by |third difference| / 8 at most.
+ * square: of the first derivative, over the linear axes and over the others.
+ */
 static void need_of_group(const struct window *w, const struct route *r, unsigned group,
-                          unsigned piece, struct judge_need *need)
+                          unsigned piece, struct judge_need *need, float square[2])
 {
     const lanes_int *c = w->x + (size_t)group * w->capacity + piece;
     const lanes_int step0 = c[1] - c[0];
@@ -56,25 +59,20 @@ static void need_of_group(const struct window *w, const struct route *r, unsigne
         need->first[i] = most[k] * first;
         need->second[i] = bend[k] * first * per_s;
         need->third[i] = twist[k] * first * per_s * per_s;
+        square[r->slots.axis[i] < AXIS_LINEAR_COUNT ? 0 : 1] += need->first[i] * need->first[i];
     }
 }
 
 void judge_need(const struct window *w, const struct route *r, unsigned piece,
                 struct judge_need *need)
 {
-    float linear = 0.0f;
-    float rotary = 0.0f;
+    float square[2] = {0.0f, 0.0f};
 
     for (unsigned g = 0; g < r->slots.groups; g++) {
-        need_of_group(w, r, g, piece, need);
+        need_of_group(w, r, g, piece, need, square);
     }
-    for (unsigned i = 0; i < r->slots.count; i++) {
-        float *square = r->slots.axis[i] < AXIS_LINEAR_COUNT ? &linear : &rotary;
-
-        *square += need->first[i] * need->first[i];
-    }
-    need->linear_mm_s = single_sqrt(linear);
-    need->rotary_mm_s = single_sqrt(rotary);
+    need->linear_mm_s = single_sqrt(square[0]);
+    need->rotary_mm_s = single_sqrt(square[1]);
 }
 
 float judge_programmed(const struct judge_need *need, const struct route *r, uint32_t element)

@@ -90,8 +90,8 @@ static inline struct motion_at motion_at(const struct tempo *p, unsigned slot, u
                                          const struct end *e)
 {
     const float per_unit = p->twist_per_unit[slot];
-    struct motion_at m = {.first = lanes_at(p->first + slot * p->capacity + piece),
-                          .second = lanes_at(p->second + slot * p->capacity + piece)};
+    const size_t at = (size_t)slot * p->capacity + piece;
+    struct motion_at m = {.first = lanes_at(p->first + at), .second = lanes_at(p->second + at)};
 
     m.half = 0.5f * m.first;
     m.bend = e->slope * m.half + e->energy * m.second;
