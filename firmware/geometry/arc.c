@@ -219,35 +219,54 @@ static void arc_locate(const struct curve *c, double s_mm, struct arc_state *a)
     a->f2 = (p * (6.0 * u - 4.0) - q * (2.0 - 6.0 * u)) / (c->length_mm * c->length_mm);
 }
 
+static void point_of(const struct curve *c, const struct arc_state *a, struct point *p)
+{
+    *p = c->start;
+    for (int i = 0; i < AXIS_COUNT; i++) {
+        if (c->slope.at[i] != 0.0) {
+            p->at[i] += c->slope.at[i] * c->length_mm * a->f;
+        }
+    }
+    p->at[c->arc.first] = c->arc.centre_mm[0] + a->radius_mm * a->cosine;
+    p->at[c->arc.second] = c->arc.centre_mm[1] + a->radius_mm * a->sine;
+}
+
+/* dx/ds = dx/df f'; in the plane dx/df = radius_change (cos, sin) + radius sweep (-sin, cos) */
+static void tangent_of(const struct curve *c, const struct arc_state *a, struct point *t)
+{
+    const double along = c->arc.radius_change_mm * a->f1;
+    const double across = a->radius_mm * c->arc.sweep_rad * a->f1;
+
+    for (int i = 0; i < AXIS_COUNT; i++) {
+        t->at[i] = c->slope.at[i] * c->length_mm * a->f1;
+    }
+    t->at[c->arc.first] = along * a->cosine - across * a->sine;
+    t->at[c->arc.second] = along * a->sine + across * a->cosine;
+}
+
 void arc_point(const struct curve *c, double s_mm, struct point *p)
 {
     struct arc_state a;
 
     locate_point(c, s_mm, &a);
-    *p = c->start;
-    for (int i = 0; i < AXIS_COUNT; i++) {
-        if (c->slope.at[i] != 0.0) {
-            p->at[i] += c->slope.at[i] * c->length_mm * a.f;
-        }
-    }
-    p->at[c->arc.first] = c->arc.centre_mm[0] + a.radius_mm * a.cosine;
-    p->at[c->arc.second] = c->arc.centre_mm[1] + a.radius_mm * a.sine;
+    point_of(c, &a, p);
 }
 
-/* dx/ds = dx/df f'; in the plane dx/df = radius_change (cos, sin) + radius sweep (-sin, cos) */
 void arc_tangent(const struct curve *c, double s_mm, struct point *t)
 {
     struct arc_state a;
 
     arc_locate(c, s_mm, &a);
-    const double along = c->arc.radius_change_mm * a.f1;
-    const double across = a.radius_mm * c->arc.sweep_rad * a.f1;
+    tangent_of(c, &a, t);
+}
 
-    for (int i = 0; i < AXIS_COUNT; i++) {
-        t->at[i] = c->slope.at[i] * c->length_mm * a.f1;
-    }
-    t->at[c->arc.first] = along * a.cosine - across * a.sine;
-    t->at[c->arc.second] = along * a.sine + across * a.cosine;
+void arc_point_and_tangent(const struct curve *c, double s_mm, struct point *p, struct point *t)
+{
+    struct arc_state a;
+
+    arc_locate(c, s_mm, &a);
+    point_of(c, &a, p);
+    tangent_of(c, &a, t);
 }
 
 /*

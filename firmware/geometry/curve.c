@@ -56,6 +56,16 @@ void curve_tangent(const struct curve *c, double s_mm, struct point *t)
     }
 }
 
+void curve_point_and_tangent(const struct curve *c, double s_mm, struct point *p, struct point *t)
+{
+    if (c->kind == CURVE_ARC) {
+        arc_point_and_tangent(c, s_mm, p, t);
+        return;
+    }
+    curve_point(c, s_mm, p);
+    curve_tangent(c, s_mm, t);
+}
+
 void curve_curvature(const struct curve *c, double s_mm, struct point *k)
 {
     switch (c->kind) {

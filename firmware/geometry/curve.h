@@ -176,6 +176,8 @@ void curve_point(const struct curve *c, double s_mm, struct point *p);
 
 /* d point / d s and d2 point / d s2 at s. */
 void curve_tangent(const struct curve *c, double s_mm, struct point *t);
+/* Both, which have much in common. */
+void curve_point_and_tangent(const struct curve *c, double s_mm, struct point *p, struct point *t);
 void curve_curvature(const struct curve *c, double s_mm, struct point *k);
 
 void curve_bound(const struct curve *c, struct curve_bounds *b);

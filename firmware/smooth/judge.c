@@ -33,53 +33,46 @@
 /* Places looked at in a piece, at most. */
 #define PLACES_MAX 8
 
-static float larger(float a, float b)
+/*
+ * Of a group of slots. The derivative is a parabola in a piece: it exceeds both its ends by |third difference| / 8 at most.
+ * square: of the first derivative, over the linear axes and over the others.
+ */
+static void need_of_group(const struct window *w, const struct route *r, unsigned group,
+                          unsigned piece, struct judge_need *need, float square[2])
 {
-    return single_max(single_abs(a), single_abs(b));
-}
-
-/* The derivative is a parabola in a piece: it exceeds both its ends by |third difference| / 8 at most. */
-static void need_of_axis(const struct window *w, unsigned slot, unsigned piece,
-                         struct judge_need *need)
-{
-    const unsigned lane = slot % SMOOTH_LANES;
-    const lanes_int *c = w->x + (size_t)(slot / SMOOTH_LANES) * w->capacity + piece;
-    const int32_t step0 = c[1][lane] - c[0][lane];
-    const int32_t step1 = c[2][lane] - c[1][lane];
-    const int32_t step2 = c[3][lane] - c[2][lane];
-    const float bend0 = (float)(step1 - step0);
-    const float bend1 = (float)(step2 - step1);
-    const float twist = single_abs((float)(step2 - 2 * step1 + step0));
+    const lanes_int *c = w->x + (size_t)group * w->capacity + piece;
+    const lanes_int step0 = c[1] - c[0];
+    const lanes_int step1 = c[2] - c[1];
+    const lanes_int step2 = c[3] - c[2];
+    const lanes twist = lanes_size(lanes_of(step2 - 2 * step1 + step0));
+    const lanes way =
+        lanes_max(lanes_size(lanes_of(step0 + step1)), lanes_size(lanes_of(step1 + step2)));
+    const lanes bend =
+        lanes_max(lanes_size(lanes_of(step1 - step0)), lanes_size(lanes_of(step2 - step1)));
+    const lanes most = 0.5f * way + twist / 8.0f;
     const float per_s = 1.0f / (float)w->interval_s;
-    const float first = (float)w->unit_mm[slot] * per_s;
 
-    need->first[slot] =
-        (0.5f * larger((float)(step0 + step1), (float)(step1 + step2)) + twist / 8.0f) * first;
-    need->second[slot] = larger(bend0, bend1) * first * per_s;
-    need->third[slot] = twist * first * per_s * per_s;
-}
+    for (unsigned k = 0, i = group * SMOOTH_LANES; k < SMOOTH_LANES && i < r->slots.count;
+         k++, i++) {
+        const float first = (float)w->unit_mm[i] * per_s;
 
-/* Over the linear axes, or over the others. */
-static float feed_of(const struct route *r, const struct judge_need *need, bool rotary)
-{
-    float square = 0.0f;
-
-    for (unsigned i = 0; i < r->slots.count; i++) {
-        if ((r->slots.axis[i] >= AXIS_LINEAR_COUNT) == rotary) {
-            square += need->first[i] * need->first[i];
-        }
+        need->first[i] = most[k] * first;
+        need->second[i] = bend[k] * first * per_s;
+        need->third[i] = twist[k] * first * per_s * per_s;
+        square[r->slots.axis[i] < AXIS_LINEAR_COUNT ? 0 : 1] += need->first[i] * need->first[i];
     }
-    return single_sqrt(square);
 }
 
 void judge_need(const struct window *w, const struct route *r, unsigned piece,
                 struct judge_need *need)
 {
-    for (unsigned i = 0; i < r->slots.count; i++) {
-        need_of_axis(w, i, piece, need);
+    float square[2] = {0.0f, 0.0f};
+
+    for (unsigned g = 0; g < r->slots.groups; g++) {
+        need_of_group(w, r, g, piece, need, square);
     }
-    need->linear_mm_s = feed_of(r, need, false);
-    need->rotary_mm_s = feed_of(r, need, true);
+    need->linear_mm_s = single_sqrt(square[0]);
+    need->rotary_mm_s = single_sqrt(square[1]);
 }
 
 float judge_programmed(const struct judge_need *need, const struct route *r, uint32_t element)
@@ -213,27 +206,35 @@ float judge_change_on(const struct judge_need *need, const struct route *r,
 
 /* From one of a piece's control points to the next, weighted, and from its first one to its last. */
 struct steps {
-    float step[3][SMOOTH_SLOTS_MAX];
-    float way[SMOOTH_SLOTS_MAX];
+    lanes step[3][SMOOTH_GROUPS_MAX];
+    lanes way[SMOOTH_GROUPS_MAX];
 };
+
+static lanes weighted(const struct window *w, unsigned group, lanes_int units)
+{
+    return lanes_at(w->weighted_unit_mm + (size_t)group * SMOOTH_LANES) * lanes_of(units);
+}
 
 static void steps_of(const struct window *w, const struct route *r, unsigned piece, struct steps *s)
 {
-    for (unsigned i = 0; i < r->slots.count; i++) {
+    for (unsigned g = 0; g < r->slots.groups; g++) {
+        const lanes_int *c = w->x + (size_t)g * w->capacity + piece;
+
         for (unsigned k = 0; k < 3; k++) {
-            s->step[k][i] = w->weighted_unit_mm[i] *
-                            (float)(window_x(w, i, piece + k + 1) - window_x(w, i, piece + k));
+            s->step[k][g] = weighted(w, g, c[k + 1] - c[k]);
         }
-        s->way[i] = s->step[0][i] + s->step[1][i] + s->step[2][i];
+        s->way[g] = s->step[0][g] + s->step[1][g] + s->step[2][g];
     }
 }
 
-static float dot_of(const struct route *r, const float a[], const float b[])
+static float dot_of(const struct route *r, const lanes a[], const lanes b[])
 {
     float dot = 0.0f;
 
-    for (unsigned i = 0; i < r->slots.count; i++) {
-        dot += a[i] * b[i];
+    for (unsigned g = 0; g < r->slots.groups; g++) {
+        const lanes product = a[g] * b[g];
+
+        dot = dot + product[0] + product[1] + product[2] + product[3];
     }
     return dot;
 }
@@ -259,16 +260,14 @@ static float turn_square(const struct route *r, const struct steps *s)
 /* Square of c_0 - 2 c_1 + c_2 at a sample, over all axes, in which mm and degrees count alike: the second derivative. */
 static float bend_square(const struct window *w, const struct route *r, unsigned sample)
 {
-    float square = 0.0f;
+    lanes bend[SMOOTH_GROUPS_MAX];
 
-    for (unsigned i = 0; i < r->slots.count; i++) {
-        const int32_t bend =
-            window_x(w, i, sample - 1) - 2 * window_x(w, i, sample) + window_x(w, i, sample + 1);
-        const float weighted = w->weighted_unit_mm[i] * (float)bend;
+    for (unsigned g = 0; g < r->slots.groups; g++) {
+        const lanes_int *c = w->x + (size_t)g * w->capacity + sample;
 
-        square += weighted * weighted;
+        bend[g] = weighted(w, g, c[-1] - 2 * c[0] + c[1]);
     }
-    return square;
+    return dot_of(r, bend, bend);
 }
 
 /* The most of that on a piece and its neighbours, which a line between two setpoints may reach into. */
@@ -297,10 +296,10 @@ static float bend_across(const struct window *w, const struct route *r, unsigned
     const float turn = single_sqrt(turn_square(r, &s));
 
     for (unsigned k = 0; k < 2; k++) {
-        float bend[SMOOTH_SLOTS_MAX];
+        lanes bend[SMOOTH_GROUPS_MAX];
 
-        for (unsigned i = 0; i < r->slots.count; i++) {
-            bend[i] = s.step[k + 1][i] - s.step[k][i];
+        for (unsigned g = 0; g < r->slots.groups; g++) {
+            bend[g] = s.step[k + 1][g] - s.step[k][g];
         }
         const float square = dot_of(r, bend, bend);
         const float along =

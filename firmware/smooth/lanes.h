@@ -7,7 +7,9 @@
 
 #include "base/point.h"
 
+#include <stdbool.h>
 #include <stdint.h>
+#include <string.h>
 
 #define SMOOTH_LANES      4
 #define SMOOTH_GROUPS_MAX ((AXIS_COUNT + SMOOTH_LANES - 1) / SMOOTH_LANES)
@@ -15,6 +17,25 @@
 
 typedef float lanes __attribute__((vector_size(4 * SMOOTH_LANES)));
 typedef int32_t lanes_int __attribute__((vector_size(4 * SMOOTH_LANES)));
+
+static inline lanes lanes_all(float x)
+{
+    return (lanes){x, x, x, x};
+}
+
+/* Values that follow each other in memory. */
+static inline lanes lanes_at(const float *x)
+{
+    lanes at;
+
+    memcpy(&at, x, sizeof at);
+    return at;
+}
+
+static inline void lanes_put(float *at, lanes x)
+{
+    memcpy(at, &x, sizeof x);
+}
 
 static inline lanes lanes_of(lanes_int x)
 {
@@ -32,6 +53,12 @@ static inline float lanes_sum(lanes x)
     return (x[0] + x[1]) + (x[2] + x[3]);
 }
 
+static inline lanes lanes_sqrt(lanes x)
+{
+    return (lanes){__builtin_sqrtf(x[0]), __builtin_sqrtf(x[1]), __builtin_sqrtf(x[2]),
+                   __builtin_sqrtf(x[3])};
+}
+
 static inline lanes lanes_size(lanes x)
 {
     static const lanes_int size = {INT32_MAX, INT32_MAX, INT32_MAX, INT32_MAX};
@@ -39,14 +66,41 @@ static inline lanes lanes_size(lanes x)
     return (lanes)((lanes_int)x & size);
 }
 
+/* Is there a lane of a mask that is not zero? */
+static inline bool lanes_any(lanes_int mask)
+{
+    return (mask[0] | mask[1] | mask[2] | mask[3]) != 0;
+}
+
+/* By lanes of mask, all ones or all zeros. */
+static inline lanes lanes_choose(lanes_int mask, lanes yes, lanes no)
+{
+    return (lanes)(((lanes_int)yes & mask) | ((lanes_int)no & ~mask));
+}
+
+/* The larger and the smaller of each; b where one is NaN. Compilers do not find the one instruction for it. */
+static inline lanes lanes_max(lanes a, lanes b)
+{
+#ifdef __SSE__
+    return __builtin_ia32_maxps(a, b);
+#else
+    return lanes_choose(a > b, a, b);
+#endif
+}
+
+static inline lanes lanes_min(lanes a, lanes b)
+{
+#ifdef __SSE__
+    return __builtin_ia32_minps(a, b);
+#else
+    return lanes_choose(a < b, a, b);
+#endif
+}
+
 /* Into -most ... most; NaN gives -most. */
 static inline lanes lanes_clamp(lanes x, lanes most)
 {
-    const lanes_int above_low = x > -most;
-    const lanes high = (lanes)(((lanes_int)x & above_low) | ((lanes_int)-most & ~above_low));
-    const lanes_int below_high = high < most;
-
-    return (lanes)(((lanes_int)high & below_high) | ((lanes_int)most & ~below_high));
+    return lanes_min(lanes_max(x, -most), most);
 }
 
 #endif

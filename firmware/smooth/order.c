@@ -2,6 +2,8 @@
 
 #include "smooth/single.h"
 
+#include <string.h>
+
 /* A bent element is gone along in lines that leave it by this part of the tolerance at most. */
 #define BENT_OFF 0.01f
 
@@ -21,7 +23,8 @@
 struct link {
     uint32_t element;
     double at_mm, end_mm;
-    float start[SMOOTH_SLOTS_MAX]; /* from the chord's beginning, weighted */
+    double at[AXIS_COUNT], end[AXIS_COUNT]; /* the places there, by slot */
+    float start[SMOOTH_SLOTS_MAX];          /* from the chord's beginning, weighted */
     float way[SMOOTH_SLOTS_MAX];
     float within_mm;
     bool ends; /* the route goes on from its end; else all that is near lies before it */
@@ -87,21 +90,33 @@ static double link_end(const struct route *r, const struct order_chord *chord, s
     return l->at_mm + (double)reach_mm >= end_mm ? end_mm : l->at_mm + (double)reach_mm;
 }
 
+static void set_at(const struct route *r, struct link *l, double at_mm)
+{
+    l->at_mm = at_mm;
+    l->element = route_find(r, at_mm, l->element);
+    route_place(r, l->element, at_mm, l->at);
+}
+
 /* The route from at_mm on. */
 static void set_link(const struct route *r, const struct order_chord *chord, float chord_mm,
                      struct link *l)
 {
-    double from[AXIS_COUNT];
-    double to[AXIS_COUNT];
     uint32_t hint = l->element;
 
     l->end_mm = link_end(r, chord, l, chord_mm);
-    route_point(r, l->at_mm, &hint, from);
-    route_point(r, l->end_mm, &hint, to);
+    route_point(r, l->end_mm, &hint, l->end);
     for (unsigned i = 0; i < r->slots.count; i++) {
-        l->start[i] = r->slots.weight[i] * (float)(from[i] - chord->from[i]);
-        l->way[i] = r->slots.weight[i] * (float)(to[i] - from[i]);
+        l->start[i] = r->slots.weight[i] * (float)(l->at[i] - chord->from[i]);
+        l->way[i] = r->slots.weight[i] * (float)(l->end[i] - l->at[i]);
     }
+}
+
+/* On from a link to the next one, of the same element or a later one. */
+static void go_on(const struct route *r, struct link *l)
+{
+    l->at_mm = l->end_mm;
+    l->element += l->end_mm == route_end_of(r, l->element) ? 1 : 0;
+    memcpy(l->at, l->end, sizeof l->at);
 }
 
 /* Can the curve leave the start of an element aside? A bend of a few tolerances it can cut short within the tube. */
@@ -195,8 +210,7 @@ void order_go(struct order *o, const struct route *r, const struct order_chord *
             if (next == before.count) {
                 break;
             }
-            l.at_mm = maths_max(l.at_mm, before.span[next].first_mm);
-            l.element = route_find(r, l.at_mm, l.element);
+            set_at(r, &l, maths_max(l.at_mm, before.span[next].first_mm));
         }
         set_link(r, chord, chord_mm, &l);
         if (next < before.count && before.span[next].first_mm <= l.end_mm) {
@@ -210,8 +224,7 @@ void order_go(struct order *o, const struct route *r, const struct order_chord *
         while (next < before.count && before.span[next].last_mm <= l.end_mm) {
             next++;
         }
-        l.at_mm = l.end_mm;
-        l.element += l.end_mm == route_end_of(r, l.element) ? 1 : 0;
+        go_on(r, &l);
     }
 }
 

@@ -410,26 +410,52 @@ static void pull(struct relax *x, const struct window *w, const struct route *r,
     }
 }
 
+/* A sum over all axes for each of as many samples as there are lanes, as (x0 + x2) + (x1 + x3). */
+struct relax_sum {
+    lanes even, odd;
+};
+
+static inline void add_up(struct relax_sum *s, lanes a, lanes b, lanes c, lanes d)
+{
+    const lanes ab = (lanes){a[0], b[0], a[1], b[1]} + (lanes){a[2], b[2], a[3], b[3]};
+    const lanes cd = (lanes){c[0], d[0], c[1], d[1]} + (lanes){c[2], d[2], c[3], d[3]};
+
+    s->even += (lanes){ab[0], ab[1], cd[0], cd[1]};
+    s->odd += (lanes){ab[2], ab[3], cd[2], cd[3]};
+}
+
+/* The squares of t of samples from i on, and those of how far it is along the route beside them. */
+static inline lanes squares_of(const struct relax *x, const struct window *w, unsigned groups,
+                               unsigned i, lanes *s)
+{
+    struct relax_sum square = {lanes_all(0.0f), lanes_all(0.0f)};
+    struct relax_sum way = square;
+
+    for (unsigned g = 0; g < groups; g++) {
+        const lanes *t = &x->near[g * w->capacity + i];
+        const lanes *along = &x->along[g * w->capacity + i];
+
+        add_up(&way, t[0] * along[0], t[1] * along[1], t[2] * along[2], t[3] * along[3]);
+        add_up(&square, t[0] * t[0], t[1] * t[1], t[2] * t[2], t[3] * t[3]);
+    }
+    *s = way.even + way.odd;
+    return square.even + square.odd;
+}
+
 /* Places t that are not within the tube beside their sample, or where it is not that straight, are pulled there. */
 static void into_tube(struct relax *x, const struct window *w, const struct route *r,
                       const struct relax_pass *pass, float tolerance_mm)
 {
-    for (unsigned i = 1; i + 2 < w->count; i++) {
-        lanes both = {0.0f};
+    for (unsigned i = 0; i + 2 < w->count; i += SMOOTH_LANES) {
+        lanes s;
+        const lanes square = squares_of(x, w, r->slots.groups, i, &s);
+        const lanes_int inside = (s >= lanes_at(x->low + i)) & (s <= lanes_at(x->high + i)) &
+                                 (square - s * s <= (1.0f - BENT) * (1.0f - BENT));
 
-        for (unsigned g = 0; g < r->slots.groups; g++) {
-            const lanes t = x->near[g * w->capacity + i];
-            const lanes a = t * x->along[g * w->capacity + i];
-            const lanes b = t * t;
-
-            both += (lanes){a[0], b[0], a[1], b[1]} + (lanes){a[2], b[2], a[3], b[3]};
-        }
-        const float s = both[0] + both[2];
-        const float square = both[1] + both[3];
-
-        if (!(s >= x->low[i] && s <= x->high[i] &&
-              square - s * s <= (1.0f - BENT) * (1.0f - BENT))) {
-            pull(x, w, r, pass, tolerance_mm, i, s);
+        for (unsigned k = 0; k < SMOOTH_LANES && lanes_any(~inside); k++) {
+            if (!inside[k] && i + k > 0 && i + k + 2 < w->count) {
+                pull(x, w, r, pass, tolerance_mm, i + k, s[k]);
+            }
         }
     }
 }

@@ -73,21 +73,6 @@ bool route_has_room(const struct route *r)
            has_free_mode(r);
 }
 
-const double *route_start(const struct route *r, uint32_t index)
-{
-    return &r->start[(size_t)route_slot(r, index) * r->slots.count];
-}
-
-static const double *end_point(const struct route *r, uint32_t index)
-{
-    return index + 1 < r->count ? route_start(r, index + 1) : r->end;
-}
-
-double route_end_of(const struct route *r, uint32_t index)
-{
-    return index + 1 < r->count ? route_element(r, index + 1)->start_mm : r->end_mm;
-}
-
 double route_end(const struct route *r)
 {
     return r->count == 0 ? 0.0 : r->end_mm;
@@ -144,12 +129,7 @@ void route_move(const struct route *r, uint32_t index, struct move *move)
     *move = r->mode[e->mode].move;
     move->line = e->line;
     move->feed_mm_s = move->kind == MOVE_RAPID ? move->feed_mm_s : (double)e->programmed_mm_s;
-    route_scatter(r, end_point(r, index), &move->end);
-}
-
-float route_programmed(const struct route *r, uint32_t index)
-{
-    return route_element(r, index)->programmed_mm_s;
+    route_scatter(r, route_end_point(r, index), &move->end);
 }
 
 /* Weighted length for a mm of a curve, or a rad where only rotary axes move: that of the linear axes is 1. */
@@ -260,10 +240,7 @@ static void bent_curve(const struct route *r, uint32_t index, struct curve *c)
     c->rotary = e->rotary;
     c->length_mm = (route_end_of(r, index) - e->start_mm) / (double)b->per_mm;
     route_scatter(r, route_start(r, index), &c->start);
-    route_scatter(r, end_point(r, index), &c->end);
-    for (int axis = 0; axis < AXIS_COUNT; axis++) {
-        c->slope.at[axis] = (c->end.at[axis] - c->start.at[axis]) / c->length_mm;
-    }
+    route_scatter(r, route_end_point(r, index), &c->end);
     if (b->kind == CURVE_ARC) {
         c->arc = b->arc;
     } else if (b->kind == CURVE_INVOLUTE) {
@@ -271,12 +248,17 @@ static void bent_curve(const struct route *r, uint32_t index, struct curve *c)
     } else {
         c->quintic = b->quintic;
     }
-    enum axis first;
-    enum axis second;
+    enum axis first = AXIS_COUNT;
+    enum axis second = AXIS_COUNT;
 
-    if (curve_plane(c, &first, &second)) {
-        c->slope.at[first] = 0.0;
-        c->slope.at[second] = 0.0;
+    (void)curve_plane(c, &first, &second);
+    memset(&c->slope, 0, sizeof c->slope);
+    for (unsigned i = 0; i < r->slots.count; i++) {
+        const unsigned axis = r->slots.axis[i];
+
+        if (axis != first && axis != second) {
+            c->slope.at[axis] = (c->end.at[axis] - c->start.at[axis]) / c->length_mm;
+        }
     }
 }
 
@@ -286,7 +268,7 @@ void route_place(const struct route *r, uint32_t index, double at_mm, double p[]
     const double length = route_end_of(r, index) - e->start_mm;
     const double part = maths_clamp(at_mm - e->start_mm, 0.0, length) / length;
     const double *start = route_start(r, index);
-    const double *end = end_point(r, index);
+    const double *end = route_end_point(r, index);
 
     if (e->bent && part < 1.0) {
         struct curve c;
@@ -348,7 +330,7 @@ float route_direction(const struct route *r, uint32_t index, double at_mm, float
         length = per_mm_of(r, index);
     } else {
         const double *start = route_start(r, index);
-        const double *end = end_point(r, index);
+        const double *end = route_end_point(r, index);
 
         for (unsigned i = 0; i < r->slots.count; i++) {
             direction[i] = (float)(end[i] - start[i]);
@@ -421,7 +403,7 @@ static void foot_on_line(const struct route *r, uint32_t index, const double x[]
                          float high, struct route_foot *f)
 {
     const double *start = route_start(r, index);
-    const double *end = end_point(r, index);
+    const double *end = route_end_point(r, index);
     const float length = (float)(route_end_of(r, index) - route_element(r, index)->start_mm);
     float line[AXIS_COUNT];
     float dot = 0.0f;
@@ -454,13 +436,12 @@ static void foot_on_bent(const struct route *r, uint32_t index, const double x[]
     low /= per_mm;
     high /= per_mm;
     s = maths_clamp(s / per_mm, low, high);
-    curve_point(&c, s, &p);
     for (unsigned k = 0; k < NEWTON_STEPS; k++) {
         struct point t;
         float dot = 0.0f;
         float square = 0.0f;
 
-        curve_tangent(&c, s, &t);
+        curve_point_and_tangent(&c, s, &p, &t);
         for (unsigned i = 0; i < r->slots.count; i++) {
             const unsigned axis = r->slots.axis[i];
             const float w = r->slots.weight[i] * (float)t.at[axis];
@@ -469,8 +450,8 @@ static void foot_on_bent(const struct route *r, uint32_t index, const double x[]
             square += w * w;
         }
         s = maths_clamp(s + (double)(dot / square), low, high);
-        curve_point(&c, s, &p);
     }
+    curve_point(&c, s, &p);
     for (unsigned i = 0; i < r->slots.count; i++) {
         f->off[i] = r->slots.weight[i] * (float)(p.at[r->slots.axis[i]] - x[i]);
     }

@@ -15,6 +15,7 @@
 #include "smooth/limits.h"
 
 #include <stdbool.h>
+#include <stddef.h>
 #include <stdint.h>
 
 /* The axes of the machine, and their limits, by slot. Slots that no axis has are for filling groups of lanes. */
@@ -120,14 +121,27 @@ static inline float route_turn(const struct route *r, uint32_t index)
 {
     return (float)route_element(r, index)->turn * ROUTE_TURN;
 }
-/* Its start, by slot. */
-const double *route_start(const struct route *r, uint32_t index);
-double route_end_of(const struct route *r, uint32_t index);
+/* Its start and its end, by slot. */
+static inline const double *route_start(const struct route *r, uint32_t index)
+{
+    return &r->start[(size_t)route_slot(r, index) * r->slots.count];
+}
+static inline const double *route_end_point(const struct route *r, uint32_t index)
+{
+    return index + 1 < r->count ? route_start(r, index + 1) : r->end;
+}
+static inline double route_end_of(const struct route *r, uint32_t index)
+{
+    return index + 1 < r->count ? route_element(r, index + 1)->start_mm : r->end_mm;
+}
 double route_end(const struct route *r);
 /* The motion it belongs to, but for centres and turns of arcs. */
 void route_move(const struct route *r, uint32_t index, struct move *move);
 /* The programmed feed; infinite for a rapid. */
-float route_programmed(const struct route *r, uint32_t index);
+static inline float route_programmed(const struct route *r, uint32_t index)
+{
+    return route_element(r, index)->programmed_mm_s;
+}
 /* Index of the element at a place; the later one at a joint. hint: an index near by. */
 uint32_t route_find(const struct route *r, double at_mm, uint32_t hint);
 void route_point(const struct route *r, double at_mm, uint32_t *hint, double p[]);

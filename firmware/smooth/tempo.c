@@ -43,7 +43,7 @@
 #define TWIST_PART 0.95f
 #define TWIST_BEND 0.5f
 
-/* What an axis needs and what it has for that, in parts of what it may; how the need hangs on the three coefficients. */
+/* What pieces need of an axis and what it has for that, in parts of what it may; how the need hangs on three coefficients. */
 struct row {
     lanes value;
     lanes most;
@@ -53,158 +53,194 @@ struct row {
 /* Changes of rate leave this part of what an axis may at least: judge.c has bounds of its own. */
 #define LEFT_LEAST 0.5f
 
-/* An acceleration at a piece's start, a jerk there and one at its end. */
-#define ROWS 3
-
-static inline lanes all(float x)
-{
-    return (lanes){x, x, x, x};
-}
-
-/* By lanes of mask, all ones or all zeros. */
-static inline lanes choose(lanes_int mask, lanes yes, lanes no)
-{
-    return (lanes)(((lanes_int)yes & mask) | ((lanes_int)no & ~mask));
-}
-
 /* What a change of rate leaves, or a little more than what is near it or beyond. */
 static inline lanes limit_of(lanes size, lanes most)
 {
-    return choose(size > NEAR * most, FARTHER * size, most);
+    return lanes_choose(size > NEAR * most, FARTHER * size, most);
 }
 
 /* What a change of rate that needs a part leaves, of 1 or more, for the curve: 1 at most. */
 static inline lanes left_by(lanes part, lanes of)
 {
-    const lanes left = of - part;
-    const lanes least = choose(left > LEFT_LEAST, left, all(LEFT_LEAST));
-
-    return choose(least < 1.0f, least, all(1.0f));
+    return lanes_min(lanes_max(of - part, lanes_all(LEFT_LEAST)), lanes_all(1.0f));
 }
 
-/* J - x' r r'' - 3 r' |x' b'/2 + x'' b| */
-static inline lanes jerk_left(const struct tempo *p, unsigned group, lanes way, lanes bend)
+/* b, its slope and the rate at an end of pieces, and what the rate grows by for a coefficient. */
+struct end {
+    lanes energy, slope, rate, faster;
+};
+
+static struct end end_of(const float *energy)
 {
-    const lanes needed = p->rounded * lanes_size(way) + 3.0f * p->change * lanes_size(bend);
-
-    return left_by(p->twist_per_unit[group] * needed, p->twist_all[group]);
-}
-
-static void rows_of(const struct tempo *p, const struct window *w, unsigned group, unsigned piece,
-                    struct row row[ROWS])
-{
-    const lanes_int *c = w->x + (size_t)group * w->capacity + piece;
-    const lanes step0 = lanes_of(c[1] - c[0]);
-    const lanes step1 = lanes_of(c[2] - c[1]);
-    const lanes step2 = lanes_of(c[3] - c[2]);
-    const lanes first0 = 0.5f * (step0 + step1);
-    const lanes first1 = 0.5f * (step1 + step2);
-    const lanes second0 = step1 - step0;
-    const lanes second1 = step2 - step1;
-    const lanes third = second1 - second0;
-    const float *e = p->energy + piece;
-    const float slope0 = e[1] - e[0];
-    const float slope1 = e[2] - e[1];
-    const float bow = 0.5f * (slope1 - slope0);
-    const float energy0 = 0.5f * (e[0] + e[1]);
-    const float energy1 = 0.5f * (e[1] + e[2]);
-    const float rate0 = single_sqrt(energy0);
-    const float rate1 = single_sqrt(energy1);
-    const lanes a = p->bend_per_unit[group];
-    const lanes j0 = rate0 * p->twist_per_unit[group];
-    const lanes j1 = rate1 * p->twist_per_unit[group];
-    const lanes half0 = 0.5f * first0;
-    const lanes half1 = 0.5f * first1;
-    const lanes bend0 = slope0 * half0 + energy0 * second0;
-    const lanes bend1 = slope1 * half1 + energy1 * second1;
-
-    row[0].value = a * bend0;
-    row[0].most = left_by(p->change * rate0 * a * lanes_size(first0), all(1.0f));
-    row[0].by[0] = a * (0.5f * second0 - half0);
-    row[0].by[1] = a * (0.5f * second0 + half0);
-    row[0].by[2] = 0.0f * a;
+    const lanes before = lanes_at(energy);
+    const lanes after = lanes_at(energy + 1);
+    const lanes middle = 0.5f * (before + after);
 
     /* d rate / d energy = 1/2 / rate: half of that for each of the two coefficients */
-    row[1].most = jerk_left(p, group, rate0 * first0, bend0);
-    row[1].value = j0 * (bow * first0 + 1.5f * slope0 * second0 + energy0 * third);
-    const lanes faster0 = row[1].value * (0.25f / energy0);
-    row[1].by[0] = j0 * (half0 - 1.5f * second0 + 0.5f * third) + faster0;
-    row[1].by[1] = j0 * (1.5f * second0 - first0 + 0.5f * third) + faster0;
-    row[1].by[2] = j0 * half0;
-
-    row[2].most = jerk_left(p, group, rate1 * first1, bend1);
-    row[2].value = j1 * (bow * first1 + 1.5f * slope1 * second1 + energy1 * third);
-    const lanes faster1 = row[2].value * (0.25f / energy1);
-    row[2].by[0] = j1 * half1;
-    row[2].by[1] = j1 * (0.5f * third - first1 - 1.5f * second1) + faster1;
-    row[2].by[2] = j1 * (half1 + 1.5f * second1 + 0.5f * third) + faster1;
+    return (struct end){middle, after - before, lanes_sqrt(middle), 0.25f / middle};
 }
 
-/* Of a piece's rows: the gradient by its three coefficients, and their products. */
-struct sums {
-    lanes gradient[3];
-    lanes product[3][3];
+/* What an axis does at an end of pieces: its differences, and what it needs there. */
+struct motion_at {
+    lanes first, half, second, bend, jerk, jerk_most;
 };
+
+/* J - x' r r'' - 3 r' |x' b'/2 + x'' b| */
+static inline struct motion_at motion_at(const struct tempo *p, unsigned slot, unsigned piece,
+                                         const struct end *e)
+{
+    const float per_unit = p->twist_per_unit[slot];
+    const size_t at = (size_t)slot * p->capacity + piece;
+    struct motion_at m = {.first = lanes_at(p->first + at), .second = lanes_at(p->second + at)};
+
+    m.half = 0.5f * m.first;
+    m.bend = e->slope * m.half + e->energy * m.second;
+    m.jerk = e->rate * per_unit;
+    const lanes needed =
+        p->rounded * lanes_size(e->rate * m.first) + 3.0f * p->change * lanes_size(m.bend);
+
+    m.jerk_most = left_by(per_unit * needed, lanes_all(p->twist_all[slot]));
+    return m;
+}
+
+static inline void rows_of(const struct tempo *p, unsigned slot, unsigned piece,
+                           const struct end end[2], struct row row[TEMPO_ROWS])
+{
+    const struct motion_at m0 = motion_at(p, slot, piece, &end[0]);
+    const struct motion_at m1 = motion_at(p, slot, piece + 1, &end[1]);
+    const lanes third = m1.second - m0.second;
+    const lanes bow = 0.5f * (end[1].slope - end[0].slope);
+    const float a = p->bend_per_unit[slot];
+
+    row[0].value = a * m0.bend;
+    row[0].most = left_by(p->change * end[0].rate * a * lanes_size(m0.first), lanes_all(1.0f));
+    row[0].by[0] = a * (0.5f * m0.second - m0.half);
+    row[0].by[1] = a * (0.5f * m0.second + m0.half);
+    row[0].by[2] = lanes_all(0.0f);
+
+    row[1].most = m0.jerk_most;
+    row[1].value =
+        m0.jerk * (bow * m0.first + 1.5f * end[0].slope * m0.second + end[0].energy * third);
+    const lanes faster0 = row[1].value * end[0].faster;
+    row[1].by[0] = m0.jerk * (m0.half - 1.5f * m0.second + 0.5f * third) + faster0;
+    row[1].by[1] = m0.jerk * (1.5f * m0.second - m0.first + 0.5f * third) + faster0;
+    row[1].by[2] = m0.jerk * m0.half;
+
+    row[2].most = m1.jerk_most;
+    row[2].value =
+        m1.jerk * (bow * m1.first + 1.5f * end[1].slope * m1.second + end[1].energy * third);
+    const lanes faster1 = row[2].value * end[1].faster;
+    row[2].by[0] = m1.jerk * m1.half;
+    row[2].by[1] = m1.jerk * (0.5f * third - m1.first - 1.5f * m1.second) + faster1;
+    row[2].by[2] = m1.jerk * (m1.half + 1.5f * m1.second + 0.5f * third) + faster1;
+}
+
+/* Of pieces' rows: for each of their three coefficients the gradient, and its products with itself and with those behind. */
+struct sums {
+    lanes of[TEMPO_SUMS];
+};
+
+/* Where the gradient of a coefficient stands among the sums, and its first product. */
+static const unsigned sums_of[3] = {0, 4, 7};
 
 /*
  * d/d of log(most - v) + log(most + v), and Newton's part of the second derivative. What is exceeded is
  * drawn inside all the time.
  */
-static void add_row(struct sums *s, const struct row *row, float weight)
+static inline void add_row(struct sums *s, const struct row *row, float weight)
 {
     const lanes size = lanes_size(row->value);
     const lanes most = limit_of(size, row->most);
-    const lanes strength = choose(size > row->most, all(single_max(DRAWN, weight)), all(weight));
+    const lanes strength =
+        lanes_choose(size > row->most, lanes_all(single_max(DRAWN, weight)), lanes_all(weight));
     const lanes above = 1.0f / (most - row->value);
     const lanes below = 1.0f / (most + row->value);
     const lanes pull = strength * (below - above);
     const lanes stiff = strength * (above * above + below * below);
 
     for (unsigned i = 0; i < 3; i++) {
-        s->gradient[i] += pull * row->by[i];
+        lanes *sum = &s->of[sums_of[i]];
+
+        sum[0] += pull * row->by[i];
         for (unsigned k = i; k < 3; k++) {
-            s->product[i][k] += stiff * row->by[i] * row->by[k];
+            sum[1 + k - i] += stiff * row->by[i] * row->by[k];
         }
     }
 }
 
-static void add_piece(struct tempo *p, const struct window *w, const struct route *r,
-                      unsigned piece, float weight)
+/* Of the slots that lie in a lane. */
+static inline void sum_lane(const struct tempo *p, const struct route *r, unsigned lane,
+                            unsigned piece, const struct end end[2], float weight, struct sums *s)
 {
-    struct sums s = {0};
-
-    for (unsigned g = 0; g < r->slots.groups; g++) {
-        struct row row[ROWS];
-
-        rows_of(p, w, g, piece, row);
-        for (unsigned i = 0; i < ROWS; i++) {
-            add_row(&s, &row[i], weight);
-        }
+    for (unsigned n = 0; n < TEMPO_SUMS; n++) {
+        s->of[n] = lanes_all(0.0f);
     }
-    for (unsigned i = 0; i < 3; i++) {
-        p->step[piece + i] += lanes_sum(s.gradient[i]);
-        for (unsigned k = i; k < 3; k++) {
-            p->band[k - i][piece + i] += lanes_sum(s.product[i][k]);
+    for (unsigned slot = lane; slot < r->slots.count; slot += SMOOTH_LANES) {
+        struct row row[TEMPO_ROWS];
+
+        rows_of(p, slot, piece, end, row);
+        for (unsigned i = 0; i < TEMPO_ROWS; i++) {
+            add_row(s, &row[i], weight);
         }
     }
 }
 
-/* The highest energy that a coefficient may have now. */
-static float most_of(const struct tempo *p, unsigned i)
+/* Of the pieces from one on, as many as there are lanes, all slots: in the order of lanes_sum(). */
+static void sum_pieces(struct tempo *p, const struct route *r, unsigned piece, float weight)
 {
-    return single_max(p->most[i], p->energy[i] > NEAR * p->most[i] ? FARTHER * p->energy[i] : 0.0f);
+    const struct end end[2] = {end_of(p->energy + piece), end_of(p->energy + piece + 1)};
+    struct sums s[SMOOTH_LANES];
+
+    for (unsigned lane = 0; lane < SMOOTH_LANES; lane++) {
+        sum_lane(p, r, lane, piece, end, weight, &s[lane]);
+    }
+    for (unsigned n = 0; n < TEMPO_SUMS; n++) {
+        const lanes sum = (s[0].of[n] + s[1].of[n]) + (s[2].of[n] + s[3].of[n]);
+
+        lanes_put(&p->sum[n][piece + 2], sum);
+    }
 }
 
-/* Of a coefficient by itself: d/db of -1/sqrt(b) and of its own bounds. */
-static void add_coefficient(struct tempo *p, unsigned i, float weight)
+/* Before the first piece (tempo_find) and behind the last one there is none. */
+static void sum_all(struct tempo *p, const struct route *r, float weight)
 {
-    const float b = p->energy[i];
-    const float below = 1.0f / (b - ENERGY_MIN);
-    const float above = 1.0f / (most_of(p, i) - b);
-    const float gain = 0.5f / (b * single_sqrt(b));
+    for (unsigned i = 0; i < p->pieces; i += SMOOTH_LANES) {
+        sum_pieces(p, r, i, weight);
+    }
+    for (unsigned n = 0; n < TEMPO_SUMS; n++) {
+        memset(&p->sum[n][p->pieces + 2], 0, 2 * sizeof p->sum[n][0]);
+    }
+}
 
-    p->step[i] += gain + weight * (below - above);
-    p->band[0][i] += 1.5f * gain / b + weight * (below * below + above * above);
+/* The highest energy that coefficients may have now. */
+static inline lanes most_of(const struct tempo *p, unsigned i)
+{
+    const lanes energy = lanes_at(p->energy + i);
+    const lanes most = lanes_at(p->most + i);
+
+    return lanes_max(most, lanes_choose(energy > NEAR * most, FARTHER * energy, lanes_all(0.0f)));
+}
+
+/* One of the sums of coefficient i where that is the first one of its piece, the second, or the third. */
+static inline lanes sum_at(const struct tempo *p, unsigned as, unsigned n, unsigned i)
+{
+    return lanes_at(&p->sum[sums_of[as] + n][i + 2 - as]);
+}
+
+/* Of the three pieces that each coefficient belongs to; and of itself: d/db of -1/sqrt(b) and of its bounds. */
+static void set_coefficients(struct tempo *p, unsigned i, float weight)
+{
+    const lanes b = lanes_at(p->energy + i);
+    const lanes below = 1.0f / (b - ENERGY_MIN);
+    const lanes above = 1.0f / (most_of(p, i) - b);
+    const lanes gain = 0.5f / (b * lanes_sqrt(b));
+    const lanes pull = gain + weight * (below - above);
+    const lanes stiff = 1.5f * gain / b + weight * (below * below + above * above);
+
+    lanes_put(p->step + i, sum_at(p, 2, 0, i) + sum_at(p, 1, 0, i) + sum_at(p, 0, 0, i) + pull);
+    lanes_put(p->band[0] + i, sum_at(p, 2, 1, i) + sum_at(p, 1, 1, i) + sum_at(p, 0, 1, i) + stiff);
+    lanes_put(p->band[1] + i, sum_at(p, 1, 2, i) + sum_at(p, 0, 2, i));
+    lanes_put(p->band[2] + i, sum_at(p, 0, 3, i));
 }
 
 /* Only the coefficients from first to before end are free. */
@@ -225,18 +261,15 @@ static void fix(struct tempo *p, const struct span *f, unsigned i)
     p->band[2][i] = i + 2 < f->end ? p->band[2][i] : 0.0f;
 }
 
-static void assemble(struct tempo *p, const struct window *w, const struct route *r,
-                     const struct span *f, float weight)
+static void assemble(struct tempo *p, const struct route *r, const struct span *f, float weight)
 {
     const unsigned count = p->pieces + 2;
 
-    memset(p->step, 0, sizeof p->step);
-    memset(p->band, 0, sizeof p->band);
-    for (unsigned i = 0; i < p->pieces; i++) {
-        add_piece(p, w, r, i, weight);
+    sum_all(p, r, weight);
+    for (unsigned i = 0; i < count; i += SMOOTH_LANES) {
+        set_coefficients(p, i, weight);
     }
     for (unsigned i = 0; i < count; i++) {
-        add_coefficient(p, i, weight);
         fix(p, f, i);
     }
 }
@@ -274,47 +307,87 @@ static void solve(struct tempo *p)
     }
 }
 
-/* The part of the step at which a row comes to its limit, if that is below t. */
-static float part_of_row(const struct row *row, const float step[3], float t)
+/* Of what is left from i on. */
+static unsigned lanes_used(unsigned count, unsigned i)
 {
-    const lanes change = row->by[0] * step[0] + row->by[1] * step[1] + row->by[2] * step[2];
-    const lanes most = limit_of(lanes_size(row->value), row->most);
+    return count - i < SMOOTH_LANES ? count - i : SMOOTH_LANES;
+}
 
-    for (unsigned k = 0; k < SMOOTH_LANES; k++) {
-        const float room = change[k] > 0.0f ? most[k] - row->value[k] : most[k] + row->value[k];
-        const float size = single_abs(change[k]);
+/* How far the rows of pieces come with the step. True: farther than a part of it, in some lane. */
+static bool approach_limits(struct tempo *p, const struct route *r, unsigned piece, float t)
+{
+    const struct end end[2] = {end_of(p->energy + piece), end_of(p->energy + piece + 1)};
+    const float *step = p->step + piece;
+    lanes_int beyond = {0};
 
-        if (room < t * size) {
-            t = room / size;
+    for (unsigned slot = 0; slot < r->slots.count; slot++) {
+        struct row row[TEMPO_ROWS];
+
+        rows_of(p, slot, piece, end, row);
+        for (unsigned k = 0; k < TEMPO_ROWS; k++) {
+            const lanes change = row[k].by[0] * lanes_at(step) + row[k].by[1] * lanes_at(step + 1) +
+                                 row[k].by[2] * lanes_at(step + 2);
+            const lanes most = limit_of(lanes_size(row[k].value), row[k].most);
+            struct tempo_approach *a = &p->approach[slot][k];
+
+            a->size = lanes_size(change);
+            a->room = lanes_choose(change > 0.0f, most - row[k].value, most + row[k].value);
+            beyond |= a->room < t * a->size;
+        }
+    }
+    return lanes_any(beyond);
+}
+
+/* The part of the step at which a limit is come to in a lane, if that is below t. */
+static float part_of(const struct tempo_approach *a, unsigned lane, float t)
+{
+    return a->room[lane] < t * a->size[lane] ? a->room[lane] / a->size[lane] : t;
+}
+
+/* That of a piece's rows. */
+static float part_of_piece(const struct tempo *p, const struct route *r, unsigned lane, float t)
+{
+    for (unsigned g = 0; g < r->slots.count; g += SMOOTH_LANES) {
+        for (unsigned k = 0; k < TEMPO_ROWS; k++) {
+            for (unsigned slot = g; slot < r->slots.count && slot < g + SMOOTH_LANES; slot++) {
+                t = part_of(&p->approach[slot][k], lane, t);
+            }
         }
     }
     return t;
 }
 
-static float part_of_coefficient(const struct tempo *p, unsigned i, float t)
+static float part_of_coefficients(const struct tempo *p, unsigned i, unsigned used, float t)
 {
-    const float change = p->step[i];
-    const float room = change > 0.0f ? most_of(p, i) - p->energy[i] : p->energy[i] - ENERGY_MIN;
-    const float size = single_abs(change);
+    const lanes change = lanes_at(p->step + i);
+    const lanes energy = lanes_at(p->energy + i);
+    const struct tempo_approach a = {
+        lanes_choose(change > 0.0f, most_of(p, i) - energy, energy - ENERGY_MIN),
+        lanes_size(change)};
 
-    return room < t * size ? room / size : t;
+    if (lanes_any(a.room < t * a.size)) {
+        for (unsigned lane = 0; lane < used; lane++) {
+            t = part_of(&a, lane, t);
+        }
+    }
+    return t;
 }
 
 /* How much of the step keeps every limit. */
-static float part_of_step(const struct tempo *p, const struct window *w, const struct route *r)
+static float part_of_step(struct tempo *p, const struct route *r)
 {
+    const unsigned count = p->pieces + 2;
     float t = 1.0f / STEP_PART;
 
-    for (unsigned i = 0; i < p->pieces + 2; i++) {
-        t = part_of_coefficient(p, i, t);
+    for (unsigned i = 0; i < count; i += SMOOTH_LANES) {
+        t = part_of_coefficients(p, i, lanes_used(count, i), t);
     }
-    for (unsigned i = 0; i < p->pieces; i++) {
-        for (unsigned g = 0; g < r->slots.groups; g++) {
-            struct row row[ROWS];
+    for (unsigned i = 0; i < p->pieces; i += SMOOTH_LANES) {
+        const unsigned used = lanes_used(p->pieces, i);
 
-            rows_of(p, w, g, i, row);
-            for (unsigned k = 0; k < ROWS; k++) {
-                t = part_of_row(&row[k], p->step + i, t);
+        if (approach_limits(p, r, i, t)) {
+            for (unsigned lane = 0; lane < used; lane++) {
+                t = part_of_piece(p, r, lane, t);
             }
         }
     }
@@ -354,26 +427,37 @@ static void set_scale(struct tempo *p, const struct window *w, const struct rout
 
     p->change = r->slots.change_per_s * d;
     p->rounded = r->slots.rounded_per_s2 * d * d;
-    memset(p->bend_per_unit, 0, sizeof p->bend_per_unit);
-    memset(p->twist_per_unit, 0, sizeof p->twist_per_unit);
-    memset(p->twist_all, 0, sizeof p->twist_all);
     for (unsigned i = 0; i < r->slots.count; i++) {
         const float unit = (float)w->unit_mm[i];
         const float bend = r->slots.acceleration_mm_s2[i] * d * d;
         const float twist = TWIST_PART * r->slots.jerk_mm_s3[i] * d * d * d;
 
-        p->bend_per_unit[i / SMOOTH_LANES][i % SMOOTH_LANES] = unit / bend;
-        p->twist_per_unit[i / SMOOTH_LANES][i % SMOOTH_LANES] =
-            unit / single_min(twist, TWIST_BEND * bend);
-        p->twist_all[i / SMOOTH_LANES][i % SMOOTH_LANES] =
-            twist / single_min(twist, TWIST_BEND * bend);
+        p->bend_per_unit[i] = unit / bend;
+        p->twist_per_unit[i] = unit / single_min(twist, TWIST_BEND * bend);
+        p->twist_all[i] = twist / single_min(twist, TWIST_BEND * bend);
+    }
+}
+
+/* The curve's differences where pieces begin, and where the last one ends. */
+static void set_differences(struct tempo *p, const struct window *w, const struct route *r)
+{
+    p->capacity = w->capacity;
+    for (unsigned slot = 0; slot < r->slots.count; slot++) {
+        for (unsigned i = 0; i + 2 < w->count; i++) {
+            const int32_t x = window_x(w, slot, i + 1);
+            const float before = (float)(x - window_x(w, slot, i));
+            const float after = (float)(window_x(w, slot, i + 2) - x);
+
+            p->first[slot * w->capacity + i] = 0.5f * (before + after);
+            p->second[slot * w->capacity + i] = after - before;
+        }
     }
 }
 
 static void set_even(struct tempo *p, const struct window *w)
 {
     p->pieces = w->count - SMOOTH_FIXED;
-    for (unsigned i = 0; i < p->pieces + 2; i++) {
+    for (unsigned i = 0; i < TEMPO_MAX; i++) {
         p->energy[i] = 1.0f;
     }
 }
@@ -382,15 +466,17 @@ void tempo_find(struct tempo *p, const struct window *w, const struct route *r)
 {
     float weight = BARRIER;
 
+    memset(p, 0, sizeof(*p));
     set_even(p, w);
     set_scale(p, w, r);
+    set_differences(p, w, r);
     set_most(p, w, r);
     const struct span free = {.first = 2, .end = w->at_end ? p->pieces + 2 : p->pieces};
 
     for (unsigned n = 0; n < ITERATIONS && free.first < free.end; n++) {
-        assemble(p, w, r, &free, weight);
+        assemble(p, r, &free, weight);
         solve(p);
-        const float t = part_of_step(p, w, r);
+        const float t = part_of_step(p, r);
 
         for (unsigned i = 0; i < p->pieces + 2; i++) {
             p->energy[i] += t * p->step[i];

@@ -9,21 +9,40 @@
 
 #include "smooth/window.h"
 
-/* One coefficient a piece, one before the first and one behind the last. */
-#define TEMPO_MAX (SMOOTH_SAMPLES_MAX - 1)
+/* One coefficient a piece, one before the first and one behind the last; and what fills the last lanes. */
+#define TEMPO_MAX (SMOOTH_SAMPLES_MAX + SMOOTH_LANES)
 
-/* Working memory; holds nothing between calls but energy. */
+/* Samples of all slots; and what fills the last lanes. */
+#define TEMPO_PLACES_MAX (SMOOTH_LANES * SMOOTH_SAMPLES_MAX + SMOOTH_LANES)
+
+/* What pieces need of an axis, at their start an acceleration, and a jerk there and at their end. */
+#define TEMPO_ROWS 3
+
+/* What rows add to three coefficients: a gradient of each, and products of each two. */
+#define TEMPO_SUMS 9
+
+/* How far needs are from their limits, and how far a step brings them there. */
+struct tempo_approach {
+    lanes room, size;
+};
+
+/* Working memory; holds nothing between calls but energy. Lanes are pieces that follow each other. */
 struct tempo {
     unsigned pieces;
+    unsigned capacity; /* samples of a slot */
     float energy[TEMPO_MAX];
     float most[TEMPO_MAX];    /* of it: velocity, programmed feed */
     float step[TEMPO_MAX];    /* of one iteration */
     float band[3][TEMPO_MAX]; /* its matrix: the diagonal, and what is beside it */
     float change;             /* of the rate, in an interval (judge.h) */
     float rounded;
-    lanes bend_per_unit[SMOOTH_GROUPS_MAX]; /* differences in A and J */
-    lanes twist_per_unit[SMOOTH_GROUPS_MAX];
-    lanes twist_all[SMOOTH_GROUPS_MAX]; /* J, where the curve's part of it is less */
+    float bend_per_unit[SMOOTH_SLOTS_MAX]; /* differences in A and J */
+    float twist_per_unit[SMOOTH_SLOTS_MAX];
+    float twist_all[SMOOTH_SLOTS_MAX]; /* J, where the curve's part of it is less */
+    float first[TEMPO_PLACES_MAX]; /* differences where pieces begin, one slot after the other */
+    float second[TEMPO_PLACES_MAX];
+    float sum[TEMPO_SUMS][TEMPO_MAX]; /* of a piece's rows; the first piece is the third */
+    struct tempo_approach approach[SMOOTH_SLOTS_MAX][TEMPO_ROWS];
 };
 
 /* The best that is found. It begins as the window does, at rate 1; unless the path ends there, it ends so too. */
