@@ -78,23 +78,15 @@ static inline lanes lanes_choose(lanes_int mask, lanes yes, lanes no)
     return (lanes)(((lanes_int)yes & mask) | ((lanes_int)no & ~mask));
 }
 
-/* The larger and the smaller of each; b where one is NaN. Compilers do not find the one instruction for it. */
+/* The larger and the smaller of each; b where one is NaN. */
 static inline lanes lanes_max(lanes a, lanes b)
 {
-#ifdef __SSE__
-    return __builtin_ia32_maxps(a, b);
-#else
     return lanes_choose(a > b, a, b);
-#endif
 }
 
 static inline lanes lanes_min(lanes a, lanes b)
 {
-#ifdef __SSE__
-    return __builtin_ia32_minps(a, b);
-#else
     return lanes_choose(a < b, a, b);
-#endif
 }
 
 /* Into -most ... most; NaN gives -most. */
