@@ -34,6 +34,8 @@ for seed in ("94312", "202802", "206396"):
 hunt("where it rests before the place that it was thought to be at it goes on from there", "1", "220050", "--kinds", KINDS + ",endless")
 for seed in ("251327", "252650"):
     hunt(f"beside a rapid no feed is exceeded: {seed}", "1", seed, "--operator", "--kinds", KINDS)
+for seed in ("1100682", "3200970"):
+    hunt(f"nor is one on a feed between rapids that is shorter than a piece: {seed}", "1", seed, "--hands", "--kinds", KINDS)
 hunt("a curve does not creep where one axis needs a long interval", "1", "901166", "--operator", "--kinds", KINDS + ",endless")
 hunt("no way to rest is longer than a cycle's feed where the axes could do far more", "1", "901142", "--operator", "--exact")
 hunt("corners of exact paths are not cut where a cycle is long", "1", "40033", "--exact")
