@@ -50,4 +50,5 @@ hunt("units of path do not show in the acceleration of a slow rotary axis", "1",
 hunt("a motion of the path itself behind one that was told already is a part of that, by override", "1", "3103708", "--operator")
 hunt("and by single block", "1", "3201813", "--hands")
 hunt("single block and holds at any cycle break nothing", "12", "1060001", "--hands", "--kinds", KINDS)
+hunt("nor does the end of a run at any", "12", "3600001", "--ends", "--kinds", KINDS)
 t.finish()
