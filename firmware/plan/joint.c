@@ -13,8 +13,9 @@
  * a joint at feed v uses the part P v + Q v^2 of the jerk limit and R v of the acceleration limit. The blocks beside it
  * leave it that part (block.c): up to BLOCK_SHARE_MAX.
  *
- * The line between two setpoints leaves out the corner, by D v cycle / 4 at most: C v <= 1 with C = |D| cycle / 4 d over the
- * axes X, Y, Z, and d what a chord may be off. It binds where a cycle is long beside what the axes can do.
+ * The line between two setpoints leaves out the corner, by D v cycle / 4 at most: |D| v cycle / 4 <= d over the
+ * axes X, Y, Z, and d what a chord may be off. It binds where a cycle is long beside what the axes can do. Where the motions have a
+ * tolerance P, what bends beside the corner take counts, too: |D| v cycle / 4 + k v^2 cycle^2 / 8 <= P, k the larger curvature.
  *
  * Short blocks. Joints less than three cycles apart add up. With f = min(1, d / (6 cycles)), d the time of the shorter
  * block beside a joint at its ceiling, a joint may use f of the share. If several fall into three cycles, each block
@@ -31,10 +32,10 @@
 #include "base/maths.h"
 
 struct joint_steps {
-    double p_s_mm;   /* P, s/mm */
-    double q_s2_mm2; /* Q, s2/mm2 */
-    double r_s_mm;   /* R, s/mm */
-    double c_s_mm;   /* C, s/mm */
+    double p_s_mm;      /* P, s/mm */
+    double q_s2_mm2;    /* Q, s2/mm2 */
+    double r_s_mm;      /* R, s/mm */
+    double within_mm_s; /* feed up to which the line between two setpoints is near enough */
 };
 
 /* Tangent and curvature by the path, at a place of a block's curve. */
@@ -48,15 +49,31 @@ static void measure_at(const struct block *b, double at_mm, struct point *t, str
     }
 }
 
-/* |D| over X, Y, Z. */
-static double corner_off(const struct point *t0, const struct point *t1)
+/* |a - b| over the first axes. */
+static double apart(const struct point *a, const struct point *b, int axes)
 {
     double square = 0.0;
 
-    for (int i = 0; i < AXIS_LINEAR_COUNT; i++) {
-        square += (t1->at[i] - t0->at[i]) * (t1->at[i] - t0->at[i]);
+    for (int i = 0; i < axes; i++) {
+        square += (a->at[i] - b->at[i]) * (a->at[i] - b->at[i]);
     }
     return maths_sqrt(square);
+}
+
+/* What a block's motion may leave its path by; infinite: it is exact. */
+static double tolerance_of(const struct block *b)
+{
+    return b->move.path == PATH_BLEND && b->move.tolerance_mm > 0.0 ? b->move.tolerance_mm
+                                                                    : MATHS_INFINITY;
+}
+
+/* Largest v with d v cycle / 4 + k v^2 cycle^2 / 8 <= within, d the change of tangent and k the curvature. */
+static double feed_within(double d, double k, double within_mm, double cycle_s)
+{
+    const double c = d * cycle_s / (4.0 * within_mm);
+    const double root = c + maths_sqrt(c * c + k * cycle_s * cycle_s / (2.0 * within_mm));
+
+    return root > 0.0 ? 2.0 / root : MATHS_INFINITY;
 }
 
 static void joint_measure(const struct block *before, const struct block *after,
@@ -67,8 +84,15 @@ static void joint_measure(const struct block *before, const struct block *after,
 
     measure_at(before, before->curve.length_mm, &t0, &k0);
     measure_at(after, 0.0, &t1, &k1);
-    *steps = (struct joint_steps){.c_s_mm = corner_off(&t0, &t1) * cycle /
-                                            (4.0 * limits->chord_error_max_mm)};
+    static const struct point straight;
+    const double bend =
+        maths_max(apart(&k0, &straight, AXIS_COUNT), apart(&k1, &straight, AXIS_COUNT));
+    const double tolerance_mm = maths_min(tolerance_of(before), tolerance_of(after));
+
+    *steps = (struct joint_steps){
+        .within_mm_s = maths_min(
+            feed_within(apart(&t0, &t1, AXIS_LINEAR_COUNT), 0.0, limits->chord_error_max_mm, cycle),
+            feed_within(apart(&t0, &t1, AXIS_COUNT), bend, tolerance_mm, cycle))};
     for (int i = 0; i < AXIS_COUNT; i++) {
         if ((limits->axes >> i & 1U) != 0) {
             const double d = maths_abs(t1.at[i] - t0.at[i]);
@@ -82,7 +106,7 @@ static void joint_measure(const struct block *before, const struct block *after,
     }
 }
 
-/* Largest v with P v + Q v^2 <= share, R v <= acceleration and C v <= 1: a joint by itself. */
+/* Largest v with P v + Q v^2 <= share, R v <= acceleration, and the corner near enough: a joint by itself. */
 static double alone_feed(const struct joint_steps *steps)
 {
     const double p = steps->p_s_mm;
@@ -91,14 +115,13 @@ static double alone_feed(const struct joint_steps *steps)
     const double by_jerk = root > 0.0 ? 2.0 * BLOCK_SHARE_MAX / root : MATHS_INFINITY;
     const double by_acceleration =
         steps->r_s_mm > 0.0 ? JOINT_ACCELERATION / steps->r_s_mm : MATHS_INFINITY;
-    const double by_chord = steps->c_s_mm > 0.0 ? 1.0 / steps->c_s_mm : MATHS_INFINITY;
 
-    return maths_min(maths_min(by_jerk, by_acceleration), by_chord);
+    return maths_min(maths_min(by_jerk, by_acceleration), steps->within_mm_s);
 }
 
 /*
  * The same with f = reach / v, reach = length / (6 cycles) the feed at which blocks stop being short:
- * P v^2 + Q v^3 <= share reach, R v^2 <= acceleration reach and C v^2 <= reach. v0, where the larger of the first two terms meets the
+ * P v^2 + Q v^3 <= share reach, R v^2 <= acceleration reach and v^2 <= reach times the feed that is near enough. v0, where the larger of the first two terms meets the
  * right side, then scaled by the root of the excess: exact for one term, safe for both.
  */
 static double crowded_feed(const struct joint_steps *steps, double reach_mm_s)
@@ -120,10 +143,7 @@ static double crowded_feed(const struct joint_steps *steps, double reach_mm_s)
     if (steps->r_s_mm > 0.0) {
         v = maths_min(v, maths_sqrt(JOINT_ACCELERATION * reach_mm_s / steps->r_s_mm));
     }
-    if (steps->c_s_mm > 0.0) {
-        v = maths_min(v, maths_sqrt(reach_mm_s / steps->c_s_mm));
-    }
-    return v;
+    return maths_min(v, maths_sqrt(reach_mm_s * steps->within_mm_s));
 }
 
 /* 1/f: how many times shorter than JOINT_CYCLES_APART the shorter block beside a joint lasts at its ceiling. */

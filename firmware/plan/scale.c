@@ -4,10 +4,12 @@
 #include "plan/path_unit.h"
 
 /*
- * Rounding changes the third difference of setpoints by 2 units, and by three times 8 where one so near to an end is put on
- * it (motion/motion.c): with so many units in the least J tau^3 that is less than 1/2048 of the jerk limit.
+ * Rounding changes the second and third differences of setpoints by 2 units, and by two and three times 8 where one so near to
+ * an end is put on it (motion/motion.c): with so many units in the least A tau^2 and J tau^3 that is less than 1/14,000 of the
+ * acceleration limit, and 1/2048 of the jerk limit.
  */
-#define JERK_UNITS 65536.0
+#define ACCELERATION_UNITS 262144.0
+#define JERK_UNITS         65536.0
 
 /* The sums of the averages: product of the boxes times the way between lead point and setpoint. */
 #define SUM_UNITS 9223372036854775808.0
@@ -32,15 +34,16 @@ static double fastest(const struct plan_limits *limits, unsigned axes)
     return maths_sqrt(square) * limits->cycle_s;
 }
 
-/* Units of a scale of 1 in the least J tau^3. */
-static double least_jerk(const struct plan_limits *limits, unsigned axes)
+/* Units of a scale of 1 in the least A tau^2 and J tau^3, as parts of those that must be in them. */
+static double least_units(const struct plan_limits *limits, unsigned axes)
 {
     const double t = limits->cycle_s;
     double least = MATHS_INFINITY;
 
     for (unsigned i = 0; i < AXIS_COUNT; i++) {
         if ((limits->axes & axes & 1U << i) != 0) {
-            least = maths_min(least, limits->jerk_mm_s3[i] * (t * t * t));
+            least = maths_min(least, limits->acceleration_mm_s2[i] * (t * t) / ACCELERATION_UNITS);
+            least = maths_min(least, limits->jerk_mm_s3[i] * (t * t * t) / JERK_UNITS);
         }
     }
     return least * PATH_UNITS_PER_MM;
@@ -61,11 +64,11 @@ static double largest_sum(const struct plan_limits *limits, unsigned axes)
 
 static double scale_of_axes(const struct plan_limits *limits, unsigned axes)
 {
-    const double jerk = least_jerk(limits, axes);
+    const double units = least_units(limits, axes);
     const double sum = largest_sum(limits, axes);
     double scale = 1.0;
 
-    while (jerk < JERK_UNITS * scale && 2.0 * sum < SUM_UNITS * scale) {
+    while (units < scale && 2.0 * sum < SUM_UNITS * scale) {
         scale *= 0.5;
     }
     while (sum >= SUM_UNITS * scale) {

@@ -23,7 +23,7 @@
 #define SCALE_LENGTH_UNITS (UINT64_C(1) << 61)
 
 /*
- * 1/W and 1/V of a machine, powers of two: 1 unless a unit of path would show in the jerk of the slowest axis of that kind,
+ * 1/W and 1/V of a machine, powers of two: 1 unless a unit of path would show in acceleration or jerk of the slowest axis of that kind,
  * or sums over the longest window would be too large for the fastest.
  */
 struct scale {

@@ -7,6 +7,9 @@
 /* Rounding of limits. */
 #define LIMIT 0.999f
 
+/* Rounding of feeds that are the same. */
+#define SAME 0.99999f
+
 /* Parts of its acceleration that an axis at its highest velocity is left for changes of rate (override, hold). */
 #define LEFT_LEAST 0.06
 #define LEFT_MOST  0.5
@@ -410,6 +413,50 @@ static struct pace fastest(const struct route *r, const struct order *order,
     return most;
 }
 
+/* Of all motions from the first to the last that the curve can be on before or after a chord. */
+static struct pace slowest(const struct route *r, const struct order *before,
+                           const struct order *after, const struct judge_need *need)
+{
+    const double end_mm = after->span[after->count - 1].last_mm;
+    uint32_t e = route_find(r, before->span[0].first_mm, before->element);
+    struct pace least = {.element = e, .rate = judge_programmed(need, r, e)};
+
+    while (++e < r->count && route_element(r, e)->start_mm < end_mm) {
+        const float rate = judge_programmed(need, r, e);
+
+        least = rate < least.rate ? (struct pace){e, rate} : least;
+    }
+    return least;
+}
+
+/* Is there a way on along a chord which is on motions of this rate or more alone, and passes others in an instant? */
+static bool keeps_pace(const struct route *r, const struct order *before,
+                       const struct judge_need *need, float rate, struct order_chord chord)
+{
+    struct order o = *before;
+
+    chord.least_mm_s[0] = need->linear_mm_s > 0.0f ? SAME * rate * need->linear_mm_s : 0.0f;
+    chord.least_mm_s[1] = need->rotary_mm_s > 0.0f ? SAME * rate * need->rotary_mm_s : 0.0f;
+    order_go(&o, r, &chord);
+    return o.count > 0;
+}
+
+/*
+ * A motion of a feed that the curve may have all along a chord: that of the slower one of its ends, unless it must be on a slower
+ * one between them.
+ */
+static struct pace pace_on(const struct route *r, const struct order *before,
+                           const struct order *after, const struct judge_need *need,
+                           const struct order_chord *chord)
+{
+    const struct pace from = fastest(r, before, need);
+    const struct pace to = fastest(r, after, need);
+    const struct pace ends = to.rate < from.rate ? to : from;
+    const struct pace least = slowest(r, before, after, need);
+
+    return least.rate < ends.rate && !keeps_pace(r, before, need, ends.rate, *chord) ? least : ends;
+}
+
 /*
  * The order along a piece, and whose feed is its: at each place of it the curve is on some motion of that feed or more. Its
  * first place from which there is no way on, or 0.
@@ -427,11 +474,12 @@ static unsigned follow_piece(struct window *w, const struct route *r, unsigned p
     unsigned k = 1;
 
     judge_need(w, r, piece, &need);
-    struct pace slowest = fastest(r, order, &need);
+    struct pace least = fastest(r, order, &need);
 
     window_weights(0.0f, weight);
     window_spot(w, r, piece, weight, &a);
     for (; k <= look.places && order->count > 0; k++) {
+        const struct order before = *order;
         struct window_spot b;
 
         window_weights((float)k / (float)look.places, weight);
@@ -439,13 +487,15 @@ static unsigned follow_piece(struct window *w, const struct route *r, unsigned p
         set_chord(w, r, &a, &b, &chord);
         order_go(order, r, &chord);
         a = b;
-        const struct pace here = fastest(r, order, &need);
+        if (order->count > 0) {
+            const struct pace here = pace_on(r, &before, order, &need, &chord);
 
-        slowest = here.rate < slowest.rate ? here : slowest;
+            least = here.rate < least.rate ? here : least;
+        }
     }
     const bool lost = order->count == 0;
 
-    w->paced[piece] = (unsigned char)((lost ? w->element[piece + 1] : slowest.element) - r->first);
+    w->paced[piece] = (unsigned char)((lost ? w->element[piece + 1] : least.element) - r->first);
     return lost ? k - 1 : 0;
 }
 

@@ -16,9 +16,6 @@
 /* Corners of lines that turn less are within the tube anyway. */
 #define CORNER_MIN 0.005f
 
-/* Not there. */
-#define NOWHERE SINGLE_INFINITY
-
 /* A straight part of the route, beside a chord. */
 struct link {
     uint32_t element;
@@ -27,13 +24,22 @@ struct link {
     float start[SMOOTH_SLOTS_MAX];          /* from the chord's beginning, weighted */
     float way[SMOOTH_SLOTS_MAX];
     float within_mm;
-    bool ends; /* the route goes on from its end; else all that is near lies before it */
+    bool ends;   /* the route goes on from its end; else all that is near lies before it */
+    bool passed; /* no way may stay on it */
 };
 
 /* Parts of a line; first > last: none. */
 struct parts {
     float first, last;
 };
+
+static const struct parts nowhere = {SINGLE_INFINITY, 0.0f};
+static const struct parts wherever = {0.0f, 1.0f};
+
+static bool is_there(struct parts p)
+{
+    return p.first <= p.last;
+}
 
 /* Where a line is within a distance of a point: |f - g| <= sqrt((within^2 - d^2) / way^2), g the foot, d away. */
 static struct parts near_point(const struct route *r, const float start[], const float way[],
@@ -57,7 +63,7 @@ static struct parts near_point(const struct route *r, const float start[], const
     const float room = within_mm * within_mm - off_square;
 
     if (room < 0.0f || within_mm < 0.0f) {
-        return (struct parts){NOWHERE, 0.0f};
+        return nowhere;
     }
     const float half = square > 0.0f ? single_sqrt(room / square) : 1.0f;
 
@@ -104,6 +110,8 @@ static void set_link(const struct route *r, const struct order_chord *chord, flo
     uint32_t hint = l->element;
 
     l->end_mm = link_end(r, chord, l, chord_mm);
+    l->passed =
+        route_programmed(r, l->element) < chord->least_mm_s[route_element(r, l->element)->rotary];
     route_point(r, l->end_mm, &hint, l->end);
     for (unsigned i = 0; i < r->slots.count; i++) {
         l->start[i] = r->slots.weight[i] * (float)(l->at[i] - chord->from[i]);
@@ -127,25 +135,29 @@ static bool is_corner(const struct route *r, uint32_t element)
             route_element(r, element - 1)->bent);
 }
 
-/* From which part of the chord on the route beyond a link is come to, when the link is from a part on. */
-static float pass_end(const struct route *r, const struct order_chord *chord, const struct link *l,
-                      float part)
+/*
+ * The parts of the chord at which the end of a link is passed, when its start is at some: not before that, and in the same
+ * instant if no way may stay.
+ */
+static struct parts pass_end(const struct route *r, const struct order_chord *chord,
+                             const struct link *l, struct parts start)
 {
     static const float here[SMOOTH_SLOTS_MAX];
     const bool corner = l->end_mm == route_end_of(r, l->element) && is_corner(r, l->element + 1);
     float end[SMOOTH_SLOTS_MAX];
 
     if (!l->ends) {
-        return NOWHERE;
+        return nowhere;
     }
     for (unsigned i = 0; i < r->slots.count; i++) {
         end[i] = l->start[i] + l->way[i];
     }
-    const struct parts near =
+    struct parts near =
         near_point(r, here, chord->way, end, corner ? chord->corner_mm : l->within_mm);
 
-    part = single_max(part, near.first);
-    return part <= near.last ? part : NOWHERE;
+    near.first = single_max(start.first, near.first);
+    near.last = l->passed ? single_min(start.last, near.last) : near.last;
+    return is_there(near) ? near : nowhere;
 }
 
 /* Where there are too many, the lowest goes, unless the next lies beyond the place thought to be beside the curve. */
@@ -176,7 +188,7 @@ static void add_link(struct order *o, const struct route *r, const struct order_
     const struct parts near = near_point(r, l->start, l->way, chord->way, l->within_mm);
     const double way_mm = l->end_mm - l->at_mm;
 
-    if (near.first <= near.last) {
+    if (is_there(near)) {
         add_span(o, l->at_mm + (double)near.first * way_mm,
                  near.last < 1.0f ? l->at_mm + (double)near.last * way_mm : l->end_mm,
                  chord->believed_mm);
@@ -201,26 +213,28 @@ void order_go(struct order *o, const struct route *r, const struct order_chord *
     const struct order before = *o;
     const float chord_mm = length_of(r, chord->way);
     struct link l = {.element = before.element, .at_mm = route_element(r, r->first)->start_mm};
-    float part = NOWHERE;
+    struct parts start = nowhere;
     unsigned next = 0;
 
     o->count = 0;
     for (unsigned i = 0; i < LINKS_MAX && l.element < r->count; i++) {
-        if (!(part < NOWHERE)) {
+        if (!is_there(start)) {
             if (next == before.count) {
                 break;
             }
             set_at(r, &l, maths_max(l.at_mm, before.span[next].first_mm));
         }
         set_link(r, chord, chord_mm, &l);
-        if (next < before.count && before.span[next].first_mm <= l.end_mm) {
-            part = 0.0f;
+        if (next < before.count && before.span[next].first_mm <= l.end_mm && !l.passed) {
+            start = wherever;
         }
         if (o->count == 0) {
             o->element = l.element;
         }
-        add_link(o, r, chord, &l);
-        part = pass_end(r, chord, &l, part);
+        if (is_there(start) && !l.passed) {
+            add_link(o, r, chord, &l);
+        }
+        start = pass_end(r, chord, &l, start);
         while (next < before.count && before.span[next].last_mm <= l.end_mm) {
             next++;
         }

@@ -32,6 +32,7 @@ struct order_chord {
     float within_mm;             /* how near the curve must be to the route, */
     float corner_mm;             /* and to its corners */
     double believed_mm;          /* place on the route thought to be beside its end */
+    float least_mm_s[2];         /* slower motions, linear and rotary, it may but pass at once */
 };
 
 /* The curve begins at a place of the route. */

@@ -509,18 +509,24 @@ static void end_element(struct smooth *s)
     begin_anew(s);
 }
 
-/* The next motion of the path itself; false: the axes are at its end. */
+/*
+ * The next motion of the path itself; false: the axes are at its end. One before that which has been told is a part of that: line
+ * and number never go back.
+ */
 static bool take_motion(struct smooth *s, struct smooth_piece *piece, struct curve *curve)
 {
     const uint32_t element = s->window.element[0];
+    const uint32_t told = smooth_tell(s, element);
     const bool goes = exact_next(&s->window, &s->route, &s->limits, &s->move, curve);
+    const bool ends = s->window.at_mm[0] >= route_end_of(&s->route, element);
 
+    s->move.line = route_element(&s->route, told)->line;
     piece->move = &s->move;
-    piece->number = route_element(&s->route, smooth_tell(s, element))->number;
+    piece->number = route_element(&s->route, told)->number;
     piece->starts = s->starts;
     s->starts = s->starts && !goes;
-    piece->continues = s->window.at_mm[0] < route_end_of(&s->route, element);
-    if (!piece->continues) {
+    piece->continues = !ends || told != element;
+    if (ends) {
         end_element(s);
     }
     return goes;

@@ -44,7 +44,7 @@ struct smooth_piece {
     bool stop;      /* comes to rest at its end, though the chain goes on: no way on was found */
     bool rotary;    /* no linear axis moves in that motion */
     bool starts;    /* begins at rest */
-    bool continues; /* more of the motion follows */
+    bool continues; /* more of the motion that is told follows */
     bool last;      /* of the chain: ends at rest, in the end of the last motion */
 };
 

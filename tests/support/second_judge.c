@@ -67,8 +67,9 @@ double second_order(bool ended)
     cut(&j);
     measure_bends(&j);
     j.reach = make(j.pieces, sizeof(*j.reach));
+    j.completed = !ended;
     w = walk_along(&j, 1.0 + ROOM, false, NULL);
-    if (w.lost_row > 0 || w.tired_row > 0 || !(w.arrived || ended)) {
+    if (!w.arrived) {
         factor = ended ? MATHS_INFINITY : least_factor(&j);
     }
     free(j.reach);

@@ -33,13 +33,13 @@ def path(*ends, step=STEP):
     return to([(0.0, 0.0, 0.0)], *ends, step=step)
 
 
-def judge(program, points, completed=True, most=(), axes="XYZ"):
+def judge(program, points, end=2, most=(), axes="XYZ"):
     machine = hunt_programs.Machine({a: (1e5, 1e7, 1e10) for a in axes}, 1000)
     rows = ["cycle,act_X_mm," + ",".join(f"set_{a}_{'mm' if a in 'XYZ' else 'deg'}" for a in axes)]
     rows += [f"{k},0," + ",".join(f"{x:.9f}" for x in point) for k, point in enumerate(points[1:])]
     t.write("t.csv", "\n".join(rows) + "\n")
     motions = hunt_path.read(program, machine, False)
-    t.write("case", hunt_path.case(machine, motions, 1.0, completed))
+    t.write("case", hunt_path.case(machine, motions, 1.0, end))
     done = subprocess.run([JUDGE, "case", "t.csv", *most], capture_output=True, text=True, check=True)
     return {row.split()[0]: float(row.split()[1]) for row in done.stdout.splitlines()}
 
@@ -169,6 +169,14 @@ f = judge(TURN, turned(turned(turned([(0.0, 0.0)], 4, 0.4, 0.9 * P), 10, 0.6), 1
 t.check(f["order"] == 1 and f["feed"] <= 1.0000001, "what rounding moves other axes by is no feed of rotary axes alone", f)
 f = judge(CORNER, path((5, 0, 0), (5, 5 - 1e-6, 0)))
 t.check(near(f["end"], 1e-6), "an end that is missed is seen", f)
+f = judge(CORNER, path((5, 0, 0), (5, 2, 0)), end=1)
+t.check(f["order"] == 1, "a run that is ended may be left anywhere on the path", f)
+f = judge(CORNER, path((5, 0, 0), (5, 2, 0)))
+t.check(f["order"] > 1, "one that is not, at its end alone", f)
+f = judge(CORNER, path((5, 0, 0), (5, 2, 0), (5 + 1.1 * P, 2, 0)), end=1)
+t.check(f["order"] > 1, "nor may one that is ended be left beside the path", f)
+f = judge(LINE, path((5, 0, 0)), end=1)
+t.check(f["acceleration"] * 1e7 > 0.9 * STEP / 1e-6, "and it must come to rest", f)
 points = path((5, 0, 0))
 f = judge(CORNER, to(points[:200] + 5 * [points[200]] + points[200:], (5, 5, 0)))
 t.check(f["stops"] == 1, "a stop on a straight path is seen", f)
@@ -186,7 +194,7 @@ t.check(f["order"] > 1, "less of it, and a broken order is seen all the same", f
 
 JERK = 12000.0
 points = [(JERK * (1e-3 * k) ** 3 / 6, 0, 0) for k in range(100)]
-f = judge(LINE, points, completed=False)
+f = judge(LINE, points, end=0)
 t.check(near(f["jerk"] * 1e10, JERK, 1e-3), "jerk by differences: x = J t^3 / 6", f)
 f = judge(LINE, points)
 t.check(near(f["acceleration"] * 1e7 * 1e-3, f["velocity"] * 1e5, 1e-4), "an end at speed is a jump to rest", f)

@@ -34,6 +34,8 @@ for seed in ("94312", "202802", "206396"):
 hunt("where it rests before the place that it was thought to be at it goes on from there", "1", "220050", "--kinds", KINDS + ",endless")
 for seed in ("251327", "252650"):
     hunt(f"beside a rapid no feed is exceeded: {seed}", "1", seed, "--operator", "--kinds", KINDS)
+for seed in ("1100682", "3200970"):
+    hunt(f"nor is one on a feed between rapids that is shorter than a piece: {seed}", "1", seed, "--hands", "--kinds", KINDS)
 hunt("a curve does not creep where one axis needs a long interval", "1", "901166", "--operator", "--kinds", KINDS + ",endless")
 hunt("no way to rest is longer than a cycle's feed where the axes could do far more", "1", "901142", "--operator", "--exact")
 hunt("corners of exact paths are not cut where a cycle is long", "1", "40033", "--exact")
@@ -44,5 +46,10 @@ hunt("motions of the path itself keep the feed where rotary axes move too", "1",
 hunt("a rotary axis alone, rounded into linear ones, keeps its feed", "1", "1070140", "--hands", "--kinds", KINDS)
 for seed in ("1070690", "1070701", "1080141", "1082075"):
     hunt(f"a hold while the axes speed up after another exceeds no feed: {seed}", "1", seed, "--hands", "--kinds", KINDS)
+hunt("motions of the path itself pass corners within a tolerance below the chord error", "1", "3302434", "--operator")
+hunt("units of path do not show in the acceleration of a slow rotary axis", "1", "3203788", "--hands")
+hunt("a motion of the path itself behind one that was told already is a part of that, by override", "1", "3103708", "--operator")
+hunt("and by single block", "1", "3201813", "--hands")
 hunt("single block and holds at any cycle break nothing", "12", "1060001", "--hands", "--kinds", KINDS)
+hunt("nor does the end of a run at any", "12", "3600001", "--ends", "--kinds", KINDS)
 t.finish()

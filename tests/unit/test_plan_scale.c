@@ -83,6 +83,20 @@ static void test_a_unit_does_not_show_in_the_jerk_of_a_slow_axis(void)
     }
 }
 
+/* Of a second difference, 2 units, and 16 where one is put on an end: 1e-4 of the limit at most. */
+static void test_nor_in_its_acceleration(void)
+{
+    limits.jerk_mm_s3[AXIS_C] = 1e6;
+    for (int i = 0; i < 7; i++) {
+        const double a = 10.0 * maths_power(3.0, -i);
+
+        limits.acceleration_mm_s2[AXIS_C] = a;
+        const double unit = scale_of_machine(&limits).rotary / PATH_UNITS_PER_MM;
+
+        TEST_ASSERT_TRUE(18.0 * unit <= 1e-4 * a * 1e-6);
+    }
+}
+
 static void test_nor_does_it_beside_linear_axes_that_leave_no_room_for_smaller_ones(void)
 {
     limits.law = LAW_GENTLE;
@@ -141,6 +155,7 @@ int main(void)
     RUN_TEST(test_the_programmed_time_stays_what_it_is);
     RUN_TEST(test_a_turn_has_the_same_limits_beside_any_short_way);
     RUN_TEST(test_a_unit_does_not_show_in_the_jerk_of_a_slow_axis);
+    RUN_TEST(test_nor_in_its_acceleration);
     RUN_TEST(test_nor_does_it_beside_linear_axes_that_leave_no_room_for_smaller_ones);
     RUN_TEST(test_sums_over_the_longest_window_stay_within_64_bits);
     RUN_TEST(test_the_longest_way_fits_into_path_positions);

@@ -12,6 +12,7 @@ static struct route route;
 static struct order order;
 static struct point at;    /* end of the route */
 static double place_mm[2]; /* of the curve */
+static double feed_mm_s;   /* of motions that are pushed */
 
 /* Three equal axes, a route that begins at 0. */
 void setUp(void)
@@ -30,6 +31,7 @@ void setUp(void)
     memset(&at, 0, sizeof at);
     place_mm[0] = 0.0;
     place_mm[1] = 0.0;
+    feed_mm_s = 100.0;
     order_start(&order, 0.0, 0);
 }
 
@@ -39,7 +41,8 @@ void tearDown(void)
 
 static void push(const struct curve *curve)
 {
-    const struct move move = {.kind = MOVE_FEED, .feed_mm_s = 100.0, .tolerance_mm = TOLERANCE_MM};
+    const struct move move = {
+        .kind = MOVE_FEED, .feed_mm_s = feed_mm_s, .tolerance_mm = TOLERANCE_MM};
 
     route_push(&route, &move, 0, curve);
 }
@@ -192,6 +195,30 @@ static void test_a_corner_is_not_passed_by_what_only_comes_to_its_place(void)
     TEST_ASSERT_FALSE(order_reaches(&order, 1.01));
 }
 
+/* Two fast lines with a slow one between, and one chord from before it to behind it, on them: is there a way on fast ones alone? */
+static bool hurries_past(double slow_mm)
+{
+    struct order_chord chord = {
+        .from = {0.95}, .within_mm = 0.1f, .corner_mm = 0.1f, .least_mm_s = {50.0f, 50.0f}};
+
+    setUp();
+    chord.way[0] = (float)(slow_mm + 0.1);
+    line_to(1.0, 0.0);
+    feed_mm_s = 10.0;
+    line_to(1.0 + slow_mm, 0.0);
+    feed_mm_s = 100.0;
+    line_to(3.0, 0.0);
+    order_start(&order, 0.95, 0);
+    order_go(&order, &route, &chord);
+    return order_reaches(&order, 1.0 + slow_mm + 0.05);
+}
+
+static void test_a_slow_motion_longer_than_two_tolerances_is_not_passed_in_an_instant(void)
+{
+    TEST_ASSERT_TRUE(hurries_past(0.199));
+    TEST_ASSERT_FALSE(hurries_past(0.201));
+}
+
 /* A raster finer than the tolerance has more stretches than are kept: one of those that are kept leads on. */
 static void test_of_many_stretches_enough_are_kept(void)
 {
@@ -225,6 +252,7 @@ int main(void)
     RUN_TEST(test_a_full_circle_is_left_out_up_to_a_diameter_of_the_tolerance);
     RUN_TEST(test_a_corner_is_passed_nearer_where_chords_leave_the_curve);
     RUN_TEST(test_a_corner_is_not_passed_by_what_only_comes_to_its_place);
+    RUN_TEST(test_a_slow_motion_longer_than_two_tolerances_is_not_passed_in_an_instant);
     RUN_TEST(test_of_many_stretches_enough_are_kept);
     RUN_TEST(test_the_place_to_rest_at_is_one_that_can_have_been_come_to);
     return UNITY_END();

@@ -139,13 +139,17 @@ static bool read_motion(struct judge *j, FILE *file)
 /* AXES LINEAR CYCLE FEED_FACTOR COMPLETED, of each axis SCALE V A J START, then motions. */
 void read_case(struct judge *j, FILE *file)
 {
+    unsigned end;
+
     j->axes = (unsigned)number(file);
     if (j->axes > AXES_MAX)
         fail("too many axes");
     j->linear_axes = (unsigned)number(file);
     j->cycle_s = number(file);
     j->feed_factor = number(file);
-    j->completed = number(file) > 0;
+    end = (unsigned)number(file);
+    j->stands = end > 0;
+    j->completed = end > 1;
     for (unsigned i = 0; i < j->axes; i++) {
         j->scale[i] = number(file);
         for (unsigned k = 0; k < 3; k++)

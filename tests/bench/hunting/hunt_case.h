@@ -51,7 +51,8 @@ struct judge {
     double scale[AXES_MAX];     /* mm or rad per unit of the trace */
     double limit[AXES_MAX][3];  /* units of the trace */
     double cycle_s, feed_factor;
-    bool completed; /* the axes stand after the last row */
+    bool stands;    /* the axes do, after the last row */
+    bool completed; /* they stand at the end of the path; else it may be left anywhere */
     double start[AXES_MAX];
     struct motion *motion;
     size_t motions, motion_room;

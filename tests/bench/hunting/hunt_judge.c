@@ -36,7 +36,7 @@ static void judge_limits(const struct judge *j)
     static const char *const names[] = {"velocity", "acceleration", "jerk"};
     static const double weights[] = {2, 4, 8};
 
-    const size_t rows = j->rows + (j->completed ? 3 : 0);
+    const size_t rows = j->rows + (j->stands ? 3 : 0);
 
     for (unsigned k = 0; k < 3; k++) {
         double worst = 0;

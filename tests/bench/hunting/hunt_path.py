@@ -122,10 +122,10 @@ def read(text, machine, exact):
     return reader.motions
 
 
-def case(machine, motions, feed_factor, completed):
-    """The text of a case of hunt_judge; completed: the axes stand after the trace's last row."""
+def case(machine, motions, feed_factor, end):
+    """The text of a case of hunt_judge; end: after the trace's last row the axes move (0), stand (1), or stand at the path's end (2)."""
     axes = list(machine.axes)
-    rows = [f"{len(axes)} {sum(a in LINEAR for a in axes)} {machine.cycle_us * 1e-6!r} {feed_factor!r} {int(completed)}"]
+    rows = [f"{len(axes)} {sum(a in LINEAR for a in axes)} {machine.cycle_us * 1e-6!r} {feed_factor!r} {end}"]
     for a in axes:
         scale = 1.0 if a in LINEAR else math.pi / 180
         rows.append(" ".join(repr(x) for x in (scale, *machine.axes[a], 0.0)))

@@ -3,7 +3,8 @@
  *
  *     hunt_run HANDS TRACE.csv SUMMARY.json run PROGRAM [options of takt run]
  *
- * HANDS: lines of CYCLE SINGLE HOLD: from this cycle of the program on, single block and feed hold are on (1) or off (0).
+ * HANDS: lines of CYCLE SINGLE HOLD END: from this cycle of the program on, single block and feed hold are on (1) or off (0);
+ * 1: the run is ended, as by Ctrl-C, and the axes come to rest on the path.
  * The status is that of the run.
  */
 #include "library/library.h"
@@ -17,9 +18,12 @@
 /* Running, as struct takt_state has it. */
 #define RUNNING 1
 
+/* The status of a run that Ctrl-C has ended. */
+#define INTERRUPTED 130
+
 struct hand {
     unsigned long long cycle;
-    int single, hold;
+    int single, hold, end;
 };
 
 static struct hand hand[HANDS_MAX];
@@ -32,7 +36,8 @@ static bool read_hands(const char *name)
 
     if (file == NULL)
         return false;
-    while (h < hand + HANDS_MAX && fscanf(file, "%llu %d %d", &h->cycle, &h->single, &h->hold) == 3)
+    while (h < hand + HANDS_MAX &&
+           fscanf(file, "%llu %d %d %d", &h->cycle, &h->single, &h->hold, &h->end) == 4)
         h++;
     hands = (unsigned)(h - hand);
     return fclose(file) == 0;
@@ -54,14 +59,18 @@ static int run(struct takt_job *job)
     struct takt_state state;
     int status = takt_start(job, TAKT_KEEPS_TRACE);
     unsigned next = 0;
+    bool ends = false;
 
-    while (status == 0 && !takt_is_over(job)) {
+    while (status == 0 && !ends && !takt_is_over(job)) {
         takt_get_state(job, &state);
-        while (next < hands && state.state >= RUNNING && state.cycles >= hand[next].cycle)
+        while (next < hands && state.state >= RUNNING && state.cycles >= hand[next].cycle) {
+            ends = ends || hand[next].end;
             lay_hand(job, &hand[next++]);
-        status = takt_step(job, next < hands ? 1 : 4096);
+        }
+        if (!ends)
+            status = takt_step(job, next < hands ? 1 : 4096);
     }
-    return status != 0 ? status : takt_finish(job, 0);
+    return status != 0 ? status : takt_finish(job, ends ? INTERRUPTED : 0);
 }
 
 static bool is_setpoint(const struct takt_job *job, unsigned column)

@@ -338,6 +338,12 @@ static void judge_exact(const struct judge *j, struct walk *w, size_t k, size_t 
     judge_exact_feed(j, w, k, line);
 }
 
+/* Does the last row lead on to where the path must end? */
+static bool is_done(const struct judge *j, size_t high)
+{
+    return !j->completed || (high + 1 == j->pieces && j->reach[high].last >= 1);
+}
+
 struct walk walk_along(struct judge *j, double factor, bool closely, const double *before)
 {
     struct walk w = {0};
@@ -367,11 +373,10 @@ struct walk walk_along(struct judge *j, double factor, bool closely, const doubl
             judge_back(j, &w, k);
             judge_standing(j, &w, k);
         }
-        w.arrived = k + 1 == j->rows && high + 1 == j->pieces && j->reach[high].last >= 1;
+        w.arrived = k + 1 == j->rows && is_done(j, high);
     }
     if (!closely)
-        w.arrived = w.lost_row == 0 && w.tired_row == 0 && high + 1 == j->pieces &&
-                    j->reach[high].last >= 1;
+        w.arrived = w.lost_row == 0 && w.tired_row == 0 && is_done(j, high);
     free(w.time_s[0]);
     free(w.time_s[1]);
     return w;
