@@ -170,6 +170,7 @@ static void enter_span(struct lead *l, uint32_t k, uint64_t from, struct lead_st
 
     l->window = (double)window;
     l->at = from + start->step * (window - 1) / 2;
+    l->owed = 0.0;
     l->feed = (double)start->step / PATH_UNITS_PER_MM;
     l->since_plus = LEAD_LONG_AGO;
     l->since_minus = LEAD_LONG_AGO;

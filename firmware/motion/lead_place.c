@@ -88,7 +88,7 @@ static double brake_position(const struct lead *l, const struct ceiling *c)
 {
     const double wait = maths_max(0.0, l->window - (double)l->since_plus);
 
-    return path_mm(c->origin, l->at) + l->feed * wait;
+    return path_mm(c->origin, l->at + path_units(l->feed * wait));
 }
 
 /* A feed of its pieces, squared. */
