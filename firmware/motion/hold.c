@@ -68,6 +68,12 @@ static const float ease_part[EASES] = {0.85f, 0.4f, 0.15f};
 
 /* -- the pieces -- */
 
+/* The highest rate on a block, whatever the overrides are: pieces a cycle. */
+static float top_rate(const struct hold *h, const struct path *path, uint32_t block)
+{
+    return (float)path_block_top(path_at(path, block)) * h->per_mm_s * (1.0f + TOP_SLACK);
+}
+
 /* Of a uniform cubic B-spline: x' = (c2 - c0)/2, x'' = c0 - 2 c1 + c2 where the piece begins. */
 static void read_piece(struct hold *h, const struct path *path, uint32_t block)
 {
@@ -85,6 +91,7 @@ static void read_piece(struct hold *h, const struct path *path, uint32_t block)
         p->second[0][i] = (float)(step1 - step0);
         p->second[1][i] = (float)(step2 - step1);
     }
+    p->top = top_rate(h, path, block);
 }
 
 static double length_of(const struct path *path, uint32_t block)
@@ -142,12 +149,6 @@ static void try_advance(struct hold_trial *s, float w, float t)
     s->at += t * (s->rate + t * (0.5f * s->change + t * w * (1.0f / 6.0f)));
     s->rate = single_max(0.0f, s->rate + t * (s->change + 0.5f * t * w));
     s->change += t * w;
-}
-
-/* The highest rate on a block, whatever the overrides are: pieces a cycle. */
-static float top_rate(const struct hold *h, const struct path *path, uint32_t block)
-{
-    return (float)path_block_top(path_at(path, block)) * h->per_mm_s * (1.0f + TOP_SLACK);
 }
 
 /* Does the curve end before a block? */

@@ -26,6 +26,7 @@
 struct hold_piece {
     float first[AXIS_COUNT];
     float second[2][AXIS_COUNT];
+    float top; /* its highest rate, whatever the overrides are: pieces a cycle */
 };
 
 /* Where the setpoint is, in pieces from the start of a block, and how it moves. */

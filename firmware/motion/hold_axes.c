@@ -95,8 +95,12 @@ static bool axis_can(const struct hold *h, const struct hold_piece *piece, unsig
            is_within(a, h->acceleration[i]) && is_within(j, h->jerk[i]);
 }
 
-static bool axes_can(const struct hold *h, uint32_t block, float f, float g, const struct part *p)
+/* The feed and the axes on a piece. */
+static bool piece_can(const struct hold *h, uint32_t block, float f, float g, const struct part *p)
 {
+    if (p->rate.high > hold_piece_at(h, block)->top) {
+        return false;
+    }
     for (unsigned i = 0; i < h->axes; i++) {
         if (!axis_can(h, hold_piece_at(h, block), i, f, g, p)) {
             return false;
@@ -119,7 +123,7 @@ bool hold_can_go(const struct hold *h, const struct hold_trial *a, const struct 
         const float f = i == first ? a->at - (float)i : 0.0f;
         const float g = i == last ? b->at - (float)i : 1.0f;
 
-        if (!axes_can(h, h->block + i, f, g, &p)) {
+        if (!piece_can(h, h->block + i, f, g, &p)) {
             return false;
         }
     }

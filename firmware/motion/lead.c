@@ -5,9 +5,6 @@
 
 #include <string.h>
 
-/* Path units a cycle: of more, half a unit is less than 1e-5. */
-#define SLOW_UNITS 65536.0
-
 void lead_init(struct lead *l, enum law law, uint64_t at)
 {
     memset(l, 0, sizeof(*l));
@@ -65,15 +62,16 @@ static void count_changes(struct lead *l, double change)
 }
 
 /*
- * A way in whole units. Of so few in a cycle what rounding leaves counts in the next one, or a slow feed would be another,
- * and one below half a unit never get anywhere.
+ * A way in whole units. What rounding leaves counts in the next cycle: else a slow feed would be another, one below half a unit
+ * never get anywhere, and a thousand cycles of braking be a hundred units too late, since each takes what rounding has given, and
+ * none can brake harder for what it has taken.
  */
 static uint64_t whole_way(struct lead *l, double way_mm)
 {
     const double units = way_mm * PATH_UNITS_PER_MM + l->owed;
     const uint64_t whole = (uint64_t)(units + 0.5);
 
-    l->owed = units < SLOW_UNITS ? units - (double)whole : 0.0;
+    l->owed = units - (double)whole;
     return whole;
 }
 
@@ -172,6 +170,7 @@ static void enter_span(struct lead *l, uint32_t k, uint64_t from, struct lead_st
 
     l->window = (double)window;
     l->at = from + start->step * (window - 1) / 2;
+    l->owed = 0.0;
     l->feed = (double)start->step / PATH_UNITS_PER_MM;
     l->since_plus = LEAD_LONG_AGO;
     l->since_minus = LEAD_LONG_AGO;

@@ -83,12 +83,10 @@ static bool has_passed(const struct lead *l, const struct ceiling *c, uint32_t k
                                               : path_mm(c->origin, l->at) >= c->end_mm[k];
 }
 
-/* Where the lead point may brake at the earliest: its feed has then been kept for a window. mm from the origin */
-static double brake_position(const struct lead *l, const struct ceiling *c)
+/* The way until the lead point may brake at the earliest: its feed has then been kept for a window. mm */
+static double way_to_brake(const struct lead *l)
 {
-    const double wait = maths_max(0.0, l->window - (double)l->since_plus);
-
-    return path_mm(c->origin, l->at) + l->feed * wait;
+    return l->feed * maths_max(0.0, l->window - (double)l->since_plus);
 }
 
 /* A feed of its pieces, squared. */
@@ -98,10 +96,11 @@ static double energy_of(const struct ceiling *c, float feed_mm_s)
 }
 
 /*
- * Can what lies ahead be met at this feed squared, which is braked from at x at the earliest, from piece k on? highest: at
- * the highest overrides.
+ * Can what lies ahead of s be met at this feed squared, which is kept for this way at least, from piece k on? highest: at the
+ * highest overrides. Ways are differences of whole units, and so exact: s + kept would depend on what s is counted from.
  */
-static bool can_meet(const struct ceiling *c, uint32_t k, double x, double energy, bool highest)
+static bool can_meet(const struct ceiling *c, uint32_t k, double s, double kept_mm, double energy,
+                     bool highest)
 {
     for (uint32_t i = k; i < k + LEAD_PIECES_MAX; i++) {
         const struct ceiling_piece *p = &c->piece[i];
@@ -112,8 +111,10 @@ static bool can_meet(const struct ceiling *c, uint32_t k, double x, double energ
         if (energy > top) {
             return false;
         }
-        if (c->end_mm[i] >= x || last) {
-            return energy <= end + 2.0 * (double)p->acceleration * (c->end_mm[i] - x);
+        const double way_mm = c->end_mm[i] - s - kept_mm;
+
+        if (way_mm >= 0.0 || last) {
+            return energy <= end + 2.0 * (double)p->acceleration * way_mm;
         }
         if (energy > end) {
             return false;
@@ -125,8 +126,8 @@ static bool can_meet(const struct ceiling *c, uint32_t k, double x, double energ
 /* Can the lead point in piece k do what the ceiling asks for from here on, but for rounding? */
 static bool can_follow(const struct lead *l, const struct ceiling *c, uint32_t k, bool highest)
 {
-    return can_meet(c, k, brake_position(l, c), lead_square(l->feed) * (1.0 - LEAD_ENERGY_SLACK),
-                    highest);
+    return can_meet(c, k, path_mm(c->origin, l->at), way_to_brake(l),
+                    lead_square(l->feed) * (1.0 - LEAD_ENERGY_SLACK), highest);
 }
 
 /* Does a piece allow whatever the averages may hold from the one before? */
@@ -278,7 +279,7 @@ bool lead_could_be(const struct lead *l, uint64_t at, double feed, bool highest)
             return false;
         }
     }
-    return k < c->count && x <= c->end_mm[k] && can_meet(c, k, x, feed * feed, highest);
+    return k < c->count && x <= c->end_mm[k] && can_meet(c, k, x, 0.0, feed * feed, highest);
 }
 
 /* The piece that lies where it is, whatever it has been in. */

@@ -190,7 +190,7 @@ static void drop_empty(struct ceiling *c, uint32_t k)
  */
 static void begin_ceiling(struct builder *s, double at_mm, double lead_mm)
 {
-    s->begin_mm = maths_max(s->begin_mm, at_mm - lead_mm);
+    s->begin_mm = maths_max(s->begin_mm, at_mm - path_whole_mm(lead_mm));
     uint32_t k = s->c->count;
 
     for (; k > 0 && s->c->end_mm[k - 1] > s->begin_mm; k--) {
@@ -307,6 +307,7 @@ static void lay_block(struct builder *s, uint32_t index)
     const double a = ceiling_block_acceleration(s->path, index, s->cycles);
     const double start_mm = path_mm(s->c->origin, b->start);
     const double end_mm = path_mm(s->c->origin, path_end(s->path, index));
+    const double behind_mm = path_whole_mm(top * s->behind);
 
     s->fastest = maths_max(s->fastest, top);
     s->gentlest = maths_min(s->gentlest, a);
@@ -315,12 +316,12 @@ static void lay_block(struct builder *s, uint32_t index)
         s->c->end_mm[s->c->count - 1] = end_mm;
         s->c->piece[s->c->count - 1].leave = since(s, index + 1) & 0x1ffU;
     } else {
-        s->early_mm = maths_max(s->early_mm, start_mm - top * s->behind);
+        s->early_mm = maths_max(s->early_mm, start_mm - behind_mm);
         begin_ceiling(s, start_mm, ceiling_feed(s->c, feed_mm_s) * s->behind);
         lower(s, s->early_mm, path_block_top(b), a);
         append_pieces(s, end_mm, feed_mm_s, a, index + 1);
     }
-    add_head(s, a, end_mm + top * s->behind);
+    add_head(s, a, end_mm + behind_mm);
 }
 
 /*
@@ -453,9 +454,9 @@ static float landed_feed(const struct ceiling *c, uint32_t k, enum law law, bool
         return feed_mm_s;
     }
     const double cycles = 0.5 * (double)law_window_cycles(law, ceiling_cycles(c, i)) + 1.0;
-    const double hold_mm = start_mm + feed * cycles;
+    const double hold_mm = feed * cycles;
 
-    while (i < c->count && c->end_mm[i] < hold_mm) {
+    while (i < c->count && c->end_mm[i] - start_mm < hold_mm) {
         feed = maths_min(feed, ceiling_feed(c, feed_of(c, i, highest)));
         feed = maths_min(feed, ceiling_feed(c, end_feed_of(&c->piece[i], highest)));
         i++;

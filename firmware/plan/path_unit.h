@@ -2,7 +2,8 @@
  * Path positions as whole numbers: 2^38 units a mm (or a rad), 3.6e-12 mm each.
  *
  * Positions count from the start of the program and may wrap; only their differences have a meaning. Sums of them are
- * exact, so that an average that runs for days does not drift, and landing is a comparison of integers.
+ * exact, so that an average that runs for days does not drift, and landing is a comparison of integers. Differences up to
+ * 2^53 units (32 m) are exact in mm, too: what is worked out from them does not depend on what they are counted from.
  */
 #ifndef TAKT_PLAN_PATH_UNIT_H
 #define TAKT_PLAN_PATH_UNIT_H
@@ -21,6 +22,12 @@ static inline uint64_t path_units(double mm)
 static inline double path_mm(uint64_t from, uint64_t to)
 {
     return (double)(int64_t)(to - from) / PATH_UNITS_PER_MM;
+}
+
+/* A way >= 0 of whole units, mm: sums of such ways and positions are exact. */
+static inline double path_whole_mm(double mm)
+{
+    return path_mm(0, path_units(mm));
 }
 
 #endif

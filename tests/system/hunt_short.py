@@ -47,6 +47,8 @@ hunt("a rotary axis alone, rounded into linear ones, keeps its feed", "1", "1070
 for seed in ("1070690", "1070701", "1080141", "1082075"):
     hunt(f"a hold while the axes speed up after another exceeds no feed: {seed}", "1", seed, "--hands", "--kinds", KINDS)
 hunt("motions of the path itself pass corners within a tolerance below the chord error", "1", "3302434", "--operator")
+hunt("a hold runs into no block of a lower feed faster than that", "1", "4100032", "--operator")
+hunt("a thousand cycles of braking end no harder for rounding", "1", "3304948", "--operator")
 hunt("units of path do not show in the acceleration of a slow rotary axis", "1", "3203788", "--hands")
 hunt("a motion of the path itself behind one that was told already is a part of that, by override", "1", "3103708", "--operator")
 hunt("and by single block", "1", "3201813", "--hands")

@@ -60,6 +60,68 @@ static void test_blocks_of_one_feed_make_one_piece(void)
     TEST_ASSERT_DOUBLE_WITHIN(1e-15, 0.05, ceiling_feed(&ceiling, ceiling.piece[0].feed_mm_s));
 }
 
+static double random_part(uint32_t *state)
+{
+    *state = *state * 1664525U + 1013904223U;
+    return (double)(*state >> 8) / 16777216.0;
+}
+
+/* Lines to and fro in a fan of 6 degrees, 1e-3 to 1 mm long, each at a feed of its own: pieces, joints and stops of all sorts. */
+static void push_crooked_way(uint32_t seed, int blocks)
+{
+    struct move m;
+
+    memset(&m, 0, sizeof(m));
+    m.kind = MOVE_FEED;
+    m.overrides = OVERRIDE_FEED | OVERRIDE_HOLD;
+    m.turns = 1;
+    for (int i = 0; i < blocks; i++) {
+        const double part = random_part(&seed);
+        const double length_mm = part * part * part + 1e-3;
+
+        m.feed_mm_s = 10.0 + 90.0 * random_part(&seed);
+        m.end.at[AXIS_X] += length_mm;
+        m.end.at[AXIS_Y] += 0.1 * length_mm * (random_part(&seed) - 0.5);
+        path_push(&path, &m);
+    }
+}
+
+/* Going back from the end: how far from its origin a ceiling asks for the same as another, bit by bit. */
+static double equal_from_mm(const struct ceiling *a, const struct ceiling *b)
+{
+    const double shift_mm = path_mm(b->origin, a->origin);
+    uint32_t i = a->count;
+    uint32_t j = b->count;
+
+    while (i > 0 && j > 0 && a->end_mm[i - 1] + shift_mm == b->end_mm[j - 1] &&
+           a->piece[i - 1].feed_mm_s == b->piece[j - 1].feed_mm_s &&
+           a->piece[i - 1].end_feed_mm_s == b->piece[j - 1].end_feed_mm_s) {
+        i--;
+        j--;
+    }
+    return i > 0 ? a->end_mm[i - 1] : 0.0;
+}
+
+/* A stream has passed other blocks than the same text in a file when a ceiling is made: it must not show in a single
+ * bit, but for the first 11.5 cycles' way at 100 mm/s and what begins there. */
+static void test_what_a_ceiling_asks_for_does_not_depend_on_the_block_it_is_counted_from(void)
+{
+    static struct ceiling later;
+    const struct point start = {{0}};
+
+    for (uint32_t seed = 1; seed <= 100; seed++) {
+        path_init(&path, &limits, &start);
+        push_crooked_way(seed, 60);
+        request.first = 0;
+        build();
+        request.first = 10;
+        request.lead = path_at(&path, 10)->start;
+        ceiling_build(&later, &path, &request);
+        TEST_ASSERT_TRUE(later.origin > ceiling.origin);
+        TEST_ASSERT_TRUE(equal_from_mm(&later, &ceiling) < 2.5);
+    }
+}
+
 /* N = A/J = 20 cycles: the setpoint is (20 - 1)/2 cycles behind, and two of margin. The feed may be up to 1.2 times that. */
 static void test_a_slower_block_begins_earlier_by_half_the_window(void)
 {
@@ -190,6 +252,7 @@ int main(void)
 {
     UNITY_BEGIN();
     RUN_TEST(test_blocks_of_one_feed_make_one_piece);
+    RUN_TEST(test_what_a_ceiling_asks_for_does_not_depend_on_the_block_it_is_counted_from);
     RUN_TEST(test_a_slower_block_begins_earlier_by_half_the_window);
     RUN_TEST(test_feed_squared_falls_linearly_towards_a_stop);
     RUN_TEST(test_no_override_changes_the_acceleration_anywhere);
