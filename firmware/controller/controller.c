@@ -328,6 +328,17 @@ static struct motion_operator operator_of(const struct controller *c, const stru
     };
 }
 
+/* What the program sets of the correction. A set-up that the axes' limits leave no room for ends the program. */
+static void follow_correction(struct controller *c, const struct move *move)
+{
+    if (move->kind == MOVE_WEAR) {
+        correction_set_wear(&c->correction, move->tool, move->wear_length_mm, move->wear_time_s);
+    } else if (move->kind == MOVE_SETUP &&
+               !correction_set_setup(&c->correction, move->channel, move->setup)) {
+        drives_stop_on_path(&c->drives, TAKT_ERROR_SETUP_RESERVE);
+    }
+}
+
 /* Spindle, coolant and lines, as what has been passed in this cycle sets them. */
 static void follow_events(struct controller *c)
 {
@@ -338,10 +349,7 @@ static void follow_events(struct controller *c)
             path_read_move(&c->path, i, &move);
             outputs_apply(&c->outputs, &c->surface, &move);
             spindle_watch_pass(&c->spindle, &move);
-            if (move.kind == MOVE_WEAR) {
-                correction_set_wear(&c->correction, move.tool, move.wear_length_mm,
-                                    move.wear_time_s);
-            }
+            follow_correction(c, &move);
         }
     }
     outputs_follow(&c->outputs, &c->surface, &c->record.cmd);

@@ -92,7 +92,8 @@ void correction_init(struct correction *c, const struct correction_settings *set
 
 static unsigned wanted(const struct correction *c)
 {
-    const unsigned loading = c->pending != NULL ? LAYERS_OF_TABLES : 0U;
+    const unsigned loading = (c->pending != NULL ? LAYERS_OF_TABLES : 0U) |
+                             (c->setup_waits ? 1U << CORRECTION_SETUP : 0U);
 
     return c->present & ~(c->off | c->program_off | loading);
 }
@@ -141,6 +142,35 @@ static __attribute__((noinline)) void exchange_tables(struct correction *c)
     begin_layer(c, CORRECTION_VOLUME);
 }
 
+static double *setup_value(struct correction_settings *s, unsigned which)
+{
+    if (which < AXIS_LINEAR_COUNT) {
+        return &s->setup_offset_mm[which];
+    }
+    return which < 2 * AXIS_LINEAR_COUNT ? &s->setup_rotation_rad[which - AXIS_LINEAR_COUNT]
+                                         : &s->setup_turn_rad;
+}
+
+/* The numbers of the set-up in force change places with others. */
+static void swap_setup(struct correction *c, double other[CORRECTION_SETUP_VALUES])
+{
+    for (unsigned i = 0; i < CORRECTION_SETUP_VALUES; i++) {
+        double *mine = setup_value(&c->settings, i);
+        const double kept = *mine;
+
+        *mine = other[i];
+        other[i] = kept;
+    }
+}
+
+/* The new set-up takes the place of the old one when nobody reads that any more. */
+static __attribute__((noinline)) void exchange_setup(struct correction *c)
+{
+    swap_setup(c, c->setup);
+    c->setup_waits = false;
+    begin_layer(c, CORRECTION_SETUP);
+}
+
 static void follow(struct correction *c)
 {
     for (unsigned rest = c->followers; rest != 0; rest &= rest - 1U) {
@@ -173,7 +203,7 @@ void correction_cycle(struct correction *c, const struct point *cmd, const struc
                       struct point *set)
 {
     *set = *cmd;
-    if (c->present == 0 && c->pending == NULL) {
+    if (c->present == 0 && c->pending == NULL && !c->setup_waits) {
         return;
     }
     c->move = move;
@@ -192,6 +222,9 @@ void correction_cycle(struct correction *c, const struct point *cmd, const struc
     }
     if (c->pending != NULL && ((c->running | c->fading) & LAYERS_OF_TABLES) == 0) {
         exchange_tables(c);
+    }
+    if (c->setup_waits && ((c->running | c->fading) & 1U << CORRECTION_SETUP) == 0) {
+        exchange_setup(c);
     }
 }
 
@@ -388,24 +421,73 @@ static void need_with(const struct correction *c, const struct correction_tables
     correction_get_need(&other, &c->most, need);
 }
 
+/* More than was reserved, on some axis? */
+static bool exceeds_reserve(const struct correction *c, const struct need *need)
+{
+    for (unsigned i = 0; c->is_reserved && i < AXIS_COUNT; i++) {
+        if (need->velocity_mm_s[i] > c->reserved.velocity_mm_s[i] ||
+            need->acceleration_mm_s2[i] > c->reserved.acceleration_mm_s2[i] ||
+            need->jerk_mm_s3[i] > c->reserved.jerk_mm_s3[i]) {
+            return true;
+        }
+    }
+    return false;
+}
+
 bool correction_load(struct correction *c, const struct correction_tables *tables,
                      struct diagnostic *wrong)
 {
     struct need need;
 
     need_with(c, tables, &need);
-    for (unsigned i = 0; c->is_reserved && i < AXIS_COUNT; i++) {
-        if (need.velocity_mm_s[i] > c->reserved.velocity_mm_s[i] ||
-            need.acceleration_mm_s2[i] > c->reserved.acceleration_mm_s2[i] ||
-            need.jerk_mm_s3[i] > c->reserved.jerk_mm_s3[i]) {
-            enum axis axis;
-            const double share = correction_largest_share(&need, &c->most, &axis);
+    if (exceeds_reserve(c, &need)) {
+        enum axis axis;
+        const double share = correction_largest_share(&need, &c->most, &axis);
 
-            diagnostic_set(wrong, TAKT_ERROR_TABLE_RESERVE, 0, 0, &AXIS_LETTERS[axis], 1,
-                           100.0 * share);
-            return false;
-        }
+        diagnostic_set(wrong, TAKT_ERROR_TABLE_RESERVE, 0, 0, &AXIS_LETTERS[axis], 1,
+                       100.0 * share);
+        return false;
     }
     c->pending = tables;
+    return true;
+}
+
+/* The need with other numbers of the set-up; what is in force stays so. */
+static void need_of_setup(struct correction *c, double setup[CORRECTION_SETUP_VALUES],
+                          struct need *need)
+{
+    const struct layer_notes kept = c->notes[CORRECTION_SETUP];
+    const unsigned present = c->present;
+
+    swap_setup(c, setup);
+    begin_layer(c, CORRECTION_SETUP);
+    correction_get_need(c, &c->most, need);
+    swap_setup(c, setup);
+    c->notes[CORRECTION_SETUP] = kept;
+    c->present = present;
+}
+
+void correction_settle_setup(struct correction *c)
+{
+    if (c->setup_waits) {
+        exchange_setup(c);
+    }
+}
+
+bool correction_set_setup(struct correction *c, unsigned which, double value)
+{
+    double setup[CORRECTION_SETUP_VALUES];
+    struct need need;
+
+    for (unsigned i = 0; i < CORRECTION_SETUP_VALUES; i++) {
+        setup[i] = c->setup_waits ? c->setup[i] : *setup_value(&c->settings, i);
+    }
+    setup[which] = value;
+    need_of_setup(c, setup, &need);
+    if (exceeds_reserve(c, &need)) {
+        return false;
+    }
+    memcpy(c->setup, setup, sizeof(c->setup));
+    c->setup_waits = true;
     return true;
 }

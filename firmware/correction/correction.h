@@ -72,6 +72,15 @@ bool correction_load(struct correction *c, const struct correction_tables *table
                      struct diagnostic *wrong);
 bool correction_is_loading(const struct correction *c);
 
+/*
+ * One number of the set-up of the part, of those CORRECTION_SETUP_VALUES: the layer fades out, then in with all that has been
+ * set until then. False: it would take more of the axes than has been reserved; nothing has changed.
+ */
+bool correction_set_setup(struct correction *c, unsigned which, double value);
+
+/* Takes what has been set into force at once: offline, where nothing fades. */
+void correction_settle_setup(struct correction *c);
+
 /* The rules tables have to keep on this machine. */
 void correction_table_rules(const struct correction_settings *settings, unsigned axes,
                             struct table_rules *rules);

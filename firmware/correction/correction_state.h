@@ -37,6 +37,8 @@ struct correction {
     struct fade_pace layer_pace, reversal_pace;
     const struct correction_tables *tables;  /* NULL: none */
     const struct correction_tables *pending; /* NULL: none; to replace tables */
+    double setup[CORRECTION_SETUP_VALUES];   /* that replaces the one in force, if setup_waits */
+    bool setup_waits;
     struct need reserved;
     struct motion_bound most; /* what has been reserved is for this motion */
     bool is_reserved;

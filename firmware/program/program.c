@@ -203,6 +203,7 @@ static bool takes_time(const struct move *m, const struct point *from)
     case MOVE_TOOL:
     case MOVE_OUTPUT:
     case MOVE_WEAR:
+    case MOVE_SETUP:
         return false;
     case MOVE_ARC_CW:
     case MOVE_ARC_CCW:
