@@ -1,7 +1,9 @@
 #include "correction/correction.h"
 
+#include "base/handoff.h"
 #include "base/maths.h"
 #include "correction/layer.h"
+#include "correction/setup.h"
 
 #include <assert.h>
 #include <string.h>
@@ -85,6 +87,7 @@ void correction_init(struct correction *c, const struct correction_settings *set
     c->off = settings->off;
     fade_pace_set(&c->layer_pace, settings->fade_s, cycle_s);
     fade_pace_set(&c->reversal_pace, settings->reversal_fade_s, cycle_s);
+    correction_forget_setup(c);
     correction_restart(c, start);
 }
 
@@ -142,33 +145,15 @@ static __attribute__((noinline)) void exchange_tables(struct correction *c)
     begin_layer(c, CORRECTION_VOLUME);
 }
 
-static double *setup_value(struct correction_settings *s, unsigned which)
-{
-    if (which < AXIS_LINEAR_COUNT) {
-        return &s->setup_offset_mm[which];
-    }
-    return which < 2 * AXIS_LINEAR_COUNT ? &s->setup_rotation_rad[which - AXIS_LINEAR_COUNT]
-                                         : &s->setup_turn_rad;
-}
-
-/* The numbers of the set-up in force change places with others. */
-static void swap_setup(struct correction *c, double other[CORRECTION_SETUP_VALUES])
-{
-    for (unsigned i = 0; i < CORRECTION_SETUP_VALUES; i++) {
-        double *mine = setup_value(&c->settings, i);
-        const double kept = *mine;
-
-        *mine = other[i];
-        other[i] = kept;
-    }
-}
-
 /* The new set-up takes the place of the old one when nobody reads that any more. */
-static __attribute__((noinline)) void exchange_setup(struct correction *c)
+static void exchange_setup(struct correction *c)
 {
-    swap_setup(c, c->setup);
+    const unsigned bit = 1U << CORRECTION_SETUP;
+    const bool any = setup_exchange(c, &c->notes[CORRECTION_SETUP]);
+
+    c->present = any ? c->present | bit : c->present & ~bit;
+    handoff_order();
     c->setup_waits = false;
-    begin_layer(c, CORRECTION_SETUP);
 }
 
 static void follow(struct correction *c)
@@ -224,6 +209,7 @@ void correction_cycle(struct correction *c, const struct point *cmd, const struc
         exchange_tables(c);
     }
     if (c->setup_waits && ((c->running | c->fading) & 1U << CORRECTION_SETUP) == 0) {
+        handoff_order();
         exchange_setup(c);
     }
 }
@@ -342,18 +328,25 @@ static void add_noise(struct need *need, double cycle_s, unsigned i)
     need->jerk_mm_s3[i] += 4.0 * step_mm_s / (cycle_s * cycle_s);
 }
 
-void correction_get_need(const struct correction *c, const struct motion_bound *most,
-                         struct need *need)
+/* next: the set-up that is to be weighed; NULL: the one in force. */
+static void weigh(const struct correction *c, const struct setup *next,
+                  const struct motion_bound *most, struct need *need)
 {
+    const unsigned present = next != NULL ? c->present | 1U << CORRECTION_SETUP : c->present;
+
     memset(need, 0, sizeof(*need));
     for (unsigned i = 0; i < CORRECTION_LAYERS_COUNT; i++) {
         struct need of_layer;
 
-        if ((c->present & 1U << i) == 0) {
+        if ((present & 1U << i) == 0) {
             continue;
         }
         memset(&of_layer, 0, sizeof(of_layer));
-        layers[i]->need(c, &c->notes[i], most, &of_layer);
+        if (i == CORRECTION_SETUP && next != NULL) {
+            setup_need(c, next, most, &of_layer);
+        } else {
+            layers[i]->need(c, &c->notes[i], most, &of_layer);
+        }
         for (unsigned axis = 0; axis < AXIS_COUNT; axis++) {
             add_faded(need, &of_layer, &c->layer_pace, axis);
         }
@@ -361,6 +354,12 @@ void correction_get_need(const struct correction *c, const struct motion_bound *
     for (unsigned axis = 0; axis < AXIS_COUNT; axis++) {
         add_noise(need, c->cycle_s, axis);
     }
+}
+
+void correction_get_need(const struct correction *c, const struct motion_bound *most,
+                         struct need *need)
+{
+    weigh(c, NULL, most, need);
 }
 
 static void raise(double *value, double least)
@@ -372,6 +371,10 @@ void correction_reserve(struct correction *c, const struct motion_bound *most, s
 {
     const double reserve = c->settings.reserve_ratio;
 
+    if (c->setup_waits) { /* has been weighed against it; the old one still fades out */
+        *need = c->reserved;
+        return;
+    }
     correction_get_need(c, most, need);
     for (unsigned i = 0; i < AXIS_COUNT; i++) {
         raise(&need->velocity_mm_s[i], reserve * most->velocity_mm_s[i]);
@@ -452,19 +455,62 @@ bool correction_load(struct correction *c, const struct correction_tables *table
     return true;
 }
 
-/* The need with other numbers of the set-up; what is in force stays so. */
-static void need_of_setup(struct correction *c, double setup[CORRECTION_SETUP_VALUES],
-                          struct need *need)
-{
-    const struct layer_notes kept = c->notes[CORRECTION_SETUP];
-    const unsigned present = c->present;
+/* ---- the set-up of the part ---- */
 
-    swap_setup(c, setup);
-    begin_layer(c, CORRECTION_SETUP);
-    correction_get_need(c, &c->most, need);
-    swap_setup(c, setup);
-    c->notes[CORRECTION_SETUP] = kept;
-    c->present = present;
+void correction_get_setup(const struct correction *c, double number[CORRECTION_SETUP_VALUES])
+{
+    if (c->setup_waits) {
+        memcpy(number, c->setup_next.number, sizeof(c->setup_next.number));
+    } else {
+        setup_get_numbers(c, number);
+    }
+}
+
+void correction_forget_setup(struct correction *c)
+{
+    correction_get_setup(c, c->setup_told);
+}
+
+void correction_tell_setup(struct correction *c, unsigned which, double value)
+{
+    c->setup_told[which] = value;
+}
+
+bool correction_take_setup(struct correction *c)
+{
+    struct need need;
+
+    assert(!c->setup_waits);
+    memcpy(c->setup_next.number, c->setup_told, sizeof(c->setup_told));
+    setup_prepare(&c->setup_next);
+    weigh(c, &c->setup_next, &c->most, &need);
+    if (exceeds_reserve(c, &need)) {
+        correction_forget_setup(c);
+        return false;
+    }
+    handoff_order();
+    c->setup_waits = true;
+    return true;
+}
+
+bool correction_is_setting_up(const struct correction *c)
+{
+    const unsigned bit = 1U << CORRECTION_SETUP;
+
+    return c->setup_waits || ((c->fading | (wanted(c) ^ c->running)) & bit) != 0;
+}
+
+bool correction_is_set_up(const struct correction *c)
+{
+    double number[CORRECTION_SETUP_VALUES];
+
+    correction_get_setup(c, number);
+    for (unsigned i = 0; i < CORRECTION_SETUP_VALUES; i++) {
+        if (number[i] != c->setup_told[i]) {
+            return false;
+        }
+    }
+    return true;
 }
 
 void correction_settle_setup(struct correction *c)
@@ -472,22 +518,4 @@ void correction_settle_setup(struct correction *c)
     if (c->setup_waits) {
         exchange_setup(c);
     }
-}
-
-bool correction_set_setup(struct correction *c, unsigned which, double value)
-{
-    double setup[CORRECTION_SETUP_VALUES];
-    struct need need;
-
-    for (unsigned i = 0; i < CORRECTION_SETUP_VALUES; i++) {
-        setup[i] = c->setup_waits ? c->setup[i] : *setup_value(&c->settings, i);
-    }
-    setup[which] = value;
-    need_of_setup(c, setup, &need);
-    if (exceeds_reserve(c, &need)) {
-        return false;
-    }
-    memcpy(c->setup, setup, sizeof(c->setup));
-    c->setup_waits = true;
-    return true;
 }

@@ -135,6 +135,7 @@ struct move {
     bool analogue : 1;                /* MOVE_OUTPUT, MOVE_INPUT */
     bool with_motion : 1;             /* MOVE_OUTPUT: M62, M63, M67 */
     bool optional : 1;                /* MOVE_STOP: M1 */
+    bool setup_ends : 1;              /* MOVE_SETUP: the last number of its line */
     enum spindle_direction direction; /* MOVE_SPINDLE */
     enum orient_way orient_way;       /* MOVE_ORIENT */
     enum input_wait input_wait;       /* MOVE_INPUT */

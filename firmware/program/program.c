@@ -253,6 +253,9 @@ static enum program_question question_of(const struct move *move)
     if (move->kind == MOVE_PROBE) {
         return QUESTION_PROBE;
     }
+    if (move->kind == MOVE_SETUP && move->setup_ends) {
+        return QUESTION_SETUP;
+    }
     return move->kind == MOVE_INPUT ? QUESTION_INPUT : QUESTION_NONE;
 }
 
@@ -288,6 +291,7 @@ void program_answer(struct program *p, const struct program_answer *answer)
     case QUESTION_INPUT:
         (void)parameters_set(p->config.parameters, PARAMETER_INPUT, answer->value);
         break;
+    case QUESTION_SETUP:
     case QUESTION_NONE:
         break;
     }

@@ -236,18 +236,20 @@ static bool run_wear(struct program *p, const struct program_code *code)
     return true;
 }
 
-static void emit_setup(struct program *p, unsigned which, double value)
+static struct move *emit_setup(struct program *p, unsigned which, double value)
 {
     struct move *m = emit_event(p, MOVE_SETUP);
 
     m->channel = which;
     m->setup = value;
+    return m;
 }
 
 /* The set-up of the part, for the position correction. What has no word stays. */
 static bool run_setup(struct program *p)
 {
     static const char turns[] = {'i', 'j', 'k', 'r'};
+    struct move *last = NULL;
     double value;
 
     if (!refuse_words(p, LETTER_BIT('a') | LETTER_BIT('b') | LETTER_BIT('c') | LETTER_BIT('p') |
@@ -256,13 +258,16 @@ static bool run_setup(struct program *p)
     }
     for (unsigned i = AXIS_X; i < AXIS_LINEAR_COUNT; i++) {
         if (coordinates_word(p, (enum axis)i, &value)) {
-            emit_setup(p, i, value);
+            last = emit_setup(p, i, value);
         }
     }
     for (unsigned i = 0; i < sizeof(turns); i++) {
         if (words_has(p, turns[i])) {
-            emit_setup(p, AXIS_LINEAR_COUNT + i, words_value(p, turns[i]) / DEGREES_PER_RAD);
+            last = emit_setup(p, AXIS_LINEAR_COUNT + i, words_value(p, turns[i]) / DEGREES_PER_RAD);
         }
+    }
+    if (last != NULL) {
+        last->setup_ends = true;
     }
     return true;
 }

@@ -229,9 +229,10 @@ static bool rewrite_reference(struct offline_rewriter *r, const struct offline_l
 /* L of G10. */
 #define LEAST_BY_POSITION   10.0
 #define SETTING_BY_POSITION 20.0
+#define SETTING_WEAR        12.0
 #define SETTING_SETUP       13.0
 
-enum setting { SETTING_NONE, SETTING_WRITABLE, SETTING_PART, SETTING_OTHER };
+enum setting { SETTING_NONE, SETTING_WRITABLE, SETTING_PART, SETTING_WORN, SETTING_OTHER };
 
 static enum setting setting_of(const struct program *p)
 {
@@ -241,6 +242,8 @@ static enum setting setting_of(const struct program *p)
         return SETTING_OTHER;
     if (!words_has_step(p, STEP_SETTING) || words_value(p, 'l') < LEAST_BY_POSITION)
         return SETTING_NONE;
+    if (words_value(p, 'l') == SETTING_WEAR)
+        return SETTING_WORN;
     if (words_value(p, 'l') == SETTING_SETUP)
         return SETTING_PART;
     if (words_value(p, 'l') == SETTING_BY_POSITION &&
@@ -265,8 +268,11 @@ bool offline_is_setting(const struct program *p)
 
 void offline_set_up(struct offline_rewriter *r, const struct move *move)
 {
-    (void)correction_set_setup(&r->correction, move->channel, move->setup);
-    correction_settle_setup(&r->correction);
+    correction_tell_setup(&r->correction, move->channel, move->setup);
+    if (move->setup_ends) {
+        (void)correction_take_setup(&r->correction);
+        correction_settle_setup(&r->correction);
+    }
 }
 
 /* G10 L13: the corrected coordinates have it in them, and the machine is not told. */
@@ -318,6 +324,11 @@ static bool rewrite(struct offline_rewriter *r, const struct offline_line *line,
         return refuse(r, line,
                       "where a probing motion ends is not known before it is run: correct this "
                       "program while it runs");
+    if (setting_of(&line->context) == SETTING_WORN)
+        return refuse(
+            r, line,
+            "what a tool has worn is counted while it cuts: leave G10 L12 out, or correct "
+            "this program while it runs");
     if (setting_of(&line->context) == SETTING_PART)
         return rewrite_part(r, line, text);
     if (setting_of(&line->context) != SETTING_NONE)

@@ -126,7 +126,7 @@ t.check(worst <= LIMIT_UM, "probed at the top and in a bore", worst)
 
 # Offline: the same words behind a set-up, corrected for a machine that knows of none.
 words = "G10 L13 X{} Y{} Z{} I{} J{} K{}\n".format(*OFFSET, *TURNS)
-t.write("told.ngc", words + "G4 P3\n" + VISITS + "M2\n")
+t.write("told.ngc", words + VISITS + "M2\n")
 worst = judge("told, live", stands("told.ngc", "--machine", "m.ini"), OFFSET, TURNS)
 t.check(worst <= LIMIT_UM, "told by a word", worst)
 status, out, err = t.run("correct", "told.ngc", "--machine", "m.ini", "-o", "corrected.ngc")
@@ -146,9 +146,20 @@ for line, said in (
     t.write("bad.ngc", line + "\nM2\n")
     status, out, err = t.run("check", "bad.ngc")
     t.check(status == 2 and said in err, f"{line}: refused", err)
+t.write("open.ngc", "G10 L13 X0.1\nG1 F100 X5\nG1 U5\nM2\n")
+status, out, err = t.run("check", "open.ngc")
+t.check(status == 2 and "open.ngc:3:" in err, "what follows a set-up is checked", err)
+for command, program, said in (
+    ("compile", "G10 L13 X0.1\nG1 F100 X5\nM2\n", "a set-up of the part (G10 L13) cannot be planned ahead"),
+    ("correct", "G10 L12 P1 I5\nG1 F100 X5\nM2\n", "what a tool has worn is counted while it cuts"),
+):
+    t.write("refused.ngc", program)
+    t.write("tools.tbl", "T1 P1 Z0\n")
+    status, out, err = t.run(command, "refused.ngc", "--machine", "m.ini", "--tools", "tools.tbl", "-o", "refused.out")
+    t.check(status == 2 and said in err and not os.path.exists("refused.out"), f"{command}: refused", err)
 t.write("far.ngc", "G10 L13 X80 K20\nG4 P1\nG0 X10\nM2\n")
 status, out, err = t.run("run", "far.ngc", "--machine", "m.ini", "--quiet")
-t.check(status == 1 and "more of the axes' limits than correction has reserved" in err, "a set-up beyond the reserve ends the program", err)
+t.check(status == 1 and "far.ngc:1:" in err and "more of the axes' limits than correction has reserved" in err, "a set-up beyond the reserve ends the program", err)
 status, out, err = t.run("canon", "told.ngc", "--machine", "m.ini")
 t.check("1 setup X0.82" in out and "1 setup K0.4" in out, "the set-up among canonical moves", out[:300])
 t.finish()

@@ -429,8 +429,11 @@ static void test_a_set_up_that_is_told_while_axes_move_fades_in(void)
     correction_reserve(&c, &most, &need);
     TEST_ASSERT_DOUBLE_WITHIN(1e-8, 0.3, settle(50, 0, 0, 0).at[AXIS_X]);
     before = 50.3;
-    TEST_ASSERT_TRUE(correction_set_setup(&c, AXIS_X, -0.2));
-    TEST_ASSERT_TRUE(correction_set_setup(&c, AXIS_Y, 0.1));
+    correction_tell_setup(&c, AXIS_X, -0.2);
+    correction_tell_setup(&c, AXIS_Y, 0.1);
+    TEST_ASSERT_FALSE(correction_is_set_up(&c));
+    TEST_ASSERT_TRUE(correction_take_setup(&c));
+    TEST_ASSERT_TRUE(correction_is_set_up(&c) && correction_is_setting_up(&c));
     for (int i = 0; i < 20000; i++) {
         const struct point at = {{50, 0, 0}};
 
@@ -441,7 +444,10 @@ static void test_a_set_up_that_is_told_while_axes_move_fades_in(void)
     TEST_ASSERT_DOUBLE_WITHIN(1e-8, 49.8, set.at[AXIS_X]);
     TEST_ASSERT_DOUBLE_WITHIN(1e-8, 0.1, set.at[AXIS_Y]);
     TEST_ASSERT_TRUE(largest < 1e-3); /* 1 mm/s */
-    TEST_ASSERT_FALSE(correction_set_setup(&c, AXIS_X, 50.0));
+    TEST_ASSERT_FALSE(correction_is_setting_up(&c));
+    correction_tell_setup(&c, AXIS_X, 50.0);
+    TEST_ASSERT_FALSE(correction_take_setup(&c));
+    TEST_ASSERT_TRUE(correction_is_set_up(&c));
     TEST_ASSERT_DOUBLE_WITHIN(1e-8, -0.2, settle(50, 0, 0, 0).at[AXIS_X]);
 }
 
