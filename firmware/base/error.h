@@ -174,6 +174,8 @@
     X(TABLE_ERRORS, "'%w': a table of a unit's errors is over its axis alone, and has no others")  \
     X(TABLE_UNIT, "this is no table of errors of a unit of the machine's chain (here: over %w)")   \
     X(TABLE_RESERVE, "axis %w would need %v percent of its limits, more than has been reserved")   \
+    X(SETUP_RESERVE,                                                                               \
+      "this set-up would need more of the axes' limits than correction has reserved")              \
     /* machine and drives */                                                                       \
     X(STALLED, "the axes do not go on, and nothing explains it: a fault of the planner")           \
     X(TOOL_CHANGE_SLOW, "the tool changer has not ended its answer to M6 within %v s")             \

@@ -126,6 +126,9 @@ static void take_move(struct controller *c, struct move *move)
     if (c->replays) {
         replay_prepare(move);
     }
+    if (move->kind == MOVE_SETUP) {
+        correction_tell_setup(&c->correction, move->channel, move->setup);
+    }
     if (controller_probe_ask(&c->probe, move, cycle_s(&c->machine),
                              drives_have_probe(&c->drives))) {
         path_push(&c->path, move);
@@ -173,14 +176,34 @@ static void read_move(struct controller *c)
     }
 }
 
+/* The axes rest for the set-up that has been told: it is taken, and is in force before they move. True: it is, or *good is not. */
+static bool take_setup(struct controller *c, bool *good)
+{
+    if (!controller_probe_has_rest_for(&c->probe, MOVE_SETUP)) {
+        return true;
+    }
+    if (correction_is_setting_up(&c->correction)) {
+        return false;
+    }
+    if (correction_is_set_up(&c->correction)) {
+        return true;
+    }
+    *good = correction_take_setup(&c->correction);
+    return !*good;
+}
+
 /* What the program asked has been answered: it goes on from where the axes rest. */
 static void take_answer(struct controller *c)
 {
     struct program_answer answer;
     struct diagnostic error;
+    bool good = true;
 
-    if (!controller_probe_take(&c->probe, &answer, &error)) {
+    if (!take_setup(c, &good) || !controller_probe_take(&c->probe, &answer, &error)) {
         return;
+    }
+    if (!good) {
+        error.code = TAKT_ERROR_SETUP_RESERVE;
     }
     c->program_waits = false;
     if (error.code != TAKT_OK) {

@@ -14,7 +14,8 @@ static bool is_probing(const struct controller_probe *q)
 bool controller_probe_ask(struct controller_probe *q, const struct move *move, double cycle_s,
                           bool latches)
 {
-    if (move->kind != MOVE_PROBE && move->kind != MOVE_INPUT) {
+    if (move->kind != MOVE_PROBE && move->kind != MOVE_INPUT &&
+        !(move->kind == MOVE_SETUP && move->setup_ends)) {
         return true;
     }
     *q = (struct controller_probe){.move = *move, .answers = q->answers, .taken = q->taken};
@@ -194,9 +195,9 @@ bool controller_probe_rest(struct controller_probe *q, const struct inputs *inpu
         if (!end_probing(q, inputs, drives, rest, at)) {
             return false;
         }
-    } else if (q->move.analogue) {
+    } else if (q->move.kind == MOVE_INPUT && q->move.analogue) {
         q->answer.value = inputs->analogue[q->move.channel];
-    } else if (!end_waiting(q, inputs)) {
+    } else if (q->move.kind == MOVE_INPUT && !end_waiting(q, inputs)) {
         return false;
     }
     handoff_order();

@@ -1,5 +1,6 @@
 /*
- * What a program asks of the world, and waits for: where a probe answers (G38), what an input says (M66).
+ * What a program asks of the world, and waits for: where a probe answers (G38), what an input says (M66); for G10 L13, that
+ * the axes rest.
  *
  *     background                              control cycle
  *       program gives out the move
@@ -83,6 +84,13 @@ bool controller_probe_watch(struct controller_probe *q, const struct move *execu
 bool controller_probe_rest(struct controller_probe *q, const struct inputs *inputs,
                            struct drives *drives, const struct point *rest,
                            const struct controller_place *at);
+
+/* An answer to a move of this kind waits to be taken? */
+static inline bool controller_probe_has_rest_for(const struct controller_probe *q,
+                                                 enum move_kind kind)
+{
+    return q->state == PROBE_ANSWERED && q->move.kind == kind;
+}
 
 /* The answer that waits to be taken, and TAKT_OK or the error that ends the program; false: there is none. */
 bool controller_probe_take(struct controller_probe *q, struct program_answer *answer,

@@ -128,6 +128,7 @@ void outputs_apply(struct outputs *o, struct outputs_surface *surface, const str
     case MOVE_DWELL:
     case MOVE_INPUT:
     case MOVE_WEAR:
+    case MOVE_SETUP:
     case MOVE_STOP:
         break;
     }

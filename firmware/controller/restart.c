@@ -21,6 +21,7 @@ void controller_start_program(struct controller *c, const struct controller_conf
     motion_init(&c->motion, &c->path, start, c->machine.override_proportional != 0);
     controller_feed_init(c, config->compiled);
     lock_restart(&c->lock);
+    correction_forget_setup(&c->correction);
     c->keeps_outputs = config->keeps_outputs;
     c->program_waits = false;
     c->program_late = false;

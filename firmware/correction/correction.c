@@ -1,7 +1,9 @@
 #include "correction/correction.h"
 
+#include "base/handoff.h"
 #include "base/maths.h"
 #include "correction/layer.h"
+#include "correction/setup.h"
 
 #include <assert.h>
 #include <string.h>
@@ -85,6 +87,7 @@ void correction_init(struct correction *c, const struct correction_settings *set
     c->off = settings->off;
     fade_pace_set(&c->layer_pace, settings->fade_s, cycle_s);
     fade_pace_set(&c->reversal_pace, settings->reversal_fade_s, cycle_s);
+    correction_forget_setup(c);
     correction_restart(c, start);
 }
 
@@ -92,7 +95,8 @@ void correction_init(struct correction *c, const struct correction_settings *set
 
 static unsigned wanted(const struct correction *c)
 {
-    const unsigned loading = c->pending != NULL ? LAYERS_OF_TABLES : 0U;
+    const unsigned loading = (c->pending != NULL ? LAYERS_OF_TABLES : 0U) |
+                             (c->setup_waits ? 1U << CORRECTION_SETUP : 0U);
 
     return c->present & ~(c->off | c->program_off | loading);
 }
@@ -141,6 +145,17 @@ static __attribute__((noinline)) void exchange_tables(struct correction *c)
     begin_layer(c, CORRECTION_VOLUME);
 }
 
+/* The new set-up takes the place of the old one when nobody reads that any more. */
+static void exchange_setup(struct correction *c)
+{
+    const unsigned bit = 1U << CORRECTION_SETUP;
+    const bool any = setup_exchange(c, &c->notes[CORRECTION_SETUP]);
+
+    c->present = any ? c->present | bit : c->present & ~bit;
+    handoff_order();
+    c->setup_waits = false;
+}
+
 static void follow(struct correction *c)
 {
     for (unsigned rest = c->followers; rest != 0; rest &= rest - 1U) {
@@ -173,7 +188,7 @@ void correction_cycle(struct correction *c, const struct point *cmd, const struc
                       struct point *set)
 {
     *set = *cmd;
-    if (c->present == 0 && c->pending == NULL) {
+    if (c->present == 0 && c->pending == NULL && !c->setup_waits) {
         return;
     }
     c->move = move;
@@ -192,6 +207,10 @@ void correction_cycle(struct correction *c, const struct point *cmd, const struc
     }
     if (c->pending != NULL && ((c->running | c->fading) & LAYERS_OF_TABLES) == 0) {
         exchange_tables(c);
+    }
+    if (c->setup_waits && ((c->running | c->fading) & 1U << CORRECTION_SETUP) == 0) {
+        handoff_order();
+        exchange_setup(c);
     }
 }
 
@@ -309,18 +328,25 @@ static void add_noise(struct need *need, double cycle_s, unsigned i)
     need->jerk_mm_s3[i] += 4.0 * step_mm_s / (cycle_s * cycle_s);
 }
 
-void correction_get_need(const struct correction *c, const struct motion_bound *most,
-                         struct need *need)
+/* next: the set-up that is to be weighed; NULL: the one in force. */
+static void weigh(const struct correction *c, const struct setup *next,
+                  const struct motion_bound *most, struct need *need)
 {
+    const unsigned present = next != NULL ? c->present | 1U << CORRECTION_SETUP : c->present;
+
     memset(need, 0, sizeof(*need));
     for (unsigned i = 0; i < CORRECTION_LAYERS_COUNT; i++) {
         struct need of_layer;
 
-        if ((c->present & 1U << i) == 0) {
+        if ((present & 1U << i) == 0) {
             continue;
         }
         memset(&of_layer, 0, sizeof(of_layer));
-        layers[i]->need(c, &c->notes[i], most, &of_layer);
+        if (i == CORRECTION_SETUP && next != NULL) {
+            setup_need(c, next, most, &of_layer);
+        } else {
+            layers[i]->need(c, &c->notes[i], most, &of_layer);
+        }
         for (unsigned axis = 0; axis < AXIS_COUNT; axis++) {
             add_faded(need, &of_layer, &c->layer_pace, axis);
         }
@@ -328,6 +354,12 @@ void correction_get_need(const struct correction *c, const struct motion_bound *
     for (unsigned axis = 0; axis < AXIS_COUNT; axis++) {
         add_noise(need, c->cycle_s, axis);
     }
+}
+
+void correction_get_need(const struct correction *c, const struct motion_bound *most,
+                         struct need *need)
+{
+    weigh(c, NULL, most, need);
 }
 
 static void raise(double *value, double least)
@@ -339,6 +371,10 @@ void correction_reserve(struct correction *c, const struct motion_bound *most, s
 {
     const double reserve = c->settings.reserve_ratio;
 
+    if (c->setup_waits) { /* has been weighed against it; the old one still fades out */
+        *need = c->reserved;
+        return;
+    }
     correction_get_need(c, most, need);
     for (unsigned i = 0; i < AXIS_COUNT; i++) {
         raise(&need->velocity_mm_s[i], reserve * most->velocity_mm_s[i]);
@@ -388,24 +424,98 @@ static void need_with(const struct correction *c, const struct correction_tables
     correction_get_need(&other, &c->most, need);
 }
 
+/* More than was reserved, on some axis? */
+static bool exceeds_reserve(const struct correction *c, const struct need *need)
+{
+    for (unsigned i = 0; c->is_reserved && i < AXIS_COUNT; i++) {
+        if (need->velocity_mm_s[i] > c->reserved.velocity_mm_s[i] ||
+            need->acceleration_mm_s2[i] > c->reserved.acceleration_mm_s2[i] ||
+            need->jerk_mm_s3[i] > c->reserved.jerk_mm_s3[i]) {
+            return true;
+        }
+    }
+    return false;
+}
+
 bool correction_load(struct correction *c, const struct correction_tables *tables,
                      struct diagnostic *wrong)
 {
     struct need need;
 
     need_with(c, tables, &need);
-    for (unsigned i = 0; c->is_reserved && i < AXIS_COUNT; i++) {
-        if (need.velocity_mm_s[i] > c->reserved.velocity_mm_s[i] ||
-            need.acceleration_mm_s2[i] > c->reserved.acceleration_mm_s2[i] ||
-            need.jerk_mm_s3[i] > c->reserved.jerk_mm_s3[i]) {
-            enum axis axis;
-            const double share = correction_largest_share(&need, &c->most, &axis);
+    if (exceeds_reserve(c, &need)) {
+        enum axis axis;
+        const double share = correction_largest_share(&need, &c->most, &axis);
 
-            diagnostic_set(wrong, TAKT_ERROR_TABLE_RESERVE, 0, 0, &AXIS_LETTERS[axis], 1,
-                           100.0 * share);
-            return false;
-        }
+        diagnostic_set(wrong, TAKT_ERROR_TABLE_RESERVE, 0, 0, &AXIS_LETTERS[axis], 1,
+                       100.0 * share);
+        return false;
     }
     c->pending = tables;
     return true;
+}
+
+/* ---- the set-up of the part ---- */
+
+void correction_get_setup(const struct correction *c, double number[CORRECTION_SETUP_VALUES])
+{
+    if (c->setup_waits) {
+        memcpy(number, c->setup_next.number, sizeof(c->setup_next.number));
+    } else {
+        setup_get_numbers(c, number);
+    }
+}
+
+void correction_forget_setup(struct correction *c)
+{
+    correction_get_setup(c, c->setup_told);
+}
+
+void correction_tell_setup(struct correction *c, unsigned which, double value)
+{
+    c->setup_told[which] = value;
+}
+
+bool correction_take_setup(struct correction *c)
+{
+    struct need need;
+
+    assert(!c->setup_waits);
+    memcpy(c->setup_next.number, c->setup_told, sizeof(c->setup_told));
+    setup_prepare(&c->setup_next);
+    weigh(c, &c->setup_next, &c->most, &need);
+    if (exceeds_reserve(c, &need)) {
+        correction_forget_setup(c);
+        return false;
+    }
+    handoff_order();
+    c->setup_waits = true;
+    return true;
+}
+
+bool correction_is_setting_up(const struct correction *c)
+{
+    const unsigned bit = 1U << CORRECTION_SETUP;
+
+    return c->setup_waits || ((c->fading | (wanted(c) ^ c->running)) & bit) != 0;
+}
+
+bool correction_is_set_up(const struct correction *c)
+{
+    double number[CORRECTION_SETUP_VALUES];
+
+    correction_get_setup(c, number);
+    for (unsigned i = 0; i < CORRECTION_SETUP_VALUES; i++) {
+        if (number[i] != c->setup_told[i]) {
+            return false;
+        }
+    }
+    return true;
+}
+
+void correction_settle_setup(struct correction *c)
+{
+    if (c->setup_waits) {
+        exchange_setup(c);
+    }
 }

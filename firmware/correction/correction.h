@@ -72,6 +72,25 @@ bool correction_load(struct correction *c, const struct correction_tables *table
                      struct diagnostic *wrong);
 bool correction_is_loading(const struct correction *c);
 
+/*
+ * The set-up of the part. The background tells its numbers one by one, of those CORRECTION_SETUP_VALUES, and has them taken
+ * together: they are weighed and made ready there, once, while the control cycle may interrupt. The layer fades out, the cycle
+ * changes over, and the layer fades in.
+ */
+void correction_tell_setup(struct correction *c, unsigned which, double value);
+/* False: it would take more of the axes than has been reserved, and what is in force stays. Not while one is exchanged. */
+bool correction_take_setup(struct correction *c);
+/* What has been told and not taken is forgotten. */
+void correction_forget_setup(struct correction *c);
+/* What has been told is in force, or about to be. */
+bool correction_is_set_up(const struct correction *c);
+/* What has been taken is not wholly in force yet. */
+bool correction_is_setting_up(const struct correction *c);
+/* Takes it into force at once: offline, where nothing fades. */
+void correction_settle_setup(struct correction *c);
+/* The numbers that are in force, or about to be. */
+void correction_get_setup(const struct correction *c, double number[CORRECTION_SETUP_VALUES]);
+
 /* The rules tables have to keep on this machine. */
 void correction_table_rules(const struct correction_settings *settings, unsigned axes,
                             struct table_rules *rules);

@@ -20,6 +20,12 @@ struct layer_notes {
     bool started; /* the first cycle has been */
 };
 
+/* A set-up of the part, made ready to be followed. */
+struct setup {
+    double number[CORRECTION_SETUP_VALUES];
+    double less_one[AXIS_LINEAR_COUNT][AXIS_LINEAR_COUNT]; /* R - I */
+};
+
 /* Tools whose wear is counted at the same time; the longest unused one makes room. */
 #define CORRECTION_TOOLS_MAX 16
 
@@ -35,8 +41,11 @@ struct correction {
     unsigned axes_end; /* the axes from this one on are not there */
     double cycle_s;
     struct fade_pace layer_pace, reversal_pace;
-    const struct correction_tables *tables;  /* NULL: none */
-    const struct correction_tables *pending; /* NULL: none; to replace tables */
+    const struct correction_tables *tables;     /* NULL: none */
+    const struct correction_tables *pending;    /* NULL: none; to replace tables */
+    double setup_told[CORRECTION_SETUP_VALUES]; /* by the program, so far: the background's */
+    struct setup setup_next;                    /* to replace the one in force */
+    volatile bool setup_waits; /* it does, and is the control cycle's; else the background's */
     struct need reserved;
     struct motion_bound most; /* what has been reserved is for this motion */
     bool is_reserved;

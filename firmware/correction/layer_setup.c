@@ -9,10 +9,14 @@
  */
 #include "base/maths.h"
 #include "correction/layer.h"
+#include "correction/setup.h"
 
 #include <string.h>
 
 #define SIDE AXIS_LINEAR_COUNT
+
+/* Of the numbers of a set-up: offset, turns about X, Y, Z, and this. */
+enum { TURN = 2 * SIDE };
 
 /* m = a m, a the rotation by an angle about an axis. */
 static void turn(double m[SIDE][SIDE], unsigned about, double angle_rad)
@@ -31,22 +35,61 @@ static void turn(double m[SIDE][SIDE], unsigned about, double angle_rad)
     }
 }
 
-static bool setup_begin(const struct correction *c, struct layer_notes *notes)
+void setup_prepare(struct setup *s)
 {
-    const struct correction_settings *s = &c->settings;
     double rotation[SIDE][SIDE] = {{1.0, 0.0, 0.0}, {0.0, 1.0, 0.0}, {0.0, 0.0, 1.0}};
-    bool any = s->setup_turn_rad != 0.0;
 
     for (unsigned i = 0; i < SIDE; i++) {
-        turn(rotation, i, s->setup_rotation_rad[i]);
+        turn(rotation, i, s->number[SIDE + i]);
     }
     for (unsigned i = 0; i < SIDE; i++) {
         for (unsigned j = 0; j < SIDE; j++) {
-            notes->number[SIDE * i + j] = rotation[i][j] - (i == j ? 1.0 : 0.0);
+            s->less_one[i][j] = rotation[i][j] - (i == j ? 1.0 : 0.0);
         }
-        any = any || s->setup_rotation_rad[i] != 0.0 || s->setup_offset_mm[i] != 0.0;
+    }
+}
+
+void setup_get_numbers(const struct correction *c, double number[CORRECTION_SETUP_VALUES])
+{
+    const struct correction_settings *s = &c->settings;
+
+    memcpy(number, s->setup_offset_mm, sizeof(s->setup_offset_mm));
+    memcpy(&number[SIDE], s->setup_rotation_rad, sizeof(s->setup_rotation_rad));
+    number[TURN] = s->setup_turn_rad;
+}
+
+static void set_numbers(struct correction_settings *s, const double number[CORRECTION_SETUP_VALUES])
+{
+    memcpy(s->setup_offset_mm, number, sizeof(s->setup_offset_mm));
+    memcpy(s->setup_rotation_rad, &number[SIDE], sizeof(s->setup_rotation_rad));
+    s->setup_turn_rad = number[TURN];
+}
+
+/* Does it displace the part? The notes' numbers are R - I then. */
+static bool set_notes(struct layer_notes *notes, const struct setup *s)
+{
+    bool any = false;
+
+    memcpy(notes->number, s->less_one, sizeof(s->less_one));
+    for (unsigned i = 0; i < CORRECTION_SETUP_VALUES; i++) {
+        any = any || s->number[i] != 0.0;
     }
     return any;
+}
+
+bool setup_exchange(struct correction *c, struct layer_notes *notes)
+{
+    set_numbers(&c->settings, c->setup_next.number);
+    return set_notes(notes, &c->setup_next);
+}
+
+static bool setup_begin(const struct correction *c, struct layer_notes *notes)
+{
+    struct setup s;
+
+    setup_get_numbers(c, s.number);
+    setup_prepare(&s);
+    return set_notes(notes, &s);
 }
 
 static bool has_table(const struct correction *c)
@@ -145,13 +188,14 @@ static struct need_jet way_of(const struct correction *c, unsigned j,
  * What goes round with the table: once per turn the offset in its plane and what R - I does between plane and axis, twice
  * what of R - I is symmetric in the plane.
  */
-static void add_waves(const struct correction *c, const double m[SIDE][SIDE],
+static void add_waves(const struct correction *c, const struct setup *s,
                       const struct motion_bound *most, struct need *need)
 {
     const unsigned t = about_of(c);
     const unsigned u = (t + 1) % SIDE;
     const unsigned v = (t + 2) % SIDE;
-    const double *offset = c->settings.setup_offset_mm;
+    const double *offset = s->number;
+    const double(*m)[SIDE] = s->less_one;
     const double round_twice = 0.5 * length_of(m[u][u] - m[v][v], m[u][v] + m[v][u]);
     const struct need_jet one = {{1.0, 0.0, 0.0, 0.0}};
     const struct need_jet along = way_of(c, t, most);
@@ -173,12 +217,13 @@ static void add_waves(const struct correction *c, const double m[SIDE][SIDE],
 }
 
 /* What is the same at every angle of the table: turns about its axis are of this kind. */
-static void add_unturned(const struct correction *c, const double m[SIDE][SIDE],
+static void add_unturned(const struct correction *c, const struct setup *s,
                          const struct motion_bound *most, struct need *need)
 {
     const unsigned t = about_of(c);
     const unsigned u = (t + 1) % SIDE;
     const unsigned v = (t + 2) % SIDE;
+    const double(*m)[SIDE] = s->less_one;
     const double stretch = 0.5 * (m[u][u] + m[v][v]);
     const double swing = 0.5 * (m[v][u] - m[u][v]);
 
@@ -187,32 +232,39 @@ static void add_unturned(const struct correction *c, const double m[SIDE][SIDE],
     add_constant(c, v, v, stretch, most, need);
     add_constant(c, u, v, swing, most, need);
     add_constant(c, v, u, swing, most, need);
-    need->size_mm[t] += maths_abs(c->settings.setup_offset_mm[t]);
-    need->size_mm[c->settings.turn_axis] += maths_abs(c->settings.setup_turn_rad);
+    need->size_mm[t] += maths_abs(s->number[t]);
+    need->size_mm[c->settings.turn_axis] += maths_abs(s->number[TURN]);
 }
 
-static void setup_need(const struct correction *c, const struct layer_notes *notes,
-                       const struct motion_bound *most, struct need *need)
+void setup_need(const struct correction *c, const struct setup *s, const struct motion_bound *most,
+                struct need *need)
 {
-    double m[SIDE][SIDE];
-
-    memcpy(m, notes->number, sizeof(m));
     if (has_table(c)) {
-        add_unturned(c, (const double(*)[SIDE])m, most, need);
-        add_waves(c, (const double(*)[SIDE])m, most, need);
+        add_unturned(c, s, most, need);
+        add_waves(c, s, most, need);
         return;
     }
     for (unsigned i = 0; i < SIDE; i++) {
         for (unsigned j = 0; j < SIDE; j++) {
-            add_constant(c, i, j, m[i][j], most, need);
+            add_constant(c, i, j, s->less_one[i][j], most, need);
         }
-        need->size_mm[i] += maths_abs(c->settings.setup_offset_mm[i]);
+        need->size_mm[i] += maths_abs(s->number[i]);
     }
+}
+
+static void need_in_force(const struct correction *c, const struct layer_notes *notes,
+                          const struct motion_bound *most, struct need *need)
+{
+    struct setup s;
+
+    setup_get_numbers(c, s.number);
+    memcpy(s.less_one, notes->number, sizeof(s.less_one));
+    setup_need(c, &s, most, need);
 }
 
 const struct correction_layer layer_setup = {
     .name = "setup",
     .begin = setup_begin,
     .add = setup_add,
-    .need = setup_need,
+    .need = need_in_force,
 };

@@ -13,6 +13,9 @@
 
 #define CORRECTION_COORDINATES 4
 
+/* The set-up as numbers in this order: offset X Y Z, turns about X Y Z, turn of psi. */
+#define CORRECTION_SETUP_VALUES (2 * AXIS_LINEAR_COUNT + 1)
+
 struct correction_settings {
     /* K = machine U + workpiece (U - W) + overhang T: U commanded, W the part's zero, T the tool's offset from the spindle */
     double machine[CORRECTION_COORDINATES][CORRECTION_COORDINATES];

@@ -169,6 +169,10 @@ enum panel_form {
     PANEL_AXIS_ROWS(ROW, id, MODBUS_HOLDINGS, address, PANEL_S32, 2, unit, 3, -PANEL_S32_MOST, PANEL_S32_MOST, \
                     PANEL_WHEN_IDLE, meaning)
 
+#define PANEL_SET_SETUP(ROW, id, address, unit, most, meaning) \
+    ROW(id, MODBUS_HOLDINGS, address, PANEL_S32, 2, unit, 4, -(most), most, PANEL_WHEN_IDLE, meaning)
+#define SETUP_TURN_MOST 3600000
+
 #define PANEL_COILS(ROW) \
     PANEL_COIL(ROW, CYCLE_START, 0, PANEL_WHEN_MOTION, \
         "1: starts the program (MODE 0), or continues after a hold. Reads 1 while a program runs") \
@@ -200,7 +204,9 @@ enum panel_form {
     PANEL_COIL(ROW, FLOOD, 22, PANEL_ANY, "1: flood coolant on, 0: off, until the program says otherwise") \
     PANEL_COIL(ROW, MIST, 23, PANEL_ANY, "1: mist coolant likewise") \
     PANEL_COIL(ROW, SPINDLE_STOP, 24, PANEL_WHEN_HELD, \
-        "1: the spindle stands while the program is held; 0 and at speed again, before RESUME")
+        "1: the spindle stands while the program is held; 0 and at speed again, before RESUME") \
+    PANEL_COIL(ROW, SETUP_TAKE, 25, PANEL_WHEN_IDLE, \
+        "1: the part is set up as SETUP_X ... SETUP_TABLE say, as by G10 L13; more than correction has reserved of the axes is an alarm, and changes nothing. Reads 0")
 
 #define PANEL_INPUT_ROWS(ROW) \
     PANEL_SHOW16(ROW, VERSION, 0, "", 0, "of this table") \
@@ -301,6 +307,13 @@ enum panel_form {
         "what the next upload brings: 0 a program, 1 settings of `takt machine --pack`, which are taken while the drives are off (emergency stop) and count from the next start on, 2 what `takt compile` has made of the program that is there, which takes UPLOAD_COMMAND 4") \
     PANEL_AXIS_ROWS(ROW, RISE, MODBUS_HOLDINGS, 60, PANEL_S32, 2, "K", 3, -1000000, 1000000, PANEL_ANY, \
         "how much warmer than at calibration its sensor finds it: for the thermal layer of the correction") \
+    PANEL_SET_SETUP(ROW, SETUP_X, 72, "mm", PANEL_S32_MOST, "set-up of the part, along X: as it is, and once written as SETUP_TAKE makes it") \
+    PANEL_SET_SETUP(ROW, SETUP_Y, 74, "mm", PANEL_S32_MOST, "likewise, along Y") \
+    PANEL_SET_SETUP(ROW, SETUP_Z, 76, "mm", PANEL_S32_MOST, "likewise, along Z") \
+    PANEL_SET_SETUP(ROW, SETUP_I, 78, "deg", SETUP_TURN_MOST, "likewise, turned about X") \
+    PANEL_SET_SETUP(ROW, SETUP_J, 80, "deg", SETUP_TURN_MOST, "likewise, then about Y") \
+    PANEL_SET_SETUP(ROW, SETUP_K, 82, "deg", SETUP_TURN_MOST, "likewise, then about Z") \
+    PANEL_SET_SETUP(ROW, SETUP_TABLE, 84, "deg", SETUP_TURN_MOST, "likewise, what the table itself turns back") \
     ROW(UPLOAD_OFFSET, MODBUS_HOLDINGS, 100, PANEL_U32, 2, "byte", 0, 0, PANEL_PROGRAM_BYTES_MAX, PANEL_ANY, \
         "of the first byte of the chunk: UPLOAD_RECEIVED, or less") \
     PANEL_SET16(ROW, UPLOAD_LENGTH, 102, "byte", 0, 1, PANEL_CHUNK_MAX, PANEL_ANY, "bytes in the chunk") \

@@ -24,7 +24,7 @@ static inline int64_t panel_value(const struct panel_snapshot *snapshot, enum pa
 }
 
 /* More than one request can write: registers of a table that are an order, by the test of the room. */
-#define PANEL_ORDER_MAX 48
+#define PANEL_ORDER_MAX 49
 
 /* What MDI_START starts. */
 enum panel_order_text {

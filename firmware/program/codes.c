@@ -22,8 +22,8 @@
 #define WORDS_INVOLUTE (LETTERS_AXES | LETTERS_CENTRE | LETTER_BIT('r'))
 
 #define WORDS_SETTING                                                                              \
-    (LETTERS_AXES | LETTER_BIT('i') | LETTER_BIT('j') | LETTER_BIT('l') | LETTER_BIT('p') |        \
-     LETTER_BIT('q') | LETTER_BIT('r'))
+    (LETTERS_AXES | LETTER_BIT('i') | LETTER_BIT('j') | LETTER_BIT('k') | LETTER_BIT('l') |        \
+     LETTER_BIT('p') | LETTER_BIT('q') | LETTER_BIT('r'))
 #define WORDS_THREADING                                                                            \
     (WORDS_CYCLE | LETTERS_CENTRE | LETTER_BIT('e') | LETTER_BIT('h') | LETTER_BIT('p') |          \
      LETTER_BIT('q'))

@@ -34,6 +34,7 @@ enum move_kind {
     MOVE_OUTPUT, /* a digital or analogue output changes: M62 to M65, M67, M68 */
     MOVE_INPUT,  /* waits for an input, or only reads it: M66 */
     MOVE_WEAR,   /* what a tool has cut since it was new is set: G10 L12 */
+    MOVE_SETUP,  /* a number of the set-up of the part (correction/settings.h): G10 L13 */
     MOVE_STOP,
     MOVE_END
 };
@@ -110,11 +111,13 @@ struct move {
         struct {
             double wear_length_mm, wear_time_s; /* MOVE_WEAR */
         };
+        double setup;  /* MOVE_SETUP: mm or rad */
         double output; /* MOVE_OUTPUT: 0 or 1; any value of an analogue one */
     };
     union {
-        uint32_t turns;   /* arcs: 1 = less than or exactly one turn */
-        uint32_t channel; /* MOVE_OUTPUT, MOVE_INPUT: number of the output or input */
+        uint32_t turns; /* arcs: 1 = less than or exactly one turn */
+        uint32_t
+            channel; /* MOVE_OUTPUT, MOVE_INPUT: number of the output or input; MOVE_SETUP: which */
     };
     uint32_t tool;          /* MOVE_TOOL, MOVE_WEAR: number; motion: of the tool in the spindle */
     unsigned overrides;     /* motion: OVERRIDE_... */
@@ -132,6 +135,7 @@ struct move {
     bool analogue : 1;                /* MOVE_OUTPUT, MOVE_INPUT */
     bool with_motion : 1;             /* MOVE_OUTPUT: M62, M63, M67 */
     bool optional : 1;                /* MOVE_STOP: M1 */
+    bool setup_ends : 1;              /* MOVE_SETUP: the last number of its line */
     enum spindle_direction direction; /* MOVE_SPINDLE */
     enum orient_way orient_way;       /* MOVE_ORIENT */
     enum input_wait input_wait;       /* MOVE_INPUT */

@@ -203,6 +203,7 @@ static bool takes_time(const struct move *m, const struct point *from)
     case MOVE_TOOL:
     case MOVE_OUTPUT:
     case MOVE_WEAR:
+    case MOVE_SETUP:
         return false;
     case MOVE_ARC_CW:
     case MOVE_ARC_CCW:
@@ -252,6 +253,9 @@ static enum program_question question_of(const struct move *move)
     if (move->kind == MOVE_PROBE) {
         return QUESTION_PROBE;
     }
+    if (move->kind == MOVE_SETUP && move->setup_ends) {
+        return QUESTION_SETUP;
+    }
     return move->kind == MOVE_INPUT ? QUESTION_INPUT : QUESTION_NONE;
 }
 
@@ -287,6 +291,7 @@ void program_answer(struct program *p, const struct program_answer *answer)
     case QUESTION_INPUT:
         (void)parameters_set(p->config.parameters, PARAMETER_INPUT, answer->value);
         break;
+    case QUESTION_SETUP:
     case QUESTION_NONE:
         break;
     }

@@ -304,7 +304,7 @@ struct program_cycle {
 };
 
 /* What the last move that was fetched asks of the world. */
-enum program_question { QUESTION_NONE, QUESTION_PROBE, QUESTION_INPUT };
+enum program_question { QUESTION_NONE, QUESTION_PROBE, QUESTION_INPUT, QUESTION_SETUP };
 
 enum program_phase { PROGRAM_AT_START, PROGRAM_IN_TEXT, PROGRAM_ENDED };
 

@@ -1,5 +1,6 @@
 #include "program/setting.h"
 
+#include "base/maths.h"
 #include "program/coordinates.h"
 #include "program/emit.h"
 #include "program/report.h"
@@ -8,6 +9,8 @@
 
 /* The coordinate system of L11: G59.3. */
 #define FIXTURE_SYSTEM 9
+
+#define DEGREES_PER_RAD (180.0 / MATHS_PI)
 
 /* mm, s: of a tool. */
 #define WEAR_MAX 1e9
@@ -18,7 +21,8 @@ enum what {
     SYSTEM = 2,
     TOOL_BY_POSITION = 10,
     TOOL_BY_FIXTURE = 11,
-    WEAR = 12, /* takt's own */
+    WEAR = 12,  /* takt's own */
+    SETUP = 13, /* takt's own */
     SYSTEM_BY_POSITION = 20
 };
 
@@ -116,7 +120,7 @@ static bool run_system(struct program *p, const struct program_code *code, bool 
 {
     uint32_t system;
 
-    if (!refuse_words(p, LETTER_BIT('i') | LETTER_BIT('j') | LETTER_BIT('q')) ||
+    if (!refuse_words(p, LETTER_BIT('i') | LETTER_BIT('j') | LETTER_BIT('k') | LETTER_BIT('q')) ||
         !words_whole(p, 'p', 0.0, COORDINATES_SYSTEMS, &system)) {
         return false;
     }
@@ -187,7 +191,7 @@ static bool run_tool(struct program *p, const struct program_code *code, enum wh
     uint32_t number;
     uint32_t orientation = 0;
 
-    if (!words_whole(p, 'p', 1.0, PROGRAM_TOOL_MAX, &number) ||
+    if (!refuse_words(p, LETTER_BIT('k')) || !words_whole(p, 'p', 1.0, PROGRAM_TOOL_MAX, &number) ||
         (words_has(p, 'q') && !words_whole(p, 'q', 0.0, CUTTER_ORIENTATION_MAX, &orientation))) {
         return false;
     }
@@ -215,7 +219,7 @@ static bool run_wear(struct program *p, const struct program_code *code)
 {
     uint32_t number, length_mm = 0, time_s = 0;
 
-    if (!refuse_words(p, LETTERS_AXES | LETTER_BIT('q') | LETTER_BIT('r')) ||
+    if (!refuse_words(p, LETTERS_AXES | LETTER_BIT('k') | LETTER_BIT('q') | LETTER_BIT('r')) ||
         !words_whole(p, 'p', 1.0, PROGRAM_TOOL_MAX, &number) ||
         (words_has(p, 'i') && !words_whole(p, 'i', 0.0, WEAR_MAX, &length_mm)) ||
         (words_has(p, 'j') && !words_whole(p, 'j', 0.0, WEAR_MAX, &time_s))) {
@@ -232,6 +236,42 @@ static bool run_wear(struct program *p, const struct program_code *code)
     return true;
 }
 
+static struct move *emit_setup(struct program *p, unsigned which, double value)
+{
+    struct move *m = emit_event(p, MOVE_SETUP);
+
+    m->channel = which;
+    m->setup = value;
+    return m;
+}
+
+/* The set-up of the part, for the position correction. What has no word stays. */
+static bool run_setup(struct program *p)
+{
+    static const char turns[] = {'i', 'j', 'k', 'r'};
+    struct move *last = NULL;
+    double value;
+
+    if (!refuse_words(p, LETTER_BIT('a') | LETTER_BIT('b') | LETTER_BIT('c') | LETTER_BIT('p') |
+                             LETTER_BIT('q'))) {
+        return false;
+    }
+    for (unsigned i = AXIS_X; i < AXIS_LINEAR_COUNT; i++) {
+        if (coordinates_word(p, (enum axis)i, &value)) {
+            last = emit_setup(p, i, value);
+        }
+    }
+    for (unsigned i = 0; i < sizeof(turns); i++) {
+        if (words_has(p, turns[i])) {
+            last = emit_setup(p, AXIS_LINEAR_COUNT + i, words_value(p, turns[i]) / DEGREES_PER_RAD);
+        }
+    }
+    if (last != NULL) {
+        last->setup_ends = true;
+    }
+    return true;
+}
+
 bool setting_run(struct program *p, const struct program_code *code)
 {
     uint32_t what;
@@ -242,7 +282,7 @@ bool setting_run(struct program *p, const struct program_code *code)
     if (!words_whole(p, 'l', TOOLS_AGAIN, SYSTEM_BY_POSITION, &what)) {
         return false;
     }
-    if (what != TOOLS_AGAIN && !words_has(p, 'p')) {
+    if (what != TOOLS_AGAIN && what != SETUP && !words_has(p, 'p')) {
         return report_missing(p, code->step, 'p');
     }
     switch (what) {
@@ -257,6 +297,8 @@ bool setting_run(struct program *p, const struct program_code *code)
         return run_tool(p, code, (enum what)what);
     case WEAR:
         return run_wear(p, code);
+    case SETUP:
+        return run_setup(p);
     default:
         return report_error_letter(p, TAKT_ERROR_WORD_OUT_OF_RANGE, 'l', what);
     }

@@ -12,6 +12,9 @@
 /* Decimals of the positions a jog names: finer than any machine's resolution. */
 #define JOG_PLACES 6
 
+/* mm, degrees */
+#define SETUP_UNITS_PER_COUNT 0.0001
+
 /* A jog ends this far inside the travel at least, so that its end as text is not outside. */
 #define JOG_ROOM 1e-6
 
@@ -216,6 +219,22 @@ void service_start_jog(struct service *s, bool negative)
     add_word(s, AXIS_LETTERS[s->settings.jog_axis], jog_end(s, negative));
     add_word(s, 'F', (double)s->settings.jog_feed_mm_min);
     s->jog_is_negative = negative;
+    start_text(s, SERVICE_JOG);
+}
+
+/* By a line, so that it is weighed as that of a program is. */
+void service_start_setup(struct service *s)
+{
+    static const char letters[] = {'X', 'Y', 'Z', 'I', 'J', 'K', 'R'};
+
+    static_assert(sizeof letters == CORRECTION_SETUP_VALUES, "a letter for each number");
+    s->text_length = 0;
+    add_text(s, "G10 L13 ");
+    for (unsigned i = 0; i < CORRECTION_SETUP_VALUES; i++) {
+        if ((s->settings.setup_given & 1U << i) != 0)
+            add_word(s, letters[i], SETUP_UNITS_PER_COUNT * (double)s->settings.setup[i]);
+    }
+    s->settings.setup_given = 0;
     start_text(s, SERVICE_JOG);
 }
 

@@ -260,6 +260,22 @@ static void look_at_tool(const struct service *s, uint32_t *value)
         tool != NULL ? counts(tool->diameter_mm, COUNTS_PER_UNIT, REGISTER_TOOL_DIAMETER) : 0;
 }
 
+/* As it is in force, until something else is written that waits to be taken. */
+static void look_at_setup(const struct service *s, uint32_t *value)
+{
+    double number[CORRECTION_SETUP_VALUES];
+
+    correction_get_setup(&s->controller.correction, number);
+    for (unsigned i = 0; i < CORRECTION_SETUP_VALUES; i++) {
+        const enum panel_id id = (enum panel_id)(REGISTER_SETUP_X + i);
+        const double unit = i < AXIS_LINEAR_COUNT ? 1.0 : DEGREES_PER_RAD;
+
+        value[id] = (s->settings.setup_given & 1U << i) != 0
+                        ? (uint32_t)s->settings.setup[i]
+                        : counts(number[i] * unit, panel_counts_per_unit(id), id);
+    }
+}
+
 void service_look(const struct service *s, struct panel_snapshot *snapshot)
 {
     memset(snapshot, 0, sizeof *snapshot);
@@ -273,6 +289,7 @@ void service_look(const struct service *s, struct panel_snapshot *snapshot)
     look_at_settings(s, snapshot->value);
     look_at_work_offset(s, snapshot->value);
     look_at_tool(s, snapshot->value);
+    look_at_setup(s, snapshot->value);
     if (s->alarm != PANEL_ALARM_NONE)
         (void)diagnostic_text(&s->alarm_text, snapshot->alarm_text);
 }

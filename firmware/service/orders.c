@@ -81,6 +81,8 @@ static enum panel_verdict check_coil(const struct service *s, enum panel_id id)
         return verdict_on(may_go_on(s));
     if (id == REGISTER_MDI_START)
         return verdict_on(s->settings.mode == PANEL_MODE_MDI && s->alarm == PANEL_ALARM_NONE);
+    if (id == REGISTER_SETUP_TAKE)
+        return verdict_on(s->alarm == PANEL_ALARM_NONE);
     if (id == REGISTER_HOME)
         return verdict_on(s->settings.mode == PANEL_MODE_JOG && s->alarm == PANEL_ALARM_NONE);
     if (is_between(id, REGISTER_JOG_PLUS, REGISTER_JOG_MINUS))
@@ -245,6 +247,8 @@ static bool push_button(struct service *s, enum panel_id id, const struct panel_
         return start_text(s, order);
     else if (id == REGISTER_HOME)
         service_start_home(s);
+    else if (id == REGISTER_SETUP_TAKE)
+        service_start_setup(s);
     return true;
 }
 
@@ -290,6 +294,12 @@ static void set_tool_offset(struct service *s, unsigned axis, int64_t value)
         (double)value * UNITS_PER_COUNT * (rotary ? RAD_PER_DEGREE : 1.0);
 }
 
+static void set_setup(struct service_settings *settings, unsigned which, int64_t value)
+{
+    settings->setup[which] = (int32_t)value;
+    settings->setup_given |= 1U << which;
+}
+
 /* Holding registers that are mere settings. False: it is none of them. */
 static bool set_setting(struct service_settings *settings, enum panel_id id, int64_t value)
 {
@@ -315,6 +325,8 @@ static bool set_setting(struct service_settings *settings, enum panel_id id, int
         settings->start_line = (uint32_t)value;
     else if (id == REGISTER_WATCHDOG)
         settings->watchdog_ms = (uint32_t)value;
+    else if (is_between(id, REGISTER_SETUP_X, REGISTER_SETUP_TABLE))
+        set_setup(settings, id - REGISTER_SETUP_X, value);
     else
         return false;
     return true;
@@ -379,7 +391,7 @@ static bool is_ambiguous(const struct panel_order *order)
 
         if (order->item[i].value != 0 &&
             (is_between(id, REGISTER_CYCLE_START, REGISTER_RESUME) || id == REGISTER_RESET ||
-             is_between(id, REGISTER_MDI_START, REGISTER_HOME)) &&
+             id == REGISTER_SETUP_TAKE || is_between(id, REGISTER_MDI_START, REGISTER_HOME)) &&
             panel_registers[id].form == PANEL_BIT)
             buttons++;
     }

@@ -17,6 +17,8 @@ void service_start_text_of(struct service *s, const struct controller_config *co
 bool service_start_lines(struct service *s);
 /* They have ended with the job. */
 void service_end_lines(struct service *s, enum panel_outcome outcome);
+/* What the panel has written of the set-up of the part is taken: G10 L13. */
+void service_start_setup(struct service *s);
 bool service_jog_is_possible(const struct service *s, bool negative);
 void service_start_jog(struct service *s, bool negative);
 /* Homing: first the drives, then the way to machine zero. */

@@ -23,9 +23,11 @@ struct service_settings {
     uint32_t watchdog_ms; /* 0: no panel is in control */
     uint32_t start_line;  /* of the next program; 0: its beginning */
     bool single_block, optional_stop, block_delete;
-    bool spindle_stop;        /* in a hold */
-    unsigned corrections;     /* bit i: layer i of the position correction is on */
-    int32_t rise[AXIS_COUNT]; /* 0.001 K, of each axis since calibration */
+    bool spindle_stop;                      /* in a hold */
+    unsigned corrections;                   /* bit i: layer i of the position correction is on */
+    int32_t rise[AXIS_COUNT];               /* 0.001 K, of each axis since calibration */
+    int32_t setup[CORRECTION_SETUP_VALUES]; /* of the part, to be taken: 0.0001 mm or degrees */
+    unsigned setup_given;                   /* bit i: number i has been written since */
 };
 
 struct service {

@@ -201,9 +201,11 @@ enum command_status compiled_make(const struct session *s, const struct session_
     enum command_status status = STATUS_FAILED;
 
     *figures = (struct compiled_figures){0};
-    if (totals->is_open) {
-        message_error(s->program.name, 0, 0,
-                      "what follows a probing move or M66 cannot be planned ahead");
+    if (totals->is_open || totals->sets_up) {
+        message_error(
+            s->program.name, 0, 0,
+            "what follows a probing move, M66 or a set-up of the part (G10 L13) cannot be "
+            "planned ahead");
         return STATUS_INPUT;
     }
     for (size_t i = 0; i < sizeof attempts / sizeof attempts[0] && status == STATUS_FAILED; i++)

@@ -223,10 +223,14 @@ static void take_move(struct offline *o, const struct move *move)
 {
     if (move->kind == MOVE_INPUT && o->rewriter.totals.input_line == 0)
         o->rewriter.totals.input_line = move->line;
-    if (!is_wanted(o, move))
+    if (!is_wanted(o, move) && move->kind != MOVE_SETUP)
         return;
     if (!belongs_to_current(o, move))
         begin_execution(o, move->line);
+    if (move->kind == MOVE_SETUP) {
+        offline_set_up(&o->rewriter, move);
+        return;
+    }
     if (o->current.moves == OFFLINE_MOVES_MAX) {
         o->rewriter.wrong = "this line makes too many motions";
         o->rewriter.wrong_line = move->line;

@@ -229,8 +229,10 @@ static bool rewrite_reference(struct offline_rewriter *r, const struct offline_l
 /* L of G10. */
 #define LEAST_BY_POSITION   10.0
 #define SETTING_BY_POSITION 20.0
+#define SETTING_WEAR        12.0
+#define SETTING_SETUP       13.0
 
-enum setting { SETTING_NONE, SETTING_WRITABLE, SETTING_OTHER };
+enum setting { SETTING_NONE, SETTING_WRITABLE, SETTING_PART, SETTING_WORN, SETTING_OTHER };
 
 static enum setting setting_of(const struct program *p)
 {
@@ -240,6 +242,10 @@ static enum setting setting_of(const struct program *p)
         return SETTING_OTHER;
     if (!words_has_step(p, STEP_SETTING) || words_value(p, 'l') < LEAST_BY_POSITION)
         return SETTING_NONE;
+    if (words_value(p, 'l') == SETTING_WEAR)
+        return SETTING_WORN;
+    if (words_value(p, 'l') == SETTING_SETUP)
+        return SETTING_PART;
     if (words_value(p, 'l') == SETTING_BY_POSITION &&
         (words_value(p, 'p') == 0.0 || words_value(p, 'p') == p->modes.system))
         return SETTING_WRITABLE;
@@ -258,6 +264,25 @@ static bool has_words_of_its_own(const struct program *p)
 bool offline_is_setting(const struct program *p)
 {
     return has_words_of_its_own(p) && setting_of(p) != SETTING_NONE;
+}
+
+void offline_set_up(struct offline_rewriter *r, const struct move *move)
+{
+    correction_tell_setup(&r->correction, move->channel, move->setup);
+    if (move->setup_ends) {
+        (void)correction_take_setup(&r->correction);
+        correction_settle_setup(&r->correction);
+    }
+}
+
+/* G10 L13: the corrected coordinates have it in them, and the machine is not told. */
+static bool rewrite_part(struct offline_rewriter *r, const struct offline_line *line,
+                         struct offline_text *text)
+{
+    if (line->moves > 0)
+        return refuse(r, line, "a set-up of the part stands on a line of its own");
+    offline_text_print(text, "(the set-up of the part is in the coordinates from here on)");
+    return true;
 }
 
 /* G92, G10 L20: the same offset comes out when the words grow by what the machine stands off. */
@@ -299,6 +324,13 @@ static bool rewrite(struct offline_rewriter *r, const struct offline_line *line,
         return refuse(r, line,
                       "where a probing motion ends is not known before it is run: correct this "
                       "program while it runs");
+    if (setting_of(&line->context) == SETTING_WORN)
+        return refuse(
+            r, line,
+            "what a tool has worn is counted while it cuts: leave G10 L12 out, or correct "
+            "this program while it runs");
+    if (setting_of(&line->context) == SETTING_PART)
+        return rewrite_part(r, line, text);
     if (setting_of(&line->context) != SETTING_NONE)
         return rewrite_setting(r, line, text);
     if (words_has_step(&line->context, STEP_REFERENCE))

@@ -56,6 +56,9 @@ bool offline_rewrite_line(struct offline_rewriter *r, const struct offline_line 
 /* Does the line that has been read take over where the machine stands (G92, G10 L20 ...)? */
 bool offline_is_setting(const struct program *p);
 
+/* The part is set up: what follows is corrected by it (MOVE_SETUP). */
+void offline_set_up(struct offline_rewriter *r, const struct move *move);
+
 /* ---- cutting words out of the line ---- */
 
 /* Which bytes of the line go; the place of the first of them gets the new words. */

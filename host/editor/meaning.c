@@ -25,7 +25,9 @@ static const struct {
     {'g', 62, "NURBS by control points, knots K and weights R; P is its order"},
     {'g', 70, "words of X are diameters"},
     {'g', 80, "words of X are radii"},
-    {'g', 100, "sets coordinate systems (L2, L20), tools (L1, L10, L11) and their wear (L12)"},
+    {'g', 100,
+     "sets coordinate systems (L2, L20), tools (L1, L10, L11) and their wear (L12), the set-up of "
+     "the part (L13)"},
     {'g', 170, "plane XY: arcs, compensation and cycles are in it"},
     {'g', 180, "plane ZX: arcs, compensation and cycles are in it"},
     {'g', 190, "plane YZ: arcs, compensation and cycles are in it"},

@@ -173,7 +173,8 @@ static bool read_ball(struct reading *r, struct virtual_probe_solid *s)
     return s->radius_mm > 0 || fail(r, r->word[r->at - 1].start, "a radius above 0 is expected");
 }
 
-static bool read_solid(struct reading *r, bool box)
+/* kind: box, ball or hole, of which the last two are told alike. */
+static bool read_solid(struct reading *r, struct word kind)
 {
     struct virtual_probe_solid *s = &r->probe->solid[r->probe->solids];
 
@@ -181,7 +182,8 @@ static bool read_solid(struct reading *r, bool box)
         return fail(r, r->line, "more than %d solids", VIRTUAL_PROBE_SOLIDS_MAX);
     *s = (struct virtual_probe_solid){0};
     r->probe->solids++;
-    return box ? read_box(r, s) : read_ball(r, s);
+    s->is_hole = is_word(kind, "hole");
+    return is_word(kind, "box") ? read_box(r, s) : read_ball(r, s);
 }
 
 /* P0 ... P31, E0 ... E3 */
@@ -230,19 +232,57 @@ static bool read_input(struct reading *r)
     return true;
 }
 
+/* Three numbers. */
+static bool take_three(struct reading *r, double unit, double value[AXIS_LINEAR_COUNT])
+{
+    for (unsigned i = 0; i < AXIS_LINEAR_COUNT; i++) {
+        if (!take_number(r, &value[i]))
+            return false;
+        value[i] *= unit;
+    }
+    return true;
+}
+
+/* part by X Y Z turned A B C about X Y Z, and perhaps: on C */
+static bool read_part(struct reading *r)
+{
+    struct virtual_probe_part *part = &r->probe->part;
+    double turned_rad[AXIS_LINEAR_COUNT];
+
+    if (part->is_displaced)
+        return fail(r, r->line, "the part is told twice");
+    if (!take_word(r, "by") || !take_three(r, 1.0, part->offset_mm) || !take_word(r, "turned") ||
+        !take_three(r, RAD_PER_DEGREE, turned_rad) || !take_word(r, "about") ||
+        !take_three(r, 1.0, part->pivot_mm))
+        return false;
+    part->table = AXIS_COUNT;
+    if (r->at < r->count) {
+        if (!take_word(r, "on"))
+            return false;
+        if (axis_of(peek(r)) < AXIS_LINEAR_COUNT)
+            return fail_expected(r, "a table, A, B or C,");
+        part->table = (enum axis)axis_of(peek(r));
+        r->at++;
+    }
+    virtual_probe_place(part, turned_rad);
+    return true;
+}
+
 static bool read_words(struct reading *r)
 {
     struct word kind = r->word[0];
     bool good;
 
     r->at = 1;
-    if (is_word(kind, "box") || is_word(kind, "ball"))
-        good = read_solid(r, is_word(kind, "box"));
+    if (is_word(kind, "box") || is_word(kind, "ball") || is_word(kind, "hole"))
+        good = read_solid(r, kind);
     else if (is_word(kind, "input"))
         good = read_input(r);
+    else if (is_word(kind, "part"))
+        good = read_part(r);
     else
-        return fail(r, kind.start, "box, ball or input is expected, not '%.*s'", shown(kind),
-                    kind.start);
+        return fail(r, kind.start, "box, ball, hole, part or input is expected, not '%.*s'",
+                    shown(kind), kind.start);
     if (good && r->at < r->count)
         return fail(r, peek(r).start, "'%.*s' is too much here", shown(peek(r)), peek(r).start);
     return good;

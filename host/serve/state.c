@@ -54,6 +54,16 @@ static void write_parameters(FILE *stream, const struct parameters *parameters)
         (void)fprintf(stream, "parameter %u %.17g\n", number, value);
 }
 
+static void write_setup(FILE *stream, const struct state *s)
+{
+    if (!s->has_setup)
+        return;
+    (void)fprintf(stream, "setup");
+    for (size_t i = 0; i < sizeof s->setup / sizeof s->setup[0]; i++)
+        (void)fprintf(stream, " %.17g", s->setup[i]);
+    (void)fprintf(stream, "\n");
+}
+
 static void write_all(FILE *stream, const struct state *s)
 {
     (void)fprintf(stream, "takt-state %d\nmachine %s\nbase %" PRIu32 " %" PRIu32 "\n",
@@ -66,6 +76,7 @@ static void write_all(FILE *stream, const struct state *s)
     for (size_t i = 0; i < s->wears; i++)
         (void)fprintf(stream, "wear %" PRIu32 " %.17g %.17g\n", s->wear[i].tool,
                       s->wear[i].length_mm, s->wear[i].time_s);
+    write_setup(stream, s);
 }
 
 char *state_write(const struct state *state, size_t *length)
@@ -133,6 +144,16 @@ static bool take_wear(struct state *s, const char *at)
     return true;
 }
 
+static bool take_setup(struct state *s, const char *at)
+{
+    for (size_t i = 0; i < sizeof s->setup / sizeof s->setup[0]; i++) {
+        if (!take_number(&at, &s->setup[i]))
+            return false;
+    }
+    s->has_setup = true;
+    return true;
+}
+
 static bool take_parameter(struct state *s, const char *at)
 {
     uint32_t number;
@@ -163,7 +184,8 @@ static const struct {
     const char *name;
     bool (*take)(struct state *s, const char *at);
 } kinds[] = {{"machine", take_machine},     {"base", take_base}, {"program", take_program},
-             {"parameter", take_parameter}, {"tool", take_tool}, {"wear", take_wear}};
+             {"parameter", take_parameter}, {"tool", take_tool}, {"wear", take_wear},
+             {"setup", take_setup}};
 
 static bool take_line(struct state *s, const char *line)
 {

@@ -8,6 +8,7 @@
  *     parameter NUMBER VALUE
  *     tool NUMBER ORIENTATION X Y Z A B C DIAMETER FRONT BACK
  *     wear TOOL LENGTH TIME
+ *     setup X Y Z I J K R X Y Z I J K R set-up of the part, and that of the machine file when it was written
  *
  * mm, rad, s; numbers with as many digits as give the same bits again. Lines of a name that this version does not know are
  * skipped, so a later version may add some; one that changes their meaning raises the number in the first line.
@@ -15,6 +16,7 @@
 #ifndef TAKT_SERVE_STATE_H
 #define TAKT_SERVE_STATE_H
 
+#include "correction/settings.h"
 #include "program/parameters.h"
 #include "program/tools.h"
 
@@ -39,6 +41,8 @@ struct state {
     struct parameters parameters;
     struct state_wear wear[STATE_WEARS_MAX];
     size_t wears;
+    double setup[2 * CORRECTION_SETUP_VALUES]; /* and then that of the machine file */
+    bool has_setup;
     struct tool *tools; /* room for tools_max of them; the caller's */
     size_t tools_count, tools_max;
 };

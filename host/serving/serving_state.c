@@ -179,6 +179,37 @@ static void offer_line(const struct state *kept, struct service *service)
                             (unsigned)kept->line, (unsigned)kept->line);
 }
 
+static void settings_setup(const struct correction_settings *settings,
+                           double number[CORRECTION_SETUP_VALUES])
+{
+    for (unsigned i = 0; i < AXIS_LINEAR_COUNT; i++) {
+        number[i] = settings->setup_offset_mm[i];
+        number[AXIS_LINEAR_COUNT + i] = settings->setup_rotation_rad[i];
+    }
+    number[CORRECTION_SETUP_VALUES - 1] = settings->setup_turn_rad;
+}
+
+/* As the part was set up last, unless the machine file says something else since. */
+static void take_setup(const struct serving_state *st, struct correction *correction,
+                       const struct correction_settings *settings)
+{
+    double of_file[CORRECTION_SETUP_VALUES];
+    bool same = true;
+
+    settings_setup(settings, of_file);
+    for (unsigned i = 0; i < CORRECTION_SETUP_VALUES; i++) {
+        same = same && st->kept.setup[CORRECTION_SETUP_VALUES + i] == of_file[i];
+        correction_tell_setup(correction, i, st->kept.setup[i]);
+    }
+    if (same && correction_take_setup(correction))
+        correction_settle_setup(correction);
+    else
+        message_command_warning("--state %s: the machine's set-up of the part is another since; it "
+                                "counts",
+                                st->folder);
+    correction_forget_setup(correction);
+}
+
 void serving_state_restore(const struct serving_state *st, struct service *service)
 {
     struct correction *correction = controller_get_correction(&service->controller);
@@ -188,6 +219,8 @@ void serving_state_restore(const struct serving_state *st, struct service *servi
     for (size_t i = 0; i < st->kept.wears; i++)
         correction_set_wear(correction, st->kept.wear[i].tool, st->kept.wear[i].length_mm,
                             st->kept.wear[i].time_s);
+    if (st->kept.has_setup)
+        take_setup(st, correction, &service->controller.machine.correction);
     offer_line(&st->kept, service);
 }
 
@@ -222,6 +255,9 @@ static void fill(const struct serving_state *st, const struct service *service, 
     if (st->tools_count > 0)
         memcpy(state->tools, service->config.tools, st->tools_count * sizeof *state->tools);
     fill_wear(state, &service->controller.correction);
+    correction_get_setup(&service->controller.correction, state->setup);
+    settings_setup(&service->controller.machine.correction, &state->setup[CORRECTION_SETUP_VALUES]);
+    state->has_setup = true;
 }
 
 void serving_state_keep(struct serving_state *st, const struct service *service, uint64_t now_ns)

@@ -174,6 +174,14 @@ static void add_wear(struct line *l, const struct move *move)
     add_word(l, 'J', move->wear_time_s);
 }
 
+static void add_setup(struct line *l, const struct move *move)
+{
+    const bool turn = move->channel >= AXIS_LINEAR_COUNT;
+
+    add_text(l, "setup");
+    add_word(l, "XYZIJKR"[move->channel], move -> setup *(turn ? DEGREES_PER_RAD : 1.0));
+}
+
 static void add_event(struct line *l, const struct move *move)
 {
     if (move->kind == MOVE_DWELL) {
@@ -193,6 +201,8 @@ static void add_event(struct line *l, const struct move *move)
         add_input(l, move);
     } else if (move->kind == MOVE_WEAR) {
         add_wear(l, move);
+    } else if (move->kind == MOVE_SETUP) {
+        add_setup(l, move);
     } else if (move->kind == MOVE_STOP) {
         add_text(l, move->optional ? "optional_stop" : "stop");
     } else {

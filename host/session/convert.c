@@ -398,10 +398,11 @@ static const char *lacks(const struct convert *c, const struct move *m)
     const bool all = can(c, CAN_LINUXCNC);
 
     if (m->kind == MOVE_SPLINE || m->kind == MOVE_TAP || m->kind == MOVE_TAP_OUT ||
-        m->kind == MOVE_WEAR)
-        return m->kind == MOVE_SPLINE ? "a spline"
-               : m->kind == MOVE_WEAR ? "wear"
-                                      : "rigid tapping";
+        m->kind == MOVE_WEAR || m->kind == MOVE_SETUP)
+        return m->kind == MOVE_SPLINE  ? "a spline"
+               : m->kind == MOVE_WEAR  ? "wear"
+               : m->kind == MOVE_SETUP ? "a set-up of the part"
+                                       : "rigid tapping";
     if (move_is_involute(m) && !all)
         return "an involute";
     if (move_is_arc(m) && m->turns > 1 && !all)

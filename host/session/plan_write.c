@@ -39,9 +39,10 @@ struct plan_print {
 static const char *kind_name(enum move_kind kind)
 {
     static const char *const names[] = {
-        "rapid",   "feed", "arc_cw",  "arc_ccw", "involute_cw", "involute_ccw", "spline",
-        "thread",  "tap",  "tap_out", "probe",   "dwell",       "spindle",      "orient",
-        "coolant", "tool", "output",  "input",   "wear",        "stop",         "end"};
+        "rapid",   "feed",   "arc_cw",  "arc_ccw", "involute_cw", "involute_ccw",
+        "spline",  "thread", "tap",     "tap_out", "probe",       "dwell",
+        "spindle", "orient", "coolant", "tool",    "output",      "input",
+        "wear",    "setup",  "stop",    "end"};
 
     static_assert(sizeof names / sizeof names[0] == MOVE_END + 1, "a name for every kind");
     return names[kind];

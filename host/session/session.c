@@ -127,6 +127,7 @@ static void count_move(struct session_totals *totals, const struct move *move, s
     struct curve curve;
 
     totals->moves++;
+    totals->sets_up = totals->sets_up || move->kind == MOVE_SETUP;
     if (!move_is_motion(move))
         return;
     totals->motions++;
@@ -152,6 +153,10 @@ static bool check_move(const struct session *s, struct session_reading *reading,
     print_warnings(s, reading, totals);
     if (result == PROGRAM_MOVE)
         count_move(totals, &move, at);
+    if (result == PROGRAM_WAIT && reading->program.question == QUESTION_SETUP) {
+        offset_answer(&reading->offset, &reading->program, &(const struct program_answer){0});
+        return true;
+    }
     totals->is_open = totals->is_open || result == PROGRAM_WAIT;
     if (result != PROGRAM_ERROR)
         return result == PROGRAM_MOVE;

@@ -67,6 +67,7 @@ struct session_totals {
     double tolerance_mm; /* the smallest of motions that are blended; 0: none is */
     unsigned errors;
     unsigned warnings;
+    bool sets_up; /* the part, by G10 L13 */
     bool is_open; /* only up to the first G38 or M66: what follows depends on what becomes of it */
 };
 

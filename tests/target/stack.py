@@ -26,7 +26,7 @@ STORE = r"begin|begin_stream|bring|prepare|place|room|end|look|order|hear|settin
 CALLS = (
     (r"axes_add|axes_need", r"geometry_.*"),  # no machine of a target has errors of units
     (r"answer_.*|modbus_answer", r"panel_read|panel_write"),
-    (r".*_layers?|exchange_tables|correction_.*", LAYER),
+    (r".*_layers?|exchange_.*|weigh|correction_.*", LAYER),
     (r"comment_run", r"say"),  # nobody listens on a target
     (r"controller_background", r"refuse_line"),
     (r"decimal_read", r"wide_.*"),

@@ -415,6 +415,42 @@ static void test_a_table_that_needs_more_than_is_reserved_is_refused_and_the_old
     TEST_ASSERT_TRUE(correction_load(&c, &other_tables, &wrong));
 }
 
+static void test_a_set_up_that_is_told_while_axes_move_fades_in(void)
+{
+    const struct motion_bound most = {
+        {100, 100, 100}, {1000, 1000, 1000}, {50000, 50000, 50000}, {500, 500, 500}};
+    double before = 50, largest = 0;
+    struct need need;
+    struct point set;
+
+    settings.setup_offset_mm[AXIS_X] = 0.3;
+    settings.reserve_ratio = 0.05;
+    begin(NULL);
+    correction_reserve(&c, &most, &need);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-8, 0.3, settle(50, 0, 0, 0).at[AXIS_X]);
+    before = 50.3;
+    correction_tell_setup(&c, AXIS_X, -0.2);
+    correction_tell_setup(&c, AXIS_Y, 0.1);
+    TEST_ASSERT_FALSE(correction_is_set_up(&c));
+    TEST_ASSERT_TRUE(correction_take_setup(&c));
+    TEST_ASSERT_TRUE(correction_is_set_up(&c) && correction_is_setting_up(&c));
+    for (int i = 0; i < 20000; i++) {
+        const struct point at = {{50, 0, 0}};
+
+        correction_cycle(&c, &at, &move, &set);
+        largest = fmax(largest, fabs(set.at[AXIS_X] - before));
+        before = set.at[AXIS_X];
+    }
+    TEST_ASSERT_DOUBLE_WITHIN(1e-8, 49.8, set.at[AXIS_X]);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-8, 0.1, set.at[AXIS_Y]);
+    TEST_ASSERT_TRUE(largest < 1e-3); /* 1 mm/s */
+    TEST_ASSERT_FALSE(correction_is_setting_up(&c));
+    correction_tell_setup(&c, AXIS_X, 50.0);
+    TEST_ASSERT_FALSE(correction_take_setup(&c));
+    TEST_ASSERT_TRUE(correction_is_set_up(&c));
+    TEST_ASSERT_DOUBLE_WITHIN(1e-8, -0.2, settle(50, 0, 0, 0).at[AXIS_X]);
+}
+
 static void test_leaving_a_table_is_told_once_until_it_is_asked(void)
 {
     make_volume(&tables, 5);
@@ -493,6 +529,7 @@ int main(void)
     RUN_TEST(test_machine_file_operator_and_program_switch_layers);
     RUN_TEST(test_tables_are_exchanged_without_a_jump);
     RUN_TEST(test_a_table_that_needs_more_than_is_reserved_is_refused_and_the_old_one_kept);
+    RUN_TEST(test_a_set_up_that_is_told_while_axes_move_fades_in);
     RUN_TEST(test_leaving_a_table_is_told_once_until_it_is_asked);
     RUN_TEST(test_the_settled_correction_is_what_the_cycle_comes_to);
     RUN_TEST(test_a_pair_of_axes_given_twice_and_too_many_points_are_refused);

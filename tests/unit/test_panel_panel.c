@@ -237,7 +237,7 @@ static void test_addresses_that_are_not_there_are_exception_2(void)
 {
     const struct modbus_map map = panel_client_map(&one);
 
-    TEST_ASSERT_EQUAL_INT(MODBUS_ADDRESS, map.read(map.context, MODBUS_COILS, 25, 1, data));
+    TEST_ASSERT_EQUAL_INT(MODBUS_ADDRESS, map.read(map.context, MODBUS_COILS, 26, 1, data));
     TEST_ASSERT_EQUAL_INT(MODBUS_ADDRESS, map.read(map.context, MODBUS_INPUTS, 399, 2, data));
     TEST_ASSERT_EQUAL_INT(MODBUS_ADDRESS, map.read(map.context, MODBUS_HOLDINGS, 420, 1, data));
     TEST_ASSERT_EQUAL_INT(MODBUS_ADDRESS, map.write(map.context, MODBUS_HOLDINGS, 39, 1, data));

@@ -122,7 +122,8 @@ static void test_contact_is_told_as_long_as_it_lasts(void)
 
 static void test_mistakes_are_named_with_their_place(void)
 {
-    expect_error("box X 0 1\ncube X 1\n", 2, 1, "box, ball or input is expected, not 'cube'");
+    expect_error("box X 0 1\ncube X 1\n", 2, 1,
+                 "box, ball, hole, part or input is expected, not 'cube'");
     expect_error("box\n", 1, 4, "an axis, X Y Z A B or C, is missing");
     expect_error("box U 1 2\n", 1, 5, "an axis, X Y Z A B or C, is expected, not 'U'");
     expect_error("box X 1\n", 1, 8, "a number is missing");
@@ -165,6 +166,37 @@ static void test_more_than_there_is_room_for_is_refused(void)
                  "the line has more than 24 words");
 }
 
+static void test_a_hole_is_touched_from_inside(void)
+{
+    read_text("hole X 10 Y 5 Z -3 R 4\n");
+    TEST_ASSERT_FALSE(touches(10.0, 8.9, -5.0, 0.0));
+    TEST_ASSERT_TRUE(touches(10.0, 9.0, -5.0, 0.0));
+    TEST_ASSERT_TRUE(touches(-100.0, 0.0, -3.0, 0.0));
+    TEST_ASSERT_FALSE(touches(10.0, 9.0, -2.999, 0.0));
+}
+
+/* A corner at 20, 0, turned by 90 degrees about 10, 0 and displaced by 1, 2: it is at 11, 12 then. */
+static void test_a_part_stands_displaced_and_turned(void)
+{
+    read_text("part by 1 2 0  turned 0 0 90  about 10 0 0\nbox X 20 * Y 0 *\n");
+    TEST_ASSERT_TRUE(touches(10.999, 12.001, 0.0, 0.0));
+    TEST_ASSERT_FALSE(touches(11.001, 12.001, 0.0, 0.0));
+    TEST_ASSERT_FALSE(touches(10.999, 11.999, 0.0, 0.0));
+}
+
+/* And with the table, which turns about 10, 0: by 90 degrees more at -2, 1 from there. */
+static void test_a_part_turns_with_its_table(void)
+{
+    read_text("box X 20 * Y 0 *\npart by 1 2 0  turned 0 0 90  about 10 0 0  on C\n");
+    TEST_ASSERT_TRUE(touches(10.999, 12.001, 0.0, 0.0));
+    TEST_ASSERT_TRUE(touches(-2.001, 0.999, 0.0, 90.0));
+    TEST_ASSERT_FALSE(touches(-1.999, 0.999, 0.0, 90.0));
+    TEST_ASSERT_FALSE(touches(-2.001, 1.001, 0.0, 90.0));
+    expect_error("part by 1 2\n", 1, 12, "a number is missing");
+    expect_error("part by 1 2 0 turned 0 0 0 about 0 0 0 on X\n", 1, 43,
+                 "a table, A, B or C, is expected, not 'X'");
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -174,6 +206,9 @@ int main(void)
     RUN_TEST(test_a_ball_is_touched_at_its_radius);
     RUN_TEST(test_any_of_the_solids_is_touched);
     RUN_TEST(test_nothing_is_touched_where_there_is_nothing);
+    RUN_TEST(test_a_hole_is_touched_from_inside);
+    RUN_TEST(test_a_part_stands_displaced_and_turned);
+    RUN_TEST(test_a_part_turns_with_its_table);
     RUN_TEST(test_inputs_change_at_their_times);
     RUN_TEST(test_contact_is_told_as_long_as_it_lasts);
     RUN_TEST(test_mistakes_are_named_with_their_place);

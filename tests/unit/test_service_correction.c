@@ -14,6 +14,7 @@ void setUp(void)
 {
     bench_set_up_machine();
     machine.correction.machine[AXIS_X][AXIS_X] = PITCH;
+    machine.correction.reserve_ratio = 0.05;
     bench_start();
     begin_judging();
 }
@@ -126,6 +127,33 @@ static void test_a_program_switches_a_layer_and_the_next_has_it_again(void)
 }
 
 /* The drives are enabled where they stand: what is there is taken for a commanded place, and corrected from it on. */
+static void test_a_set_up_fades_in_and_lasts_for_the_next_program(void)
+{
+    judged_cycles(SETTLED);
+    run_line("G10 L13 X0.02");
+    judged_cycles(2 * SETTLED);
+    run_line("G0 X100");
+    TEST_ASSERT_DOUBLE_WITHIN(1e-7, 0.02 + 100 * PITCH, correction_now());
+    load("G21 F6000\nG1 X200\nM2\n");
+    must(REGISTER_MODE, PANEL_MODE_PROGRAM);
+    must(REGISTER_CYCLE_START, 1);
+    judged_wait_for(PANEL_IDLE);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-7, 0.02 + 200 * PITCH, correction_now());
+    expect_limits_kept();
+}
+
+static void test_a_set_up_beyond_what_is_reserved_is_an_alarm(void)
+{
+    judged_cycles(SETTLED);
+    start_line("G10 L13 X900");
+    for (unsigned i = 0;
+         i < SETTLED && controller_get_state(&service.controller) != CONTROLLER_FAULTED; i++)
+        judged_cycles(1);
+    TEST_ASSERT_EQUAL_INT(CONTROLLER_FAULTED, controller_get_state(&service.controller));
+    TEST_ASSERT_EQUAL_INT(TAKT_ERROR_SETUP_RESERVE,
+                          controller_get_fault(&service.controller)->code);
+}
+
 static void test_after_a_fault_correction_fades_in_from_where_the_drives_stand(void)
 {
     run_line("G0 X300");
@@ -152,6 +180,8 @@ int main(void)
     RUN_TEST(test_a_program_that_ends_in_a_fade_and_one_that_begins_in_it_keep_the_limits);
     RUN_TEST(test_an_error_of_a_program_does_not_stop_a_fade);
     RUN_TEST(test_a_program_switches_a_layer_and_the_next_has_it_again);
+    RUN_TEST(test_a_set_up_fades_in_and_lasts_for_the_next_program);
+    RUN_TEST(test_a_set_up_beyond_what_is_reserved_is_an_alarm);
     RUN_TEST(test_after_a_fault_correction_fades_in_from_where_the_drives_stand);
     return UNITY_END();
 }
