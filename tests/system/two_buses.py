@@ -71,6 +71,17 @@ def check_half_the_cycle():
     t.check("error_pdo = 0 or cycle_us = 600 would do" in err, "with advice", err)
 
 
+def check_quarter():
+    """Four axes at 0.25 ms: refused on one bus of CAN FD, and run on two as advised."""
+    quarter = ["--machine", machine("quarter", ONE, 250), "--set", "bus.data_bitrate=5000000"]
+    status, _, err = run("quarter", *quarter)
+    t.check(status == 2 and "drive_bus = 1 for ZA and error_pdo = 0 (two buses)" in err, "refused on one, with advice", err)
+    moved = [word for axis in "ZA" for word in ("--set", f"axis.{axis}.drive_bus=1")]
+    status, two, err = run("quarters", *quarter, *moved, "--set", "bus.error_pdo=0")
+    if t.check(status == 0, "run on two", err):
+        check_buses("0.25 ms", two, 250)
+
+
 def check_refusals():
     for places, part in (
         ([("X", 1, 1), ("Y", 1, 1)], "axes X and Y have the same drive_node 1"),
@@ -177,6 +188,7 @@ def check_order():
 
 check_setpoints()
 check_half_the_cycle()
+check_quarter()
 check_refusals()
 check_loss()
 check_log()
