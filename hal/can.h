@@ -19,6 +19,11 @@
 #endif
 #define CAN_CLASSIC_MAX 8
 
+/* CAN buses of a machine at most. A build for a board with one controller says 1. */
+#ifndef CAN_BUSES_MAX
+#define CAN_BUSES_MAX 2
+#endif
+
 /*
  * Of an id: a remote frame, which asks for the frame of that identifier. It has no data; its length is that of what it
  * asks for. Whoever looks for an identifier by == never takes one for a frame with data.
@@ -62,5 +67,18 @@ struct can_port {
     bool (*receive)(void *context, struct can_frame *frame);
     void *context; /* owned by whoever made the port */
 };
+
+/*
+ * The buses of a machine, by their index: 0 is can0, 1 is can1. Ports of buses on which the machine has no node are not
+ * called and may be zeros. A frame goes to the port of its bus alone, and nothing is said of an order between buses.
+ */
+struct can_buses {
+    struct can_port port[CAN_BUSES_MAX];
+};
+
+static inline struct can_buses can_single(struct can_port port)
+{
+    return (struct can_buses){.port = {port}};
+}
 
 #endif

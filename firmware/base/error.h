@@ -272,6 +272,7 @@
       "gantry of axis %w: a maker's home_method and a reversed motor need one in [gantry], too")   \
     X(MACHINE_FORM, "'%w' of this machine is for comparison: this image has only its default")     \
     X(MACHINE_FD, "data_bitrate %v: this image has classical CAN alone, so it must be 0")          \
+    X(MACHINE_BUS, "CAN bus %v: the buses of this build are 0 ... %l")                             \
     X(MACHINE_DATA_RATE, "data_bitrate %v is below bitrate: data of CAN FD are as fast at least")  \
     X(SETTINGS_ABSENT, "no settings are stored: make them with takt machine --pack and load them") \
     X(SETTINGS_KIND, "these are no settings of this version")                                      \

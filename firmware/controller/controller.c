@@ -532,8 +532,8 @@ void controller_cycle(struct controller *c, const struct inputs *inputs)
     const bool starts = c->state == CONTROLLER_STARTING; /* that is enough for one cycle */
 
     c->has_record = false;
-    drives_receive(&c->drives, &c->can);
-    drives_sync(&c->drives, &c->can);
+    drives_receive(&c->drives, c->can.port);
+    drives_sync(&c->drives, c->can.port);
     follow_drives(c);
     follow_spindle(c, &inputs->spindle);
     if (c->state == CONTROLLER_RUNNING && !starts && !rests_after_fault(c)) {
@@ -553,10 +553,10 @@ void controller_cycle(struct controller *c, const struct inputs *inputs)
         !motion_rests(&c->motion)) {
         drives_await_rest(&c->drives);
     }
-    drives_send(&c->drives, &c->can, &c->record.set);
+    drives_send(&c->drives, c->can.port, &c->record.set);
     if (drives_have_io(&c->drives)) {
         follow_changer(c);
-        drives_send_outputs(&c->drives, &c->can, &c->outputs);
+        drives_send_outputs(&c->drives, c->can.port, &c->outputs);
     }
     if (steps_are_there(&c->steps)) {
         controller_steps_cycle(c);

@@ -38,7 +38,7 @@ struct controller_config {
     const struct machine *machine;    /* copied */
     struct controller_reader *reader; /* never NULL; its alone. Must outlive the controller */
     struct source source;             /* text of the program; its context stays the caller's */
-    struct can_port can;              /* the drives' bus */
+    struct can_buses can;             /* of the drives and I/O nodes */
     const struct concise_dcf *
         dcf; /* that drives are set up by: of MACHINE_NODES_MAX drives, the axes' and then the gantries' second
                                       ones, without bytes where there is none. Must outlive the controller; NULL: no drive's */

@@ -59,6 +59,7 @@ static void add_drive(struct drives_config *config, const struct machine *machin
     *drive = (struct drives_config_axis){
         .axis = (enum axis)i,
         .node = axis->drive_node,
+        .bus = axis->drive_bus,
         .keeps_settings = axis->drive_is_set_up != 0,
         .increments_per_mm = axis->increments_per_mm,
         .velocity_units_per_mm_s = axis->velocity_units_per_mm_s,
@@ -111,6 +112,7 @@ static void add_second(struct drives_config *config, const struct machine *machi
                                .skew_max_mm = gantry->skew_max_mm};
     add_drive(config, machine, gantry->axis);
     drive->node = gantry->drive_node;
+    drive->bus = gantry->drive_bus;
     drive->identity.serial = 0;
     drive->homing.offset_mm = gantry->home_offset_mm;
     if (gantry->is_reversed != 0) {
@@ -140,6 +142,7 @@ void controller_drives_config(const struct machine *machine, const struct concis
     config->cycle_us = machine->cycle_us;
     config->rates = machine_get_rates(machine);
     config->controller_node = machine->controller_node;
+    config->no_error_pdo = machine->error_pdo == 0;
     config->heartbeat_ms = (uint16_t)machine->heartbeat_ms;
     config->boot_timeout_cycles = cycles_in(machine, 1e-3 * machine->boot_timeout_ms);
     config->start_timeout_cycles = cycles_in(machine, START_TIMEOUT_S);

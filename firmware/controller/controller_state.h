@@ -24,7 +24,7 @@
 
 struct controller {
     struct machine machine;
-    struct can_port can;
+    struct can_buses can;
     const struct concise_dcf *dcf;
     enum controller_state state;
     struct diagnostic fault;

@@ -16,13 +16,14 @@ static_assert(DRIVES_HISTORY > DRIVES_LATENCY_CYCLES, "the history is as long as
 static void init_axis(struct drives *d, unsigned index)
 {
     struct drives_axis *axis = &d->axis[index];
-    axis->is_paired = target_pdo_members(d->count, index, d->group) > 1;
+    const unsigned bus = drives_bus_of(d, index);
+    axis->is_paired = target_pdo_members(d->on_bus[bus], axis->place, d->group) > 1;
     axis->reported = d->cycle - 1;
     axis->beaten = d->cycle - 1;
     axis->follow_mode = axis->mode = CIA402_MODE_CYCLIC_SYNC_POSITION;
     axis->reset_pending = true;
     drives_forget_pdos(axis);
-    d->axis_of_node[d->node[index]] = (uint8_t)index;
+    d->axis_of_node[bus][d->node[index]] = (uint8_t)index;
 }
 
 static void take_times(struct drives *d, const struct drives_config *config)
@@ -45,9 +46,10 @@ static void take_config(struct drives *d, unsigned index, const struct drives_co
 {
     struct drives_config_axis *own = &d->axis[index].config;
     const double units = config->velocity_units_per_mm_s;
-    assert(config->node >= NODE_MIN && config->node <= NODE_MAX);
+    assert(config->node >= NODE_MIN && config->node <= NODE_MAX && config->bus < CAN_BUSES_MAX);
     *own = *config;
     d->node[index] = config->node;
+    d->axis[index].place = d->on_bus[drives_bus_of(d, index)]++;
     if (units == 0)
         own->velocity_units_per_mm_s = config->increments_per_mm;
     else
@@ -59,11 +61,25 @@ static void take_config(struct drives *d, unsigned index, const struct drives_co
 static void check_load(struct drives *d, const struct drives_config *config)
 {
     struct drives_load load;
-    if (drives_predict_whole_load(config->count, config->wiring, config->io_count, &config->rates,
-                                  config->cycle_us, &load))
-        return;
-    d->state = DRIVES_FAULTED;
-    drives_set_overload(&load, &d->fault);
+    for (unsigned bus = 0; bus < drives_bus_count(d) && d->state != DRIVES_FAULTED; bus++) {
+        const struct drives_traffic traffic = {d->on_bus[bus], bus,
+                                               config->wiring, config->io_count,
+                                               config->rates,  config->no_error_pdo};
+        if (drives_predict_whole_load(&traffic, config->cycle_us, &load))
+            continue;
+        d->state = DRIVES_FAULTED;
+        drives_set_overload(&load, bus, &d->fault);
+    }
+}
+
+static void count_buses(struct drives *d)
+{
+    unsigned last = 0;
+    for (unsigned i = 0; i < d->count; i++)
+        last = drives_bus_of(d, i) > last ? drives_bus_of(d, i) : last;
+    for (unsigned i = 0; i < d->io_count; i++)
+        last = drives_io_bus_of(d, i) > last ? drives_io_bus_of(d, i) : last;
+    d->bus_count = (uint8_t)(last + 1);
 }
 
 void drives_init(struct drives *d, const struct drives_config *config)
@@ -77,12 +93,14 @@ void drives_init(struct drives *d, const struct drives_config *config)
     d->frame_max = config->rates.data > 0 ? CAN_DATA_MAX : CAN_CLASSIC_MAX;
     d->group = (uint8_t)drives_group_of(&config->rates);
     d->homed = config->homed;
+    d->no_error_pdo = config->no_error_pdo;
     d->position_gain_per_s = config->position_gain_per_s;
     take_times(d, config);
     drives_io_init(d, config);
     drives_gantry_init(d, config);
     for (unsigned i = 0; i < d->count; i++)
         take_config(d, i, &config->axis[i]);
+    count_buses(d);
     for (unsigned i = 0; i < d->count; i++)
         init_axis(d, i);
     if (d->count == 0 && d->io_count == 0)
@@ -133,6 +151,16 @@ static void raise(struct drives *d, unsigned index, const struct word *word, enu
     leave_operation(d, error);
 }
 
+void drives_name_node(struct word *word, unsigned bus, unsigned node)
+{
+    word_add_text(word, "node ");
+    if (bus > 0) {
+        word_add_number(word, bus);
+        word_add_text(word, ":");
+    }
+    word_add_number(word, node);
+}
+
 /* "Y (node 2)", "Y2 (node 4)". */
 static void name_axis(const struct drives *d, unsigned index, struct word *word)
 {
@@ -141,8 +169,8 @@ static void name_axis(const struct drives *d, unsigned index, struct word *word)
         letter[1] = '2';
     word->length = 0;
     word_add_text(word, letter);
-    word_add_text(word, " (node ");
-    word_add_number(word, d->node[index]);
+    word_add_text(word, " (");
+    drives_name_node(word, drives_bus_of(d, index), d->node[index]);
     word_add_text(word, ")");
 }
 

@@ -51,7 +51,8 @@ struct drives_homing {
 
 struct drives_config_axis {
     enum axis axis;
-    uint8_t node;        /* CANopen node id, 1 ... 127 */
+    uint8_t node;        /* CANopen node id, 1 ... 127, each once on a bus */
+    uint8_t bus;         /* that it is on, 0 ... CAN_BUSES_MAX - 1 */
     bool keeps_settings; /* it has been set up with its maker's tool: it is only looked at */
     const struct concise_dcf *
         dcf; /* it is set up by this, see drives_dcf.c. Must outlive the drives; NULL: by nothing */
@@ -82,8 +83,10 @@ struct drives_config {
     const struct io_wiring *wiring; /* of these. Must outlive the drives */
     bool homed; /* all axes have been homed since power-on: they are not homed again */
     uint32_t cycle_us;
-    struct drives_rates rates;    /* of the bus */
-    double position_gain_per_s;   /* of drives that follow by velocity: drives_velocity.c; > 0 */
+    struct drives_rates rates;  /* of every bus */
+    double position_gain_per_s; /* of drives that follow by velocity: drives_velocity.c; > 0 */
+    bool
+        no_error_pdo; /* drives tell their error codes by emergencies alone, which takes less of the bus */
     uint8_t controller_node;      /* our own node id, for the heartbeat; none of the drives' */
     uint16_t heartbeat_ms;        /* period, of the drives and our own; 0: no heartbeats */
     uint32_t boot_timeout_cycles; /* that a drive takes to boot at most; it is reset twice */
@@ -147,6 +150,7 @@ enum drives_given_up {
 #include "drive/drives_state.h"
 
 void drives_init(struct drives *d, const struct drives_config *config);
+/* port: of every bus on which there is something, by its index. */
 void drives_receive(struct drives *d, const struct can_port *port);
 void drives_sync(struct drives *d, const struct can_port *port);
 /*
@@ -234,14 +238,15 @@ const struct diagnostic *drives_get_fault(const struct drives *d);
 /*
  * Data lengths, in bytes, of the frames a cycle puts on the bus at most while nothing is wrong: SYNC, the targets, a
  * status per drive, and of the frames that are sent now and then a TPDO2 and a heartbeat, since nodes send theirs in
- * different cycles. Returns their number. count: drives, 1 ... AXIS_COUNT; group: drives to a frame of targets.
+ * different cycles. Returns their number. count: drives, 1 ... AXIS_COUNT; group: drives to a frame of targets;
+ * has_errors: with that TPDO2.
  */
 #define DRIVES_CYCLE_FRAMES_MAX (3 + AXIS_COUNT + (AXIS_COUNT + 1) / 2)
-unsigned drives_cycle_frames(unsigned count, unsigned group,
+unsigned drives_cycle_frames(unsigned count, unsigned group, bool has_errors,
                              uint8_t length[DRIVES_CYCLE_FRAMES_MAX]);
 
 /*
- * The PDOs as the start has found them: a frame of each drive's status, position and target, of targets in groups one; of
+ * The PDOs of a bus as the start has found them: a frame of each drive's status, position and target, of targets in groups one; of
  * what I/O nodes hear and say; and of the drives' error codes, of which one comes in a cycle. Returns their number.
  */
 enum drives_pdo_kind {
@@ -257,20 +262,21 @@ struct drives_pdo {
     enum drives_pdo_kind kind;
 };
 #define DRIVES_CYCLE_PDOS_MAX (4 * AXIS_COUNT + 3 * IO_NODES_MAX)
-unsigned drives_get_pdos(const struct drives *d, struct drives_pdo pdo[DRIVES_CYCLE_PDOS_MAX]);
+unsigned drives_get_pdos(const struct drives *d, unsigned bus,
+                         struct drives_pdo pdo[DRIVES_CYCLE_PDOS_MAX]);
 
-/* There are nodes that are asked for their state: of some cycles that takes a frame and its answer. */
-bool drives_are_guarding(const struct drives *d);
+/* There are nodes on this bus that are asked for their state: of some cycles that takes a frame and its answer. */
+bool drives_are_guarding(const struct drives *d, unsigned bus);
 
-/* What a frame of this identifier tells in every cycle. */
+/* What a frame of this identifier tells in every cycle on its bus. */
 enum drives_report {
     DRIVES_REPORTS_STATUS = 1,
     DRIVES_REPORTS_POSITION = 2,
     DRIVES_REPORTS_ALL = 3
 };
-unsigned drives_get_report(const struct drives *d, uint16_t id);
+unsigned drives_get_report(const struct drives *d, unsigned bus, uint16_t id);
 
-/* What a cycle takes of the bus, in bits of the nominal rate. */
+/* What a cycle takes of a bus, in bits of the nominal rate. */
 struct drives_load {
     uint32_t bits;          /* of all frames of a cycle, each with worst-case stuffing */
     uint32_t capacity_bits; /* of a cycle */
@@ -278,18 +284,27 @@ struct drives_load {
 };
 
 /* The same for the PDOs that the start has found: of the last start, complete once the drives are enabled. */
-void drives_get_load(const struct drives *d, struct drives_load *load);
+void drives_get_load(const struct drives *d, unsigned bus, struct drives_load *load);
 
 /* True: the bus carries the cycle, with targets in groups. count: drives. */
 bool drives_predict_load(unsigned count, const struct drives_rates *rates, uint32_t cycle_us,
                          struct drives_load *load);
 
-/* And of I/O nodes beside them, with as many inputs and outputs as are wired. */
-bool drives_predict_whole_load(unsigned count, const struct io_wiring *wiring, unsigned io_count,
-                               const struct drives_rates *rates, uint32_t cycle_us,
+/* What is on a bus: drives, and of all I/O nodes those that are on it, with as many inputs and outputs as are wired. */
+struct drives_traffic {
+    unsigned count; /* drives on it */
+    unsigned bus;
+    const struct io_wiring *wiring;
+    unsigned io_count;
+    struct drives_rates rates;
+    bool no_error_pdo;
+};
+
+/* The same for that. */
+bool drives_predict_whole_load(const struct drives_traffic *traffic, uint32_t cycle_us,
                                struct drives_load *load);
 
-/* BUS_OVERLOAD, with the figures, in words for *fault. */
-void drives_set_overload(const struct drives_load *load, struct diagnostic *fault);
+/* BUS_OVERLOAD, with the figures and the bus if it is not the first, in words for *fault. */
+void drives_set_overload(const struct drives_load *load, unsigned bus, struct diagnostic *fault);
 
 #endif

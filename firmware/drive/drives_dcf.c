@@ -44,6 +44,7 @@ bool drives_ask_dcf(struct drives *d)
                             d->sdo_timeout_cycles);
     else
         sdo_client_upload(&d->sdo, node, entry.object, d->sdo_timeout_cycles);
+    d->sdo_bus = (uint8_t)drives_bus_of(d, d->at_axis);
     return true;
 }
 

@@ -31,11 +31,13 @@ void drives_begin_guard(struct drives *d, struct drives_guard *guard)
     guard->toggle = NMT_TOGGLE;
 }
 
-/* Guard k, of the drives and behind them of the I/O nodes, and its node; NULL: it has not been started. */
-static const struct drives_guard *guard_of(const struct drives *d, unsigned k, uint8_t *node)
+/* Guard k, of the drives and behind them of the I/O nodes, and its bus and node; NULL: it has not been started. */
+static const struct drives_guard *guard_of(const struct drives *d, unsigned k, unsigned *bus,
+                                           uint8_t *node)
 {
     const bool is_drive = k < d->count;
     const unsigned io = k - d->count;
+    *bus = is_drive ? drives_bus_of(d, k) : drives_io_bus_of(d, io);
     *node = is_drive ? d->node[k] : d->wiring[io].node;
     if (!(is_drive ? d->axis[k].started : d->io[io].started))
         return NULL;
@@ -48,26 +50,32 @@ void drives_send_guard(struct drives *d, const struct can_port *port)
     const unsigned turn = d->cycle % drives_guard_cycles(d);
     const struct drives_guard *guard = NULL;
     struct can_frame frame;
+    unsigned bus = 0;
     uint8_t node;
     if (turn < d->count + d->io_count)
-        guard = guard_of(d, turn, &node);
+        guard = guard_of(d, turn, &bus, &node);
     if (guard == NULL || !guard->is_on)
         return;
     nmt_write_guard(&frame, node);
-    (void)port->send(port->context, &frame);
+    (void)drives_send_frame(&port[bus], &frame);
 }
 
-bool drives_are_guarding(const struct drives *d)
-{
-    return d->guards;
-}
-
-uint32_t drives_guard_bits(const struct drives *d)
+static bool has_guard(const struct drives *d, unsigned bus)
 {
     bool is_any = false;
     for (unsigned i = 0; i < d->count; i++)
-        is_any = is_any || d->axis[i].guard.is_on;
+        is_any = is_any || (d->axis[i].guard.is_on && drives_bus_of(d, i) == bus);
     for (unsigned i = 0; i < d->io_count; i++)
-        is_any = is_any || d->io[i].guard.is_on;
-    return is_any ? drives_remote_bits() + drives_bits(d, ANSWER_LENGTH) : 0;
+        is_any = is_any || (d->io[i].guard.is_on && drives_io_bus_of(d, i) == bus);
+    return is_any;
+}
+
+bool drives_are_guarding(const struct drives *d, unsigned bus)
+{
+    return d->guards && has_guard(d, bus);
+}
+
+uint32_t drives_guard_bits(const struct drives *d, unsigned bus)
+{
+    return has_guard(d, bus) ? drives_remote_bits() + drives_bits(d, ANSWER_LENGTH) : 0;
 }

@@ -152,7 +152,8 @@ void drives_select(struct drives *d)
     else if (drives_tells_mode(&d->axis[d->at_axis]))
         d->sdo.result = SDO_IDLE;
     else
-        sdo_client_upload(&d->sdo, d->node[d->at_axis], object, d->sdo_timeout_cycles);
+        drives_ask(d, drives_bus_of(d, d->at_axis), d->node[d->at_axis],
+                   &(struct drives_step){.object = object});
 }
 
 /* Farthest from its home that a drive stands when it has braked from there, mm: v^2 / (2 a) of the faster velocity. */

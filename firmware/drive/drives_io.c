@@ -52,16 +52,15 @@ void drives_io_init(struct drives *d, const struct drives_config *config)
         io->stop_bits = find_inputs(wiring, IO_KINDS, IO_STOP);
         io->limit_bits = find_inputs(wiring, IO_KINDS, IO_LIMIT);
         io->reset_pending = true;
-        d->axis_of_node[wiring->node] = (uint8_t)INDEX_OF_IO(i);
+        d->axis_of_node[drives_io_bus_of(d, i)][wiring->node] = (uint8_t)INDEX_OF_IO(i);
     }
 }
 
-/* "node 20". */
+/* "node 20", "node 1:20". */
 static struct word name_of(const struct drives *d, unsigned i)
 {
     struct word word = {.length = 0};
-    word_add_text(&word, "node ");
-    word_add_number(&word, d->wiring[i].node);
+    drives_name_node(&word, drives_io_bus_of(d, i), d->wiring[i].node);
     return word;
 }
 
@@ -94,18 +93,23 @@ static void raise_bit(struct drives *d, unsigned i, enum takt_error error, unsig
         bit++;
     word_add_text(&word, "bit ");
     word_add_number(&word, bit);
-    word_add_text(&word, " of I/O node ");
-    word_add_number(&word, d->wiring[i].node);
+    word_add_text(&word, " of I/O ");
+    drives_name_node(&word, drives_io_bus_of(d, i), d->wiring[i].node);
     drives_raise_named(d, &word, error, bit, NULL);
 }
 
 /* ---- The start ---- */
 
+static bool send_nmt(const struct drives *d, const struct can_port *port, unsigned i,
+                     enum nmt_command command)
+{
+    return drives_send_nmt(&port[drives_io_bus_of(d, i)], command, d->wiring[i].node);
+}
+
 void drives_io_send_resets(struct drives *d, const struct can_port *port)
 {
     for (unsigned i = 0; i < d->io_count; i++)
-        if (d->io[i].reset_pending &&
-            drives_send_nmt(port, NMT_RESET_COMMUNICATION, d->wiring[i].node))
+        if (d->io[i].reset_pending && send_nmt(d, port, i, NMT_RESET_COMMUNICATION))
             d->io[i].reset_pending = false;
 }
 
@@ -192,7 +196,7 @@ static bool ask_next(struct drives *d)
         if (d->at_step < STEP_COUNT) {
             const struct drives_step step = {steps[d->at_step].object, steps[d->at_step].length,
                                              value_of(d)};
-            drives_ask(d, wiring->node, &step);
+            drives_ask(d, drives_io_bus_of(d, d->at_axis), wiring->node, &step);
             return true;
         }
         d->at_axis++;
@@ -325,7 +329,7 @@ void drives_io_send_start(struct drives *d, const struct can_port *port)
         struct drives_io *io = &d->io[i];
         if (io->started)
             continue;
-        io->started = drives_send_nmt(port, NMT_START, d->wiring[i].node);
+        io->started = send_nmt(d, port, i, NMT_START);
         drives_begin_guard(d, &io->guard);
         io->heard = false;
         io->reported = io->beaten = d->cycle;
@@ -384,7 +388,7 @@ void drives_io_take(struct drives *d, unsigned index, const struct can_frame *fr
         take_inputs(d, &d->io[i], frame);
         break;
     case SDO_RESPONSE_FUNCTION:
-        sdo_client_take(&d->sdo, frame);
+        drives_take_sdo(d, drives_io_bus_of(d, i), frame);
         break;
     case NMT_HEARTBEAT_FUNCTION:
         take_heartbeat(d, i, frame);
@@ -497,7 +501,7 @@ static void send_levels(struct drives *d, unsigned i, const struct can_port *por
     struct can_frame frame = {.id = (uint16_t)(PDO_RPDO1_FUNCTION + d->wiring[i].node),
                               .length = d->io[i].output_bytes};
     little_endian_write16(frame.data, (uint16_t)levels);
-    if (port->send(port->context, &frame))
+    if (drives_send_frame(&port[drives_io_bus_of(d, i)], &frame))
         d->io[i].sent = (uint16_t)levels;
 }
 
@@ -518,7 +522,8 @@ static void send_analogues(const struct drives *d, unsigned i, const struct can_
     for (unsigned k = 0; k < count; k++)
         little_endian_write16(frame.data + (size_t)2 * k,
                               (uint16_t)analogue_of(outputs, io_get_analogue(&d->wiring[i], k)));
-    (void)port->send(port->context, &frame); /* a refused one is followed by the next */
+    (void)drives_send_frame(&port[drives_io_bus_of(d, i)],
+                            &frame); /* a refused one is followed by the next */
 }
 
 /* When they change, and all again as often as drives tell their errors: a frame may get lost. */
@@ -537,7 +542,7 @@ void drives_send_outputs(struct drives *d, const struct can_port *port,
         d->io_cycles = 0;
 }
 
-/* Inputs and analogue outputs of every node, and the longest outputs, since they do not change in every cycle. */
+/* Of a bus: inputs and analogue outputs of every node, and the longest outputs, since they do not change in every cycle. */
 struct io_load {
     uint32_t cyclic_bits, output_bits;
 };
@@ -555,20 +560,23 @@ static void add_load(struct io_load *load, const struct drives_rates *rates, uns
     load->output_bits = output_bits > load->output_bits ? output_bits : load->output_bits;
 }
 
-uint32_t drives_io_bits(const struct drives *d)
+uint32_t drives_io_bits(const struct drives *d, unsigned bus)
 {
     struct io_load load = {0};
     for (unsigned i = 0; i < d->io_count; i++)
-        add_load(&load, &d->rates, d->io[i].input_bytes, d->io[i].output_bytes, d->io[i].analogues);
+        if (drives_io_bus_of(d, i) == bus)
+            add_load(&load, &d->rates, d->io[i].input_bytes, d->io[i].output_bytes,
+                     d->io[i].analogues);
     return load.cyclic_bits + load.output_bits;
 }
 
-uint32_t drives_io_wired_bits(const struct io_wiring *wiring, unsigned count,
+uint32_t drives_io_wired_bits(const struct io_wiring *wiring, unsigned count, unsigned bus,
                               const struct drives_rates *rates)
 {
     struct io_load load = {0};
     for (unsigned i = 0; i < count; i++)
-        add_load(&load, rates, bytes_of(wiring[i].input), bytes_of(wiring[i].output),
-                 io_wired_analogues(&wiring[i]));
+        if (wiring[i].bus == bus)
+            add_load(&load, rates, bytes_of(wiring[i].input), bytes_of(wiring[i].output),
+                     io_wired_analogues(&wiring[i]));
     return load.cyclic_bits + load.output_bits;
 }

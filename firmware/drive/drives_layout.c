@@ -1,6 +1,7 @@
 #include "drive/drives_layout.h"
 
 #include "canopen/cia402.h"
+#include "canopen/target_pdo.h"
 
 #include <stddef.h>
 
@@ -44,6 +45,16 @@ static bool has_more(const struct drives_axis *axis, const struct pdo *pdo)
            (mapping->object[i] == PDO_DUMMY_32 || mapping->object[i] == drives_target_of(axis)))
         i++;
     return i < mapping->count;
+}
+
+void drives_set_target_pdo(const struct drives *d, struct pdo *pdo)
+{
+    const unsigned bus = drives_bus_of(d, d->at_axis);
+    uint8_t node[AXIS_COUNT];
+    for (unsigned i = 0; i < d->count; i++)
+        if (drives_bus_of(d, i) == bus)
+            node[d->axis[i].place] = d->node[i];
+    target_pdo_set(pdo, node, d->on_bus[bus], d->axis[d->at_axis].place, d->group);
 }
 
 static void take_received(struct drives *d)

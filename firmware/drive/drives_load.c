@@ -12,7 +12,7 @@ unsigned drives_group_of(const struct drives_rates *rates)
     return rates->data > 0 ? TARGET_PDO_FD : TARGET_PDO_PAIR;
 }
 
-unsigned drives_cycle_frames(unsigned count, unsigned group,
+unsigned drives_cycle_frames(unsigned count, unsigned group, bool has_errors,
                              uint8_t length[DRIVES_CYCLE_FRAMES_MAX])
 {
     unsigned frames = 0;
@@ -23,7 +23,8 @@ unsigned drives_cycle_frames(unsigned count, unsigned group,
         length[frames++] = (uint8_t)(4 * target_pdo_members(count, i, group));
     for (unsigned i = 0; i < count; i++)
         length[frames++] = DRIVES_STATUS_LENGTH;
-    length[frames++] = DRIVES_STATUS_LENGTH;
+    if (has_errors)
+        length[frames++] = DRIVES_STATUS_LENGTH;
     length[frames++] = HEARTBEAT_LENGTH;
     return frames;
 }
@@ -66,13 +67,14 @@ static bool set_share(struct drives_load *load, uint32_t bitrate, uint32_t cycle
     return load->percent <= 100.0;
 }
 
-bool drives_predict_whole_load(unsigned count, const struct io_wiring *wiring, unsigned io_count,
-                               const struct drives_rates *rates, uint32_t cycle_us,
+bool drives_predict_whole_load(const struct drives_traffic *traffic, uint32_t cycle_us,
                                struct drives_load *load)
 {
+    const struct drives_rates *rates = &traffic->rates;
     uint8_t length[DRIVES_CYCLE_FRAMES_MAX];
-    unsigned frames = drives_cycle_frames(count, drives_group_of(rates), length);
-    load->bits = drives_io_wired_bits(wiring, io_count, rates);
+    unsigned frames =
+        drives_cycle_frames(traffic->count, drives_group_of(rates), !traffic->no_error_pdo, length);
+    load->bits = drives_io_wired_bits(traffic->wiring, traffic->io_count, traffic->bus, rates);
     for (unsigned i = 0; i < frames; i++)
         load->bits += drives_frame_bits(rates, length[i]);
     return set_share(load, rates->nominal, cycle_us);
@@ -81,7 +83,8 @@ bool drives_predict_whole_load(unsigned count, const struct io_wiring *wiring, u
 bool drives_predict_load(unsigned count, const struct drives_rates *rates, uint32_t cycle_us,
                          struct drives_load *load)
 {
-    return drives_predict_whole_load(count, NULL, 0, rates, cycle_us, load);
+    const struct drives_traffic traffic = {.count = count, .rates = *rates};
+    return drives_predict_whole_load(&traffic, cycle_us, load);
 }
 
 /* Of a TPDO with something that ends at this byte: one that the drive keeps may hold more. */
@@ -92,13 +95,15 @@ static uint8_t length_at_most(const struct drives *d, unsigned i, unsigned end)
     return (uint8_t)(is_kept ? d->frame_max : end);
 }
 
-void drives_get_load(const struct drives *d, struct drives_load *load)
+void drives_get_load(const struct drives *d, unsigned bus, struct drives_load *load)
 {
     unsigned error_length = 0;
     bool has_error = false;
-    load->bits = drives_bits(d, 0) + drives_bits(d, HEARTBEAT_LENGTH) + drives_io_bits(d) +
-                 drives_guard_bits(d);
+    load->bits = drives_bits(d, 0) + drives_bits(d, HEARTBEAT_LENGTH) + drives_io_bits(d, bus) +
+                 drives_guard_bits(d, bus);
     for (unsigned i = 0; i < d->count; i++) {
+        if (drives_bus_of(d, i) != bus)
+            continue;
         const unsigned length = length_at_most(d, i, DRIVES_STATUS_LENGTH);
         load->bits += d->axis[i].bits;
         if (drives_has_given_up(&d->axis[i], DRIVES_NO_ERROR_PDO))
@@ -146,20 +151,25 @@ static unsigned add_io(const struct drives *d, unsigned i, struct drives_pdo pdo
     return add_pdo(pdo, count, PDO_RPDO2_FUNCTION + node, 2U * io->analogues, DRIVES_PDO_OUTPUTS);
 }
 
-unsigned drives_get_pdos(const struct drives *d, struct drives_pdo pdo[DRIVES_CYCLE_PDOS_MAX])
+unsigned drives_get_pdos(const struct drives *d, unsigned bus,
+                         struct drives_pdo pdo[DRIVES_CYCLE_PDOS_MAX])
 {
     unsigned count = 0;
     for (unsigned i = 0; i < d->count; i++)
-        count = add_axis(d, i, pdo, count);
+        if (drives_bus_of(d, i) == bus)
+            count = add_axis(d, i, pdo, count);
     for (unsigned i = 0; i < d->io_count; i++)
-        count = add_io(d, i, pdo, count);
+        if (drives_io_bus_of(d, i) == bus)
+            count = add_io(d, i, pdo, count);
     return count;
 }
 
-unsigned drives_get_report(const struct drives *d, uint16_t id)
+unsigned drives_get_report(const struct drives *d, unsigned bus, uint16_t id)
 {
     unsigned report = 0;
     for (unsigned i = 0; i < d->count; i++) {
+        if (drives_bus_of(d, i) != bus)
+            continue;
         if (d->axis[i].status_id == id)
             report |= DRIVES_REPORTS_STATUS;
         if (d->axis[i].position_id == id)
@@ -168,13 +178,17 @@ unsigned drives_get_report(const struct drives *d, uint16_t id)
     return report;
 }
 
-/* "1310 of 1000 bits". */
-void drives_set_overload(const struct drives_load *load, struct diagnostic *fault)
+/* "1310 of 1000 bits", "1310 of 1000 bits of can1". */
+void drives_set_overload(const struct drives_load *load, unsigned bus, struct diagnostic *fault)
 {
     struct word word = {.length = 0};
     word_add_number(&word, load->bits);
     word_add_text(&word, " of ");
     word_add_number(&word, load->capacity_bits);
     word_add_text(&word, " bits");
+    if (bus > 0) {
+        word_add_text(&word, " of can");
+        word_add_number(&word, bus);
+    }
     diagnostic_set(fault, TAKT_ERROR_BUS_OVERLOAD, 0, 0, word.text, word.length, load->percent);
 }

@@ -17,7 +17,6 @@
  */
 #include "canopen/cia402.h"
 #include "canopen/objects.h"
-#include "canopen/target_pdo.h"
 #include "drive/drives_layout.h"
 
 #include <stddef.h>
@@ -81,8 +80,8 @@ static void want_target(const struct drives *d, struct pdo *pdo)
         add(pdo, drives_target_of(axis), true);
         return;
     }
-    target_pdo_set(pdo, d->node, d->count, d->at_axis, d->group);
-    pdo->mapping.object[d->at_axis % d->group] = drives_target_of(axis);
+    drives_set_target_pdo(d, pdo);
+    pdo->mapping.object[axis->place % d->group] = drives_target_of(axis);
 }
 
 static void want_received(const struct drives *d, struct pdo *pdo)
@@ -105,7 +104,7 @@ static void want_transmitted(const struct drives *d, struct pdo *pdo)
 {
     const struct drives_axis *axis = &d->axis[d->at_axis];
     bool has_room = d->mapping.pass < PASS_APART || axis->status_id == axis->position_id;
-    bool has_no_error = axis->error_id == NO_TPDO && has_room;
+    bool has_no_error = axis->error_id == NO_TPDO && has_room && !d->no_error_pdo;
     add(pdo, CIA402_STATUSWORD, axis->status_id == NO_TPDO);
     add(pdo, CIA402_POSITION_ACTUAL, axis->position_id == NO_TPDO);
     if (pdo->mapping.count > 0) {

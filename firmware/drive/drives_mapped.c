@@ -1,7 +1,6 @@
 /* What the mapping of a drive has come to: whether it suffices, what goes by SDO, and what that costs. */
 #include "canopen/cia402.h"
 #include "canopen/objects.h"
-#include "canopen/target_pdo.h"
 #include "drive/drives_layout.h"
 
 #include <stddef.h>
@@ -9,11 +8,14 @@
 /* None of a group shares a frame any more; the first of them is told so from its beginning. */
 static void part_group(struct drives *d)
 {
-    unsigned first = d->at_axis - d->at_axis % d->group;
-    unsigned members = target_pdo_members(d->count, first, d->group);
-    for (unsigned i = first; i < first + members; i++) {
+    const unsigned at = d->at_axis;
+    unsigned first = at;
+    for (unsigned i = d->count; i-- > 0;) {
+        if (!drives_are_grouped(d, i, at))
+            continue;
         d->axis[i].is_paired = false;
         drives_give_up(d, i, DRIVES_NO_PAIR);
+        first = i;
     }
     drives_begin_axis(d, first);
 }
@@ -68,7 +70,7 @@ static bool shares_frame(const struct drives *d)
 {
     const struct drives_frame *frame = &d->axis[d->at_axis].target_frame;
     struct pdo pdo;
-    target_pdo_set(&pdo, d->node, d->count, d->at_axis, d->group);
+    drives_set_target_pdo(d, &pdo);
     return frame->cob_id == pdo.cob_id && frame->length == pdo.mapping.length &&
            frame->target == drives_byte_of(&pdo, CIA402_TARGET_POSITION);
 }

@@ -58,6 +58,27 @@ static inline const double *drives_sent(const struct drives *d, unsigned ago)
     return d->sent_mm[(d->cycle - ago) & (DRIVES_HISTORY - 1)];
 }
 
+/* The bus of a drive, and of an I/O node. Where there can be but one it is no matter of run time. */
+static inline unsigned drives_axis_bus(const struct drives_axis *axis)
+{
+    return CAN_BUSES_MAX > 1 ? axis->config.bus : 0;
+}
+static inline unsigned drives_bus_of(const struct drives *d, unsigned index)
+{
+    return drives_axis_bus(&d->axis[index]);
+}
+static inline unsigned drives_io_bus_of(const struct drives *d, unsigned i)
+{
+    return CAN_BUSES_MAX > 1 ? d->wiring[i].bus : 0;
+}
+static inline unsigned drives_bus_count(const struct drives *d)
+{
+    return CAN_BUSES_MAX > 1 ? d->bus_count : 1;
+}
+
+/* "node 20"; of another bus than the first with that: "node 1:20". */
+void drives_name_node(struct word *word, unsigned bus, unsigned node);
+
 /* Cycles since the last TPDO1, 0: one came in this cycle; and since the last heartbeat. */
 static inline uint32_t drives_silent_cycles(const struct drives *d, const struct drives_axis *axis)
 {
@@ -133,10 +154,10 @@ bool drives_io_boot(struct drives *d);
 void drives_io_start(struct drives *d);
 void drives_io_send_start(struct drives *d, const struct can_port *port);
 void drives_io_send_resets(struct drives *d, const struct can_port *port);
-/* Of its frames in a cycle, at worst. */
-uint32_t drives_io_bits(const struct drives *d);
+/* Of their frames on a bus in a cycle, at worst. */
+uint32_t drives_io_bits(const struct drives *d, unsigned bus);
 /* The same of nodes that have no more than what is wired. */
-uint32_t drives_io_wired_bits(const struct io_wiring *wiring, unsigned count,
+uint32_t drives_io_wired_bits(const struct io_wiring *wiring, unsigned count, unsigned bus,
                               const struct drives_rates *rates);
 /*
  * Node guarding. Every node that is guarded is asked in one cycle of so many: a heartbeat's period, or as many as there are
@@ -162,9 +183,14 @@ static inline bool drives_takes_beat(struct drives_guard *guard, const struct ca
     return counts;
 }
 void drives_send_guard(struct drives *d, const struct can_port *port);
-/* Of a question and its answer at worst; 0: nobody is guarded. */
-uint32_t drives_guard_bits(const struct drives *d);
+/* Of a question and its answer at worst; 0: nobody is guarded on this bus. */
+uint32_t drives_guard_bits(const struct drives *d, unsigned bus);
 
+static inline bool drives_send_frame(const struct can_port *port, const struct can_frame *frame)
+{
+    return port->send(port->context, frame);
+}
+/* port: of the node's bus. */
 bool drives_send_nmt(const struct can_port *port, enum nmt_command command, uint8_t node);
 /*
  * Drives that follow by velocity, drives_velocity.c. The target of a drive that stays where it is; and of one on its way:
@@ -180,7 +206,13 @@ void drives_steer(struct drives *d, unsigned index, double step_mm, double lag_m
 uint8_t drives_mode_after(const struct drives_axis *axis, uint8_t mode);
 
 /* One request, of the client that all nodes share. */
-void drives_ask(struct drives *d, uint8_t node, const struct drives_step *step);
+void drives_ask(struct drives *d, unsigned bus, uint8_t node, const struct drives_step *step);
+/* An answer, if it has come on the bus of the node that is asked. */
+static inline void drives_take_sdo(struct drives *d, unsigned bus, const struct can_frame *frame)
+{
+    if (CAN_BUSES_MAX == 1 || bus == d->sdo_bus)
+        sdo_client_take(&d->sdo, frame);
+}
 
 static inline const char *drives_nmt_text(enum nmt_state state)
 {
@@ -197,11 +229,19 @@ static inline uint32_t drives_bits(const struct drives *d, uint32_t n)
     return drives_frame_bits(&d->rates, n);
 }
 
-/* Drives to a frame of targets. */
+/* Drives to a frame of targets: those of a bus, in their order. */
 unsigned drives_group_of(const struct drives_rates *rates);
+static inline bool drives_are_grouped(const struct drives *d, unsigned i, unsigned k)
+{
+    return drives_bus_of(d, i) == drives_bus_of(d, k) &&
+           d->axis[i].place / d->group == d->axis[k].place / d->group;
+}
+/* RPDO2 of the drive that is being configured, as its group has it. */
+void drives_set_target_pdo(const struct drives *d, struct pdo *pdo);
 static inline bool drives_ends_group(const struct drives *d, unsigned i)
 {
-    return (i + 1) % d->group == 0 || i + 1 == d->count;
+    const unsigned next = d->axis[i].place + 1U;
+    return next % d->group == 0 || next == d->on_bus[drives_bus_of(d, i)];
 }
 
 /* A cycle of the phases DRIVES_SELECT, DRIVES_HOME and DRIVES_FOLLOW. */

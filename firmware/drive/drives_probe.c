@@ -127,5 +127,5 @@ void drives_probe_next(struct drives *d)
         return;
     }
     const struct drives_step step = step_of(d);
-    drives_ask(d, d->node[d->at_axis], &step);
+    drives_ask(d, drives_bus_of(d, d->at_axis), d->node[d->at_axis], &step);
 }

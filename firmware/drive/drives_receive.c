@@ -6,7 +6,7 @@
 #include "canopen/node.h"
 #include "drive/drives_private.h"
 
-/* Frames taken in one cycle at most, so that a babbling bus cannot hold the control cycle. */
+/* Frames taken of a bus in one cycle at most, so that a babbling bus cannot hold the control cycle. */
 #define FRAMES_PER_CYCLE_MAX 256
 
 static inline void set_position(struct drives *d, struct drives_axis *axis, uint32_t raw)
@@ -87,7 +87,7 @@ static void take_seldom(struct drives *d, unsigned index, const struct can_frame
         take_emergency(d, index, frame);
         break;
     case SDO_RESPONSE_FUNCTION:
-        sdo_client_take(&d->sdo, frame);
+        drives_take_sdo(d, drives_bus_of(d, index), frame);
         break;
     case NMT_HEARTBEAT_FUNCTION:
         take_heartbeat(d, index, frame);
@@ -101,9 +101,9 @@ static void take_seldom(struct drives *d, unsigned index, const struct can_frame
     }
 }
 
-static void take_frame(struct drives *d, const struct can_frame *frame)
+static void take_frame(struct drives *d, unsigned bus, const struct can_frame *frame)
 {
-    unsigned index = d->axis_of_node[node_id(frame->id)];
+    unsigned index = d->axis_of_node[bus][node_id(frame->id)];
     if (index >= AXIS_COUNT) {
         drives_io_take(d, index, frame);
         return;
@@ -115,16 +115,17 @@ static void take_frame(struct drives *d, const struct can_frame *frame)
         take_seldom(d, index, frame);
 }
 
-static void take_frames(struct drives *d, const struct can_port *port)
+static void take_frames(struct drives *d, unsigned bus, const struct can_port *port)
 {
     struct can_frame frame;
     for (unsigned n = 0; n < FRAMES_PER_CYCLE_MAX && port->receive(port->context, &frame); n++)
-        take_frame(d, &frame);
+        take_frame(d, bus, &frame);
 }
 
 void drives_receive(struct drives *d, const struct can_port *port)
 {
-    take_frames(d, port);
+    for (unsigned bus = 0; bus < drives_bus_count(d); bus++)
+        take_frames(d, bus, &port[bus]);
     if (d->io_count > 0)
         drives_io_check(d);
     if (d->gantry_count > 0)

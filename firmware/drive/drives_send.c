@@ -11,35 +11,32 @@
 
 #define INCREMENTS_MAX 2147483647.0
 
-static bool send_frame(const struct can_port *port, const struct can_frame *frame)
-{
-    return port->send(port->context, frame);
-}
-
 void drives_sync(struct drives *d, const struct can_port *port)
 {
     struct can_frame frame;
-    (void)d; /* a SYNC that is refused shows as drives that do not answer */
     sync_write(&frame);
-    (void)send_frame(port, &frame);
+    for (unsigned bus = 0; bus < drives_bus_count(d); bus++)
+        (void)drives_send_frame(&port[bus],
+                                &frame); /* a refused one shows as drives that do not answer */
 }
 
 bool drives_send_nmt(const struct can_port *port, enum nmt_command command, uint8_t node)
 {
     struct can_frame frame;
     nmt_write_command(&frame, command, node);
-    return send_frame(port, &frame);
+    return drives_send_frame(port, &frame);
 }
 
 /* A heartbeat that is refused is due again in the next cycle. */
 static void send_heartbeat(struct drives *d, const struct can_port *port)
 {
     struct can_frame frame;
-    if (d->heartbeat_cycles == 0 || ++d->beat_cycles < d->heartbeat_cycles)
+    if (d->heartbeat_cycles == 0)
         return;
     nmt_write_heartbeat(&frame, d->controller_node, NMT_OPERATIONAL);
-    if (send_frame(port, &frame))
-        d->beat_cycles = 0;
+    for (unsigned bus = 0; bus < drives_bus_count(d); bus++)
+        if (++d->beat_cycles[bus] >= d->heartbeat_cycles && drives_send_frame(&port[bus], &frame))
+            d->beat_cycles[bus] = 0;
 }
 
 /* Everything that is in it, as it is now. */
@@ -58,7 +55,7 @@ static void fill(struct can_frame *frame, const struct drives_frame *as,
 }
 
 /*
- * A controlword that is refused counts as not sent, and comes again in the next cycle. One that has no PDO is told by
+ * port: of every bus. A controlword that is refused counts as not sent, and comes again in the next cycle. One that has no PDO is told by
  * SDO while the drives are started; after a fault nobody waits for an answer.
  */
 static void send_controlword(struct drives_axis *axis, const struct can_port *port,
@@ -71,36 +68,44 @@ static void send_controlword(struct drives_axis *axis, const struct can_port *po
         sdo_write_word(&frame, axis->config.node, CIA402_CONTROLWORD, controlword);
     else
         return;
-    if (send_frame(port, &frame))
+    if (drives_send_frame(&port[drives_axis_bus(axis)], &frame))
         axis->controlword = controlword;
 }
 
 /*
- * The drives of a group write into one frame; it is sent when the last of them has written. While
+ * The drives of a group write into one frame of their bus; it is sent when the last of them has written. While
  * drives are being enabled nothing is lost by a refused frame, in operation a setpoint is.
  */
 static void send_targets(struct drives *d, const struct can_port *port)
 {
-    struct can_frame frame;
+    struct can_frame frames[CAN_BUSES_MAX];
     for (unsigned i = 0; i < d->count; i++) {
         const struct drives_axis *axis = &d->axis[i];
         const struct drives_frame *as = &axis->target_frame;
-        little_endian_write32(frame.data + as->target, (uint32_t)axis->target_inc);
+        const unsigned bus = drives_bus_of(d, i);
+        struct can_frame *frame = &frames[bus];
+        little_endian_write32(frame->data + as->target, (uint32_t)axis->target_inc);
         if (axis->sends == DRIVES_WAITS)
             continue;
         if (axis->sends == DRIVES_SENDS_MIXED)
-            fill(&frame, as, axis, axis->controlword);
-        frame.id = as->cob_id;
-        frame.length = as->length;
-        if (!send_frame(port, &frame) && d->state != DRIVES_STARTING)
+            fill(frame, as, axis, axis->controlword);
+        frame->id = as->cob_id;
+        frame->length = as->length;
+        if (!drives_send_frame(&port[bus], frame) && d->state != DRIVES_STARTING)
             drives_raise(d, i, TAKT_ERROR_DRIVE_UNREACHABLE, 0, NULL);
     }
+}
+
+static bool send_nmt(const struct drives *d, const struct can_port *port, unsigned index,
+                     enum nmt_command command)
+{
+    return drives_send_nmt(&port[drives_bus_of(d, index)], command, d->node[index]);
 }
 
 static void send_resets(struct drives *d, const struct can_port *port)
 {
     for (unsigned i = 0; i < d->count; i++)
-        if (d->axis[i].reset_pending && drives_send_nmt(port, NMT_RESET_COMMUNICATION, d->node[i]))
+        if (d->axis[i].reset_pending && send_nmt(d, port, i, NMT_RESET_COMMUNICATION))
             d->axis[i].reset_pending = false;
 }
 
@@ -108,14 +113,14 @@ static void send_resets(struct drives *d, const struct can_port *port)
 static void send_holds(struct drives *d, const struct can_port *port)
 {
     for (unsigned i = 0; i < d->count; i++)
-        if (d->axis[i].hold_pending && drives_send_nmt(port, NMT_ENTER_PREOPERATIONAL, d->node[i]))
+        if (d->axis[i].hold_pending && send_nmt(d, port, i, NMT_ENTER_PREOPERATIONAL))
             d->axis[i].hold_pending = false;
 }
 
 static void send_request(struct drives *d, const struct can_port *port)
 {
     struct can_frame frame;
-    if (sdo_client_next(&d->sdo, &frame) && send_frame(port, &frame))
+    if (sdo_client_next(&d->sdo, &frame) && drives_send_frame(&port[d->sdo_bus], &frame))
         sdo_client_sent(&d->sdo);
 }
 
@@ -141,7 +146,7 @@ static void send_start(struct drives *d, const struct can_port *port)
     struct drives_axis *axis = next_to_start(d);
     if (axis == NULL)
         return;
-    axis->started = drives_send_nmt(port, NMT_START, axis->config.node);
+    axis->started = drives_send_nmt(&port[drives_axis_bus(axis)], NMT_START, axis->config.node);
     drives_begin_guard(d, &axis->guard);
     axis->heard = false;
     axis->reported = d->cycle;

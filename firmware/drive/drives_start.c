@@ -61,12 +61,18 @@ static void hold(struct drives_axis *axis)
     axis->told_mode = CIA402_MODE_NONE;
 }
 
+/* Whom the request under way is for, as axis_of_node has it. */
+static unsigned asked(const struct drives *d)
+{
+    return d->axis_of_node[d->sdo_bus][d->sdo.node];
+}
+
 /* A request to another drive is waited for: its answer would be taken for that to the next one. */
-static void begin_again(struct drives *d, uint8_t booted)
+static void begin_again(struct drives *d, unsigned booted)
 {
     for (unsigned i = 0; i < d->count; i++)
         hold(&d->axis[i]);
-    bool is_stale = d->phase <= DRIVES_IO && sdo_client_is_busy(&d->sdo) && d->sdo.node != booted;
+    bool is_stale = d->phase <= DRIVES_IO && sdo_client_is_busy(&d->sdo) && asked(d) != booted;
     drives_enter_phase(d, DRIVES_CONFIGURE);
     d->is_stale = is_stale;
     if (is_stale)
@@ -83,7 +89,7 @@ void drives_start_again(struct drives *d, unsigned index)
     if (d->phase >= DRIVES_SELECT || d->restarts++ == RESTARTS_MAX)
         drives_raise(d, index, TAKT_ERROR_DRIVE_REBOOTED, 0, NULL);
     else if (d->phase != DRIVES_BOOT)
-        begin_again(d, d->node[index]);
+        begin_again(d, index);
 }
 
 /* Reset once, and once more when that has taken too long: the order may have been lost, or the answer. */
@@ -104,8 +110,9 @@ static void boot(struct drives *d)
         drives_enter_phase(d, DRIVES_CONFIGURE);
 }
 
-void drives_ask(struct drives *d, uint8_t node, const struct drives_step *step)
+void drives_ask(struct drives *d, unsigned bus, uint8_t node, const struct drives_step *step)
 {
+    d->sdo_bus = (uint8_t)bus;
     if (step->length > 0)
         sdo_client_download_number(&d->sdo, node, step->object, step->value, step->length,
                                    d->sdo_timeout_cycles);
@@ -134,7 +141,7 @@ static bool ask_of_part(struct drives *d)
         break;
     }
     if (is_any)
-        drives_ask(d, d->node[d->at_axis], &step);
+        drives_ask(d, drives_bus_of(d, d->at_axis), d->node[d->at_axis], &step);
     return is_any;
 }
 
@@ -165,8 +172,8 @@ static void check_shared(struct drives *d, unsigned i)
     const struct drives_axis *axis = &d->axis[i];
     for (unsigned k = 0; k < d->count; k++) {
         const struct drives_axis *other = &d->axis[k];
-        const bool is_pair = k / d->group == i / d->group && axis->is_paired && other->is_paired;
-        if (k == i || is_pair)
+        const bool is_pair = drives_are_grouped(d, i, k) && axis->is_paired && other->is_paired;
+        if (k == i || is_pair || drives_bus_of(d, k) != drives_bus_of(d, i))
             continue;
         if (other->target_frame.length > 0 && takes(axis, other->target_frame.cob_id))
             drives_raise(d, i, TAKT_ERROR_DRIVE_SHARES, other->target_frame.cob_id, NULL);
@@ -178,11 +185,13 @@ static void check_shared(struct drives *d, unsigned i)
 static void check_load(struct drives *d)
 {
     struct drives_load load;
-    drives_get_load(d, &load);
-    if (load.percent <= 100.0)
-        return;
-    drives_set_overload(&load, &d->fault);
-    drives_brake(d);
+    for (unsigned bus = 0; bus < drives_bus_count(d) && d->state == DRIVES_STARTING; bus++) {
+        drives_get_load(d, bus, &load);
+        if (load.percent <= 100.0)
+            continue;
+        drives_set_overload(&load, bus, &d->fault);
+        drives_brake(d);
+    }
 }
 
 static void next_step(struct drives *d)
@@ -345,9 +354,9 @@ static void tell(struct drives *d, const struct drives_axis *axis)
 {
     bool is_mode = drives_tells_mode(axis);
     uint32_t object = (is_mode ? CIA402_MODE : CIA402_CONTROLWORD) & ~0xFFu;
-    sdo_client_download_number(&d->sdo, axis->config.node, object,
-                               is_mode ? axis->mode : drives_controlword(d, axis), is_mode ? 1 : 2,
-                               d->sdo_timeout_cycles);
+    const struct drives_step step = {object, is_mode ? 1 : 2,
+                                     is_mode ? axis->mode : drives_controlword(d, axis)};
+    drives_ask(d, drives_axis_bus(axis), axis->config.node, &step);
     d->is_telling = true;
     d->tells = (uint8_t)(d->tells + (d->tells <= TELLS_MAX));
 }
@@ -355,7 +364,7 @@ static void tell(struct drives *d, const struct drives_axis *axis)
 /* A lost one is told again, as a PDO would be, until its phase has lasted too long. */
 static void take_told(struct drives *d)
 {
-    unsigned index = d->axis_of_node[d->sdo.node];
+    unsigned index = asked(d);
     struct drives_axis *axis = &d->axis[index];
     d->is_telling = false;
     if (d->sdo.result == SDO_ABORTED)

@@ -104,6 +104,7 @@ struct drives_axis {
     uint8_t status_end, position_end; /* byte behind them */
     bool beats_by_status;             /* it has no heartbeat: its status counts for one */
     struct drives_guard guard;
+    uint8_t place;       /* among the drives of its bus, which makes the groups */
     bool is_paired;      /* its target shares a frame with those of its group */
     uint8_t follow_mode; /* in which it follows targets */
     uint8_t told_mode;   /* by SDO */
@@ -153,8 +154,10 @@ struct drives {
     struct drives_axis axis[AXIS_COUNT];
     struct point actual; /* the actual_mm of all axes; 0 for axes without a drive */
     double sent_mm[DRIVES_HISTORY][AXIS_COUNT]; /* setpoints of cycle k at [k % DRIVES_HISTORY] */
-    uint8_t
-        axis_of_node[NODE_MAX + 1]; /* index into axis; AXIS_COUNT: not ours; above: I/O nodes */
+    /* By bus and node: index into axis; AXIS_COUNT: not ours; above: I/O nodes. */
+    uint8_t axis_of_node[CAN_BUSES_MAX][NODE_MAX + 1];
+    uint8_t bus_count;             /* up to the last bus with a node; at least 1 */
+    uint8_t on_bus[CAN_BUSES_MAX]; /* drives */
     uint8_t io_count;
     uint8_t gantry_count;
     struct drives_gantry gantry[DRIVES_GANTRIES_MAX];
@@ -163,8 +166,8 @@ struct drives {
     uint32_t io_cycles; /* since all outputs were sent */
 
     enum drives_state state;
-    uint32_t cycle;       /* counts drives_send; wraps */
-    uint32_t beat_cycles; /* since our last heartbeat */
+    uint32_t cycle;                      /* counts drives_send; wraps */
+    uint32_t beat_cycles[CAN_BUSES_MAX]; /* since our last heartbeat */
 
     enum drives_phase phase;
     uint32_t phase_cycles; /* spent in the phase */
@@ -179,6 +182,7 @@ struct drives {
     uint8_t tells;      /* objects told by SDO in this phase */
     bool is_looking;    /* what could not be written is read */
     bool is_stale;      /* the request under way is of a configuration that has been begun again */
+    bool no_error_pdo;  /* of drives, as it is wanted */
     bool is_telling;    /* a controlword or a mode is being written */
     bool homed;         /* no axis is left to be homed */
     bool steers;        /* some follow velocities */
@@ -194,6 +198,7 @@ struct drives {
         bool writes; /* it is written, since the drive had something else */
     } dcf;
     struct sdo_client sdo;
+    uint8_t sdo_bus; /* of the node that is asked */
 
     struct diagnostic fault;
     unsigned fault_axis;  /* index into axis of what the fault is about */

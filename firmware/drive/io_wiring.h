@@ -39,6 +39,7 @@ struct io_wiring {
     uint8_t node; /* CANopen node id, 1 ... 127; 0: there is no such node */
     uint8_t output[IO_BITS_MAX], input[IO_BITS_MAX]; /* enum io_bit, of bit 0, 1, ... */
     uint8_t analogue[IO_ANALOGUE_MAX / 2];           /* four bits of each, io_get_analogue */
+    uint8_t bus;                                     /* that it is on, 0 ... CAN_BUSES_MAX - 1 */
 };
 
 /* Which analogue output of the program it is: 0: none, 1 ... 4: E0 ... E3 of M67 and M68. */

@@ -26,6 +26,7 @@ void machine_set_default(struct machine *machine)
     machine->boot_timeout_ms = 3000;
     machine->sdo_timeout_ms = 2000;
     machine->controller_node = 127;
+    machine->error_pdo = 1;
     machine->interpolator_word_bits = INTERPOLATOR_WORD_BITS;
     machine->interpolator_end_shift = INTEGRATE_END_SHIFT;
     for (unsigned i = 0; i < MACHINE_GANTRIES_MAX; i++) {
@@ -93,19 +94,60 @@ unsigned machine_gantry_count(const struct machine *machine)
     return count;
 }
 
-unsigned machine_drive_nodes(const struct machine *machine, uint8_t node[MACHINE_NODES_MAX])
+/* Nodes of all drives on CAN, and their buses. */
+static unsigned list_drives(const struct machine *machine, uint8_t node[MACHINE_NODES_MAX],
+                            uint8_t bus[MACHINE_NODES_MAX])
 {
     unsigned count = 0;
 
     for (unsigned i = 0; i < AXIS_COUNT; i++) {
         if (machine_axis_is_on_can(&machine->axis[i])) {
+            bus[count] = machine->axis[i].drive_bus;
             node[count++] = machine->axis[i].drive_node;
         }
     }
     for (unsigned i = 0; i < machine_gantry_count(machine); i++) {
+        bus[count] = machine->gantry[i].drive_bus;
         node[count++] = machine->gantry[i].drive_node;
     }
     return count;
+}
+
+unsigned machine_drive_nodes(const struct machine *machine, uint8_t node[MACHINE_NODES_MAX])
+{
+    uint8_t bus[MACHINE_NODES_MAX];
+
+    return list_drives(machine, node, bus);
+}
+
+unsigned machine_bus_nodes(const struct machine *machine, unsigned bus,
+                           uint8_t node[MACHINE_NODES_MAX])
+{
+    uint8_t of_bus[MACHINE_NODES_MAX];
+    const unsigned all = list_drives(machine, node, of_bus);
+    unsigned count = 0;
+
+    for (unsigned i = 0; i < all; i++) {
+        if (of_bus[i] == bus) {
+            node[count++] = node[i];
+        }
+    }
+    return count;
+}
+
+unsigned machine_bus_count(const struct machine *machine)
+{
+    uint8_t node[MACHINE_NODES_MAX], bus[MACHINE_NODES_MAX];
+    const unsigned drives = list_drives(machine, node, bus);
+    unsigned last = 0;
+
+    for (unsigned i = 0; i < drives; i++) {
+        last = bus[i] > last ? bus[i] : last;
+    }
+    for (unsigned i = 0; i < machine_io_count(machine); i++) {
+        last = machine->io[i].bus > last ? machine->io[i].bus : last;
+    }
+    return last + 1;
 }
 
 void machine_motion_bound(const struct machine *machine, struct motion_bound *most)

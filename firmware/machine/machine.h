@@ -27,11 +27,12 @@ enum machine_drive_type { MACHINE_DRIVE_CAN, MACHINE_DRIVE_STEP };
 struct machine_axis {
     bool present;
     bool rotary;             /* X Y Z never, A B C always */
-    uint8_t drive_node;      /* CANopen node id 1 ... 127, one per axis */
+    uint8_t drive_node;      /* CANopen node id 1 ... 127, each once on a bus */
     uint8_t drive_is_set_up; /* 1: by its maker's tool; it is only looked at, and told nothing */
     uint8_t home_order;      /* 1 first; axes of an order together; 0: not homed at start */
     int8_t home_method;      /* CiA 402, object 6098: 1 ... 37; below 0 its maker's; not 0 */
     uint8_t home_offset_is_position; /* 1: its drive takes 607C for the position at its home */
+    uint8_t drive_bus;               /* that its drive is on, 0 ... CAN_BUSES_MAX - 1 */
     uint8_t limiter_band_percent;    /* delta of LIMITER_SMOOTH, of max_velocity_mm_s; 0 ... 99 */
     uint32_t drive_type;             /* enum machine_drive_type */
 
@@ -70,6 +71,7 @@ struct machine_gantry {
     uint8_t drive_node;    /* of the second drive; everything else is as of the first, but for: */
     uint8_t is_reversed;   /* 1: its motor turns the other way than that of the first */
     int8_t home_method;    /* of the second drive; 0: that of the first, for the same side */
+    uint8_t drive_bus;     /* of the second drive */
     double home_offset_mm; /* machine coordinate of its own home */
     double skew_max_mm;    /* alarm when the two are farther apart; > 0 */
 };
@@ -100,7 +102,7 @@ struct machine {
     double spindle_load_limit_percent; /* beyond it the feed is lowered; 0: never */
     double spindle_at_speed_s; /* longest wait for a commanded speed; 0: motion does not wait */
     double tool_change_s;      /* longest change of the tool by a changer at I/O nodes; > 0 */
-    uint32_t can_bitrate;      /* bit/s */
+    uint32_t can_bitrate;      /* of every bus, bit/s */
     uint32_t
         can_data_bitrate; /* of CAN FD, bit/s, can_bitrate ... MACHINE_DATA_BITRATE_MAX; 0: classical CAN */
     uint32_t
@@ -109,13 +111,15 @@ struct machine {
     uint32_t sdo_timeout_ms;  /* a drive answers a request within */
     double
         position_gain_per_s; /* of drives that follow by velocity; 0: by the limits of the axes */
-    uint8_t controller_node; /* the controller's own node id, 1 ... 127, of no drive */
+    uint8_t controller_node; /* the controller's own node id on every bus, 1 ... 127, of no drive */
     uint8_t
         interpolator_word_bits; /* classic/interpolator.h; INTERPOLATOR_WORD_BITS_MIN ... _MAX */
+    uint8_t
+        error_pdo; /* 1: drives send their error codes in a TPDO, too; 0: by emergencies alone */
     uint8_t interpolator_end_shift;  /* 0 ... INTERPOLATOR_END_SHIFT_MAX */
     uint8_t interpolator_angle_bits; /* 0 (any angle) ... INTERPOLATOR_ANGLE_BITS_MAX */
     struct machine_gantry gantry[MACHINE_GANTRIES_MAX]; /* from the first on */
-    struct io_wiring io[IO_NODES_MAX]; /* I/O nodes on the bus, from the first on */
+    struct io_wiring io[IO_NODES_MAX]; /* I/O nodes on the buses, from the first on */
     struct correction_settings correction;
 };
 
@@ -135,15 +139,20 @@ unsigned machine_axes(const struct machine *machine);
 /* Gantries from the first on. */
 unsigned machine_gantry_count(const struct machine *machine);
 
-/* Nodes of all drives on the bus, in their order: those of the axes, then the second ones of gantries. Their number. */
+/* Nodes of all drives on CAN, in their order: those of the axes, then the second ones of gantries. Their number. */
 #define MACHINE_DRIVES_MAX AXIS_COUNT
 #define MACHINE_NODES_MAX  (AXIS_COUNT + MACHINE_GANTRIES_MAX) /* before it is checked */
 unsigned machine_drive_nodes(const struct machine *machine, uint8_t node[MACHINE_NODES_MAX]);
+/* The same of one bus. */
+unsigned machine_bus_nodes(const struct machine *machine, unsigned bus,
+                           uint8_t node[MACHINE_NODES_MAX]);
+/* Buses up to the last one with a node; at least 1. */
+unsigned machine_bus_count(const struct machine *machine);
 
 /* The most the machine's axes do before correction. */
 void machine_motion_bound(const struct machine *machine, struct motion_bound *most);
 
-/* I/O nodes on the bus. */
+/* I/O nodes on all buses. */
 unsigned machine_io_count(const struct machine *machine);
 
 /* Does the machine have this axis, with a drive of the one kind or of the other? */

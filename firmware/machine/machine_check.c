@@ -83,13 +83,14 @@ static bool check_home(const struct checked *c)
            refuse(c, TAKT_ERROR_MACHINE_HOME, 0, 0);
 }
 
-/* Each node id once, and none the controller's own. */
+/* Each node id once on a bus, and none the controller's own. */
 static bool check_node(const struct checked *c, const struct machine *machine, unsigned number)
 {
     const uint8_t node = c->axis->drive_node;
 
     for (unsigned i = 0; i < number; i++) {
-        if (machine->axis[i].present && machine->axis[i].drive_node == node) {
+        if (machine->axis[i].present && machine->axis[i].drive_node == node &&
+            machine->axis[i].drive_bus == c->axis->drive_bus) {
             const char both[] = {AXIS_LETTERS[i], ' ', 'a', 'n', 'd', ' ', c->letter};
 
             diagnostic_set(c->wrong, TAKT_ERROR_MACHINE_NODES, 0, 0, both, sizeof both, node);
@@ -136,18 +137,40 @@ static bool is_wired_well(const struct io_wiring *wiring)
     return good;
 }
 
-/* Its id is that of nobody else on the bus. */
+static bool is_axis_node(const struct machine *machine, unsigned bus, unsigned node)
+{
+    bool is_one = false;
+
+    for (unsigned i = 0; i < AXIS_COUNT; i++) {
+        const struct machine_axis *axis = &machine->axis[i];
+
+        is_one = is_one || (axis->present && axis->drive_node == node && axis->drive_bus == bus);
+    }
+    return is_one;
+}
+
+/* Of the second drive of one of the first gantries. */
+static bool is_gantry_node(const struct machine *machine, unsigned count, unsigned bus,
+                           unsigned node)
+{
+    bool is_one = false;
+
+    for (unsigned i = 0; i < count; i++)
+        is_one = is_one ||
+                 (machine->gantry[i].drive_node == node && machine->gantry[i].drive_bus == bus);
+    return is_one;
+}
+
+/* Its id is that of nobody else on its bus. */
 static bool is_alone(const struct machine *machine, unsigned number)
 {
-    const uint8_t node = machine->io[number].node;
-    bool alone = node != machine->controller_node;
+    const struct io_wiring *io = &machine->io[number];
+    bool alone = io->node != machine->controller_node &&
+                 !is_axis_node(machine, io->bus, io->node) &&
+                 !is_gantry_node(machine, machine_gantry_count(machine), io->bus, io->node);
 
-    for (unsigned i = 0; i < AXIS_COUNT; i++)
-        alone = alone && !(machine->axis[i].present && machine->axis[i].drive_node == node);
-    for (unsigned i = 0; i < machine_gantry_count(machine); i++)
-        alone = alone && machine->gantry[i].drive_node != node;
     for (unsigned i = 0; i < number; i++)
-        alone = alone && machine->io[i].node != node;
+        alone = alone && !(machine->io[i].node == io->node && machine->io[i].bus == io->bus);
     return alone;
 }
 
@@ -176,14 +199,12 @@ static bool gantry_is_well(const struct machine *machine, unsigned number)
     bool good = gantry->axis < AXIS_LINEAR_COUNT &&
                 machine_axis_is_on_can(&machine->axis[gantry->axis]) && gantry->skew_max_mm > 0 &&
                 machine_drive_nodes(machine, node) <= MACHINE_DRIVES_MAX &&
-                gantry->drive_node != machine->controller_node;
+                gantry->drive_node != machine->controller_node &&
+                !is_axis_node(machine, gantry->drive_bus, gantry->drive_node) &&
+                !is_gantry_node(machine, number, gantry->drive_bus, gantry->drive_node);
 
-    for (unsigned i = 0; i < AXIS_COUNT; i++)
-        good = good &&
-               !(machine->axis[i].present && machine->axis[i].drive_node == gantry->drive_node);
     for (unsigned i = 0; i < number; i++)
-        good = good && machine->gantry[i].drive_node != gantry->drive_node &&
-               machine->gantry[i].axis != gantry->axis;
+        good = good && machine->gantry[i].axis != gantry->axis;
     return good && maths_abs(gantry->home_offset_mm *
                              machine->axis[gantry->axis].increments_per_mm) <= RANGE;
 }
@@ -217,18 +238,37 @@ static bool check_gantries(const struct machine *machine, struct diagnostic *wro
     return good;
 }
 
-static bool check_bus(const struct machine *machine, struct diagnostic *wrong)
+bool machine_predict_load(const struct machine *machine, unsigned bus, struct drives_load *load)
 {
-    struct drives_load load;
     uint8_t node[MACHINE_NODES_MAX];
-    const unsigned drives = machine_drive_nodes(machine, node);
-    const struct drives_rates rates = machine_get_rates(machine);
+    const struct drives_traffic traffic = {.count = machine_bus_nodes(machine, bus, node),
+                                           .bus = bus,
+                                           .wiring = machine->io,
+                                           .io_count = machine_io_count(machine),
+                                           .rates = machine_get_rates(machine),
+                                           .no_error_pdo = machine->error_pdo == 0};
 
-    if (drives_predict_whole_load(drives, machine->io, machine_io_count(machine), &rates,
-                                  machine->cycle_us, &load))
-        return true;
-    drives_set_overload(&load, wrong);
-    return false;
+    return drives_predict_whole_load(&traffic, machine->cycle_us, load);
+}
+
+/* Each carries its own. */
+static bool check_buses(const struct machine *machine, struct diagnostic *wrong)
+{
+    const unsigned count = machine_bus_count(machine);
+    struct drives_load load;
+
+    if (count > CAN_BUSES_MAX) {
+        diagnostic_set(wrong, TAKT_ERROR_MACHINE_BUS, 0, 0, "", 0, count - 1);
+        diagnostic_set_limit(wrong, CAN_BUSES_MAX - 1);
+        return false;
+    }
+    for (unsigned bus = 0; bus < count; bus++) {
+        if (!machine_predict_load(machine, bus, &load)) {
+            drives_set_overload(&load, bus, wrong);
+            return false;
+        }
+    }
+    return true;
 }
 
 /* size: of the name with its zero */
@@ -276,5 +316,5 @@ bool machine_check(const struct machine *machine, struct diagnostic *wrong)
             return false;
     }
     return check_forms(machine, wrong) && check_gantries(machine, wrong) &&
-           check_io(machine, wrong) && check_rates(machine, wrong) && check_bus(machine, wrong);
+           check_io(machine, wrong) && check_rates(machine, wrong) && check_buses(machine, wrong);
 }

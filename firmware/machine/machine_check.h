@@ -5,6 +5,7 @@
 #define TAKT_MACHINE_CHECK_H
 
 #include "base/error.h"
+#include "drive/drives.h"
 #include "machine/machine.h"
 
 #include <stdbool.h>
@@ -14,5 +15,8 @@
  * used twice, forms of interpolation and feed that this build does not have, a bus that cannot carry the cycle. False: *wrong says why.
  */
 bool machine_check(const struct machine *machine, struct diagnostic *wrong);
+
+/* What a cycle takes of a bus at worst. True: that bus carries it. */
+bool machine_predict_load(const struct machine *machine, unsigned bus, struct drives_load *load);
 
 #endif

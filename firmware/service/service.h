@@ -64,7 +64,7 @@ struct service_config {
     struct controller_reader *reader; /* its alone; must outlive the service */
     struct step_port step;            /* pulses; not used by a machine without step drives */
     const struct concise_dcf *dcf;    /* as of struct controller_config */
-    struct can_port can;
+    struct can_buses can;
     struct tool *tools; /* read and written; tools_count of them */
     size_t tools_count;
     struct parameters *parameters;              /* read and written */

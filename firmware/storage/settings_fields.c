@@ -36,17 +36,21 @@ static_assert(sizeof(double) == 8, "stored as IEEE-754");
 #define GANTRY_ROW(number, i, type, field, least, most)                                            \
     ROW(number, false, type, offsetof(struct machine, gantry[i].field), 1, least, most, false,     \
         "gantry." #field)
-#define GANTRY(i, axis_number, node, reversed, offset, skew, method)                               \
+#define GANTRY(i, axis_number, node, reversed, offset, skew, method, bus)                          \
     GANTRY_ROW(axis_number, i, SETTINGS_U32, axis, 0, AXIS_COUNT),                                 \
         GANTRY_ROW(node, i, SETTINGS_U8, drive_node, 1, 127),                                      \
         GANTRY_ROW(reversed, i, SETTINGS_U8, is_reversed, 0, 1),                                   \
         GANTRY_ROW(offset, i, SETTINGS_DOUBLE, home_offset_mm, -1e6, 1e6),                         \
         GANTRY_ROW(skew, i, SETTINGS_DOUBLE, skew_max_mm, 0, 1e3),                                 \
-        GANTRY_ROW(method, i, SETTINGS_I8, home_method, -128, 37)
+        GANTRY_ROW(method, i, SETTINGS_I8, home_method, -128, 37),                                 \
+        GANTRY_ROW(bus, i, SETTINGS_U8, drive_bus, 0, BUS_MOST)
 #define OF_AXIS(number, type, field, least, most, above)                                           \
     ROW(number, true, type, offsetof(struct machine_axis, field), 1, least, most, above, #field)
 
 #define CORRECTION_MOST 1e6
+
+/* Of any build: machine_check knows how many this one has. */
+#define BUS_MOST 255
 
 /* clang-format off */
 const struct settings_field settings_fields[] = {
@@ -74,14 +78,15 @@ const struct settings_field settings_fields[] = {
     COUNT(30, can_bitrate, 10000, 1000000),
     COUNT(31, heartbeat_ms, 0, 20000),
     BYTE(32, controller_node, 1, 127),
+    BYTE(29, error_pdo, 0, 1),
     COUNT(33, boot_timeout_ms, 1, 600000),
     COUNT(34, sdo_timeout_ms, 1, 600000),
     BYTE(74, interpolator_word_bits, INTERPOLATOR_WORD_BITS_MIN, INTERPOLATOR_WORD_BITS_MAX),
     BYTE(75, interpolator_end_shift, 0, INTERPOLATOR_END_SHIFT_MAX),
     BYTE(76, interpolator_angle_bits, 0, INTERPOLATOR_ANGLE_BITS_MAX),
-    GANTRY(0, 36, 37, 38, 39, 60, 61),
-    GANTRY(1, 62, 63, 64, 65, 66, 67),
-    GANTRY(2, 68, 69, 70, 71, 72, 73),
+    GANTRY(0, 36, 37, 38, 39, 60, 61, 77),
+    GANTRY(1, 62, 63, 64, 65, 66, 67, 78),
+    GANTRY(2, 68, 69, 70, 71, 72, 73, 79),
     ROW(35, false, SETTINGS_BYTES, offsetof(struct machine, io), sizeof(struct io_wiring) * IO_NODES_MAX, 0, 0, false, "io"),
 
     VECTOR(40, machine, CORRECTION_COORDINATES * CORRECTION_COORDINATES, CORRECTION_MOST),
@@ -133,6 +138,7 @@ const struct settings_field settings_fields[] = {
     OF_AXIS(125, SETTINGS_U8, drive_is_set_up, 0, 1, false),
     OF_AXIS(126, SETTINGS_DOUBLE, velocity_units_per_mm_s, 0, 1e11, false),
     OF_AXIS(127, SETTINGS_U8, limiter_band_percent, 0, LIMITER_BAND_PERCENT_MAX, false),
+    OF_AXIS(128, SETTINGS_U8, drive_bus, 0, BUS_MOST, false),
 };
 /* clang-format on */
 

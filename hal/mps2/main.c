@@ -174,7 +174,7 @@ static void open_embedded(void)
     const struct embedded_config config = {
         .machine = &machine,
         .core = &board.core,
-        .can = slcan_can_get_port(&board.can),
+        .can.port[0] = slcan_can_get_port(&board.can),
         .tools = board.tools,
         .tools_count = TOOLS_MAX,
         .port = {.lock = cortex_lock,

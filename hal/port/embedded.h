@@ -58,7 +58,7 @@ struct embedded_core {
 struct embedded_config {
     const struct machine *machine; /* copied */
     struct embedded_core *core;    /* its alone; must outlive it */
-    struct can_port can;
+    struct can_buses can;
     struct step_port step;
     struct tool *tools; /* tools_count of them, read and written; the caller's */
     size_t tools_count;

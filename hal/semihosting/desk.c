@@ -177,7 +177,7 @@ static void open_controller(struct desk *d)
     const struct controller_config config = {
         .machine = &d->machine,
         .source = {.read = program_read, .seek = program_seek, .context = d},
-        .can = {.send = bus_send, .receive = bus_receive, .context = &d->bus},
+        .can = {.port = {{.send = bus_send, .receive = bus_receive, .context = &d->bus}}},
         .tools = &d->table,
         .reader = &d->reader,
         .parameters = &d->parameters,

@@ -338,7 +338,7 @@ static void open_embedded(const struct machine *machine)
     const struct embedded_config config = {
         .machine = machine,
         .core = &board_core,
-        .can = board.has_can ? bxcan_get_port(&board.can) : no_can_get_port(),
+        .can.port[0] = board.has_can ? bxcan_get_port(&board.can) : no_can_get_port(),
         .step = step_output_get_port(&board.steps),
         .tools = board.tools,
         .tools_count = TOOLS_MAX,

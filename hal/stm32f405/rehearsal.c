@@ -140,7 +140,7 @@ static void open_controller(void)
 {
     struct controller_config config = {
         .machine = &rehearsal.machine,
-        .can = no_can_get_port(),
+        .can.port[0] = no_can_get_port(),
         .step = {.pulse = count_pulse},
         .reader = &beside.reader,
         .parameters = &beside.parameters,

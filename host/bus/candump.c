@@ -24,6 +24,12 @@ void candump_init(struct candump *log, FILE *file, const char *interface)
     memcpy(log->interface, interface, log->interface_length);
 }
 
+void candump_select(struct candump *log, unsigned bus)
+{
+    log->interface_length =
+        (size_t)snprintf(log->interface, sizeof log->interface, "can%u", bus % 10);
+}
+
 static char *put_decimal(char *text, uint64_t value, unsigned digits)
 {
     for (unsigned i = digits; i-- > 0; value /= 10)

@@ -30,6 +30,9 @@ struct candump {
  */
 void candump_init(struct candump *log, FILE *file, const char *interface);
 
+/* Lines from now on are of the bus of this index: can0, can1. */
+void candump_select(struct candump *log, unsigned bus);
+
 /* Adds one line. Has the form of a bus listener: (struct bus_listener){candump_frame, &log}. */
 void candump_frame(void *log, const struct can_frame *frame, uint64_t time_ns);
 

@@ -44,11 +44,13 @@ static const char *take_time(struct cursor *c, uint64_t *time_ns)
     return NULL;
 }
 
-static const char *take_interface(struct cursor *c)
+static const char *take_interface(struct cursor *c, struct candump_line *read)
 {
     const char *begin = c->at;
     while (c->at < c->end && *c->at != ' ')
         c->at++;
+    read->interface = begin;
+    read->interface_length = (size_t)(c->at - begin);
     return c->at > begin && take(c, ' ') ? NULL : "the name of an interface is expected";
 }
 
@@ -115,7 +117,7 @@ const char *candump_read_line(const char *line, size_t length, struct candump_li
     memset(&read->frame, 0, sizeof read->frame);
     wrong = take_time(&c, &read->time_ns);
     if (wrong == NULL)
-        wrong = take_interface(&c);
+        wrong = take_interface(&c, read);
     if (wrong == NULL)
         wrong = take_id(&c, &read->frame);
     if (wrong == NULL)

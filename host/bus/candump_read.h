@@ -12,6 +12,8 @@
 struct candump_line {
     uint64_t time_ns;
     struct wire_frame frame;
+    const char *interface; /* its name, in the line */
+    size_t interface_length;
 };
 
 /*

@@ -111,10 +111,11 @@ struct options {
     const char *bus;    /* bus/link.h */
     const char *drives; /* internal, external */
     bool realtime;
-    const char *ids; /* of takt replay */
+    const char *ids, *interface; /* of takt replay */
     bool fast, fd;
     const char *inject; /* scripted faults */
     const char *nodes;  /* of `takt drives` */
+    double can;         /* index of the bus that they are on */
     const char *eds;
     const char *store; /* folder */
     bool unconfigured;

@@ -1,7 +1,7 @@
 #include "config/bus_advice.h"
 
 #include "bus/bus.h"
-#include "drive/drives.h"
+#include "machine/machine_check.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -9,15 +9,20 @@
 #define CYCLE_STEP_US 50
 #define CYCLE_MAX_US  10000
 
+/* Every bus of the machine, at another rate and cycle. */
 static bool carries(const struct machine *machine, uint32_t bitrate, uint32_t data_bitrate,
                     uint32_t cycle_us)
 {
-    const struct drives_rates rates = {bitrate, data_bitrate};
-    uint8_t node[MACHINE_NODES_MAX];
+    struct machine other = *machine;
     struct drives_load load;
+    bool good = true;
 
-    return drives_predict_whole_load(machine_drive_nodes(machine, node), machine->io,
-                                     machine_io_count(machine), &rates, cycle_us, &load);
+    other.can_bitrate = bitrate;
+    other.can_data_bitrate = data_bitrate;
+    other.cycle_us = cycle_us;
+    for (unsigned bus = 0; bus < machine_bus_count(&other); bus++)
+        good = good && machine_predict_load(&other, bus, &load);
+    return good;
 }
 
 /* "KEY = VALUE", or one more of them. */
@@ -41,6 +46,17 @@ static void add_bitrate(const struct machine *machine, char text[BUS_ADVICE_MAX 
             return;
         }
     }
+}
+
+/* Fewer TPDOs: emergencies tell the same. */
+static void add_error_pdo(const struct machine *machine, char text[BUS_ADVICE_MAX + 1])
+{
+    struct machine other = *machine;
+
+    other.error_pdo = 0;
+    if (machine->error_pdo != 0 &&
+        carries(&other, other.can_bitrate, other.can_data_bitrate, other.cycle_us))
+        add(text, "error_pdo", 0, "");
 }
 
 /* The lowest usual rate of CAN FD, where drives and adapters have it. */
@@ -68,11 +84,48 @@ static void add_cycle(const struct machine *machine, char text[BUS_ADVICE_MAX + 
     }
 }
 
-void bus_advice_write(const struct machine *machine, char text[BUS_ADVICE_MAX + 1])
+/* The fewest axes, from the last one on, whose drives on bus `to` make it do. False: none do. */
+static bool find_moved(const struct machine *machine, unsigned bus, unsigned to,
+                       char axes[AXIS_COUNT + 1])
+{
+    struct machine other = *machine;
+
+    memset(axes, 0, AXIS_COUNT + 1);
+    for (unsigned i = AXIS_COUNT; i-- > 0;) {
+        if (!machine_axis_is_on_can(&other.axis[i]) || other.axis[i].drive_bus != bus)
+            continue;
+        other.axis[i].drive_bus = (uint8_t)to;
+        memmove(axes + 1, axes, AXIS_COUNT - 1);
+        axes[0] = AXIS_LETTERS[i];
+        if (carries(&other, other.can_bitrate, other.can_data_bitrate, other.cycle_us))
+            return true;
+    }
+    return false;
+}
+
+/* "drive_bus = 1 for ZA (two buses)"; where that alone does not, with error_pdo = 0. */
+static void add_bus(const struct machine *machine, unsigned bus, char text[BUS_ADVICE_MAX + 1])
+{
+    const unsigned to = (bus + 1) % CAN_BUSES_MAX;
+    struct machine other = *machine;
+    char axes[AXIS_COUNT + 1];
+    const bool is_alone = find_moved(&other, bus, to, axes);
+    const size_t used = strlen(text);
+
+    other.error_pdo = 0;
+    if (is_alone || find_moved(&other, bus, to, axes))
+        (void)snprintf(text + used, BUS_ADVICE_MAX + 1 - used,
+                       "%sdrive_bus = %u for %s%s (two buses)", used > 0 ? " or " : "", to, axes,
+                       is_alone ? "" : " and error_pdo = 0");
+}
+
+void bus_advice_write(const struct machine *machine, unsigned bus, char text[BUS_ADVICE_MAX + 1])
 {
     text[0] = '\0';
     add_bitrate(machine, text);
     add_data_bitrate(machine, text);
+    add_error_pdo(machine, text);
+    add_bus(machine, bus, text);
     add_cycle(machine, text);
     if (text[0] == '\0')
         (void)snprintf(text, BUS_ADVICE_MAX + 1, "it takes fewer drives on it");

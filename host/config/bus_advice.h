@@ -9,6 +9,7 @@
 #define BUS_ADVICE_MAX 255
 
 /* "bitrate = 1000000, data_bitrate = 5000000 (CAN FD) or cycle_us = 1000 would do". */
-void bus_advice_write(const struct machine *machine, char text[BUS_ADVICE_MAX + 1]);
+/* bus: the one that cannot. */
+void bus_advice_write(const struct machine *machine, unsigned bus, char text[BUS_ADVICE_MAX + 1]);
 
 #endif

@@ -21,8 +21,8 @@ bool data_sheet_load(struct dictionary *dictionary, const char *path)
 
 void data_sheet_set_io(struct virtual_drive_config *drive, const struct io_wiring *wiring)
 {
-    *drive =
-        (struct virtual_drive_config){.node = wiring->node, .increments_per_mm = 1, .is_io = true};
+    *drive = (struct virtual_drive_config){
+        .node = wiring->node, .bus = wiring->bus, .increments_per_mm = 1, .is_io = true};
     drive_plant_set_default(&drive->plant);
     for (unsigned i = 0; i < IO_BITS_MAX; i++) {
         if (wiring->input[i] == IO_STOP || wiring->input[i] == IO_LIMIT)
@@ -42,6 +42,7 @@ static bool add_drive(struct virtual_drives_config *config, const struct machine
 
     *drive = (struct virtual_drive_config){
         .node = gantry != NULL ? gantry->drive_node : axis->drive_node,
+        .bus = gantry != NULL ? gantry->drive_bus : axis->drive_bus,
         .increments_per_mm = is_reversed ? -axis->increments_per_mm : axis->increments_per_mm,
         .velocity_units_per_mm_s = axis->velocity_units_per_mm_s,
         .cycle_us = machine->cycle_us,

@@ -18,7 +18,7 @@ bool inject_file_load(struct inject *script, const char *path)
     return good;
 }
 
-static bool is_one_of(uint8_t node, const uint8_t nodes[], unsigned count)
+static bool is_one_of(uint16_t node, const uint16_t nodes[], unsigned count)
 {
     for (unsigned i = 0; i < count; i++) {
         if (nodes[i] == node)
@@ -27,16 +27,30 @@ static bool is_one_of(uint8_t node, const uint8_t nodes[], unsigned count)
     return false;
 }
 
-bool inject_file_check_nodes(const struct inject *script, const char *path, const uint8_t nodes[],
+static bool has_bus(uint8_t bus, const uint16_t nodes[], unsigned count)
+{
+    bool has = false;
+
+    for (unsigned i = 0; i < count; i++)
+        has = has || nodes[i] >> 8 == bus;
+    return has;
+}
+
+bool inject_file_check_nodes(const struct inject *script, const char *path, const uint16_t nodes[],
                              unsigned count)
 {
     for (unsigned i = 0; i < script->count; i++) {
         const struct inject_fault *fault = &script->fault[i];
+        if (fault->bus > 0 && !has_bus(fault->bus, nodes, count)) {
+            message_error(path, fault->line, 0, "the machine has nothing on CAN bus %u",
+                          (unsigned)fault->bus);
+            return false;
+        }
         bool names_drive = fault->node != INJECT_ANY_NODE && fault->node != INJECT_CONTROLLER;
 
-        if (names_drive && !is_one_of(fault->node, nodes, count)) {
-            message_error(path, fault->line, 0, "there is no drive with node %u",
-                          (unsigned)fault->node);
+        if (names_drive && !is_one_of(INJECT_ADDRESS(fault->bus, fault->node), nodes, count)) {
+            message_error(path, fault->line, 0, "there is no drive with node %u%s",
+                          (unsigned)fault->node, fault->bus > 0 ? " on that bus" : "");
             return false;
         }
     }

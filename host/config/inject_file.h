@@ -12,9 +12,9 @@
 bool inject_file_load(struct inject *script, const char *path);
 
 /*
- * Every fault of a drive names a node that is there. nodes: of all drives. False after a message.
+ * Every fault of a drive names a node that is there. nodes: INJECT_ADDRESS of all drives. False after a message.
  */
-bool inject_file_check_nodes(const struct inject *script, const char *path, const uint8_t nodes[],
+bool inject_file_check_nodes(const struct inject *script, const char *path, const uint16_t nodes[],
                              unsigned count);
 
 #endif

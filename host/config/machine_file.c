@@ -414,6 +414,14 @@ static void write_section(FILE *file, const struct machine_setup *setup, struct 
     }
 }
 
+static void write_drive_head(FILE *file, unsigned bus, unsigned node)
+{
+    if (bus > 0)
+        (void)fprintf(file, "\n[drive %u:%u]\n", bus, node);
+    else
+        (void)fprintf(file, "\n[drive %u]\n", node);
+}
+
 static void write_places_of_axes(FILE *file, const struct machine_setup *setup,
                                  enum machine_section section)
 {
@@ -425,7 +433,8 @@ static void write_places_of_axes(FILE *file, const struct machine_setup *setup,
         else if (section == SECTION_STEPPER)
             (void)fprintf(file, "\n[stepper %c]\n", AXIS_LETTERS[i]);
         else
-            (void)fprintf(file, "\n[drive %u]\n", (unsigned)setup->machine.axis[i].drive_node);
+            write_drive_head(file, setup->machine.axis[i].drive_bus,
+                             setup->machine.axis[i].drive_node);
         write_section(file, setup, (struct machine_place){section, i});
     }
 }
@@ -459,7 +468,7 @@ static void write_gantry(FILE *file, const struct machine_setup *setup, unsigned
     (void)fprintf(file, i == 0 ? "\n[%s]\n" : "\n[%s %u]\n", machine_section_names[SECTION_GANTRY],
                   i + 1);
     write_section(file, setup, (struct machine_place){SECTION_GANTRY, i});
-    (void)fprintf(file, "\n[drive %u]\n", (unsigned)setup->machine.gantry[i].drive_node);
+    write_drive_head(file, setup->machine.gantry[i].drive_bus, setup->machine.gantry[i].drive_node);
     write_section(file, setup, (struct machine_place){SECTION_DRIVE, MACHINE_SECOND_DRIVE + i});
 }
 

@@ -89,37 +89,30 @@ static const char *check_drive(const struct machine_setup *setup, unsigned index
     return field == NULL ? NULL : problem("drive %u: %s is out of range", node, field);
 }
 
-static unsigned count_drives(const struct machine *machine)
-{
-    uint8_t node[MACHINE_NODES_MAX];
-
-    return machine_drive_nodes(machine, node);
-}
-
-static bool predict_load(const struct machine *machine, struct drives_load *load)
-{
-    const struct drives_rates rates = machine_get_rates(machine);
-
-    return drives_predict_whole_load(count_drives(machine), machine->io, machine_io_count(machine),
-                                     &rates, machine->cycle_us, load);
-}
-
-static const char *check_bus(const struct machine *machine)
+/* The first bus that cannot, with advice for the machine as a whole. */
+static const char *check_buses(const struct machine *machine)
 {
     char advice[BUS_ADVICE_MAX + 1];
-    char rate[32] = "";
-    struct drives_load load;
+    char rate[32] = "", name[16] = "";
+    uint8_t node[MACHINE_NODES_MAX];
+    struct drives_load load = {0};
+    unsigned bus = 0;
 
-    if (predict_load(machine, &load))
+    while (bus < machine_bus_count(machine) && machine_predict_load(machine, bus, &load))
+        bus++;
+    if (bus == machine_bus_count(machine))
         return NULL;
-    bus_advice_write(machine, advice);
+    bus_advice_write(machine, bus, advice);
     if (machine->can_data_bitrate > 0)
         (void)snprintf(rate, sizeof rate, " (data %u)", (unsigned)machine->can_data_bitrate);
-    return problem(
-        "the bus cannot carry a cycle: %u drives take %u of %u bits at worst, load %.1f %%, at %u "
-        "bit/s%s and %u us; %s",
-        count_drives(machine), (unsigned)load.bits, (unsigned)load.capacity_bits, load.percent,
-        (unsigned)machine->can_bitrate, rate, (unsigned)machine->cycle_us, advice);
+    if (machine_bus_count(machine) > 1)
+        (void)snprintf(name, sizeof name, " can%u", bus % 10);
+    return problem("the bus%s cannot carry a cycle: %u drives take %u of %u bits at worst, load "
+                   "%.1f %%, at %u "
+                   "bit/s%s and %u us; %s",
+                   name, machine_bus_nodes(machine, bus, node), (unsigned)load.bits,
+                   (unsigned)load.capacity_bits, load.percent, (unsigned)machine->can_bitrate, rate,
+                   (unsigned)machine->cycle_us, advice);
 }
 
 /* What the controller itself refuses; of the bus with the figures that a machine file has. */
@@ -131,7 +124,7 @@ static const char *check_machine(const struct machine *machine)
     if (machine_check(machine, &wrong))
         return NULL;
     if (wrong.code == TAKT_ERROR_BUS_OVERLOAD)
-        return check_bus(machine);
+        return check_buses(machine);
     (void)diagnostic_text(&wrong, text);
     return problem("%s", text);
 }
@@ -208,11 +201,11 @@ struct frame_rates machine_setup_get_rates(const struct machine *machine)
     return (struct frame_rates){machine->can_bitrate, machine->can_data_bitrate};
 }
 
-double machine_setup_predict_load_percent(const struct machine *machine)
+double machine_setup_predict_load_percent(const struct machine *machine, unsigned bus)
 {
     struct drives_load load;
 
-    (void)predict_load(machine, &load);
+    (void)machine_predict_load(machine, bus, &load);
     return load.percent;
 }
 

@@ -48,20 +48,28 @@ static bool find_axis(struct machine_setup *setup, const char *instance, unsigne
     return true;
 }
 
+/* "2": node 2; on another bus than the first "1:2". */
 static bool find_drive(const struct machine_setup *setup, const char *instance, unsigned *index,
                        struct machine_problem *wrong)
 {
     char *end;
     unsigned long node = strtoul(instance, &end, 10);
+    unsigned long bus = 0;
 
+    if (end != instance && *end == ':') {
+        bus = node;
+        node = strtoul(end + 1, &end, 10);
+    }
     for (unsigned i = 0; i < AXIS_COUNT && end != instance && *end == '\0'; i++) {
-        if (setup->machine.axis[i].present && setup->machine.axis[i].drive_node == node) {
+        if (setup->machine.axis[i].present && setup->machine.axis[i].drive_node == node &&
+            setup->machine.axis[i].drive_bus == bus) {
             *index = i;
             return true;
         }
     }
     for (unsigned i = 0; i < machine_gantry_count(&setup->machine) && *end == '\0'; i++) {
-        if (end != instance && setup->machine.gantry[i].drive_node == node) {
+        if (end != instance && setup->machine.gantry[i].drive_node == node &&
+            setup->machine.gantry[i].drive_bus == bus) {
             *index = MACHINE_SECOND_DRIVE + i;
             return true;
         }

@@ -47,6 +47,7 @@ void virtual_drive_init(struct virtual_drive *drive, const struct virtual_drive_
     struct can_port bus = *port;
     memset(&drive->faults, 0, sizeof drive->faults);
     drive->twin = config->twin;
+    drive->bus = config->bus;
     drive_plant_init(&drive->plant, &config->plant, config->increments_per_mm < 0);
     if (drive->twin != NULL)
         drive->twin->open(drive->twin->context, &drive->servo, &servo, target, &bus, &motor);

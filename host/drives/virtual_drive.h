@@ -17,6 +17,7 @@
 /* As of struct servo_config. */
 struct virtual_drive_config {
     uint8_t node;
+    uint8_t bus; /* of the machine that it is on */
     double increments_per_mm;
     double velocity_units_per_mm_s;
     uint32_t cycle_us;
@@ -46,6 +47,7 @@ struct virtual_drive {
     struct drive_plant plant;
     struct drive_faults faults;
     const struct virtual_drive_twin *twin;
+    uint8_t bus;
 };
 
 /*

@@ -139,7 +139,8 @@ void virtual_drive_run_faults(struct virtual_drive *drive)
     const struct drive_faults *f = &drive->faults;
     for (unsigned i = 0; i < f->script->count; i++) {
         const struct inject_fault *fault = fault_of(drive, i);
-        if (inject_is_of_bus(fault->kind) || fault->node != drive->servo.config.node)
+        if (inject_is_of_bus(fault->kind) || fault->node != drive->servo.config.node ||
+            fault->bus != drive->bus)
             continue;
         if (inject_is_in_force(fault, f->clock) != is_in_force(drive, i))
             begin_or_end(drive, i);

@@ -34,22 +34,45 @@ static void on_frame(void *context, const struct can_frame *frame, uint64_t time
     virtual_drive_on_frame_at(context, frame, time_ns);
 }
 
-void virtual_drives_init(struct virtual_drives *set, struct bus *bus,
+/* RPDO2 of a motor, by the motors of its bus. */
+static void set_target(struct pdo *target, const struct virtual_drives *set,
+                       const struct virtual_drives_config *config, unsigned index, unsigned group)
+{
+    uint8_t node[VIRTUAL_DRIVES_MAX];
+    unsigned count = 0, place = 0;
+    for (unsigned i = 0; i < set->motors; i++) {
+        if (config->drive[i].bus != config->drive[index].bus)
+            continue;
+        if (i == index)
+            place = count;
+        node[count++] = config->drive[i].node;
+    }
+    target_pdo_set(target, node, count, place, group);
+}
+
+unsigned virtual_drives_on_bus(const struct virtual_drives *set, unsigned bus,
+                               uint8_t node[VIRTUAL_DRIVES_MAX])
+{
+    unsigned count = 0;
+    for (unsigned i = 0; i < set->count; i++)
+        if (set->drive[i].bus == bus)
+            node[count++] = set->drive[i].servo.config.node;
+    return count;
+}
+
+void virtual_drives_init(struct virtual_drives *set, struct bus bus[],
                          const struct virtual_drives_config *config)
 {
-    const unsigned group = bus_is_fd(bus) ? TARGET_PDO_FD : TARGET_PDO_PAIR;
-    uint8_t node[VIRTUAL_DRIVES_MAX];
+    const unsigned group = bus_is_fd(&bus[0]) ? TARGET_PDO_FD : TARGET_PDO_PAIR;
     start(set, config);
-    for (unsigned i = 0; i < set->count; i++)
-        node[i] = config->drive[i].node;
     for (unsigned i = 0; i < set->count; i++) {
         struct virtual_drive *drive = &set->drive[i];
+        struct virtual_drive_config own = config->drive[i];
         struct pdo target;
         if (i < set->motors)
-            target_pdo_set(&target, node, set->motors, i, group);
-        struct can_port port = bus_attach(bus, &(struct bus_listener){on_frame, drive});
-        struct virtual_drive_config own = config->drive[i];
-        own.is_fd = bus_is_fd(bus);
+            set_target(&target, set, config, i, group);
+        struct can_port port = bus_attach(&bus[own.bus], &(struct bus_listener){on_frame, drive});
+        own.is_fd = bus_is_fd(&bus[own.bus]);
         virtual_drive_init(drive, &own, i < set->motors ? &target : NULL, &port);
         virtual_drive_boot(drive);
     }

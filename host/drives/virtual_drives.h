@@ -66,10 +66,14 @@ struct virtual_drives {
 void virtual_drives_set_default(struct virtual_drives_config *config, unsigned count);
 
 /*
- * Attaches the drives to the bus and boots them. set and bus must stay where they are from now on.
+ * Attaches the drives to their buses and boots them. bus: all of them. set and bus must stay where they are from now on.
  */
-void virtual_drives_init(struct virtual_drives *set, struct bus *bus,
+void virtual_drives_init(struct virtual_drives *set, struct bus bus[],
                          const struct virtual_drives_config *config);
+
+/* Nodes of those on this bus, in the order in which they were attached to it; their number. */
+unsigned virtual_drives_on_bus(const struct virtual_drives *set, unsigned bus,
+                               uint8_t node[VIRTUAL_DRIVES_MAX]);
 
 /*
  * Switches the drives on behind a port; they have not booted yet. They know nothing of each other's

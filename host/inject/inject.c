@@ -4,6 +4,7 @@
 #include "inject/inject_private.h"
 
 #include <assert.h>
+#include <ctype.h>
 #include <stdarg.h>
 #include <string.h>
 
@@ -81,12 +82,21 @@ static bool read_when(struct reader *reader, const struct word *word, struct inj
                   word->text);
 }
 
-/* "bus", or "drive" or "io" and its node. */
+/* "bus", for that of another number "can1". */
+static bool is_bus(const char *text, uint8_t *bus)
+{
+    const bool is_numbered =
+        strncmp(text, "can", 3) == 0 && isdigit((unsigned char)text[3]) && text[4] == '\0';
+    *bus = is_numbered ? (uint8_t)(text[3] - '0') : 0;
+    return is_numbered || strcmp(text, "bus") == 0;
+}
+
+/* A bus, or "drive" or "io" and its node. */
 static bool read_where(struct reader *reader, const struct word *word, struct inject_fault *fault,
                        bool *of_bus)
 {
     struct word node;
-    *of_bus = strcmp(word->text, "bus") == 0;
+    *of_bus = is_bus(word->text, &fault->bus);
     if (*of_bus)
         return true;
     if (strcmp(word->text, "drive") != 0 && strcmp(word->text, "io") != 0)
@@ -94,7 +104,7 @@ static bool read_where(struct reader *reader, const struct word *word, struct in
                       word->text);
     if (!next_word(reader, &node))
         return false;
-    if (!inject_read_node(node.text, &fault->node))
+    if (!inject_read_address(node.text, &fault->bus, &fault->node))
         return refuse(reader, node.column, "'%s' is no node id; 1 ... 127 is expected", node.text);
     return true;
 }

@@ -20,6 +20,9 @@
 #define INJECT_FAULTS_MAX     64
 #define INJECT_ERROR_TEXT_MAX 255
 
+/* A node of a bus, as one number. */
+#define INJECT_ADDRESS(bus, node) ((uint16_t)((bus) << 8 | (node)))
+
 #define INJECT_CONTROLLER 0      /* as a node: the controller */
 #define INJECT_ANY_NODE   0xFF   /* node of a bus fault: not given */
 #define INJECT_ANY_ID     0xFFFF /* id: not given */
@@ -70,6 +73,7 @@ struct inject_fault {
     uint64_t after_ns; /* begins this long after the anchor */
     uint64_t for_ns;   /* lasts this long; INJECT_ALWAYS: for good. 0 for what happens once */
 
+    uint8_t bus;     /* that fails, or that the drive is on */
     uint8_t node;    /* 1 ... 127, INJECT_CONTROLLER, INJECT_ANY_NODE */
     uint16_t id;     /* CAN identifier, INJECT_ANY_ID */
     uint32_t skip;   /* matching frames that pass unharmed first */

@@ -109,7 +109,8 @@ void inject_write_help(FILE *stream)
         "  enabled+2s     drive 1  freeze    object=6041\n"
         "\n"
         "WHEN: power, or enabled, which is when all drives are enabled first; with + and a time\n"
-        "in s, ms or us. WHERE: bus, or drive (or io) and its node. Identifiers, objects, values "
+        "in s, ms or us. WHERE: bus (the second: can1), or drive (or io) and its node (of the "
+        "second bus: 1:NODE). Identifiers, objects, values "
         "and\n"
         "codes are hexadecimal, other numbers decimal.\n"
         "\nFaults of the bus, with their keys ([key]: may be left out):\n",

@@ -56,5 +56,7 @@ bool inject_read_time(const char *text, uint64_t *time_ns);
 
 /* "1" ... "127", decimal. False: not a node id. */
 bool inject_read_node(const char *text, uint8_t *node);
+/* The same, or on another bus than the first "1:20". False: neither. */
+bool inject_read_address(const char *text, uint8_t *bus, uint8_t *node);
 
 #endif

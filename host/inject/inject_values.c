@@ -3,6 +3,7 @@
  */
 #include "inject/inject_private.h"
 
+#include <ctype.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -67,6 +68,16 @@ bool inject_read_node(const char *text, uint8_t *node)
         return false;
     *node = (uint8_t)number;
     return true;
+}
+
+bool inject_read_address(const char *text, uint8_t *bus, uint8_t *node)
+{
+    *bus = 0;
+    if (isdigit((unsigned char)text[0]) && text[1] == ':') {
+        *bus = (uint8_t)(text[0] - '0');
+        text += 2;
+    }
+    return inject_read_node(text, node);
 }
 
 static bool read_any_node(const char *text, uint8_t *node)

@@ -109,6 +109,12 @@ function describe(value) {
   return typeof value === "object" ? Object.entries(value).map(([k, v]) => `${k} ${v}`).join(", ") : String(value);
 }
 
+/* One is the bus; of two each has the name that it has in a log. */
+function busesByName() {
+  const names = runSummary.can1 ? [["can0", runSummary.bus], ["can1", runSummary.can1]] : [["Bus", runSummary.bus]];
+  return names.filter(([, bus]) => bus);
+}
+
 function showFigures() {
   const figures = document.getElementById("figures");
   const add = (name, value, unit) => {
@@ -121,7 +127,10 @@ function showFigures() {
   add("Blocks", runSummary.blocks, "");
   add(`Cycles of ${formatNumber(runData.cycle_s * 1e3)} ms`, runSummary.cycles, "");
   add("Path error", atLeast(runSummary.path_error_max_mm, 1e-9), "mm");
-  add("Bus load", runSummary.bus ? runSummary.bus.load_percent : null, "%");
+  for (const [name, bus] of busesByName()) {
+    add(`${name} load`, bus.load_percent, "%");
+    if (runSummary.can1) add(`${name} longest response, worst case`, Math.max(0, ...bus.responses.map((r) => r.predicted_us || 0)), "us");
+  }
   add("Real time ratio", runSummary.realtime_ratio, "×");
 }
 

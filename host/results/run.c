@@ -173,7 +173,8 @@ void run_finish(struct run *run, enum command_status cut)
     summary_set(&run->summary, &source);
     if (cut == STATUS_DONE)
         run_end_drives(run);
-    run->summary.bus_frames = field_get_frames(&run->simulation->field);
+    for (unsigned i = 0; i < run->summary.buses; i++)
+        run->summary.bus[i].frames = field_get_frames(&run->simulation->field, i);
 }
 
 void run_close(struct run *run)

@@ -133,11 +133,7 @@ static bool open_bus_log(struct run_outputs *o, struct simulation *simulation)
     if (o->bus_log == NULL || o->frames == NULL)
         return false;
     candump_init(o->bus_log, o->file[RUN_BUS_LOG].stream, "can0");
-    if (simulation->field.link != NULL)
-        field_observe_outside(&simulation->field,
-                              &(struct wire_listener){candump_wire, o->bus_log});
-    else
-        frame_buffer_attach(o->frames, &simulation->field.bus, o->bus_log);
+    field_log(&simulation->field, o->frames, o->bus_log);
     return true;
 }
 

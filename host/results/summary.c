@@ -119,28 +119,61 @@ static void set_cost(struct summary *summary, const struct cycle_cost *cost)
     summary->cost_max_ns = (double)cost->max_ns;
 }
 
+/* The first bus has the plain name. */
+static void add_bus_check(struct summary *summary, unsigned bus, const char *name, double percent)
+{
+    char full[SUMMARY_CHECK_NAME_MAX + 1];
+
+    if (bus > 0)
+        (void)snprintf(full, sizeof full, "%s.can%u", name, bus);
+    add_check(summary, bus > 0 ? full : name, AXIS_COUNT, "%", percent, 100);
+}
+
+static bool is_planned(const struct summary *summary)
+{
+    return !drives_table_has(&summary->drives, DRIVES_NO_SILENCE) &&
+           !drives_table_has(&summary->drives, DRIVES_NO_ONE_REPORT) &&
+           !drives_table_has(&summary->drives, DRIVES_NO_SYNC_REPORT);
+}
+
 /*
- * Predicted and observed; what faults of the bus, and frames that nobody wants or that come by a timer of the drive, have done
- * is no fault of the prediction.
+ * Predicted and observed; what faults of the buses, and frames that nobody wants or that come by a timer of the drive, have
+ * done is no fault of the prediction.
  */
 static void set_responses(struct summary *summary, const struct field *field,
-                          const struct drives *drives)
+                          const struct drives *drives, unsigned index)
 {
+    struct summary_bus *bus = &summary->bus[index];
     double nearest = 0;
 
-    bus_plan_set(&summary->bus_plan, summary->machine, drives);
-    summary->responses_observed = field->link == NULL && summary->figures.cycles > 0;
+    bus_plan_set(&bus->plan, summary->machine, drives, index);
     if (!summary->responses_observed)
         return;
-    bus_plan_get_observed(&summary->bus_plan, &field->bus, summary->response_ns);
-    for (unsigned i = 0; i < summary->bus_plan.count; i++)
-        nearest = maths_max(nearest, 100.0 * (double)summary->response_ns[i] /
-                                         (double)summary->bus_plan.worst_ns[i]);
-    bool is_planned = !drives_table_has(&summary->drives, DRIVES_NO_SILENCE) &&
-                      !drives_table_has(&summary->drives, DRIVES_NO_ONE_REPORT) &&
-                      !drives_table_has(&summary->drives, DRIVES_NO_SYNC_REPORT);
-    if (field->bus.fault_count == 0 && is_planned)
-        add_check(summary, "bus_response", AXIS_COUNT, "%", nearest, 100);
+    bus_plan_get_observed(&bus->plan, &field->bus[index], bus->response_ns);
+    for (unsigned i = 0; i < bus->plan.count; i++)
+        nearest =
+            maths_max(nearest, 100.0 * (double)bus->response_ns[i] / (double)bus->plan.worst_ns[i]);
+    if (field_is_sound(field) && is_planned(summary))
+        add_bus_check(summary, index, "bus_response", nearest);
+}
+
+static void set_buses(struct summary *summary, const struct field *field,
+                      const struct drives *drives)
+{
+    summary->buses = field->buses;
+    summary->responses_observed = !field->is_outside && summary->figures.cycles > 0;
+    for (unsigned i = 0; i < field->buses; i++) {
+        struct summary_bus *bus = &summary->bus[i];
+        const double found_percent = summary->drives.load[i].percent;
+
+        bus->frames = field_get_frames(field, i);
+        bus->load_percent = field_get_load_percent(field, i);
+        bus->predicted_percent = found_percent > 0
+                                     ? found_percent
+                                     : machine_setup_predict_load_percent(summary->machine, i);
+        add_bus_check(summary, i, "bus_load", bus->load_percent);
+        set_responses(summary, field, drives, i);
+    }
 }
 
 static void set_pace(struct summary *summary, const struct field *field)
@@ -208,14 +241,9 @@ void summary_set(struct summary *summary, const struct summary_source *source)
         .tool_point = simulation->tool_point,
         .steppers = &simulation->field.steppers,
         .interpolator = *controller_get_interpolator_errors(&simulation->controller),
-        .bus_frames = field_get_frames(&simulation->field),
-        .bus_load_percent = field_get_load_percent(&simulation->field),
-        .bus_predicted_percent = machine_setup_predict_load_percent(machine),
     };
     tool_point_finish(&summary->tool_point);
     drives_table_set(&summary->drives, drives);
-    if (summary->drives.load.percent > 0)
-        summary->bus_predicted_percent = summary->drives.load.percent;
     if (source->outcome == OUTCOME_FAULTED)
         set_fault(summary, controller_get_fault(&simulation->controller));
     set_cost(summary, &simulation->cost);
@@ -225,8 +253,7 @@ void summary_set(struct summary *summary, const struct summary_source *source)
     }
     check_path(summary);
     check_blocks(summary, source);
-    add_check(summary, "bus_load", AXIS_COUNT, "%", summary->bus_load_percent, 100);
-    set_responses(summary, &simulation->field, drives);
+    set_buses(summary, &simulation->field, drives);
     set_pace(summary, &simulation->field);
     set_target(summary, simulation);
     set_drive_images(summary, simulation);

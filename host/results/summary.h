@@ -22,7 +22,7 @@ enum summary_outcome {
 };
 
 #define SUMMARY_CHECK_NAME_MAX 31
-#define SUMMARY_CHECKS_MAX     (5 * AXIS_COUNT + 10)
+#define SUMMARY_CHECKS_MAX     (5 * AXIS_COUNT + 8 + 2 * CAN_BUSES_MAX)
 
 struct summary_check {
     char name[SUMMARY_CHECK_NAME_MAX + 1];
@@ -33,6 +33,14 @@ struct summary_check {
 
 /* The text of a fault, and what helps. */
 #define SUMMARY_FAULT_MAX 400
+
+struct summary_bus {
+    uint64_t frames;
+    double load_percent;
+    double predicted_percent;
+    struct bus_plan plan;
+    uint64_t response_ns[BUS_PLAN_MAX]; /* observed, of the plan's messages */
+};
 
 struct summary {
     const char *program;
@@ -47,13 +55,10 @@ struct summary {
     struct tool_point tool_point;
     const struct virtual_steppers *steppers;
     struct interpolator_errors interpolator;
-    uint64_t bus_frames;
-    double bus_load_percent;
-    double bus_predicted_percent;
+    unsigned buses;
+    struct summary_bus bus[CAN_BUSES_MAX];
     struct drives_table drives;
-    bool responses_observed; /* by a program, and on the embedded bus */
-    struct bus_plan bus_plan;
-    uint64_t response_ns[BUS_PLAN_MAX]; /* observed, of the plan's messages */
+    bool responses_observed; /* by a program, and on embedded buses */
     bool is_paced;
     struct pace_figures pace;
     struct pace_permission permission;

@@ -119,10 +119,11 @@ static void add_path(cJSON *root, const struct summary *summary)
 }
 
 /* observed_us: null on an outside bus, where nobody sees when a frame was given. */
-static void add_responses(cJSON *bus, const struct summary *summary)
+static void add_responses(cJSON *object_of_bus, const struct summary *summary,
+                          const struct summary_bus *bus)
 {
-    const struct bus_plan *plan = &summary->bus_plan;
-    cJSON *responses = cJSON_AddArrayToObject(bus, "responses");
+    const struct bus_plan *plan = &bus->plan;
+    cJSON *responses = cJSON_AddArrayToObject(object_of_bus, "responses");
 
     for (unsigned i = 0; i < plan->count; i++) {
         cJSON *object = cJSON_CreateObject();
@@ -135,21 +136,29 @@ static void add_responses(cJSON *bus, const struct summary *summary)
         else
             cJSON_AddNullToObject(object, "predicted_us"); /* there is no bound */
         if (summary->responses_observed)
-            cJSON_AddNumberToObject(object, "observed_us", 1e-3 * (double)summary->response_ns[i]);
+            cJSON_AddNumberToObject(object, "observed_us", 1e-3 * (double)bus->response_ns[i]);
         else
             cJSON_AddNullToObject(object, "observed_us");
         cJSON_AddItemToArray(responses, object);
     }
 }
 
-static void add_bus(cJSON *root, const struct summary *summary)
+/* The first is bus, what comes behind it can1 and so on. */
+static void add_buses(cJSON *root, const struct summary *summary)
 {
-    cJSON *bus = cJSON_AddObjectToObject(root, "bus");
+    for (unsigned i = 0; i < summary->buses; i++) {
+        const struct summary_bus *bus = &summary->bus[i];
+        char name[8] = "bus";
 
-    cJSON_AddNumberToObject(bus, "frames", (double)summary->bus_frames);
-    cJSON_AddNumberToObject(bus, "load_percent", summary->bus_load_percent);
-    cJSON_AddNumberToObject(bus, "predicted_load_percent", summary->bus_predicted_percent);
-    add_responses(bus, summary);
+        if (i > 0)
+            (void)snprintf(name, sizeof name, "can%u", i % 10);
+        cJSON *object = cJSON_AddObjectToObject(root, name);
+
+        cJSON_AddNumberToObject(object, "frames", (double)bus->frames);
+        cJSON_AddNumberToObject(object, "load_percent", bus->load_percent);
+        cJSON_AddNumberToObject(object, "predicted_load_percent", bus->predicted_percent);
+        add_responses(object, summary, bus);
+    }
 }
 
 static void add_pace(cJSON *root, const struct summary *summary)
@@ -246,7 +255,7 @@ char *summary_json(const struct summary *summary)
     add_path(root, summary);
     summary_correction_add_json(root, summary);
     summary_steps_add_json(root, summary);
-    add_bus(root, summary);
+    add_buses(root, summary);
     drives_table_add_json(root, &summary->drives, summary->machine);
     add_pace(root, summary);
     add_cost(root, summary);

@@ -68,22 +68,38 @@ static void write_axes(FILE *stream, const struct summary *summary)
 }
 
 /* The longest of the frames of a cycle, on an outside bus only predicted. */
-static void write_response(FILE *stream, const struct summary *summary)
+static void write_response(FILE *stream, const struct summary *summary,
+                           const struct summary_bus *bus)
 {
     uint64_t predicted_ns = 0, observed_ns = 0;
 
-    for (unsigned i = 0; i < summary->bus_plan.count; i++) {
-        const uint64_t worst_ns = summary->bus_plan.worst_ns[i];
+    for (unsigned i = 0; i < bus->plan.count; i++) {
+        const uint64_t worst_ns = bus->plan.worst_ns[i];
 
         if (worst_ns != UINT64_MAX && worst_ns > predicted_ns)
             predicted_ns = worst_ns;
-        if (summary->response_ns[i] > observed_ns)
-            observed_ns = summary->response_ns[i];
+        if (bus->response_ns[i] > observed_ns)
+            observed_ns = bus->response_ns[i];
     }
     (void)fprintf(stream, "                longest response ");
     if (summary->responses_observed)
         (void)fprintf(stream, "%.0f us ", 1e-3 * (double)observed_ns);
     (void)fprintf(stream, "(worst case %.0f us)\n", 1e-3 * (double)predicted_ns);
+}
+
+/* One is the bus; of several each has the name that it has in a log. */
+static void write_buses(FILE *stream, const struct summary *summary)
+{
+    for (unsigned i = 0; i < summary->buses; i++) {
+        const struct summary_bus *bus = &summary->bus[i];
+        char name[8] = "bus";
+
+        if (summary->buses > 1)
+            (void)snprintf(name, sizeof name, "can%u", i % 10);
+        (void)fprintf(stream, "  %-13s %" PRIu64 " frames, load %.1f %% (worst case %.1f %%)\n",
+                      name, bus->frames, bus->load_percent, bus->predicted_percent);
+        write_response(stream, summary, bus);
+    }
 }
 
 static void write_pace(FILE *stream, const struct summary *summary)
@@ -151,9 +167,7 @@ static void write_path(FILE *stream, const struct summary *summary)
                   figures->landing_error_mm, figures->path_error_mm, figures->chord_error_mm);
     (void)fprintf(stream, "  feed step     %.3g mm/s at most at a joint\n",
                   figures->joint_feed_step_mm_s);
-    (void)fprintf(stream, "  bus           %" PRIu64 " frames, load %.1f %% (worst case %.1f %%)\n",
-                  summary->bus_frames, summary->bus_load_percent, summary->bus_predicted_percent);
-    write_response(stream, summary);
+    write_buses(stream, summary);
     drives_table_write_text(stream, &summary->drives);
     write_pace(stream, summary);
     summary_steps_write_text(stream, summary);

@@ -191,7 +191,7 @@ static void update_health(struct serving *s)
 {
     const struct cycle_cost *cost = &s->cost;
     const struct service_health health = {
-        .bus_load_percent = field_get_load_percent(&s->field),
+        .bus_load_percent = field_get_highest_load_percent(&s->field),
         .cycle_min_ns = (uint32_t)cost->min_ns,
         .cycle_mean_ns = (uint32_t)(cost->sum_ns / cost->count),
         .cycle_max_ns = (uint32_t)cost->max_ns,

@@ -38,11 +38,12 @@ static void set_axes(struct page_setup *setup, const struct machine *machine)
 }
 
 /* The axis whose drive has this node, else the node as it is. */
-static void name_drive(struct page_drive *drive, const struct machine *machine)
+static void name_drive(struct page_drive *drive, unsigned bus, const struct machine *machine)
 {
     (void)snprintf(drive->name, sizeof drive->name, "node %u", drive->node);
     for (unsigned i = 0; i < AXIS_COUNT; i++) {
-        if (machine->axis[i].present && machine->axis[i].drive_node == drive->node)
+        if (machine->axis[i].present && machine->axis[i].drive_node == drive->node &&
+            machine->axis[i].drive_bus == bus)
             (void)snprintf(drive->name, sizeof drive->name, "%c", AXIS_LETTERS[i]);
     }
 }
@@ -50,14 +51,14 @@ static void name_drive(struct page_drive *drive, const struct machine *machine)
 static void set_drives(struct page_setup *setup, const struct field *field,
                        const struct machine *machine)
 {
-    if (field->link != NULL)
+    if (field->is_outside)
         return;
     for (unsigned i = 0; i < field->drives.count && i < PAGE_DRIVES_MAX; i++) {
         struct page_drive *drive = &setup->drive[setup->drives++];
 
         drive->node = field->drives.drive[i].servo.config.node;
         drive->dictionary = field->drives.drive[i].servo.dictionary;
-        name_drive(drive, machine);
+        name_drive(drive, field->drives.drive[i].bus, machine);
     }
 }
 
@@ -173,28 +174,37 @@ static void read_tables(const struct serving *s, struct page_job *job)
         memcpy(job->tools, config->tools, job->tools_count * sizeof *job->tools);
 }
 
-static void read_responses(const struct bus *bus, struct page_bus *shown)
+static void read_responses(const struct field *field, struct page_bus *shown)
 {
     shown->responses = 0;
     for (unsigned id = 0; id < BUS_ID_COUNT && shown->responses < PAGE_RESPONSES_MAX; id++) {
-        const uint32_t longest_ns = bus_get_response_max_ns(bus, id);
+        uint32_t longest_ns = 0;
 
+        for (unsigned i = 0; i < field->buses; i++) {
+            const uint32_t own_ns = bus_get_response_max_ns(&field->bus[i], id);
+
+            longest_ns = own_ns > longest_ns ? own_ns : longest_ns;
+        }
         if (longest_ns > 0)
             shown->response[shown->responses++] = (struct page_response){(uint16_t)id, longest_ns};
     }
 }
 
+/* Of several buses: their frames together, the highest load, the longest response. */
 static void read_bus(const struct serving *s, struct page_bus *shown)
 {
     const struct inject_clock *clock = virtual_drives_get_clock(&s->field.drives);
-    const struct bus_counts *counts = &s->field.bus.counts;
 
-    shown->load_percent = field_get_load_percent(&s->field);
-    shown->frames = counts->frames;
-    shown->error_frames = counts->error_frames;
-    shown->dropped = counts->dropped;
-    shown->refused = counts->refused + counts->receive_lost;
-    read_responses(&s->field.bus, shown);
+    shown->load_percent = field_get_highest_load_percent(&s->field);
+    for (unsigned i = 0; i < s->field.buses; i++) {
+        const struct bus_counts *counts = &s->field.bus[i].counts;
+
+        shown->frames += counts->frames;
+        shown->error_frames += counts->error_frames;
+        shown->dropped += counts->dropped;
+        shown->refused += counts->refused + counts->receive_lost;
+    }
+    read_responses(&s->field, shown);
     shown->faults = s->page.faults.count;
     for (unsigned i = 0; i < shown->faults; i++)
         shown->fault[i] = (struct page_fault){s->page.faults.fault[i],
@@ -232,12 +242,15 @@ static bool begin_fault(struct serving *s, const struct inject_fault *fault)
     uint8_t nodes[VIRTUAL_DRIVES_MAX];
     struct inject one = {.count = 1, .fault = {*fault}};
 
+    if (fault->bus >= s->field.buses)
+        return false;
     s->page.faults.fault[s->page.faults.count++] = *fault;
     if (!inject_is_of_bus(fault->kind))
         return true;
-    for (unsigned i = 0; i < drives->count; i++)
-        nodes[i] = drives->drive[i].servo.config.node;
-    return inject_bus_add(&s->field.bus, &one, INJECT_POWER, 0, nodes, drives->count);
+    const unsigned count = virtual_drives_on_bus(drives, fault->bus, nodes);
+
+    return inject_bus_add(&s->field.bus[fault->bus], fault->bus, &one, INJECT_POWER, 0, nodes,
+                          count);
 }
 
 static void add_fault(struct serving *s, struct page_job *job)
@@ -262,7 +275,8 @@ static void end_faults(struct serving *s)
             fault->for_ns > now_ns - fault->after_ns)
             fault->for_ns = now_ns - fault->after_ns;
     }
-    bus_end_faults(&s->field.bus);
+    for (unsigned i = 0; i < s->field.buses; i++)
+        bus_end_faults(&s->field.bus[i]);
 }
 
 static void do_job(struct serving *s, struct page_job *job)
@@ -343,7 +357,7 @@ enum command_status serving_page_open(struct serving *s)
         return STATUS_DONE;
     serving_page_set_up(&s->page.setup, &s->session.setup.machine);
     set_drives(&s->page.setup, &s->field, &s->session.setup.machine);
-    if (s->field.link == NULL)
+    if (!s->field.is_outside)
         virtual_drives_inject(&s->field.drives, &s->page.faults);
     s->page.server = page_server_open(&config, &problem);
     return s->page.server != NULL ? STATUS_DONE : has_failed(s, problem);

@@ -36,12 +36,8 @@ void bus_log_observe_link(struct bus_log *log, struct link *link)
 
 void bus_log_observe_field(struct bus_log *log, struct field *field)
 {
-    if (log->file == NULL)
-        return;
-    if (field->link != NULL)
-        field_observe_outside(field, &(struct wire_listener){candump_wire, &log->dump});
-    else
-        frame_buffer_attach(&log->frames, &field->bus, &log->dump);
+    if (log->file != NULL)
+        field_log(field, &log->frames, &log->dump);
 }
 
 void bus_log_keep(struct bus_log *log)

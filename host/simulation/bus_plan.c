@@ -67,12 +67,12 @@ static void add_errors(struct bus_plan *plan)
         add_message(plan, "TPDO2", highest, plan->error_length, BUS_PLAN_ERRORS);
 }
 
-static void add_states(struct bus_plan *plan, const struct drives *drives)
+static void add_states(struct bus_plan *plan, const struct drives *drives, unsigned bus)
 {
     const unsigned id = NMT_HEARTBEAT_FUNCTION + NODE_MIN;
 
     add_message(plan, "heartbeat", id, HEARTBEAT_LENGTH, BUS_PLAN_STATES);
-    if (drives_are_guarding(drives)) {
+    if (drives_are_guarding(drives, bus)) {
         add_message(plan, "guarding", id + 1, 0, BUS_PLAN_STATES);
         plan->message[plan->count - 1].is_remote = true;
         add_message(plan, "its answer", id + 2, HEARTBEAT_LENGTH, BUS_PLAN_STATES);
@@ -89,10 +89,11 @@ static void level_groups(struct bus_plan *plan)
                 plan->worst_ns[i] = plan->worst_ns[k];
 }
 
-void bus_plan_set(struct bus_plan *plan, const struct machine *machine, const struct drives *drives)
+void bus_plan_set(struct bus_plan *plan, const struct machine *machine, const struct drives *drives,
+                  unsigned bus)
 {
     struct drives_pdo pdo[DRIVES_CYCLE_PDOS_MAX];
-    unsigned count = drives_get_pdos(drives, pdo);
+    unsigned count = drives_get_pdos(drives, bus, pdo);
 
     memset(plan, 0, sizeof *plan);
     plan->rates = machine_setup_get_rates(machine);
@@ -107,7 +108,7 @@ void bus_plan_set(struct bus_plan *plan, const struct machine *machine, const st
         add_message(plan, "SDO request", SDO_REQUEST_FUNCTION + NODE_MIN, CAN_CLASSIC_MAX,
                     BUS_PLAN_SDO);
     }
-    add_states(plan, drives);
+    add_states(plan, drives, bus);
     (void)bus_response_predict(plan->message, plan->count, &plan->rates, plan->worst_ns);
     level_groups(plan);
 }

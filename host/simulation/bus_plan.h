@@ -35,8 +35,8 @@ struct bus_plan {
     uint64_t worst_ns[BUS_PLAN_MAX]; /* from being given to the last bit; UINT64_MAX: no bound */
 };
 
-void bus_plan_set(struct bus_plan *plan, const struct machine *machine,
-                  const struct drives *drives);
+void bus_plan_set(struct bus_plan *plan, const struct machine *machine, const struct drives *drives,
+                  unsigned bus);
 
 /* What messages have taken at most on this bus since bus_clear_responses; 0: none was sent. */
 void bus_plan_get_observed(const struct bus_plan *plan, const struct bus *bus,

@@ -14,7 +14,8 @@
 /* Of one run. */
 struct drives_table {
     uint32_t given_up[AXIS_COUNT]; /* bits of enum drives_given_up */
-    struct drives_load load;       /* percent 0: the drives have not been started */
+    struct drives_load load[CAN_BUSES_MAX];
+    /* of each bus */ /* percent 0: the drives have not been started */
 };
 
 void drives_table_set(struct drives_table *table, const struct drives *drives);

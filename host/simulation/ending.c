@@ -46,7 +46,7 @@ static bool is_switching(struct ending *ending, struct controller *c)
     if (!ending->stays_on || drives_get_fault(&c->drives)->code != TAKT_ERROR_ENDED ||
         are_switched_on(c) || ending->switching_cycles++ >= SWITCHING_CYCLES_MAX)
         return false;
-    drives_switch_on_at_rest(&c->drives, &c->can);
+    drives_switch_on_at_rest(&c->drives, c->can.port);
     return true;
 }
 

@@ -1,29 +1,58 @@
 #include "simulation/field.h"
 
+#include "base/maths.h"
 #include "cli/message.h"
 #include "config/data_sheet.h"
 #include "drives/dictionary_read.h"
 #include "simulation/inject_bus.h"
 
+#include <stdio.h>
 #include <string.h>
+
+/* The next of several addresses. False: there is none. */
+static bool next_address(const char **list, char address[FIELD_ADDRESS_MAX + 1])
+{
+    const char *at = *list;
+
+    if (at == NULL)
+        return false;
+    const char *comma = strchr(at, ',');
+    const size_t length = comma != NULL ? (size_t)(comma - at) : strlen(at);
+
+    (void)snprintf(address, FIELD_ADDRESS_MAX + 1, "%.*s", (int)length, at);
+    *list = comma != NULL ? comma + 1 : NULL;
+    return true;
+}
 
 static bool is_outside(const struct field_options *options)
 {
+    char address[FIELD_ADDRESS_MAX + 1];
     enum link_kind kind = LINK_EMBEDDED;
     struct link_error error;
+    const char *list = options->bus;
 
-    return options->bus != NULL && link_check(options->bus, &kind, &error) && kind != LINK_EMBEDDED;
+    return next_address(&list, address) && link_check(address, &kind, &error) &&
+           kind != LINK_EMBEDDED;
 }
 
-static bool check_bus(const char *bus)
+static bool check_bus(const char *list)
 {
+    char address[FIELD_ADDRESS_MAX + 1];
+    const bool is_single = list == NULL || strchr(list, ',') == NULL;
     enum link_kind kind;
     struct link_error error;
 
-    if (bus == NULL || link_check(bus, &kind, &error))
-        return true;
-    message_command_error("--bus: %s", error.text);
-    return false;
+    while (next_address(&list, address)) {
+        if (!link_check(address, &kind, &error)) {
+            message_command_error("--bus: %s", error.text);
+            return false;
+        }
+        if (kind == LINK_EMBEDDED && !is_single) {
+            message_command_error("--bus: embedded are all buses, or none: it stands alone");
+            return false;
+        }
+    }
+    return true;
 }
 
 /* Where the drives are images, and nowhere else, their file is given. */
@@ -73,15 +102,19 @@ bool field_check_options(const struct field_options *options)
     return true;
 }
 
-/* Faults of the bus whose time counts from this anchor. */
+/* Faults of the buses whose time counts from this anchor. */
 static bool add_faults(struct field *field, const struct inject *script, enum inject_anchor anchor,
                        uint64_t anchor_ns)
 {
-    uint8_t nodes[VIRTUAL_DRIVES_MAX];
+    bool good = true;
 
-    for (unsigned i = 0; i < field->drives.count; i++)
-        nodes[i] = field->drives.drive[i].servo.config.node;
-    return inject_bus_add(&field->bus, script, anchor, anchor_ns, nodes, field->drives.count);
+    for (unsigned i = 0; i < field->buses && good; i++) {
+        uint8_t nodes[VIRTUAL_DRIVES_MAX];
+        const unsigned count = virtual_drives_on_bus(&field->drives, i, nodes);
+
+        good = inject_bus_add(&field->bus[i], i, script, anchor, anchor_ns, nodes, count);
+    }
+    return good;
 }
 
 static bool start_faults(struct field *field)
@@ -122,53 +155,84 @@ static bool open_inside(struct field *field, const struct machine_setup *setup,
 
     const struct frame_rates rates = machine_setup_get_rates(&setup->machine);
 
-    (void)bus_init_rates(&field->bus, &rates); /* checked with the machine */
-    field->port = bus_attach(&field->bus, NULL);
+    for (unsigned i = 0; i < field->buses; i++) {
+        (void)bus_init_rates(&field->bus[i], &rates); /* checked with the machine */
+        field->can.port[i] = bus_attach(&field->bus[i], NULL);
+    }
     if (!data_sheet_set_machine(&drives, setup, field->sheet))
         return false;
     if (options->drive_image != NULL &&
         !drive_images_open(&field->images, options->drives, options->drive_image, &drives))
         return false;
-    virtual_drives_init(&field->drives, &field->bus, &drives);
+    virtual_drives_init(&field->drives, field->bus, &drives);
     return start_faults(field);
 }
 
 static void count_frame(void *context, const struct wire_frame *frame, uint64_t time_ns)
 {
-    struct field_traffic *traffic = context;
+    struct field_link *outside = context;
 
     if (!(frame->flags & WIRE_ERROR)) {
-        traffic->frames++;
-        struct frame_length length = frame_bits_count_wire(&traffic->tables, frame);
+        outside->frames++;
+        struct frame_length length = frame_bits_count_wire(&outside->tables, frame);
 
         length.nominal += FRAME_BITS_INTERMISSION;
-        traffic->busy_ns += frame_bits_ns(&traffic->times, &length);
+        outside->busy_ns += frame_bits_ns(&outside->times, &length);
     }
-    if (traffic->next.on_frame != NULL)
-        traffic->next.on_frame(traffic->next.context, frame, time_ns);
+    if (outside->log != NULL) {
+        candump_select(outside->log, outside->bus);
+        candump_wire(outside->log, frame, time_ns);
+    }
 }
 
-static enum command_status open_outside(struct field *field, const struct machine_setup *setup,
-                                        const char *bus)
+static enum command_status open_link(struct field *field, const struct machine_setup *setup,
+                                     unsigned bus)
 {
+    struct field_link *outside = &field->outside[bus];
     const struct frame_rates rates = machine_setup_get_rates(&setup->machine);
     struct link_config config = {.bitrate = rates.nominal, .data_bitrate = rates.data};
     struct link_error error;
     uint8_t nodes[MACHINE_NODES_MAX];
-    const unsigned count = machine_drive_nodes(&setup->machine, nodes);
+    const unsigned count = machine_bus_nodes(&setup->machine, bus, nodes);
 
-    field->link = link_open(bus, &config, &error);
-    if (field->link == NULL) {
+    outside->bus = bus;
+    outside->link = link_open(outside->address, &config, &error);
+    if (outside->link == NULL) {
         message_command_error("--bus: %s", error.text);
         return error.is_environment ? STATUS_ENVIRONMENT : STATUS_INPUT;
     }
-    frame_bits_init(&field->traffic.tables);
-    field->traffic.times = frame_bits_times(&rates);
-    link_observe(field->link, &(struct wire_listener){count_frame, &field->traffic});
-    bus_return_init(&field->way_back, bus, &config);
-    lockstep_init(&field->lockstep, field->link, field->cycle_ns, nodes, count);
-    field->port = lockstep_get_port(&field->lockstep);
+    frame_bits_init(&outside->tables);
+    outside->times = frame_bits_times(&rates);
+    link_observe(outside->link, &(struct wire_listener){count_frame, outside});
+    bus_return_init(&outside->way_back, outside->address, &config);
+    lockstep_init(&outside->lockstep, outside->link, bus, field->cycle_ns, nodes, count);
+    field->can.port[bus] = lockstep_get_port(&outside->lockstep);
     return STATUS_DONE;
+}
+
+/* An address for each bus. */
+static enum command_status open_outside(struct field *field, const struct machine_setup *setup,
+                                        const char *list)
+{
+    enum command_status status = STATUS_DONE;
+    char address[FIELD_ADDRESS_MAX + 1];
+    unsigned count = 0;
+
+    field->is_outside = true;
+    for (; next_address(&list, address); count++) {
+        if (count < field->buses)
+            memcpy(field->outside[count].address, address, sizeof address);
+    }
+    if (count != field->buses) {
+        message_command_error("--bus: %u address%s, and the machine has %u bus%s: one for each, "
+                              "with commas between them",
+                              count, count == 1 ? "" : "es", field->buses,
+                              field->buses == 1 ? "" : "es");
+        return STATUS_INPUT;
+    }
+    for (unsigned bus = 0; bus < field->buses && status == STATUS_DONE; bus++)
+        status = open_link(field, setup, bus);
+    return status;
 }
 
 static void start_steppers(struct field *field, const struct machine_setup *setup)
@@ -195,6 +259,7 @@ enum command_status field_open(struct field *field, const struct machine_setup *
     enum command_status status = STATUS_DONE;
 
     memset(field, 0, sizeof *field);
+    field->buses = machine_bus_count(&setup->machine);
     field->cycle_ns = (uint64_t)setup->machine.cycle_us * 1000;
     field->script = options->script;
     field->returns = options->returns;
@@ -212,22 +277,25 @@ enum command_status field_open(struct field *field, const struct machine_setup *
 
 void field_close(struct field *field)
 {
-    bus_return_stop(&field->way_back);
-    link_close(field->link);
+    for (unsigned i = 0; i < field->buses && field->is_outside; i++) {
+        bus_return_stop(&field->outside[i].way_back);
+        link_close(field->outside[i].link);
+        field->outside[i].link = NULL;
+    }
     drive_images_close(&field->images);
-    field->link = NULL;
     for (unsigned i = 0; i < DATA_SHEETS_MAX; i++)
         dictionary_free(&field->sheet[i]);
 }
 
 void field_watch_drives(struct field *field, const struct drives *drives)
 {
-    field->lockstep.drives = drives;
+    for (unsigned i = 0; i < field->buses; i++)
+        field->outside[i].lockstep.drives = drives;
 }
 
-struct can_port field_get_port(struct field *field)
+struct can_buses field_get_port(struct field *field)
 {
-    return field->port;
+    return field->can;
 }
 
 struct step_port field_get_step_port(struct field *field)
@@ -237,57 +305,86 @@ struct step_port field_get_step_port(struct field *field)
 
 static void end_inside(struct field *field)
 {
-    bus_run_until(&field->bus, field->cycles * field->cycle_ns);
+    for (unsigned i = 0; i < field->buses; i++)
+        bus_run_until(&field->bus[i], field->cycles * field->cycle_ns);
     virtual_drives_step(&field->drives, (uint32_t)field->cycle_ns);
     if (field->script != NULL && !field->has_enabled_faults)
         add_enabled_faults(field);
 }
 
-/* The controller's port stays the same; what comes over it is new. */
-static void take_back(struct field *field, struct link *link)
+static bool is_gone(const struct field_link *outside)
 {
-    link_close(field->link);
-    field->link = link;
-    field->is_lost = false;
-    link_observe(link, &(struct wire_listener){count_frame, &field->traffic});
-    lockstep_set_link(&field->lockstep, link);
-    message_command_warning("the bus is back: %s", field->way_back.spec);
+    return link_get_problem(outside->link)[0] != '\0';
 }
 
-static void look_for_bus(struct field *field)
+/* The controller's port stays the same; what comes over it is new. */
+static void take_back(struct field_link *outside, struct link *link)
+{
+    link_close(outside->link);
+    outside->link = link;
+    outside->is_lost = false;
+    link_observe(link, &(struct wire_listener){count_frame, outside});
+    lockstep_set_link(&outside->lockstep, link);
+    message_command_warning("the bus is back: %s", outside->way_back.spec);
+}
+
+static void look_for_bus(struct field_link *outside)
 {
     struct link *link;
 
-    if (!field->is_lost)
-        message_command_warning("%s; it is looked for", link_get_problem(field->link));
-    field->is_lost = true;
-    link = bus_return_look(&field->way_back, link_clock_ns());
+    if (!outside->is_lost)
+        message_command_warning("%s; it is looked for", link_get_problem(outside->link));
+    outside->is_lost = true;
+    link = bus_return_look(&outside->way_back, link_clock_ns());
     if (link != NULL)
-        take_back(field, link);
+        take_back(outside, link);
+}
+
+/* Those that are gone end at once, the others when they should. */
+static bool end_outside_at(struct field *field, uint64_t next_ns)
+{
+    bool good = true;
+
+    for (unsigned i = 0; i < field->buses; i++)
+        good = lockstep_end_cycle_at(&field->outside[i].lockstep, next_ns) && good;
+    return good;
+}
+
+static bool end_outside(struct field *field)
+{
+    bool good = true;
+
+    for (unsigned i = 0; i < field->buses && good; i++)
+        good = lockstep_end_cycle(&field->outside[i].lockstep);
+    return good;
 }
 
 static bool end_paced(struct field *field)
 {
     bool good = true;
 
-    if (field->link == NULL)
+    if (!field->is_outside)
         end_inside(field);
     uint64_t next_ns = pace_end_work(&field->pace);
-    if (field->link != NULL)
-        good = lockstep_end_cycle_at(&field->lockstep, next_ns);
+    if (field->is_outside)
+        good = end_outside_at(field, next_ns);
     pace_sleep(&field->pace);
     pace_begin_cycle(&field->pace);
-    if (!good && field->returns)
-        look_for_bus(field);
+    for (unsigned i = 0; i < field->buses && !good && field->returns; i++) {
+        if (is_gone(&field->outside[i]))
+            look_for_bus(&field->outside[i]);
+    }
     return good || field->returns;
 }
 
-static void tell_warning(struct field *field)
+static void tell_warnings(struct field *field)
 {
     char text[LOCKSTEP_TEXT_MAX + 1];
 
-    if (lockstep_take_warning(&field->lockstep, text))
-        message_command_warning("%s", text);
+    for (unsigned i = 0; i < field->buses; i++) {
+        if (lockstep_take_warning(&field->outside[i].lockstep, text))
+            message_command_warning("%s", text);
+    }
 }
 
 bool field_end_cycle(struct field *field)
@@ -298,41 +395,83 @@ bool field_end_cycle(struct field *field)
     virtual_steppers_end_cycle(&field->steppers);
     if (field->is_paced)
         good = end_paced(field);
-    else if (field->link != NULL)
-        good = lockstep_end_cycle(&field->lockstep);
+    else if (field->is_outside)
+        good = end_outside(field);
     else
         end_inside(field);
-    if (field->link != NULL)
-        tell_warning(field);
+    tell_warnings(field);
     return good && drive_images_problem(&field->images) == NULL;
+}
+
+static const struct field_link *find_lost(const struct field *field)
+{
+    for (unsigned i = 0; i < field->buses && field->is_outside; i++) {
+        if (is_gone(&field->outside[i]))
+            return &field->outside[i];
+    }
+    return NULL;
 }
 
 bool field_is_lost(const struct field *field)
 {
-    return field->link != NULL && link_get_problem(field->link)[0] != '\0';
+    return find_lost(field) != NULL;
 }
 
 const char *field_get_problem(struct field *field)
 {
-    return field_is_lost(field) ? link_get_problem(field->link)
-                                : drive_images_problem(&field->images);
+    const struct field_link *lost = find_lost(field);
+
+    return lost != NULL ? link_get_problem(lost->link) : drive_images_problem(&field->images);
 }
 
-void field_observe_outside(struct field *field, const struct wire_listener *listener)
+void field_log(struct field *field, struct frame_buffer *frames, struct candump *log)
 {
-    field->traffic.next = *listener;
+    for (unsigned i = 0; i < field->buses; i++)
+        field->outside[i].log = log;
+    if (!field->is_outside)
+        frame_buffer_attach(frames, field->bus, field->buses, log);
 }
 
-uint64_t field_get_frames(const struct field *field)
+void field_clear_responses(struct field *field)
 {
-    return field->link == NULL ? field->bus.counts.frames : field->traffic.frames;
+    for (unsigned i = 0; i < field->buses && !field->is_outside; i++)
+        bus_clear_responses(&field->bus[i]);
 }
 
-double field_get_load_percent(const struct field *field)
+void field_end_responses(struct field *field)
 {
-    if (field->link == NULL)
-        return bus_load_percent(&field->bus);
+    for (unsigned i = 0; i < field->buses && !field->is_outside; i++)
+        bus_end_responses(&field->bus[i]);
+}
+
+bool field_is_sound(const struct field *field)
+{
+    bool is_sound = true;
+
+    for (unsigned i = 0; i < field->buses; i++)
+        is_sound = is_sound && field->bus[i].fault_count == 0;
+    return is_sound;
+}
+
+uint64_t field_get_frames(const struct field *field, unsigned bus)
+{
+    return field->is_outside ? field->outside[bus].frames : field->bus[bus].counts.frames;
+}
+
+double field_get_load_percent(const struct field *field, unsigned bus)
+{
+    if (!field->is_outside)
+        return bus_load_percent(&field->bus[bus]);
     if (field->cycles == 0)
         return 0;
-    return 100.0 * (double)field->traffic.busy_ns / (double)(field->cycles * field->cycle_ns);
+    return 100.0 * (double)field->outside[bus].busy_ns / (double)(field->cycles * field->cycle_ns);
+}
+
+double field_get_highest_load_percent(const struct field *field)
+{
+    double highest = 0;
+
+    for (unsigned i = 0; i < field->buses; i++)
+        highest = maths_max(highest, field_get_load_percent(field, i));
+    return highest;
 }

@@ -1,7 +1,7 @@
 /*
- * What a controller is connected to: a CAN bus and the drives on it.
+ * What a controller is connected to: CAN buses and the drives on them.
  *
- * Bus and drives are virtual and inside this process (virtual time: as fast as it goes), or
+ * Buses and drives are virtual and inside this process (virtual time: as fast as it goes), or
  * outside: then a cycle lasts until all drives have answered (simulation/lockstep.h). Either may be paced
  * by the wall clock instead.
  */
@@ -15,6 +15,7 @@
 #include "drives/virtual_drives.h"
 #include "simulation/bus_return.h"
 #include "simulation/drive_images.h"
+#include "simulation/frame_buffer.h"
 #include "simulation/lockstep.h"
 #include "simulation/pace.h"
 #include "stepper/virtual_steppers.h"
@@ -22,32 +23,38 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-/* What has gone over an outside bus. */
-struct field_traffic {
+#define FIELD_ADDRESS_MAX 511
+
+/* A bus outside, and what has gone over it. */
+struct field_link {
+    char address[FIELD_ADDRESS_MAX + 1];
+    struct link *link;
+    bool is_lost; /* it has been told */
+    struct bus_return way_back;
+    struct lockstep lockstep;
     struct frame_bits tables;
     uint64_t frames;
     struct frame_times times;
-    uint64_t busy_ns;          /* intermissions included */
-    struct wire_listener next; /* sees them too */
+    uint64_t busy_ns; /* intermissions included */
+    unsigned bus;
+    struct candump *log; /* its frames go there, too; NULL: nowhere */
 };
 
 /* It must not be moved once opened. Private but for bus and drives. */
 struct field {
-    struct bus bus; /* both: not used with an outside bus */
+    unsigned buses;
+    struct bus bus[CAN_BUSES_MAX]; /* both: not used with outside buses */
     struct virtual_drives drives;
     struct drive_images images; /* of the drives; none: they run here alone */
     struct dictionary
         sheet[MACHINE_SETUP_DRIVES_MAX]; /* of the drives, by axis; empty: takt's own */
     struct virtual_steppers steppers;    /* inside, whatever the bus */
     const struct inject *script;         /* of faults; NULL: none */
-    bool has_enabled_faults; /* those that count from the drives' being enabled are on the bus */
-    struct link *link;       /* NULL: bus and drives are inside */
-    bool returns;            /* a link that is lost is opened again */
-    bool is_lost;            /* it has not been yet */
-    struct bus_return way_back;
-    struct lockstep lockstep;
-    struct field_traffic traffic;
-    struct can_port port;
+    bool has_enabled_faults; /* those that count from the drives' being enabled are on the buses */
+    bool is_outside;         /* buses and drives are not inside, but: */
+    struct field_link outside[CAN_BUSES_MAX];
+    bool returns; /* a link that is lost is opened again */
+    struct can_buses can;
     uint64_t cycles; /* ended */
     uint64_t cycle_ns;
     bool is_paced;
@@ -59,8 +66,8 @@ struct field {
  * What the options --bus, --drives and --realtime say. Texts may be NULL: not given.
  */
 struct field_options {
-    const char *bus;         /* bus/link.h */
-    const char *drives;      /* internal, external, or where an image of each runs: m4f, m7 */
+    const char *bus;    /* bus/link.h; of several buses one after the other, with commas between */
+    const char *drives; /* internal, external, or where an image of each runs: m4f, m7 */
     const char *drive_image; /* its file */
     bool is_paced;
     bool returns;    /* an outside bus that is lost is opened again; with is_paced */
@@ -86,8 +93,8 @@ void field_watch_drives(struct field *field, const struct drives *drives);
  */
 bool field_add_faults(struct field *field, const struct inject *script, unsigned first);
 
-/* The controller's bus. */
-struct can_port field_get_port(struct field *field);
+/* The controller's buses. */
+struct can_buses field_get_port(struct field *field);
 /* Its step drives. */
 struct step_port field_get_step_port(struct field *field);
 
@@ -97,20 +104,29 @@ struct step_port field_get_step_port(struct field *field);
  */
 bool field_end_cycle(struct field *field);
 
-/* The outside bus is gone, and not back yet. */
+/* An outside bus is gone, and not back yet. */
 bool field_is_lost(const struct field *field);
 
 /* What an outside bus, or an image of a drive, died of; NULL: it has not. */
 const char *field_get_problem(struct field *field);
 
-/* Every frame on an outside bus from now on, with the time since 1970. */
-void field_observe_outside(struct field *field, const struct wire_listener *listener);
+/* Every frame on any bus from now on: of buses inside by frame_buffer_write, of others with the time since 1970. */
+void field_log(struct field *field, struct frame_buffer *frames, struct candump *log);
 
-uint64_t field_get_frames(const struct field *field);
+/* Of buses inside: bus_clear_responses, bus_end_responses. */
+void field_clear_responses(struct field *field);
+void field_end_responses(struct field *field);
+
+/* False: faults have been put on a bus inside. */
+bool field_is_sound(const struct field *field);
+
+uint64_t field_get_frames(const struct field *field, unsigned bus);
 /*
  * Percent of the cycles' time; of an outside bus: as if its frames took what the machine's bit rates
  * say.
  */
-double field_get_load_percent(const struct field *field);
+double field_get_load_percent(const struct field *field, unsigned bus);
+/* Of the bus that has the most. */
+double field_get_highest_load_percent(const struct field *field);
 
 #endif

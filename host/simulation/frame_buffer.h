@@ -9,21 +9,29 @@
 
 #include <stdint.h>
 
-/* More than a bus can carry in the longest cycle: 10 ms at 1 Mbit/s are 212 frames without data. */
-#define FRAME_BUFFER_MAX 256
+/* More than the buses can carry in the longest cycle: 10 ms at 1 Mbit/s are 212 frames without data. */
+#define FRAME_BUFFER_MAX (256 * CAN_BUSES_MAX)
+
+struct frame_seen {
+    struct can_frame frame;
+    uint8_t bus;
+    uint64_t time_ns;
+};
 
 struct frame_buffer {
     unsigned count;
     struct candump *log; /* the caller's */
-    struct {
-        struct can_frame frame;
-        uint64_t time_ns;
-    } seen[FRAME_BUFFER_MAX];
+    struct frame_buffer_tap {
+        struct frame_buffer *buffer;
+        uint8_t bus;
+    } tap[CAN_BUSES_MAX];
+    struct frame_seen seen[FRAME_BUFFER_MAX];
 };
 
-/* From now on every frame of the bus is kept until the next frame_buffer_write. */
-void frame_buffer_attach(struct frame_buffer *buffer, struct bus *bus, struct candump *log);
-/* Hands what was kept to the log. */
+/* From now on every frame of these buses is kept until the next frame_buffer_write. */
+void frame_buffer_attach(struct frame_buffer *buffer, struct bus bus[], unsigned count,
+                         struct candump *log);
+/* Hands what was kept to the log, in the order of time. */
 void frame_buffer_write(struct frame_buffer *buffer);
 
 #endif

@@ -53,14 +53,15 @@ static struct bus_fault translate(const struct inject_fault *fault, uint64_t anc
     return translated;
 }
 
-bool inject_bus_add(struct bus *bus, const struct inject *script, enum inject_anchor anchor,
-                    uint64_t anchor_ns, const uint8_t nodes[], unsigned count)
+bool inject_bus_add(struct bus *bus, unsigned index, const struct inject *script,
+                    enum inject_anchor anchor, uint64_t anchor_ns, const uint8_t nodes[],
+                    unsigned count)
 {
     for (unsigned i = 0; i < script->count; i++) {
         const struct inject_fault *fault = &script->fault[i];
         struct bus_fault translated;
 
-        if (!inject_is_of_bus(fault->kind) || fault->anchor != anchor)
+        if (!inject_is_of_bus(fault->kind) || fault->anchor != anchor || fault->bus != index)
             continue;
         translated = translate(fault, anchor_ns, nodes, count);
         if (!bus_add_fault(bus, &translated)) {

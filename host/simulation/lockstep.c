@@ -10,12 +10,13 @@
 
 static_assert((LOCKSTEP_FRAMES_MAX & (LOCKSTEP_FRAMES_MAX - 1)) == 0, "frame indices are masked");
 
-void lockstep_init(struct lockstep *lockstep, struct link *link, uint64_t cycle_ns,
+void lockstep_init(struct lockstep *lockstep, struct link *link, unsigned bus, uint64_t cycle_ns,
                    const uint8_t nodes[], unsigned count)
 {
     assert(count <= AXIS_COUNT);
     memset(lockstep, 0, sizeof *lockstep);
     lockstep->link = link;
+    lockstep->bus = bus;
     lockstep->link_port = link_get_port(link);
     lockstep->cycle_ns = cycle_ns;
     lockstep->cycle_start_ns = link_clock_ns();
@@ -74,7 +75,7 @@ static void keep_frame(struct lockstep *lockstep, const struct can_frame *frame)
 static unsigned report_of(const struct lockstep *lockstep, uint16_t id)
 {
     if (lockstep->drives != NULL)
-        return drives_get_report(lockstep->drives, id);
+        return drives_get_report(lockstep->drives, lockstep->bus, id);
     return node_function(id) == PDO_TPDO1_FUNCTION ? DRIVES_REPORTS_ALL : 0;
 }
 

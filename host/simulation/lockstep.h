@@ -46,6 +46,7 @@ struct lockstep_drive {
 /* Private. */
 struct lockstep {
     struct link *link;           /* the caller's */
+    unsigned bus;                /* of the machine that it is */
     const struct drives *drives; /* of the controller: which frames are answers; NULL: TPDO1 is */
     struct can_port link_port;
     uint64_t cycle_ns;
@@ -57,8 +58,8 @@ struct lockstep {
     char warning[LOCKSTEP_TEXT_MAX + 1];
 };
 
-/* link: open, and usable as long as the lockstep. nodes: of the drives to wait for. */
-void lockstep_init(struct lockstep *lockstep, struct link *link, uint64_t cycle_ns,
+/* link: open, and usable as long as the lockstep. nodes: of the drives on this bus, which are waited for. */
+void lockstep_init(struct lockstep *lockstep, struct link *link, unsigned bus, uint64_t cycle_ns,
                    const uint8_t nodes[], unsigned count);
 
 /* Another link in the place of one that is gone; drives are in step anew. */

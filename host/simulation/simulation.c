@@ -36,11 +36,11 @@ static void say(void *simulation, const struct program *p)
 }
 
 static void start_controller(struct simulation *s, const struct session *session,
-                             struct can_port port)
+                             struct can_buses can)
 {
     struct controller_config config = {
         .machine = &session->setup.machine,
-        .can = port,
+        .can = can,
         .dcf = session->configurations.dcf,
         .step = field_get_step_port(&s->field),
         .tools = &session->tools.table,
@@ -65,35 +65,42 @@ static void start_controller(struct simulation *s, const struct session *session
 /* The one of this process; with a target, that as well. */
 static enum command_status start_controllers(struct simulation *s, const struct session *session)
 {
-    const struct can_port bus = field_get_port(&s->field);
+    const struct can_buses can = field_get_port(&s->field);
     enum command_status status;
 
     s->has_target = session->options->target != NULL;
     if (!s->has_target) {
-        start_controller(s, session, bus);
+        start_controller(s, session, can);
         return STATUS_DONE;
     }
-    status = target_setup_open(&s->target, session, &bus);
+    status = target_setup_open(&s->target, session, &can.port[0]);
     if (status == STATUS_DONE)
-        start_controller(s, session, target_get_port(&s->target));
+        start_controller(s, session, can_single(target_get_port(&s->target)));
     return status;
 }
 
 /* The nodes that faults may name. */
 static unsigned list_nodes(const struct machine *machine,
-                           uint8_t nodes[MACHINE_NODES_MAX + IO_NODES_MAX])
+                           uint16_t nodes[MACHINE_NODES_MAX + IO_NODES_MAX])
 {
-    unsigned count = machine_drive_nodes(machine, nodes);
+    unsigned count = 0;
 
+    for (unsigned bus = 0; bus < machine_bus_count(machine); bus++) {
+        uint8_t node[MACHINE_NODES_MAX];
+        const unsigned drives = machine_bus_nodes(machine, bus, node);
+
+        for (unsigned i = 0; i < drives; i++)
+            nodes[count++] = INJECT_ADDRESS(bus, node[i]);
+    }
     for (unsigned i = 0; i < machine_io_count(machine); i++)
-        nodes[count++] = machine->io[i].node;
+        nodes[count++] = INJECT_ADDRESS(machine->io[i].bus, machine->io[i].node);
     return count;
 }
 
 static enum command_status load_faults(struct simulation *s, const struct session *session)
 {
     const char *path = session->options->inject;
-    uint8_t nodes[MACHINE_NODES_MAX + IO_NODES_MAX];
+    uint16_t nodes[MACHINE_NODES_MAX + IO_NODES_MAX];
     const unsigned count = list_nodes(&session->setup.machine, nodes);
 
     if (path == NULL || (inject_file_load(&s->script, path) &&
@@ -156,7 +163,7 @@ enum command_status simulation_open(const struct session *session, struct simula
     tool_point_init(&s->tool_point, &session->setup);
     correction_watch_init(&s->correction, s->tool_point.cycle_s);
     s->program = session->program.name;
-    s->tool_point.is_watched = s->tool_point.is_watched && s->field.link == NULL;
+    s->tool_point.is_watched = s->tool_point.is_watched && !s->field.is_outside;
     *opened = s;
     return STATUS_DONE;
 }
@@ -185,7 +192,7 @@ bool simulation_set_overrides(struct simulation *s, double feed_percent, double 
 
 bool simulation_add_faults(struct simulation *s, const char *name, const char *bytes, size_t length)
 {
-    uint8_t nodes[MACHINE_NODES_MAX + IO_NODES_MAX];
+    uint16_t nodes[MACHINE_NODES_MAX + IO_NODES_MAX];
     const unsigned count = list_nodes(&s->controller.machine, nodes);
     const unsigned first = s->script.count;
     struct inject_error error;
@@ -303,10 +310,10 @@ static void count_responses(struct simulation *s)
 {
     if (!s->has_begun && controller_get_record(&s->controller) != NULL) {
         s->has_begun = true;
-        bus_clear_responses(&s->field.bus);
+        field_clear_responses(&s->field);
     }
     if (s->has_begun && drives_get_state(controller_get_drives(&s->controller)) != DRIVES_ENABLED)
-        bus_end_responses(&s->field.bus);
+        field_end_responses(&s->field);
 }
 
 bool simulation_step(struct simulation *s)

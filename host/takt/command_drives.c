@@ -3,6 +3,7 @@
 
 #include "takt/command.h"
 
+#include "base/maths.h"
 #include "cli/interrupt.h"
 #include "cli/message.h"
 #include "cli/output_file.h"
@@ -42,6 +43,11 @@ struct drives_command {
     struct virtual_probe probe;
 };
 
+static unsigned bus_of(const struct drives_command *command)
+{
+    return (unsigned)maths_min(command->options->can, CAN_BUSES_MAX);
+}
+
 static bool add_drive(struct drives_command *command, unsigned node)
 {
     struct virtual_drives_config *drives = &command->drives;
@@ -59,6 +65,7 @@ static bool add_drive(struct drives_command *command, unsigned node)
     }
     drives->count++;
     *drive = (struct virtual_drive_config){.node = (uint8_t)node,
+                                           .bus = (uint8_t)bus_of(command),
                                            .increments_per_mm = 100000,
                                            .cycle_us = command->setup.machine.cycle_us};
     drive_plant_set_default(&drive->plant);
@@ -71,7 +78,7 @@ static bool use_axis(struct drives_command *command, struct virtual_drive_config
     for (unsigned i = 0; i < AXIS_COUNT; i++) {
         const struct machine_axis *axis = &command->setup.machine.axis[i];
 
-        if (!axis->present || axis->drive_node != drive->node)
+        if (!axis->present || axis->drive_node != drive->node || axis->drive_bus != bus_of(command))
             continue;
         drive->increments_per_mm = axis->increments_per_mm;
         drive->velocity_units_per_mm_s = axis->velocity_units_per_mm_s;
@@ -134,6 +141,18 @@ static bool set_nodes(struct drives_command *command)
     return true;
 }
 
+/* The other buses of the machine are other processes'. */
+static void keep_bus(struct virtual_drives_config *drives, uint32_t bus)
+{
+    unsigned kept = 0;
+
+    for (unsigned i = 0; i < drives->count; i++) {
+        if (drives->drive[i].bus == bus)
+            drives->drive[kept++] = drives->drive[i];
+    }
+    drives->count = kept;
+}
+
 static bool set_drives(struct drives_command *command)
 {
     struct virtual_drives_config *drives = &command->drives;
@@ -141,6 +160,11 @@ static bool set_drives(struct drives_command *command)
                           ? set_nodes(command)
                           : data_sheet_set_machine(drives, &command->setup, command->sheet);
 
+    keep_bus(drives, bus_of(command));
+    if (good && drives->count == 0 && command->options->bus != NULL) {
+        message_command_error("--can %u: the machine has no drive on that bus", bus_of(command));
+        return false;
+    }
     for (unsigned i = 0; i < drives->count; i++) {
         drives->drive[i].is_nameless = command->options->unconfigured;
         if (command->given.count > 0 && !drives->drive[i].is_io)
@@ -152,14 +176,14 @@ static bool set_drives(struct drives_command *command)
 static bool load_script(struct drives_command *command)
 {
     const char *path = command->options->inject;
-    uint8_t nodes[VIRTUAL_DRIVES_MAX];
+    uint16_t nodes[VIRTUAL_DRIVES_MAX];
 
     if (path == NULL)
         return true;
     if (!inject_file_load(&command->script, path))
         return false;
     for (unsigned i = 0; i < command->drives.count; i++)
-        nodes[i] = command->drives.drive[i].node;
+        nodes[i] = INJECT_ADDRESS(command->drives.drive[i].bus, command->drives.drive[i].node);
     if (!inject_file_check_nodes(&command->script, path, nodes, command->drives.count))
         return false;
     for (unsigned i = 0; i < command->script.count; i++) {
@@ -404,6 +428,8 @@ static const struct option_row rows[] = {
      "unit of the spindle on its serial line (default 1)"},
     {"nodes", OPTION_TEXT, offsetof(struct options, nodes), "LIST",
      "node ids, 1-3 or 1,2,5 (default: those of the machine's axes)"},
+    {"can", OPTION_NUMBER, offsetof(struct options, can), "N",
+     "which bus of the machine this is: 0 (default) or 1; each has a process of its own"},
     OPTIONS_MACHINE,
     {"eds", OPTION_TEXT, offsetof(struct options, eds), "FILE|FOLDER",
      "electronic data sheet: with --bus the drives are those of FILE; without, theirs are written "

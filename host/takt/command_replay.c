@@ -69,9 +69,15 @@ static bool read_ids(struct bus_replay *replay)
 }
 
 /* Error messages are the interface's own: nobody can send them. */
-static bool is_wanted(const struct bus_replay *replay, const struct wire_frame *frame)
+static bool is_wanted(const struct bus_replay *replay, const struct candump_line *line)
 {
+    const struct wire_frame *frame = &line->frame;
+    const char *interface = replay->options->interface;
+
     if (frame->flags & WIRE_ERROR)
+        return false;
+    if (interface != NULL && (strlen(interface) != line->interface_length ||
+                              strncmp(interface, line->interface, line->interface_length) != 0))
         return false;
     return !replay->has_ids || (!(frame->flags & WIRE_EXTENDED) && replay->wanted[frame->id]);
 }
@@ -157,7 +163,7 @@ static bool send_log(struct bus_replay *replay)
         is_first = false;
         if (line.time_ns < replay->log_start_ns) /* the clock was set back: go on from here */
             line.time_ns = replay->log_start_ns;
-        if (!is_wanted(replay, &line.frame))
+        if (!is_wanted(replay, &line))
             replay->left_out++;
         else if (!send_frame(replay, &line))
             return false;
@@ -239,6 +245,8 @@ static const struct option_row rows[] = {
      "socketcan:IF, slcan:PATH, slcan:pty, socketcand:HOST:PORT, socketcand:listen:PORT"},
     {"ids", OPTION_TEXT, offsetof(struct options, ids), "LIST",
      "only these identifiers: 80,181-183 (default: all)"},
+    {"interface", OPTION_TEXT, offsetof(struct options, interface), "NAME",
+     "only frames of this interface of the log, such as can1 (default: all)"},
     {"fast", OPTION_FLAG, offsetof(struct options, fast), NULL,
      "as fast as the bus allows, not at the times of the log"},
     {"fd", OPTION_FLAG, offsetof(struct options, fd), NULL, "the bus is to carry CAN FD frames"},

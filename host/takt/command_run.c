@@ -51,7 +51,7 @@ static void tell_drives(struct run_command *c)
 {
     const struct drives *drives = controller_get_drives(&c->run.simulation->controller);
 
-    c->has_told_drives = c->run.simulation->field.link == NULL ||
+    c->has_told_drives = !c->run.simulation->field.is_outside ||
                          drives_table_tell(drives, c->run.session.options->quiet);
 }
 
@@ -203,7 +203,8 @@ static const struct option_row rows[] = {
     {"until", OPTION_NUMBER, offsetof(struct options, until_s), "SECONDS",
      "stop at this time of the program"},
     {"bus", OPTION_TEXT, offsetof(struct options, bus), "BUS",
-     "embedded (default), socketcan:IF, slcan:PATH, socketcand:HOST:PORT"},
+     "embedded (default), socketcan:IF, slcan:PATH, socketcand:HOST:PORT; of two buses both, with "
+     "a comma"},
     {"drives", OPTION_TEXT, offsetof(struct options, drives), "WHERE",
      "internal on the embedded bus, external on any other; m4f, m7: each an image in QEMU"},
     {"drive-image", OPTION_TEXT, offsetof(struct options, drive_image), "FILE",

@@ -111,7 +111,8 @@ static const struct option_row rows[] = {
     {"spindle", OPTION_TEXT, offsetof(struct options, panel.spindle), "WHERE",
      "spindle drive on Modbus: HOST:PORT, or PATH[,BAUD[,PARITY]] (default: virtual, inside)"},
     {"bus", OPTION_TEXT, offsetof(struct options, bus), "BUS",
-     "embedded (default), socketcan:IF, slcan:PATH, socketcand:HOST:PORT"},
+     "embedded (default), socketcan:IF, slcan:PATH, socketcand:HOST:PORT; of two buses both, with "
+     "a comma"},
     {"drives", OPTION_TEXT, offsetof(struct options, drives), "WHERE",
      "internal on the embedded bus, external on any other; m4f, m7: each an image in QEMU"},
     {"drive-image", OPTION_TEXT, offsetof(struct options, drive_image), "FILE",

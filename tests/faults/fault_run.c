@@ -177,7 +177,7 @@ static void open_world(struct world *w, const struct fault_case *fault)
     if (fault->machine == FAULT_GUARDED)
         take_heartbeats(&virtual);
     (void)bus_init(&w->bus, machine.can_bitrate);
-    config.can = bus_attach(&w->bus, NULL);
+    config.can = can_single(bus_attach(&w->bus, NULL));
     virtual_drives_init(&w->drives, &w->bus, &virtual);
     for (unsigned i = 0; i < w->drives.count; i++)
         virtual_drive_inject(&w->drives.drive[i], &w->script, &w->clock);

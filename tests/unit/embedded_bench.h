@@ -154,7 +154,7 @@ static inline void power_on_with(const struct service_lines *lines)
     const struct embedded_config config = {
         .machine = &machine,
         .core = &embedded_core,
-        .can = {.send = send, .receive = receive},
+        .can = {.port = {{.send = send, .receive = receive}}},
         .tools = tools,
         .tools_count = 1,
         .port = {.lock = lock,

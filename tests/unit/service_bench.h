@@ -65,7 +65,7 @@ static void bench_start(void)
 {
     const struct service_config config = {
         .machine = &machine,
-        .can = bus_attach(&bus, NULL),
+        .can = can_single(bus_attach(&bus, NULL)),
         .tools = tools,
         .tools_count = 1,
         .reader = &service_reader,

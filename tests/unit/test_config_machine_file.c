@@ -180,7 +180,7 @@ static void test_limits_below_the_rounding_of_setpoints_are_refused(void)
  */
 static void test_the_predicted_load_of_three_axes_is_81_percent(void)
 {
-    TEST_ASSERT_EQUAL_DOUBLE(81.0, machine_setup_predict_load_percent(&setup.machine));
+    TEST_ASSERT_EQUAL_DOUBLE(81.0, machine_setup_predict_load_percent(&setup.machine, 0));
 }
 
 static const char *check_io(const char *text)
@@ -209,14 +209,15 @@ static void test_a_gantry_and_io_nodes_that_are_written_read_as_the_same(void)
     TEST_ASSERT_NOT_NULL(file);
     setup.machine.gantry[0] = (struct machine_gantry){.axis = AXIS_Y,
                                                       .drive_node = 9,
+                                                      .drive_bus = 1,
                                                       .is_reversed = 1,
                                                       .home_method = -3,
                                                       .home_offset_mm = -99.4,
                                                       .skew_max_mm = 0.8};
     setup.drive[MACHINE_SECOND_DRIVE].plant.inertia_kg_m2 = 0.125;
     setup.machine.io[0] =
-        (struct io_wiring){20, {IO_FLOOD, IO_FREE, IO_MIST | IO_INVERTED}, {0}, {0x04, 0x10}};
-    setup.machine.io[1] = (struct io_wiring){21, {0}, {IO_STOP, IO_PROGRAM + 31}, {0}};
+        (struct io_wiring){20, {IO_FLOOD, IO_FREE, IO_MIST | IO_INVERTED}, {0}, {0x04, 0x10}, 1};
+    setup.machine.io[1] = (struct io_wiring){21, {0}, {IO_STOP, IO_PROGRAM + 31}, {0}, 0};
     machine_file_write(file, &setup);
     (void)fclose(file);
     machine_setup_set_default(&again);

@@ -35,7 +35,7 @@ static void start(const char *program)
     machine_set_default(&machine);
     machine.look_ahead_blocks = LOOK_AHEAD;
     TEST_ASSERT_TRUE(bus_init(&bus, machine.can_bitrate));
-    config.can = bus_attach(&bus, NULL);
+    config.can = can_single(bus_attach(&bus, NULL));
     virtual_drives_init(&drives, &bus, &virtual);
     parameters_clear(&parameters);
     source_open_text(&config.source, &text, program, strlen(program));

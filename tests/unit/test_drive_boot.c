@@ -386,13 +386,13 @@ static void test_the_load_is_that_of_the_frames_that_were_found(void)
 {
     struct drives_load load;
     run_start();
-    drives_get_load(&drives, &load);
+    drives_get_load(&drives, 0, &load);
     TEST_ASSERT_EQUAL_UINT32(55 + 135 + 95 + 345 + 180, load.bits);
     setUp();
     set_rule((struct fake_rule){
         .node = 1, .object = SDO_OBJECT(0x1601, 2), .write_code = SDO_ABORT_NOT_MAPPABLE});
     run_start();
-    drives_get_load(&drives, &load);
+    drives_get_load(&drives, 0, &load);
     TEST_ASSERT_EQUAL_UINT32(55 + 3 * 95 + 345 + 180, load.bits);
 }
 

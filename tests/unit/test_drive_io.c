@@ -366,9 +366,11 @@ static void test_analogue_outputs_load_every_cycle(void)
     const struct io_wiring plain = {.node = IO_NODE, .input = {IO_PROGRAM}};
     struct io_wiring wired = plain;
     wired.analogue[0] = 0x21;
-    (void)drives_predict_whole_load(3, &plain, 1, &(struct drives_rates){1000000, 0}, 1000,
-                                    &without);
-    (void)drives_predict_whole_load(3, &wired, 1, &(struct drives_rates){1000000, 0}, 1000, &with);
+    struct drives_traffic traffic = {
+        .count = 3, .wiring = &plain, .io_count = 1, .rates = {1000000, 0}};
+    (void)drives_predict_whole_load(&traffic, 1000, &without);
+    traffic.wiring = &wired;
+    (void)drives_predict_whole_load(&traffic, 1000, &with);
     TEST_ASSERT_EQUAL_UINT32(without.bits + 55 + 10 * 4, with.bits);
 }
 

@@ -90,6 +90,20 @@ static void test_every_node_has_its_own_number(void)
     expect(TAKT_ERROR_MACHINE_CONTROLLER_NODE, "controller_node 2 is the drive_node of axis Y");
 }
 
+static void test_a_node_id_is_free_on_another_bus(void)
+{
+    axis_y()->drive_node = 1;
+    axis_y()->drive_bus = 1;
+    TEST_ASSERT_TRUE(machine_check(&machine, &wrong));
+    machine.io[0].node = 1;
+    expect(TAKT_ERROR_MACHINE_IO_NODE, "io 1: another node on the bus has its id 1");
+    machine.io[0].node = 3;
+    machine.io[0].bus = 1;
+    TEST_ASSERT_TRUE(machine_check(&machine, &wrong));
+    machine.io[0].bus = CAN_BUSES_MAX;
+    expect(TAKT_ERROR_MACHINE_BUS, "CAN bus 2: the buses of this build are 0 ... 1");
+}
+
 static void test_the_bus_carries_the_cycle(void)
 {
     machine.can_bitrate = 500000;
@@ -195,6 +209,7 @@ int main(void)
     RUN_TEST(test_limits_stand_above_the_rounding_of_setpoints);
     RUN_TEST(test_steps_come_no_faster_than_the_drive_takes_them);
     RUN_TEST(test_every_node_has_its_own_number);
+    RUN_TEST(test_a_node_id_is_free_on_another_bus);
     RUN_TEST(test_the_bus_carries_the_cycle);
     RUN_TEST(test_a_machine_has_an_axis);
     return UNITY_END();

@@ -47,7 +47,7 @@ static uint64_t digest_of_whole(size_t size)
     static struct source_text whole;
     struct controller_config config = {
         .machine = &machine,
-        .can = {.send = send, .receive = receive},
+        .can = {.port = {{.send = send, .receive = receive}}},
         .parameters = &embedded_core.parameters,
     };
     const struct point start = {{0}};

@@ -167,7 +167,7 @@ static uint64_t digest_of_whole(void)
     const struct replay_source compiled = {.context = &at, .read = read_whole};
     const struct controller_config config = {
         .machine = &machine,
-        .can = {.send = send, .receive = receive},
+        .can = {.port = {{.send = send, .receive = receive}}},
         .parameters = &embedded_core.parameters,
         .compiled = &compiled,
     };

@@ -97,7 +97,7 @@ static void test_axes_that_look_for_their_homes_do_not_know_them(void)
     bench_set_up_machine();
     machine.axis[AXIS_Y].home_order = 1;
     const struct service_config config = {.machine = &machine,
-                                          .can = bus_attach(&bus, NULL),
+                                          .can = can_single(bus_attach(&bus, NULL)),
                                           .reader = &service_reader,
                                           .parameters = &parameters};
     service_init(&service, &config);

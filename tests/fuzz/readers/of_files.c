@@ -91,10 +91,10 @@ void read_override(const char *path)
 void read_inject(const char *path)
 {
     static struct inject script;
-    static const uint8_t nodes[] = {1, 2, 3};
+    static const uint16_t nodes[] = {1, 2, 3};
 
     if (inject_file_load(&script, path))
-        (void)inject_file_check_nodes(&script, path, nodes, sizeof nodes);
+        (void)inject_file_check_nodes(&script, path, nodes, sizeof nodes / sizeof nodes[0]);
 }
 
 static bool send_nowhere(void *context, const struct can_frame *frame)

@@ -59,7 +59,7 @@ int main(void)
     const struct embedded_config config = {
         .machine = &machine,
         .core = &core,
-        .can = {.send = bus_send, .receive = bus_receive},
+        .can = {.port = {{.send = bus_send, .receive = bus_receive}}},
         .tools = tools,
         .tools_count = sizeof tools / sizeof tools[0],
         .port = {.lock = nothing,

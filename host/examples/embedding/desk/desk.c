@@ -79,7 +79,7 @@ static void open_desk(struct desk *desk)
     struct controller_config config = {
         .machine = &desk->machine,
         .reader = &desk->reader,
-        .can = {bus_send, bus_receive, NULL},
+        .can = {.port = {{bus_send, bus_receive, NULL}}},
         .step = {.pulse = count_pulse, .context = &desk->motors},
         .parameters = &desk->parameters,
     };

@@ -141,6 +141,7 @@ def execute(scenario: Scenario, library: Library | None = None) -> Row:
     except Error as error:
         return {**_nothing(), "outcome": "refused", "status": error.status, "text": str(error)}
     s = result.summary
+    buses = [s.raw[name] for name in ("bus", "can1") if name in s.raw]
     ratio = {
         kind: max((getattr(a, f"max_{kind}") / getattr(a, f"limit_{kind}") for a in s.axes), default=0.0)
         for kind in ("velocity", "acceleration", "jerk")
@@ -158,8 +159,8 @@ def execute(scenario: Scenario, library: Library | None = None) -> Row:
         "following_error_mm": max((a.max_following_error for a in s.axes), default=0.0),
         "path_error_mm": s.path_error_max_mm,
         "landing_error_mm": s.landing_error_max_mm,
-        "bus_load_percent": s.raw["bus"]["load_percent"],
-        "bus_response_percent": _response_percent(s.raw["bus"]),
+        "bus_load_percent": max(bus["load_percent"] for bus in buses),
+        "bus_response_percent": max(_response_percent(bus) for bus in buses),
     }
 
 

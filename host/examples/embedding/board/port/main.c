@@ -114,7 +114,7 @@ static void open_embedded(void)
     const struct embedded_config config = {
         .machine = &board.machine,
         .core = &board.core,
-        .can = {bus_send, bus_receive, NULL},
+        .can = {.port = {{bus_send, bus_receive, NULL}}},
         .step = {.pulse = pulse},
         .tools = board.tools,
         .tools_count = TOOLS_MAX,
