@@ -1,8 +1,9 @@
-#include "stm32f405/flash.h"
+/* The flash controller (RM0090, chapter 3): the processor stands still 16 us for a word of 32 bits, up to 2 s for a sector. */
+#include "stm32/flash.h"
 
-#include "stm32f405/chip.h"
-#include "stm32f405/rcc.h"
-#include "stm32f405/watchdog.h"
+#include "stm32/chip.h"
+#include "stm32/watchdog.h"
+#include "stm32f405/peripherals.h"
 
 #include <string.h>
 

@@ -1,6 +1,6 @@
 #include "chip_model.h"
 
-#include "stm32f405/chip.h"
+#include "stm32/chip.h"
 
 #include <stdio.h>
 #include <stdlib.h>

@@ -2,7 +2,8 @@
 
 #include "chip_model.h"
 #include "clock_model.h"
-#include "stm32f405/flash.h"
+#include "stm32/flash.h"
+#include "stm32f405/peripherals.h"
 
 #include <string.h>
 

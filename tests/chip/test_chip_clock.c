@@ -1,7 +1,7 @@
 /* Start of the clock, with a crystal and without. */
 #include "chip_model.h"
 #include "clock_model.h"
-#include "stm32f405/clock.h"
+#include "stm32/clock.h"
 #include "unity.h"
 
 static struct clock clock;

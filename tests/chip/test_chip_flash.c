@@ -2,9 +2,9 @@
 #include "chip_model.h"
 #include "clock_model.h"
 #include "flash_model.h"
-#include "stm32f405/crash.h"
-#include "stm32f405/flash.h"
-#include "stm32f405/watchdog.h"
+#include "stm32/crash.h"
+#include "stm32/flash.h"
+#include "stm32/watchdog.h"
 #include "unity.h"
 
 #include <string.h>

@@ -27,7 +27,7 @@ static uint32_t read(uint32_t offset)
     switch (offset) {
     case USART_SR:
         return usart_model.is_stuck ? status & ~(USART_SR_ROOM | USART_SR_SENT) : status;
-    case USART_DR:
+    case USART_RDR:
         status &= ~(USART_SR_RECEIVED | USART_SR_OVERRUN | USART_SR_NOISE | USART_SR_FRAMING |
                     USART_SR_PARITY);
         return received;
@@ -55,7 +55,7 @@ static void load(uint8_t byte)
 
 static void write(uint32_t offset, uint32_t value)
 {
-    if (offset == USART_DR) {
+    if (offset == USART_TDR) {
         if ((control[0] & USART_CR1_ON) == 0)
             chip_model_break("a byte is sent while the USART is off");
         load((uint8_t)value);
