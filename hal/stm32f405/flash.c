@@ -121,9 +121,8 @@ static bool program(void *context, unsigned sector, uint32_t offset, const uint8
 
     if (good)
         chip_write(FLASH_CR, CR_PROGRAM | CR_32_BITS);
-    for (uint32_t i = 0; i < words && good; i++)
-        good = program_word(flash, address + FLASH_WORD_BYTES * i,
-                            word_at(bytes + (size_t)FLASH_WORD_BYTES * i));
+    for (uint32_t i = 0; i < words * FLASH_WORD_BYTES && good; i += 4)
+        good = program_word(flash, address + i, word_at(bytes + i));
     lock();
     return good;
 }
