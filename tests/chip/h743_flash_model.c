@@ -175,7 +175,7 @@ static uint32_t read_memory(uint32_t offset)
 /* The code is programmed with the word: a second time it would be that of neither. */
 static void program(uint32_t line)
 {
-    uint8_t *to = flash_model_memory + line * LINE;
+    uint8_t *to = flash_model_memory + (size_t)line * LINE;
 
     filled = 0;
     if (is_used[line]) {
