@@ -19,7 +19,7 @@
 #define CCR_IGNORE_BUS_FAULTS (1U << 8) /* of handlers that nothing interrupts */
 #define CCR_CACHES            (3U << 16)
 
-static void synchronise(void)
+void peripherals_order(void)
 {
     __asm volatile("dsb\n\tisb" ::: "memory");
 }
@@ -32,9 +32,9 @@ void port_begin(void)
         for (uint32_t way = 0; way < WAYS; way++)
             DCISW = way << 30 | set << 5;
     }
-    synchronise();
+    peripherals_order();
     CCR |= CCR_CACHES;
-    synchronise();
+    peripherals_order();
 }
 
 void peripherals_write_back(const void *memory, size_t bytes)
@@ -42,27 +42,27 @@ void peripherals_write_back(const void *memory, size_t bytes)
     const uint32_t begin = (uint32_t)(uintptr_t)memory & ~(LINE - 1U);
     const uint32_t end = (uint32_t)(uintptr_t)memory + bytes;
 
-    __asm volatile("dsb" ::: "memory");
+    peripherals_order();
     for (uint32_t at = begin; at < end; at += LINE)
         DCCMVAC = at;
-    synchronise();
+    peripherals_order();
 }
 
 void peripherals_forget(uint32_t address, uint32_t bytes)
 {
-    __asm volatile("dsb" ::: "memory");
+    peripherals_order();
     for (uint32_t at = address & ~(LINE - 1U); at < address + bytes; at += LINE)
         DCIMVAC = at;
-    synchronise();
+    peripherals_order();
 }
 
 void peripherals_touch(uint32_t address)
 {
     __asm volatile("cpsid f" ::: "memory");
     CCR |= CCR_IGNORE_BUS_FAULTS;
-    synchronise();
+    peripherals_order();
     (void)*(volatile const uint32_t *)(uintptr_t)address;
-    synchronise();
+    peripherals_order();
     CCR &= ~CCR_IGNORE_BUS_FAULTS;
     __asm volatile("cpsie f" ::: "memory");
 }

@@ -96,8 +96,10 @@ static bool program_word(struct flash *flash, uint32_t address, const uint8_t *b
         if (chip_read(address + i) != UINT32_MAX)
             return fail(flash, FLASH_DIFFERS);
     }
+    peripherals_order();
     for (uint32_t i = 0; i < FLASH_WORD_BYTES; i += 4)
         chip_write(address + i, word_at(bytes + i));
+    peripherals_order();
     if (!complete(flash, PROGRAM_READS))
         return false;
     peripherals_forget(address, FLASH_WORD_BYTES);

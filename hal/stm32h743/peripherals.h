@@ -31,6 +31,9 @@ static inline void peripherals_route_steps(void)
 /* What the processor has written can be read by others, and is kept by a reset (cache.c). */
 void peripherals_write_back(const void *memory, size_t bytes);
 
+/* What has been written is there before anything that follows: memory, flash too, has no order with registers. */
+void peripherals_order(void);
+
 /* What others have written is read anew. */
 void peripherals_forget(uint32_t address, uint32_t bytes);
 

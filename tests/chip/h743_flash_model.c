@@ -221,6 +221,11 @@ void peripherals_forget(uint32_t address, uint32_t bytes)
         is_old[(address - FLASH_SECTOR_ADDRESS + at) / LINE] = false;
 }
 
+/* The model has an order. */
+void peripherals_order(void)
+{
+}
+
 void peripherals_touch(uint32_t address)
 {
     if (is_torn[(address - FLASH_SECTOR_ADDRESS) / LINE])
