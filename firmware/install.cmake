@@ -3,7 +3,7 @@
 #     find_package(takt REQUIRED)
 #     target_link_libraries(machine PRIVATE takt::port)      and #include <takt.h>
 #
-# Installed from a preset of the processor the image is for: host, m4f, m7, stm32f405. host/examples/embedding has examples.
+# Installed from a preset of the processor the image is for: host, m4f, m7, stm32f405, stm32h743. host/examples/embedding has examples.
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 

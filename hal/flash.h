@@ -10,8 +10,10 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-#define FLASH_SECTORS    2
-#define FLASH_WORD_BYTES 4
+#define FLASH_SECTORS 2
+
+/* What is programmed at once: as much as any chip wants that has a code over it (STM32H7). Once between two erasures. */
+#define FLASH_WORD_BYTES 32
 
 struct flash_port {
     uint32_t sector_bytes;                /* of each sector */

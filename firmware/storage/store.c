@@ -9,16 +9,8 @@
 
 #define NO_SECTOR (-1)
 
-/* Where the words of a head stand; the last is filler, so that what follows lies at a multiple of 8. */
-enum head_word {
-    HEAD_MARK,
-    HEAD_SEQUENCE,
-    HEAD_SIZE,
-    HEAD_CRC,
-    HEAD_CHECK,
-    HEAD_FILLER,
-    HEAD_WORDS
-};
+/* Where the words of 32 bits of a head stand; the rest of it is blank. */
+enum head_word { HEAD_MARK, HEAD_SEQUENCE, HEAD_SIZE, HEAD_CRC, HEAD_CHECK };
 
 struct head {
     uint32_t sequence, size, crc;
@@ -36,9 +28,11 @@ uint32_t store_room(const struct store *store)
 
 /* ---- what is there ---- */
 
+#define HEAD_WORD_BYTES 4U
+
 static const uint8_t *word_at(const uint8_t *sector, enum head_word word)
 {
-    return sector + (size_t)FLASH_WORD_BYTES * word;
+    return sector + (size_t)HEAD_WORD_BYTES * word;
 }
 
 static bool read_head(const struct store *store, unsigned sector, struct head *head)
@@ -50,7 +44,7 @@ static bool read_head(const struct store *store, unsigned sector, struct head *h
                           .crc = little_get32(word_at(at, HEAD_CRC))};
     return little_get32(word_at(at, HEAD_MARK)) == MARK &&
            little_get32(word_at(at, HEAD_CHECK)) ==
-               crc_of(at, (size_t)FLASH_WORD_BYTES * HEAD_CHECK) &&
+               crc_of(at, (size_t)HEAD_WORD_BYTES * HEAD_CHECK) &&
            head->size > 0 && head->size <= store_room(store) &&
            head->crc == crc_of(at + STORE_HEAD_BYTES, head->size);
 }
@@ -170,7 +164,7 @@ const uint8_t *store_look(const struct store *store)
 
 static void set_word(uint8_t *head, enum head_word word, uint32_t value)
 {
-    little_put32(head + (size_t)FLASH_WORD_BYTES * word, value);
+    little_put32(head + (size_t)HEAD_WORD_BYTES * word, value);
 }
 
 void store_make_head(const uint8_t *bytes, uint32_t size, uint32_t sequence,
@@ -181,7 +175,7 @@ void store_make_head(const uint8_t *bytes, uint32_t size, uint32_t sequence,
     set_word(head, HEAD_SEQUENCE, sequence);
     set_word(head, HEAD_SIZE, size);
     set_word(head, HEAD_CRC, crc_of(bytes, size));
-    set_word(head, HEAD_CHECK, crc_of(head, (size_t)FLASH_WORD_BYTES * HEAD_CHECK));
+    set_word(head, HEAD_CHECK, crc_of(head, (size_t)HEAD_WORD_BYTES * HEAD_CHECK));
 }
 
 bool store_commit(struct store *store)
@@ -194,7 +188,7 @@ bool store_commit(struct store *store)
     if (bytes == NULL)
         return false;
     store_make_head(bytes, store->coming, store->sequence + 1, made);
-    if (!store->flash.program(store->flash.context, sector, 0, made, HEAD_FILLER) ||
+    if (!store->flash.program(store->flash.context, sector, 0, made, 1) ||
         !read_head(store, sector, &head))
         return give_up(store);
     store->current = (int)sector;

@@ -2,10 +2,10 @@
  * One set of bytes kept over power-off in two sectors of flash: while a new set is written the old one stays whole, so
  * that power may fail at any moment and either the old or the new set is there.
  *
- *     sector     mark | sequence | size | CRC of the bytes | CRC of this head | 0 | bytes ...
+ *     sector     mark | sequence | size | CRC of the bytes | CRC of this head | blank | bytes ...
  *
- * A set counts when its head and its bytes are right; of two the later sequence counts. The head is programmed last, in
- * order, so that nothing counts before it is complete.
+ * A set counts when its head and its bytes are right; of two the later sequence counts. The head is programmed last, as one
+ * word of the flash, so that nothing counts before it is complete.
  */
 #ifndef TAKT_STORAGE_STORE_H
 #define TAKT_STORAGE_STORE_H
@@ -16,7 +16,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#define STORE_HEAD_BYTES 24U
+#define STORE_HEAD_BYTES FLASH_WORD_BYTES
 
 /* The head that makes bytes a set: whoever writes a sector by other means puts it before them. */
 void store_make_head(const uint8_t *bytes, uint32_t size, uint32_t sequence,

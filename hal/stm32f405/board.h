@@ -4,7 +4,7 @@
 #ifndef TAKT_STM32F405_BOARD_H
 #define TAKT_STM32F405_BOARD_H
 
-#include "stm32f405/gpio.h"
+#include "stm32/gpio.h"
 
 #include <stdint.h>
 

@@ -1,9 +1,14 @@
-#include "stm32f405/clock.h"
+/* The clock of stm32/clock.h: 168 MHz (RM0090, chapter 7). */
+#include "stm32/clock.h"
 
-#include "stm32f405/chip.h"
+#include "stm32/chip.h"
 #include "stm32f405/rcc.h"
 
 #define MHZ 1000000U
+
+/* Crystals that make exactly 168 MHz: whole MHz. */
+#define CRYSTAL_MIN_HZ (4U * MHZ)
+#define CRYSTAL_MAX_HZ (26U * MHZ)
 
 #define INTERNAL_HZ (16U * MHZ)
 #define PLL_HZ      (168U * MHZ)
@@ -70,8 +75,7 @@ static bool switch_to_pll(void)
 
 static bool crystal_fits(uint32_t crystal_hz)
 {
-    return crystal_hz >= CLOCK_CRYSTAL_MIN_HZ && crystal_hz <= CLOCK_CRYSTAL_MAX_HZ &&
-           crystal_hz % MHZ == 0;
+    return crystal_hz >= CRYSTAL_MIN_HZ && crystal_hz <= CRYSTAL_MAX_HZ && crystal_hz % MHZ == 0;
 }
 
 static enum clock_source start_source(uint32_t crystal_hz)
@@ -95,6 +99,7 @@ static void set_fast(struct clock *clock)
     clock->bus2_hz = PLL_HZ / 2;
     clock->timer1_hz = PLL_HZ / 2;
     clock->timer2_hz = PLL_HZ;
+    clock->can_hz = clock->bus1_hz;
 }
 
 /* The buses undivided. */
@@ -106,6 +111,7 @@ static void set_slow(struct clock *clock)
     clock->bus2_hz = INTERNAL_HZ;
     clock->timer1_hz = INTERNAL_HZ;
     clock->timer2_hz = INTERNAL_HZ;
+    clock->can_hz = INTERNAL_HZ;
 }
 
 void clock_start(struct clock *clock, uint32_t crystal_hz)

@@ -1,8 +1,9 @@
-#include "stm32f405/flash.h"
+/* The flash controller (RM0090, chapter 3): the processor stands still 16 us for a word of 32 bits, up to 2 s for a sector. */
+#include "stm32/flash.h"
 
-#include "stm32f405/chip.h"
-#include "stm32f405/rcc.h"
-#include "stm32f405/watchdog.h"
+#include "stm32/chip.h"
+#include "stm32/watchdog.h"
+#include "stm32f405/peripherals.h"
 
 #include <string.h>
 
@@ -120,9 +121,8 @@ static bool program(void *context, unsigned sector, uint32_t offset, const uint8
 
     if (good)
         chip_write(FLASH_CR, CR_PROGRAM | CR_32_BITS);
-    for (uint32_t i = 0; i < words && good; i++)
-        good = program_word(flash, address + FLASH_WORD_BYTES * i,
-                            word_at(bytes + (size_t)FLASH_WORD_BYTES * i));
+    for (uint32_t i = 0; i < words * FLASH_WORD_BYTES && good; i += 4)
+        good = program_word(flash, address + i, word_at(bytes + i));
     lock();
     return good;
 }

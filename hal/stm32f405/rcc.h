@@ -10,7 +10,7 @@
 #define RCC_AHB1ENR 0x40023830U
 #define RCC_APB1ENR 0x40023840U
 #define RCC_APB2ENR 0x40023844U
-#define RCC_CSR     0x40023874U
+#define RCC_RESETS  0x40023874U
 
 #define RCC_CR_HSION  (1U << 0)
 #define RCC_CR_HSIRDY (1U << 1)
@@ -38,25 +38,18 @@
 #define RCC_CFGR_PPRE2_MASK (7U << 13)
 #define RCC_CFGR_PPRE2_2    (4U << 13)
 
-#define RCC_AHB1ENR_GPIO(port) (1U << (port)) /* 0: A */
-#define RCC_AHB1ENR_DMA2       (1U << 22)
-#define RCC_APB1ENR_TIM2       (1U << 0)
-#define RCC_APB1ENR_TIM5       (1U << 3)
-#define RCC_APB1ENR_USART2     (1U << 17)
-#define RCC_APB1ENR_CAN1       (1U << 25)
-#define RCC_APB1ENR_PWR        (1U << 28)
-#define RCC_APB2ENR_TIM8       (1U << 1)
-#define RCC_APB2ENR_USART1     (1U << 4)
+#define RCC_AHB1ENR_DMA2   (1U << 22)
+#define RCC_APB1ENR_TIM2   (1U << 0)
+#define RCC_APB1ENR_TIM5   (1U << 3)
+#define RCC_APB1ENR_USART2 (1U << 17)
+#define RCC_APB1ENR_CAN1   (1U << 25)
+#define RCC_APB1ENR_PWR    (1U << 28)
+#define RCC_APB2ENR_TIM8   (1U << 1)
+#define RCC_APB2ENR_USART1 (1U << 4)
 
-/* Why the chip has been reset; RMVF forgets it. */
-#define RCC_CSR_RMVF     (1U << 24)
-#define RCC_CSR_BORRSTF  (1U << 25)
-#define RCC_CSR_PINRSTF  (1U << 26)
-#define RCC_CSR_PORRSTF  (1U << 27)
-#define RCC_CSR_SFTRSTF  (1U << 28)
-#define RCC_CSR_IWDGRSTF (1U << 29)
-#define RCC_CSR_WWDGRSTF (1U << 30)
-#define RCC_CSR_LPWRRSTF (1U << 31)
+/* Why the chip has been reset (CSR). */
+#define RCC_RESETS_FORGET   (1U << 24)
+#define RCC_RESETS_WATCHDOG (1U << 29)
 
 #define PWR_CR     0x40007000U
 #define PWR_CR_VOS (1U << 14) /* the regulator's mode for more than 144 MHz */

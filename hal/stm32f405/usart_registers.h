@@ -1,14 +1,17 @@
 /*
- * Registers of a USART, offsets from its base, and of GPIO ports.
+ * Registers of a USART, offsets from its base.
  */
 #ifndef TAKT_STM32F405_USART_REGISTERS_H
 #define TAKT_STM32F405_USART_REGISTERS_H
+
+#include "stm32/chip.h"
 
 #define USART_USART1 0x40011000U
 #define USART_USART2 0x40004400U
 
 #define USART_SR  0x00U
-#define USART_DR  0x04U
+#define USART_RDR 0x04U /* one address: what has come, and what is to go */
+#define USART_TDR 0x04U
 #define USART_BRR 0x08U
 #define USART_CR1 0x0CU
 #define USART_CR2 0x10U
@@ -31,5 +34,12 @@
 #define USART_CR1_PARITY     (1U << 10)
 #define USART_CR1_9_BITS     (1U << 12) /* the parity's included */
 #define USART_CR1_ON         (1U << 13)
+
+/* The errors in a status that has been read: reading the data behind it clears them. */
+static inline void usart_clear_errors(uint32_t base, uint32_t status)
+{
+    (void)base;
+    (void)status;
+}
 
 #endif

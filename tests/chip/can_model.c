@@ -353,7 +353,13 @@ unsigned can_model_waiting(void)
     return count;
 }
 
-uint32_t can_model_timing(void)
+void can_model_get_bit(struct can_model_bit *bit)
 {
-    return btr;
+    bit->divider = (btr & 1023U) + 1U;
+    bit->sampled = 1U + (btr >> 16 & 15U) + 1U;
+    bit->quanta = bit->sampled + (btr >> 20 & 7U) + 1U;
+    bit->jump = (btr >> 24 & 3U) + 1U;
 }
+
+const uint32_t can_model_clock_hz = 42000000;
+const unsigned can_model_fifo = FIFO;

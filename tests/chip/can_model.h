@@ -1,5 +1,5 @@
 /*
- * bxCAN and the bus behind it. The test says when the bus is free for a frame and what the other nodes send.
+ * A CAN controller (bxCAN in can_model.c, FDCAN in fdcan_model.c) and the bus behind it. The test says when the bus is free for a frame and what the other nodes send.
  */
 #ifndef TAKT_TESTS_CAN_MODEL_H
 #define TAKT_TESTS_CAN_MODEL_H
@@ -39,6 +39,16 @@ bool can_model_asks_received(void);
 
 /* Frames in mailboxes. */
 unsigned can_model_waiting(void);
-uint32_t can_model_timing(void);
+
+/* A bit on the bus, in quanta of so many clocks. */
+struct can_model_bit {
+    uint32_t divider, quanta, sampled,
+        jump; /* sampled: before the sample; jump: to keep step, at most */
+};
+
+void can_model_get_bit(struct can_model_bit *bit);
+
+extern const uint32_t can_model_clock_hz;
+extern const unsigned can_model_fifo; /* frames that have been received and not been read */
 
 #endif

@@ -1,13 +1,9 @@
 #include "chip_model.h"
 
-#include "stm32f405/chip.h"
+#include "stm32/chip.h"
 
 #include <stdio.h>
 #include <stdlib.h>
-
-static const struct chip_block *const blocks[] = {&chip_can,    &chip_clocks,       &chip_power,
-                                                  &chip_flash,  &chip_flash_memory, &chip_usart2,
-                                                  &chip_gpio_a, &chip_watchdog};
 
 static const char *broken;
 static uint64_t reads;
@@ -18,8 +14,8 @@ void chip_model_reset(void)
     broken = NULL;
     reads = 0;
     locks = 0;
-    for (size_t i = 0; i < sizeof blocks / sizeof blocks[0]; i++)
-        blocks[i]->reset();
+    for (size_t i = 0; i < chip_blocks_count; i++)
+        chip_blocks[i]->reset();
 }
 
 const char *chip_model_broken(void)
@@ -45,9 +41,9 @@ void chip_model_break(const char *rule)
 
 static const struct chip_block *find(uint32_t address)
 {
-    for (size_t i = 0; i < sizeof blocks / sizeof blocks[0]; i++) {
-        if (address - blocks[i]->base < blocks[i]->size)
-            return blocks[i];
+    for (size_t i = 0; i < chip_blocks_count; i++) {
+        if (address - chip_blocks[i]->base < chip_blocks[i]->size)
+            return chip_blocks[i];
     }
     (void)fprintf(stderr, "no model of address %08x\n", (unsigned)address);
     abort();

@@ -1,6 +1,6 @@
 /*
- * The STM32F405 as far as its drivers touch it: registers that behave as the reference manual says, so that the drivers
- * run on the host as they are. It links in place of hal/stm32f405/chip_memory.c.
+ * A chip as far as its drivers touch it (f405_model.c, h743_model.c): registers that behave as the reference manual says, so that the drivers
+ * run on the host as they are. It links in place of hal/stm32/chip_memory.c.
  *
  * Time is the number of reads: what the hardware needs time for is there so many reads later.
  */
@@ -11,7 +11,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
-/* Everything as after a reset of a healthy chip with an 8 MHz crystal. The flash keeps its contents. */
+/* Everything as after a reset of a healthy chip with a crystal. The flash keeps its contents. */
 void chip_model_reset(void);
 
 /* Rules of the manual that have been broken since the reset; NULL: none. The first. */
@@ -33,7 +33,11 @@ struct chip_block {
     void (*reset)(void);
 };
 
-extern const struct chip_block chip_can, chip_clocks, chip_power, chip_flash, chip_flash_memory,
-    chip_usart2, chip_gpio_a, chip_watchdog;
+/* Of the chip that is modelled. */
+extern const struct chip_block *const chip_blocks[];
+extern const size_t chip_blocks_count;
+
+extern const struct chip_block chip_can, chip_can_memory, chip_clocks, chip_power, chip_flash,
+    chip_flash_memory, chip_usart2, chip_gpio_a, chip_watchdog;
 
 #endif

@@ -1,7 +1,9 @@
 /* Start of the clock, with a crystal and without. */
 #include "chip_model.h"
 #include "clock_model.h"
-#include "stm32f405/clock.h"
+#include "flash_model.h"
+#include "stm32/clock.h"
+#include "stm32/flash.h"
 #include "unity.h"
 
 static struct clock clock;
@@ -74,6 +76,26 @@ static void test_a_crystal_that_does_not_divide_is_not_used(void)
     TEST_ASSERT_EQUAL(CLOCK_INTERNAL, clock.source);
 }
 
+static bool program_word(uint32_t offset)
+{
+    static const uint8_t word[FLASH_WORD_BYTES] = {0};
+    struct flash flash;
+    const struct flash_port port = flash_get_port(&flash, flash_model_memory);
+
+    return port.program(port.context, 0, offset, word, 1);
+}
+
+static void test_after_programming_the_data_cache_is_as_it_was(void)
+{
+    flash_model_blank();
+    clock_model_write_acr(0x705);
+    TEST_ASSERT_TRUE(program_word(0));
+    TEST_ASSERT_EQUAL_HEX(0x705, clock_model_read_acr());
+    clock_model_write_acr(0x305);
+    TEST_ASSERT_TRUE(program_word(FLASH_WORD_BYTES));
+    TEST_ASSERT_EQUAL_HEX(0x305, clock_model_read_acr());
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -83,5 +105,6 @@ int main(void)
     RUN_TEST(test_when_the_core_does_not_take_the_pll_it_stays_at_16);
     RUN_TEST(test_a_chip_whose_clock_control_answers_nothing_still_comes_up);
     RUN_TEST(test_a_crystal_that_does_not_divide_is_not_used);
+    RUN_TEST(test_after_programming_the_data_cache_is_as_it_was);
     return UNITY_END();
 }

@@ -1,5 +1,5 @@
 /* What is found at the start and forbids to move. */
-#include "stm32f405/findings.h"
+#include "stm32/findings.h"
 #include "unity.h"
 
 #include <string.h>
@@ -11,9 +11,7 @@ void setUp(void)
 {
     found = (struct findings){.needs_can = true,
                               .clock = CLOCK_CRYSTAL,
-                              .can_bitrate = 1000000,
-                              .has_rate = true,
-                              .can = BXCAN_ON,
+                              .can = CAN_ON,
                               .needs_steps = true,
                               .has_steps = true};
 }
@@ -57,13 +55,12 @@ static void test_a_missing_crystal_is_a_problem_for_can(void)
 
 static void test_every_way_can_is_missing_is_told(void)
 {
-    found.can = BXCAN_ABSENT;
+    found.can = CAN_ABSENT;
     expect(TAKT_ERROR_CAN_ABSENT, "the CAN controller does not answer");
-    found.can = BXCAN_WAITING;
+    found.can = CAN_WAITING;
     expect(TAKT_ERROR_CAN_BUS,
            "the CAN bus is not idle: is there a transceiver, and is nothing shorted?");
-    found.has_rate = false;
-    found.can_bitrate = 800000;
+    found.can_impossible = 800000;
     expect(TAKT_ERROR_CAN_RATE, "the CAN controller cannot make 800000 bit/s");
 }
 
@@ -99,7 +96,7 @@ static void test_all_problems_are_told_the_gravest_first(void)
     diagnostic_set(&found.image, TAKT_ERROR_IMAGE_DAMAGED, 0, 0, "", 0, 7);
     diagnostic_set(&found.settings, TAKT_ERROR_SETTINGS_CHECKSUM, 0, 0, "", 0, 0);
     found.clock = CLOCK_SLOW;
-    found.can = BXCAN_ABSENT;
+    found.can = CAN_ABSENT;
     found.has_steps = false;
     while (findings_next(&found, &at, &problem)) {
         if (count++ == 0)

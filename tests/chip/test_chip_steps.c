@@ -1,5 +1,5 @@
 /* Step pulses as levels of the pins. */
-#include "stm32f405/step_slots.h"
+#include "stm32/step_slots.h"
 #include "unity.h"
 
 #include <stdlib.h>

@@ -1,8 +1,8 @@
 /* The panel's serial line with its RS-485 driver, and the log's ring. */
+#include "chip/usart_registers.h"
 #include "chip_model.h"
-#include "stm32f405/log_ring.h"
-#include "stm32f405/usart.h"
-#include "stm32f405/usart_registers.h"
+#include "stm32/log_ring.h"
+#include "stm32/usart.h"
 #include "unity.h"
 #include "usart_model.h"
 

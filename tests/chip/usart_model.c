@@ -1,11 +1,13 @@
 #include "usart_model.h"
 
+#include "chip/peripherals.h"
+#include "chip/usart_registers.h"
 #include "chip_model.h"
-#include "stm32f405/usart_registers.h"
 
 #include <string.h>
 
 #define DRIVER_PIN 1U
+#define CLEAR      0x20U /* where later chips have it */
 
 struct usart_model usart_model;
 
@@ -22,19 +24,23 @@ static void reset(void)
     has_waiting = has_shifting = false;
 }
 
+static bool is_control(uint32_t offset)
+{
+    return offset - USART_CR1 <= USART_CR3 - USART_CR1;
+}
+
 static uint32_t read(uint32_t offset)
 {
     switch (offset) {
     case USART_SR:
         return usart_model.is_stuck ? status & ~(USART_SR_ROOM | USART_SR_SENT) : status;
-    case USART_DR:
-        status &= ~(USART_SR_RECEIVED | USART_SR_OVERRUN | USART_SR_NOISE | USART_SR_FRAMING |
-                    USART_SR_PARITY);
+    case USART_RDR:
+        status &= ~usart_model_read_clears;
         return received;
     case USART_BRR:
         return divider;
     default:
-        return offset <= USART_CR3 ? control[(offset - USART_CR1) / 4] : 0;
+        return is_control(offset) ? control[(offset - USART_CR1) / 4] : 0;
     }
 }
 
@@ -55,7 +61,7 @@ static void load(uint8_t byte)
 
 static void write(uint32_t offset, uint32_t value)
 {
-    if (offset == USART_DR) {
+    if (offset == USART_TDR) {
         if ((control[0] & USART_CR1_ON) == 0)
             chip_model_break("a byte is sent while the USART is off");
         load((uint8_t)value);
@@ -63,7 +69,9 @@ static void write(uint32_t offset, uint32_t value)
         if ((control[0] & USART_CR1_ON) != 0)
             chip_model_break("the rate is changed while the USART is on");
         divider = value;
-    } else if (offset >= USART_CR1 && offset <= USART_CR3) {
+    } else if (offset == CLEAR) {
+        status &= ~value;
+    } else if (is_control(offset)) {
         control[(offset - USART_CR1) / 4] = value;
     }
 }
@@ -141,7 +149,7 @@ static void write_gpio(uint32_t offset, uint32_t value)
         gpio[offset / 4] = value;
 }
 
-const struct chip_block chip_gpio_a = {0x40020000U, 0x400U, read_gpio, write_gpio, reset_gpio};
+const struct chip_block chip_gpio_a = {GPIO_BASE, 0x400U, read_gpio, write_gpio, reset_gpio};
 
 bool gpio_model_pin(unsigned number)
 {

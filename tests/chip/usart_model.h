@@ -18,6 +18,9 @@ struct usart_model {
 
 extern struct usart_model usart_model;
 
+/* Bits of the status that reading the data clears on this chip. */
+extern const uint32_t usart_model_read_clears;
+
 /* A byte comes, with bits of the status register for what is wrong with it. */
 void usart_model_hear(uint8_t byte, uint32_t errors);
 /* The time of a character goes by: what is in the shift register has left. */

@@ -55,7 +55,7 @@ t.check("# with a volume table over X (7 points) Y (6 points) Z (5 points)" in o
 t.check("# with a table over X that corrects X, both directions, (11 points)" in out, "so is the axis table", out[:200])
 
 sector = pack("tables.sector", *tables, "--sector")
-t.check(sector[:4] == b"TKS1" and sector[24:] == packed, "a sector is a head and the settings")
+t.check(sector[:4] == b"TKS1" and sector[32:] == packed, "a sector is a head and the settings")
 status, _, err = t.run("machine", "tables.sector", "--unpack")
 t.check(status == 0, "a sector is unpacked too", err)
 

@@ -25,7 +25,7 @@ def kept():
             data = file.read()
         if data[:4] == b"TKS1":
             _, sequence, size = struct.unpack("<3I", data[:12])
-            found[sequence] = data[24 : 24 + size].decode()
+            found[sequence] = data[32 : 32 + size].decode()
     return found[max(found)] if found else ""
 
 

@@ -21,17 +21,17 @@ def for_qemu(name):
     return image(name if int(re.search(r"version (\d+)", said)[1]) >= 8 else name + "-qemu-7")
 
 
-def image(name):
-    path = os.path.join(target.folder("stm32f405"), "hal", "stm32f405", name + ".elf")
+def image(name, chip="stm32f405"):
+    path = os.path.join(target.folder(chip), "hal", chip, name + ".elf")
     if not os.path.exists(path):
-        t.skip("there is no image for stm32f405: the cross-compiler is not installed (gcc-arm-none-eabi, picolibc-arm-none-eabi)")
+        t.skip(f"there is no image for {chip}: the cross-compiler is not installed (gcc-arm-none-eabi, picolibc-arm-none-eabi)")
     return path
 
 
 def sector(settings):
     """Settings as they lie in flash, with a head that is right for them whatever they are."""
     head = b"TKS1" + struct.pack("<III", 1, len(settings), zlib.crc32(settings))
-    return head + struct.pack("<I", zlib.crc32(head)) + b"\xff" * 4 + settings
+    return head + struct.pack("<I", zlib.crc32(head)) + b"\xff" * 12 + settings
 
 
 class Board:

@@ -11,6 +11,7 @@
 #include <string.h>
 
 #define SECTOR_BYTES 256U
+#define HEAD_USED    20U /* the rest is blank */
 #define SET_MAX      (SECTOR_BYTES - STORE_HEAD_BYTES)
 
 /* The flash, and when its power fails: at step cut_at, counted from 0; what the step leaves is kind of cut. */
@@ -25,6 +26,9 @@ static struct {
 } flash;
 
 #define NEVER 1000000U
+
+/* Of the longest set: an erasure, and all words. */
+#define STEPS (1U + SECTOR_BYTES / FLASH_WORD_BYTES)
 
 static uint8_t *sector(unsigned i)
 {
@@ -225,7 +229,7 @@ static void test_a_flash_that_refuses_leaves_the_old_set(void)
 
 static void test_a_bit_lost_in_the_newer_set_brings_the_older_one_back(void)
 {
-    for (unsigned bit = 0; bit < 8 * (STORE_HEAD_BYTES - 4); bit++) {
+    for (unsigned bit = 0; bit < 8 * HEAD_USED; bit++) {
         setUp();
         TEST_ASSERT_TRUE(save(1) && save(2));
         sector(1)[bit / 8] ^= (uint8_t)(1U << bit % 8);
@@ -333,7 +337,7 @@ static void test_random_cuts_one_after_the_other_never_lose_both_sets(void)
     prepare();
     for (unsigned number = 4; number < 20000; number++) {
         const bool failed =
-            save_until(number, (unsigned)rand() % 60, (enum cut)((unsigned)rand() % CUTS));
+            save_until(number, (unsigned)rand() % STEPS, (enum cut)((unsigned)rand() % CUTS));
 
         start();
         TEST_ASSERT_TRUE_MESSAGE(holds(last) || holds(number), "neither the old nor the new set");
