@@ -68,11 +68,11 @@ static void count_changes(struct lead *l, double change)
  */
 static uint64_t whole_way(struct lead *l, double way_mm)
 {
-    const double units = way_mm * PATH_UNITS_PER_MM + l->owed;
-    const uint64_t whole = (uint64_t)(units + 0.5);
+    const double owed_mm = way_mm + l->owed_mm;
+    const double whole_mm = path_whole_mm(owed_mm);
 
-    l->owed = units - (double)whole;
-    return whole;
+    l->owed_mm = owed_mm - whole_mm;
+    return (uint64_t)(whole_mm * PATH_UNITS_PER_MM);
 }
 
 static void go(struct lead *l, double feed)
@@ -91,7 +91,7 @@ static void come_to_rest(struct lead *l, uint64_t position)
 {
     l->abrupt = l->at == position;
     l->at = position;
-    l->owed = 0.0;
+    l->owed_mm = 0.0;
     count_changes(l, -1.0);
     l->feed = 0.0;
 }
@@ -170,7 +170,7 @@ static void enter_span(struct lead *l, uint32_t k, uint64_t from, struct lead_st
 
     l->window = (double)window;
     l->at = from + start->step * (window - 1) / 2;
-    l->owed = 0.0;
+    l->owed_mm = 0.0;
     l->feed = (double)start->step / PATH_UNITS_PER_MM;
     l->since_plus = LEAD_LONG_AGO;
     l->since_minus = LEAD_LONG_AGO;

@@ -63,7 +63,7 @@ struct lead {
     uint64_t known;   /* up to here it can follow the ceilings so far: what starts behind is new */
     uint64_t entered; /* where what the lead point has come to last starts for the setpoint */
     double feed;      /* at the end of the last cycle */
-    double owed;      /* path units: what rounding has left so far */
+    double owed_mm;   /* what rounding has left so far */
     bool standing;    /* at a stop, or where the machine was switched on: between two spans */
     bool abrupt;      /* came to rest where it was: waits for a cycle more before it moves on */
     bool released;    /* and may leave it */

@@ -83,10 +83,15 @@ static bool has_passed(const struct lead *l, const struct ceiling *c, uint32_t k
                                               : path_mm(c->origin, l->at) >= c->end_mm[k];
 }
 
-/* The way until the lead point may brake at the earliest: its feed has then been kept for a window. mm */
-static double way_to_brake(const struct lead *l)
+/*
+ * Where the lead point may brake at the earliest: its feed has then been kept for a window. mm from the origin; in whole units,
+ * or what is asked for there would depend, in the last bit, on what it is counted from.
+ */
+static double brake_position(const struct lead *l, const struct ceiling *c)
 {
-    return l->feed * maths_max(0.0, l->window - (double)l->since_plus);
+    const double wait = maths_max(0.0, l->window - (double)l->since_plus);
+
+    return path_mm(c->origin, l->at) + path_whole_mm(l->feed * wait);
 }
 
 /* A feed of its pieces, squared. */
@@ -96,11 +101,10 @@ static double energy_of(const struct ceiling *c, float feed_mm_s)
 }
 
 /*
- * Can what lies ahead of s be met at this feed squared, which is kept for this way at least, from piece k on? highest: at the
- * highest overrides. Ways are differences of whole units, and so exact: s + kept would depend on what s is counted from.
+ * Can what lies ahead be met at this feed squared, which is braked from at x at the earliest, from piece k on? highest: at
+ * the highest overrides.
  */
-static bool can_meet(const struct ceiling *c, uint32_t k, double s, double kept_mm, double energy,
-                     bool highest)
+static bool can_meet(const struct ceiling *c, uint32_t k, double x, double energy, bool highest)
 {
     for (uint32_t i = k; i < k + LEAD_PIECES_MAX; i++) {
         const struct ceiling_piece *p = &c->piece[i];
@@ -111,10 +115,8 @@ static bool can_meet(const struct ceiling *c, uint32_t k, double s, double kept_
         if (energy > top) {
             return false;
         }
-        const double way_mm = c->end_mm[i] - s - kept_mm;
-
-        if (way_mm >= 0.0 || last) {
-            return energy <= end + 2.0 * (double)p->acceleration * way_mm;
+        if (c->end_mm[i] >= x || last) {
+            return energy <= end + 2.0 * (double)p->acceleration * (c->end_mm[i] - x);
         }
         if (energy > end) {
             return false;
@@ -126,8 +128,8 @@ static bool can_meet(const struct ceiling *c, uint32_t k, double s, double kept_
 /* Can the lead point in piece k do what the ceiling asks for from here on, but for rounding? */
 static bool can_follow(const struct lead *l, const struct ceiling *c, uint32_t k, bool highest)
 {
-    return can_meet(c, k, path_mm(c->origin, l->at), way_to_brake(l),
-                    lead_square(l->feed) * (1.0 - LEAD_ENERGY_SLACK), highest);
+    return can_meet(c, k, brake_position(l, c), lead_square(l->feed) * (1.0 - LEAD_ENERGY_SLACK),
+                    highest);
 }
 
 /* Does a piece allow whatever the averages may hold from the one before? */
@@ -279,7 +281,7 @@ bool lead_could_be(const struct lead *l, uint64_t at, double feed, bool highest)
             return false;
         }
     }
-    return k < c->count && x <= c->end_mm[k] && can_meet(c, k, x, 0.0, feed * feed, highest);
+    return k < c->count && x <= c->end_mm[k] && can_meet(c, k, x, feed * feed, highest);
 }
 
 /* The piece that lies where it is, whatever it has been in. */
@@ -305,7 +307,7 @@ void lead_follow(struct lead *l, uint64_t at, double feed, uint64_t setpoint)
 
     l->at = at;
     l->feed = feed;
-    l->owed = 0.0;
+    l->owed_mm = 0.0;
     l->abrupt = false;
     l->since_plus = l->since_minus = (uint32_t)l->window - 1;
     find_piece(p, path_mm(c->origin, at));

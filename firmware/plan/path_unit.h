@@ -24,10 +24,15 @@ static inline double path_mm(uint64_t from, uint64_t to)
     return (double)(int64_t)(to - from) / PATH_UNITS_PER_MM;
 }
 
-/* A way >= 0 of whole units, mm: sums of such ways and positions are exact. */
+/*
+ * A way to the nearest whole unit, mm: sums of such ways and positions are exact. In doubles from 2^52 units to twice as
+ * many a unit is the last bit.
+ */
 static inline double path_whole_mm(double mm)
 {
-    return path_mm(0, path_units(mm));
+    const double large_mm = 1.5 * 4503599627370496.0 / PATH_UNITS_PER_MM;
+
+    return (mm + large_mm) - large_mm;
 }
 
 #endif

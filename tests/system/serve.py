@@ -29,7 +29,7 @@ def check_registers():
     block = client.read_words(4, 0, 51)
     t.check(block[0] == 1 and block[1] == p.IDLE and block[15] == 7, "a block of input registers", block)
     for function, address, count, code in (
-        (1, 25, 1, 2), (3, 420, 1, 2), (4, 400, 1, 2), (4, 390, 52, 2), (3, 65535, 2, 2),
+        (1, 26, 1, 2), (3, 420, 1, 2), (4, 400, 1, 2), (4, 390, 52, 2), (3, 65535, 2, 2),
         (3, 0, 0, 3), (3, 0, 126, 3), (1, 0, 2001, 3), (4, 0, 65535, 3), (22, 0, 1, 1), (43, 0, 1, 1),
     ):
         try:

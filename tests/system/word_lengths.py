@@ -62,8 +62,8 @@ for bits, unit in (20, 2e-3), (24, 1.25e-4), (28, 7.8125e-6):
     worst.append(errors["along_max_mm"])
 t.check(worst[0] > 3 * worst[1] > 9 * worst[2], "longer words err by less", worst)
 
-# The end rule: a block that is passed at 404 units of 1/8 um. What acceleration in whole units has lost is shared by the last N cycles.
-passed = t.write("passed.ngc", "G21 G61 F3030\nG1 X10\nG1 X30\nM2\n")
+# The end rule: a block that is passed at 404.4 units of 1/8 um, 404 whole ones. What acceleration in whole units has lost is shared by the last N cycles.
+passed = t.write("passed.ngc", "G21 G61 F3033\nG1 X10\nG1 X30\nM2\n")
 for shift in 3, 4, 5:
     _, trace = run(passed, "integrate", word_bits=24, end_shift=shift)
     sets, blocks = trace["set_X_mm"], trace["block"]
