@@ -72,7 +72,7 @@ static uint64_t whole_way(struct lead *l, double way_mm)
     const double whole_mm = path_whole_mm(owed_mm);
 
     l->owed_mm = owed_mm - whole_mm;
-    return (uint64_t)(whole_mm * PATH_UNITS_PER_MM);
+    return path_whole_units(whole_mm);
 }
 
 static void go(struct lead *l, double feed)

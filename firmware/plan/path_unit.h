@@ -24,15 +24,24 @@ static inline double path_mm(uint64_t from, uint64_t to)
     return (double)(int64_t)(to - from) / PATH_UNITS_PER_MM;
 }
 
-/*
- * A way to the nearest whole unit, mm: sums of such ways and positions are exact. In doubles from 2^52 units to twice as
- * many a unit is the last bit.
- */
+/* 1.5 x 2^52 units. In doubles from 2^52 units to twice as many a unit is the last bit. */
+#define PATH_LARGE_MM (1.5 * 4503599627370496.0 / PATH_UNITS_PER_MM)
+
+/* A way to the nearest whole unit, mm: sums of such ways and positions are exact. */
 static inline double path_whole_mm(double mm)
 {
-    const double large_mm = 1.5 * 4503599627370496.0 / PATH_UNITS_PER_MM;
+    return (mm + PATH_LARGE_MM) - PATH_LARGE_MM;
+}
 
-    return (mm + large_mm) - large_mm;
+/* Such a way, less than 2^51 units, in units. Quicker than path_units, which is for any. */
+static inline uint64_t path_whole_units(double whole_mm)
+{
+    const union {
+        double mm;
+        uint64_t bits;
+    } none = {PATH_LARGE_MM}, way = {whole_mm + PATH_LARGE_MM};
+
+    return way.bits - none.bits;
 }
 
 #endif
