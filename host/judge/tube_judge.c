@@ -10,10 +10,9 @@
 #define REACH_TOLERANCES 20
 
 /*
- * Where the setpoint is within the tolerance of the path up to so many motions beyond the one that is executed, and so many
- * tolerances of way, no more are gone to; so many motions behind it are not left yet. What the planner on board rounds at once
- * has fewer (smooth/route.h), and there a circle is one, which is cut into many pieces here. But of lines of a tenth of the
- * tolerance a curve passes hundreds within a cycle.
+ * Where the setpoint is within the tolerance of the path up to so many motions beyond the one that is executed, no more are
+ * gone to; so many behind it are not left yet. What the planner on board rounds at once has fewer (smooth/route.h), and there
+ * a circle is one, which is cut into many pieces here.
  */
 #define CROWD 128
 /* And no more than so many pieces: circles of many turns within the tolerance would make the work grow with their square. */
@@ -181,12 +180,9 @@ static bool has_piece(struct tube_judge *t, size_t k)
 /* Is piece k far ahead of piece `from`, which belongs to a motion? */
 static bool is_far(const struct tube_judge *t, size_t k, size_t from, uint32_t motion)
 {
-    const struct tube_motion *ahead = &tube_path_at(&t->path, k)->motion;
-    const double way_mm = ahead->travel_mm - tube_path_at(&t->path, from)->motion.travel_mm;
+    const uint32_t number = tube_path_at(&t->path, k)->motion.number;
 
-    return (ahead->number > motion && ahead->number - motion > CROWD &&
-            way_mm > CROWD * ahead->tolerance_mm) ||
-           k > from + CROWD_PIECES;
+    return (number > motion && number - motion > CROWD) || k > from + CROWD_PIECES;
 }
 
 /* All places that the setpoint may be at now. False: there is none; *n is then the nearest of those that were left. */
