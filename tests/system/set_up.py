@@ -8,33 +8,13 @@ import os
 import random
 
 import takt_test as t
+from set_up_machine import MACHINE, PIVOT, RESERVED
 
-PIVOT = [40.0, -25.0, -60.0]
 OFFSET = [0.82, -0.43, 0.2]
 TURNS = [0.2, -0.15, 0.4]
 LIMIT_UM = 2.0
 REST_CYCLES = 250
 CYCLES = os.path.join(t.SOURCE, "host/examples/set_up")
-MACHINE = """[axis X]
-travel_min_mm = -150
-travel_max_mm = 150
-[axis Y]
-travel_min_mm = -150
-travel_max_mm = 150
-[axis Z]
-travel_min_mm = -150
-travel_max_mm = 150
-[axis C]
-max_velocity_deg_s = 90
-max_acceleration_deg_s2 = 360
-max_jerk_deg_s3 = 3600
-[machine]
-chain = w C X Y b Z t
-[correction]
-turn_axis = C
-setup_pivot_mm = 40 -25 -60
-"""
-RESERVED = MACHINE + "reserve_ratio = 0.2\n"
 
 
 def rotation(about, degrees):

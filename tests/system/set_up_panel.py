@@ -4,31 +4,11 @@ import math
 
 import panel_client as p
 import takt_test as t
+from set_up_machine import PIVOT, RESERVED
 
-PIVOT = [40.0, -25.0, -60.0]
 OFFSET = [0.8204, -0.4303, 0.2001]
 TURNS = [0.2002, -0.1503, 0.4001]
 ORDER = ("SETUP_X", "SETUP_Y", "SETUP_Z", "SETUP_I", "SETUP_J", "SETUP_K")
-MACHINE = """[axis X]
-travel_min_mm = -150
-travel_max_mm = 150
-[axis Y]
-travel_min_mm = -150
-travel_max_mm = 150
-[axis Z]
-travel_min_mm = -150
-travel_max_mm = 150
-[axis C]
-max_velocity_deg_s = 90
-max_acceleration_deg_s2 = 360
-max_jerk_deg_s3 = 3600
-[machine]
-chain = w C X Y b Z t
-[correction]
-turn_axis = C
-setup_pivot_mm = 40 -25 -60
-reserve_ratio = 0.2
-"""
 
 
 def turned(v, about, degrees):
@@ -69,7 +49,7 @@ def check_points(client, when):
     t.check(worst <= 2.0, f"the part is met {when}", worst)
 
 
-t.write("m.ini", MACHINE)
+t.write("m.ini", RESERVED)
 service = p.serve("--machine", "m.ini", "--state", "kept")
 client = service.client()
 client.wait_for("STATE", p.IDLE)
@@ -108,7 +88,7 @@ client.run_line("G4 P3")  # correction fades in
 check_points(client, "after a restart")
 service.stop()
 
-t.write("m.ini", MACHINE + "setup_offset_mm = 0.1 0 0\n")
+t.write("m.ini", RESERVED + "setup_offset_mm = 0.1 0 0\n")
 service = p.serve("--machine", "m.ini", "--state", "kept")
 client = service.client()
 client.wait_for("STATE", p.IDLE)
