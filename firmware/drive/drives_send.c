@@ -55,8 +55,8 @@ static void fill(struct can_frame *frame, const struct drives_frame *as,
 }
 
 /*
- * port: of every bus. A controlword that is refused counts as not sent, and comes again in the next cycle. One that has no PDO is told by
- * SDO while the drives are started; after a fault nobody waits for an answer.
+ * port: of every bus. A controlword that is refused counts as not sent, and comes again in the next cycle. One that has no
+ * PDO is told by SDO while the drives are started; after a fault nobody waits for an answer.
  */
 static void send_controlword(struct drives_axis *axis, const struct can_port *port,
                              uint16_t controlword, bool is_urgent)
