@@ -84,11 +84,22 @@ class Component:
             self.process.wait()
 
 
-def check_spindle():
-    pair = serial_pair.Pair()
-    service = p.Service("--spindle", pair.paths[0] + ",115200,none", "--set", "spindle.ramp_rpm_s=100000", command="drives")
-    component = Component("vfdb_vfd", "-I", t.write("vfd.ini", VFD_INI.format(path=pair.paths[1])), "-n", VFD)
-    component.wait_for(VFD + ".modbus-ok", lambda value: value == "TRUE")
+class Late(Exception):
+    """vfdb_vfd waits for an answer for half a second (libmodbus), takes what comes after that for the answer to its next
+    request, and reads nothing more. A busy computer is that late now and then: then nothing is said of the spindle."""
+
+
+def wait_for_vfd(component, pin, test):
+    def is_done(value):
+        if int(halcmd("getp", VFD + ".error-count")) > 0:
+            raise Late
+        return test(value)
+
+    return component.wait_for(VFD + pin, is_done)
+
+
+def check_turning(component):
+    wait_for_vfd(component, ".modbus-ok", lambda value: value == "TRUE")
     t.check(float(halcmd("getp", VFD + ".max-rpm")) == 24000, "vfdb_vfd knows the highest speed")
     halcmd("setp", VFD + ".enable", "1")
     for speed, direction in ((9000, 0), (-6000, 0x18)):
@@ -96,17 +107,36 @@ def check_spindle():
         halcmd("setp", VFD + ".spindle-on", "1")
         # The direction first: on its way to the other one the spindle passes this speed too. Each pin is read by a request
         # of its own, so one follows the other.
-        t.check(component.wait_for(VFD + ".status", lambda value: int(value) & 0x18 == direction), "in the direction told")
-        t.check(component.wait_for(VFD + ".motor-RPM", lambda value: abs(float(value) - abs(speed)) < 20), f"vfdb_vfd turns it at {speed} rpm")
-        t.check(component.wait_for(VFD + ".frequency-out", lambda value: abs(float(value) - abs(speed) / 60) < 1), "and reads its frequency")
+        t.check(wait_for_vfd(component, ".status", lambda value: int(value) & 0x18 == direction), "in the direction told")
+        t.check(wait_for_vfd(component, ".motor-RPM", lambda value: abs(float(value) - abs(speed)) < 20), f"vfdb_vfd turns it at {speed} rpm")
+        t.check(wait_for_vfd(component, ".frequency-out", lambda value: abs(float(value) - abs(speed) / 60) < 1), "and reads its frequency")
         if speed > 0:  # vfdb_vfd never says so of a negative speed
-            t.check(component.wait_for(VFD + ".at-speed", lambda value: value == "TRUE"), "and sees it at speed")
+            t.check(wait_for_vfd(component, ".at-speed", lambda value: value == "TRUE"), "and sees it at speed")
     halcmd("setp", VFD + ".spindle-on", "0")
-    t.check(component.wait_for(VFD + ".is-stopped", lambda value: value == "TRUE"), "and stops it")
-    t.check(int(halcmd("getp", VFD + ".error-count")) == 0, "without an error on the line")
-    component.stop()
-    service.stop()
-    pair.close()
+    t.check(wait_for_vfd(component, ".is-stopped", lambda value: value == "TRUE"), "and stops it")
+
+
+ROUNDS = 5
+
+
+def turns_in_time():
+    """Whether every request was answered in time; a takt that loses answers never gets here."""
+    pair = serial_pair.Pair()
+    service = p.Service("--spindle", pair.paths[0] + ",115200,none", "--set", "spindle.ramp_rpm_s=100000", command="drives")
+    component = Component("vfdb_vfd", "-I", t.write("vfd.ini", VFD_INI.format(path=pair.paths[1])), "-n", VFD)
+    try:
+        check_turning(component)
+        return True
+    except Late:
+        return False
+    finally:
+        component.stop()
+        service.stop()
+        pair.close()
+
+
+def check_spindle():
+    t.check(any(turns_in_time() for _ in range(ROUNDS)), f"without an error on the line in one of {ROUNDS} rounds")
 
 
 def check_panel():
