@@ -112,7 +112,7 @@ static struct beside look_beside(const struct tube_segment *s, double from, cons
 
 static double within_of(const struct tube_piece *piece)
 {
-    return piece->motion.tolerance_mm + piece->motion.cut_mm;
+    return piece->motion->tolerance_mm + piece->motion->cut_mm;
 }
 
 static struct point end_of(const struct tube_segment *s)
@@ -127,11 +127,11 @@ static struct point end_of(const struct tube_segment *s)
 /* How near a step must come to the end of a piece: from an exact motion it may go straight into the next. */
 static double within_end(const struct tube_piece *piece, const struct stride *step)
 {
-    const double within_mm = maths_max(within_of(piece), piece->motion.turning_mm);
+    const double within_mm = maths_max(within_of(piece), piece->motion->turning_mm);
 
-    if (piece->motion.rounded && !piece->ends)
+    if (piece->motion->rounded && !piece->ends)
         return within_mm + step->sag_mm;
-    return piece->motion.rounded ? within_mm : maths_max(within_mm, step->segment.length_mm / 2);
+    return piece->motion->rounded ? within_mm : maths_max(within_mm, step->segment.length_mm / 2);
 }
 
 /* Goes past the end of a piece, from this part of the step on. Returns the first part at which it can, or NOT_ENTERED. */
@@ -154,7 +154,7 @@ static double follow_piece(struct tube_judge *t, size_t k, const struct stride *
     struct tube_piece *piece = tube_path_at(&t->path, k);
     const double from = entered >= 0 ? 0 : piece->from;
     const struct beside b = look_beside(&piece->segment, from, &step->to, within_of(piece));
-    const double of_tolerance = b.distance_mm / piece->motion.tolerance_mm;
+    const double of_tolerance = b.distance_mm / piece->motion->tolerance_mm;
     const double ahead_mm = (1 - b.part) * piece->segment.length_mm;
     double leaves = NOT_ENTERED;
 
@@ -180,7 +180,7 @@ static bool has_piece(struct tube_judge *t, size_t k)
 /* Is piece k far ahead of piece `from`, which belongs to a motion? */
 static bool is_far(const struct tube_judge *t, size_t k, size_t from, uint32_t motion)
 {
-    const uint32_t number = tube_path_at(&t->path, k)->motion.number;
+    const uint32_t number = tube_path_at(&t->path, k)->motion->number;
 
     return (number > motion && number - motion > CROWD) || k > from + CROWD_PIECES;
 }
@@ -192,7 +192,7 @@ static bool follow(struct tube_judge *t, const struct stride *step, struct neare
     size_t active = 0, said = 0;
 
     for (size_t k = 0; (k < t->active || entered >= 0) && has_piece(t, k); k++) {
-        if (tube_path_at(&t->path, k)->motion.number <= step->motion)
+        if (tube_path_at(&t->path, k)->motion->number <= step->motion)
             said = k;
         if (k >= t->active && is_far(t, k, said, step->motion) && n->of_tolerance <= 1)
             break;
@@ -209,7 +209,7 @@ static bool follow(struct tube_judge *t, const struct stride *step, struct neare
 /* The path has been left: it goes on at the nearest place within reach. */
 static void find_again(struct tube_judge *t, const struct stride *step)
 {
-    const double tolerance_mm = tube_path_at(&t->path, 0)->motion.tolerance_mm;
+    const double tolerance_mm = tube_path_at(&t->path, 0)->motion->tolerance_mm;
     const double reach_mm = REACH_STEPS * step->segment.length_mm + REACH_TOLERANCES * tolerance_mm;
     double ahead_mm = 0, least_mm = MATHS_INFINITY, part = 0;
     struct tube_piece *found;
@@ -235,7 +235,7 @@ static void find_again(struct tube_judge *t, const struct stride *step)
 /* Steps along the tangent, as if the curve were straight: to where the setpoint lies across it. */
 static double curve_distance(const struct tube_piece *piece, double part, const struct point *p)
 {
-    const struct curve *c = &piece->motion.curve;
+    const struct curve *c = &piece->motion->curve;
     double s_mm = piece->from_mm + part * piece->length_mm;
     double fraction = s_mm / c->length_mm;
     double least = judge_curve_distance(c, p, &fraction);
@@ -260,13 +260,13 @@ static double distance_from(const struct tube_piece *piece, const struct point *
 {
     const struct beside b = look_beside(&piece->segment, piece->from, p, 0);
 
-    return piece->motion.cut_mm > 0 ? curve_distance(piece, b.part, p) : b.distance_mm;
+    return piece->motion->cut_mm > 0 ? curve_distance(piece, b.part, p) : b.distance_mm;
 }
 
 /* What the path may be left by in all: no less than an exact motion. */
 static double allowed_mm(const struct tube_judge *t, const struct tube_piece *piece)
 {
-    return maths_max(piece->motion.tolerance_mm, t->path.exact_mm);
+    return maths_max(piece->motion->tolerance_mm, t->path.exact_mm);
 }
 
 static void note_beyond(struct tube_judge *t, double beyond_mm, uint32_t line)
@@ -280,11 +280,12 @@ static void note_beyond(struct tube_judge *t, double beyond_mm, uint32_t line)
 /* Could a setpoint so far from the piece raise any figure? A curve is looked at closely only then. */
 static bool is_news(const struct tube_judge *t, const struct tube_piece *piece, double distance_mm)
 {
-    const double most_mm = distance_mm + piece->motion.cut_mm;
+    const double most_mm = distance_mm + piece->motion->cut_mm;
 
     return most_mm - allowed_mm(t, piece) > t->figures.beyond_mm ||
-           (piece->motion.rounded && (most_mm > t->figures.deviation_mm ||
-                                      most_mm > t->figures.path_part * piece->motion.tolerance_mm));
+           (piece->motion->rounded &&
+            (most_mm > t->figures.deviation_mm ||
+             most_mm > t->figures.path_part * piece->motion->tolerance_mm));
 }
 
 /* The nearest of the places at which the setpoint may be; after it has left the path the nearest one left. */
@@ -295,19 +296,19 @@ static void measure(struct tube_judge *t, const struct point *p, struct nearest 
     if (!is_news(t, piece, n->distance_mm))
         return;
     n->distance_mm = distance_from(piece, p);
-    n->of_tolerance = n->distance_mm / piece->motion.tolerance_mm;
+    n->of_tolerance = n->distance_mm / piece->motion->tolerance_mm;
     for (size_t k = 0; k < t->active && !left; k++) {
         const struct tube_piece *other = tube_path_at(&t->path, k);
         const double distance_mm = other->reached ? distance_from(other, p) : MATHS_INFINITY;
 
-        if (distance_mm < n->of_tolerance * other->motion.tolerance_mm) {
+        if (distance_mm < n->of_tolerance * other->motion->tolerance_mm) {
             n->distance_mm = distance_mm;
-            n->of_tolerance = distance_mm / other->motion.tolerance_mm;
+            n->of_tolerance = distance_mm / other->motion->tolerance_mm;
             piece = other;
         }
     }
-    note_beyond(t, n->distance_mm - allowed_mm(t, piece), piece->motion.line);
-    if (piece->motion.rounded) {
+    note_beyond(t, n->distance_mm - allowed_mm(t, piece), piece->motion->line);
+    if (piece->motion->rounded) {
         raise_to(&t->figures.path_part, n->of_tolerance);
         raise_to(&t->figures.deviation_mm, n->distance_mm);
     }
@@ -322,16 +323,16 @@ static void settle_corner(struct tube_judge *t)
         maths_min(piece->corner_mm, judge_distance(&t->last, &end)); /* if nothing came to it */
     double tolerance_mm = allowed_mm(t, piece);
 
-    if (!piece->ends || piece->motion.turning_mm > 0)
+    if (!piece->ends || piece->motion->turning_mm > 0)
         return;
     if (t->path.count > 1)
         tolerance_mm = maths_min(tolerance_mm, allowed_mm(t, tube_path_at(&t->path, 1)));
-    if (piece->motion.rounded) {
-        raise_to(&t->figures.corner_part, corner_mm / piece->motion.tolerance_mm);
+    if (piece->motion->rounded) {
+        raise_to(&t->figures.corner_part, corner_mm / piece->motion->tolerance_mm);
         raise_to(&t->figures.corner_mm, corner_mm);
     }
-    if (piece->motion.rounded || !t->exact_elsewhere)
-        note_beyond(t, corner_mm - tolerance_mm, piece->motion.line);
+    if (piece->motion->rounded || !t->exact_elsewhere)
+        note_beyond(t, corner_mm - tolerance_mm, piece->motion->line);
 }
 
 /* Pieces that have been left for good. */
@@ -346,7 +347,7 @@ static void drop_left(struct tube_judge *t)
 
 static double length_before(const struct tube_piece *piece, double part)
 {
-    const struct tube_motion *m = &piece->motion;
+    const struct tube_motion *m = piece->motion;
 
     return curve_is_rotary(&m->curve) ? m->travel_mm
                                       : m->travel_mm + piece->from_mm + part * piece->length_mm;
@@ -355,16 +356,16 @@ static double length_before(const struct tube_piece *piece, double part)
 /* Is the setpoint on the motion that is executed, as is said? */
 static bool is_believed(const struct tube_piece *piece, const struct stride *step)
 {
-    return piece->reached && piece->motion.number + NUMBER_ROOM >= step->motion &&
-           piece->motion.number <= step->motion &&
+    return piece->reached && piece->motion->number + NUMBER_ROOM >= step->motion &&
+           piece->motion->number <= step->motion &&
            look_beside(&piece->segment, piece->from, &step->to, 0).distance_mm <=
-               piece->motion.tolerance_mm;
+               piece->motion->tolerance_mm;
 }
 
 /* Of the pieces far ahead of the first one, the first that is believed; t->active: there is none. */
 static size_t find_believed(struct tube_judge *t, const struct stride *step)
 {
-    const uint32_t first = tube_path_at(&t->path, 0)->motion.number;
+    const uint32_t first = tube_path_at(&t->path, 0)->motion->number;
     size_t k = t->active;
 
     if (!is_far(t, k - 1, 0, first))
@@ -386,7 +387,7 @@ static void leave_crowd(struct tube_judge *t, const struct stride *step)
     for (; k < t->active && k > 0; k--) {
         const struct tube_piece *piece = tube_path_at(&t->path, 0);
 
-        if (!is_far(t, k, 0, piece->motion.number) ||
+        if (!is_far(t, k, 0, piece->motion->number) ||
             (piece->ends && piece->corner_mm > allowed_mm(t, piece)))
             return;
         settle_corner(t);
@@ -468,12 +469,12 @@ static void measure_rest(struct tube_judge *t, const struct tube_piece *piece)
 {
     const double distance_mm = judge_distance(&t->last, &piece->segment.start);
 
-    if (piece->motion.rounded) {
-        raise_to(&t->figures.path_part, distance_mm / piece->motion.tolerance_mm);
+    if (piece->motion->rounded) {
+        raise_to(&t->figures.path_part, distance_mm / piece->motion->tolerance_mm);
         raise_to(&t->figures.deviation_mm, distance_mm);
     }
-    if (piece->motion.rounded || !t->exact_elsewhere)
-        note_beyond(t, distance_mm - allowed_mm(t, piece), piece->motion.line);
+    if (piece->motion->rounded || !t->exact_elsewhere)
+        note_beyond(t, distance_mm - allowed_mm(t, piece), piece->motion->line);
 }
 
 /* All that can be read but its last piece has been left by now. */
@@ -495,7 +496,7 @@ void tube_judge_answer(struct tube_judge *t, const struct program_answer *answer
     if (t->path.failed)
         return;
     leave_all(t);
-    if (!t->path.motion.probing)
+    if (!t->path.motion->probing)
         settle_corner(t);
     tube_path_answer(&t->path, answer);
     t->active = 1;

@@ -33,6 +33,28 @@ static bool grow(struct tube_path *p)
     return true;
 }
 
+static void leave_motion(struct tube_motion *m)
+{
+    if (m != NULL && --m->users == 0)
+        free(m);
+}
+
+/* False: no memory; the last motion read is what it was. */
+static bool begin_motion(struct tube_path *p, const struct tube_motion *motion)
+{
+    struct tube_motion *m = malloc(sizeof *m);
+
+    p->failed = m == NULL;
+    if (p->failed)
+        return false;
+    *m = *motion;
+    m->users = 1;
+    leave_motion(p->motion);
+    p->motion = m;
+    p->cut_to_mm = 0;
+    return true;
+}
+
 /* NULL: no memory. */
 static struct tube_piece *append(struct tube_path *p, const struct point *start,
                                  const struct point *end)
@@ -45,6 +67,7 @@ static struct tube_piece *append(struct tube_path *p, const struct point *start,
     p->count++;
     piece = tube_path_at(p, p->count - 1);
     piece->motion = p->motion;
+    piece->motion->users++;
     piece->segment.start = *start;
     for (int i = 0; i < AXIS_COUNT; i++) {
         piece->segment.way.at[i] = end->at[i] - start->at[i];
@@ -63,9 +86,11 @@ static void append_point(struct tube_path *p)
 {
     struct tube_piece *piece;
 
-    p->motion = (struct tube_motion){
+    const struct tube_motion none = {
         .number = p->motions, .tolerance_mm = p->exact_mm, .travel_mm = p->travel_mm};
-    p->cut_to_mm = 0;
+
+    if (!begin_motion(p, &none))
+        return;
     piece = append(p, &p->end, &p->end);
     if (piece == NULL)
         return;
@@ -86,26 +111,47 @@ void tube_path_init(struct tube_path *p, const struct program_config *program,
     append_point(p);
 }
 
-void tube_path_free(struct tube_path *p)
-{
-    free(p->piece);
-    p->piece = NULL;
-    p->count = 0;
-    p->capacity = 0;
-}
-
 void tube_path_drop(struct tube_path *p)
 {
+    leave_motion(tube_path_at(p, 0)->motion);
     p->first = (p->first + 1) & (p->capacity - 1);
     p->count--;
 }
 
-static void take_motion(struct tube_path *p, const struct move *move, const struct curve *curve)
+static void drop_all(struct tube_path *p)
+{
+    while (p->count > 0)
+        tube_path_drop(p);
+}
+
+void tube_path_free(struct tube_path *p)
+{
+    drop_all(p);
+    leave_motion(p->motion);
+    free(p->piece);
+    p->motion = NULL;
+    p->piece = NULL;
+    p->capacity = 0;
+}
+
+/* A piece of length l is off a curve of curvature k by k l^2 / 8. */
+static double straight_length(const struct tube_motion *m, double at_mm)
+{
+    struct point k;
+    double square = 0;
+
+    curve_curvature(&m->curve, at_mm, &k);
+    for (int i = 0; i < AXIS_COUNT; i++)
+        square += k.at[i] * k.at[i];
+    return maths_sqrt(8 * m->cut_mm / maths_sqrt(square));
+}
+
+static bool take_motion(struct tube_path *p, const struct move *move, const struct curve *curve)
 {
     const bool rounded = move->path == PATH_BLEND && move->tolerance_mm > 0;
     const double tolerance_mm = rounded ? move->tolerance_mm : p->exact_mm;
 
-    p->motion = (struct tube_motion){
+    struct tube_motion motion = {
         .curve = *curve,
         .line = move->line,
         .number = p->motions,
@@ -115,10 +161,14 @@ static void take_motion(struct tube_path *p, const struct move *move, const stru
         .turning_mm = move->kind == MOVE_TAP ? TUBE_TURNING_REV * move->feed_rev_mm : 0,
         .travel_mm = p->travel_mm,
         .cut_mm = curve->kind == CURVE_LINE ? 0 : CUT_PART * tolerance_mm};
-    p->cut_to_mm = 0;
+
+    if (curve->kind == CURVE_ARC) /* its curvature falls or rises all along, by rounded decimals */
+        motion.even_mm =
+            maths_min(straight_length(&motion, 0), straight_length(&motion, curve->length_mm));
     p->cut_to = curve->start;
     if (!curve_is_rotary(curve))
         p->travel_mm += curve->length_mm;
+    return begin_motion(p, &motion);
 }
 
 static bool read_motion(struct tube_path *p)
@@ -139,50 +189,40 @@ static bool read_motion(struct tube_path *p)
             continue;
         p->motions++;
         p->end = move.end;
-        if (move_curve(&move, &start, &curve)) {
-            take_motion(p, &move, &curve);
-            return true;
-        }
+        if (move_curve(&move, &start, &curve))
+            return take_motion(p, &move, &curve);
     }
     return false;
-}
-
-/* A piece of length l is off a curve of curvature k by k l^2 / 8. */
-static double straight_length(const struct tube_motion *m, double at_mm)
-{
-    struct point k;
-    double square = 0;
-
-    curve_curvature(&m->curve, at_mm, &k);
-    for (int i = 0; i < AXIS_COUNT; i++)
-        square += k.at[i] * k.at[i];
-    return maths_sqrt(8 * m->cut_mm / maths_sqrt(square));
 }
 
 /* Where the next piece of the motion ends: no curve is off a piece that is shorter than that by more. */
 static double next_cut(const struct tube_path *p)
 {
-    const struct tube_motion *m = &p->motion;
+    const struct tube_motion *m = p->motion;
     const double length_mm = m->curve.length_mm;
-    double step_mm;
+    double step_mm = m->even_mm;
 
     if (m->curve.kind == CURVE_LINE)
         return length_mm;
-    step_mm = straight_length(m, p->cut_to_mm);
-    step_mm = maths_min(step_mm, straight_length(m, maths_min(p->cut_to_mm + step_mm, length_mm)));
+    if (step_mm == 0) {
+        step_mm = straight_length(m, p->cut_to_mm);
+        step_mm =
+            maths_min(step_mm, straight_length(m, maths_min(p->cut_to_mm + step_mm, length_mm)));
+    }
     step_mm = maths_max(step_mm, m->cut_mm);
     return p->cut_to_mm + step_mm < length_mm ? p->cut_to_mm + step_mm : length_mm;
 }
 
 bool tube_path_extend(struct tube_path *p)
 {
-    const struct curve *c = &p->motion.curve;
+    const struct curve *c;
     struct tube_piece *piece;
     struct point end;
     double to_mm;
 
-    if (c->length_mm <= p->cut_to_mm && !read_motion(p))
+    if (p->motion->curve.length_mm <= p->cut_to_mm && !read_motion(p))
         return false;
+    c = &p->motion->curve;
     to_mm = next_cut(p);
     end = c->end;
     if (to_mm < c->length_mm)
@@ -214,12 +254,14 @@ static double place_on_line(const struct curve *c, const struct point *at)
 
 void tube_path_answer(struct tube_path *p, const struct program_answer *answer)
 {
-    if (p->motion.probing) {
-        if (!curve_is_rotary(&p->motion.curve))
-            p->travel_mm = p->motion.travel_mm + place_on_line(&p->motion.curve, &answer->rest_at);
+    const struct tube_motion *m = p->motion;
+
+    if (m->probing) {
+        if (!curve_is_rotary(&m->curve))
+            p->travel_mm = m->travel_mm + place_on_line(&m->curve, &answer->rest_at);
         p->end = answer->rest_at;
     }
-    p->count = 0;
+    drop_all(p);
     append_point(p);
     offset_answer(&p->offset, &p->program, answer);
 }

@@ -25,8 +25,9 @@ struct tube_segment {
     double square_mm2;
 };
 
-/* A motion with a length. */
+/* A motion with a length; its pieces share it. */
 struct tube_motion {
+    size_t users; /* its pieces in memory, and the path as long as it is the last one read */
     struct curve curve;
     uint32_t line;
     uint32_t number;     /* of the program's motions, from 1; 0: the place where it begins */
@@ -36,10 +37,11 @@ struct tube_motion {
     double turning_mm;   /* a tap turns back so far before its end at most; 0: it is none */
     double travel_mm;    /* path before it; motions of rotary axes alone have none */
     double cut_mm;       /* pieces are so far off the curve at most */
+    double even_mm;      /* length of an arc's pieces; 0: it is none */
 };
 
 struct tube_piece {
-    struct tube_motion motion;
+    struct tube_motion *motion;
     struct tube_segment segment;
     double from_mm, length_mm; /* of the motion's curve */
     bool ends;                 /* with its motion */
@@ -51,16 +53,16 @@ struct tube_piece {
 struct tube_path {
     struct program program;
     struct offset offset;
-    double exact_mm;           /* what exact motions may be off */
-    bool ended;                /* there are no more motions */
-    bool failed;               /* out of memory */
-    struct point end;          /* of what has been read */
-    uint32_t motions;          /* likewise, those without a length too */
-    double travel_mm;          /* of what has been read */
-    struct tube_motion motion; /* read last, */
-    double cut_to_mm;          /* how far pieces have been made of it, */
-    struct point cut_to;       /* and where that is */
-    struct tube_piece *piece;  /* a queue, owned */
+    double exact_mm;            /* what exact motions may be off */
+    bool ended;                 /* there are no more motions */
+    bool failed;                /* out of memory */
+    struct point end;           /* of what has been read */
+    uint32_t motions;           /* likewise, those without a length too */
+    double travel_mm;           /* of what has been read */
+    struct tube_motion *motion; /* read last, */
+    double cut_to_mm;           /* how far pieces have been made of it, */
+    struct point cut_to;        /* and where that is */
+    struct tube_piece *piece;   /* a queue, owned */
     size_t first, count, capacity;
 };
 
