@@ -29,6 +29,12 @@ struct option_bore {
     bool compare;
 };
 
+/* For `takt circle`: NULL or 0: not given. */
+struct option_circle {
+    const char *plane, *centre;
+    double radius, feed;
+};
+
 /* For `takt serve` and `takt panel`. */
 struct option_panel {
     const char *listen, *connect; /* HOST:PORT */
@@ -98,6 +104,7 @@ struct options {
     double tolerance;       /* of `takt trace`; 0: equal. Of `takt bore`, mm; 0: its default */
     const char *output;     /* -o is short for --output */
     struct option_bore bore;
+    struct option_circle circle;
     struct option_frequency frequency;
     struct option_correction correction;
     struct option_panel panel;

@@ -38,6 +38,7 @@ extern const struct command command_panel;
 extern const struct command command_drives;
 extern const struct command command_replay;
 extern const struct command command_bore;
+extern const struct command command_circle;
 extern const struct command command_compile;
 extern const struct command command_completion;
 
