@@ -25,6 +25,9 @@ void servo_loop_init(struct servo_loop *loop, const struct servo_loop_config *co
     loop->mm_s2_per_rated = travel_per_rad_mm * config->torque_rated_nm / config->inertia_kg_m2;
     loop->rated_per_mm_s2 = 1 / loop->mm_s2_per_rated;
     loop->torque_limit_mm_s2 = loop->acceleration_max_mm_s2;
+    loop->friction = config->friction_nm;
+    for (unsigned i = 0; i < FRICTION_POINTS; i++)
+        loop->friction.at[i] *= travel_per_rad_mm / config->inertia_kg_m2;
     loop->velocity_gain_per_s = MATHS_TWO_PI * config->velocity_bandwidth_hz;
     loop->integral_gain_per_s2 =
         integral_time_s > 0 ? loop->velocity_gain_per_s / integral_time_s : 0;
@@ -55,7 +58,7 @@ double servo_loop_torque_limit_mm_s2(const struct servo_loop *loop)
 /* What does not change within a cycle. */
 struct cycle {
     double forward_mm_s;  /* velocity that is fed forward */
-    double forward_mm_s2; /* the same for acceleration */
+    double forward_mm_s2; /* the same for acceleration, by which friction is overcome too */
     double limit_mm_s2;   /* acceleration by all the torque there is */
 };
 
@@ -71,6 +74,16 @@ static struct cycle begin_cycle(struct servo_loop *loop, uint32_t cycle_ns)
         loop->per_step_s = 1 / loop->step_s;
     }
     return (struct cycle){.limit_mm_s2 = servo_loop_torque_limit_mm_s2(loop)};
+}
+
+/* Of a command that moves at a velocity and changes it. */
+static void feed_forward(const struct servo_loop *loop, struct cycle *c, double velocity_mm_s,
+                         double acceleration_mm_s2)
+{
+    c->forward_mm_s =
+        loop->config.velocity_feed_forward_ratio * velocity_mm_s + loop->velocity_offset_mm_s;
+    c->forward_mm_s2 = loop->config.torque_feed_forward_ratio * acceleration_mm_s2 +
+                       friction_at(&loop->friction, velocity_mm_s) + loop->torque_offset_mm_s2;
 }
 
 /* A step with this torque, and what the encoder says after it. */
@@ -108,10 +121,7 @@ void servo_loop_follow(struct servo_loop *loop, double command_mm, uint32_t cycl
     struct cycle cycle = begin_cycle(loop, cycle_ns);
     double velocity_mm_s = (command_mm - loop->command_mm) * loop->per_cycle_s;
     double acceleration_mm_s2 = (velocity_mm_s - loop->command_velocity_mm_s) * loop->per_cycle_s;
-    cycle.forward_mm_s =
-        loop->config.velocity_feed_forward_ratio * velocity_mm_s + loop->velocity_offset_mm_s;
-    cycle.forward_mm_s2 =
-        loop->config.torque_feed_forward_ratio * acceleration_mm_s2 + loop->torque_offset_mm_s2;
+    feed_forward(loop, &cycle, velocity_mm_s, acceleration_mm_s2);
     for (uint32_t i = 0; i < loop->steps; i++)
         step(loop, &cycle, loop->command_mm + velocity_mm_s * (i * loop->step_s));
     loop->command_mm = command_mm;
@@ -128,10 +138,7 @@ void servo_loop_follow_piece(struct servo_loop *loop, const double piece[BETWEEN
         between_at(piece, i * loop->step_s * loop->per_cycle_s, place);
         double velocity_mm_s = place[1] * loop->per_cycle_s;
         double acceleration_mm_s2 = place[2] * loop->per_cycle_s * loop->per_cycle_s;
-        cycle.forward_mm_s =
-            loop->config.velocity_feed_forward_ratio * velocity_mm_s + loop->velocity_offset_mm_s;
-        cycle.forward_mm_s2 =
-            loop->config.torque_feed_forward_ratio * acceleration_mm_s2 + loop->torque_offset_mm_s2;
+        feed_forward(loop, &cycle, velocity_mm_s, acceleration_mm_s2);
         step(loop, &cycle, place[0]);
     }
     between_at(piece, 1, place);
@@ -151,9 +158,8 @@ void servo_loop_turn(struct servo_loop *loop, double velocity_mm_s, uint32_t cyc
 {
     struct cycle cycle = begin_cycle(loop, cycle_ns);
     double acceleration_mm_s2 = (velocity_mm_s - loop->command_velocity_mm_s) * loop->per_cycle_s;
+    feed_forward(loop, &cycle, velocity_mm_s, acceleration_mm_s2);
     cycle.forward_mm_s = velocity_mm_s + loop->velocity_offset_mm_s;
-    cycle.forward_mm_s2 =
-        loop->config.torque_feed_forward_ratio * acceleration_mm_s2 + loop->torque_offset_mm_s2;
     for (uint32_t i = 0; i < loop->steps; i++)
         step(loop, &cycle, loop->measured_mm);
     look(loop, cycle_ns);

@@ -8,6 +8,7 @@
 
 #include "hal/motor.h"
 #include "servo/between.h"
+#include "servo/friction.h"
 
 #include <stdbool.h>
 #include <stdint.h>
@@ -25,6 +26,8 @@ struct servo_loop_config {
     double velocity_bandwidth_hz;           /* of the velocity loop's proportional part; > 0 */
     double velocity_integral_time_s;        /* of its integral part; 0: no integral part */
     double torque_feed_forward_ratio;       /* of the command's acceleration; 0 ... 1 */
+    struct friction
+        friction_nm; /* over mm/s of the axis: what is fed forward of it; none: nothing */
 };
 
 struct servo_loop {
@@ -40,6 +43,7 @@ struct servo_loop {
     double standstill_mm_s;    /* slower than this the motor stands */
     double mm_s2_per_rated;    /* acceleration by the rated torque */
     double rated_per_mm_s2;    /* its inverse */
+    struct friction friction;  /* as acceleration over velocity */
     double torque_limit_mm_s2; /* acceleration by the torque it is allowed */
 
     /* How a cycle of cycle_ns is divided; made anew when another length of cycle comes. */

@@ -105,6 +105,7 @@ struct options {
     const char *output;     /* -o is short for --output */
     struct option_bore bore;
     struct option_circle circle;
+    const char *axes; /* of `takt friction`: letters */
     struct option_frequency frequency;
     struct option_correction correction;
     struct option_panel panel;

@@ -103,6 +103,9 @@ static const char *check_loops(const struct drive_plant_config *c)
     CHECK(is_not_negative(c->velocity_integral_time_s), velocity_integral_time_s);
     CHECK(is_not_negative(c->torque_feed_forward_ratio) && c->torque_feed_forward_ratio <= 1,
           torque_feed_forward_ratio);
+    for (unsigned i = 0; i < FRICTION_POINTS; i++)
+        CHECK(is_not_negative(c->friction_forward_nm[i]), friction_forward_nm);
+    CHECK(is_not_negative(c->friction_forward_step_mm_s), friction_forward_step_mm_s);
     CHECK(c->loop_period_us >= 1 && c->loop_period_us <= DRIVE_PLANT_LOOP_PERIOD_MAX_US &&
               MATHS_TWO_PI * c->velocity_bandwidth_hz * c->loop_period_us * 1e-6 <= STABLE_MAX,
           loop_period_us);
@@ -188,6 +191,14 @@ void drive_plant_init(struct drive_plant *plant, const struct drive_plant_config
     plant->sense.inputs = inputs_of(plant);
 }
 
+static struct friction friction_of(const struct drive_plant_config *config)
+{
+    const double step_mm_s = config->friction_forward_step_mm_s;
+    struct friction f = {.points_per_velocity = step_mm_s > 0 ? 1 / step_mm_s : 0};
+    memcpy(f.at, config->friction_forward_nm, sizeof f.at);
+    return f;
+}
+
 struct servo_loop_config drive_plant_get_loop(const struct drive_plant_config *config)
 {
     return (struct servo_loop_config){
@@ -202,6 +213,7 @@ struct servo_loop_config drive_plant_get_loop(const struct drive_plant_config *c
         .velocity_bandwidth_hz = config->velocity_bandwidth_hz,
         .velocity_integral_time_s = config->velocity_integral_time_s,
         .torque_feed_forward_ratio = config->torque_feed_forward_ratio,
+        .friction_nm = friction_of(config),
     };
 }
 

@@ -33,6 +33,11 @@ struct drive_plant_config {
 
     double torque_feed_forward_ratio; /* of the command's acceleration; 0 ... 1 */
 
+    double friction_forward_nm
+        [FRICTION_POINTS]; /* friction as measured, which is fed forward: at rest, */
+    double
+        friction_forward_step_mm_s; /* and at whole multiples of this; 0: the first at all velocities */
+
     uint32_t loop_period_us; /* of both loops and the integration; 1 ... 1000 */
 
     double backlash_mm;           /* play between motor and table; >= 0 */

@@ -59,9 +59,10 @@ def drive(rng, node):
         "position_gain_per_s": bandwidth * rng.uniform(0.3, 1), "velocity_feed_forward_ratio": rng.choice((0.9, 1)),
         "torque_feed_forward_ratio": rng.choice((0, 1)), "velocity_bandwidth_hz": bandwidth, "loop_period_us": period,
         "backlash_mm": rng.choice((0, 0.01)), "pitch_error_mm": rng.choice((0, 0.005)), "following_error_window_mm": 20,
-        "limit_switch_min_mm": -12, "home_switch_mm": -6, "home_switch_length_mm": 3,
+        "friction_forward_step_mm_s": rng.choice((0, 10)), "limit_switch_min_mm": -12, "home_switch_mm": -6, "home_switch_length_mm": 3,
     }
-    return [f"drive.{node}.{key}={value:.9g}" for key, value in values.items()]
+    friction = " ".join(f"{rng.choice((0, 0.1)) + 0.02 * k:g}" for k in range(8))
+    return [f"drive.{node}.friction_forward_nm={friction}", *(f"drive.{node}.{key}={value:.9g}" for key, value in values.items())]
 
 
 def faults(rng, nodes):

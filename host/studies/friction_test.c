@@ -1,0 +1,316 @@
+#define _GNU_SOURCE
+
+#include "studies/friction_test.h"
+
+#include "base/maths.h"
+#include "cli/interrupt.h"
+#include "cli/message.h"
+#include "session/session.h"
+#include "simulation/simulation.h"
+
+#include <stdlib.h>
+
+/* Cycles between two looks at Ctrl-C. */
+#define LOOK_CYCLES 4096
+
+/* So the program is called in messages. */
+#define NAME "friction.ngc"
+
+/* The highest velocity, as a part of the axis's; of its travel what is used. */
+#define VELOCITY_PART 0.9
+#define TRAVEL_PART   0.9
+
+/* At a constant velocity: before torque is read, and for how long it is. */
+#define SETTLES_S  0.3
+#define MEASURED_S 0.5
+
+/* Line of the program on which an axis goes at the first velocity; each velocity has a line up, one down, and rests. */
+#define LINE_FIRST     3
+#define LINES_VELOCITY 4
+#define LINES_AXIS     (LINES_VELOCITY * FRICTION_VELOCITIES + 1)
+
+#define OBJECT_TORQUE 0x60770010u /* thousandths of the rated torque */
+
+struct sum {
+    double torque_nm;
+    uint32_t count;
+};
+
+struct run {
+    struct friction_test *test;
+    struct session session;
+    unsigned axes;                                      /* bits */
+    struct sum sum[AXIS_COUNT][FRICTION_VELOCITIES][2]; /* up, down */
+    uint32_t line;                                      /* of the last cycle */
+    double steady_s;                                    /* so long at the velocity of this line */
+    struct point last;                                  /* setpoint */
+};
+
+static double velocity_of(const struct friction_axis *axis, unsigned k)
+{
+    return (k + 1) * axis->step_mm_s;
+}
+
+/* Way of a line: what is measured, and ramps to either side, V/A + A/J each. */
+static double way_at(const struct machine_axis *axis, double velocity_mm_s)
+{
+    const double ramp_s = velocity_mm_s / axis->max_acceleration_mm_s2 +
+                          axis->max_acceleration_mm_s2 / axis->max_jerk_mm_s3;
+
+    return velocity_mm_s * (SETTLES_S + MEASURED_S + ramp_s);
+}
+
+static double travel_of(const struct machine_axis *axis)
+{
+    return TRAVEL_PART * (axis->travel_max_mm - axis->travel_min_mm);
+}
+
+/* The highest velocity whose line fits into the travel, by bisection. */
+static double highest_velocity(const struct machine_axis *axis)
+{
+    double low = 0, high = VELOCITY_PART * axis->max_velocity_mm_s;
+
+    if (way_at(axis, high) <= travel_of(axis))
+        return high;
+    for (unsigned i = 0; i < 50; i++) {
+        const double middle = (low + high) / 2;
+
+        *(way_at(axis, middle) <= travel_of(axis) ? &low : &high) = middle;
+    }
+    return low;
+}
+
+/* -- the program -- */
+
+static double unit_of(unsigned axis)
+{
+    return axis < AXIS_LINEAR_COUNT ? 1 : 180 / MATHS_PI;
+}
+
+static void write_line(FILE *stream, unsigned axis, double at_mm)
+{
+    (void)fprintf(stream, "G1 %c%.9f\nG4 P0.1\n", AXIS_LETTERS[axis], unit_of(axis) * at_mm);
+}
+
+static void write_axis(FILE *stream, const struct run *run, unsigned i)
+{
+    const struct machine_axis *axis = &run->session.setup.machine.axis[i];
+    const struct friction_axis *f = &run->test->axis[i];
+    const double middle_mm = (axis->travel_min_mm + axis->travel_max_mm) / 2;
+    const double low_mm = middle_mm - way_at(axis, velocity_of(f, FRICTION_VELOCITIES - 1)) / 2;
+
+    (void)fprintf(stream, "G0 %c%.9f\n", AXIS_LETTERS[i], unit_of(i) * low_mm);
+    for (unsigned k = 0; k < FRICTION_VELOCITIES; k++) {
+        const double velocity = velocity_of(f, k);
+
+        (void)fprintf(stream, "F%.9f ", 60 * unit_of(i) * velocity);
+        write_line(stream, i, low_mm + way_at(axis, velocity));
+        write_line(stream, i, low_mm);
+    }
+}
+
+static char *write_program(const struct run *run, size_t *length)
+{
+    char *text = NULL;
+    FILE *stream = open_memstream(&text, length);
+
+    if (stream == NULL)
+        return NULL;
+    (void)fputs("G21 G17 G40 G49 G90 G94 G61\n", stream);
+    for (unsigned i = 0; i < AXIS_COUNT; i++) {
+        if ((run->axes & 1U << i) != 0)
+            write_axis(stream, run, i);
+    }
+    (void)fputs("M2\n", stream);
+    return fclose(stream) == 0 ? text : NULL;
+}
+
+/* -- the run -- */
+
+/* The axis that is moved on a line, and at which velocity: of the measured ones in their order. False: none. */
+static bool find_line(const struct run *run, uint32_t line, unsigned *axis, unsigned *k)
+{
+    uint32_t first = LINE_FIRST;
+
+    for (*axis = 0; *axis < AXIS_COUNT; (*axis)++) {
+        if ((run->axes & 1U << *axis) == 0)
+            continue;
+        if (line >= first && line < first + LINES_AXIS - 1) {
+            *k = (line - first) / LINES_VELOCITY;
+            return (line - first) % 2 == 0;
+        }
+        first += LINES_AXIS;
+    }
+    return false;
+}
+
+static double torque_nm(struct run *run, struct simulation *s, unsigned axis)
+{
+    const struct friction_axis *f = &run->test->axis[axis];
+    struct virtual_drive *drive = &s->field.drives.drive[f->drive];
+    uint32_t value = 0;
+
+    (void)virtual_drive_read_object(drive, OBJECT_TORQUE, &value);
+    return 1e-3 * (int16_t)value * f->torque_rated_nm;
+}
+
+static void add(struct run *run, struct simulation *s, const struct cycle_record *record)
+{
+    const double cycle_s = 1e-6 * (double)run->session.setup.machine.cycle_us;
+    const struct point last = run->last;
+    unsigned i, k;
+
+    run->last = record->set;
+    run->steady_s = record->line == run->line ? run->steady_s : 0;
+    run->line = record->line;
+    if (!find_line(run, record->line, &i, &k))
+        return;
+    const double wanted = velocity_of(&run->test->axis[i], k);
+    const double velocity = (record->set.at[i] - last.at[i]) / cycle_s;
+
+    if (maths_abs(maths_abs(velocity) - wanted) > 1e-6 * wanted) {
+        run->steady_s = 0;
+        return;
+    }
+    run->steady_s += cycle_s;
+    if (run->steady_s > SETTLES_S) {
+        struct sum *sum = &run->sum[i][k][velocity < 0];
+
+        sum->torque_nm += torque_nm(run, s, i);
+        sum->count++;
+    }
+}
+
+static enum command_status follow(struct run *run, struct simulation *s)
+{
+    while (controller_get_state(&s->controller) < CONTROLLER_COMPLETED) {
+        const struct cycle_record *record;
+
+        if (!simulation_step(s))
+            return STATUS_ENVIRONMENT;
+        record = controller_get_record(&s->controller);
+        if (record != NULL)
+            add(run, s, record);
+        if (s->cycles % LOOK_CYCLES == 0 && interrupt_asked())
+            return STATUS_INTERRUPTED;
+    }
+    if (controller_get_state(&s->controller) == CONTROLLER_COMPLETED)
+        return STATUS_DONE;
+    message_program_error(&run->session.program, controller_get_fault(&s->controller));
+    return STATUS_FAILED;
+}
+
+/* Friction at rest: where the line through the two lowest velocities comes to. */
+static bool take(struct run *run, unsigned i)
+{
+    struct friction_axis *f = &run->test->axis[i];
+
+    for (unsigned k = 0; k < FRICTION_VELOCITIES; k++) {
+        const struct sum *up = &run->sum[i][k][0], *down = &run->sum[i][k][1];
+
+        if (up->count == 0 || down->count == 0) {
+            message_command_error("axis %c never goes at a constant %.6g mm/s or rad/s for %g s: "
+                                  "what holds it back? (takt plan)",
+                                  AXIS_LETTERS[i], velocity_of(f, k), SETTLES_S);
+            return false;
+        }
+        const double high = up->torque_nm / up->count, low = down->torque_nm / down->count;
+
+        f->torque_nm[k + 1] = maths_max(0, (high - low) / 2);
+        f->offset_nm[k] = (high + low) / 2;
+    }
+    f->torque_nm[0] = maths_max(0, 2 * f->torque_nm[1] - f->torque_nm[2]);
+    f->is_measured = true;
+    return true;
+}
+
+static enum command_status run_program(struct run *run)
+{
+    struct session_totals totals;
+    struct simulation *s = NULL;
+    enum command_status status = session_check(&run->session, 1, &totals);
+
+    if (status == STATUS_DONE)
+        status = simulation_open(&run->session, &s);
+    if (status == STATUS_DONE)
+        status = follow(run, s);
+    simulation_close(s);
+    for (unsigned i = 0; i < AXIS_COUNT && status == STATUS_DONE; i++) {
+        if ((run->axes & 1U << i) != 0 && !take(run, i))
+            status = STATUS_FAILED;
+    }
+    return status;
+}
+
+static void choose_axis(struct run *run, unsigned i, unsigned drive)
+{
+    const struct machine_axis *axis = &run->session.setup.machine.axis[i];
+
+    run->axes |= 1U << i;
+    run->test->axis[i] = (struct friction_axis){
+        .bus = axis->drive_bus,
+        .node = axis->drive_node,
+        .drive = drive,
+        .torque_rated_nm = run->session.setup.drive[i].plant.torque_rated_nm,
+        .step_mm_s = highest_velocity(axis) / FRICTION_VELOCITIES,
+    };
+}
+
+/* False after a message: an axis that is asked for has no drive on CAN. */
+static bool choose_axes(struct run *run, unsigned axes)
+{
+    unsigned drives = 0;
+
+    for (unsigned i = 0; i < AXIS_COUNT; i++) {
+        const bool is_on_can = machine_axis_is_on_can(&run->session.setup.machine.axis[i]);
+
+        if (!is_on_can && (axes & 1U << i) != 0) {
+            message_command_error("axis %c has no drive on CAN, which tells its torque",
+                                  AXIS_LETTERS[i]);
+            return false;
+        }
+        if (is_on_can && (axes == 0 || (axes & 1U << i) != 0))
+            choose_axis(run, i, drives);
+        drives += is_on_can;
+    }
+    if (run->axes == 0)
+        message_command_error("no axis has a drive on CAN, which tells its torque");
+    return run->axes != 0;
+}
+
+static enum command_status open_program(struct run *run, const struct options *options)
+{
+    enum command_status status;
+    size_t length = 0;
+    char *text = write_program(run, &length);
+
+    if (text == NULL) {
+        message_command_error("out of memory");
+        return STATUS_ENVIRONMENT;
+    }
+    session_close(&run->session);
+    status = session_open_text(&run->session, options, NAME, text, length);
+    if (status == STATUS_DONE)
+        status = run_program(run);
+    free(text);
+    return status;
+}
+
+enum command_status friction_test_run(struct friction_test *test, unsigned axes,
+                                      const struct options *options)
+{
+    struct run *run = calloc(1, sizeof *run);
+    enum command_status status;
+
+    if (run == NULL) {
+        message_command_error("out of memory");
+        return STATUS_ENVIRONMENT;
+    }
+    run->test = test;
+    status = session_open_machine(&run->session, options);
+    if (status == STATUS_DONE)
+        status = choose_axes(run, axes) ? open_program(run, options) : STATUS_INPUT;
+    session_close(&run->session);
+    free(run);
+    return status;
+}
