@@ -49,7 +49,7 @@ def log_uniform(rng, low, high):
 
 
 def drive(rng, node):
-    """Settings of a random drive; its loops are stable."""
+    """The section of a random drive; its loops are stable."""
     bandwidth = log_uniform(rng, 20, 200)
     period = min(1000, int(0.4e6 / (2 * 3.1416 * bandwidth)), rng.choice((63, 125, 250, 500, 1000)))
     values = {
@@ -62,7 +62,8 @@ def drive(rng, node):
         "friction_forward_step_mm_s": rng.choice((0, 10)), "limit_switch_min_mm": -12, "home_switch_mm": -6, "home_switch_length_mm": 3,
     }
     friction = " ".join(f"{rng.choice((0, 0.1)) + 0.02 * k:g}" for k in range(8))
-    return [f"drive.{node}.friction_forward_nm={friction}", *(f"drive.{node}.{key}={value:.9g}" for key, value in values.items())]
+    lines = [f"[drive {node}]", f"friction_forward_nm = {friction}", *(f"{key} = {value:.9g}" for key, value in values.items())]
+    return "\n".join(lines) + "\n"
 
 
 def faults(rng, nodes):
@@ -75,7 +76,8 @@ def faults(rng, nodes):
 
 def machine(seed):
     rng = random.Random(seed)
-    settings = [setting for node in (1, 2, 3) for setting in drive(rng, node)]
+    drives = t.write(f"machine{seed}.ini", "".join(drive(rng, node) for node in (1, 2, 3)))
+    settings = []
     for number, letter in enumerate("XYZ", 1):
         turns = rng.choice((-1, 1))  # a motor that turns the other way has its switches at the other end, far away
         settings.append(f"axis.{letter}.increments_per_mm={turns * round(log_uniform(rng, 500, 1e6), 2)}")
@@ -83,7 +85,7 @@ def machine(seed):
             method = rng.choice((1, 17, 21, 34, 35) if turns > 0 else (33, 34, 35))
             settings += [f"axis.{letter}.home_order={number}", f"axis.{letter}.home_method={method}"]
     settings.append(f"machine.cycle_us={rng.choice((1000, 1500, 2000))}")
-    options = [word for setting in settings for word in ("--set", setting)]
+    options = ["--machine", drives] + [word for setting in settings for word in ("--set", setting)]
     if rng.random() < 0.6:
         options += ["--inject", t.write(f"faults{seed}.inject", faults(rng, (1, 2, 3)))]
     return options
