@@ -8,13 +8,14 @@
 #define TAKT_CORRECTION_SETTINGS_H
 
 #include "base/point.h"
+#include "program/move.h"
 
 #include <stdint.h>
 
 #define CORRECTION_COORDINATES 4
 
 /* The set-up as numbers in this order: offset X Y Z, turns about X Y Z, turn of psi. */
-#define CORRECTION_SETUP_VALUES (2 * AXIS_LINEAR_COUNT + 1)
+#define CORRECTION_SETUP_VALUES MOVE_SETUP_VALUES
 
 struct correction_settings {
     /* K = machine U + workpiece (U - W) + overhang T: U commanded, W the part's zero, T the tool's offset from the spindle */
