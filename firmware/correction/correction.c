@@ -29,6 +29,8 @@ void correction_settings_set_default(struct correction_settings *settings)
     settings->fade_s = 1.0;
     settings->reversal_fade_s = 0.25;
     settings->turn_axis = AXIS_COUNT;
+    settings->head_axis = AXIS_COUNT;
+    settings->tool_direction[AXIS_Z] = 1.0;
 }
 
 void correction_table_rules(const struct correction_settings *settings, unsigned axes,

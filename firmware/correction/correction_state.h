@@ -31,7 +31,7 @@ struct setup {
 
 struct correction_wear {
     uint32_t tool;
-    uint64_t used; /* count of tools used until then; 0: free */
+    uint32_t used; /* count of tools used until then; 0: free */
     double length_mm, time_s;
 };
 
@@ -64,7 +64,7 @@ struct correction {
     const struct move *move;
     double rise_k[AXIS_COUNT];
     struct correction_wear wear[CORRECTION_TOOLS_MAX];
-    uint64_t tools_used;
+    uint32_t tools_used;
 
     unsigned outside; /* axes that have been beyond the end of a table */
 };

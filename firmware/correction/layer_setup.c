@@ -161,19 +161,6 @@ static void add_constant(const struct correction *c, unsigned i, unsigned j, dou
     need->size_mm[i] += size * (most->farthest_mm[j] + maths_abs(c->settings.setup_pivot_mm[j]));
 }
 
-/* size cos(n psi + ...), n = 1 or 2. */
-static struct need_jet wave_of(const struct correction *c, double size, double n,
-                               const struct motion_bound *most)
-{
-    const unsigned axis = c->settings.turn_axis;
-    const double v = n * most->velocity_mm_s[axis];
-    const double a = n * most->acceleration_mm_s2[axis];
-    const double j = n * most->jerk_mm_s3[axis];
-
-    return (struct need_jet){
-        {size, size * v, size * (v * v + a), size * (v * v * v + 3.0 * v * a + j)}};
-}
-
 /* x_j - P_j */
 static struct need_jet way_of(const struct correction *c, unsigned j,
                               const struct motion_bound *most)
@@ -199,10 +186,11 @@ static void add_waves(const struct correction *c, const struct setup *s,
     const double round_twice = 0.5 * length_of(m[u][u] - m[v][v], m[u][v] + m[v][u]);
     const struct need_jet one = {{1.0, 0.0, 0.0, 0.0}};
     const struct need_jet along = way_of(c, t, most);
-    const struct need_jet shift = wave_of(c, length_of(offset[u], offset[v]), 1.0, most);
-    const struct need_jet out = wave_of(c, length_of(m[u][t], m[v][t]), 1.0, most);
-    const struct need_jet into = wave_of(c, length_of(m[t][u], m[t][v]), 1.0, most);
-    const struct need_jet twice = wave_of(c, round_twice, 2.0, most);
+    const unsigned psi = c->settings.turn_axis;
+    const struct need_jet shift = need_jet_wave(length_of(offset[u], offset[v]), 1.0, most, psi);
+    const struct need_jet out = need_jet_wave(length_of(m[u][t], m[v][t]), 1.0, most, psi);
+    const struct need_jet into = need_jet_wave(length_of(m[t][u], m[t][v]), 1.0, most, psi);
+    const struct need_jet twice = need_jet_wave(round_twice, 2.0, most, psi);
 
     for (unsigned i = 0; i < 2; i++) {
         const unsigned axis = i == 0 ? u : v;

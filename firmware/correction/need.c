@@ -16,6 +16,17 @@ void need_jet_add_travel(struct need_jet *jet, const struct motion_bound *most, 
     jet->value[3] += most->jerk_mm_s3[axis];
 }
 
+struct need_jet need_jet_wave(double size, double times, const struct motion_bound *most,
+                              unsigned axis)
+{
+    const double v = times * most->velocity_mm_s[axis];
+    const double a = times * most->acceleration_mm_s2[axis];
+    const double j = times * most->jerk_mm_s3[axis];
+
+    return (struct need_jet){
+        {size, size * v, size * (v * v + a), size * (v * v * v + 3.0 * v * a + j)}};
+}
+
 void need_add_product(struct need *need, unsigned corrected, const struct need_jet *r,
                       const struct need_jet *a)
 {

@@ -42,6 +42,10 @@ struct need_jet {
 /* The position of an axis is added to the quantity. */
 void need_jet_add_travel(struct need_jet *jet, const struct motion_bound *most, unsigned axis);
 
+/* size cos(times x + ...), x the position of a rotary axis. */
+struct need_jet need_jet_wave(double size, double times, const struct motion_bound *most,
+                              unsigned axis);
+
 /* Adds a correction that is the product of two quantities (Leibniz): of third order r a3 + 3 r1 a2 + 3 r2 a1 + r3 a. */
 void need_add_product(struct need *need, unsigned corrected, const struct need_jet *r,
                       const struct need_jet *a);

@@ -8,13 +8,14 @@
 #define TAKT_CORRECTION_SETTINGS_H
 
 #include "base/point.h"
+#include "program/move.h"
 
 #include <stdint.h>
 
 #define CORRECTION_COORDINATES 4
 
 /* The set-up as numbers in this order: offset X Y Z, turns about X Y Z, turn of psi. */
-#define CORRECTION_SETUP_VALUES (2 * AXIS_LINEAR_COUNT + 1)
+#define CORRECTION_SETUP_VALUES MOVE_SETUP_VALUES
 
 struct correction_settings {
     /* K = machine U + workpiece (U - W) + overhang T: U commanded, W the part's zero, T the tool's offset from the spindle */
@@ -35,6 +36,8 @@ struct correction_settings {
     /* What the tool loses along its axis and across it, per length and per time of cutting. */
     double wear_along_per_mm, wear_along_mm_s;
     double wear_across_per_mm, wear_across_mm_s;
+    double tool_direction
+        [AXIS_LINEAR_COUNT]; /* from the tool's point into its spindle, of any length; head at 0 */
 
     double largest_mm;      /* |K| of tables: the most that is accepted */
     double steepest_ratio;  /* likewise their slope */
@@ -43,10 +46,11 @@ struct correction_settings {
     double
         reserve_ratio; /* part of the axes' limits kept free at least, for tables loaded later: 0 ... 0.5 */
     uint32_t turn_axis; /* enum axis: psi; AXIS_COUNT: none */
+    uint32_t head_axis; /* enum axis: turns the tool, right-handed; AXIS_COUNT: none */
     uint32_t off;       /* bit i set: layer i is off until somebody switches it on */
 };
 
-/* No correction; 1 mm and 5 um/mm as the most a table may ask, fades of 1 s and 0.25 s. */
+/* No correction, the tool along Z; 1 mm and 5 um/mm as the most a table may ask, fades of 1 s and 0.25 s. */
 void correction_settings_set_default(struct correction_settings *settings);
 
 #endif

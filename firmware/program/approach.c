@@ -13,7 +13,8 @@
 void approach_open(struct program *p)
 {
     p->approach.pending = p->config.from_line > 0;
-    p->approach.holds_line = false;
+    p->approach.holds_line = p->approach.is_up = false;
+    p->approach.setups = 0;
     p->approach.at = p->config.start;
     p->approach.height_mm = p->config.start.at[AXIS_Z];
 }
@@ -63,6 +64,10 @@ bool approach_drop(struct program *p)
         if (m.kind == MOVE_PROBE) {
             return give_up(p, TAKT_ERROR_FROM_LINE_PROBE, m.line);
         }
+        if (m.kind == MOVE_SETUP) {
+            a->setup[m.channel] = m.setup;
+            a->setups |= (uint8_t)(1U << m.channel);
+        }
         if (move_is_motion(&m)) {
             a->height_mm = maths_max(a->height_mm, highest(&m, &a->at));
             a->at = m.end;
@@ -109,20 +114,45 @@ static double feed_down(const struct program *p)
                                     : PROGRAM_APPROACH_FEED_MM_MIN / SECONDS_PER_MINUTE;
 }
 
-static void queue_approach(struct program *p)
+static void set_up_part(struct program *p)
 {
-    struct point at = p->config.start;
-    struct point next = at;
+    struct move *last = NULL;
 
-    next.at[AXIS_Z] =
-        has_z(p) ? maths_min(p->approach.height_mm, p->config.travel_max[AXIS_Z]) : at.at[AXIS_Z];
-    const double height_mm = next.at[AXIS_Z];
+    for (unsigned i = 0; i < MOVE_SETUP_VALUES; i++) {
+        if ((p->approach.setups & 1U << i) != 0) {
+            last = emit_event(p, MOVE_SETUP);
+            last->channel = i;
+            last->setup = p->approach.setup[i];
+        }
+    }
+    if (last != NULL) {
+        last->setup_ends = true;
+    }
+}
 
-    go(p, MOVE_RAPID, &at, &next);
+/* In two halves: the queue has no room for all of it. */
+static void queue_way_up(struct program *p)
+{
+    struct program_approach *a = &p->approach;
+    struct point next = p->config.start;
+
+    if (has_z(p)) {
+        next.at[AXIS_Z] = maths_min(a->height_mm, p->config.travel_max[AXIS_Z]);
+    }
+    a->at = p->config.start;
+    go(p, MOVE_RAPID, &a->at, &next);
     bring_tool(p);
-    next = p->modes.at;
-    next.at[AXIS_Z] = height_mm;
-    go(p, MOVE_RAPID, &at, &next);
+    set_up_part(p);
+    a->holds_line = a->is_up = true;
+}
+
+static void queue_way_there(struct program *p)
+{
+    struct point *at = &p->approach.at;
+    struct point next = p->modes.at;
+
+    next.at[AXIS_Z] = at->at[AXIS_Z];
+    go(p, MOVE_RAPID, at, &next);
     if (p->modes.direction != SPINDLE_OFF) {
         events_tell_spindle(p);
     }
@@ -131,7 +161,7 @@ static void queue_approach(struct program *p)
     }
     const unsigned before = p->queue_count;
 
-    go(p, MOVE_FEED, &at, &p->modes.at);
+    go(p, MOVE_FEED, at, &p->modes.at);
     if (p->queue_count > before) {
         p->queue[(p->queue_first + before) % PROGRAM_QUEUE_MAX].feed_mm_s = feed_down(p);
     }
@@ -163,7 +193,19 @@ bool approach_begins(struct program *p, bool *good)
              give_up(p, TAKT_ERROR_FROM_LINE_CUTTER, p->lexer.line)) &&
             is_within_travel(p);
     if (*good) {
-        queue_approach(p);
+        queue_way_up(p);
     }
     return true;
+}
+
+bool approach_goes_on(struct program *p)
+{
+    struct program_approach *a = &p->approach;
+
+    a->holds_line = a->is_up;
+    if (a->is_up) {
+        a->is_up = false;
+        queue_way_there(p);
+    }
+    return a->holds_line;
 }

@@ -4,6 +4,7 @@
  *
  *     up to the highest Z of what was dropped, or of the start if that is higher
  *     the tool, if it is another one
+ *     the set-up of the part, as it was told last
  *     across, X Y and A B C, at that height
  *     spindle and coolant as they have to be
  *     down at F, or slowly when no F is known
@@ -21,8 +22,11 @@ void approach_open(struct program *p);
  */
 bool approach_begins(struct program *p, bool *good);
 
+/* The first half has been fetched: the second is queued. False: that is so already, and the line is to be taken. */
+bool approach_goes_on(struct program *p);
+
 /*
- * Drops the queued moves and notes how high they go, until the line is reached. False: the program has ended
+ * Drops the queued moves and notes how the part is set up and how high they go, until the line is reached. False: the program has ended
  * before, p->error is set.
  */
 bool approach_drop(struct program *p);

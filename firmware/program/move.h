@@ -55,6 +55,9 @@ enum orient_way { ORIENT_SHORTEST, ORIENT_CW, ORIENT_CCW };
 /* What MOVE_INPUT waits for. */
 enum input_wait { INPUT_READ, INPUT_RISE, INPUT_FALL, INPUT_HIGH, INPUT_LOW };
 
+/* Numbers of the set-up of the part: displaced along X Y Z, turned about them, its table turned. */
+#define MOVE_SETUP_VALUES (2 * AXIS_LINEAR_COUNT + 1)
+
 /* Overrides a motion obeys: bits of struct move, overrides. */
 #define OVERRIDE_FEED     1U /* M48, M50 P1 */
 #define OVERRIDE_SPINDLE  2U /* M48, M51 P1 */

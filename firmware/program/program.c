@@ -141,7 +141,6 @@ static bool take_or_approach(struct program *p)
     if (!approach_begins(p, &good)) {
         return take_line(p);
     }
-    p->approach.holds_line = true;
     return good;
 }
 
@@ -149,8 +148,7 @@ static bool take_or_approach(struct program *p)
 static bool read_line(struct program *p)
 {
     if (p->approach.holds_line) {
-        p->approach.holds_line = false;
-        return take_line(p);
+        return approach_goes_on(p) || take_line(p);
     }
     const enum lexer_result result = lexer_next_line(&p->lexer, &p->error);
 

@@ -233,8 +233,11 @@ struct program_flow {
 struct program_approach {
     bool pending;     /* the line has not been reached: moves are dropped */
     bool holds_line;  /* the lexer holds it while the approach is fetched */
+    bool is_up;       /* its first half has been queued */
+    uint8_t setups;   /* bit i set: number i of the set-up has been told by what was dropped */
     double height_mm; /* highest Z of what was dropped */
-    struct point at;  /* where that ended */
+    struct point at;  /* where that ended; then where the approach has come to */
+    double setup[MOVE_SETUP_VALUES];
 };
 
 /* Tools whose values the program has changed (G10). */

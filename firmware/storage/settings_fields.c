@@ -109,6 +109,8 @@ const struct settings_field settings_fields[] = {
     FROM(57, correction.reserve_ratio, 0, 0.5),
     COUNT(58, correction.turn_axis, AXIS_LINEAR_COUNT, AXIS_COUNT),
     COUNT(59, correction.off, 0, 63),
+    VECTOR(80, tool_direction, AXIS_LINEAR_COUNT, CORRECTION_MOST),
+    COUNT(81, correction.head_axis, AXIS_LINEAR_COUNT, AXIS_COUNT),
 
     OF_AXIS(100, SETTINGS_FLAG, rotary, 0, 1, false),
     OF_AXIS(101, SETTINGS_DOUBLE, max_velocity_mm_s, 0, 1e5, true),

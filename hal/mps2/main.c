@@ -188,12 +188,18 @@ static void open_embedded(void)
         .gap_us = PANEL_GAP_US,
         .name = "takt " TAKT_VERSION " on MPS2",
     };
-    struct diagnostic damage;
 
     machine_set_default(&machine);
     for (uint32_t i = 0; i < TOOLS_MAX; i++)
         board.tools[i].number = i + 1;
     embedded_init(&board.embedded, &config);
+}
+
+/* Not inlined: on the stack its diagnostic does not lie beside the machine, where the deepest call begins. */
+static __attribute__((noinline)) void refuse_damaged(void)
+{
+    struct diagnostic damage;
+
     if (!image_is_sound(&damage))
         embedded_refuse(&board.embedded, &damage);
 }
@@ -212,6 +218,7 @@ int main(void)
     uart_open(&board.bus, 1, slcan_can_take, &board.can);
     slcan_can_open(&board.can, &board.bus);
     open_embedded();
+    refuse_damaged();
     uart_open(&board.panel, 0, take_panel_byte, NULL);
     console_line_open(&board.embedded);
     start_ticks();

@@ -7,6 +7,10 @@
  *
  * and the area that it removes is the sum of (edge'^2 - edge^2) / 2 d alpha. Area by length of way is the radial
  * engagement; engaged is the part of the cutter's front half whose points are beyond the edge.
+ *
+ * A helix comes down to one level after the other, and clears each by a disc, where it is reached, and a turn around it. With
+ * a cutter of more than half the hole every disc holds O, so that a level's edge is a distance over the angle, too. At each
+ * moment all levels of a turn are under way, evenly over their turns.
  */
 #include "bore/removal.h"
 
@@ -20,6 +24,7 @@
 #define POINTS     720         /* of the cutter's front half */
 #define BEYOND     1e-5        /* of c: rounding of the edge between its angles */
 #define HALVINGS   40
+#define LEVELS     BORE_WINDOWS_PER_TURN /* of a turn of a helix: one is reached in each window */
 
 /* At one angle: how far it is cleared; how far it was before this turn, and when that turn came. */
 struct edge {
@@ -97,7 +102,7 @@ static bool is_material(const struct sweep *s, double x_mm, double y_mm, bool be
 static double layer_at(const struct sweep *s, const double at_mm[2], double heading_rad)
 {
     double least_mm = 0;
-    double most_mm = s->cutter_mm;
+    double most_mm = 2 * s->cutter_mm;
     double sine, cosine;
 
     maths_sincos(heading_rad, &sine, &cosine);
@@ -181,23 +186,108 @@ static bool advance(struct bore_removal *r, struct sweep *s, const double at_mm[
     return true;
 }
 
-bool bore_removal_make(struct bore_removal *r, const struct bore_track *t, double cutter_radius_mm)
+/* A level where the cutter stands, and its way since, for so many turns. first_mm2: what its first disc has removed. */
+static bool sweep_level(struct bore_removal *r, const struct bore_track *t, size_t first,
+                        double cutter_mm, double turns, double *first_mm2)
 {
     struct sweep *s = calloc(1, sizeof *s);
     bool good = s != NULL;
 
-    *r = (struct bore_removal){0};
     if (good) {
-        s->cutter_mm = cutter_radius_mm;
+        s->cutter_mm = cutter_mm;
+        s->at_mm[0] = t->at_mm[first][0];
+        s->at_mm[1] = t->at_mm[first][1];
         for (unsigned i = 0; i < ANGLES; i++)
             maths_sincos(i * ANGLE_RAD, &s->edge[i].unit[1], &s->edge[i].unit[0]);
-        (void)clear(s, s->at_mm);
-        for (unsigned i = 0; i < ANGLES; i++)
-            s->edge[i].before_mm = s->cutter_mm;
+        *first_mm2 = clear(s, s->at_mm);
+        for (unsigned i = 0; i < ANGLES && first == 0; i++) /* the hole to begin in */
+            s->edge[i].before_mm = cutter_mm;
     }
-    for (size_t i = 0; i < t->count && good; i++)
+    for (size_t i = first; i < t->count && good && s->turned_rad < MATHS_TWO_PI * turns; i++)
         good = advance(r, s, t->at_mm[i]);
     free(s);
+    return good;
+}
+
+bool bore_removal_make(struct bore_removal *r, const struct bore_track *t, double cutter_radius_mm)
+{
+    double hole_mm2;
+
+    *r = (struct bore_removal){0};
+    return t->count == 0 || sweep_level(r, t, 0, cutter_radius_mm, MATHS_INFINITY, &hole_mm2);
+}
+
+/* The cycle in which the cutter comes down to a level. */
+static size_t reached(const struct bore_track *t, double down_mm)
+{
+    size_t i = 0;
+
+    while (i + 1 < t->count && -t->at_mm[i][2] < down_mm)
+        i++;
+    return i;
+}
+
+/* A level's part of the mean; it begins behind in the turn by so many windows. */
+static void add_level(struct bore_removal *r, const struct bore_removal *level, size_t behind)
+{
+    for (size_t i = 0; i < level->count && i < BORE_WINDOWS_PER_TURN; i++) {
+        const struct bore_window *from = &level->window[i];
+        struct bore_window *to = &r->window[(behind + i) % BORE_WINDOWS_PER_TURN];
+
+        to->area_mm2 += from->area_mm2 / LEVELS;
+        to->length_mm += from->length_mm / LEVELS;
+        to->layer_mm += from->layer_mm / LEVELS;
+        to->engaged_rad += from->engaged_rad / LEVELS;
+    }
+}
+
+static bool make_level(struct bore_removal *level, const struct bore_track *t, double cutter_mm,
+                       double down_mm)
+{
+    double first_mm2 = 0;
+
+    bore_removal_free(level);
+    if (!sweep_level(level, t, reached(t, down_mm), cutter_mm, 1, &first_mm2))
+        return false;
+    if (level->count > 0)
+        level->window[0].area_mm2 += first_mm2;
+    return true;
+}
+
+/* Windows of so many turns, the first turn's as they are in the others. */
+static bool add_turns(struct bore_removal *r, unsigned turns)
+{
+    for (size_t i = 0; i < (size_t)turns * BORE_WINDOWS_PER_TURN; i++) {
+        if (!add_window(r, ((double)i + 0.5) / BORE_WINDOWS_PER_TURN))
+            return false;
+    }
+    return true;
+}
+
+static void repeat_turn(struct bore_removal *r)
+{
+    for (size_t i = BORE_WINDOWS_PER_TURN; i < r->count; i++) {
+        const double turn = r->window[i].turn;
+
+        r->window[i] = r->window[i % BORE_WINDOWS_PER_TURN];
+        r->window[i].turn = turn;
+    }
+}
+
+bool bore_removal_make_helix(struct bore_removal *r, struct bore_removal *level,
+                             const struct bore_track *t, double cutter_radius_mm, double down_mm,
+                             unsigned turns)
+{
+    bool good;
+
+    *r = *level = (struct bore_removal){0};
+    good = add_turns(r, turns);
+    for (unsigned k = 0; k < LEVELS && good && t->count > 0; k++) {
+        good = make_level(level, t, cutter_radius_mm, down_mm * (k + 0.5) / LEVELS);
+        if (good)
+            add_level(r, level, k);
+    }
+    repeat_turn(r);
     return good;
 }
 

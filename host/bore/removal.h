@@ -36,6 +36,15 @@ struct bore_evenness {
 
 /* bore_removal_free is due. False: memory is short. */
 bool bore_removal_make(struct bore_removal *r, const struct bore_track *t, double cutter_radius_mm);
+
+/*
+ * Likewise of a helix that goes down_mm a turn and then around: what happens at every moment of a long one, as the mean over
+ * the levels that are under way then; as many turns of it as are asked for, each like the other. In *level what happens at
+ * one of them, from the moment the cutter comes down to it until it has gone around. Both are to be freed.
+ */
+bool bore_removal_make_helix(struct bore_removal *r, struct bore_removal *level,
+                             const struct bore_track *t, double cutter_radius_mm, double down_mm,
+                             unsigned turns);
 void bore_removal_free(struct bore_removal *r);
 
 void bore_removal_evenness(const struct bore_removal *r, double first_turn, double last_turn,

@@ -15,11 +15,11 @@ void bore_track_free(struct bore_track *t)
     *t = (struct bore_track){0};
 }
 
-bool bore_track_add(struct bore_track *t, double x_mm, double y_mm)
+bool bore_track_add(struct bore_track *t, double x_mm, double y_mm, double z_mm)
 {
     if (t->count == t->capacity) {
         size_t capacity = t->capacity == 0 ? 4096 : 2 * t->capacity;
-        double(*at_mm)[2] = realloc(t->at_mm, capacity * sizeof *at_mm);
+        double(*at_mm)[3] = realloc(t->at_mm, capacity * sizeof *at_mm);
 
         if (at_mm == NULL)
             return false;
@@ -27,7 +27,8 @@ bool bore_track_add(struct bore_track *t, double x_mm, double y_mm)
         t->capacity = capacity;
     }
     t->at_mm[t->count][0] = x_mm;
-    t->at_mm[t->count++][1] = y_mm;
+    t->at_mm[t->count][1] = y_mm;
+    t->at_mm[t->count++][2] = z_mm;
     return true;
 }
 

@@ -1,5 +1,5 @@
 /*
- * The setpoints of a run in the plane, one a cycle, and what they ask of the axes.
+ * The setpoints of a run, one a cycle, and what they ask of the axes of the plane.
  */
 #ifndef TAKT_BORE_TRACK_H
 #define TAKT_BORE_TRACK_H
@@ -10,7 +10,7 @@
 struct bore_track {
     const char *name;
     double cycle_s;
-    double (*at_mm)[2];
+    double (*at_mm)[3];
     size_t count, capacity;
 };
 
@@ -24,7 +24,7 @@ struct bore_motion {
 void bore_track_begin(struct bore_track *t, const char *name, double cycle_s);
 void bore_track_free(struct bore_track *t);
 /* False: memory is short. */
-bool bore_track_add(struct bore_track *t, double x_mm, double y_mm);
+bool bore_track_add(struct bore_track *t, double x_mm, double y_mm, double z_mm);
 
 struct bore_motion bore_track_motion(const struct bore_track *t, size_t cycle);
 

@@ -56,6 +56,8 @@ void machine_setup_set_default(struct machine_setup *setup)
     machine_set_default(&setup->machine);
     virtual_spindle_set_default(&setup->spindle);
     setup->geometry.table_axis = AXIS_COUNT;
+    setup->geometry.head_axis = AXIS_COUNT;
+    setup->geometry.tool_direction[AXIS_Z] = 1;
     for (unsigned i = MACHINE_SECOND_DRIVE; i < MACHINE_SETUP_DRIVES_MAX; i++)
         drive_plant_set_default(&setup->drive[i].plant);
     (void)snprintf(setup->panel.listen, sizeof setup->panel.listen, "127.0.0.1:1502");
@@ -169,6 +171,31 @@ const char *machine_setup_chain(const struct machine_setup *setup, struct unit_c
     return check_turning(setup, last >= AXIS_LINEAR_COUNT ? last : AXIS_COUNT);
 }
 
+static bool is_direction(const double v[AXIS_LINEAR_COUNT])
+{
+    return v[AXIS_X] != 0 || v[AXIS_Y] != 0 || v[AXIS_Z] != 0;
+}
+
+/* What tells where a tool points: as the controller knows it, and as it really is. */
+static const char *check_tool(const struct machine_setup *setup)
+{
+    static const char *const section[] = {"correction", "geometry"};
+    const double *direction[] = {setup->machine.correction.tool_direction,
+                                 setup->geometry.tool_direction};
+    const uint32_t head[] = {setup->machine.correction.head_axis, setup->geometry.head_axis};
+
+    for (unsigned i = 0; i < 2; i++) {
+        if (!is_direction(direction[i]))
+            return problem("%s.tool_direction: 0 0 0 is no direction", section[i]);
+        if (head[i] < AXIS_COUNT && !setup->machine.axis[head[i]].present)
+            return problem("%s.head_axis: the machine has no axis %c", section[i],
+                           AXIS_LETTERS[head[i]]);
+        if (head[i] < AXIS_COUNT && head[i] == turn_axis(setup))
+            return problem("%s.head_axis: %c turns the part", section[i], AXIS_LETTERS[head[i]]);
+    }
+    return NULL;
+}
+
 static const char *check_vibration(const struct machine_setup *setup)
 {
     unsigned axis = 0;
@@ -184,6 +211,8 @@ const char *machine_setup_check(const struct machine_setup *setup)
 
     if (wrong == NULL)
         wrong = machine_setup_chain(setup, &chain);
+    if (wrong == NULL)
+        wrong = check_tool(setup);
     if (wrong == NULL)
         wrong = check_vibration(setup);
 

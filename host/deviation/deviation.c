@@ -22,6 +22,15 @@ static void set_chain(struct deviation_config *config)
         config->chain.axis[config->chain.units++] = (uint8_t)config->table_axis;
 }
 
+static void set_direction(double direction[N])
+{
+    const double length = maths_sqrt(direction[0] * direction[0] + direction[1] * direction[1] +
+                                     direction[2] * direction[2]);
+
+    for (unsigned i = 0; i < N; i++)
+        direction[i] /= length;
+}
+
 void deviation_init(struct deviation *d, const struct deviation_config *config,
                     const double min_mm[AXIS_COUNT], const double max_mm[AXIS_COUNT])
 {
@@ -29,6 +38,7 @@ void deviation_init(struct deviation *d, const struct deviation_config *config,
 
     *d = (struct deviation){.config = *config};
     set_chain(&d->config);
+    set_direction(d->config.tool_direction);
     for (unsigned i = 0; i < AXIS_COUNT; i++) {
         d->min_mm[i] = min_mm[i];
         d->max_mm[i] = max_mm[i];
@@ -172,18 +182,28 @@ double deviation_table_angle(const struct deviation *d, const struct point *driv
                                    d->max_mm[config->table_axis] / DEGREE);
 }
 
-/* Turns v about an axis through the table's centre. */
-static void turn_about(const struct deviation *d, double angle, struct point *v)
+/* Turns v about a line along the linear axis that a rotary axis belongs to. */
+static void turn_about(unsigned axis, const double centre[N], double angle, double v[N])
 {
-    const unsigned about = d->config.table_axis - AXIS_A;
-    const unsigned first = (about + 1) % N, second = (about + 2) % N;
-    const double *centre = d->config.table_centre_mm;
-    const double u = v->at[first] - centre[first], w = v->at[second] - centre[second];
+    const unsigned first = (axis - AXIS_A + 1) % N, second = (axis - AXIS_A + 2) % N;
+    const double u = v[first] - centre[first], w = v[second] - centre[second];
     double sine, cosine;
 
     maths_sincos(angle, &sine, &cosine);
-    v->at[first] = centre[first] + cosine * u - sine * w;
-    v->at[second] = centre[second] + sine * u + cosine * w;
+    v[first] = centre[first] + cosine * u - sine * w;
+    v[second] = centre[second] + sine * u + cosine * w;
+}
+
+/* From the tool's point into its spindle, as the head stands. */
+static void get_direction(const struct deviation *d, const struct point *drives,
+                          double direction[N])
+{
+    static const double own_axis[N] = {0};
+
+    for (unsigned i = 0; i < N; i++)
+        direction[i] = d->config.tool_direction[i];
+    if (d->config.head_axis < AXIS_COUNT)
+        turn_about(d->config.head_axis, own_axis, drives->at[d->config.head_axis], direction);
 }
 
 /* The table: about its centre; its turn about its own axis is in its angle. */
@@ -228,11 +248,11 @@ void deviation_tool_point(const struct deviation *d, const struct point *drives,
                           struct point *tool)
 {
     const struct unit_chain *chain = &d->config.chain;
-    double v[N];
+    double v[N], direction[N];
 
+    get_direction(d, drives, direction);
     for (unsigned i = 0; i < N; i++)
-        v[i] = d->config.tool_mm[i];
-    v[AXIS_Z] += d->wear_mm;
+        v[i] = d->config.tool_mm[i] + d->wear_mm * direction[i];
     for (unsigned i = 0; i < chain->units; i++) {
         const unsigned axis = chain->axis[i];
 
@@ -247,5 +267,6 @@ void deviation_tool_point(const struct deviation *d, const struct point *drives,
     for (unsigned i = 0; i < N; i++)
         tool->at[i] = v[i] - d->config.tool_mm[i];
     if (d->config.table_axis < AXIS_COUNT)
-        turn_about(d, turn_rad - deviation_table_angle(d, drives), tool);
+        turn_about(d->config.table_axis, d->config.table_centre_mm,
+                   turn_rad - deviation_table_angle(d, drives), tool->at);
 }

@@ -32,6 +32,9 @@ struct deviation_config {
         [3]; /* of Y to X about Z (C0Y), of Z to X about Y (B0Z), of Z to Y about X (A0Z) */
     double tool_mm
         [DEVIATION_LINEAR]; /* from the spindle's nose to the tool's point, the arm of rotations */
+    double tool_direction
+        [DEVIATION_LINEAR]; /* from its point into the spindle, of any length, with the head at 0 */
+    uint32_t head_axis;     /* AXIS_A ... AXIS_C: turns the tool about X ... Z; AXIS_COUNT: none */
     double backlash_um[DEVIATION_LINEAR];
 
     uint32_t table_axis; /* AXIS_A ... AXIS_C: turns the part about X ... Z; AXIS_COUNT: none */

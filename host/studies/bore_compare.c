@@ -27,8 +27,9 @@ struct comparison {
     struct bore_track track[BORE_RIVALS];
     double length_mm[BORE_RIVALS];
     struct bore_removal removal[BORE_RIVALS];
-    unsigned rivals; /* that are run */
-    double down_mm;  /* of the helix */
+    struct bore_removal helix_level; /* of one level of a helix */
+    unsigned rivals;                 /* that are run */
+    double down_mm;                  /* of the helix */
 };
 
 static enum command_status out_of_memory(void)
@@ -70,7 +71,8 @@ static bool follow(struct comparison *c, enum bore_rival rival, struct simulatio
         good = simulation_step(s);
         record = controller_get_record(&s->controller);
         if (record != NULL)
-            good = good && bore_track_add(track, record->set.at[AXIS_X], record->set.at[AXIS_Y]);
+            good = good && bore_track_add(track, record->set.at[AXIS_X], record->set.at[AXIS_Y],
+                                          record->set.at[AXIS_Z]);
         if (s->cycles % LOOK_CYCLES == 0)
             good = good && !interrupt_asked();
     }
@@ -105,6 +107,18 @@ static enum command_status run_checked(struct comparison *c, enum bore_rival riv
     return status;
 }
 
+/* False: memory is short. */
+static bool measure(struct comparison *c, enum bore_rival rival)
+{
+    const struct bore_track *track = &c->track[rival];
+    const double cutter_mm = 0.5 * c->job->cutter_mm;
+
+    return rival == BORE_RIVAL_HELIX
+               ? bore_removal_make_helix(&c->removal[rival], &c->helix_level, track, cutter_mm,
+                                         c->down_mm, (unsigned)c->spiral.turns + 2)
+               : bore_removal_make(&c->removal[rival], track, cutter_mm);
+}
+
 static enum command_status run_rival(struct comparison *c, enum bore_rival rival)
 {
     struct session_totals totals;
@@ -115,8 +129,7 @@ static enum command_status run_rival(struct comparison *c, enum bore_rival rival
     status = session_check(&c->session, 1, &totals);
     if (status == STATUS_DONE)
         status = run_checked(c, rival);
-    if (status == STATUS_DONE && rival != BORE_RIVAL_HELIX &&
-        !bore_removal_make(&c->removal[rival], &c->track[rival], 0.5 * c->job->cutter_mm))
+    if (status == STATUS_DONE && !measure(c, rival))
         status = out_of_memory();
     program_text_close(&c->session.program);
     return status;
@@ -141,20 +154,6 @@ static struct bore_motion limits_of(const struct machine *machine)
 #define BEFORE_CIRCLE  0.5
 #define DEGREES(angle) (180.0 / MATHS_PI * (angle))
 
-/*
- * A helix: at every moment all of a turn's cut is under way, each level at its own stage of it. So nothing changes along
- * the way; pi (R + c)^2 by 2 pi R of way, and at the cutter's end its whole front.
- */
-static void helix_evenness(const struct comparison *c, struct bore_evenness *e)
-{
-    const double radius_mm = c->spiral.radius_mm;
-    const double outer_mm = radius_mm + 0.5 * c->job->cutter_mm;
-    const double width_mm = 0.5 * outer_mm * outer_mm / radius_mm;
-
-    *e = (struct bore_evenness){
-        {c->job->cutter_mm, c->job->cutter_mm}, {width_mm, width_mm}, {MATHS_PI, MATHS_PI}};
-}
-
 static void print_removal(FILE *stream, const struct comparison *c)
 {
     (void)fprintf(stream, "\n  %-26s %22s %26s %20s\n", "removed", "layer [mm]",
@@ -162,10 +161,7 @@ static void print_removal(FILE *stream, const struct comparison *c)
     for (unsigned i = 0; i < c->rivals; i++) {
         struct bore_evenness e;
 
-        if (i == BORE_RIVAL_HELIX)
-            helix_evenness(c, &e);
-        else
-            bore_removal_evenness(&c->removal[i], FIRST_TURN, c->spiral.turns - BEFORE_CIRCLE, &e);
+        bore_removal_evenness(&c->removal[i], FIRST_TURN, c->spiral.turns - BEFORE_CIRCLE, &e);
         if (!(e.layer_mm.most >= e.layer_mm.least))
             continue;
         (void)fprintf(stream, "  %-26s %10.4f .. %8.4f %14.4f .. %8.4f %10.2f .. %6.2f\n",
@@ -174,12 +170,25 @@ static void print_removal(FILE *stream, const struct comparison *c)
     }
 }
 
+static void print_level(FILE *stream, const struct comparison *c)
+{
+    struct bore_evenness e;
+
+    bore_removal_evenness(&c->helix_level, 0, 1, &e);
+    (void)fprintf(stream,
+                  "  The helix: the mean of all levels that are under way at a moment; at each of "
+                  "them %.2f .. %.2f deg are engaged.\n",
+                  DEGREES(e.engaged_rad.least), DEGREES(e.engaged_rad.most));
+}
+
 static void print_helix(FILE *stream, const struct comparison *c)
 {
     const struct bore_job *job = c->job;
 
-    if (c->rivals == BORE_RIVALS)
+    if (c->rivals == BORE_RIVALS) {
+        print_level(stream, c);
         return;
+    }
     if (2 * c->spiral.radius_mm <= job->cutter_mm) {
         (void)fprintf(stream, "  A helix is not among them: it needs --depth.\n");
         return;

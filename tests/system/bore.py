@@ -133,7 +133,19 @@ t.check(layer["Archimedean spiral"][0] < 0.95 * step, "Archimedes' spiral takes 
 t.check(all(row[3] > 1.3 * row[2] for row in layer.values()), "the load of none is even: the wall is longer where it bends more", out)
 wide = bore(*WIDE, "--step", "1", "--depth", "3", "--feed", "6000", "--compare")
 t.check(len(re.findall("^  helix ", wide, re.M)) == 2 and "not among them" not in wide, "a helix where the cutter is wide enough", wide)
-t.check("22.5000 ..  22.5000" in wide, "which is even: 15 mm squared by 2 times 5 mm", wide)
+helix = [float(x) for x in re.findall(r"[\d.]*\d", re.findall(r"^  helix (.*\.\..*)$", wide, re.M)[0])]
+t.check(all(abs(x / 22.5 - 1) < 0.02 for x in helix[2:4]), "its chip area is even: 15 mm squared by 2 times 5 mm", wide)
+t.check(helix[5] - helix[4] < 1 and helix[1] - helix[0] < 0.05, "so are its layer and its engagement", wide)
+t.check("180.00 deg are engaged" in wide, "though a level is cut by the whole front first", wide)
+
+# What the source claims of the involute, on holes beside its own: even is the layer, and as even that of joined arcs; the load is not.
+for words in (("--hole", "60", "--cutter", "25", "--step", "2.5"), ("--hole", "60", "--cutter", "40", "--step", "2"),
+              ("--hole", "100", "--cutter", "16", "--step", "1.5"), ("--hole", "200", "--cutter", "40", "--step", "4", "--allowance", "1")):
+    out = bore(*words, "--feed", "6000", "--compare")
+    row = {name: [float(x) for x in re.findall(r"[\d.]*\d", text)] for name, text in re.findall(r"^  (\S.+?)  +([\d.]+ .. +[\d.]+ .*)$", out, re.M)}
+    even = [row[name][1] / row[name][0] for name in ("involute", "semicircles, 2 poles", "quarter circles, 4 poles")]
+    t.check(max(even) < 1.003 < 1.04 < row["Archimedean spiral"][1] / row["Archimedean spiral"][0], f"{words}: the layer of all but Archimedes is even", out)
+    t.check(all(r[3] > 2.4 * r[2] and r[5] > 1.6 * r[4] for r in row.values()), f"{words}: the load of none is", out)
 t.check("it needs --depth" in bore(*WIDE, "--step", "1", "--compare"), "what it needs besides")
 picture = xml.etree.ElementTree.parse("spirals.svg").getroot()
 t.check(picture.tag.endswith("svg") and len(picture.findall(".//{*}polyline")) == 20, "the picture: four paths, sixteen curves")

@@ -139,6 +139,18 @@ before = summary_of("wear.ngc", *WEAR)["tool_point"]["rest_error_max_mm"]
 after = summary_of("wear.ngc", *WEAR, "--set", "correction.wear_along_um_per_m=20")["tool_point"]["rest_error_max_mm"]
 t.check(before > 0.035 and after < 2e-4, "a tool's wear is followed", before, after)
 
+HEAD = t.write("head.ini", "".join(f"[axis {a}]\n" for a in "XYZB"))
+t.write("head.ngc", "G0 B0\nF6000\n" + "G1 X100 B50\nG1 X0 B-70\n" * 10 + "G4 P10\nG0 B20\nG4 P1\n")
+POINTS = "--machine", HEAD, "--set", "geometry.tool_direction=1 -2 0.5", "--set", "geometry.head_axis=B", *WEAR
+FOLLOW = "--set", "correction.wear_along_um_per_m=20", "--set", "correction.tool_direction=1 -2 0.5"
+before = summary_of("head.ngc", *POINTS, *FOLLOW)["tool_point"]["rest_error_max_mm"]
+after = summary_of("head.ngc", *POINTS, *FOLLOW, "--set", "correction.head_axis=B")["tool_point"]["rest_error_max_mm"]
+t.check(before > 0.01 and after < 2e-4, "and along a tool that a head turns", before, after)
+for section in ("correction", "geometry"):
+    for value, reason in (("tool_direction=0 0 0", "no direction"), ("head_axis=C", "no axis C")):
+        status, _, err = t.run("run", "head.ngc", "--machine", HEAD, "--set", f"{section}.{value}")
+        t.check(status == 2 and f"{section}.{value.split('=')[0]}: " in err and reason in err, f"{section}.{value} is refused", err)
+
 TABLE_AXES = "".join(f"[axis {a}]\n" for a in "XYZC")
 TURN = t.write("turn.ini", TABLE_AXES + "[geometry]\ntable_axis = C\ntable_yaw = 0 0 80 360 30\ntable_centre_mm = 20 10 0\n")
 status, _, err = t.run("calibrate", "--machine", TURN, "--axis", "C", "--grid", "25", "--from=-360", "--to=360", "-o", "C.csv")

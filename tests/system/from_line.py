@@ -1,5 +1,7 @@
 """--from-line: all modes of the beginning, a safe way to the line, and the rest as it was."""
 
+import math
+
 import takt_test as t
 
 PROGRAM = t.write(
@@ -51,6 +53,16 @@ t.check(abs(trace["cmd_X_mm"][-1] - 50.4) < 1e-6 and abs(trace["cmd_Z_mm"][-1] -
 across = [z for x, z in zip(trace["cmd_X_mm"], trace["cmd_Z_mm"]) if 1e-6 < x < 45.4 - 1e-6]
 t.check(across and all(abs(z - 10) < 1e-9 for z in across), "nothing moves across below the height")
 t.check(min(trace["line"]) >= 8, "no cycle belongs to an earlier line")
+
+# The part is set up as the lines before have it, once the tool is up and before it goes across.
+SET_UP = t.write("set_up.ngc", "G10 L13 X0.9\nG0 Z5\nX1\nG10 L13 X0.5 Z-0.2\nG1 X20 Z-2 F600\nX30\nM2\n")
+status, out, err = t.run("run", SET_UP, "--from-line", "6", "--set", "correction.reserve_ratio=0.2", "--trace", "t.csv", "--quiet")
+t.check(status == 0, "a program that sets up the part is run from a line", err)
+trace = t.read_trace("t.csv")
+k = [tuple(trace[f"set_{axis}_mm"][i] - trace[f"cmd_{axis}_mm"][i] for axis in "XZ") for i in range(len(trace["cmd_X_mm"]))]
+t.check(math.dist(k[-1], (0.5, -0.2)) < 1e-6, "with the set-up of the lines before", k[-1])
+moving = [place for place, x in zip(k, trace["cmd_X_mm"]) if x > 1e-6]
+t.check(moving and all(math.dist(place, (0.5, -0.2)) < 1e-6 for place in moving), "which is in force before it goes across", moving[:1])
 
 # A line inside a subroutine: the first time it is executed.
 LOOP = t.write("loop.ngc", "F600\no1 sub\nG1 X#1\no1 endsub\no2 repeat [3]\n#2=[#2+1]\no1 call [#2]\no2 endrepeat\nM2\n")

@@ -36,6 +36,36 @@ adaptive = run(CIRCLES, *feed("0 50\n"))["program_time_s"]
 proportional = run(CIRCLES, *feed("0 50\n"), "--override-method", "proportional")["program_time_s"]
 t.check(adaptive <= 0.8 * proportional, "adaptive is faster by a fifth where geometry limits", adaptive, proportional)
 
+# Adaptive, (6): min(F_geo, %F F); proportional: %F min(F_geo, F). The planner takes 0.9 of the acceleration and 0.5 of the jerk.
+for radius in 1, 2, 5:
+    geometric = min((0.9 * 1000 * radius) ** 0.5, (0.5 * 50000 * radius**2) ** (1 / 3))
+    for method, percent in (("adaptive", 100), ("adaptive", 50), ("adaptive", 30), ("proportional", 50)):
+        run(f"G21 G61 F5000\nG2 X0 Y0 I{radius} P9\nM2\n", *feed(f"0 {percent}\n"), "--override-method", method, "--trace", "t.csv")
+        trace = t.read_trace("t.csv")
+        middle = len(trace["cmd_X_mm"]) // 2
+        places = [complex(trace["cmd_X_mm"][i], trace["cmd_Y_mm"][i]) for i in (middle, middle + 1)]
+        by_law = min(geometric, percent / 100 * 5000 / 60) if method == "adaptive" else percent / 100 * min(geometric, 5000 / 60)
+        t.check(abs(abs(places[1] - places[0]) / 0.001 / by_law - 1) < 2e-3, f"{method}, {percent} % on a circle of {radius} mm", places, by_law)
+
+# An override that changes while a block brakes waits for the next one: up to there nothing differs from the run without it.
+STOPS = "G21 G61.1 F6000\nG1 X50\nG1 X100\nM2\n"
+
+
+def speeds(schedule):
+    run(STOPS, *feed(schedule), "--trace", "t.csv")
+    trace = t.read_trace("t.csv")
+    x = trace["cmd_X_mm"]
+    return trace, [b - a for a, b in zip(x, x[1:])]
+
+
+whole, steps = speeds("0 100\n")
+ends = next(i for i, x in enumerate(whole["cmd_X_mm"]) if x >= 50)
+top = max(steps)
+brakes = max(i for i in range(ends) if steps[i] > 0.7 * top) + 1
+changed, slower = speeds(f"0 100\n{whole['time_s'][brakes]} 30\n")
+t.check(brakes < ends - 20 and changed["cmd_X_mm"][: ends + 1] == whole["cmd_X_mm"][: ends + 1], "a block that brakes keeps its override", brakes, ends)
+t.check(abs(max(slower[ends + 1 :]) / top - 0.3) < 1e-6, "the next has the new one", max(slower[ends + 1 :]), top)
+
 for option, text, place, words in (
     ("--override", "0 50\n1 x\n", ":2:3", "not a number"),
     ("--override", "0 121\n", ":1:", "0 ... 120"),

@@ -43,7 +43,7 @@ static void involute(void)
         double point[2];
 
         bore_spiral_point(&s, MATHS_TWO_PI * TURNS * maths_sqrt((double)i / POINTS), point);
-        TEST_ASSERT_TRUE(bore_track_add(&track, point[0], point[1]));
+        TEST_ASSERT_TRUE(bore_track_add(&track, point[0], point[1], 0));
     }
 }
 
@@ -55,7 +55,7 @@ static void archimedes(void)
         double sine, cosine;
 
         maths_sincos(MATHS_TWO_PI * turn, &sine, &cosine);
-        TEST_ASSERT_TRUE(bore_track_add(&track, STEP_MM * turn * cosine, STEP_MM * turn * sine));
+        TEST_ASSERT_TRUE(bore_track_add(&track, STEP_MM * turn * cosine, STEP_MM * turn * sine, 0));
     }
 }
 
@@ -70,7 +70,7 @@ static void half_circles(void)
             double sine, cosine;
 
             maths_sincos(MATHS_PI * (k + i / 2000.0), &sine, &cosine);
-            TEST_ASSERT_TRUE(bore_track_add(&track, centre + radius * cosine, radius * sine));
+            TEST_ASSERT_TRUE(bore_track_add(&track, centre + radius * cosine, radius * sine, 0));
         }
     }
 }
@@ -189,6 +189,86 @@ static void test_area_is_that_of_points_that_are_counted(void)
     TEST_ASSERT_DOUBLE_WITHIN(0.003 * painted, painted, removed);
 }
 
+/* ---- a helix: a turn down and a turn around, a cutter of more than half the hole ---- */
+
+#define HELIX_MM 4.0
+#define DOWN_MM  2.0
+#define AROUND   2000
+
+static struct bore_removal level;
+
+static void helix(void)
+{
+    for (unsigned i = 0; i <= 2 * AROUND; i++) {
+        double angle = MATHS_TWO_PI * i / AROUND;
+        double down = i < AROUND ? DOWN_MM * i / AROUND : DOWN_MM;
+        double sine, cosine;
+
+        maths_sincos(angle, &sine, &cosine);
+        TEST_ASSERT_TRUE(bore_track_add(&track, HELIX_MM * cosine, HELIX_MM * sine, -down));
+    }
+    TEST_ASSERT_TRUE(bore_removal_make_helix(&removal, &level, &track, CUTTER_MM, DOWN_MM, TURNS));
+}
+
+/* A turn takes a cylinder of radius R + c and of its depth: (R + c)^2 / 2 R by way and depth. */
+static void test_a_helix_removes_the_hole_evenly(void)
+{
+    const double width = (HELIX_MM + CUTTER_MM) * (HELIX_MM + CUTTER_MM) / (2 * HELIX_MM);
+    struct bore_evenness e;
+
+    helix();
+    bore_removal_evenness(&removal, 0, TURNS, &e);
+    TEST_ASSERT_EQUAL_UINT(TURNS * BORE_WINDOWS_PER_TURN, removal.count);
+    TEST_ASSERT_DOUBLE_WITHIN(0.005 * width, width, e.width_mm.least);
+    TEST_ASSERT_DOUBLE_WITHIN(0.005 * width, width, e.width_mm.most);
+    bore_removal_free(&level);
+}
+
+/* What a level has left of the front half when the cutter stands at the angle a: points that no disc from 0 to a has held. */
+static double counted_engagement(double a)
+{
+    unsigned free_points = 0;
+
+    for (unsigned i = 0; i < 1000; i++) {
+        double to = a + MATHS_PI * (i + 0.5) / 1000; /* the way goes on to a + pi / 2 */
+        double sine, cosine;
+        bool held = false;
+
+        maths_sincos(a, &sine, &cosine);
+        double x = HELIX_MM * cosine, y = HELIX_MM * sine;
+
+        maths_sincos(to, &sine, &cosine);
+        x += CUTTER_MM * cosine;
+        y += CUTTER_MM * sine;
+        for (unsigned k = 0; k < 1000 && !held; k++) {
+            maths_sincos(a * k / 1000, &sine, &cosine);
+            double dx = x - HELIX_MM * cosine, dy = y - HELIX_MM * sine;
+
+            held = dx * dx + dy * dy < CUTTER_MM * CUTTER_MM * (1 - 1e-6);
+        }
+        free_points += !held;
+    }
+    return MATHS_PI * free_points / 1000;
+}
+
+static void test_the_engagement_of_a_level_falls_as_points_counted_say(void)
+{
+    struct bore_evenness e;
+    double sum = 0;
+
+    helix();
+    for (size_t i = 2; i < BORE_WINDOWS_PER_TURN; i += 5)
+        TEST_ASSERT_DOUBLE_WITHIN(
+            0.05, counted_engagement(MATHS_TWO_PI * (double)i / BORE_WINDOWS_PER_TURN),
+            level.window[i].engaged_rad);
+    for (size_t i = 0; i < BORE_WINDOWS_PER_TURN; i++)
+        sum += level.window[i].engaged_rad;
+    bore_removal_evenness(&removal, 0, TURNS, &e);
+    TEST_ASSERT_DOUBLE_WITHIN(0.01, sum / BORE_WINDOWS_PER_TURN, e.engaged_rad.least);
+    TEST_ASSERT_DOUBLE_WITHIN(0.01, sum / BORE_WINDOWS_PER_TURN, e.engaged_rad.most);
+    bore_removal_free(&level);
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -198,5 +278,7 @@ int main(void)
     RUN_TEST(test_turns_of_archimedes_remove_less_where_the_spiral_is_steep);
     RUN_TEST(test_engaged_angle_of_a_late_turn);
     RUN_TEST(test_area_is_that_of_points_that_are_counted);
+    RUN_TEST(test_a_helix_removes_the_hole_evenly);
+    RUN_TEST(test_the_engagement_of_a_level_falls_as_points_counted_say);
     return UNITY_END();
 }

@@ -13,6 +13,8 @@ void setUp(void)
 {
     memset(&config, 0, sizeof config);
     config.table_axis = AXIS_COUNT;
+    config.head_axis = AXIS_COUNT;
+    config.tool_direction[AXIS_Z] = 1;
 }
 
 void tearDown(void)
@@ -141,6 +143,22 @@ static void test_a_worn_tool_is_shorter(void)
     TEST_ASSERT_DOUBLE_WITHIN(1e-12, 0.008, tool.at[AXIS_Z]);
 }
 
+/* B turns Z towards X: by 30 degrees a tool along 2 Z is shorter along (1/2, 0, sqrt(3)/2). */
+static void test_a_worn_tool_is_shorter_along_its_own_direction(void)
+{
+    struct point tool;
+
+    config.wear_along_um_per_m = 8;
+    config.tool_direction[AXIS_Z] = 2;
+    config.head_axis = AXIS_B;
+    deviation_init(&d, &config, low, high);
+    deviation_set_wear(&d, 1000, 0);
+    deviation_tool_point(&d, &(struct point){{0, 0, 0, 0, 3.14159265358979 / 6}}, 0, &tool);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-12, 0.004, tool.at[AXIS_X]);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-12, 0, tool.at[AXIS_Y]);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-12, 0.0069282032302755, tool.at[AXIS_Z]);
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -153,5 +171,6 @@ int main(void)
     RUN_TEST(test_the_machine_warms_and_grows);
     RUN_TEST(test_a_table_that_turns_too_far_moves_the_tool_on_the_part);
     RUN_TEST(test_a_worn_tool_is_shorter);
+    RUN_TEST(test_a_worn_tool_is_shorter_along_its_own_direction);
     return UNITY_END();
 }

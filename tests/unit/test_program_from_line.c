@@ -72,6 +72,45 @@ static void test_tool_spindle_and_coolant_are_brought_back(void)
     reader_expect_end(&reader);
 }
 
+static void expect_setup(unsigned which, double value, bool ends)
+{
+    const struct move move = reader_next(&reader, MOVE_SETUP);
+
+    TEST_ASSERT_EQUAL_UINT(which, move.channel);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-12, value, move.setup);
+    TEST_ASSERT_EQUAL_INT(ends, move.setup_ends);
+    TEST_ASSERT_EQUAL_UINT(4, move.line);
+}
+
+/* What was told last of each number, all of it together, with the tool up and before it goes across. */
+static void test_the_part_is_set_up_as_the_lines_before_have_it(void)
+{
+    open_at(4, "G10 L13 X0.5 K2\nG0 X1 Z3\nG10 L13 X0.7 R-1\nX2 Z2\n");
+    (void)reader_expect(&reader, MOVE_RAPID, 0.0, 0.0, 3.0);
+    expect_setup(0, 0.7, false);
+    expect_setup(5, 2.0 * RAD_PER_DEGREE, false);
+    expect_setup(6, -1.0 * RAD_PER_DEGREE, true);
+    (void)reader_expect(&reader, MOVE_RAPID, 1.0, 0.0, 3.0);
+    (void)reader_expect(&reader, MOVE_RAPID, 2.0, 0.0, 2.0);
+    reader_expect_end(&reader);
+}
+
+/* More moves than there is room for at once. */
+static void test_all_that_there_is_to_bring_back_is_brought_back(void)
+{
+    open_at(4, "T5 M6 S900 M3 M8 F600\nT12 G10 L13 X1 Y2 Z3 I4 J5 K6 R7\nG0 X1 Z3\nG1 X2 Z-1\n");
+    (void)reader_expect(&reader, MOVE_RAPID, 0.0, 0.0, 3.0);
+    for (unsigned i = 0; i < 3; i++)
+        (void)reader_next(&reader, MOVE_TOOL);
+    for (unsigned i = 0; i < MOVE_SETUP_VALUES; i++)
+        expect_setup(i, (i + 1) * (i < 3 ? 1.0 : RAD_PER_DEGREE), i + 1 == MOVE_SETUP_VALUES);
+    (void)reader_expect(&reader, MOVE_RAPID, 1.0, 0.0, 3.0);
+    (void)reader_next(&reader, MOVE_SPINDLE);
+    (void)reader_next(&reader, MOVE_COOLANT);
+    (void)reader_expect(&reader, MOVE_FEED, 2.0, 0.0, -1.0);
+    reader_expect_end(&reader);
+}
+
 static void test_it_starts_where_the_line_is_executed_for_the_first_time(void)
 {
     open_at(2, "o1 sub\nG0 X[#1+1]\no1 endsub\nG0 X1\no1 call [1]\no1 call [2]\n");
@@ -147,6 +186,8 @@ int main(void)
     RUN_TEST(test_arcs_count_with_their_highest_point);
     RUN_TEST(test_without_a_feed_it_goes_down_slowly);
     RUN_TEST(test_tool_spindle_and_coolant_are_brought_back);
+    RUN_TEST(test_the_part_is_set_up_as_the_lines_before_have_it);
+    RUN_TEST(test_all_that_there_is_to_bring_back_is_brought_back);
     RUN_TEST(test_it_starts_where_the_line_is_executed_for_the_first_time);
     RUN_TEST(test_from_the_first_line_all_is_as_usual);
     RUN_TEST(test_a_line_that_is_never_executed_is_an_error);
