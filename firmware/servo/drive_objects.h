@@ -16,6 +16,7 @@
 #define DRIVE_CONSUMERS      2    /* object 1016 */
 #define DRIVE_LABEL_SIZE     32   /* object 2000, with its zero */
 #define DRIVE_NOTES_SIZE     1024 /* object 2001 */
+#define DRIVE_PITCH_POINTS   64   /* object 2011 */
 /* Bytes of objects that only a data sheet has. */
 #ifndef DRIVE_EXTRA_SIZE
 #define DRIVE_EXTRA_SIZE 32768
@@ -98,6 +99,12 @@ struct drive_settings {
         homing_torque; /* 2003: 0.1 % of the rated one; a motor that stands with it is at a hard stop */
     uint8_t buffer_organisation; /* 60C4:3 */
     uint16_t buffer_position;    /* 60C4:4 */
+    uint8_t pitch_points;        /* 2010:1; 0: no error of pitch is taken back */
+    int32_t pitch_first;         /* 2010:2: position of the first of them */
+    uint32_t pitch_distance;     /* 2010:3: from each to the next */
+    uint32_t backlash_nm;        /* 2010:4; of a rotary axis urad */
+    int32_t pitch_nm
+        [DRIVE_PITCH_POINTS]; /* 2011: what the axis is farther than its motor says; the same */
 };
 
 /* What changes by itself or from cycle to cycle; not stored. */

@@ -138,6 +138,7 @@ void servo_begin_homing(struct servo *drive)
     const struct method *method = find_method(drive->objects.settings.homing_method);
     drive->homing.method = drive->objects.settings.homing_method;
     drive->homing.is_homed = false;
+    servo_take_origin(drive);
     drive->homing.push_ns = 0;
     tell(drive, HOMING_BEGUN);
     if (!method) {
@@ -310,9 +311,11 @@ static void stop(struct servo *drive, uint32_t cycle_ns)
     run_towards(drive, 1, 0, cycle_ns);
     if (drive->velocity_mm_s != 0)
         return;
+    double home_mm = -(double)drive->objects.settings.home_offset / drive->increments_per_mm;
     drive->origin_mm =
-        drive->homing.encoder_mm + drive->objects.settings.home_offset / drive->increments_per_mm;
+        drive->homing.encoder_mm - pitch_get_motor_mm(&drive->compensation.pitch, home_mm);
     drive->homing.is_homed = true;
+    servo_take_origin(drive);
     drive->homing.phase = HOMING_IDLE;
     servo_hold(drive);
     tell(drive, HOMING_ATTAINED);

@@ -89,6 +89,12 @@ static void set_target_pdo(struct servo *drive, const struct pdo *target)
         c->rpdo_mapping[1].entry[i] = target->mapping.object[i];
 }
 
+static void init_loop(struct servo *drive)
+{
+    const struct motor_port axis = compensation_get_port(&drive->compensation);
+    servo_loop_init(&drive->loop, &drive->config.loop, &axis);
+}
+
 void servo_init(struct servo *drive, const struct servo_config *config, const struct pdo *target,
                 const struct can_port *port, const struct motor_port *motor)
 {
@@ -107,8 +113,9 @@ void servo_init(struct servo *drive, const struct servo_config *config, const st
     drive->number = config->node;
     drive->lss.node = drive->lss.stored = config->is_nameless ? LSS_NO_NODE : config->node;
     drive->lss.is_nameless = config->is_nameless;
+    compensation_init(&drive->compensation, motor);
     if (!config->is_io)
-        servo_loop_init(&drive->loop, &config->loop, motor);
+        init_loop(drive);
     sdo_server_init(&drive->sdo, config->node, &owner);
     servo_init_objects(drive);
     if (target && drive->dictionary == &dictionary_own)
@@ -116,6 +123,7 @@ void servo_init(struct servo *drive, const struct servo_config *config, const st
     drive->initial = drive->stored = drive->objects;
     servo_derive(drive);
     drive->homing.is_homed = config->is_absolute;
+    servo_derive_compensation(drive);
     servo_update_pdos(drive);
     servo_reset_profile(drive);
 }
@@ -492,6 +500,7 @@ static void run_motor(struct servo *drive, uint32_t cycle_ns)
 {
     servo_begin_probe(drive);
     servo_move(drive, cycle_ns);
+    servo_note_way(drive);
     servo_run_probe(drive);
 }
 

@@ -98,6 +98,11 @@
 #define METHOD(number, method)                                                                     \
     ROW(0x60E3, number, OBJECT_SAME, I8, RO, OBJECT_FIXED, 0, method, 0, 0, "Method " #number, NULL)
 
+#define PITCH(number)                                                                              \
+    SUB(0x2011, number, I32, RW, 0, SET(pitch_nm[(number)-1]), 0, "Error at point " #number)
+
+#define BACKLASH_MAX_NM 10000000 /* more is no play but a broken coupling */
+
 #define NOT_VALID 0x80000000
 #define NO_RTR    0x40000000
 
@@ -165,6 +170,20 @@ const struct object_row object_table[] = {
     SUB(0x2002, 1, U32, RO, TPDO, PROCESS(time_ms), 0, "Milliseconds since midnight"),
     SUB(0x2002, 2, U16, RO, TPDO, PROCESS(time_days), 0, "Days since 1984"),
     VAR(0x2003, U16, RW, 0, SET(homing_torque), 1000, "Torque at a hard stop"),
+    HEAD(0x2010, OBJECT_RECORD, 4, "Error of pitch and backlash"),
+    SUBL(0x2010, 1, U8, RW, 0, SET(pitch_points), 0, 0, DRIVE_PITCH_POINTS, "Number of points"),
+    SUB(0x2010, 2, I32, RW, 0, SET(pitch_first), 0, "Position of the first point"),
+    SUBL(0x2010, 3, U32, RW, 0, SET(pitch_distance), 1, 1, UINT32_MAX, "Distance of points"),
+    SUBL(0x2010, 4, U32, RW, 0, SET(backlash_nm), 0, 0, BACKLASH_MAX_NM, "Backlash"),
+    HEAD(0x2011, OBJECT_ARRAY, DRIVE_PITCH_POINTS, "Error of pitch"),
+    PITCH(1), PITCH(2), PITCH(3), PITCH(4), PITCH(5), PITCH(6), PITCH(7), PITCH(8),
+    PITCH(9), PITCH(10), PITCH(11), PITCH(12), PITCH(13), PITCH(14), PITCH(15), PITCH(16),
+    PITCH(17), PITCH(18), PITCH(19), PITCH(20), PITCH(21), PITCH(22), PITCH(23), PITCH(24),
+    PITCH(25), PITCH(26), PITCH(27), PITCH(28), PITCH(29), PITCH(30), PITCH(31), PITCH(32),
+    PITCH(33), PITCH(34), PITCH(35), PITCH(36), PITCH(37), PITCH(38), PITCH(39), PITCH(40),
+    PITCH(41), PITCH(42), PITCH(43), PITCH(44), PITCH(45), PITCH(46), PITCH(47), PITCH(48),
+    PITCH(49), PITCH(50), PITCH(51), PITCH(52), PITCH(53), PITCH(54), PITCH(55), PITCH(56),
+    PITCH(57), PITCH(58), PITCH(59), PITCH(60), PITCH(61), PITCH(62), PITCH(63), PITCH(64),
 
     VARL(0x6007, I16, RW, 0, SET(abort_connection_option), 3, 0, 3, "Abort connection option code"),
     VAR(0x603F, U16, RO, TPDO | EVENT, PROCESS(error_code), 0, "Error code"),

@@ -28,7 +28,7 @@ static void refresh_rest(struct servo *drive)
     const struct servo_loop *loop = &drive->loop;
     struct drive_process *p = &drive->objects.process;
     p->demand_position = servo_increments(drive, loop->command_mm - drive->origin_mm);
-    p->actual_internal = signed_round(loop->measured_mm * loop->encoder_steps_per_mm);
+    p->actual_internal = signed_round(drive->compensation.encoder_mm * loop->encoder_steps_per_mm);
     double velocity_per_mm = drive->velocity_sign * servo_velocity_scale(drive);
     p->actual_velocity = signed_round(loop->measured_velocity_mm_s * velocity_per_mm);
     p->demand_velocity = signed_round(loop->command_velocity_mm_s * velocity_per_mm);
@@ -164,6 +164,9 @@ static uint32_t check_profile_write(const struct servo *drive, const struct obje
                                     int64_t value)
 {
     switch (row->index) {
+    case 0x2010:
+    case 0x2011:
+        return servo_check_compensation(drive, row, (uint32_t)value);
     case 0x605A:
         return check_quick_stop((uint32_t)value);
     case 0x6086:
@@ -215,6 +218,7 @@ void servo_restore(struct servo *drive, uint16_t last)
         return;
     drive->objects.settings = drive->stored.settings;
     servo_derive(drive);
+    servo_derive_compensation(drive);
 }
 
 static void follow_communication_write(struct servo *drive, const struct object_row *row)
@@ -262,10 +266,15 @@ static void follow_profile_write(struct servo *drive, const struct object_row *r
     case 0x60B8:
         servo_apply_touches(drive, DRIVE_TOUCH_PROBE);
         break;
+    case 0x2010:
+    case 0x2011:
+        servo_derive_compensation(drive);
+        break;
     case 0x607E:
     case 0x6091:
     case 0x6092:
         servo_derive(drive);
+        servo_derive_compensation(drive);
         servo_hold(drive);
         break;
     case 0x6065:

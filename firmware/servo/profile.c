@@ -48,6 +48,8 @@ uint32_t servo_manufacturer_status(const struct servo *drive)
         word |= DRIVE_STATUS_WARM;
     if (drive->homing.is_homed)
         word |= DRIVE_STATUS_HOMED;
+    if (drive->homing.is_homed && drive->compensation.pitch.points != 0)
+        word |= DRIVE_STATUS_PITCH;
     return word;
 }
 

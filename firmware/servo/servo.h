@@ -16,6 +16,7 @@
 #include "canopen/time_stamp.h"
 #include "hal/can.h"
 #include "hal/motor.h"
+#include "servo/compensation.h"
 #include "servo/course.h"
 #include "servo/dictionary.h"
 #include "servo/drive_event.h"

@@ -116,6 +116,18 @@ void servo_init_objects(struct servo *drive);
 void servo_derive(struct servo *drive);
 void servo_derive_torque(struct servo *drive);
 
+/* ---- mechanics.c: what is taken back of the mechanics ---- */
+
+/* What of objects 2010 and 2011 the motor's readings are corrected by; they are so at once, and the command with them. */
+void servo_derive_compensation(struct servo *drive);
+/* Objects 2010 and 2011: may they get this value now? */
+uint32_t servo_check_compensation(const struct servo *drive, const struct object_row *row,
+                                  uint32_t value);
+/* The axis has been homed, or is so no more; origin_mm is what it is. */
+void servo_take_origin(struct servo *drive);
+/* After a cycle: whether the axis has been told to turn back. */
+void servo_note_way(struct servo *drive);
+
 /* ---- profile.c: states ---- */
 
 /* Bits of object 1002. */
@@ -123,7 +135,8 @@ enum drive_status {
     DRIVE_STATUS_TORQUE_LIMIT = 1,
     DRIVE_STATUS_POSITION_LIMIT = 2, /* the target is beyond object 607D */
     DRIVE_STATUS_WARM = 4,
-    DRIVE_STATUS_HOMED = 8
+    DRIVE_STATUS_HOMED = 8,
+    DRIVE_STATUS_PITCH = 16 /* the error of pitch is taken back */
 };
 
 uint32_t servo_manufacturer_status(const struct servo *drive);

@@ -102,6 +102,7 @@ struct servo {
     struct can_port port;
     struct drive_observer observer;
     struct servo_meddler meddler;
+    struct compensation compensation; /* between the motor and the loops */
     struct servo_loop loop;
     struct drive_objects objects;
 

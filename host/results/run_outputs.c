@@ -61,7 +61,8 @@ static bool check_rests(const struct session *session)
 
     tool_point_init(&point, &session->setup);
     if (!point.is_watched)
-        message_command_error("--rests needs a machine with errors: [geometry] of its file");
+        message_command_error("--rests needs a machine with errors: [geometry] of its file, or "
+                              "pitch_error_mm of a drive");
     return point.is_watched;
 }
 

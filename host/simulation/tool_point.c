@@ -16,6 +16,21 @@ static void set_chain(const struct machine_setup *setup, struct deviation_config
         chain->units--;
 }
 
+/* Of a screw that the encoder of its motor does not see. */
+static bool has_error(const struct drive_plant_config *plant)
+{
+    return plant->backlash_mm > 0 || plant->pitch_error_mm > 0;
+}
+
+static bool drives_have_errors(const struct machine_setup *setup)
+{
+    bool any = false;
+
+    for (unsigned i = 0; i < MACHINE_SETUP_DRIVES_MAX; i++)
+        any = any || has_error(&setup->drive[i].plant);
+    return any;
+}
+
 void tool_point_init(struct tool_point *t, const struct machine_setup *setup)
 {
     double min_mm[AXIS_COUNT], max_mm[AXIS_COUNT];
@@ -33,7 +48,7 @@ void tool_point_init(struct tool_point *t, const struct machine_setup *setup)
     deviation_init(&t->real, &geometry, min_mm, max_mm);
     t->nominal = t->real;
     vibration_init(&t->vibration, &setup->vibration, t->cycle_s);
-    t->is_watched = t->real.any || t->vibration.any;
+    t->is_watched = t->real.any || t->vibration.any || drives_have_errors(setup);
 }
 
 static double distance(const struct point *a, const struct point *b)

@@ -7,6 +7,7 @@ The controller's setpoints and the drives' positions are those of the drives of 
 the logs of the bus are the same files. On random machines, with homing, and with faults of bus and drives.
 """
 
+import math
 import os
 import random
 import shutil
@@ -15,6 +16,7 @@ import sys
 
 import target
 import takt_test as t
+from drive_tables import concise, pitch_table
 
 MACHINES, FIRST = (int(word) for word in (sys.argv[1:] + ["3", "1"][len(sys.argv) - 1:])[:2])
 PROGRAM = t.write("part.ngc", "G21 G90 G64 P0.01 F2500\nG1 X3 Y2 Z-1\nG2 X5 Y0 I0 J-2\nG1 X1 Y1\nG61 G0 X0 Y0 Z0\nM2\n")
@@ -110,10 +112,19 @@ def refused(what, words, *options):
     t.check(status == 2 and all(word in err for word in words), what, status, err)
 
 
+def with_tables():
+    """Screws with errors, and drives that take them back by tables of their own."""
+    table = pitch_table(-2, 0.5, [0.004 * math.sin(0.7 * i) for i in range(20)], 0.01)
+    settings = [f"drive.{node}.{key}" for node in (1, 2, 3)
+                for key in ("backlash_mm=0.01", "pitch_error_mm=0.004", "dcf=" + concise(f"{node}.bin", node, table))]
+    return [word for setting in settings for word in ("--set", setting)]
+
+
 target.need_qemu()
 m4f = target.image("m4f", IMAGE)
 compare("built-in", ())
 compare("built-in", (), "m7")
+compare("own tables", with_tables())
 for seed in range(FIRST, FIRST + MACHINES):
     compare(f"machine {seed}", machine(seed))
 

@@ -96,7 +96,7 @@ static void test_every_entry_is_found_and_nothing_else(void)
     bool has_index;
     unsigned found = 0;
     for (unsigned index = 0; index <= 0xFFFF; index++)
-        for (unsigned sub = 0; sub < 64; sub++)
+        for (unsigned sub = 0; sub < 128; sub++)
             found += object_table_find((uint16_t)index, (uint8_t)sub, &has_index) != NULL;
     TEST_ASSERT_EQUAL_UINT(object_table_count, found);
     TEST_ASSERT_NULL(object_table_find(0x6099, 3, &has_index));
