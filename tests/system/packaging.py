@@ -82,6 +82,9 @@ def check_package(build):
     output("dpkg-deb", "-x", package, "root")
     example = "root/usr/share/doc/takt/examples/engraving.ngc"
     t.check("checks        19 of 19 held" in output("root/usr/bin/takt", "run", example), "the installed command runs an installed example")
+    readme = open(os.path.join(os.path.dirname(example), "README.md")).read()
+    for link in re.findall(r"\]\((\w[^):#]*)\)", readme):
+        t.check(os.path.exists(os.path.join(os.path.dirname(example), link)), f"the examples' page finds {link}")
     if not shutil.which("lintian"):
         t.skip("lintian is not installed")
     found = output("lintian", "--allow-root", package)

@@ -49,6 +49,24 @@ int pthread_mutex_unlock(pthread_mutex_t *mutex)
     return 0;
 }
 
+int pthread_once(pthread_once_t *once, void (*run)(void))
+{
+    if (*once == PTHREAD_ONCE_INIT) {
+        *once = 1;
+        run();
+    }
+    return 0;
+}
+
+/* Nothing forks here. */
+int pthread_atfork(void (*before)(void), void (*in_parent)(void), void (*in_child)(void))
+{
+    (void)before;
+    (void)in_parent;
+    (void)in_child;
+    return 0;
+}
+
 int pthread_sigmask(int how, const sigset_t *set, sigset_t *before)
 {
     (void)how;

@@ -13,6 +13,7 @@
     {                                                                                              \
         0                                                                                          \
     }
+#define PTHREAD_ONCE_INIT 0
 
 /* Always refused: who asks goes on alone. */
 int pthread_create(pthread_t *thread, const void *attributes, void *(*run)(void *), void *context);
@@ -21,6 +22,8 @@ int pthread_mutex_init(pthread_mutex_t *mutex, const void *attributes);
 int pthread_mutex_destroy(pthread_mutex_t *mutex);
 int pthread_mutex_lock(pthread_mutex_t *mutex);
 int pthread_mutex_unlock(pthread_mutex_t *mutex);
+int pthread_once(pthread_once_t *once, void (*run)(void));
+int pthread_atfork(void (*before)(void), void (*in_parent)(void), void (*in_child)(void));
 int pthread_sigmask(int how, const sigset_t *set, sigset_t *before);
 
 FILE *tmpfile(void);
