@@ -7,6 +7,7 @@
 #include "cli/message.h"
 #include "config/machine_file.h"
 #include "session/canon_write.h"
+#include "session/convert_write.h"
 #include "session/plan_write.h"
 
 #include <pthread.h>
@@ -236,6 +237,17 @@ static enum command_status write_canon(struct takt_job *job, const struct sessio
     return canon_write(stream, session);
 }
 
+static enum command_status write_converted(struct takt_job *job, const struct session *session,
+                                           const struct session_totals *totals, FILE *stream)
+{
+    enum dialect dialect;
+
+    (void)totals;
+    return convert_read_dialect(job->options.to_dialect, &dialect)
+               ? convert_write(session, stream, dialect)
+               : STATUS_INPUT;
+}
+
 static enum command_status write_plan(struct takt_job *job, const struct session *session,
                                       const struct session_totals *totals, FILE *stream)
 {
@@ -285,6 +297,7 @@ static const struct library_writer {
                                  const struct session_totals *totals, FILE *stream);
 } writers[] = {
     {&command_canon, false, write_canon},
+    {&command_convert, false, write_converted},
     {&command_plan, false, write_plan},
     {&command_compile, true, write_compiled},
 };

@@ -1,5 +1,5 @@
 /*
- * takt as a library: what the commands run, canon, plan, compile and machine do, for programs that call it in their own
+ * takt as a library: what the commands run, canon, convert, plan, compile and machine do, for programs that call it in their own
  * process.
  *
  *     struct takt_job *job = takt_open(argc, argv, texts, count);      "run", "part.ngc", "--machine", "<mill>"
@@ -77,7 +77,7 @@ const struct takt_message *takt_get_messages(const struct takt_job *job, unsigne
 /* What the last call that writes a text has written. */
 const char *takt_get_text(const struct takt_job *job, size_t *length);
 
-/* Of canon, plan, compile and machine: their output; of plan as JSON. */
+/* Of canon, convert, plan, compile and machine: their output; of plan as JSON. */
 int takt_write(struct takt_job *job);
 
 /* Of run, in this order. keeps: TAKT_KEEPS_... Checks the program, plans it ahead if asked to; the drives boot. */
@@ -118,7 +118,7 @@ double *takt_take_column(struct takt_job *job, unsigned column);
 void takt_free(void *memory);
 
 /*
- * run, canon, plan, compile or machine with its options, as the command itself: it prints, and signals end it in order. For a
+ * run, canon, convert, plan, compile or machine with its options, as the command itself: it prints, and signals end it in order. For a
  * process of its own. Returns the exit status.
  */
 int takt_command(int argc, char **argv);

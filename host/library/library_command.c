@@ -10,8 +10,8 @@
 #include <stdio.h>
 #include <string.h>
 
-static const struct command *const commands[] = {&command_run, &command_canon, &command_plan,
-                                                 &command_compile, &command_machine};
+static const struct command *const commands[] = {&command_run,  &command_canon,   &command_convert,
+                                                 &command_plan, &command_compile, &command_machine};
 
 #define COMMANDS (sizeof commands / sizeof commands[0])
 

@@ -1,54 +1,8 @@
 /* takt convert: write the moves of a part program in the words of another controller. */
-#include "cli/interrupt.h"
-#include "cli/message.h"
 #include "cli/output_file.h"
-#include "session/convert.h"
+#include "session/convert_write.h"
 #include "session/session.h"
 #include "takt/command.h"
-
-#include <stdio.h>
-
-static bool read_dialect(const char *name, enum dialect *dialect)
-{
-    const unsigned found = name != NULL ? dialect_find(name) : DIALECT_COUNT;
-
-    *dialect = (enum dialect)found;
-    if (found < DIALECT_COUNT && found != DIALECT_MARLIN && found != DIALECT_SIEMENS)
-        return true;
-    message_command_error("--to %s: known are linuxcnc, grbl, fanuc, haas and mach3",
-                          name != NULL ? name : "DIALECT is needed");
-    return false;
-}
-
-static enum command_status write_moves(const struct session *session, FILE *out,
-                                       enum dialect dialect)
-{
-    static struct session_reading reading;
-    struct program_config config;
-    struct source source;
-    struct diagnostic ignored;
-    struct convert convert;
-    struct move move;
-
-    session_begin_reading(session, &reading, &config, &source);
-    program_open(&reading.program, &config, &source);
-    offset_open(&reading.offset, &config);
-    convert_open(&convert, out, dialect, config.axes, &config.start);
-    while (offset_next(&reading.offset, &reading.program, &move, &ignored) == PROGRAM_MOVE &&
-           !interrupt_asked()) {
-        const char *lacking = convert_move(&convert, &move);
-
-        if (lacking != NULL) {
-            uint32_t line = move.line;
-            const char *name = program_text_place(&session->program, &line);
-
-            message_error(name, line, 1, "%s has no words for %s", dialect_name(dialect), lacking);
-            return STATUS_INPUT;
-        }
-    }
-    convert_close(&convert);
-    return interrupt_asked() ? STATUS_INTERRUPTED : STATUS_DONE;
-}
 
 static enum command_status write_file(const struct session *session, const struct options *options,
                                       enum dialect dialect)
@@ -58,7 +12,7 @@ static enum command_status write_file(const struct session *session, const struc
 
     if (!output_file_open(&file, options->output != NULL ? options->output : "-"))
         return STATUS_ENVIRONMENT;
-    status = write_moves(session, file.stream, dialect);
+    status = convert_write(session, file.stream, dialect);
     if (status == STATUS_DONE && !(output_file_finish(&file) && output_file_place(&file)))
         status = STATUS_ENVIRONMENT;
     output_file_discard(&file);
@@ -72,7 +26,7 @@ static enum command_status command_convert_execute(const struct options *options
     enum dialect dialect;
     enum command_status status;
 
-    if (!read_dialect(options->to_dialect, &dialect))
+    if (!convert_read_dialect(options->to_dialect, &dialect))
         return STATUS_INPUT;
     status = session_open(&session, options);
     if (status == STATUS_DONE)

@@ -1,4 +1,4 @@
-"""``python -m takt run ...``: the commands run, canon, plan, compile and machine where ``takt`` itself is not installed."""
+"""``python -m takt run ...``: the commands run, canon, convert, plan, compile and machine where ``takt`` itself is not installed."""
 
 from __future__ import annotations
 

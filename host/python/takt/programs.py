@@ -15,6 +15,11 @@ def canon(program: Source, *, machine: MachineLike = None, **options: Any) -> li
     return command_words("canon", program, machine=machine, options=options).job().write().decode().splitlines()
 
 
+def convert(program: Source, *, to: str = "linuxcnc", machine: MachineLike = None, **options: Any) -> str:
+    """The canonical moves in the words of another controller, as ``takt convert`` writes them: no loops, no offsets."""
+    return command_words("convert", program, machine=machine, options={"to": to, **options}).job().write().decode()
+
+
 def plan(program: Source, *, machine: MachineLike = None, **options: Any) -> dict[str, Any]:
     """
     The planned blocks, as ``takt plan --json`` writes them: ``plan["blocks"]`` with lengths (mm), feeds (mm/min), what

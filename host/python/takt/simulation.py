@@ -103,7 +103,7 @@ def command_words(
     if given is not None:
         words.option("machine", words.source(given, "<machine>"))
     for key, value in options.items():
-        if key not in OPTIONS and key != "ceiling":
+        if key not in OPTIONS and key not in ("ceiling", "to"):
             raise TypeError(f"{key}: options are {', '.join(sorted(OPTIONS))}")
         words.option(key.replace("_", "-"), _option(words, key, value))
     return words

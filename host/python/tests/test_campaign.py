@@ -16,7 +16,7 @@ pytest.importorskip("distributed")
 import takt  # noqa: E402
 from takt.campaign import __main__ as command  # noqa: E402
 from takt.campaign.engine import run_missing  # noqa: E402
-from takt.campaign.scenario import Scenario, execute, is_bad  # noqa: E402
+from takt.campaign.scenario import Scenario, execute, in_moves, is_bad  # noqa: E402
 from takt.campaign.shrink import shrink  # noqa: E402
 from takt.campaign.spec import latin_hypercube, plan  # noqa: E402
 from takt.campaign.store import Store, results  # noqa: E402
@@ -196,6 +196,20 @@ def test_shrinking_leaves_what_fails():
 
     small = shrink(scenario, fails)
     assert (small.program, small.faults, small.overrides) == ("Z-3\n", "enabled+8s drive 2 jam\n", "")
+
+
+def test_a_program_with_loops_is_shrunk_as_moves():
+    program = "o1 repeat [5]\n#1 = [#1 + 1]\nG1 F1000 X#1\nY[#1]\nG4 P0.1\no1 endrepeat\nM2\n"
+    scenario = Scenario(program)
+
+    def fails(s):
+        found = execute(s)
+        return found["outcome"] == "completed" and found["path_length_mm"] > 3
+
+    moves = in_moves(scenario)
+    assert "o1" not in moves.program.lower() and fails(moves)
+    assert len(shrink(scenario, fails, moves=moves).program.splitlines()) <= 3
+    assert in_moves(Scenario("nonsense\n")).program == "nonsense\n"
 
 
 def test_comparison_tells_what_became_worse(spec, tmp_path, capsys):

@@ -20,7 +20,7 @@ from .. import Library, load
 from .compare import Change, Judge, compare, difference_of, worse_of
 from .engine import BATCH, Costs, run_missing
 from .report import campaign_page, comparison_page, worst, write_runs
-from .scenario import Scenario, execute, is_bad
+from .scenario import Scenario, execute, in_moves, is_bad
 from .shrink import shrink
 from .spec import SpecError, read
 from .store import LIBRARY, Store, results
@@ -137,7 +137,7 @@ def _shrink(given: argparse.Namespace) -> int:
         found = execute(s, library)
         return found["outcome"] == row["outcome"] and failed <= set(found["failed"].split())
 
-    _report_small(shrink(scenario, fails), folder / "shrunk" / row["key"][:16], library)
+    _report_small(shrink(scenario, fails, moves=in_moves(scenario, library)), folder / "shrunk" / row["key"][:16], library)
     return 0
 
 
@@ -165,7 +165,8 @@ def _compare(given: argparse.Namespace) -> int:
     for c in worse[: given.shrink]:
         libraries = [load(str(folder / LIBRARY)) for folder in (given.before, given.after)]
         spec = Path(json.loads((given.after / "campaign.json").read_text())["spec"])
-        small = shrink(_scenario_of(spec, c.after), _still_worse(c, judge, libraries))
+        scenario = _scenario_of(spec, c.after)
+        small = shrink(scenario, _still_worse(c, judge, libraries), moves=in_moves(scenario, libraries[1]))
         _report_small(small, given.after / "shrunk" / c.after["key"][:16], libraries[1])
     return 1 if worse else 0
 

@@ -16,6 +16,7 @@ from typing import Any
 from .. import run
 from .._library import Library
 from ..errors import Error
+from ..simulation import command_words
 
 
 @functools.lru_cache(maxsize=1024)
@@ -205,6 +206,18 @@ def execute_batch(batch: list[Scenario], takt_digest: str, library_path: str | N
     rows = {s.identity: execute(s, library) for s in batch}
     spent = time.thread_time() - begin
     return Timed(rows, spent, time.process_time(), f"{socket.gethostname()}:{os.getpid()}")
+
+
+def in_moves(scenario: Scenario, library: Library | None = None) -> Scenario:
+    """The same with its program as plain moves, without loops and offsets; itself where it cannot be written so."""
+    given = scenario.options()
+    options = {key: given[key] for key in ("set", "tools", "dialect")}
+    words = command_words("convert", given["program"], machine=given["machine"], options={"to": "linuxcnc", **options})
+    try:
+        program = words.job(library).write()
+    except Error:
+        return scenario
+    return replace(scenario, program=program.decode("utf-8", "surrogateescape"), dialect="linuxcnc")
 
 
 def without_lines(scenario: Scenario, part: str, kept: list[str]) -> Scenario:

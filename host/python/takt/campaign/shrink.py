@@ -39,11 +39,16 @@ def _fewest(lines: list[str], fails: Callable[[list[str]], bool]) -> list[str]:
         size = max(1, size // 2) if not left_out or size > 1 else 1
 
 
-def shrink(scenario: Scenario, fails: Fails, runs: int = RUNS_MAX) -> Scenario:
-    """The smallest found that ``fails``; the given one if it does not."""
+def shrink(scenario: Scenario, fails: Fails, runs: int = RUNS_MAX, moves: Scenario | None = None) -> Scenario:
+    """
+    The smallest found that ``fails``; the given one if it does not. moves: the same in plain moves, each of which can be
+    left out: where it fails too, it is what is made small.
+    """
     asked = _Budget(fails, runs)
     if not asked(scenario):
         return scenario
+    if moves is not None and asked(moves):
+        scenario = moves
     before = None
     while before != scenario and asked.left > 0:
         before = scenario
