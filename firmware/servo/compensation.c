@@ -34,7 +34,7 @@ double compensation_get_axis_mm(const struct compensation *compensation)
     return axis_mm(compensation, compensation->encoder_mm);
 }
 
-static double turn(void *context, double torque_mm_s2, double step_s)
+static double turn_axis(void *context, double torque_mm_s2, double step_s)
 {
     struct compensation *c = context;
     c->encoder_mm = c->motor.turn(c->motor.context, torque_mm_s2, step_s);
@@ -42,7 +42,7 @@ static double turn(void *context, double torque_mm_s2, double step_s)
     return compensation_get_axis_mm(c);
 }
 
-static void sense(void *context, uint32_t cycle_ns, struct motor_sense *sense)
+static void sense_axis(void *context, uint32_t cycle_ns, struct motor_sense *sense)
 {
     struct compensation *c = context;
     c->motor.sense(c->motor.context, cycle_ns, sense);
@@ -55,7 +55,7 @@ static void sense(void *context, uint32_t cycle_ns, struct motor_sense *sense)
 
 struct motor_port compensation_get_port(struct compensation *compensation)
 {
-    return (struct motor_port){.turn = turn, .sense = sense, .context = compensation};
+    return (struct motor_port){.turn = turn_axis, .sense = sense_axis, .context = compensation};
 }
 
 /* A fade of b over the time T has accelerations of A b / T2 at most, A being those of 1 over a second. */
