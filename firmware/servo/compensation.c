@@ -20,6 +20,7 @@ void compensation_set_backlash(struct compensation *compensation, double backlas
 {
     compensation->backlash_mm = backlash_mm;
     compensation->play_mm = (struct fade){.value = play_mm(compensation)};
+    compensation->followed_mm = compensation->play_mm.value;
 }
 
 /* x = y + K(y - origin),  y = encoder - play */
@@ -34,7 +35,7 @@ double compensation_get_axis_mm(const struct compensation *compensation)
     return axis_mm(compensation, compensation->encoder_mm);
 }
 
-static double turn(void *context, double torque_mm_s2, double step_s)
+static double turn_axis(void *context, double torque_mm_s2, double step_s)
 {
     struct compensation *c = context;
     c->encoder_mm = c->motor.turn(c->motor.context, torque_mm_s2, step_s);
@@ -42,7 +43,7 @@ static double turn(void *context, double torque_mm_s2, double step_s)
     return compensation_get_axis_mm(c);
 }
 
-static void sense(void *context, uint32_t cycle_ns, struct motor_sense *sense)
+static void sense_axis(void *context, uint32_t cycle_ns, struct motor_sense *sense)
 {
     struct compensation *c = context;
     c->motor.sense(c->motor.context, cycle_ns, sense);
@@ -55,7 +56,7 @@ static void sense(void *context, uint32_t cycle_ns, struct motor_sense *sense)
 
 struct motor_port compensation_get_port(struct compensation *compensation)
 {
-    return (struct motor_port){.turn = turn, .sense = sense, .context = compensation};
+    return (struct motor_port){.turn = turn_axis, .sense = sense_axis, .context = compensation};
 }
 
 /* A fade of b over the time T has accelerations of A b / T2 at most, A being those of 1 over a second. */
@@ -66,12 +67,16 @@ static double crossing_s(double backlash_mm, double acceleration_mm_s2)
     return maths_sqrt(fade_acceleration_per_s2(&second) * backlash_mm / acceleration_mm_s2);
 }
 
-/* What has been told lies in a window as wide as the resolution, which it pushes along: at which end is the direction. */
+/*
+ * Where the motor is to be lies in a window as wide as the resolution, which it pushes along: at which end is the direction. The
+ * motor's way is that of the axis and of the play: a play that fades is no way back.
+ */
 void compensation_follow(struct compensation *compensation, const struct compensation_way *way)
 {
     struct compensation *c = compensation;
-    double slack_mm = c->slack_mm + way->way_mm;
+    double slack_mm = c->slack_mm + way->way_mm + (c->play_mm.value - c->followed_mm);
     double before = c->direction;
+    c->followed_mm = c->play_mm.value;
     c->slack_mm = maths_clamp(slack_mm, 0, way->resolution_mm);
     if (slack_mm != c->slack_mm)
         c->direction = slack_mm > c->slack_mm ? 1 : -1;

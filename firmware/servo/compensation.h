@@ -27,6 +27,7 @@ struct compensation {
     double slack_mm;  /* of what it has been told to go: 0 at a low end of it, ... */
     double direction; /* 1 up, -1 down, 0: it has not moved yet */
     struct fade play_mm;
+    double followed_mm; /* the play, when it was told last */
     struct fade_pace pace;
 };
 
@@ -44,7 +45,7 @@ double compensation_get_axis_mm(const struct compensation *compensation);
 
 /* How the axis has been told to go in a cycle, and how a reversal is made of it. */
 struct compensation_way {
-    double way_mm;
+    double way_mm;             /* of the axis; or as far as it went, where it is told a torque */
     double resolution_mm;      /* a way back of less is no reversal; > 0 */
     double acceleration_mm_s2; /* of the motor on its way through the play, at most */
     double step_s;             /* from one turn of the motor to the next */

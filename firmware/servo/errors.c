@@ -26,7 +26,7 @@ void servo_clear_history(struct servo *drive)
 }
 
 /* The identifier is object 1014's, wherever that points. */
-static void send(struct servo *drive, const struct emcy *emcy)
+static void send_emcy(struct servo *drive, const struct emcy *emcy)
 {
     struct can_frame frame;
     uint32_t cob_id = drive->objects.communication.emcy_cob_id;
@@ -42,7 +42,7 @@ static void send(struct servo *drive, const struct emcy *emcy)
 void servo_send_waiting_emergencies(struct servo *drive)
 {
     while (drive->emcy_count > 0 && drive->now_ns >= drive->emcy_ns) {
-        send(drive, &drive->emcy[0]);
+        send_emcy(drive, &drive->emcy[0]);
         drive->emcy_count--;
         memmove(drive->emcy, drive->emcy + 1, drive->emcy_count * sizeof drive->emcy[0]);
     }
@@ -52,7 +52,7 @@ void servo_send_waiting_emergencies(struct servo *drive)
 static void send_or_wait(struct servo *drive, const struct emcy *emcy)
 {
     if (drive->emcy_count == 0 && drive->now_ns >= drive->emcy_ns) {
-        send(drive, emcy);
+        send_emcy(drive, emcy);
     } else if (drive->emcy_count < SERVO_EMCY_QUEUE) {
         drive->emcy[drive->emcy_count++] = *emcy;
         servo_look_soon(drive);

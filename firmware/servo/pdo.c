@@ -295,7 +295,7 @@ void servo_apply_held(struct servo *drive)
     }
 }
 
-static void send(struct servo *drive, struct drive_pdo *pdo)
+static void send_pdo(struct servo *drive, struct drive_pdo *pdo)
 {
     struct can_frame frame = {.id = pdo->cob_id, .length = pdo->length};
     uint8_t *bytes = frame.data;
@@ -339,7 +339,7 @@ void servo_send_synchronous(struct servo *drive, const struct can_frame *sync)
         uint8_t start = drive->objects.communication.tpdo[i].sync_start;
         if (pdo->is_valid && pdo->transmission <= TYPE_SYNC_MAX && pdo->count > 0 &&
             is_due_at_sync(pdo, start, sync))
-            send(drive, pdo);
+            send_pdo(drive, pdo);
     }
 }
 
@@ -376,7 +376,7 @@ static void send_if_due(struct servo *drive, unsigned i)
         return;
     if (!(pdo->is_due || is_time) || drive->now_ns < pdo->inhibit_ns)
         return;
-    send(drive, pdo);
+    send_pdo(drive, pdo);
     pdo->inhibit_ns = drive->now_ns + (uint64_t)parameters->inhibit_100us * TICK_100US_NS;
     if (is_time)
         pdo->event_ns += (uint64_t)parameters->event_ms * MILLISECOND_NS;

@@ -63,9 +63,11 @@
 
 #define RCC_AHB1ENR_DMA2   (1U << 1)
 #define RCC_APB1ENR_TIM2   (1U << 0)
+#define RCC_APB1ENR_TIM3   (1U << 1)
 #define RCC_APB1ENR_TIM5   (1U << 3)
 #define RCC_APB1ENR_USART2 (1U << 17)
 #define RCC_APB1HENR_FDCAN (1U << 8)
+#define RCC_APB2ENR_TIM1   (1U << 0)
 #define RCC_APB2ENR_TIM8   (1U << 1)
 #define RCC_APB2ENR_USART1 (1U << 4)
 

@@ -3,21 +3,13 @@
 #include "canopen/node.h"
 #include "drives/dictionary_words.h"
 #include "servo/servo_private.h"
+#include "servo/stored.h"
 
 #include <stdarg.h>
 #include <string.h>
 
 #define COMMENT '#'
 #define NODE    "node "
-
-/* ---- What is stored ---- */
-
-/* All that can be written, and does not change from cycle to cycle. */
-static bool is_stored(const struct object_row *row)
-{
-    bool is_process = row->field < sizeof(struct drive_process);
-    return row->access == OBJECT_RW && !(row->flags & OBJECT_FIXED) && !is_process;
-}
 
 static bool is_text(const struct object_row *row)
 {
@@ -67,7 +59,7 @@ void drive_store_write(FILE *stream, const struct servo *drive)
     if (drive->lss.stored != born)
         (void)fprintf(stream, NODE "%u\n", (unsigned)drive->lss.stored);
     for (unsigned i = 0; i < dictionary->count; i++)
-        if (is_stored(&dictionary->row[i]))
+        if (servo_is_stored(&dictionary->row[i]))
             write_row(stream, &dictionary->row[i], &drive->stored, &drive->initial);
 }
 
@@ -162,7 +154,7 @@ static bool take_line(struct servo *drive, struct text_part part, struct drive_s
         return refuse(wrong, "an object is expected, as 1017:00");
     const struct object_row *row =
         dictionary_find(drive->dictionary, (uint16_t)index, (uint8_t)sub, &has_index);
-    if (row == NULL || !is_stored(row))
+    if (row == NULL || !servo_is_stored(row))
         return refuse(wrong, "node %u has no object %04X:%02X that can be stored",
                       (unsigned)drive->config.node, index, sub);
     return is_text(row) ? take_text(row, &drive->stored, part, wrong)

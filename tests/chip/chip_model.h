@@ -38,6 +38,7 @@ extern const struct chip_block *const chip_blocks[];
 extern const size_t chip_blocks_count;
 
 extern const struct chip_block chip_can, chip_can_memory, chip_clocks, chip_power, chip_flash,
-    chip_flash_memory, chip_usart2, chip_gpio_a, chip_watchdog;
+    chip_flash_memory, chip_usart2, chip_gpio_a, chip_gpio_b, chip_gpio_c, chip_watchdog, chip_tim1,
+    chip_tim2, chip_tim3;
 
 #endif

@@ -29,6 +29,7 @@ FORBIDDEN = re.compile(
 DESK_INTERRUPTS = (
     ("port_systick",),
     ("uart_0_receive", "uart_0_send", "uart_1_receive", "uart_1_send", "uart_2_receive", "uart_2_send", "uart_3_receive", "uart_3_send"))
+DRIVE_INTERRUPTS = (("on_can_sent", "on_can_received"), ("port_nmi", "port_fault"))
 CHIP_INTERRUPTS = (
     ("on_cycle",), ("on_log",), ("on_panel",), ("on_can_sent", "on_can_received"), ("port_nmi", "port_fault"))
 
@@ -94,6 +95,7 @@ def main():
     for name in ("m4f", "m7"):
         check_image(target.image(name, "takt-mps2"), target.folder(name), DESK_INTERRUPTS)
     check_image(stm32.image("takt-stm32f405"), target.folder("stm32f405"), CHIP_INTERRUPTS)
+    check_image(stm32.image("takt-stm32f405-drive"), target.folder("stm32f405"), DRIVE_INTERRUPTS)
     check_image(stm32.image("takt-stm32h743", "stm32h743"), target.folder("stm32h743"), CHIP_INTERRUPTS, FD_MEMORY_MAX)
     t.finish()
 

@@ -279,6 +279,25 @@ static void test_backlash_is_taken_back_at_reversals(void)
     TEST_ASSERT_TRUE(after_um < 0.05);
 }
 
+/* Told a torque the axis is where its motor goes: a play that fades is no way back. */
+static void test_a_torque_turns_it_back_once(void)
+{
+    unsigned turns = 0;
+    lone.config.plant.coulomb_friction_nm = 0.1;
+    lone_start(&lone);
+    write(0x2010, 4, 4, 50000);
+    lone_enable(&lone, 10);
+    for (unsigned i = 0; i < 400; i++) {
+        const struct compensation *c = &lone.drive.servo.compensation;
+        double before = c->direction;
+        lone_take(&lone, 0x600 + LONE_NODE, 8, 0x0060712B, i < 100 ? 150 : 0xFFFF & -150);
+        lone_step(&lone, 1);
+        turns += c->direction != before;
+    }
+    TEST_ASSERT_EQUAL_UINT(2, turns);
+    TEST_ASSERT_TRUE(lone.drive.servo.compensation.direction == -1);
+}
+
 static double stands(void *context, double torque_mm_s2, double step_s)
 {
     (void)torque_mm_s2;
@@ -374,6 +393,7 @@ int main(void)
     RUN_TEST(test_it_is_there_at_the_next_power_on);
     RUN_TEST(test_values_of_another_hand_that_are_too_steep_are_none);
     RUN_TEST(test_backlash_is_taken_back_at_reversals);
+    RUN_TEST(test_a_torque_turns_it_back_once);
     RUN_TEST(test_a_reversal_is_without_a_step_of_velocity_or_acceleration);
     RUN_TEST(test_without_a_table_or_backlash_the_motor_is_the_axis_to_the_last_bit);
     RUN_TEST(test_a_way_back_of_less_than_the_resolution_is_none);
