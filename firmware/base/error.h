@@ -227,7 +227,7 @@
     X(BUS_OVERLOAD, "the bus cannot carry a cycle: it takes %w at worst, %v percent")              \
     /* operator and spindle */                                                                     \
     X(EMERGENCY_STOP, "emergency stop")                                                            \
-    X(BUS_LOST, "the bus is gone")                                                                 \
+    X(BUS_LOST, "the bus %w is gone")                                                              \
     X(ENDED, "the end")                                                                            \
     X(HOMING_STOPPED, "homing was stopped: the positions of the axes are not known")               \
     X(PANEL_SILENT, "the panel in control has been silent for %v ms")                              \

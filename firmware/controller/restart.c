@@ -77,12 +77,23 @@ bool controller_passed_stop(const struct controller *c, bool *optional)
     return false;
 }
 
-void controller_stop_at_once(struct controller *c, enum takt_error reason)
+static void be_faulted(struct controller *c)
 {
-    drives_stop_at_once(&c->drives, reason);
     controller_quieten(c);
     c->state = CONTROLLER_FAULTED;
     c->fault = *drives_get_fault(&c->drives);
+}
+
+void controller_stop_at_once(struct controller *c, enum takt_error reason)
+{
+    drives_stop_at_once(&c->drives, reason);
+    be_faulted(c);
+}
+
+void controller_stop_for(struct controller *c, const struct diagnostic *fault)
+{
+    drives_stop_for(&c->drives, fault);
+    be_faulted(c);
 }
 
 void controller_end(struct controller *c, bool at_once)

@@ -18,8 +18,9 @@ void controller_start_program(struct controller *c, const struct controller_conf
 /* Gives the program up where it is: no more setpoints come from it. The axes are at rest. CONTROLLER_COMPLETED. */
 void controller_drop_program(struct controller *c);
 
-/* All drives brake by themselves, outputs that move or turn something go off. CONTROLLER_FAULTED, for this reason. */
+/* All drives brake by themselves, outputs that move or turn something go off. CONTROLLER_FAULTED, for this reason or fault. */
 void controller_stop_at_once(struct controller *c, enum takt_error reason);
+void controller_stop_for(struct controller *c, const struct diagnostic *fault);
 
 /*
  * The end of everything: the axes come to rest on their path, then every drive brakes and is off; or, at once, without the

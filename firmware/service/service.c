@@ -215,9 +215,13 @@ static void take_fault(struct service *s)
     controller_quieten(&s->controller);
 }
 
-void service_lose_bus(struct service *s)
+void service_lose_bus(struct service *s, unsigned bus)
 {
-    controller_stop_at_once(&s->controller, TAKT_ERROR_BUS_LOST);
+    const char name[] = {'c', 'a', 'n', (char)('0' + bus)};
+    struct diagnostic fault;
+
+    diagnostic_set(&fault, TAKT_ERROR_BUS_LOST, 0, 0, name, sizeof name, 0);
+    controller_stop_for(&s->controller, &fault);
     take_fault(s);
 }
 

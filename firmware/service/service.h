@@ -114,8 +114,8 @@ struct outputs service_get_outputs(const struct service *s);
 /* True once after a trip of the spindle has been acknowledged: its drive is to be reset. */
 bool service_take_spindle_reset(struct service *s);
 
-/* The bus of the drives is gone, and they stop by themselves: an alarm. Every cycle as long as it is. */
-void service_lose_bus(struct service *s);
+/* This bus is gone, and its drives stop by themselves: an alarm, and all stop. Every cycle as long as it is. */
+void service_lose_bus(struct service *s, unsigned bus);
 
 enum panel_state service_get_state(const struct service *s);
 

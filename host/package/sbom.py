@@ -4,11 +4,13 @@
 Libraries are those the program is linked with, by the packages of this distribution.
 """
 import json
+import platform
 import re
 import subprocess
 import sys
 
-LICENCES = {"libcjson1": "MIT", "libinih1": "BSD-3-Clause", "libmodbus5": "LGPL-2.1-or-later", "libc6": "LGPL-2.1-or-later"}
+# By the package's name without the version of its interface: libwebsockets17, libwebsockets19t64.
+LICENCES = {"libcjson": "MIT", "libinih": "BSD-3-Clause", "libmodbus": "LGPL-2.1-or-later", "libc": "LGPL-2.1-or-later", "libwebsockets": "MIT"}
 
 
 def output(*command):
@@ -34,9 +36,11 @@ def main():
     takt, version = sys.argv[1:3]
     plotly = sys.argv[3] if len(sys.argv) > 3 else ""
     components = []
+    distribution = platform.freedesktop_os_release()["ID"]
     for package in packages_of(takt):
         installed = output("dpkg-query", "-W", "-f", "${Version}", package)
-        components.append(component(package, installed, LICENCES.get(package), f"pkg:deb/debian/{package}@{installed}"))
+        components.append(component(package, installed, LICENCES.get(re.sub(r"\d+(t64)?$", "", package)),
+                                    f"pkg:deb/{distribution}/{package}@{installed}"))
     if plotly:
         components.append(component("plotly.js-gl3d-dist-min", plotly, "MIT", f"pkg:npm/plotly.js-gl3d-dist-min@{plotly}"))
     root = component("takt", version, "MIT", f"pkg:generic/takt@{version}")

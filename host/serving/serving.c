@@ -287,7 +287,7 @@ enum command_status serving_run(struct serving *s)
         serving_state_keep(&s->state, &s->service, link_clock_ns());
         (void)field_end_cycle(&s->field);
         if (field_is_lost(&s->field))
-            service_lose_bus(&s->service);
+            service_lose_bus(&s->service, field_get_lost_bus(&s->field));
         look_for_end(s);
     }
     return how_it_ended(s);

@@ -417,6 +417,11 @@ bool field_is_lost(const struct field *field)
     return find_lost(field) != NULL;
 }
 
+unsigned field_get_lost_bus(const struct field *field)
+{
+    return (unsigned)(find_lost(field) - field->outside);
+}
+
 const char *field_get_problem(struct field *field)
 {
     const struct field_link *lost = find_lost(field);

@@ -107,6 +107,9 @@ bool field_end_cycle(struct field *field);
 /* An outside bus is gone, and not back yet. */
 bool field_is_lost(const struct field *field);
 
+/* Which one, or the first of them. Only while there is one. */
+unsigned field_get_lost_bus(const struct field *field);
+
 /* What an outside bus, or an image of a drive, died of; NULL: it has not. */
 const char *field_get_problem(struct field *field);
 

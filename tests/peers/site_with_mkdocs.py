@@ -56,10 +56,11 @@ def try_links(page):
 
 shutil.rmtree("site", ignore_errors=True)
 os.makedirs("page", exist_ok=True)
-t.write("page/index.html", "<p>try it")
+t.write("page/takt.html", "<p>try it")
+t.write("page/README.md", "[what else a build leaves](nowhere.md)\n")
 status, err = make(t.SOURCE, "--try", "page")
 t.check(status == 0 and not err, "a site is made", err[-2000:])
-t.check(os.path.exists("site/try/index.html") and "try/index.html" in open("site/index.html", encoding="utf-8").read(), "the page to try programs is in it")
+t.check(os.listdir("site/try") == ["index.html"] and "try/index.html" in open("site/index.html", encoding="utf-8").read(), "the page to try programs is in it")
 t.check(any("motion/hold.h" in place for place in found("hold_piece")), "search finds what headers declare", found("hold_piece"))
 t.check(found("Glossary"), "and pages")
 fetched = [page for page in pages("site", "*.html") if 'src="http' in open(page, encoding="utf-8").read()]

@@ -6,6 +6,7 @@
 
 import glob
 import os
+import platform
 import re
 import shutil
 import subprocess
@@ -72,6 +73,18 @@ def check_notes():
     t.check(entry.startswith(f"takt ({version}) ") and entry.rstrip().endswith("Thu, 01 Jan 1970 00:00:00 -0000"), "and Debian's changelog", entry[-80:])
 
 
+def check_bill():
+    """Every library has a licence and the distribution's name; the plotting library is in it where it is told of."""
+    sbom = os.path.join(PACKAGE, "sbom.py")
+    bill, with_plotly = (t.json.loads(output(sys.executable, sbom, t.TAKT, "1.2.3", *more)) for more in ((), ("3.7.0",)))
+    here = platform.freedesktop_os_release()["ID"]
+    for part in bill["components"]:
+        t.check(part["version"] and part.get("licenses"), f"{part['name']} has a version and a licence", part)
+        t.check(part["purl"].startswith(f"pkg:deb/{here}/{part['name']}@"), f"{part['name']} is of this distribution", part)
+    t.check({"libcjson", "libinih"} <= {part["name"].rstrip("0123456789") for part in bill["components"]}, "all libraries", bill)
+    t.check(len(with_plotly["components"]) == len(bill["components"]) + 1, "and the plotting library, if there is one")
+
+
 def check_package(build):
     for program in ("cpack", "dpkg-deb", "dpkg-shlibdeps"):
         if not shutil.which(program):
@@ -81,7 +94,10 @@ def check_package(build):
     package, = glob.glob("takt_*.deb")
     output("dpkg-deb", "-x", package, "root")
     example = "root/usr/share/doc/takt/examples/engraving.ngc"
-    t.check("checks        19 of 19 held" in output("root/usr/bin/takt", "run", example), "the installed command runs an installed example")
+    done = subprocess.run(["root/usr/bin/takt", "run", example, "--report", "r.html"], capture_output=True, text=True, check=False)
+    t.check("checks        19 of 19 held" in done.stdout, "the installed command runs an installed example", done.stderr)
+    with open("root/usr/share/doc/takt/takt.cdx.json") as bill:
+        t.check(("plotly" in bill.read()) == ("without the plotting library" not in done.stderr), "the bill has the plotting library if it is in")
     readme = open(os.path.join(os.path.dirname(example), "README.md")).read()
     for link in re.findall(r"\]\((\w[^):#]*)\)", readme):
         t.check(os.path.exists(os.path.join(os.path.dirname(example), link)), f"the examples' page finds {link}")
@@ -94,6 +110,7 @@ def check_package(build):
 check_completions()
 check_manual(len(sys.argv) > 1)
 check_notes()
+check_bill()
 if len(sys.argv) > 1:
     check_package(sys.argv[2])
 t.finish()

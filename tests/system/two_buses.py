@@ -5,6 +5,7 @@ import random
 import re
 
 import bus_pair
+import data_sheets
 import takt_test as t
 
 PROGRAM = t.write("four.ngc", "G21 G90 G17 F3000\nG1 X20 Y10 Z-2 A30\nG2 X30 Y20 I0 J10\nG4 P0.05\nG0 X0 Y0 Z5 A0\nM2\n")
@@ -170,6 +171,26 @@ def check_nodes():
     t.check(again == printed, "read again it is the same")
 
 
+def check_guarding():
+    """Without a heartbeat a drive on the second bus is asked for its state there, and not on the first; silent, it is a fault."""
+    t.run("drives", "--eds", "own.eds")
+    sheet = data_sheets.read("own.eds")
+    data_sheets.no_heartbeat(sheet, None)
+    data_sheets.write("quiet.eds", sheet)
+    guarded = machine("guarded", TWO, rest="[drive 1:1]\neds = quiet.eds\n")
+    status, summary, err = run("guarded", "--machine", guarded, "--bus-log", "guarded.log")
+    t.check(status == 0, "a drive without a heartbeat on the second bus runs", err)
+    with open("guarded.log") as file:
+        asked = {(line.split()[1], line.split()[2]) for line in file if "#R" in line}
+    t.check({(bus, frame[:3]) for bus, frame in asked} == {("can1", "701")}, "its node alone is asked, on its bus", asked)
+    kinds = [{r["name"] for r in summary[bus]["responses"]} for bus in ("bus", "can1")]
+    t.check("guarding" not in kinds[0] and "guarding" in kinds[1], "guarding is in the worst case of that bus", kinds)
+    check_buses("guarded", summary, 1000)
+    mute = t.write("mute.inject", "enabled+0.2s drive 1:1 mute what=heartbeat for=2s\n")
+    status, _, err = run("mute", "--machine", guarded, "--inject", mute)
+    t.check(status == 1 and "Z (node 1:1)" in err, "no answer any more: a fault of that node", status, err)
+
+
 def check_order():
     """The order of sections does not matter: the same judgement, the same setpoints."""
     draw = random.Random(27)
@@ -194,5 +215,6 @@ check_loss()
 check_log()
 check_outside()
 check_nodes()
+check_guarding()
 check_order()
 t.finish()

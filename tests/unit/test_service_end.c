@@ -159,10 +159,10 @@ static void test_a_program_that_comes_to_its_end_has_no_such_line(void)
 static void test_a_lost_bus_is_an_alarm_and_a_reset_enables_the_drives_again(void)
 {
     run_into_motion();
-    service_lose_bus(&service);
+    service_lose_bus(&service, 1);
     TEST_ASSERT_EQUAL_INT(PANEL_ALARM, service_get_state(&service));
     TEST_ASSERT_EQUAL_INT(TAKT_ERROR_BUS_LOST, service.alarm_text.code);
-    TEST_ASSERT_EQUAL_STRING("the bus is gone", alarm_text());
+    TEST_ASSERT_EQUAL_STRING("the bus can1 is gone", alarm_text());
     for (unsigned i = 0; i < END_CYCLES_MAX && order(REGISTER_RESET, 1) != PANEL_DONE; i++)
         cycle();
     wait_for(PANEL_IDLE);

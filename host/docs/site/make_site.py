@@ -197,7 +197,8 @@ def build(work, wasm):
     site.write(HEADERS, list_headers(headers))
     site.write(STYLE, WIDE)
     if wasm:
-        shutil.copytree(wasm, os.path.join(work, "pages", "try"))
+        os.mkdir(os.path.join(work, "pages", "try"))
+        shutil.copy(os.path.join(wasm, "takt.html"), os.path.join(work, "pages", "try", "index.html"))
     with open(os.path.join(work, "mkdocs.yml"), "w", encoding="utf-8") as file:
         json.dump({**CONFIG, "nav": navigation(pages, wasm)}, file)  # JSON is YAML
     command = [sys.executable, "-m", "mkdocs", "build", "--strict", "--config-file", os.path.join(work, "mkdocs.yml"), "--site-dir", os.path.join(work, "site")]
