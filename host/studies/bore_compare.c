@@ -281,6 +281,7 @@ enum command_status bore_compare(const struct bore_job *job, const struct option
         bore_track_free(&c->track[i]);
         bore_removal_free(&c->removal[i]);
     }
+    bore_removal_free(&c->helix_level);
     free(c);
     return status;
 }
