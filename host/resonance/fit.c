@@ -82,27 +82,41 @@ static double highest_ln_hz(const struct problem *p)
     return log(CYCLE_PART / p->record->cycle_s);
 }
 
+static unsigned frequencies(const struct problem *p)
+{
+    return (unsigned)((highest_ln_hz(p) - log(HZ_LOW)) / log(HZ_RATIO));
+}
+
+/* How much of the square of what is left a mode explains, with the best part of it. */
+static double explain(const struct problem *p, double ln_hz, double ln_damping, double *part)
+{
+    answer_of(p, ln_hz, ln_damping, p->answer);
+    const double square = dot(p->answer, p->answer, p->count);
+    const double along = dot(p->answer, p->left, p->count);
+
+    *part = square > 0 ? along / square : 0;
+    return along * *part;
+}
+
 /* Adds the mode of the grid that explains most of what is left. False: none explains anything. */
 static bool add_mode(struct problem *p, struct numbers *n)
 {
-    const double high = highest_ln_hz(p);
     double *of = &n->of[(size_t)NUMBERS * n->modes];
     double most = 0;
 
     (void)leave(p, n);
-    for (double ln_hz = log(HZ_LOW); ln_hz < high; ln_hz += log(HZ_RATIO)) {
-        for (size_t d = 0; d < DAMPINGS; d++) {
-            double square, along;
+    for (unsigned i = 0; i < DAMPINGS * frequencies(p); i++) {
+        const unsigned row = i / DAMPINGS;
+        const double ln_hz = log(HZ_LOW) + row * log(HZ_RATIO);
+        const double ln_damping = log(dampings[i % DAMPINGS]);
+        double part;
+        const double explained = explain(p, ln_hz, ln_damping, &part);
 
-            answer_of(p, ln_hz, log(dampings[d]), p->answer);
-            square = dot(p->answer, p->answer, p->count);
-            along = dot(p->answer, p->left, p->count);
-            if (square > 0 && along * along / square > most) {
-                most = along * along / square;
-                of[0] = ln_hz;
-                of[1] = log(dampings[d]);
-                of[2] = along / square;
-            }
+        if (explained > most) {
+            most = explained;
+            of[0] = ln_hz;
+            of[1] = ln_damping;
+            of[2] = part;
         }
     }
     n->modes += most > 0;
@@ -214,7 +228,7 @@ static double refine(struct problem *p, struct numbers *n)
 static double criterion(const struct problem *p, unsigned modes, double left)
 {
     const double n = (double)p->count;
-    const double places = DAMPINGS * (highest_ln_hz(p) - log(HZ_LOW)) / log(HZ_RATIO);
+    const double places = DAMPINGS * (double)frequencies(p);
 
     return n * log(fmax(left, 1e-300) / n) + modes * (NUMBERS * log(n) + 2 * log(places));
 }
