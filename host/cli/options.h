@@ -66,7 +66,7 @@ struct option_pack {
     bool pack, unpack, sector;
 };
 
-/* For `takt calibrate` and `takt correct`. */
+/* For `takt calibrate`, `takt correct` and, of noise and seed, `takt resonance`. */
 struct option_correction {
     const char *grid, *axis, *unit, *from, *to, *noise, *comp, *table, *tolerance;
     double seed, comp_type;
@@ -105,7 +105,7 @@ struct options {
     const char *output;     /* -o is short for --output */
     struct option_bore bore;
     struct option_circle circle;
-    const char *axes; /* of `takt friction`: letters */
+    const char *axes; /* of `takt friction`, `takt resonance`: letters */
     struct option_frequency frequency;
     struct option_correction correction;
     struct option_panel panel;
