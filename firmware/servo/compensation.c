@@ -35,10 +35,18 @@ double compensation_get_axis_mm(const struct compensation *compensation)
     return axis_mm(compensation, compensation->encoder_mm);
 }
 
+/* Most drives have no such table: the motor is the axis. */
+static bool takes_nothing(const struct compensation *c)
+{
+    return c->backlash_mm == 0 && c->pitch.points == 0;
+}
+
 static double turn_axis(void *context, double torque_mm_s2, double step_s)
 {
     struct compensation *c = context;
     c->encoder_mm = c->motor.turn(c->motor.context, torque_mm_s2, step_s);
+    if (takes_nothing(c))
+        return c->encoder_mm;
     (void)fade_cycle(&c->play_mm, play_mm(c), &c->pace);
     return compensation_get_axis_mm(c);
 }
@@ -48,6 +56,8 @@ static void sense_axis(void *context, uint32_t cycle_ns, struct motor_sense *sen
     struct compensation *c = context;
     c->motor.sense(c->motor.context, cycle_ns, sense);
     c->encoder_mm = sense->encoder_mm;
+    if (takes_nothing(c))
+        return;
     sense->encoder_mm = compensation_get_axis_mm(c);
     sense->pulse.encoder_mm = axis_mm(c, sense->pulse.encoder_mm);
     for (unsigned i = 0; i < MOTOR_INPUTS; i++)

@@ -65,6 +65,8 @@ void servo_derive_compensation(struct servo *drive)
 void servo_note_way(struct servo *drive)
 {
     const struct servo_loop *loop = &drive->loop;
+    if (drive->compensation.backlash_mm == 0)
+        return;
     const struct compensation_way way = {
         .way_mm = loop->command_velocity_mm_s * loop->cycle_s,
         .resolution_mm = maths_max(1 / servo_scale(drive), loop->encoder_step_mm),
