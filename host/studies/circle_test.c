@@ -1,17 +1,8 @@
-#define _GNU_SOURCE
-
 #include "studies/circle_test.h"
 
 #include "base/maths.h"
-#include "cli/interrupt.h"
 #include "cli/message.h"
-#include "session/session.h"
-#include "simulation/simulation.h"
-
-#include <stdlib.h>
-
-/* Cycles between two looks at Ctrl-C. */
-#define LOOK_CYCLES 4096
+#include "studies/study.h"
 
 /* So the program is called in messages. */
 #define NAME "circle.ngc"
@@ -26,7 +17,6 @@
 
 struct run {
     struct circle_test *test;
-    struct session session;
     enum axis axis[2];
     uint32_t line;     /* of the last setpoint */
     double turned_rad; /* on this line, by the setpoints */
@@ -34,27 +24,25 @@ struct run {
 };
 
 /* Both circles from where the first axis is farthest; rests, so that a correction has faded in and the drives have settled. */
-static char *write_program(const struct circle_test *t, const enum axis axis[2], size_t *length)
+static void write_program(void *context, const struct machine_setup *setup, FILE *program)
 {
     static const char *const planes[] = {"G17", "G18", "G19"};
-    const char first = AXIS_LETTERS[axis[0]], second = AXIS_LETTERS[axis[1]];
-    const char centre = (char)('I' + (int)axis[0]);
-    char *text = NULL;
-    FILE *stream = open_memstream(&text, length);
+    const struct run *run = context;
+    const struct circle_test *t = run->test;
+    const char first = AXIS_LETTERS[run->axis[0]], second = AXIS_LETTERS[run->axis[1]];
+    const char centre = (char)('I' + (int)run->axis[0]);
 
-    if (stream == NULL)
-        return NULL;
-    (void)fprintf(stream, "G21 %s G40 G49 G90 G91.1 G94 G61\n", planes[t->plane]);
-    (void)fprintf(stream, "G0 %c%.9f %c%.9f\nG4 P3\n", first, t->centre_mm[0] + t->radius_mm,
+    (void)setup;
+    (void)fprintf(program, "G21 %s G40 G49 G90 G91.1 G94 G61\n", planes[t->plane]);
+    (void)fprintf(program, "G0 %c%.9f %c%.9f\nG4 P3\n", first, t->centre_mm[0] + t->radius_mm,
                   second, t->centre_mm[1]);
-    (void)fprintf(stream, "G3 F%.9f %c%.9f P%d\nG4 P1\n", t->feed_mm_min, centre, -t->radius_mm,
+    (void)fprintf(program, "G3 F%.9f %c%.9f P%d\nG4 P1\n", t->feed_mm_min, centre, -t->radius_mm,
                   TURNS);
-    (void)fprintf(stream, "G2 %c%.9f P%d\nM2\n", centre, -t->radius_mm, TURNS);
-    return fclose(stream) == 0 ? text : NULL;
+    (void)fprintf(program, "G2 %c%.9f P%d\nM2\n", centre, -t->radius_mm, TURNS);
 }
 
 /* Where the tool is, or without errors of the machine what the drives move. */
-static struct point true_point(const struct run *run, const struct simulation *s)
+static struct point true_point(const struct machine_setup *setup, const struct simulation *s)
 {
     const struct point *tool = simulation_get_tool(s);
     struct point at = {{0}};
@@ -63,7 +51,7 @@ static struct point true_point(const struct run *run, const struct simulation *s
     if (tool != NULL)
         return *tool;
     for (unsigned i = 0; i < AXIS_COUNT; i++) {
-        const struct machine_axis *axis = &run->session.setup.machine.axis[i];
+        const struct machine_axis *axis = &setup->machine.axis[i];
 
         if (machine_axis_is_on_can(axis))
             at.at[i] = virtual_drive_get_position_mm(&s->field.drives.drive[next++]);
@@ -83,10 +71,12 @@ static double turned_since(struct run *run, const double from_centre_mm[2])
     return MATHS_TWO_PI * maths_abs(turned - maths_round(turned));
 }
 
-static void add(struct run *run, const struct simulation *s, const struct cycle_record *record)
+static void see(void *context, const struct machine_setup *setup, struct simulation *s,
+                const struct cycle_record *record)
 {
+    struct run *run = context;
     struct circle_test *t = run->test;
-    const struct point at = true_point(run, s);
+    const struct point at = true_point(setup, s);
     double wanted[2], there[2], turned;
 
     for (unsigned i = 0; i < 2; i++) {
@@ -102,46 +92,14 @@ static void add(struct run *run, const struct simulation *s, const struct cycle_
         circle_turn_add(&t->turn[record->line == LINE_CCW ? CIRCLE_CCW : CIRCLE_CW], there);
 }
 
-static enum command_status follow(struct run *run, struct simulation *s)
-{
-    while (controller_get_state(&s->controller) < CONTROLLER_COMPLETED) {
-        const struct cycle_record *record;
-
-        if (!simulation_step(s))
-            return STATUS_ENVIRONMENT;
-        record = controller_get_record(&s->controller);
-        if (record != NULL)
-            add(run, s, record);
-        if (s->cycles % LOOK_CYCLES == 0 && interrupt_asked())
-            return STATUS_INTERRUPTED;
-    }
-    if (controller_get_state(&s->controller) == CONTROLLER_COMPLETED)
-        return STATUS_DONE;
-    message_program_error(&run->session.program, controller_get_fault(&s->controller));
-    return STATUS_FAILED;
-}
-
-static enum command_status run_program(struct run *run)
-{
-    struct session_totals totals;
-    struct simulation *s = NULL;
-    enum command_status status = session_check(&run->session, 1, &totals);
-
-    if (status == STATUS_DONE)
-        status = simulation_open(&run->session, &s);
-    if (status == STATUS_DONE)
-        status = follow(run, s);
-    simulation_close(s);
-    return status;
-}
-
 /* False after a message: the machine has no such plane. */
-static bool set_centre(struct run *run, const struct machine *machine)
+static bool set_centre(void *context, const struct machine_setup *setup)
 {
+    struct run *run = context;
     struct circle_test *t = run->test;
 
     for (unsigned i = 0; i < 2; i++) {
-        const struct machine_axis *axis = &machine->axis[run->axis[i]];
+        const struct machine_axis *axis = &setup->machine.axis[run->axis[i]];
 
         if (!axis->present) {
             message_command_error("the machine has no axis %c", AXIS_LETTERS[run->axis[i]]);
@@ -153,42 +111,23 @@ static bool set_centre(struct run *run, const struct machine *machine)
     return true;
 }
 
-static enum command_status open_program(struct run *run, const struct options *options)
-{
-    enum command_status status;
-    size_t length = 0;
-    char *text = write_program(run->test, run->axis, &length);
-
-    if (text == NULL) {
-        message_command_error("out of memory");
-        return STATUS_ENVIRONMENT;
-    }
-    session_close(&run->session);
-    status = session_open_text(&run->session, options, NAME, text, length);
-    if (status == STATUS_DONE)
-        status = run_program(run);
-    free(text);
-    return status;
-}
-
 enum command_status circle_test_run(struct circle_test *test, const struct options *options)
 {
-    struct run *run = calloc(1, sizeof *run);
+    struct run run = {.test = test};
+    const struct study study = {.program = NAME,
+                                .context = &run,
+                                .prepare = set_centre,
+                                .write = write_program,
+                                .see = see};
     enum command_status status;
 
-    if (run == NULL) {
+    plane_axes(test->plane, &run.axis[0], &run.axis[1]);
+    for (unsigned way = 0; way < CIRCLE_WAYS; way++)
+        test->turn[way].radius_mm = test->radius_mm;
+    status = study_run(&study, options);
+    if (status == STATUS_DONE && (test->turn[CIRCLE_CCW].failed || test->turn[CIRCLE_CW].failed)) {
         message_command_error("out of memory");
         return STATUS_ENVIRONMENT;
     }
-    run->test = test;
-    plane_axes(test->plane, &run->axis[0], &run->axis[1]);
-    for (unsigned way = 0; way < CIRCLE_WAYS; way++)
-        test->turn[way].radius_mm = test->radius_mm;
-    status = session_open_machine(&run->session, options);
-    if (status == STATUS_DONE)
-        status = set_centre(run, &run->session.setup.machine) ? open_program(run, options)
-                                                              : STATUS_INPUT;
-    session_close(&run->session);
-    free(run);
     return status;
 }

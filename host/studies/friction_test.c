@@ -1,17 +1,8 @@
-#define _GNU_SOURCE
-
 #include "studies/friction_test.h"
 
 #include "base/maths.h"
-#include "cli/interrupt.h"
 #include "cli/message.h"
-#include "session/session.h"
-#include "simulation/simulation.h"
-
-#include <stdlib.h>
-
-/* Cycles between two looks at Ctrl-C. */
-#define LOOK_CYCLES 4096
+#include "studies/study.h"
 
 /* So the program is called in messages. */
 #define NAME "friction.ngc"
@@ -38,8 +29,8 @@ struct sum {
 
 struct run {
     struct friction_test *test;
-    struct session session;
-    unsigned axes;                                      /* bits */
+    unsigned asked_for;                                 /* axes, bits; 0: all that can be */
+    unsigned axes;                                      /* that are measured */
     struct sum sum[AXIS_COUNT][FRICTION_VELOCITIES][2]; /* up, down */
     uint32_t line;                                      /* of the last cycle */
     double steady_s;                                    /* so long at the velocity of this line */
@@ -92,9 +83,10 @@ static void write_line(FILE *stream, unsigned axis, double at_mm)
     (void)fprintf(stream, "G1 %c%.9f\nG4 P0.1\n", AXIS_LETTERS[axis], unit_of(axis) * at_mm);
 }
 
-static void write_axis(FILE *stream, const struct run *run, unsigned i)
+static void write_axis(FILE *stream, const struct run *run, const struct machine_setup *setup,
+                       unsigned i)
 {
-    const struct machine_axis *axis = &run->session.setup.machine.axis[i];
+    const struct machine_axis *axis = &setup->machine.axis[i];
     const struct friction_axis *f = &run->test->axis[i];
     const double middle_mm = (axis->travel_min_mm + axis->travel_max_mm) / 2;
     const double low_mm = middle_mm - way_at(axis, velocity_of(f, FRICTION_VELOCITIES - 1)) / 2;
@@ -109,20 +101,16 @@ static void write_axis(FILE *stream, const struct run *run, unsigned i)
     }
 }
 
-static char *write_program(const struct run *run, size_t *length)
+static void write_program(void *context, const struct machine_setup *setup, FILE *program)
 {
-    char *text = NULL;
-    FILE *stream = open_memstream(&text, length);
+    const struct run *run = context;
 
-    if (stream == NULL)
-        return NULL;
-    (void)fputs("G21 G17 G40 G49 G90 G94 G61\n", stream);
+    (void)fputs("G21 G17 G40 G49 G90 G94 G61\n", program);
     for (unsigned i = 0; i < AXIS_COUNT; i++) {
         if ((run->axes & 1U << i) != 0)
-            write_axis(stream, run, i);
+            write_axis(program, run, setup, i);
     }
-    (void)fputs("M2\n", stream);
-    return fclose(stream) == 0 ? text : NULL;
+    (void)fputs("M2\n", program);
 }
 
 /* -- the run -- */
@@ -154,9 +142,11 @@ static double torque_nm(struct run *run, struct simulation *s, unsigned axis)
     return 1e-3 * (int16_t)value * f->torque_rated_nm;
 }
 
-static void add(struct run *run, struct simulation *s, const struct cycle_record *record)
+static void see(void *context, const struct machine_setup *setup, struct simulation *s,
+                const struct cycle_record *record)
 {
-    const double cycle_s = 1e-6 * (double)run->session.setup.machine.cycle_us;
+    struct run *run = context;
+    const double cycle_s = 1e-6 * (double)setup->machine.cycle_us;
     const struct point last = run->last;
     unsigned i, k;
 
@@ -179,25 +169,6 @@ static void add(struct run *run, struct simulation *s, const struct cycle_record
         sum->torque_nm += torque_nm(run, s, i);
         sum->count++;
     }
-}
-
-static enum command_status follow(struct run *run, struct simulation *s)
-{
-    while (controller_get_state(&s->controller) < CONTROLLER_COMPLETED) {
-        const struct cycle_record *record;
-
-        if (!simulation_step(s))
-            return STATUS_ENVIRONMENT;
-        record = controller_get_record(&s->controller);
-        if (record != NULL)
-            add(run, s, record);
-        if (s->cycles % LOOK_CYCLES == 0 && interrupt_asked())
-            return STATUS_INTERRUPTED;
-    }
-    if (controller_get_state(&s->controller) == CONTROLLER_COMPLETED)
-        return STATUS_DONE;
-    message_program_error(&run->session.program, controller_get_fault(&s->controller));
-    return STATUS_FAILED;
 }
 
 /* Friction at rest: where the line through the two lowest velocities comes to. */
@@ -224,45 +195,30 @@ static bool take(struct run *run, unsigned i)
     return true;
 }
 
-static enum command_status run_program(struct run *run)
+static void choose_axis(struct run *run, const struct machine_setup *setup, unsigned i,
+                        unsigned drive)
 {
-    struct session_totals totals;
-    struct simulation *s = NULL;
-    enum command_status status = session_check(&run->session, 1, &totals);
-
-    if (status == STATUS_DONE)
-        status = simulation_open(&run->session, &s);
-    if (status == STATUS_DONE)
-        status = follow(run, s);
-    simulation_close(s);
-    for (unsigned i = 0; i < AXIS_COUNT && status == STATUS_DONE; i++) {
-        if ((run->axes & 1U << i) != 0 && !take(run, i))
-            status = STATUS_FAILED;
-    }
-    return status;
-}
-
-static void choose_axis(struct run *run, unsigned i, unsigned drive)
-{
-    const struct machine_axis *axis = &run->session.setup.machine.axis[i];
+    const struct machine_axis *axis = &setup->machine.axis[i];
 
     run->axes |= 1U << i;
     run->test->axis[i] = (struct friction_axis){
         .bus = axis->drive_bus,
         .node = axis->drive_node,
         .drive = drive,
-        .torque_rated_nm = run->session.setup.drive[i].plant.torque_rated_nm,
+        .torque_rated_nm = setup->drive[i].plant.torque_rated_nm,
         .step_mm_s = highest_velocity(axis) / FRICTION_VELOCITIES,
     };
 }
 
 /* False after a message: an axis that is asked for has no drive on CAN. */
-static bool choose_axes(struct run *run, unsigned axes)
+static bool choose_axes(void *context, const struct machine_setup *setup)
 {
+    struct run *run = context;
+    const unsigned axes = run->asked_for;
     unsigned drives = 0;
 
     for (unsigned i = 0; i < AXIS_COUNT; i++) {
-        const bool is_on_can = machine_axis_is_on_can(&run->session.setup.machine.axis[i]);
+        const bool is_on_can = machine_axis_is_on_can(&setup->machine.axis[i]);
 
         if (!is_on_can && (axes & 1U << i) != 0) {
             message_command_error("axis %c has no drive on CAN, which tells its torque",
@@ -270,7 +226,7 @@ static bool choose_axes(struct run *run, unsigned axes)
             return false;
         }
         if (is_on_can && (axes == 0 || (axes & 1U << i) != 0))
-            choose_axis(run, i, drives);
+            choose_axis(run, setup, i, drives);
         drives += is_on_can;
     }
     if (run->axes == 0)
@@ -278,39 +234,20 @@ static bool choose_axes(struct run *run, unsigned axes)
     return run->axes != 0;
 }
 
-static enum command_status open_program(struct run *run, const struct options *options)
-{
-    enum command_status status;
-    size_t length = 0;
-    char *text = write_program(run, &length);
-
-    if (text == NULL) {
-        message_command_error("out of memory");
-        return STATUS_ENVIRONMENT;
-    }
-    session_close(&run->session);
-    status = session_open_text(&run->session, options, NAME, text, length);
-    if (status == STATUS_DONE)
-        status = run_program(run);
-    free(text);
-    return status;
-}
-
 enum command_status friction_test_run(struct friction_test *test, unsigned axes,
                                       const struct options *options)
 {
-    struct run *run = calloc(1, sizeof *run);
-    enum command_status status;
+    struct run run = {.test = test, .asked_for = axes};
+    const struct study study = {.program = NAME,
+                                .context = &run,
+                                .prepare = choose_axes,
+                                .write = write_program,
+                                .see = see};
+    enum command_status status = study_run(&study, options);
 
-    if (run == NULL) {
-        message_command_error("out of memory");
-        return STATUS_ENVIRONMENT;
+    for (unsigned i = 0; i < AXIS_COUNT && status == STATUS_DONE; i++) {
+        if ((run.axes & 1U << i) != 0 && !take(&run, i))
+            status = STATUS_FAILED;
     }
-    run->test = test;
-    status = session_open_machine(&run->session, options);
-    if (status == STATUS_DONE)
-        status = choose_axes(run, axes) ? open_program(run, options) : STATUS_INPUT;
-    session_close(&run->session);
-    free(run);
     return status;
 }

@@ -1,18 +1,10 @@
-#define _GNU_SOURCE
-
 #include "studies/resonance_test.h"
 
 #include "base/maths.h"
-#include "cli/interrupt.h"
 #include "cli/message.h"
-#include "session/session.h"
-#include "simulation/simulation.h"
+#include "studies/study.h"
 
 #include <math.h>
-#include <stdlib.h>
-
-/* Cycles between two looks at Ctrl-C. */
-#define LOOK_CYCLES 4096
 
 /* So the program is called in messages. */
 #define NAME "resonance.ngc"
@@ -27,9 +19,9 @@
 
 struct run {
     struct resonance_test *test;
-    struct session session;
-    unsigned axes;  /* bits */
-    uint32_t state; /* of random numbers */
+    unsigned asked_for; /* axes, bits; 0: all that can be */
+    unsigned axes;      /* that are measured */
+    uint32_t state;     /* of random numbers */
     struct resonance_record record[AXIS_LINEAR_COUNT];
     uint32_t first[AXIS_LINEAR_COUNT]; /* line of the program on which an axis begins to be moved */
     unsigned seen;                     /* cycles, of which the last two are: */
@@ -66,9 +58,10 @@ static double longest_mm(const struct machine_axis *axis)
 }
 
 /* Ways evenly over the logarithm of their length, to and fro about the middle; rests of any length. Returns its lines. */
-static uint32_t write_axis(FILE *stream, struct run *run, unsigned i)
+static uint32_t write_axis(FILE *stream, struct run *run, const struct machine_setup *setup,
+                           unsigned i)
 {
-    const struct machine_axis *axis = &run->session.setup.machine.axis[i];
+    const struct machine_axis *axis = &setup->machine.axis[i];
     const double middle_mm = (axis->travel_min_mm + axis->travel_max_mm) / 2;
     const double longest = longest_mm(axis);
     double at_mm = middle_mm;
@@ -84,22 +77,18 @@ static uint32_t write_axis(FILE *stream, struct run *run, unsigned i)
     return 2 + 2 * MOVES;
 }
 
-static char *write_program(struct run *run, size_t *length)
+static void write_program(void *context, const struct machine_setup *setup, FILE *program)
 {
-    char *text = NULL;
-    FILE *stream = open_memstream(&text, length);
+    struct run *run = context;
     uint32_t line = 2;
 
-    if (stream == NULL)
-        return NULL;
-    (void)fputs("G21 G17 G40 G49 G90 G94 G61 F999999\n", stream);
+    (void)fputs("G21 G17 G40 G49 G90 G94 G61 F999999\n", program);
     for (unsigned i = 0; i < AXIS_LINEAR_COUNT; i++) {
         run->first[i] = line;
         if ((run->axes & 1U << i) != 0)
-            line += write_axis(stream, run, i);
+            line += write_axis(program, run, setup, i);
     }
-    (void)fputs("M2\n", stream);
-    return fclose(stream) == 0 ? text : NULL;
+    (void)fputs("M2\n", program);
 }
 
 /* -- the run -- */
@@ -116,25 +105,27 @@ static unsigned axis_of(const struct run *run, uint32_t line)
     return found;
 }
 
-static double foot_of(const struct run *run, const struct simulation *s, unsigned axis)
+static double foot_of(const struct machine_setup *setup, const struct simulation *s, unsigned axis)
 {
     unsigned drive = 0;
 
     for (unsigned i = 0; i < axis; i++)
-        drive += machine_axis_is_on_can(&run->session.setup.machine.axis[i]);
+        drive += machine_axis_is_on_can(&setup->machine.axis[i]);
     return virtual_drive_get_position_mm(&s->field.drives.drive[drive]);
 }
 
 /* The accelerometer says what the tool does about the cycle before: x[k + 1] - 2 x[k] + x[k - 1]. */
-static void add(struct run *run, const struct simulation *s, const struct cycle_record *record)
+static void see(void *context, const struct machine_setup *setup, struct simulation *s,
+                const struct cycle_record *record)
 {
+    struct run *run = context;
     const double cycle_s = run->record[0].cycle_s;
     const struct point *tool = simulation_get_tool(s);
     const unsigned axis = axis_of(run, record->line);
 
     if (axis == AXIS_LINEAR_COUNT)
         return;
-    const double foot_mm = foot_of(run, s, axis);
+    const double foot_mm = foot_of(setup, s, axis);
     const double tool_mm = tool != NULL ? tool->at[axis] : foot_mm;
 
     run->seen = axis == run->axis ? run->seen + 1 : 1;
@@ -152,25 +143,6 @@ static void add(struct run *run, const struct simulation *s, const struct cycle_
     run->tool_mm[1] = tool_mm;
 }
 
-static enum command_status follow(struct run *run, struct simulation *s)
-{
-    while (controller_get_state(&s->controller) < CONTROLLER_COMPLETED) {
-        const struct cycle_record *record;
-
-        if (!simulation_step(s))
-            return STATUS_ENVIRONMENT;
-        record = controller_get_record(&s->controller);
-        if (record != NULL)
-            add(run, s, record);
-        if (s->cycles % LOOK_CYCLES == 0 && interrupt_asked())
-            return STATUS_INTERRUPTED;
-    }
-    if (controller_get_state(&s->controller) == CONTROLLER_COMPLETED)
-        return STATUS_DONE;
-    message_program_error(&run->session.program, controller_get_fault(&s->controller));
-    return STATUS_FAILED;
-}
-
 static bool fit_axes(struct run *run)
 {
     for (unsigned i = 0; i < AXIS_LINEAR_COUNT; i++) {
@@ -186,26 +158,15 @@ static bool fit_axes(struct run *run)
     return true;
 }
 
-static enum command_status run_program(struct run *run)
-{
-    struct session_totals totals;
-    struct simulation *s = NULL;
-    enum command_status status = session_check(&run->session, 1, &totals);
-
-    if (status == STATUS_DONE)
-        status = simulation_open(&run->session, &s);
-    if (status == STATUS_DONE)
-        status = follow(run, s);
-    simulation_close(s);
-    return status == STATUS_DONE && !fit_axes(run) ? STATUS_ENVIRONMENT : status;
-}
-
 /* False after a message: an axis that is asked for cannot be measured. */
-static bool choose_axes(struct run *run, unsigned axes)
+static bool choose_axes(void *context, const struct machine_setup *setup)
 {
+    struct run *run = context;
+    const unsigned axes = run->asked_for;
+
     for (unsigned i = 0; i < AXIS_COUNT; i++) {
         const bool can_be =
-            i < AXIS_LINEAR_COUNT && machine_axis_is_on_can(&run->session.setup.machine.axis[i]);
+            i < AXIS_LINEAR_COUNT && machine_axis_is_on_can(&setup->machine.axis[i]);
 
         if (!can_be && (axes & 1U << i) != 0) {
             message_command_error("axis %c is no linear axis with a drive on CAN", AXIS_LETTERS[i]);
@@ -214,49 +175,27 @@ static bool choose_axes(struct run *run, unsigned axes)
         if (can_be && (axes == 0 || (axes & 1U << i) != 0))
             run->axes |= 1U << i;
     }
+    for (unsigned i = 0; i < AXIS_LINEAR_COUNT; i++)
+        run->record[i].cycle_s = 1e-6 * (double)setup->machine.cycle_us;
     if (run->axes == 0)
         message_command_error("there is no linear axis with a drive on CAN");
     return run->axes != 0;
 }
 
-static enum command_status open_program(struct run *run, const struct options *options)
-{
-    enum command_status status;
-    size_t length = 0;
-    char *text = write_program(run, &length);
-
-    if (text == NULL) {
-        message_command_error("out of memory");
-        return STATUS_ENVIRONMENT;
-    }
-    for (unsigned i = 0; i < AXIS_LINEAR_COUNT; i++)
-        run->record[i].cycle_s = 1e-6 * (double)run->session.setup.machine.cycle_us;
-    session_close(&run->session);
-    status = session_open_text(&run->session, options, NAME, text, length);
-    if (status == STATUS_DONE)
-        status = run_program(run);
-    free(text);
-    return status;
-}
-
 enum command_status resonance_test_run(struct resonance_test *test, unsigned axes,
                                        const struct options *options)
 {
-    struct run *run = calloc(1, sizeof *run);
-    enum command_status status;
+    struct run run = {.test = test, .asked_for = axes, .state = test->seed != 0 ? test->seed : 1};
+    const struct study study = {.program = NAME,
+                                .context = &run,
+                                .prepare = choose_axes,
+                                .write = write_program,
+                                .see = see};
+    enum command_status status = study_run(&study, options);
 
-    if (run == NULL) {
-        message_command_error("out of memory");
-        return STATUS_ENVIRONMENT;
-    }
-    run->test = test;
-    run->state = test->seed != 0 ? test->seed : 1;
-    status = session_open_machine(&run->session, options);
-    if (status == STATUS_DONE)
-        status = choose_axes(run, axes) ? open_program(run, options) : STATUS_INPUT;
+    if (status == STATUS_DONE && !fit_axes(&run))
+        status = STATUS_ENVIRONMENT;
     for (unsigned i = 0; i < AXIS_LINEAR_COUNT; i++)
-        resonance_record_free(&run->record[i]);
-    session_close(&run->session);
-    free(run);
+        resonance_record_free(&run.record[i]);
     return status;
 }

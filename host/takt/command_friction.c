@@ -1,27 +1,9 @@
 /* takt friction: measure the friction of axes, for the drives to feed it forward. */
 #include "base/maths.h"
-#include "cli/message.h"
+#include "cli/axis_letters.h"
 #include "cli/output_file.h"
 #include "studies/friction_test.h"
 #include "takt/command.h"
-
-#include <string.h>
-
-/* Letters to bits; none: 0. False after a message. */
-static bool read_axes(const char *text, unsigned *axes)
-{
-    *axes = 0;
-    for (const char *c = text; c != NULL && *c != '\0'; c++) {
-        const char *found = strchr(AXIS_LETTERS, *c);
-
-        if (found == NULL) {
-            message_command_error("--axes %s: letters of axes are expected, as in XY", text);
-            return false;
-        }
-        *axes |= 1U << (found - AXIS_LETTERS);
-    }
-    return true;
-}
 
 static void write_numbers(FILE *file, const double *number, unsigned count, double unit)
 {
@@ -71,7 +53,7 @@ static enum command_status command_friction_execute(const struct options *option
     enum command_status status = STATUS_INPUT;
     unsigned axes;
 
-    if (read_axes(options->axes, &axes))
+    if (axis_letters_read(options->axes, &axes))
         status = friction_test_run(&test, axes, options);
     return status == STATUS_DONE ? write(&test, options->output != NULL ? options->output : "-")
                                  : status;

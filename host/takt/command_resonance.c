@@ -1,4 +1,5 @@
 /* takt resonance: measure the modes between drives and tool. */
+#include "cli/axis_letters.h"
 #include "cli/message.h"
 #include "cli/output_file.h"
 #include "studies/resonance_test.h"
@@ -6,28 +7,11 @@
 
 #include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
 /* Of an accelerometer of the kind that is glued to a machine: some 2 mg. */
 #define NOISE_MM_S2 20
 
 static const char section[] = "[geometry]\n";
-
-/* Letters to bits; none: 0. False after a message. */
-static bool read_axes(const char *text, unsigned *axes)
-{
-    *axes = 0;
-    for (const char *c = text; c != NULL && *c != '\0'; c++) {
-        const char *found = strchr(AXIS_LETTERS, *c);
-
-        if (found == NULL) {
-            message_command_error("--axes %s: letters of axes are expected, as in XY", text);
-            return false;
-        }
-        *axes |= 1U << (found - AXIS_LETTERS);
-    }
-    return true;
-}
 
 static bool read_noise(const char *text, double *noise_mm_s2)
 {
@@ -92,7 +76,8 @@ static enum command_status command_resonance_execute(const struct options *optio
 
     test = (struct resonance_test){.noise_mm_s2 = NOISE_MM_S2,
                                    .seed = (uint32_t)options->correction.seed};
-    if (read_axes(options->axes, &axes) && read_noise(options->correction.noise, &test.noise_mm_s2))
+    if (axis_letters_read(options->axes, &axes) &&
+        read_noise(options->correction.noise, &test.noise_mm_s2))
         status = resonance_test_run(&test, axes, options);
     return status == STATUS_DONE ? write(&test, options->output != NULL ? options->output : "-")
                                  : status;
