@@ -76,14 +76,21 @@ static struct cycle begin_cycle(struct servo_loop *loop, uint32_t cycle_ns)
     return (struct cycle){.limit_mm_s2 = servo_loop_torque_limit_mm_s2(loop)};
 }
 
-/* Of a command that moves at a velocity and changes it. */
+/* For a command that moves at a velocity and changes it: by the loop's inertia, and against friction. */
+static double forward_torque_mm_s2(const struct servo_loop *loop, double velocity_mm_s,
+                                   double acceleration_mm_s2)
+{
+    return loop->config.torque_feed_forward_ratio * acceleration_mm_s2 +
+           friction_at(&loop->friction, velocity_mm_s) + loop->torque_offset_mm_s2;
+}
+
+/* The same of a command for a position. */
 static void feed_forward(const struct servo_loop *loop, struct cycle *c, double velocity_mm_s,
                          double acceleration_mm_s2)
 {
     c->forward_mm_s =
         loop->config.velocity_feed_forward_ratio * velocity_mm_s + loop->velocity_offset_mm_s;
-    c->forward_mm_s2 = loop->config.torque_feed_forward_ratio * acceleration_mm_s2 +
-                       friction_at(&loop->friction, velocity_mm_s) + loop->torque_offset_mm_s2;
+    c->forward_mm_s2 = forward_torque_mm_s2(loop, velocity_mm_s, acceleration_mm_s2);
 }
 
 /* A step with this torque, and what the encoder says after it. */
@@ -158,8 +165,8 @@ void servo_loop_turn(struct servo_loop *loop, double velocity_mm_s, uint32_t cyc
 {
     struct cycle cycle = begin_cycle(loop, cycle_ns);
     double acceleration_mm_s2 = (velocity_mm_s - loop->command_velocity_mm_s) * loop->per_cycle_s;
-    feed_forward(loop, &cycle, velocity_mm_s, acceleration_mm_s2);
     cycle.forward_mm_s = velocity_mm_s + loop->velocity_offset_mm_s;
+    cycle.forward_mm_s2 = forward_torque_mm_s2(loop, velocity_mm_s, acceleration_mm_s2);
     for (uint32_t i = 0; i < loop->steps; i++)
         step(loop, &cycle, loop->measured_mm);
     look(loop, cycle_ns);

@@ -417,6 +417,21 @@ bool field_is_lost(const struct field *field)
     return find_lost(field) != NULL;
 }
 
+void field_get_axes(const struct field *field, const struct machine *machine, struct point *at)
+{
+    unsigned drive = 0;
+
+    *at = (struct point){{0}};
+    for (unsigned i = 0; i < AXIS_COUNT; i++) {
+        const struct machine_axis *axis = &machine->axis[i];
+
+        if (machine_axis_is_on_can(axis))
+            at->at[i] = virtual_drive_get_position_mm(&field->drives.drive[drive++]);
+        else if (machine_axis_is_stepped(axis))
+            at->at[i] = field->steppers.axis[i].position_steps / axis->steps_per_mm;
+    }
+}
+
 unsigned field_get_lost_bus(const struct field *field)
 {
     return (unsigned)(find_lost(field) - field->outside);

@@ -107,6 +107,12 @@ bool field_end_cycle(struct field *field);
 /* An outside bus is gone, and not back yet. */
 bool field_is_lost(const struct field *field);
 
+/*
+ * Where what the drives inside move stands, play and errors of screws and steps that were missed included; mm, rad. Axes without a
+ * drive: 0.
+ */
+void field_get_axes(const struct field *field, const struct machine *machine, struct point *at);
+
 /* Which one, or the first of them. Only while there is one. */
 unsigned field_get_lost_bus(const struct field *field);
 

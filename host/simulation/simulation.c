@@ -240,11 +240,13 @@ static void set_inputs(struct simulation *s)
 static void follow_tool_point(struct simulation *s)
 {
     struct tool_point *t = &s->tool_point;
+    struct point at;
 
     if (!t->is_watched)
         return;
-    tool_point_follow(t, &s->field.drives, (double)s->cycles * t->cycle_s,
-                      controller_get_record(&s->controller), controller_get_block(&s->controller));
+    field_get_axes(&s->field, &s->controller.machine, &at);
+    tool_point_follow(t, &at, (double)s->cycles * t->cycle_s, controller_get_record(&s->controller),
+                      controller_get_block(&s->controller));
     for (unsigned i = 0; i < AXIS_LINEAR_COUNT; i++) {
         s->rise_k[i] = deviation_sensor_k(&t->real);
         correction_set_rise(controller_get_correction(&s->controller), (enum axis)i, s->rise_k[i]);

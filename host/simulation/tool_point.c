@@ -43,7 +43,6 @@ void tool_point_init(struct tool_point *t, const struct machine_setup *setup)
     }
     *t = (struct tool_point){
         .cycle_s = 1e-6 * (double)setup->machine.cycle_us,
-        .axes = machine_axes(&setup->machine),
     };
     deviation_init(&t->real, &geometry, min_mm, max_mm);
     t->nominal = t->real;
@@ -65,18 +64,6 @@ static void add_error(struct tool_point_error *error, double mm)
     error->count++;
     error->sum_mm += mm;
     error->max_mm = maths_max(error->max_mm, mm);
-}
-
-static void get_drives(const struct tool_point *t, const struct virtual_drives *drives,
-                       struct point *at)
-{
-    unsigned next = 0;
-
-    *at = (struct point){{0}};
-    for (unsigned i = 0; i < AXIS_COUNT; i++) {
-        if ((t->axes & 1U << i) != 0)
-            at->at[i] = virtual_drive_get_position_mm(&drives->drive[next++]);
-    }
 }
 
 static bool is_cutting(const struct block *block)
@@ -155,14 +142,13 @@ static void measure(struct tool_point *t, const struct cycle_record *record, dou
     add_error(&t->of_setpoints, distance(&tool, &record->cmd));
 }
 
-void tool_point_follow(struct tool_point *t, const struct virtual_drives *drives, double time_s,
+void tool_point_follow(struct tool_point *t, const struct point *drives, double time_s,
                        const struct cycle_record *record, const struct block *block)
 {
-    struct point at;
+    struct point at = *drives;
 
     if (!t->is_watched)
         return;
-    get_drives(t, drives, &at);
     vibration_follow(&t->vibration, &at);
     deviation_follow(&t->real, &at, time_s);
     t->real_at = at;

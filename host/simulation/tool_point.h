@@ -7,7 +7,6 @@
 
 #include "config/machine_setup.h"
 #include "deviation/deviation.h"
-#include "drives/virtual_drives.h"
 #include "motion/cycle_record.h"
 #include "plan/block.h"
 #include "vibration/tool_way.h"
@@ -26,7 +25,6 @@ struct tool_point_error {
 struct tool_point {
     bool is_watched; /* the machine has errors, and its drives are inside */
     double cycle_s;
-    unsigned axes;         /* bit i set: the machine has axis i, whose drive is the next */
     struct deviation real; /* by the positions of the drives */
     struct point real_at;
     struct point tool;          /* in the last program cycle */
@@ -53,8 +51,8 @@ void tool_point_init(struct tool_point *t, const struct machine_setup *setup);
 /* Rows of CSV from now on: where each standstill was wanted, and where the tool's point was. */
 void tool_point_write_rests(struct tool_point *t, FILE *stream);
 
-/* After every cycle. drives: the machine's; record and segment: of the program cycle, NULL: there was none. */
-void tool_point_follow(struct tool_point *t, const struct virtual_drives *drives, double time_s,
+/* After every cycle. drives: where they have brought the axes; record and segment: of the program cycle, NULL: there was none. */
+void tool_point_follow(struct tool_point *t, const struct point *drives, double time_s,
                        const struct cycle_record *record, const struct block *block);
 
 /* After the last. */

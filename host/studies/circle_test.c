@@ -45,19 +45,11 @@ static void write_program(void *context, const struct machine_setup *setup, FILE
 static struct point true_point(const struct machine_setup *setup, const struct simulation *s)
 {
     const struct point *tool = simulation_get_tool(s);
-    struct point at = {{0}};
-    unsigned next = 0;
+    struct point at;
 
     if (tool != NULL)
         return *tool;
-    for (unsigned i = 0; i < AXIS_COUNT; i++) {
-        const struct machine_axis *axis = &setup->machine.axis[i];
-
-        if (machine_axis_is_on_can(axis))
-            at.at[i] = virtual_drive_get_position_mm(&s->field.drives.drive[next++]);
-        else if (machine_axis_is_stepped(axis))
-            at.at[i] = s->field.steppers.axis[i].position_steps / axis->steps_per_mm;
-    }
+    field_get_axes(&s->field, &setup->machine, &at);
     return at;
 }
 

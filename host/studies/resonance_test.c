@@ -105,15 +105,6 @@ static unsigned axis_of(const struct run *run, uint32_t line)
     return found;
 }
 
-static double foot_of(const struct machine_setup *setup, const struct simulation *s, unsigned axis)
-{
-    unsigned drive = 0;
-
-    for (unsigned i = 0; i < axis; i++)
-        drive += machine_axis_is_on_can(&setup->machine.axis[i]);
-    return virtual_drive_get_position_mm(&s->field.drives.drive[drive]);
-}
-
 /* The accelerometer says what the tool does about the cycle before: x[k + 1] - 2 x[k] + x[k - 1]. */
 static void see(void *context, const struct machine_setup *setup, struct simulation *s,
                 const struct cycle_record *record)
@@ -122,10 +113,12 @@ static void see(void *context, const struct machine_setup *setup, struct simulat
     const double cycle_s = run->record[0].cycle_s;
     const struct point *tool = simulation_get_tool(s);
     const unsigned axis = axis_of(run, record->line);
+    struct point at;
 
     if (axis == AXIS_LINEAR_COUNT)
         return;
-    const double foot_mm = foot_of(setup, s, axis);
+    field_get_axes(&s->field, &setup->machine, &at);
+    const double foot_mm = at.at[axis];
     const double tool_mm = tool != NULL ? tool->at[axis] : foot_mm;
 
     run->seen = axis == run->axis ? run->seen + 1 : 1;
