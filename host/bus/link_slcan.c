@@ -21,7 +21,8 @@
 struct slcan_link {
     struct stream peer;
     int listener;  /* -1: none */
-    int other_end; /* of our own pty; -1: none */
+    int other_end; /* of our own pty, held while no computer has opened the channel; -1: not held */
+    bool is_pty;
     bool is_adapter;
     bool channel_open;
     char symlink[LINK_NAME_MAX + 1];
@@ -32,18 +33,44 @@ static void reply(struct slcan_link *s, const char *text)
     (void)stream_write(&s->peer, text, strlen(text)); /* who does not read gets no answer */
 }
 
-/* What nobody has read is not for the next one. */
-static void close_channel(struct slcan_link *s)
+/* A pty whose other end nobody holds can only be read from its end on. */
+static void hold_pty(struct link *link)
 {
+    struct slcan_link *s = link->state;
+    if (!s->is_pty)
+        return;
+    if (s->other_end < 0)
+        s->other_end = stream_hold_pty(link->address);
+    if (s->other_end < 0)
+        link_fail(link, "bus %s: the pseudo-terminal cannot be opened again: %s", link->address,
+                  strerror(errno));
+    else
+        (void)tcflush(s->other_end, TCIFLUSH);
+}
+
+/* So that it is heard when the computer's program ends, however it does. */
+static void let_pty_go(struct slcan_link *s)
+{
+    if (s->other_end >= 0)
+        (void)close(s->other_end);
+    s->other_end = -1;
+}
+
+/* What nobody has read is not for the next one. */
+static void close_channel(struct link *link)
+{
+    struct slcan_link *s = link->state;
+    if (s->is_pty && s->channel_open)
+        link->counts.departures++;
     s->channel_open = false;
     s->peer.out_used = 0;
-    if (s->other_end >= 0)
-        (void)tcflush(s->other_end, TCIFLUSH);
+    hold_pty(link);
 }
 
 static void open_channel(struct slcan_link *s)
 {
     s->channel_open = true;
+    let_pty_go(s);
     reply(s, "\r");
 }
 
@@ -72,7 +99,7 @@ static void take_command(struct link *link, const char *line, size_t length)
         open_channel(s);
         break;
     case 'C':
-        close_channel(s);
+        close_channel(link);
         reply(s, "\r");
         break;
     case 'V':
@@ -136,10 +163,15 @@ static void take_lines(struct link *link)
     stream_take(&s->peer, begin);
 }
 
-/* A listener waits for the next one; everybody else has lost the bus. */
+/* A listener and a pty wait for the next one; everybody else has lost the bus. */
 static void lose_peer(struct link *link)
 {
     struct slcan_link *s = link->state;
+    if (s->is_pty) {
+        s->peer.in_used = 0;
+        close_channel(link);
+        return;
+    }
     stream_close(&s->peer);
     link->counts.departures++;
     if (s->listener >= 0)
@@ -158,7 +190,7 @@ static bool slcan_send(struct link *link, const struct wire_frame *frame)
         return true;
     if (!s->is_adapter)
         return false;
-    close_channel(s); /* its computer has stopped reading */
+    close_channel(link); /* its computer has stopped reading */
     return true;
 }
 
@@ -220,8 +252,7 @@ static void slcan_close(struct link *link)
     stream_close(&s->peer);
     if (s->listener >= 0)
         (void)close(s->listener);
-    if (s->other_end >= 0)
-        (void)close(s->other_end);
+    let_pty_go(s);
     if (s->symlink[0] != '\0')
         (void)unlink(s->symlink);
     free(s);
@@ -324,7 +355,8 @@ static bool open_pty(struct link *link, const struct link_spec *spec, struct lin
         return link_refuse(error, "bus %s: no pseudo-terminal can be made: %s", link->address,
                            strerror(errno));
     stream_init(&s->peer, fd);
-    s->is_adapter = true;
+    s->is_adapter = s->is_pty = true;
+    link->hears_departures = true;
     if (!make_symlink(s, name, spec->name))
         return link_refuse(error, "bus %s: the link %s cannot be made: %s", link->address,
                            spec->name, strerror(errno));

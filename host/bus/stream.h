@@ -39,7 +39,8 @@ void stream_take(struct stream *stream, size_t count);
 /* Each returns a file descriptor, non-blocking, or -1 with errno set. */
 int stream_open_serial(const char *path, unsigned baud);
 int stream_open_pty(char *name, size_t size,
-                    int *other_end); /* other_end keeps it alive without a client */
+                    int *other_end);   /* other_end keeps it alive without a client */
+int stream_hold_pty(const char *name); /* its other end once more, blocking */
 int stream_connect(const char *host, const char *port, int timeout_ms, const char **problem);
 int stream_listen(const char *host, const char *port, char *address, size_t size,
                   const char **problem);

@@ -66,6 +66,14 @@ int stream_open_serial(const char *path, unsigned baud)
     return set_raw(fd, *find_speed(baud)) ? fd : close_keeping_errno(fd);
 }
 
+int stream_hold_pty(const char *name)
+{
+    int fd = open(name, O_RDWR | O_NOCTTY | O_CLOEXEC);
+    if (fd < 0)
+        return -1;
+    return set_raw(fd, B115200) ? fd : close_keeping_errno(fd);
+}
+
 int stream_open_pty(char *name, size_t size, int *other_end)
 {
     int fd = posix_openpt(O_RDWR | O_NOCTTY | O_CLOEXEC);
@@ -75,10 +83,10 @@ int stream_open_pty(char *name, size_t size, int *other_end)
     if (path == NULL)
         return close_keeping_errno(fd);
     (void)snprintf(name, size, "%s", path);
-    *other_end = open(name, O_RDWR | O_NOCTTY | O_CLOEXEC);
+    *other_end = stream_hold_pty(name);
     if (*other_end < 0)
         return close_keeping_errno(fd);
-    if (!set_raw(*other_end, B115200) || fcntl(fd, F_SETFL, O_RDWR | O_NONBLOCK) != 0) {
+    if (fcntl(fd, F_SETFL, O_RDWR | O_NONBLOCK) != 0) {
         (void)close_keeping_errno(*other_end);
         return close_keeping_errno(fd);
     }

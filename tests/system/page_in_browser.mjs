@@ -48,6 +48,18 @@ async function drop(page, name, bytes) {
   await page.waitForFunction((size) => window.takt.counts("PROGRAM_SIZE") === size, bytes.length);
 }
 
+// The page's own watchdog is short: a busy computer may end the jog, with an alarm, before it is at its feed. Then again.
+async function jogAsThePageDoes(page, other) {
+  for (;;) {
+    await other.mouse.down();
+    const jogs = await page.waitForFunction(() => (window.takt.value("AXIS_FEED_X") >= 100 ? "jogs" : window.takt.counts("STATE") === 6 && "alarm"));
+    if (await jogs.jsonValue() === "jogs") return;
+    await other.mouse.up();
+    await page.click("#reset");
+    await state(page, "idle");
+  }
+}
+
 const steps = {
   async "a program that is dropped is loaded, shown and drawn"(page) {
     await drop(page, "part.ngc", PROGRAM);
@@ -250,8 +262,7 @@ const steps = {
     await tab(other, "Jog");
     const box = await other.locator("[data-jog='X+']").boundingBox();
     await other.mouse.move(box.x + 5, box.y + 5);
-    await other.mouse.down();
-    await until(page, "AXIS_FEED_X", 100, 1e9);
+    await jogAsThePageDoes(page, other);
     await other.context().close();
     await until(page, "AXIS_FEED_X", 0, 0);
     await page.waitForFunction(() => [1, 6].includes(window.takt.counts("STATE")));

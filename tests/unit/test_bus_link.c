@@ -9,6 +9,7 @@
 #include "random_frame.h"
 #include "unity.h"
 
+#include <fcntl.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -227,6 +228,35 @@ static void test_an_slcan_adapter_is_generous_with_repeated_commands(void)
     link_close(adapter);
 }
 
+static void open_channel_and_vanish(struct link *adapter, uint64_t departures)
+{
+    static const char hello[] = "O\rt12320102\r";
+    struct wire_frame frame;
+    int computer = open(link_get_address(adapter), O_RDWR | O_NOCTTY);
+    TEST_ASSERT_EQUAL_INT(sizeof hello - 1, write(computer, hello, sizeof hello - 1));
+    TEST_ASSERT_EQUAL_INT(LINK_READY, link_wait(adapter, link_clock_ns() + WAIT_NS));
+    TEST_ASSERT_TRUE(link_receive(adapter, &frame));
+    TEST_ASSERT_TRUE(link_has_peer(adapter));
+    TEST_ASSERT_EQUAL_UINT64(departures, link_get_counts(adapter)->departures);
+    (void)close(computer);
+    TEST_ASSERT_FALSE(link_receive(adapter, &frame));
+}
+
+static void test_a_pseudo_terminal_hears_that_a_program_has_ended_without_a_word(void)
+{
+    struct link_error error;
+    struct link *adapter = link_open("slcan:pty", &config, &error);
+    TEST_ASSERT_NOT_NULL(adapter);
+    TEST_ASSERT_TRUE(link_hears_departures(adapter));
+    for (uint64_t departures = 0; departures < 3; departures++) {
+        open_channel_and_vanish(adapter, departures);
+        TEST_ASSERT_FALSE(link_has_peer(adapter));
+        TEST_ASSERT_EQUAL_UINT64(departures + 1, link_get_counts(adapter)->departures);
+        TEST_ASSERT_EQUAL_INT(LINK_TIMEOUT, link_wait(adapter, link_clock_ns()));
+    }
+    link_close(adapter);
+}
+
 /* The observer sees both directions, in order. */
 static unsigned observed;
 
@@ -291,6 +321,7 @@ int main(void)
     RUN_TEST(test_a_bus_that_is_not_there_is_refused);
     RUN_TEST(test_a_bit_rate_that_adapters_do_not_know_is_refused);
     RUN_TEST(test_an_slcan_adapter_is_generous_with_repeated_commands);
+    RUN_TEST(test_a_pseudo_terminal_hears_that_a_program_has_ended_without_a_word);
     RUN_TEST(test_an_observer_sees_what_is_sent_and_what_comes);
     RUN_TEST(test_a_bus_whose_other_side_has_gone_is_broken);
     return UNITY_END();
