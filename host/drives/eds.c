@@ -44,7 +44,7 @@ static void write_device_info(FILE *stream, const struct dictionary *dictionary)
     (void)fputs("[DeviceInfo]" NEWLINE, stream);
     write_pair(stream, "VendorName", "takt");
     write_pair(stream, "VendorNumber", "0x%08X", (unsigned)constant_of(dictionary, 0x1018, 1));
-    write_pair(stream, "ProductName", "takt virtual drive");
+    write_pair(stream, "ProductName", "takt CiA 402 drive");
     write_pair(stream, "ProductNumber", "0x%08X", (unsigned)constant_of(dictionary, 0x1018, 2));
     write_pair(stream, "RevisionNumber", "0x%08X", (unsigned)constant_of(dictionary, 0x1018, 3));
     for (unsigned i = 0; i < sizeof kilobits / sizeof kilobits[0]; i++) {
