@@ -48,6 +48,23 @@
 #define OF_VIBRATION(name, axis, meaning)                                                          \
     VECTOR(SECTION_GEOMETRY, name, SCALE_NONE, IN_SETUP(vibration.mode[axis]),                     \
            (size_t)VIBRATION_MODES *VIBRATION_NUMBERS, -1e9, 1e9, meaning)
+/* Where the frequencies of an axis' modes change, and which other axes they swing. */
+#define OF_SWING(letter, number)                                                                   \
+    CHOICE(SECTION_GEOMETRY, "mode_" letter "_along", KEY_LINEAR_AXIS,                             \
+           IN_SETUP(vibration.table[number].along),                                                \
+           "axis along which the frequencies of mode_" letter " change; none"),                    \
+        VECTOR(SECTION_GEOMETRY, "mode_" letter "_places_mm", SCALE_NONE,                          \
+               IN_SETUP(vibration.table[number].places_mm), 2, -1e6, 1e6,                          \
+               "first and last of five even places on that axis; 0 0: they do not change"),        \
+        VECTOR(SECTION_GEOMETRY, "mode_" letter "_ratio", SCALE_NONE,                              \
+               IN_SETUP(vibration.table[number].ratio[0]), VIBRATION_PLACES, 0, 10,                \
+               "frequency of the first mode at each of them, over what mode_" letter " says"),     \
+        VECTOR(SECTION_GEOMETRY, "mode_" letter "_ratio_2", SCALE_NONE,                            \
+               IN_SETUP(vibration.table[number].ratio[1]), VIBRATION_PLACES, 0, 10,                \
+               "of the second mode"),                                                              \
+        VECTOR(SECTION_GEOMETRY, "mode_" letter "_across", SCALE_NONE,                             \
+               IN_SETUP(vibration.across[number]), AXIS_LINEAR_COUNT, -10, 10,                     \
+               "parts of this swing that the tool goes along X, Y, Z, too; its own is 0")
 /* The six errors of an axis: E_XX and so on. */
 #define ERRORS(letter, number)                                                                     \
     OF_GEOMETRY("ex" letter, axis[number][0], DEVIATION_CURVE_NUMBERS,                             \
@@ -422,6 +439,9 @@ const struct machine_key machine_keys[] = {
     OF_VIBRATION("mode_x", AXIS_X, "how X swings between motor and tool: frequency Hz, damping ratio, part of it that the tool sees (1: all); and the same of a second mode"),
     OF_VIBRATION("mode_y", AXIS_Y, "likewise"),
     OF_VIBRATION("mode_z", AXIS_Z, "likewise"),
+    OF_SWING("x", AXIS_X),
+    OF_SWING("y", AXIS_Y),
+    OF_SWING("z", AXIS_Z),
     FROM(SECTION_GEOMETRY, "warming_k", SCALE_NONE, IN_SETUP(geometry.warming_k), -100, 100, "in the end"),
     FROM(SECTION_GEOMETRY, "warming_time_s", SCALE_NONE, IN_SETUP(geometry.warming_time_s), 0, 1e6,
          "time constant; 0: warm from the start"),

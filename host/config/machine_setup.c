@@ -57,6 +57,8 @@ void machine_setup_set_default(struct machine_setup *setup)
     virtual_spindle_set_default(&setup->spindle);
     setup->geometry.table_axis = AXIS_COUNT;
     setup->geometry.head_axis = AXIS_COUNT;
+    for (unsigned i = 0; i < AXIS_LINEAR_COUNT; i++)
+        setup->vibration.table[i].along = AXIS_COUNT;
     setup->geometry.tool_direction[AXIS_Z] = 1;
     for (unsigned i = MACHINE_SECOND_DRIVE; i < MACHINE_SETUP_DRIVES_MAX; i++)
         drive_plant_set_default(&setup->drive[i].plant);
@@ -201,7 +203,16 @@ static const char *check_vibration(const struct machine_setup *setup)
     unsigned axis = 0;
     const char *wrong = vibration_check(&setup->vibration, &axis);
 
-    return wrong == NULL ? NULL : problem("geometry.mode_%c: %s", "xyz"[axis], wrong);
+    if (wrong != NULL)
+        return problem("geometry.mode_%c: %s", "xyz"[axis], wrong);
+    for (unsigned i = 0; i < AXIS_LINEAR_COUNT; i++) {
+        const uint32_t along = setup->vibration.table[i].along;
+
+        if (along < AXIS_LINEAR_COUNT && !setup->machine.axis[along].present)
+            return problem("geometry.mode_%c_along: the machine has no axis %c", "xyz"[i],
+                           AXIS_LETTERS[along]);
+    }
+    return NULL;
 }
 
 const char *machine_setup_check(const struct machine_setup *setup)

@@ -8,6 +8,7 @@
 #include "base/point.h"
 
 #include <stdbool.h>
+#include <stdint.h>
 
 #define VIBRATION_MODES 2 /* of an axis */
 
@@ -19,14 +20,29 @@ enum vibration_number {
     VIBRATION_NUMBERS
 };
 
+#define VIBRATION_PLACES 5 /* of a table: evenly from its first place to its last */
+
+/* How the frequencies of an axis' modes change along an axis: with the overhang of a ram, say. All zero: they do not. */
+struct vibration_table {
+    uint32_t along;      /* enum axis, linear */
+    double places_mm[2]; /* of the drive of that axis, first and last; the same: no table */
+    /* Frequency there over that of the mode; straight between places, beyond them as at the end. */
+    double ratio[VIBRATION_MODES][VIBRATION_PLACES];
+};
+
 struct vibration_config {
     double mode[AXIS_LINEAR_COUNT][VIBRATION_MODES * VIBRATION_NUMBERS];
+    struct vibration_table table[AXIS_LINEAR_COUNT]; /* of the modes of this axis */
+    /* Along which other axes the tool goes when this one swings: parts of how far it does. Its own is 0. */
+    double across[AXIS_LINEAR_COUNT][AXIS_LINEAR_COUNT];
 };
 
 /* An oscillator, seen from its foot. */
 struct vibration_mode {
     double part;
-    double advance[2][2]; /* of away_mm and rate_mm_s, by a cycle */
+    double w_per_s, damping; /* of the mode as it is told; 0: there is none */
+    double ratio;            /* of the frequency that advance is for */
+    double advance[2][2];    /* of away_mm and rate_mm_s, by a cycle */
     double away_mm, rate_mm_s;
 };
 
@@ -40,6 +56,8 @@ struct vibration {
     bool has_foot;
     double cycle_s;
     struct vibration_axis axis[AXIS_LINEAR_COUNT];
+    struct vibration_table table[AXIS_LINEAR_COUNT];
+    double across[AXIS_LINEAR_COUNT][AXIS_LINEAR_COUNT];
 };
 
 /* NULL: good; else what is wrong with the modes of *axis. */

@@ -61,6 +61,12 @@ out, got = found("--noise", "500")
 t.check(got == [] and out.count("no mode") == 3, "a stiff machine has no mode", out)
 t.check(found(*sure) == found(*sure), "the same seed gives the same")
 
+# A mode that changes along another axis is measured where that one stands, at 0.
+table = ["--set", "geometry.mode_x=30 0.05 1 0 0 0", "--set", "geometry.mode_x_along=Y", "--set", "geometry.mode_x_ratio=1 0.9 0.8 0.7 0.6"]
+for places, hz in (("0 100", 30), ("-50 50", 24), ("-125 75", 22.5), ("-100 0", 18)):
+    _, got = found("--axes", "X", *table, "--set", f"geometry.mode_x_places_mm={places}")
+    t.check(len(got) == 1 and abs(got[0][1][0] / hz - 1) < 0.01, f"{hz} Hz at 0 of {places}", got)
+
 # What is printed is a machine file.
 t.write("modes.ini", found(*sure)[0])
 status, _, err = t.run("machine", "modes.ini")

@@ -49,8 +49,34 @@ both, _ = run(*swing(25, 0.03, (100, 0.03, 0.5)))
 t.check(hard["tool_point"]["way_error_rms_mm"] < both["tool_point"]["way_error_rms_mm"] < way["way_error_rms_mm"],
         "half of each mode is between them", both["tool_point"])
 
+# Frequencies by place: the last rest of the program is at Y 10, where the table says twice the frequency.
+places = ("--set", "geometry.mode_x_along=Y", "--set", "geometry.mode_x_places_mm=-30 10", "--set", "geometry.mode_x_ratio=1 1.25 1.5 1.75 2")
+moved, rows = run(*swing(25, 0.03), *places)
+last = [row for row in rows if row["set_X_mm"] == rows[-1]["set_X_mm"] and row["set_Y_mm"] == rows[-1]["set_Y_mm"]][-400:]
+off = [float(row["tool_X_mm"]) - float(row["set_X_mm"]) for row in last]
+turns = [k for k in range(1, len(off) - 1) if abs(off[k]) >= max(abs(off[k - 1]), abs(off[k + 1])) and abs(off[k]) > 1e-7]
+half = (turns[-1] - turns[0]) / (len(turns) - 1)
+t.check(abs(half - 10) < 0.1, "at the end of the table it swings with 50 Hz", half, turns)
+t.check(moved["setpoint_digest"] == stiff["setpoint_digest"], "setpoints know nothing of that either")
+
+# Across: while X moves alone the tool leaves it by parts of its swing.
+_, rows = run("--set", "geometry.mode_x=25 0.03 1 0 0 0", "--set", "geometry.mode_x_across=0 0.5 -0.25")
+alone = [(float(row["tool_Y_mm"]), float(row["tool_Z_mm"])) for row in rows if row["line"] == "3"]
+t.check(max(abs(y) for y, _ in alone) > 0.01, "the tool leaves the line", alone[:5])
+t.check(all(abs(z + y / 2) < 2e-8 for y, z in alone), "along Y and Z by its parts", alone)
+
 for value, says in (("25 1 1 0 0 0", "damping"), ("25 0.1 0 0 0 0", "part"), ("-5 0 1 0 0 0", "frequency")):
     status, _, err = t.run("run", "part.ngc", "--set", "geometry.mode_y=" + value)
     t.check(status == 2 and "geometry.mode_y" in err and says in err, "a mode without sense is refused with its key", value, err)
+for key, value, says in (
+    ("mode_x_across", "0 1 0", "_across"),
+    ("mode_x_across", "0 11 0", "at most 10"),
+    ("mode_x_places_mm", "5 1", "_places_mm"),
+    ("mode_x_places_mm", "0 1", "_along"),
+    ("mode_x_along", "A", "X, Y, Z or none"),
+    ("mode_x_ratio", "1 2 3", "5 numbers"),
+):
+    status, _, err = t.run("run", "part.ngc", "--set", f"geometry.{key}={value}")
+    t.check(status == 2 and "geometry.mode_x" in err and says in err, f"{key} = {value} is refused", err)
 t.check(os.path.exists("trace.csv"), "and what was there stays")
 t.finish()

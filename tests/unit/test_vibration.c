@@ -148,6 +148,142 @@ static void test_modes_that_make_no_sense_are_told_with_their_axis(void)
     TEST_ASSERT_NULL(vibration_check(&config, &axis));
 }
 
+/* The frequency of X along an axis: from here to there, straight. */
+static void set_table(unsigned along, double from_mm, double to_mm, double from, double to)
+{
+    struct vibration_table *table = &config.table[AXIS_X];
+
+    table->along = along;
+    table->places_mm[0] = from_mm;
+    table->places_mm[1] = to_mm;
+    for (unsigned m = 0; m < VIBRATION_MODES; m++) {
+        for (unsigned n = 0; n < VIBRATION_PLACES; n++)
+            table->ratio[m][n] = from + (to - from) * n / (VIBRATION_PLACES - 1);
+    }
+}
+
+/* The foot of X rings at places of Z: each with the frequency that the table has there, beyond its ends that of the end. */
+static void test_a_mode_has_the_frequency_of_where_the_other_axis_stands(void)
+{
+    static const double places[][2] = {{-500, 0.5}, {0, 0.5}, {50, 0.75},
+                                       {75, 0.875}, {100, 1}, {900, 1}};
+
+    for (size_t n = 0; n < sizeof places / sizeof places[0]; n++) {
+        const double w = 2 * MATHS_PI * 40 * places[n][1], wd = w * sqrt(1 - 0.1 * 0.1);
+
+        setUp();
+        set_mode(AXIS_X, 0, 40, 0.1, 1);
+        set_table(AXIS_Z, 0, 100, 0.5, 1);
+        vibration_init(&vibration, &config, CYCLE_S);
+        for (int k = 0; k < 300; k++) {
+            const double t = k * CYCLE_S;
+            struct point at = {{10 * t, 0, places[n][0]}};
+
+            vibration_follow(&vibration, &at);
+            TEST_ASSERT_DOUBLE_WITHIN(1e-10, -10 / wd * exp(-0.1 * w * t) * sin(wd * t),
+                                      at.at[AXIS_X] - 10 * t);
+        }
+    }
+}
+
+/* Where Z jumps, away and its rate go on: A cos(w1 t) before, and from its crest A cos(w2 t) behind. */
+static void test_where_the_frequency_changes_the_swing_goes_on(void)
+{
+    const double w1 = 2 * MATHS_PI * 25, w2 = 2 * MATHS_PI * 50;
+    struct vibration_mode *mode = &vibration.axis[AXIS_X].mode[0];
+
+    set_mode(AXIS_X, 0, 25, 0, 1);
+    set_table(AXIS_Z, 0, 100, 1, 2);
+    vibration_init(&vibration, &config, CYCLE_S);
+    (void)follow(0);
+    mode->away_mm = 0.5;
+    for (int k = 1; k <= 40; k++)
+        TEST_ASSERT_DOUBLE_WITHIN(1e-12, 0.5 * cos(w1 * k * CYCLE_S), follow(0));
+    for (int k = 1; k <= 40; k++) {
+        struct point at = {{0, 0, k == 1 ? 1e6 : 500}};
+
+        vibration_follow(&vibration, &at);
+        TEST_ASSERT_DOUBLE_WITHIN(1e-12, 0.5 * cos(w2 * k * CYCLE_S), at.at[AXIS_X]);
+    }
+}
+
+/*
+ * A frequency that changes slowly: energy over frequency stays, so the amplitude goes as 1/sqrt(w) (Landau and Lifshitz,
+ * Mechanics, 49), here to a quarter.
+ */
+static void test_over_a_slow_change_the_amplitude_goes_as_one_over_the_root(void)
+{
+    const struct vibration_mode *mode = &vibration.axis[AXIS_X].mode[0];
+    double square = 0;
+
+    set_mode(AXIS_X, 0, 10, 0, 1);
+    set_table(AXIS_Y, 0, 100, 1, 4);
+    vibration_init(&vibration, &config, CYCLE_S);
+    (void)follow(0);
+    vibration.axis[AXIS_X].mode[0].away_mm = 1;
+    for (int k = 0; k <= 20000; k++) {
+        struct point at = {{0, 100.0 * k / 20000, 0}};
+
+        vibration_follow(&vibration, &at);
+    }
+    square = mode->away_mm * mode->away_mm + pow(mode->rate_mm_s / (2 * MATHS_PI * 40), 2);
+    TEST_ASSERT_DOUBLE_WITHIN(0.01, 0.25, square);
+}
+
+static void test_what_swings_across_is_a_part_of_the_axis_swing(void)
+{
+    set_mode(AXIS_X, 0, 25, 0.1, 0.75);
+    set_mode(AXIS_X, 1, 60, 0.1, 0.25);
+    config.across[AXIS_X][AXIS_Y] = 0.25;
+    config.across[AXIS_X][AXIS_Z] = -2;
+    vibration_init(&vibration, &config, CYCLE_S);
+    for (int k = 0; k < 100; k++) {
+        struct point at = {{0.01 * k, 7, 8}};
+
+        vibration_follow(&vibration, &at);
+        const double away = at.at[AXIS_X] - 0.01 * k;
+
+        TEST_ASSERT_DOUBLE_WITHIN(1e-14, 7 + 0.25 * away, at.at[AXIS_Y]);
+        TEST_ASSERT_DOUBLE_WITHIN(1e-14, 8 - 2 * away, at.at[AXIS_Z]);
+        TEST_ASSERT_TRUE(k == 0 || fabs(away) > 0);
+    }
+}
+
+static void expect_wrong(const char *word)
+{
+    unsigned axis = AXIS_COUNT;
+    const char *wrong = vibration_check(&config, &axis);
+
+    TEST_ASSERT_NOT_NULL(wrong);
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(wrong, word), wrong);
+    TEST_ASSERT_EQUAL(AXIS_X, axis);
+}
+
+static void test_tables_and_parts_that_make_no_sense_are_told(void)
+{
+    unsigned axis;
+
+    config.across[AXIS_X][AXIS_Y] = 0.1;
+    expect_wrong("_across");
+    set_mode(AXIS_X, 0, 2000, 0.1, 1);
+    TEST_ASSERT_NULL(vibration_check(&config, &axis));
+    config.across[AXIS_X][AXIS_X] = 0.1;
+    expect_wrong("_across");
+    config.across[AXIS_X][AXIS_X] = 0;
+    set_table(AXIS_Z, 0, 100, 1, 4);
+    TEST_ASSERT_NULL(vibration_check(&config, &axis));
+    set_table(AXIS_Z, 0, 100, 1, 6);
+    expect_wrong("10000 Hz");
+    set_table(AXIS_Z, 0, 100, 0.05, 1);
+    expect_wrong("_ratio");
+    set_table(AXIS_Z, 100, 0, 1, 1);
+    expect_wrong("_places_mm");
+    set_table(AXIS_COUNT, 0, 100, 1, 1);
+    expect_wrong("_along");
+    set_table(AXIS_COUNT, 0, 0, 0, 0);
+    TEST_ASSERT_NULL(vibration_check(&config, &axis));
+}
+
 static void add(double x, double y)
 {
     tool_way_add(&way, &(struct point){{x, y}});
@@ -212,6 +348,11 @@ int main(void)
     RUN_TEST(test_a_ramp_of_one_period_leaves_nothing_behind);
     RUN_TEST(test_modes_add_up_by_their_parts_and_axes_are_apart);
     RUN_TEST(test_modes_that_make_no_sense_are_told_with_their_axis);
+    RUN_TEST(test_a_mode_has_the_frequency_of_where_the_other_axis_stands);
+    RUN_TEST(test_where_the_frequency_changes_the_swing_goes_on);
+    RUN_TEST(test_over_a_slow_change_the_amplitude_goes_as_one_over_the_root);
+    RUN_TEST(test_what_swings_across_is_a_part_of_the_axis_swing);
+    RUN_TEST(test_tables_and_parts_that_make_no_sense_are_told);
     RUN_TEST(test_what_is_behind_along_the_way_does_not_count);
     RUN_TEST(test_a_corner_is_measured_from_both_of_its_sides);
     RUN_TEST(test_a_long_standstill_does_not_lose_the_tool);
