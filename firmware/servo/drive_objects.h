@@ -97,12 +97,18 @@ struct drive_settings {
     int8_t homing_method;                 /* 6098 */
     uint16_t
         homing_torque; /* 2003: 0.1 % of the rated one; a motor that stands with it is at a hard stop */
-    uint8_t buffer_organisation; /* 60C4:3 */
-    uint16_t buffer_position;    /* 60C4:4 */
-    uint8_t pitch_points;        /* 2010:1; 0: no error of pitch is taken back */
-    int32_t pitch_first;         /* 2010:2: position of the first of them */
-    uint32_t pitch_distance;     /* 2010:3: from each to the next */
-    uint32_t backlash_nm;        /* 2010:4; of a rotary axis urad */
+    uint8_t buffer_organisation;    /* 60C4:3 */
+    uint16_t buffer_position;       /* 60C4:4 */
+    uint8_t pitch_points;           /* 2010:1; 0: no error of pitch is taken back */
+    int32_t pitch_first;            /* 2010:2: position of the first of them */
+    uint32_t pitch_distance;        /* 2010:3: from each to the next */
+    uint32_t backlash_nm;           /* 2010:4; of a rotary axis urad */
+    uint32_t told_inertia;          /* 2020:1: g mm2, at the motor's shaft */
+    uint32_t velocity_bandwidth;    /* 2020:2: mHz */
+    uint32_t velocity_integral;     /* 2020:3: us */
+    uint32_t position_gain;         /* 2020:4: thousandths of 1/s */
+    uint16_t velocity_feed_forward; /* 2020:5: thousandths */
+    uint16_t torque_feed_forward;   /* 2020:6: the same */
     int32_t pitch_nm
         [DRIVE_PITCH_POINTS]; /* 2011: what the axis is farther than its motor says; the same */
 };

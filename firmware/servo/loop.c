@@ -15,7 +15,6 @@ void servo_loop_init(struct servo_loop *loop, const struct servo_loop_config *co
                      const struct motor_port *motor)
 {
     double travel_per_rad_mm = config->travel_per_revolution_mm / MATHS_TWO_PI;
-    double integral_time_s = config->velocity_integral_time_s;
     uint32_t counts = config->encoder_counts_per_revolution;
     memset(loop, 0, sizeof *loop);
     loop->config = *config;
@@ -28,14 +27,30 @@ void servo_loop_init(struct servo_loop *loop, const struct servo_loop_config *co
     loop->friction = config->friction_nm;
     for (unsigned i = 0; i < FRICTION_POINTS; i++)
         loop->friction.at[i] *= travel_per_rad_mm / config->inertia_kg_m2;
-    loop->velocity_gain_per_s = MATHS_TWO_PI * config->velocity_bandwidth_hz;
-    loop->integral_gain_per_s2 =
-        integral_time_s > 0 ? loop->velocity_gain_per_s / integral_time_s : 0;
+    servo_loop_tune(loop, config);
     loop->encoder_step_mm = counts ? config->travel_per_revolution_mm / counts : 0;
     loop->encoder_steps_per_mm = counts / config->travel_per_revolution_mm;
     loop->standstill_mm_s = config->travel_per_revolution_mm * STANDSTILL_REVOLUTIONS_PER_S;
     servo_loop_look(loop);
     loop->command_mm = loop->measured_mm;
+}
+
+/*
+ * The loops think in accelerations, and the motor gets the torque M = J_told a / h: with an inertia J it is accelerated by
+ * J_told / J of what they want.
+ */
+void servo_loop_tune(struct servo_loop *loop, const struct servo_loop_config *config)
+{
+    const double inertia_kg_m2 = loop->config.inertia_kg_m2,
+                 told_kg_m2 = config->told_inertia_kg_m2;
+    const double told_ratio = told_kg_m2 > 0 ? told_kg_m2 / inertia_kg_m2 : 1;
+    const double integral_time_s = config->velocity_integral_time_s;
+    loop->config.position_gain_per_s = config->position_gain_per_s;
+    loop->config.velocity_feed_forward_ratio = config->velocity_feed_forward_ratio;
+    loop->velocity_gain_per_s = told_ratio * (MATHS_TWO_PI * config->velocity_bandwidth_hz);
+    loop->integral_gain_per_s2 =
+        integral_time_s > 0 ? loop->velocity_gain_per_s / integral_time_s : 0;
+    loop->torque_forward_ratio = told_ratio * config->torque_feed_forward_ratio;
 }
 
 static void look(struct servo_loop *loop, uint32_t cycle_ns)
@@ -80,7 +95,7 @@ static struct cycle begin_cycle(struct servo_loop *loop, uint32_t cycle_ns)
 static double forward_torque_mm_s2(const struct servo_loop *loop, double velocity_mm_s,
                                    double acceleration_mm_s2)
 {
-    return loop->config.torque_feed_forward_ratio * acceleration_mm_s2 +
+    return loop->torque_forward_ratio * acceleration_mm_s2 +
            friction_at(&loop->friction, velocity_mm_s) + loop->torque_offset_mm_s2;
 }
 

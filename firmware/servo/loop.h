@@ -17,6 +17,7 @@
 struct servo_loop_config {
     double travel_per_revolution_mm; /* of the axis, per turn of the motor: the screw's lead; > 0 */
     double inertia_kg_m2;            /* at the motor's shaft; > 0 */
+    double told_inertia_kg_m2;       /* what the loops take it for; 0: that */
     double torque_max_nm;            /* either direction; > 0 */
     double torque_rated_nm;          /* > 0 */
     uint32_t encoder_counts_per_revolution; /* of the motor; 0: no quantisation */
@@ -36,8 +37,9 @@ struct servo_loop {
 
     /* Derived from config once, in units of the axis. */
     double acceleration_max_mm_s2;
-    double velocity_gain_per_s;
+    double velocity_gain_per_s; /* both by what they are told of the inertia */
     double integral_gain_per_s2;
+    double torque_forward_ratio;
     double encoder_step_mm; /* 0: no quantisation */
     double encoder_steps_per_mm;
     double standstill_mm_s;    /* slower than this the motor stands */
@@ -67,6 +69,9 @@ struct servo_loop {
 /* The command is where the encoder says the motor is. motor must stay usable as long as the loop. */
 void servo_loop_init(struct servo_loop *loop, const struct servo_loop_config *config,
                      const struct motor_port *motor);
+
+/* From now on it has gains, feed-forward and told inertia of config; motor and encoder stay as they are. */
+void servo_loop_tune(struct servo_loop *loop, const struct servo_loop_config *config);
 
 /* Between two cycles something about the motor has changed at once: it is looked at anew. */
 void servo_loop_look(struct servo_loop *loop);

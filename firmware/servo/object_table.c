@@ -185,6 +185,13 @@ const struct object_row object_table[] = {
     PITCH(49), PITCH(50), PITCH(51), PITCH(52), PITCH(53), PITCH(54), PITCH(55), PITCH(56),
     PITCH(57), PITCH(58), PITCH(59), PITCH(60), PITCH(61), PITCH(62), PITCH(63), PITCH(64),
 
+    HEAD(0x2020, OBJECT_RECORD, 6, "Loops"),
+    SUBL(0x2020, 1, U32, RW, OWN, SET(told_inertia), 1, 1, UINT32_MAX, "Inertia"),
+    SUBL(0x2020, 2, U32, RW, OWN, SET(velocity_bandwidth), 1, 1, UINT32_MAX, "Bandwidth of velocity loop"),
+    SUB(0x2020, 3, U32, RW, OWN, SET(velocity_integral), 0, "Integral time of velocity loop"),
+    SUBL(0x2020, 4, U32, RW, OWN, SET(position_gain), 1, 1, UINT32_MAX, "Position gain"),
+    SUBL(0x2020, 5, U16, RW, OWN, SET(velocity_feed_forward), 0, 0, 1000, "Velocity feed-forward"),
+    SUBL(0x2020, 6, U16, RW, OWN, SET(torque_feed_forward), 0, 0, 1000, "Torque feed-forward"),
     VARL(0x6007, I16, RW, 0, SET(abort_connection_option), 3, 0, 3, "Abort connection option code"),
     VAR(0x603F, U16, RO, TPDO | EVENT, PROCESS(error_code), 0, "Error code"),
     VAR(0x6040, U16, RW, RPDO, PROCESS(controlword), 0, "Controlword"),

@@ -114,6 +114,8 @@ uint32_t servo_write_sdo(void *drive, uint32_t object, const uint8_t *bytes, siz
 void servo_init_objects(struct servo *drive);
 /* What the position loop needs, from the settings. */
 void servo_derive(struct servo *drive);
+/* Of object 2020. */
+void servo_derive_loops(struct servo *drive);
 void servo_derive_torque(struct servo *drive);
 
 /* ---- mechanics.c: what is taken back of the mechanics ---- */

@@ -76,6 +76,26 @@ static void take_data_sheet(struct servo *drive)
     }
 }
 
+/* What is 1 of object 2020: g mm2, mHz, us, thousandths. */
+#define INERTIA_PER_KG_M2  1e9
+#define THOUSANDTHS        1e3
+#define MICROSECONDS_PER_S 1e6
+
+/* Object 2020, as far as its numbers can say it. */
+static void set_loops(struct drive_settings *s, const struct servo_loop_config *loop)
+{
+    const double told_kg_m2 =
+        loop->told_inertia_kg_m2 > 0 ? loop->told_inertia_kg_m2 : loop->inertia_kg_m2;
+    s->told_inertia = unsigned_round(maths_max(INERTIA_PER_KG_M2 * told_kg_m2, 1));
+    s->velocity_bandwidth = unsigned_round(maths_max(THOUSANDTHS * loop->velocity_bandwidth_hz, 1));
+    s->velocity_integral = unsigned_round(MICROSECONDS_PER_S * loop->velocity_integral_time_s);
+    s->position_gain = unsigned_round(maths_max(THOUSANDTHS * loop->position_gain_per_s, 1));
+    s->velocity_feed_forward =
+        (uint16_t)unsigned_round(THOUSANDTHS * loop->velocity_feed_forward_ratio);
+    s->torque_feed_forward =
+        (uint16_t)unsigned_round(THOUSANDTHS * loop->torque_feed_forward_ratio);
+}
+
 /* What the machine makes of the initial values: everything that is counted in increments. */
 void servo_init_objects(struct servo *drive)
 {
@@ -112,6 +132,7 @@ void servo_init_objects(struct servo *drive)
         maths_round(TORQUE_PER_RATED * config->loop.torque_max_nm / config->loop.torque_rated_nm),
         0, UINT16_MAX);
     set_interpolation_period(&o->settings, drive->config.cycle_us);
+    set_loops(&o->settings, &config->loop);
     if (drive->dictionary != &dictionary_own)
         take_data_sheet(drive);
 }
@@ -181,6 +202,34 @@ void servo_derive_torque(struct servo *drive)
                    : max_torque / TORQUE_PER_RATED * drive->loop.mm_s2_per_rated;
 }
 
+/* A number of the machine is used as long as its object is what it was made of it. */
+static double tuned(uint32_t value, uint32_t initial, double machine, double per_unit)
+{
+    return value == initial ? machine : value / per_unit;
+}
+
+void servo_derive_loops(struct servo *drive)
+{
+    const struct drive_settings *s = &drive->objects.settings;
+    const struct drive_settings *initial = &drive->initial.settings;
+    const struct servo_loop_config *machine = &drive->config.loop;
+    struct servo_loop_config loop = *machine;
+    loop.told_inertia_kg_m2 = tuned(s->told_inertia, initial->told_inertia,
+                                    machine->told_inertia_kg_m2, INERTIA_PER_KG_M2);
+    loop.velocity_bandwidth_hz = tuned(s->velocity_bandwidth, initial->velocity_bandwidth,
+                                       machine->velocity_bandwidth_hz, THOUSANDTHS);
+    loop.velocity_integral_time_s = tuned(s->velocity_integral, initial->velocity_integral,
+                                          machine->velocity_integral_time_s, MICROSECONDS_PER_S);
+    loop.position_gain_per_s =
+        tuned(s->position_gain, initial->position_gain, machine->position_gain_per_s, THOUSANDTHS);
+    loop.velocity_feed_forward_ratio =
+        tuned(s->velocity_feed_forward, initial->velocity_feed_forward,
+              machine->velocity_feed_forward_ratio, THOUSANDTHS);
+    loop.torque_feed_forward_ratio = tuned(s->torque_feed_forward, initial->torque_feed_forward,
+                                           machine->torque_feed_forward_ratio, THOUSANDTHS);
+    servo_loop_tune(&drive->loop, &loop);
+}
+
 void servo_derive(struct servo *drive)
 {
     const struct drive_settings *s = &drive->objects.settings;
@@ -199,4 +248,5 @@ void servo_derive(struct servo *drive)
         in_mm(drive, s->max_deceleration, initial->max_deceleration, MATHS_INFINITY, per_mm_s));
     derive_signs(drive);
     servo_derive_torque(drive);
+    servo_derive_loops(drive);
 }

@@ -105,7 +105,8 @@ struct options {
     const char *output;     /* -o is short for --output */
     struct option_bore bore;
     struct option_circle circle;
-    const char *axes; /* of `takt friction`, `takt resonance`: letters */
+    const char *axes;              /* of `takt friction`, `takt resonance`, `takt tune`: letters */
+    const char *dcf, *tune_record; /* of `takt tune` */
     struct option_frequency frequency;
     struct option_correction correction;
     struct option_panel panel;

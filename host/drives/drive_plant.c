@@ -10,12 +10,6 @@
 /* 1.5 2^52 */
 #define ROUNDER 6755399441055744.0
 
-/*
- * Velocity gain times loop period. The loop rings above 1 and is unstable above 2; half of 1 leaves
- * room for the rest.
- */
-#define STABLE_MAX 0.5
-
 void drive_plant_set_default(struct drive_plant_config *config)
 {
     *config = (struct drive_plant_config){
@@ -106,8 +100,11 @@ static const char *check_loops(const struct drive_plant_config *c)
     for (unsigned i = 0; i < FRICTION_POINTS; i++)
         CHECK(is_not_negative(c->friction_forward_nm[i]), friction_forward_nm);
     CHECK(is_not_negative(c->friction_forward_step_mm_s), friction_forward_step_mm_s);
+    CHECK(is_not_negative(c->told_inertia_kg_m2), told_inertia_kg_m2);
+    CHECK(c->torque_delay_steps < DRIVE_PLANT_DELAY_MAX, torque_delay_steps);
     CHECK(c->loop_period_us >= 1 && c->loop_period_us <= DRIVE_PLANT_LOOP_PERIOD_MAX_US &&
-              MATHS_TWO_PI * c->velocity_bandwidth_hz * c->loop_period_us * 1e-6 <= STABLE_MAX,
+              MATHS_TWO_PI * c->velocity_bandwidth_hz * c->loop_period_us * 1e-6 <=
+                  DRIVE_PLANT_GAIN_STEP_MAX,
           loop_period_us);
     CHECK(is_not_negative(c->following_error_window_mm), following_error_window_mm);
     CHECK(is_positive(c->quick_stop_deceleration_mm_s2), quick_stop_deceleration_mm_s2);
@@ -204,6 +201,7 @@ struct servo_loop_config drive_plant_get_loop(const struct drive_plant_config *c
     return (struct servo_loop_config){
         .travel_per_revolution_mm = config->travel_per_revolution_mm,
         .inertia_kg_m2 = config->inertia_kg_m2,
+        .told_inertia_kg_m2 = config->told_inertia_kg_m2,
         .torque_max_nm = config->torque_max_nm,
         .torque_rated_nm = config->torque_rated_nm,
         .encoder_counts_per_revolution = config->encoder_counts_per_revolution,
@@ -234,14 +232,24 @@ static void hit_stop(struct drive_plant *plant)
     plant->velocity_mm_s = 0;
 }
 
+/* What the loops asked for so many steps ago. */
+static double delayed(struct drive_plant *plant, double asked_mm_s2)
+{
+    const uint32_t now = plant->asked++;
+    plant->asked_mm_s2[now % DRIVE_PLANT_DELAY_MAX] = asked_mm_s2;
+    return plant->asked_mm_s2[(now - plant->config.torque_delay_steps) % DRIVE_PLANT_DELAY_MAX];
+}
+
 /*
  * Semi-implicit Euler over a step:  v += (a - f v) dt, slowed by dry friction and held by it,
  * x += v dt. A motor that is all but standing stands: an endless decay would end in numbers too
  * small to be fast.
  */
-static double turn(void *context, double torque_mm_s2, double step_s)
+static double turn(void *context, double asked_mm_s2, double step_s)
 {
     struct drive_plant *plant = context;
+    const double torque_mm_s2 =
+        plant->config.torque_delay_steps > 0 ? delayed(plant, asked_mm_s2) : asked_mm_s2;
     double friction_mm_s2 = plant->friction_per_s * plant->velocity_mm_s;
     double velocity_mm_s = plant->velocity_mm_s + (torque_mm_s2 - friction_mm_s2) * step_s;
     double coulomb_mm_s = plant->coulomb_mm_s2 * step_s;

@@ -16,6 +16,11 @@
 #include <stdint.h>
 
 #define DRIVE_PLANT_LOOP_PERIOD_MAX_US 1000
+/*
+ * Velocity gain times loop period. The loop rings above 1 and is unstable above 2; half of 1 leaves room for the rest.
+ */
+#define DRIVE_PLANT_GAIN_STEP_MAX 0.5
+#define DRIVE_PLANT_DELAY_MAX     64 /* steps; a power of two */
 
 struct drive_plant_config {
     double travel_per_revolution_mm; /* of the axis, per turn of the motor: the screw's lead; > 0 */
@@ -37,6 +42,10 @@ struct drive_plant_config {
         [FRICTION_POINTS]; /* friction as measured, which is fed forward: at rest, */
     double
         friction_forward_step_mm_s; /* and at whole multiples of this; 0: the first at all velocities */
+
+    double told_inertia_kg_m2; /* what the loops take the inertia for; 0: what it is */
+    uint32_t
+        torque_delay_steps; /* of the loops, until the motor has the torque; 0 ... below DELAY_MAX */
 
     uint32_t loop_period_us; /* of both loops and the integration; 1 ... 1000 */
 
@@ -84,7 +93,10 @@ struct drive_plant {
 
     double position_mm; /* of the motor */
     double velocity_mm_s;
-    double torque_mm_s2;     /* acceleration by the motor's torque, in the last step */
+    double torque_mm_s2; /* acceleration by the motor's torque, in the last step */
+    double asked_mm_s2
+        [DRIVE_PLANT_DELAY_MAX]; /* what the loops have asked for, in step n at n modulo */
+    uint32_t asked;
     double encoder_shift_mm; /* the encoder reads this much more than the motor's position */
     double encoder_rounder;  /* rounds to steps and adds the shift */
     double play_mm;          /* the table is behind the motor by this, half the backlash at most */

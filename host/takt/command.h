@@ -41,6 +41,7 @@ extern const struct command command_bore;
 extern const struct command command_circle;
 extern const struct command command_friction;
 extern const struct command command_resonance;
+extern const struct command command_tune;
 extern const struct command command_compile;
 extern const struct command command_completion;
 
