@@ -3,6 +3,7 @@
 #include "base/maths.h"
 #include "controller/controller_feed.h"
 #include "controller/controller_lock.h"
+#include "controller/controller_shape.h"
 #include "controller/controller_steps.h"
 #include "controller/outputs.h"
 #include "controller/restart.h"
@@ -81,6 +82,7 @@ void controller_init(struct controller *c, const struct controller_config *confi
     c->machine = *config->machine;
     c->can = config->can;
     c->reader = config->reader;
+    controller_shape_init(c, config);
     correction_init(&c->correction, &c->machine.correction, machine_axes(&c->machine),
                     cycle_s(&c->machine), config->correction, &start);
     controller_start_program(c, config, &start);
@@ -274,6 +276,7 @@ static void come_to_start(struct controller *c)
     controller_get_actual(c, &actual);
     if (approach_cycle(&c->approach, &c->machine, &actual, &c->record.set)) {
         c->record.cmd = c->record.set;
+        controller_shape_restart(c);
         c->state = CONTROLLER_RUNNING;
     }
 }
@@ -345,6 +348,7 @@ static struct motion_operator operator_of(const struct controller *c, const stru
         .single_block = in->single_block,
         .stop = drives_get_state(&c->drives) == DRIVES_STOPPING,
         .wait = c->spindle.waits,
+        .settles = !controller_shape_is_settled(c),
         .tool_waits = tool_changer_waits(&c->changer),
         .measures = true,
         .spindle_rev_s = c->spindle.rev_s,
@@ -463,9 +467,11 @@ static struct controller_place place_of(const struct controller *c)
 {
     struct controller_place at;
 
+    const struct point *corrected = controller_shape_input(c);
+
     controller_get_actual(c, &at.reported);
     for (int i = 0; i < AXIS_COUNT; i++) {
-        at.actual.at[i] = at.reported.at[i] - (c->record.set.at[i] - c->record.cmd.at[i]);
+        at.actual.at[i] = at.reported.at[i] - (corrected->at[i] - c->record.cmd.at[i]);
     }
     return at;
 }
@@ -478,7 +484,7 @@ static void follow_probe(struct controller *c, const struct inputs *in)
     if (controller_probe_watch(&c->probe, &motion_block(&c->motion)->move, in, &at)) {
         motion_end_here(&c->motion);
     }
-    if (c->program_waits && motion_is_idle(&c->motion)) {
+    if (c->program_waits && motion_is_idle(&c->motion) && controller_shape_is_settled(c)) {
         struct inputs seen = *in;
 
         drives_add_inputs(&c->drives, &seen);
@@ -501,6 +507,7 @@ static void complete_record(struct controller *c, const struct inputs *in)
 
     interpolate(c, block);
     correction_cycle(&c->correction, &c->record.cmd, &block->move, &c->record.set);
+    controller_shape_cycle(c, move_is_locked(&block->move));
     controller_get_actual(c, &c->record.act);
     c->record.spindle_rev = in->spindle.angle_rev;
 }
@@ -518,13 +525,20 @@ static void stand(struct controller *c)
 {
     if (stands_corrected(c)) {
         correction_stand(&c->correction, &c->record.cmd, &c->record.set);
+        controller_shape_cycle(c, false);
     }
+}
+
+/* What is sent, too. */
+static bool stands_still(const struct controller *c)
+{
+    return motion_rests(&c->motion) && controller_shape_is_settled(c);
 }
 
 /* Nothing that stands behind the place in the program is done any more. */
 static bool rests_after_fault(const struct controller *c)
 {
-    return drives_get_state(&c->drives) == DRIVES_STOPPING && motion_rests(&c->motion);
+    return drives_get_state(&c->drives) == DRIVES_STOPPING && stands_still(c);
 }
 
 void controller_cycle(struct controller *c, const struct inputs *inputs)
@@ -550,7 +564,7 @@ void controller_cycle(struct controller *c, const struct inputs *inputs)
     }
     controller_lock_command(c);
     if (drives_get_state(&c->drives) == DRIVES_STOPPING && c->state == CONTROLLER_RUNNING &&
-        !motion_rests(&c->motion)) {
+        !stands_still(c)) {
         drives_await_rest(&c->drives);
     }
     drives_send(&c->drives, c->can.port, &c->record.set);

@@ -46,6 +46,10 @@ struct controller_config {
     const struct tool_table *tools; /* NULL: empty. Must outlive the controller */
     struct parameters *parameters;  /* never NULL; read and written. Must outlive the controller */
     const struct correction_tables *correction; /* NULL: no tables; see correction_init */
+#ifndef SHAPE_IS_ABSENT
+    struct shape *
+        shape; /* of the machine's modes; its alone. NULL: setpoints go to the drives as they are */
+#endif
     const struct replay_source *compiled; /* of the same program: replayed. NULL: planned here */
     const struct program_modes *modes;    /* the program goes on with; NULL: those it begins with */
     void (*say)(void *listener, const struct program *p); /* as of struct program_config */

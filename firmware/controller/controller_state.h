@@ -19,6 +19,7 @@
 #include "motion/motion.h"
 #include "plan/path.h"
 #include "replay/replay.h"
+#include "shape/shape.h"
 #include "step/steps.h"
 #include "sync/lock.h"
 
@@ -49,6 +50,9 @@ struct controller {
     struct path path;
     struct motion motion;
     struct correction correction;
+#ifndef SHAPE_IS_ABSENT
+    struct shape *shape; /* NULL: none */
+#endif
     bool replays; /* a compiled program */
     struct replay replay;
     struct drives drives;

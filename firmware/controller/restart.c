@@ -1,6 +1,7 @@
 #include "controller/restart.h"
 
 #include "controller/controller_feed.h"
+#include "controller/controller_shape.h"
 #include "controller/controller_steps.h"
 
 #include <string.h>
@@ -16,6 +17,7 @@ void controller_start_program(struct controller *c, const struct controller_conf
     program_open(&c->reader->program, &program, &config->source);
     offset_open(&c->reader->offset, &program);
     controller_plan_limits(&c->machine, &limits);
+    controller_shape_leave(c, &limits);
     controller_reserve_correction(&c->correction, &c->machine, &limits);
     path_init(&c->path, &limits, start);
     motion_init(&c->motion, &c->path, start, c->machine.override_proportional != 0);
@@ -119,6 +121,7 @@ void controller_recover(struct controller *c, const struct controller_config *co
     drives_init(&c->drives, &drives);
     controller_steps_restart(c);
     correction_restart(&c->correction, &c->record.set);
+    controller_shape_restart(c);
     controller_start_program(c, config, &c->record.set);
     c->state = CONTROLLER_STARTING;
 }

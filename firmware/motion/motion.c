@@ -261,6 +261,10 @@ static enum motion_result serve(struct motion *m, const struct motion_operator *
 {
     *block = NULL;
     m->changes_tool = false;
+    if (m->done && wanted->settles) {
+        m->rested++;
+        return MOTION_CYCLE;
+    }
     for (unsigned passed = 0; passed < PASS_MAX; passed++) {
         if (m->done) {
             path_pass(m->path);

@@ -40,6 +40,7 @@ struct motion_operator {
     bool stop;         /* a hold that nothing in the program can switch off */
     bool single_block; /* every motion that it can still brake in ends at rest */
     bool wait;         /* does not leave a stop: the spindle has not reached its speed */
+    bool settles;      /* nor passes it: what is sent has not come to it yet */
     bool tool_waits;   /* a tool change is not passed: the changer has not answered */
     bool measures; /* the spindle's speed, for feeds per revolution; else they are as commanded */
     double spindle_rev_s; /* >= 0; 0 holds them */

@@ -25,6 +25,9 @@ struct controller_config service_controller_config(const struct service *s)
         .tools = &s->tools,
         .parameters = s->config.parameters,
         .correction = s->config.correction,
+#ifndef SHAPE_IS_ABSENT
+        .shape = s->config.shape,
+#endif
         .exact_path = s->config.exact_path,
         .block_delete = s->settings.block_delete,
     };

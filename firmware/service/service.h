@@ -69,6 +69,9 @@ struct service_config {
     size_t tools_count;
     struct parameters *parameters;              /* read and written */
     const struct correction_tables *correction; /* NULL: none; must outlive the service */
+#ifndef SHAPE_IS_ABSENT
+    struct shape *shape; /* as of struct controller_config */
+#endif
     struct service_programs programs;
     struct service_plans plans;
     struct service_lines lines;

@@ -13,6 +13,7 @@
 #include "cli/stopwatch.h"
 #include "cli/text.h"
 #include "compiled/compiled_judge.h"
+#include "config/shaper.h"
 #include "replay/fit.h"
 
 #include <errno.h>
@@ -52,7 +53,7 @@ void compiled_limits(const struct session *s, const struct point *start, struct 
 {
     static _Thread_local struct correction correction;
 
-    controller_plan_limits(&s->setup.machine, limits);
+    shaper_plan_limits(&s->setup, limits);
     correction_init(&correction, &s->setup.machine.correction, limits->axes, limits->cycle_s,
                     s->correction, start);
     controller_reserve_correction(&correction, &s->setup.machine, limits);

@@ -112,6 +112,8 @@ const struct machine_key machine_keys[] = {
           INTERPOLATOR_END_SHIFT_MAX, "integrate: k of N = 2^k, the cycles that share what is left at the end of a line"),
     COUNT(SECTION_MACHINE, "interpolator_angle_bits", KEY_UINT8, IN_SETUP(machine.interpolator_angle_bits), 0,
           INTERPOLATOR_ANGLE_BITS_MAX, "rotate: bits of a cycle's angle, of which the largest is that of the axes' full feed; 6 to 8 as the source has it; 0: any angle"),
+    CHOICE(SECTION_MACHINE, "shaper", KEY_SHAPER, IN_SETUP(shaper),
+           "setpoints that do not make the modes of geometry.mode_x swing: none; zv; neutral (the tool keeps its way closer, for some more time); for comparison mzv or ei"),
     CHOICE(SECTION_MACHINE, "step_form", KEY_STEP_FORM, IN_SETUP(machine.step_form),
            "pulses of step drives: even (each axis at its own times); by evaluation functions improved or plain (one axis at a time)"),
     ABOVE(SECTION_MACHINE, "tool_change_s", SCALE_NONE, IN_SETUP(machine.tool_change_s), 0, 3600,

@@ -40,6 +40,7 @@ enum machine_key_type {
     KEY_AXIS_TYPE,
     KEY_DRIVE_TYPE,
     KEY_STEP_FORM,
+    KEY_SHAPER,
     KEY_LAW,
     KEY_LANDING,
     KEY_LIMITER,

@@ -3,6 +3,7 @@
 #include "base/maths.h"
 #include "classic/limiter.h"
 #include "config/bus_advice.h"
+#include "config/shaper.h"
 #include "drive/drives.h"
 #include "machine/machine_check.h"
 
@@ -198,6 +199,13 @@ static const char *check_tool(const struct machine_setup *setup)
     return NULL;
 }
 
+static const char *check_shaper(const struct machine_setup *setup)
+{
+    const char *wrong = shaper_check(setup);
+
+    return wrong == NULL ? NULL : problem("machine.shaper: %s", wrong);
+}
+
 static const char *check_vibration(const struct machine_setup *setup)
 {
     unsigned axis = 0;
@@ -226,6 +234,8 @@ const char *machine_setup_check(const struct machine_setup *setup)
         wrong = check_tool(setup);
     if (wrong == NULL)
         wrong = check_vibration(setup);
+    if (wrong == NULL)
+        wrong = check_shaper(setup);
 
     for (unsigned i = 0; i < AXIS_COUNT && wrong == NULL; i++) {
         if (setup->machine.axis[i].present)

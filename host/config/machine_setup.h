@@ -57,6 +57,7 @@ struct machine_setup {
     struct geometry_setup known_geometry;
     struct deviation_config geometry;  /* how the virtual machine differs from a perfect one */
     struct vibration_config vibration; /* and how it swings */
+    uint32_t shaper;                   /* enum shaper: what the controller does about that */
     struct machine_drive
         drive[MACHINE_SETUP_DRIVES_MAX]; /* of each axis, and the second ones of gantries */
     struct virtual_stepper_config stepper[AXIS_COUNT]; /* of each axis, if it has a step drive */

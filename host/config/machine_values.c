@@ -273,6 +273,7 @@ static const char *const *words_of(const struct machine_key *key)
 {
     static const char *const drive_types[] = {"can", "step", NULL};
     static const char *const step_forms[] = {"even", "improved", "plain", NULL};
+    static const char *const shapers[] = {"none", "neutral", "zv", "mzv", "ei", NULL};
     static const char *const interpolators[] = {"exact", "integrate", "rotate", NULL};
     static const char *const laws[] = {"jerk", "smooth", "gentle", NULL};
     static const char *const landings[] = {"span", "block", "scale", NULL};
@@ -281,6 +282,8 @@ static const char *const *words_of(const struct machine_key *key)
 
     if (key->type == KEY_DRIVE_TYPE)
         return drive_types;
+    if (key->type == KEY_SHAPER)
+        return shapers;
     if (key->type == KEY_LAW)
         return laws;
     if (key->type == KEY_LANDING)
@@ -290,6 +293,21 @@ static const char *const *words_of(const struct machine_key *key)
     if (key->type == KEY_OVERRIDE_METHOD)
         return methods;
     return key->type == KEY_STEP_FORM ? step_forms : interpolators;
+}
+
+/* "law: jerk, smooth or gentle is expected, not 'fast'" */
+static void say_words(const struct machine_key *key, const char *const *words, const char *value,
+                      struct machine_problem *wrong)
+{
+    char list[MACHINE_PROBLEM_MAX + 1] = "";
+    size_t used = 0;
+
+    for (unsigned i = 0; words[i] != NULL && used < sizeof list; i++) {
+        const char *before = i == 0 ? "" : words[i + 1] == NULL ? " or " : ", ";
+
+        used += (size_t)snprintf(list + used, sizeof list - used, "%s%s", before, words[i]);
+    }
+    say(wrong, "%s: %.120s is expected, not '%.40s'", key->name, list, value);
 }
 
 static bool read_word(const struct machine_key *key, const char *value, uint32_t *field,
@@ -304,11 +322,7 @@ static bool read_word(const struct machine_key *key, const char *value, uint32_t
             return true;
         }
     }
-    if (count == 2)
-        say(wrong, "%s: %s or %s is expected, not '%.40s'", key->name, words[0], words[1], value);
-    else
-        say(wrong, "%s: %s, %s or %s is expected, not '%.40s'", key->name, words[0], words[1],
-            words[2], value);
+    say_words(key, words, value, wrong);
     return false;
 }
 
@@ -423,6 +437,7 @@ bool machine_key_set(struct machine_setup *setup, struct machine_place place,
         return read_axis_type(setup, place, value, wrong);
     case KEY_DRIVE_TYPE:
     case KEY_STEP_FORM:
+    case KEY_SHAPER:
     case KEY_LAW:
     case KEY_LANDING:
     case KEY_LIMITER:
@@ -526,6 +541,7 @@ void machine_key_get(const struct machine_setup *setup, struct machine_place pla
         break;
     case KEY_DRIVE_TYPE:
     case KEY_STEP_FORM:
+    case KEY_SHAPER:
     case KEY_LAW:
     case KEY_LANDING:
     case KEY_LIMITER:

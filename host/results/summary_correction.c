@@ -65,6 +65,8 @@ static void add_tool_point(cJSON *root, const struct summary *summary)
     cJSON_AddNumberToObject(object, "rests", (double)tool->at_rest.count);
     cJSON_AddNumberToObject(object, "rest_error_max_mm", tool->at_rest.max_mm);
     cJSON_AddNumberToObject(object, "rest_error_mean_mm", tool_point_mean(&tool->at_rest));
+    if (tool->is_shaped)
+        return;
     cJSON_AddNumberToObject(object, "setpoint_error_max_mm", tool->of_setpoints.max_mm);
     cJSON_AddNumberToObject(object, "setpoint_error_mean_mm", tool_point_mean(&tool->of_setpoints));
 }
@@ -108,8 +110,10 @@ static void write_tool_point(FILE *stream, const struct summary *summary)
                   "  tool point    off by %.2f um at most, %.2f um on average, in %u rests\n",
                   1e3 * tool->at_rest.max_mm, 1e3 * tool_point_mean(&tool->at_rest),
                   (unsigned)tool->at_rest.count);
-    (void)fprintf(stream, "                %.2f um at most, %.2f um on average, by the setpoints\n",
-                  1e3 * tool->of_setpoints.max_mm, 1e3 * tool_point_mean(&tool->of_setpoints));
+    if (!tool->is_shaped)
+        (void)fprintf(stream,
+                      "                %.2f um at most, %.2f um on average, by the setpoints\n",
+                      1e3 * tool->of_setpoints.max_mm, 1e3 * tool_point_mean(&tool->of_setpoints));
     if (tool->vibration.any)
         (void)fprintf(stream,
                       "                %.2f um at most, %.2f um rms, off the way, swinging\n",

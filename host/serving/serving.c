@@ -6,6 +6,7 @@
 #include "cli/message.h"
 #include "cli/stopwatch.h"
 #include "cli/text.h"
+#include "config/shaper.h"
 #include "session/program_front.h"
 #include "simulation/cutting_feed.h"
 #include "simulation/drives_table.h"
@@ -64,6 +65,7 @@ static void open_service(struct serving *s)
         .reader = &s->reader,
         .parameters = &s->session.parameters.values,
         .correction = s->session.correction,
+        .shape = shaper_prepare(&s->session.setup, &s->shape),
         .programs = {program_store_read, program_store_adopt, &s->store},
         .plans = plan_queue_get_plans(&s->plan),
         .lines = serving_console_get_lines(s),

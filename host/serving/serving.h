@@ -36,6 +36,7 @@ struct serving {
     struct field field;
     struct service service;
     struct controller_reader reader; /* of the service */
+    struct shape shape;              /* likewise, if the machine has a shaper */
     struct serving_spindle spindle;
     struct inputs inputs; /* of the next cycle */
     struct program_store store;

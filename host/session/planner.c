@@ -3,6 +3,7 @@
 #include "base/maths.h"
 #include "cli/interrupt.h"
 #include "cli/message.h"
+#include "config/shaper.h"
 #include "motion/motion.h"
 #include "plan/path_unit.h"
 
@@ -41,7 +42,7 @@ static void start_planner(struct planner *p, const struct session *s)
     session_begin_reading(s, &p->reading, &config, &source);
     program_open(&p->reading.program, &config, &source);
     offset_open(&p->reading.offset, &config);
-    controller_plan_limits(&s->setup.machine, &limits);
+    shaper_plan_limits(&s->setup, &limits);
     reserve_for_correction(s, &config.start, &limits);
     p->look_ahead = s->setup.machine.look_ahead_blocks;
     p->cycle_s = limits.cycle_s;

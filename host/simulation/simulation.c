@@ -5,6 +5,7 @@
 #include "compiled/compiled.h"
 #include "config/inject_file.h"
 #include "config/probe_file.h"
+#include "config/shaper.h"
 #include "config/stock_file.h"
 #include "simulation/cutting_feed.h"
 #include "simulation/target_setup.h"
@@ -45,6 +46,7 @@ static void start_controller(struct simulation *s, const struct session *session
         .step = field_get_step_port(&s->field),
         .tools = &session->tools.table,
         .correction = session->correction,
+        .shape = shaper_prepare(&session->setup, &s->shape),
         .compiled = session->compiled != NULL ? &session->compiled->source : NULL,
         .reader = &s->reader,
         .parameters = &s->parameters,
@@ -72,6 +74,10 @@ static enum command_status start_controllers(struct simulation *s, const struct 
     if (!s->has_target) {
         start_controller(s, session, can);
         return STATUS_DONE;
+    }
+    if (session->setup.shaper != SHAPER_NONE) {
+        message_command_error("machine.shaper: a target does not shape setpoints");
+        return STATUS_INPUT;
     }
     status = target_setup_open(&s->target, session, &can.port[0]);
     if (status == STATUS_DONE)

@@ -29,6 +29,7 @@ struct simulation {
     bool has_begun;     /* the program has had its first cycle */
     struct controller controller;
     struct controller_reader reader; /* of the controller */
+    struct shape shape;              /* likewise, if the machine has a shaper */
     struct inject script;            /* of faults */
     struct parameters parameters;    /* what the program sets */
     struct program_text_reader text;

@@ -1,6 +1,7 @@
 #include "simulation/tool_point.h"
 
 #include "base/maths.h"
+#include "config/shaper.h"
 
 /* A table that the chain names is there; one that only the controller believes in is not. */
 static void set_chain(const struct machine_setup *setup, struct deviation_config *geometry)
@@ -43,6 +44,7 @@ void tool_point_init(struct tool_point *t, const struct machine_setup *setup)
     }
     *t = (struct tool_point){
         .cycle_s = 1e-6 * (double)setup->machine.cycle_us,
+        .is_shaped = setup->shaper != SHAPER_NONE,
     };
     deviation_init(&t->real, &geometry, min_mm, max_mm);
     t->nominal = t->real;
@@ -122,10 +124,17 @@ static void follow_way(struct tool_point *t, const struct point *cmd)
     tool_way_measure(&t->way, &t->tool);
 }
 
-static void measure(struct tool_point *t, const struct cycle_record *record, double time_s)
+static void measure_setpoint(struct tool_point *t, const struct cycle_record *record, double time_s)
 {
     struct point tool;
 
+    deviation_follow(&t->nominal, &record->set, time_s);
+    deviation_tool_point(&t->nominal, &record->set, turn_of(t, &record->cmd), &tool);
+    add_error(&t->of_setpoints, distance(&tool, &record->cmd));
+}
+
+static void measure(struct tool_point *t, const struct cycle_record *record, double time_s)
+{
     tool_point_get(t, &record->cmd, &t->tool);
     if (t->vibration.any)
         follow_way(t, &record->cmd);
@@ -137,9 +146,8 @@ static void measure(struct tool_point *t, const struct cycle_record *record, dou
     } else {
         end_standstill(t);
     }
-    deviation_follow(&t->nominal, &record->set, time_s);
-    deviation_tool_point(&t->nominal, &record->set, turn_of(t, &record->cmd), &tool);
-    add_error(&t->of_setpoints, distance(&tool, &record->cmd));
+    if (!t->is_shaped)
+        measure_setpoint(t, record, time_s);
 }
 
 void tool_point_follow(struct tool_point *t, const struct point *drives, double time_s,

@@ -39,6 +39,7 @@ struct tool_point {
     struct point still_at;
     FILE *rests; /* a row for every standstill; NULL: not wanted. The caller's */
     struct tool_point_error at_rest; /* by the drives, at the end of every standstill of REST_S */
+    bool is_shaped; /* setpoints are late on purpose: no error of theirs is measured */
     struct tool_point_error of_setpoints; /* by the setpoints, in every program cycle */
     struct tool_way way; /* from the commanded way, wherever along it; of machines that swing */
 };

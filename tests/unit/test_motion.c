@@ -118,6 +118,27 @@ static void test_a_dwell_lasts_its_cycles_at_rest(void)
     TEST_ASSERT_TRUE(record.cmd.at[AXIS_X] == 1.0);
 }
 
+/* Neither what stands there nor the next move is begun; a move in which the axes are is gone on with. */
+static void test_a_stop_is_not_passed_before_what_is_sent_has_come_to_it(void)
+{
+    push(MOVE_FEED, 1.0, 50.0);
+    push(MOVE_DWELL, 0.0, 0.25);
+    push_end();
+    const uint64_t without = run_to_the_end();
+
+    setUp();
+    push(MOVE_FEED, 1.0, 50.0);
+    push(MOVE_DWELL, 0.0, 0.25);
+    push_end();
+    asked.settles = true;
+    while (record.cmd.at[AXIS_X] < 1.0 || motion.cycles < without) {
+        TEST_ASSERT_EQUAL(MOTION_CYCLE, cycle());
+    }
+    TEST_ASSERT_EQUAL(1, record.block);
+    asked.settles = false;
+    TEST_ASSERT_EQUAL_UINT64(without + 250, run_to_the_end());
+}
+
 static void test_a_stop_is_landed_on_and_the_program_goes_on(void)
 {
     unsigned landed = 0;
@@ -329,6 +350,7 @@ int main(void)
     UNITY_BEGIN();
     RUN_TEST(test_a_single_move_takes_the_least_time_within_two_cycles);
     RUN_TEST(test_a_dwell_lasts_its_cycles_at_rest);
+    RUN_TEST(test_a_stop_is_not_passed_before_what_is_sent_has_come_to_it);
     RUN_TEST(test_a_stop_is_landed_on_and_the_program_goes_on);
     RUN_TEST(test_a_hold_rests_on_the_path_and_resumes);
     RUN_TEST(test_an_override_of_0_holds);

@@ -1,0 +1,29 @@
+#include "shape/zv.h"
+
+#include "base/maths.h"
+
+double zv_period(const struct shape_mode *mode, double cycle_s)
+{
+    return 1.0 / (mode->hz * cycle_s * maths_sqrt(1.0 - mode->damping * mode->damping));
+}
+
+/*
+ * Free, the mode goes on by z = r exp(j theta) in a cycle, r = exp(-damping w tau), theta = w_d tau. What impulses at 0, d and
+ * d + 1 leave of it is w_0 + w_d z^-d + w_(d+1) z^-(d+1). With d = floor(pi/theta), so that half a turn lies between d and
+ * d + 1 cycles, the three have weights of one sign with which this is 0, real part and imaginary part:
+ *
+ *     w_0 = sin theta      w_d = -r^d sin (d + 1) theta      w_(d+1) = r^(d+1) sin d theta
+ */
+void zv_train(const struct shape_mode *mode, double cycle_s, struct train *t)
+{
+    const double w = 2.0 * MATHS_PI * mode->hz;
+    const double theta = 2.0 * MATHS_PI / zv_period(mode, cycle_s);
+    const double d = maths_floor(MATHS_PI / theta);
+    const double decay = mode->damping * w * cycle_s;
+
+    train_set_none(t);
+    train_add(t, 0.0, maths_sin(theta));
+    train_add(t, d, -maths_exp(-decay * d) * maths_sin((d + 1.0) * theta));
+    train_add(t, d + 1.0, maths_exp(-decay * (d + 1.0)) * maths_sin(d * theta));
+    train_normalise(t);
+}
