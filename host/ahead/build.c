@@ -72,27 +72,42 @@ static void set_feed(const struct problem_window *w, struct problem_cell *cell,
         cell->feed_now[i] = way[i] / limit;
 }
 
-/* The larger of an interval's accelerations at its ends, mm a knot squared, but no more than all axes may have. */
+/* No more acceleration than all axes may have, mm a knot squared; what modes make of it has no such bound. */
+static double most_bend(const struct ahead_limits *l)
+{
+    return l->modes.count > 0 ? MATHS_INFINITY
+                              : vector_length(l->acceleration_mm_s2) * l->step_s * l->step_s;
+}
+
+/* The larger of an interval's accelerations at its ends. */
 static double bend_of(const struct ahead_limits *l, double (*control)[3])
 {
-    const double most = vector_length(l->acceleration_mm_s2) * l->step_s * l->step_s;
     double here[3];
     double next[3];
 
     trail_sum(control, knot_second, here);
     trail_sum(control, next_second, next);
-    return maths_min(most, maths_max(vector_length(here), vector_length(next)));
+    return maths_min(most_bend(l), maths_max(vector_length(here), vector_length(next)));
+}
+
+/* By what setpoints in place of the motors' curve move the tool in interval k, at most. */
+static double lag_of(const struct problem_window *w, size_t k)
+{
+    double away[3];
+
+    vector_from_to(w->trail->motor[k + 1], w->trail->tool[k + 1], away);
+    return w->limits->modes.lag * vector_length(away);
 }
 
 /*
- * Between places t knots apart the curve bends away by a t^2 / 8: half a knot for the path, a cycle for its joints, which are
+ * In interval k, between places t knots apart, the tool's curve bends away by a t^2 / 8: half a knot for the path, a cycle for its joints, which are
  * judged by the straight lines between setpoints. It is the acceleration that there is, not the limit: else a higher limit
  * would narrow the tolerance.
  */
-static double radius_of(const struct problem_window *w, const struct ahead_element *e,
-                        double (*control)[3], double t)
+static double radius_of(const struct problem_window *w, const struct ahead_element *e, size_t k,
+                        double t)
 {
-    const double sag_mm = bend_of(w->limits, control) * t * t / 8;
+    const double sag_mm = bend_of(w->limits, w->trail->tool + k) * t * t / 8 + lag_of(w, k);
     const double least_mm = LEAST_PART * e->tolerance_mm;
 
     return maths_max(least_mm, maths_min(w->inside * e->tolerance_mm,
@@ -108,8 +123,8 @@ static bool is_beside(const struct problem_ball *ball)
 }
 
 /* Within reach of its foot: the path may be left sideways only; a corner in no direction. */
-static void set_tube(const struct problem_window *w, struct problem_ball *ball,
-                     double (*control)[3], const double weight[4], double place_mm, size_t *hint)
+static void set_tube(const struct problem_window *w, struct problem_ball *ball, size_t k,
+                     const double weight[4], double place_mm, size_t *hint)
 {
     const struct ahead_element *e;
     double foot[3];
@@ -118,15 +133,15 @@ static void set_tube(const struct problem_window *w, struct problem_ball *ball,
     *hint = ahead_path_find(w->path, place_mm, *hint);
     e = &w->path->element[*hint];
     ahead_path_at(w->path, *hint, place_mm, foot, ball->along);
-    trail_sum(control, weight, x);
+    trail_sum(w->trail->tool + k, weight, x);
     vector_from_to(foot, x, ball->offset);
     if (!is_beside(ball))
         memset(ball->along, 0, sizeof ball->along);
     memcpy(ball->weight, weight, sizeof ball->weight);
-    ball->radius_mm = radius_of(w, e, control, 0.5);
+    ball->radius_mm = radius_of(w, e, k, 0.5);
 }
 
-/* Where the curve is nearest to a point, from the half knot nearest to it on. */
+/* Where the tool's curve is nearest to a point, from the half knot nearest to it on. */
 static double nearest_knot(const struct trail *t, const double corner[3], double u)
 {
     const double last = (double)t->intervals;
@@ -141,9 +156,9 @@ static double nearest_knot(const struct trail *t, const double corner[3], double
         double square;
 
         trail_weights(v - (double)k, weight);
-        trail_sum(t->control + k, weight, x);
+        trail_sum(t->tool + k, weight, x);
         trail_slopes(v - (double)k, weight);
-        trail_sum(t->control + k, weight, slope);
+        trail_sum(t->tool + k, weight, slope);
         vector_from_to(x, corner, way);
         square = vector_dot(slope, slope);
         if (square < 1e-16)
@@ -195,15 +210,14 @@ static void add_joint(struct problem *p, const struct problem_window *w,
         slot++;
     ball = &p->cell[k - w->first].ball[slot];
     trail_slopes(u - (double)k, ball->weight);
-    trail_sum(w->trail->control + k, ball->weight, ball->along);
+    trail_sum(w->trail->tool + k, ball->weight, ball->along);
     length = vector_length(ball->along);
     for (int i = 0; i < 3; i++)
         ball->along[i] = e->joint == AHEAD_BENT && length > 0 ? ball->along[i] / length : 0;
     trail_weights(u - (double)k, ball->weight);
-    trail_sum(w->trail->control + k, ball->weight, x);
+    trail_sum(w->trail->tool + k, ball->weight, x);
     vector_from_to(e->curve.end.at, x, ball->offset);
-    ball->radius_mm =
-        radius_of(w, e, w->trail->control + k, w->limits->cycle_s / w->limits->step_s);
+    ball->radius_mm = radius_of(w, e, k, w->limits->cycle_s / w->limits->step_s);
 }
 
 static void set_joints(struct problem *p, const struct problem_window *w)
@@ -239,23 +253,48 @@ static void set_scales(struct problem *p, const struct ahead_limits *l)
     }
 }
 
+static void copy_weights(struct problem_side *side, size_t point, int axis,
+                         const struct modes_point *from)
+{
+    memcpy(side->by_curve[point][axis], from->by_curve, sizeof from->by_curve);
+    memcpy(side->by_time[point][axis], from->by_time, sizeof from->by_time);
+}
+
+/* How the control points of an interval go with those of w. */
+static void set_map(struct problem_map *map, const struct ahead_modes *modes, double (*control)[3])
+{
+    for (size_t k = 0; k < 4; k++) {
+        for (int axis = 0; axis < 3; axis++) {
+            struct modes_point motor;
+            struct modes_point tool;
+
+            modes_at(modes, axis, control + k, &motor, &tool);
+            copy_weights(&map->motor, k, axis, &motor);
+            copy_weights(&map->tool, k, axis, &tool);
+        }
+    }
+}
+
 void problem_build(struct problem *p, const struct problem_window *w)
 {
     size_t hint = 0;
 
+    p->modes = w->trail->modes;
     set_scales(p, w->limits);
     for (size_t i = 0; i < p->cells; i++) {
-        double(*control)[3] = w->trail->control + w->first + i;
+        double(*motor)[3] = w->trail->motor + w->first + i;
         const double *place_mm = &w->trail->place_mm[2 * (w->first + i)];
         struct problem_cell *cell = &p->cell[i];
 
         for (int axis = 0; axis < 3; axis++)
-            set_axis(p, cell, control, axis);
-        set_tube(w, &cell->ball[0], control, knot_value, place_mm[0], &hint);
-        set_feed(w, cell, control, w->path->element[hint].feed_mm_s);
-        set_tube(w, &cell->ball[1], control, middle_value, place_mm[1], &hint);
+            set_axis(p, cell, motor, axis);
+        set_tube(w, &cell->ball[0], w->first + i, knot_value, place_mm[0], &hint);
+        set_feed(w, cell, motor, w->path->element[hint].feed_mm_s);
+        set_tube(w, &cell->ball[1], w->first + i, middle_value, place_mm[1], &hint);
         for (int k = 2; k < CELL_BALLS; k++)
             cell->ball[k].radius_mm = 0;
+        if (p->modes > 0)
+            set_map(&p->map[i], &w->limits->modes, w->trail->control + w->first + i);
     }
     set_joints(p, w);
 }

@@ -120,10 +120,19 @@ static uint32_t fine_cycles(const struct plan_limits *of, uint32_t cycles)
     return cycles;
 }
 
+/* Knots no farther apart than this. */
+static double most_cycles(const struct compile_config *config, double cycle_s)
+{
+    const double by_size = maths_max(maths_ceil(COMPILE_STEP_S / cycle_s - 1e-9), 1);
+    const double by_modes = modes_step_s(&config->vibration) / cycle_s;
+
+    return by_size <= by_modes ? by_size : maths_max((double)(uint32_t)by_modes, 1);
+}
+
 static uint32_t step_cycles(const struct compile_config *config)
 {
     const double cycle_s = 1e-6 * config->cycle_us;
-    const double most = maths_max(maths_ceil(COMPILE_STEP_S / cycle_s - 1e-9), 1);
+    const double most = most_cycles(config, cycle_s);
     const double wanted =
         (double)(uint32_t)(maths_min(crossing_s(config), 1) / (COMPILE_CROSSING_KNOTS * cycle_s));
 
@@ -153,6 +162,7 @@ static void set_limits(struct compile *c)
     c->step_cycles = step_cycles(&c->config);
     c->limits.cycle_s = 1e-6 * c->config.cycle_us;
     c->limits.step_s = (double)c->step_cycles * c->limits.cycle_s;
+    modes_init(&c->limits.modes, &c->config.vibration, c->limits.step_s, c->limits.cycle_s);
     c->exact = *of;
     c->exact.cycle_s = c->limits.step_s;
     for (int i = 0; i < AXIS_LINEAR_COUNT; i++) {
@@ -206,7 +216,7 @@ enum compile_result compile_begin(struct compile *c, const struct compile_config
     set_limits(c);
     header = header_of(c);
     encoder_begin(&c->encoder, stream, &header);
-    c->solver = solver_new(config->workers);
+    c->solver = solver_new(config->workers, c->limits.modes.count);
     return c->solver != NULL ? COMPILE_DONE : COMPILE_MEMORY;
 }
 
@@ -230,11 +240,13 @@ static bool tell_progress(void *context, double part)
 static enum compile_result try_once(struct compile *c, const struct trail *exact,
                                     struct trail *trail, bool *stuck)
 {
+    /* On the exact path the tool swings: no time is too long. */
+    const size_t longest = c->limits.modes.count > 0 ? SIZE_MAX : exact->intervals;
+
     *stuck = false;
     if (!guess_trail(&c->path, &c->limits, trail))
         return COMPILE_MEMORY;
-    switch (
-        solver_run(c->solver, &c->path, &c->limits, trail, exact->intervals, tell_progress, c)) {
+    switch (solver_run(c->solver, &c->path, &c->limits, trail, longest, tell_progress, c)) {
     case SOLVER_DONE:
         return COMPILE_DONE;
     case SOLVER_STOPPED:
@@ -284,7 +296,8 @@ static bool is_worth_it(const struct compile *c, const struct trail *exact)
     const double least_s = exact_least_s(&c->path, &c->exact);
     const double exact_s = (double)(exact->intervals - TRAIL_ENDS) * c->limits.step_s;
 
-    return exact_s > (1 + WORTH_PART) * least_s + WORTH_KNOTS * c->limits.step_s;
+    return c->limits.modes.count > 0 ||
+           exact_s > (1 + WORTH_PART) * least_s + WORTH_KNOTS * c->limits.step_s;
 }
 
 /* The section on its exact path, within every limit. */

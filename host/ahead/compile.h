@@ -38,7 +38,8 @@ enum compile_result {
 };
 
 struct compile_config {
-    struct plan_limits limits; /* after correction's share */
+    struct plan_limits limits;         /* after correction's share */
+    struct vibration_config vibration; /* of the machine: modes; has passed its check */
     uint32_t cycle_us;
     uint32_t ceiling_percent;
     uint32_t

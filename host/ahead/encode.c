@@ -77,7 +77,7 @@ static void write_section(struct encoder *e, const struct ahead_path *path, cons
     put(&r, path->count, 4);
     put(&r, t->intervals, 4);
     for (int i = 0; i < AXIS_LINEAR_COUNT; i++)
-        put(&r, (uint64_t)quanta(e, t->control[0][i]), 8);
+        put(&r, (uint64_t)quanta(e, t->motor[0][i]), 8);
     write_record(e, &r);
 }
 
@@ -234,7 +234,7 @@ static size_t write_knots(struct encoder *e, const struct trail *t, size_t first
     put(&r, count, 1);
     for (size_t i = first; i < first + count; i++) {
         for (int axis = 0; axis < AXIS_LINEAR_COUNT; axis++)
-            put(&r, (uint64_t)third_of(e, t->control + i, axis) & 0xffff, 2);
+            put(&r, (uint64_t)third_of(e, t->motor + i, axis) & 0xffff, 2);
     }
     r.length += put_ends(&r, ends, first, count, best_k(&r, ends, first, count));
     for (size_t i = first; i < first + count; i++)

@@ -167,6 +167,8 @@ bool exact_trail(const struct ahead_path *path, const struct plan_limits *limits
     *stalled = motion_stalled_line(&x->motion);
     if (done) {
         trail->intervals -= TRAIL_ENDS;
+        trail->motor = trail->control;
+        trail->tool = trail->control;
         trail->beyond = calloc(trail->intervals, sizeof *trail->beyond);
         done = trail->beyond != NULL;
     }
@@ -195,7 +197,7 @@ bool exact_is_legal(const struct trail *trail, const struct plan_limits *limits)
     for (size_t k = 0; k < trail->intervals && legal; k++) {
         for (int i = 0; i < AXIS_LINEAR_COUNT; i++)
             legal = legal &&
-                    ((limits->axes & (1U << i)) == 0 || is_within(trail->control + k, i, limits));
+                    ((limits->axes & (1U << i)) == 0 || is_within(trail->motor + k, i, limits));
     }
     return legal;
 }

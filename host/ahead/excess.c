@@ -79,7 +79,7 @@ double excess_measure(const struct problem_window *w, const struct problem *p)
     double most = 0;
 
     for (size_t i = 0; i < p->cells; i++) {
-        double(*control)[3] = w->trail->control + w->first + i;
+        double(*control)[3] = w->trail->motor + w->first + i;
         const size_t at = ahead_path_find(w->path, w->trail->place_mm[2 * (w->first + i)], hint);
         const double feed_mm_s = w->path->element[at].feed_mm_s;
         double here = distance_of(w, w->first + i, &hint);

@@ -244,7 +244,7 @@ bool guess_trail(const struct ahead_path *path, const struct ahead_limits *limit
         limit_ramps(&g);
         set_times(&g);
         done = trail_allocate(trail,
-                              (size_t)maths_ceil(g.reached_s[g.count - 1] / limits->step_s) + 4);
+                              (size_t)maths_ceil(g.reached_s[g.count - 1] / limits->step_s) + 4, 0);
     }
     if (done)
         sample(&g, trail);

@@ -1,7 +1,7 @@
 #include "ahead/interior.h"
 
 #include "ahead/band.h"
-#include "ahead/rows.h"
+#include "ahead/image.h"
 #include "base/maths.h"
 
 #include <stdlib.h>
@@ -41,17 +41,19 @@ struct row {
 struct interior {
     size_t cells_max;
     const struct problem *problem;
-    size_t free; /* control points that may change */
+    size_t ends;  /* control points at either end that may not change, */
+    size_t free;  /* and those between them that may */
+    size_t width; /* of the band */
     double (*z)[4];
     double (*dz)[4];
     double (*slope)[4]; /* of the Lagrangian, negative */
     double (*right)[4];
-    double (*band)[BAND_WIDTH];
+    double *band;
     struct row (*row)[CELL_ROWS];
     double move_square;
 };
 
-struct interior *interior_new(size_t cells_max)
+struct interior *interior_new(size_t cells_max, unsigned modes)
 {
     struct interior *w = calloc(1, sizeof *w);
 
@@ -62,7 +64,7 @@ struct interior *interior_new(size_t cells_max)
     w->dz = calloc(cells_max, sizeof *w->dz);
     w->slope = calloc(cells_max, sizeof *w->slope);
     w->right = calloc(cells_max, sizeof *w->right);
-    w->band = calloc(4 * cells_max, sizeof *w->band);
+    w->band = calloc(4 * (4 + 2 * (size_t)modes) * 4 * cells_max, sizeof *w->band);
     w->row = calloc(cells_max, sizeof *w->row);
     if (w->z != NULL && w->dz != NULL && w->slope != NULL && w->right != NULL && w->band != NULL &&
         w->row != NULL)
@@ -84,64 +86,65 @@ void interior_free(struct interior *w)
     free(w);
 }
 
-/* The first of a cell's four control points that may change, and one past the last. */
-static size_t first_free(size_t cell)
+/* The first of a cell's control points that may change, and one past the last. */
+static size_t first_free(const struct interior *w, size_t cell)
 {
-    return cell < TRAIL_ENDS ? TRAIL_ENDS - cell : 0;
+    return cell < w->ends ? w->ends - cell : 0;
 }
 
 static size_t end_free(const struct interior *w, size_t cell)
 {
-    const size_t left = w->free + TRAIL_ENDS - cell;
+    const size_t left = w->free + w->ends - cell;
 
-    return left < 4 ? left : 4;
+    return left < w->width / 4 ? left : w->width / 4;
 }
 
 static void gather(const struct interior *w, double (*from)[4], size_t cell,
-                   double z[CELL_UNKNOWNS])
+                   double x[IMAGE_UNKNOWNS])
 {
-    const size_t begin = first_free(cell);
+    const size_t begin = first_free(w, cell);
     const size_t end = end_free(w, cell);
 
-    memset(z, 0, CELL_UNKNOWNS * sizeof *z);
+    memset(x, 0, w->width * sizeof *x);
     for (size_t k = begin; k < end; k++)
-        memcpy(z + 4 * k, from[cell + k - TRAIL_ENDS], sizeof from[0]);
+        memcpy(x + 4 * k, from[cell + k - w->ends], sizeof from[0]);
 }
 
-static void scatter(const struct interior *w, const double b[CELL_UNKNOWNS], size_t cell,
+static void scatter(const struct interior *w, const double b[IMAGE_UNKNOWNS], size_t cell,
                     double (*to)[4])
 {
     const size_t end = end_free(w, cell);
 
-    for (size_t k = first_free(cell); k < end; k++) {
+    for (size_t k = first_free(w, cell); k < end; k++) {
         for (int i = 0; i < 4; i++)
-            to[cell + k - TRAIL_ENDS][i] += b[4 * k + (size_t)i];
+            to[cell + k - w->ends][i] += b[4 * k + (size_t)i];
     }
 }
 
-static void scatter_square(struct interior *w, double k[CELL_UNKNOWNS][CELL_UNKNOWNS], size_t cell)
+static void scatter_square(struct interior *w, const double *k, size_t cell)
 {
-    const size_t begin = 4 * first_free(cell);
+    const size_t begin = 4 * first_free(w, cell);
     const size_t end = 4 * end_free(w, cell);
 
     for (size_t j = begin; j < end; j++) {
-        double *column = w->band[4 * cell + j - (size_t)4 * TRAIL_ENDS];
+        double *column = w->band + (4 * cell + j - 4 * w->ends) * w->width;
 
         for (size_t i = j; i < end; i++)
-            column[i - j] += k[i][j];
+            column[i - j] += k[i * w->width + j];
     }
 }
 
 static void start(struct interior *w)
 {
     const struct problem *p = w->problem;
-    double z[CELL_UNKNOWNS] = {0};
+    static const double nothing[CELL_UNKNOWNS];
+    const struct rows_at z = {nothing, nothing};
 
     memset(w->z, 0, w->free * sizeof *w->z);
     for (size_t i = 0; i < p->cells; i++) {
         double c[CELL_ROWS];
 
-        rows_value(p, &p->cell[i], z, c);
+        rows_value(p, &p->cell[i], &z, c);
         for (int j = 0; j < CELL_ROWS; j++) {
             struct row *row = &w->row[i][j];
 
@@ -159,11 +162,14 @@ static double take_values(struct interior *w)
     double sum = 0;
 
     for (size_t i = 0; i < p->cells; i++) {
-        double z[CELL_UNKNOWNS];
+        double x[IMAGE_UNKNOWNS];
         double c[CELL_ROWS];
+        struct image image;
 
-        gather(w, w->z, i, z);
-        rows_value(p, &p->cell[i], z, c);
+        gather(w, w->z, i, x);
+        const struct rows_at z = image_of(p, i, x, &image);
+
+        rows_value(p, &p->cell[i], &z, c);
         for (int j = 0; j < CELL_ROWS; j++) {
             struct row *row = &w->row[i][j];
 
@@ -191,7 +197,7 @@ static void smooth_at(struct interior *w, size_t f)
 
         w->slope[at][3] -= SMOOTH_SQUARE * second[i] * bend;
         for (size_t j = i; j < end; j++)
-            w->band[4 * at + 3][4 * (j - i)] += SMOOTH_SQUARE * second[i] * second[j];
+            w->band[(4 * at + 3) * w->width + 4 * (j - i)] += SMOOTH_SQUARE * second[i] * second[j];
     }
 }
 
@@ -207,36 +213,39 @@ static void assemble(struct interior *w)
     const struct problem *p = w->problem;
     const double time_square = p->timed ? TIME_SQUARE : 1e9;
 
-    memset(w->band, 0, 4 * w->free * sizeof *w->band);
+    memset(w->band, 0, 4 * w->free * w->width * sizeof *w->band);
     for (size_t f = 0; f < w->free; f++) {
         for (int i = 0; i < 3; i++) {
-            w->band[4 * f + (size_t)i][0] = w->move_square;
+            w->band[(4 * f + (size_t)i) * w->width] = w->move_square;
             w->slope[f][i] = -w->move_square * w->z[f][i];
         }
-        w->band[4 * f + 3][0] = time_square;
+        w->band[(4 * f + 3) * w->width] = time_square;
         w->slope[f][3] = (p->timed ? 0.5 : 0) - time_square * w->z[f][3];
     }
     smooth_time(w);
     for (size_t i = 0; i < p->cells; i++) {
-        double z[CELL_UNKNOWNS];
-        double k[CELL_UNKNOWNS][CELL_UNKNOWNS] = {{0}};
-        double b[CELL_UNKNOWNS] = {0};
+        double x[IMAGE_UNKNOWNS];
+        double k[IMAGE_UNKNOWNS * IMAGE_UNKNOWNS];
+        double b[IMAGE_UNKNOWNS] = {0};
         double weight[CELL_ROWS];
         double m[CELL_ROWS];
+        struct image image;
 
-        gather(w, w->z, i, z);
+        gather(w, w->z, i, x);
+        const struct rows_at z = image_of(p, i, x, &image);
+
         for (int j = 0; j < CELL_ROWS; j++) {
             weight[j] = w->row[i][j].w;
             m[j] = w->row[i][j].m;
         }
-        rows_normal(p, &p->cell[i], z, weight, m, k);
+        image_normal(p, i, &z, weight, m, k);
         scatter_square(w, k, i);
         for (int j = 0; j < CELL_ROWS; j++)
             m[j] = -m[j];
-        rows_transpose(p, &p->cell[i], z, m, b);
+        image_transpose(p, i, &z, m, b);
         scatter(w, b, i, w->slope);
     }
-    band_factor(w->band, 4 * w->free);
+    band_factor(w->band, w->width, 4 * w->free);
 }
 
 /* What the products of a row should change by; a second step takes the first one's product into account. */
@@ -268,11 +277,14 @@ static void direction(struct interior *w, double mu, bool again, double *primal,
 
     memcpy(w->right, w->slope, w->free * sizeof *w->right);
     for (size_t i = 0; i < p->cells; i++) {
-        double z[CELL_UNKNOWNS];
+        double x[IMAGE_UNKNOWNS];
         double v[CELL_ROWS];
-        double b[CELL_UNKNOWNS] = {0};
+        double b[IMAGE_UNKNOWNS] = {0};
+        struct image image;
 
-        gather(w, w->z, i, z);
+        gather(w, w->z, i, x);
+        const struct rows_at z = image_of(p, i, x, &image);
+
         for (int j = 0; j < CELL_ROWS; j++) {
             double with_s;
             double with_t;
@@ -280,21 +292,26 @@ static void direction(struct interior *w, double mu, bool again, double *primal,
             targets(&w->row[i][j], mu, again, &with_s, &with_t);
             v[j] = -w->row[i][j].w * asked(&w->row[i][j], with_s, with_t);
         }
-        rows_transpose(p, &p->cell[i], z, v, b);
+        image_transpose(p, i, &z, v, b);
         scatter(w, b, i, w->right);
     }
     memcpy(w->dz, w->right, w->free * sizeof *w->dz);
-    band_solve(w->band, 4 * w->free, &w->dz[0][0]);
+    band_solve(w->band, w->width, 4 * w->free, &w->dz[0][0]);
     *primal = 1;
     *dual = 1;
     for (size_t i = 0; i < p->cells; i++) {
-        double z[CELL_UNKNOWNS];
-        double dz[CELL_UNKNOWNS];
+        double x[IMAGE_UNKNOWNS];
+        double dx[IMAGE_UNKNOWNS];
         double product[CELL_ROWS];
+        struct image image;
+        struct image step;
 
-        gather(w, w->z, i, z);
-        gather(w, w->dz, i, dz);
-        rows_product(p, &p->cell[i], z, dz, product);
+        gather(w, w->z, i, x);
+        gather(w, w->dz, i, dx);
+        const struct rows_at z = image_of(p, i, x, &image);
+        const struct rows_at dz = image_of(p, i, dx, &step);
+
+        rows_product(p, &p->cell[i], &z, &dz, product);
         for (int j = 0; j < CELL_ROWS; j++) {
             struct row *row = &w->row[i][j];
             double with_s;
@@ -380,7 +397,9 @@ double (*interior_solve(struct interior *w, const struct problem *p))[4]
     double radius_mm = MATHS_INFINITY;
 
     w->problem = p;
-    w->free = p->cells - TRAIL_ENDS;
+    w->ends = trail_ends(p->modes);
+    w->free = p->cells - w->ends;
+    w->width = problem_unknowns(p);
     for (size_t i = 0; i < p->cells; i++)
         radius_mm = maths_min(radius_mm, p->cell[i].ball[0].radius_mm);
     w->move_square = MOVE_SQUARE / (radius_mm * radius_mm);

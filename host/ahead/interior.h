@@ -5,7 +5,8 @@
  *
  *     c(z) + t = s,   s, t >= 0,   s m = mu,   t (PRICE - m) = mu
  *
- * with the multiplier 0 <= m <= PRICE. Eliminating all but z leaves a band matrix (band.h) of four unknowns a knot.
+ * with the multiplier 0 <= m <= PRICE. Eliminating all but z leaves a band matrix (band.h) of four unknowns a knot, as wide
+ * as the unknowns of one cell.
  */
 #ifndef TAKT_HOST_AHEAD_INTERIOR_H
 #define TAKT_HOST_AHEAD_INTERIOR_H
@@ -14,14 +15,14 @@
 
 #include <stdbool.h>
 
-struct interior; /* memory for windows of up to so many cells */
+struct interior; /* memory for windows of up to so many cells, with so many modes of an axis */
 
 /* NULL: out of memory. */
-struct interior *interior_new(size_t cells_max);
+struct interior *interior_new(size_t cells_max, unsigned modes);
 void interior_free(struct interior *w);
 
 /*
- * The change (d, e) of control points TRAIL_ENDS ... cells - 1 of the window, finite whatever the problem is; valid until
+ * The change (d, e) of control points trail_ends ... cells - 1 of the window, finite whatever the problem is; valid until
  * the next call.
  */
 double (*interior_solve(struct interior *w, const struct problem *p))[4];

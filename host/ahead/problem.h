@@ -14,6 +14,10 @@
  * and the time is sum (1 - e / 2 + 3/8 e^2). The bound of jerk is the tangent of J / sqrt(y), which is convex, so that a
  * change of time alone never leads beyond the limits. Every row may be broken at a price, so that there is a solution
  * from wherever the trajectory is.
+ *
+ * On a machine with modes the unknown is a change of the curve w that motors and tool follow from (modes.h): q + d is then
+ * the motors' curve in the rows of velocity, acceleration and jerk, and the tool's in those of the tube, with d linear in
+ * the changes of w and of time (image.h).
  */
 #ifndef TAKT_HOST_AHEAD_PROBLEM_H
 #define TAKT_HOST_AHEAD_PROBLEM_H
@@ -48,9 +52,21 @@ struct problem_cell {
     struct problem_ball ball[CELL_BALLS];
 };
 
+/* How the four control points of motors or tool change with the curve's: point, axis, see struct modes_point. */
+struct problem_side {
+    double by_curve[4][3][MODES_REACH_MAX];
+    double by_time[4][3][MODES_REACH_MAX];
+};
+
+struct problem_map {
+    struct problem_side motor, tool;
+};
+
 struct problem {
-    size_t cells;                /* intervals of the window: control points - 3 */
+    size_t cells;                /* intervals of the window */
     struct problem_cell *cell;   /* owned by the caller */
+    unsigned modes;              /* of an axis, at most */
+    struct problem_map *map;     /* of every cell if there are modes; owned by the caller */
     double scale[3][FORM_COUNT]; /* 1 / limit, knots */
     bool timed;                  /* false: e = 0 */
 };
@@ -63,6 +79,12 @@ struct problem_window {
     size_t first;
     double inside; /* part of the tolerance that is used */
 };
+
+/* Unknowns of one cell: x, y, z and e of four control points and of those that modes reach to. */
+static inline size_t problem_unknowns(const struct problem *p)
+{
+    return 4 * (4 + 2 * (size_t)p->modes);
+}
 
 /* Sets the rows of p, for p->cells intervals; place_mm: of every half knot from 2 first on. */
 void problem_build(struct problem *p, const struct problem_window *w);

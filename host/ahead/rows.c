@@ -82,15 +82,15 @@ static void feed_of(const struct problem_cell *cell, const double z[CELL_UNKNOWN
         velocity[i] += cell->feed_now[i];
 }
 
-void rows_value(const struct problem *p, const struct problem_cell *cell,
-                const double z[CELL_UNKNOWNS], double c[CELL_ROWS])
+void rows_value(const struct problem *p, const struct problem_cell *cell, const struct rows_at *z,
+                double c[CELL_ROWS])
 {
     double *row = c;
 
     for (int axis = 0; axis < 3; axis++) {
         for (int form = 0; form < FORM_COUNT; form++) {
-            const double value = cell->now[axis][form] + form_of(p, cell, axis, form, z);
-            const double limit = 1 - room_of(form, z);
+            const double value = cell->now[axis][form] + form_of(p, cell, axis, form, z->motor);
+            const double limit = 1 - room_of(form, z->motor);
 
             *row++ = limit - value;
             *row++ = limit + value;
@@ -100,7 +100,7 @@ void rows_value(const struct problem *p, const struct problem_cell *cell,
     if (cell->feed_scale > 0) {
         double velocity[3];
 
-        feed_of(cell, z, velocity);
+        feed_of(cell, z->motor, velocity);
         *row = 0.5 * (1 - vector_dot(velocity, velocity));
     }
     row++;
@@ -109,13 +109,13 @@ void rows_value(const struct problem *p, const struct problem_cell *cell,
 
         *row = 1;
         if (cell->ball[i].radius_mm > 0) {
-            ball_place(&cell->ball[i], z, place);
+            ball_place(&cell->ball[i], z->tool, place);
             *row = 0.5 * (1 - vector_dot(place, place));
         }
         row++;
     }
-    *row++ = TIME_HIGH - z[15];
-    *row = TIME_LOW + z[15];
+    *row++ = TIME_HIGH - z->motor[15];
+    *row = TIME_LOW + z->motor[15];
 }
 
 static double ball_product(const struct problem_ball *ball, const double z[CELL_UNKNOWNS],
@@ -129,16 +129,15 @@ static double ball_product(const struct problem_ball *ball, const double z[CELL_
     return vector_dot(place, move) / ball->radius_mm;
 }
 
-void rows_product(const struct problem *p, const struct problem_cell *cell,
-                  const double z[CELL_UNKNOWNS], const double dz[CELL_UNKNOWNS],
-                  double product[CELL_ROWS])
+void rows_product(const struct problem *p, const struct problem_cell *cell, const struct rows_at *z,
+                  const struct rows_at *dz, double product[CELL_ROWS])
 {
     double *row = product;
 
     for (int axis = 0; axis < 3; axis++) {
         for (int form = 0; form < FORM_COUNT; form++) {
-            const double value = form_of(p, cell, axis, form, dz);
-            const double room = room_of(form, dz);
+            const double value = form_of(p, cell, axis, form, dz->motor);
+            const double room = room_of(form, dz->motor);
 
             *row++ = room + value;
             *row++ = room - value;
@@ -149,15 +148,15 @@ void rows_product(const struct problem *p, const struct problem_cell *cell,
         double velocity[3];
         double change[3];
 
-        feed_of(cell, z, velocity);
-        feed_change(cell, dz, change);
+        feed_of(cell, z->motor, velocity);
+        feed_change(cell, dz->motor, change);
         *row = vector_dot(velocity, change);
     }
     row++;
     for (int i = 0; i < CELL_BALLS; i++)
-        *row++ = cell->ball[i].radius_mm > 0 ? ball_product(&cell->ball[i], z, dz) : 0;
-    *row++ = dz[15];
-    *row = -dz[15];
+        *row++ = cell->ball[i].radius_mm > 0 ? ball_product(&cell->ball[i], z->tool, dz->tool) : 0;
+    *row++ = dz->motor[15];
+    *row = -dz->motor[15];
 }
 
 static void add_ball(const struct problem_ball *ball, const double z[CELL_UNKNOWNS], double v,
@@ -186,8 +185,7 @@ static void add_velocity(const struct problem_cell *cell, const double z[CELL_UN
 }
 
 void rows_transpose(const struct problem *p, const struct problem_cell *cell,
-                    const double z[CELL_UNKNOWNS], const double v[CELL_ROWS],
-                    double b[CELL_UNKNOWNS])
+                    const struct rows_at *z, const double v[CELL_ROWS], const struct rows_sum *b)
 {
     const double *row = v;
 
@@ -197,19 +195,19 @@ void rows_transpose(const struct problem *p, const struct problem_cell *cell,
             const double room = form == FORM_JERK ? 0.5 * (row[0] + row[1]) : 0;
 
             for (int k = 0; k < 4; k++) {
-                b[4 * k + axis] += value * p->scale[axis][form] * form_weight[form][k];
-                b[4 * k + 3] += value * cell->time[axis][form][k] + room * middle_value[k];
+                b->motor[4 * k + axis] += value * p->scale[axis][form] * form_weight[form][k];
+                b->motor[4 * k + 3] += value * cell->time[axis][form][k] + room * middle_value[k];
             }
         }
     }
     if (cell->feed_scale > 0)
-        add_velocity(cell, z, *row, b);
+        add_velocity(cell, z->motor, *row, b->motor);
     row++;
     for (int i = 0; i < CELL_BALLS; i++, row++) {
         if (cell->ball[i].radius_mm > 0)
-            add_ball(&cell->ball[i], z, *row, b);
+            add_ball(&cell->ball[i], z->tool, *row, b->tool);
     }
-    b[15] += row[0] - row[1];
+    b->motor[15] += row[0] - row[1];
 }
 
 /* k += w g g^T of one axis's row: g is a of the axis's unknowns and b of e's. */
@@ -303,17 +301,16 @@ static void add_ball_square(const struct problem_ball *ball, const double z[CELL
     }
 }
 
-void rows_normal(const struct problem *p, const struct problem_cell *cell,
-                 const double z[CELL_UNKNOWNS], const double w[CELL_ROWS],
-                 const double m[CELL_ROWS], double k[CELL_UNKNOWNS][CELL_UNKNOWNS])
+void rows_normal(const struct problem *p, const struct problem_cell *cell, const struct rows_at *z,
+                 const double w[CELL_ROWS], const double m[CELL_ROWS], const struct rows_square *k)
 {
     for (int axis = 0; axis < 3; axis++)
-        add_axis(p, cell, axis, w + ROWS_AXIS + (size_t)2 * FORM_COUNT * (size_t)axis, k);
+        add_axis(p, cell, axis, w + ROWS_AXIS + (size_t)2 * FORM_COUNT * (size_t)axis, k->motor);
     if (cell->feed_scale > 0)
-        add_feed(cell, z, w[ROWS_FEED], m[ROWS_FEED], k);
+        add_feed(cell, z->motor, w[ROWS_FEED], m[ROWS_FEED], k->motor);
     for (int i = 0; i < CELL_BALLS; i++) {
         if (cell->ball[i].radius_mm > 0)
-            add_ball_square(&cell->ball[i], z, w[ROWS_BALL + i], m[ROWS_BALL + i], k);
+            add_ball_square(&cell->ball[i], z->tool, w[ROWS_BALL + i], m[ROWS_BALL + i], k->tool);
     }
-    k[15][15] += w[ROWS_TIME] + w[ROWS_TIME + 1];
+    k->motor[15][15] += w[ROWS_TIME] + w[ROWS_TIME + 1];
 }

@@ -13,26 +13,40 @@ enum { ROWS_FEED = 3 * FORM_COUNT * 2 };
 #define ROWS_TIME (ROWS_BALL + CELL_BALLS)
 #define CELL_ROWS (ROWS_TIME + 2)
 
-/* Unknowns of a cell: of four control points x, y, z and e. */
+/* What the rows are on: of four control points x, y, z and e. */
 #define CELL_UNKNOWNS 16
 
+/*
+ * Limits and bounds of time are on the motors' control points, the tolerance on the tool's: on a stiff machine both are the
+ * same, in one place, and so are what is added up below. The tool's e is not used.
+ */
+struct rows_at {
+    const double *motor, *tool; /* CELL_UNKNOWNS each */
+};
+
+struct rows_sum {
+    double *motor, *tool;
+};
+
+struct rows_square {
+    double (*motor)[CELL_UNKNOWNS];
+    double (*tool)[CELL_UNKNOWNS];
+};
+
 /* c(z) of every row: > 0 inside. Rows that do not apply are 1. */
-void rows_value(const struct problem *p, const struct problem_cell *cell,
-                const double z[CELL_UNKNOWNS], double c[CELL_ROWS]);
+void rows_value(const struct problem *p, const struct problem_cell *cell, const struct rows_at *z,
+                double c[CELL_ROWS]);
 
 /* G dz of every row, G = -dc/dz at z. */
-void rows_product(const struct problem *p, const struct problem_cell *cell,
-                  const double z[CELL_UNKNOWNS], const double dz[CELL_UNKNOWNS],
-                  double product[CELL_ROWS]);
+void rows_product(const struct problem *p, const struct problem_cell *cell, const struct rows_at *z,
+                  const struct rows_at *dz, double product[CELL_ROWS]);
 
 /* b += G^T v */
 void rows_transpose(const struct problem *p, const struct problem_cell *cell,
-                    const double z[CELL_UNKNOWNS], const double v[CELL_ROWS],
-                    double b[CELL_UNKNOWNS]);
+                    const struct rows_at *z, const double v[CELL_ROWS], const struct rows_sum *b);
 
 /* The lower triangle of k += G^T W G + sum_i m_i (second derivative of -c_i). */
-void rows_normal(const struct problem *p, const struct problem_cell *cell,
-                 const double z[CELL_UNKNOWNS], const double w[CELL_ROWS],
-                 const double m[CELL_ROWS], double k[CELL_UNKNOWNS][CELL_UNKNOWNS]);
+void rows_normal(const struct problem *p, const struct problem_cell *cell, const struct rows_at *z,
+                 const double w[CELL_ROWS], const double m[CELL_ROWS], const struct rows_square *k);
 
 #endif

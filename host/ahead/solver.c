@@ -77,22 +77,25 @@ struct solver {
     size_t done; /* jobs of the first core in this round */
 };
 
-static bool bench_allocate(struct bench *b)
+static bool bench_allocate(struct bench *b, unsigned modes)
 {
-    b->interior = interior_new(WINDOW_MAX);
+    b->interior = interior_new(WINDOW_MAX, modes);
     b->problem.cell = calloc(WINDOW_MAX, sizeof *b->problem.cell);
+    b->problem.map = modes > 0 ? calloc(WINDOW_MAX, sizeof *b->problem.map) : NULL;
     b->slow = calloc(WINDOW_MAX, sizeof *b->slow);
-    return b->interior != NULL && b->problem.cell != NULL && b->slow != NULL;
+    return b->interior != NULL && b->problem.cell != NULL && b->slow != NULL &&
+           (modes == 0 || b->problem.map != NULL);
 }
 
 static void bench_free(struct bench *b)
 {
     interior_free(b->interior);
     free(b->problem.cell);
+    free(b->problem.map);
     free(b->slow);
 }
 
-struct solver *solver_new(unsigned workers)
+struct solver *solver_new(unsigned workers, unsigned modes)
 {
     struct solver *s = calloc(1, sizeof *s);
     bool done = s != NULL;
@@ -101,7 +104,7 @@ struct solver *solver_new(unsigned workers)
         return NULL;
     s->workers = workers < 1 ? 1 : workers > CREW_MAX ? CREW_MAX : workers;
     for (unsigned i = 0; i < s->workers; i++)
-        done = bench_allocate(&s->bench[i]) && done;
+        done = bench_allocate(&s->bench[i], modes) && done;
     if (done)
         return s;
     solver_free(s);
@@ -133,12 +136,16 @@ static bool step(struct bench *b, const struct problem_window *w, size_t cells, 
     return warp_window(w, cells, interior_solve(b->interior, &b->problem), timed, result);
 }
 
-static bool copy_piece(const struct trail *from, size_t first, size_t intervals, struct trail *to)
+static bool copy_piece(const struct solver *s, size_t first, size_t intervals, struct trail *to)
 {
-    if (!trail_allocate(to, intervals))
+    const struct trail *from = s->trail;
+
+    if (!trail_allocate(to, intervals, from->modes))
         return false;
-    memcpy(to->control, from->control + first, (intervals + TRAIL_ENDS) * sizeof *to->control);
+    memcpy(to->control, from->control + first,
+           (intervals + trail_ends(from->modes)) * sizeof *to->control);
     memcpy(to->place_mm, from->place_mm + 2 * first, (2 * intervals + 1) * sizeof *to->place_mm);
+    trail_follow(to, &s->limits->modes);
     return true;
 }
 
@@ -164,6 +171,7 @@ static double slowness(const struct solver *s, double beyond)
 static void slow_down(const struct solver *s, struct bench *b, const struct trail *piece)
 {
     const size_t cells = piece->intervals;
+    const size_t ends = trail_ends(piece->modes);
 
     memset(b->slow, 0, cells * sizeof *b->slow);
     for (size_t i = 0; i < cells; i++) {
@@ -175,8 +183,10 @@ static void slow_down(const struct solver *s, struct bench *b, const struct trai
             const double x = ((double)k - (double)i) / SLOW_MARGIN;
             const double bump = (1 - x * x) * (1 - x * x);
 
-            if (k >= TRAIL_ENDS && k < cells)
-                b->slow[k - TRAIL_ENDS][3] = maths_min(b->slow[k - TRAIL_ENDS][3], -low * bump);
+            const size_t point = k + piece->modes;
+
+            if (point >= ends && point < cells)
+                b->slow[point - ends][3] = maths_min(b->slow[point - ends][3], -low * bump);
         }
     }
 }
@@ -225,7 +235,7 @@ static bool polish(const struct solver *s, struct bench *b, struct trail *piece)
 
 static bool do_repair(const struct solver *s, struct bench *b, struct job *job)
 {
-    if (!copy_piece(s->trail, job->first, job->intervals, &job->result))
+    if (!copy_piece(s, job->first, job->intervals, &job->result))
         return false;
     if (s->repair >= SLOW_FROM && job->intervals < WINDOW && !replace_slower(s, b, &job->result))
         return false;
@@ -245,7 +255,7 @@ static bool do_job(void *context, unsigned worker, size_t piece)
         return false;
     }
     if (job->kind == JOB_KEEP)
-        done = copy_piece(s->trail, job->first, job->intervals, &job->result);
+        done = copy_piece(s, job->first, job->intervals, &job->result);
     else if (job->kind == JOB_ROUND)
         done = step(&s->bench[worker], &w, job->intervals, true, &job->result);
     else
@@ -268,7 +278,7 @@ static bool add_job(struct solver *s, enum job_kind kind, size_t first, size_t i
     return true;
 }
 
-/* Puts the pieces together: neighbours share their last and first three control points. */
+/* Puts the pieces together: neighbours share their last and first control points. */
 static bool join(struct solver *s)
 {
     struct trail joined;
@@ -277,16 +287,18 @@ static bool join(struct solver *s)
 
     for (size_t i = 0; i < s->jobs; i++)
         intervals += s->job[i].result.intervals;
-    if (!trail_allocate(&joined, intervals))
+    if (!trail_allocate(&joined, intervals, s->trail->modes))
         return false;
     for (size_t i = 0; i < s->jobs; i++) {
         struct trail *r = &s->job[i].result;
 
-        memcpy(joined.control + at, r->control, (r->intervals + TRAIL_ENDS) * sizeof *r->control);
+        memcpy(joined.control + at, r->control,
+               (r->intervals + trail_ends(r->modes)) * sizeof *r->control);
         memcpy(joined.place_mm + 2 * at, r->place_mm, (2 * r->intervals + 1) * sizeof *r->place_mm);
         at += r->intervals;
         trail_free(r);
     }
+    trail_follow(&joined, &s->limits->modes);
     trail_free(s->trail);
     *s->trail = joined;
     return true;
@@ -357,7 +369,7 @@ static size_t next_repair(const struct solver *s, size_t first, size_t *end)
             last = i;
     }
     *end = last + MARGIN < all ? last + MARGIN : all;
-    if (*end > all - TRAIL_ENDS - 1)
+    if (*end > all - trail_ends(s->trail->modes) - 1)
         *end = all;
     return begin;
 }
@@ -422,18 +434,11 @@ static bool is_still(size_t before, size_t after)
     return maths_abs(change) <= STILL_PART * (double)after;
 }
 
-enum solver_result solver_run(struct solver *s, const struct ahead_path *path,
-                              const struct ahead_limits *limits, struct trail *trail,
-                              size_t longest, bool (*progress)(void *context, double part),
-                              void *context)
+/* Rounds until the time stands still. SOLVER_DONE: go on. */
+static enum solver_result go_round(struct solver *s)
 {
-    s->path = path;
-    s->limits = limits;
-    s->trail = trail;
-    s->longest = longest;
-    s->stopped = false;
-    s->progress = progress;
-    s->context = context;
+    struct trail *trail = s->trail;
+
     for (unsigned round = 0, still = 0; round < SOLVER_ROUNDS && still < STILL_ROUNDS; round++) {
         const size_t before = trail->intervals;
 
@@ -445,6 +450,42 @@ enum solver_result solver_run(struct solver *s, const struct ahead_path *path,
             return give_up(s);
         still = round >= FIRST_ROUNDS && is_still(before, trail->intervals) ? still + 1 : 0;
     }
+    return SOLVER_DONE;
+}
+
+/* A machine with modes begins with what a stiff one would do. */
+static enum solver_result soften(struct solver *s, const struct ahead_limits *limits)
+{
+    struct ahead_limits stiff = *limits;
+    enum solver_result result;
+
+    stiff.modes.count = 0;
+    s->limits = &stiff;
+    result = go_round(s);
+    s->limits = limits;
+    if (result != SOLVER_DONE)
+        return result;
+    return trail_soften(s->trail, &limits->modes) ? SOLVER_DONE : SOLVER_MEMORY;
+}
+
+enum solver_result solver_run(struct solver *s, const struct ahead_path *path,
+                              const struct ahead_limits *limits, struct trail *trail,
+                              size_t longest, bool (*progress)(void *context, double part),
+                              void *context)
+{
+    enum solver_result result = SOLVER_DONE;
+
+    s->path = path;
+    s->limits = limits;
+    s->trail = trail;
+    s->longest = longest;
+    s->stopped = false;
+    s->progress = progress;
+    s->context = context;
+    if (limits->modes.count > 0)
+        result = soften(s, limits);
+    if (result == SOLVER_DONE)
+        result = go_round(s);
     s->part_done = (double)SOLVER_ROUNDS / (SOLVER_ROUNDS + 1);
-    return repair_all(s);
+    return result == SOLVER_DONE ? repair_all(s) : result;
 }

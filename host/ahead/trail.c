@@ -1,14 +1,27 @@
 #include "ahead/trail.h"
 
 #include <stdlib.h>
+#include <string.h>
 
-bool trail_allocate(struct trail *t, size_t intervals)
+static bool allocate_sides(struct trail *t)
 {
-    t->intervals = intervals;
-    t->control = calloc(intervals + TRAIL_ENDS, sizeof *t->control);
+    if (t->modes == 0) {
+        t->motor = t->control;
+        t->tool = t->control;
+        return true;
+    }
+    t->motor = calloc(t->intervals + TRAIL_ENDS, sizeof *t->motor);
+    t->tool = calloc(t->intervals + TRAIL_ENDS, sizeof *t->tool);
+    return t->motor != NULL && t->tool != NULL;
+}
+
+bool trail_allocate(struct trail *t, size_t intervals, unsigned modes)
+{
+    *t = (struct trail){.intervals = intervals, .modes = modes};
+    t->control = calloc(intervals + trail_ends(modes), sizeof *t->control);
     t->place_mm = calloc(2 * intervals + 1, sizeof *t->place_mm);
     t->beyond = calloc(intervals, sizeof *t->beyond);
-    if (t->control != NULL && t->place_mm != NULL && t->beyond != NULL)
+    if (allocate_sides(t) && t->control != NULL && t->place_mm != NULL && t->beyond != NULL)
         return true;
     trail_free(t);
     return false;
@@ -16,10 +29,52 @@ bool trail_allocate(struct trail *t, size_t intervals)
 
 void trail_free(struct trail *t)
 {
+    if (t->modes > 0) {
+        free(t->motor);
+        free(t->tool);
+    }
     free(t->control);
     free(t->place_mm);
     free(t->beyond);
     *t = (struct trail){0};
+}
+
+void trail_follow(struct trail *t, const struct ahead_modes *modes)
+{
+    for (size_t k = 0; k < t->intervals + TRAIL_ENDS && t->modes > 0; k++) {
+        for (int i = 0; i < 3; i++) {
+            struct modes_point motor;
+            struct modes_point tool;
+
+            modes_at(modes, i, t->control + k, &motor, &tool);
+            t->motor[k][i] = motor.at_mm;
+            t->tool[k][i] = tool.at_mm;
+        }
+    }
+}
+
+bool trail_soften(struct trail *t, const struct ahead_modes *modes)
+{
+    const size_t more = 2 * (size_t)modes->count; /* control points at each end */
+    const size_t last = t->intervals + TRAIL_ENDS - 1;
+    struct trail soft;
+
+    if (!trail_allocate(&soft, t->intervals + more, modes->count))
+        return false;
+    for (size_t k = 0; k <= last + 2 * more; k++) {
+        const size_t from = k < more ? 0 : k - more < last ? k - more : last;
+
+        memcpy(soft.control[k], t->control[from], sizeof t->control[from]);
+    }
+    for (size_t site = 0; site <= 2 * soft.intervals; site++) {
+        const size_t from = site < more ? 0 : site - more;
+
+        soft.place_mm[site] = t->place_mm[from < 2 * t->intervals ? from : 2 * t->intervals];
+    }
+    trail_follow(&soft, modes);
+    trail_free(t);
+    *t = soft;
+    return true;
 }
 
 /* Uniform cubic B-spline: ((1-f)^3, 3f^3 - 6f^2 + 4, -3f^3 + 3f^2 + 3f + 1, f^3) / 6 */
@@ -31,6 +86,19 @@ void trail_weights(double f, double weight[4])
     weight[1] = (4 + f * f * (3 * f - 6)) / 6;
     weight[2] = (4 + g * g * (3 * g - 6)) / 6;
     weight[3] = f * f * f / 6;
+}
+
+/* The same of any degree d, from 3 on (Cox, de Boor): weight_d,i = ((d - i + f) weight_d-1,i-1 + (i + 1 - f) weight_d-1,i) / d */
+void trail_curve_weights(unsigned modes, double f, double *weight)
+{
+    trail_weights(f, weight);
+    for (size_t d = 4; d <= TRAIL_ENDS + 2 * (size_t)modes; d++) {
+        weight[d] = 0;
+        for (size_t i = d; i > 0; i--)
+            weight[i] = (((double)(d - i) + f) * weight[i - 1] + ((double)i + 1 - f) * weight[i]) /
+                        (double)d;
+        weight[0] *= (1 - f) / (double)d;
+    }
 }
 
 /* Their derivatives. */
@@ -59,5 +127,5 @@ void trail_at(const struct trail *t, double u, double point[3])
     if (k >= t->intervals)
         k = t->intervals - 1;
     trail_weights(u - (double)k, weight);
-    trail_sum(t->control + k, weight, point);
+    trail_sum(t->tool + k, weight, point);
 }

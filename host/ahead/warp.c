@@ -1,5 +1,6 @@
 #include "ahead/warp.h"
 
+#include "ahead/band.h"
 #include "ahead/vector.h"
 
 #include <stdlib.h>
@@ -16,6 +17,8 @@
 struct warp {
     const struct problem_window *w;
     size_t cells;
+    unsigned modes;
+    size_t ends;          /* control points that stay */
     double (*control)[3]; /* moved */
     double *square;       /* coefficients of y, cells + 3 */
     double *time;         /* of every knot, in old knots; cells + 1 */
@@ -83,8 +86,8 @@ static size_t end_on_a_knot(struct warp *a)
     a->stretch = 0;
     plain = whole_time(a);
     knots = (size_t)maths_ceil(plain - 1e-9);
-    if (knots < TRAIL_ENDS + 1)
-        knots = TRAIL_ENDS + 1;
+    if (knots < a->ends + 1)
+        knots = a->ends + 1;
     a->stretch = 1;
     stretched = whole_time(a);
     a->stretch = ((double)knots - plain) / (stretched - plain);
@@ -125,18 +128,23 @@ static double place_at(const struct warp *a, double u)
 
 static void point_at(const struct warp *a, double u, double point[3])
 {
+    const size_t points = TRAIL_ENDS + 1 + 2 * (size_t)a->modes;
     size_t k = (size_t)u;
-    double weight[4];
+    double weight[TRAIL_ENDS + 1 + 2 * MODES_MAX];
 
     if (k >= a->cells)
         k = a->cells - 1;
-    trail_weights(u - (double)k, weight);
-    trail_sum(a->control + k, weight, point);
+    trail_curve_weights(a->modes, u - (double)k, weight);
+    for (int i = 0; i < 3; i++) {
+        point[i] = weight[0] * a->control[k][i];
+        for (size_t n = 1; n < points; n++)
+            point[i] += weight[n] * a->control[k + n][i];
+    }
 }
 
 /*
- * Places at the new half knots, and into the control points what the curve is at the new knots: control point j + 1 has
- * knot j.
+ * Places at the new half knots, and into the control points what the curve is at the new knots: control point
+ * j + 1 + modes is in the middle of those that make knot j.
  */
 static void sample(const struct warp *a, struct trail *t)
 {
@@ -151,35 +159,61 @@ static void sample(const struct warp *a, struct trail *t)
         u = knot_at(a, cell, time);
         t->place_mm[site] = place_at(a, u);
         if (site % 2 == 0)
-            point_at(a, u, t->control[site / 2 + 1]);
+            point_at(a, u, t->control[site / 2 + 1 + a->modes]);
     }
 }
 
-/*
- * (c_(k-1) + 4 c_k + c_(k+1)) / 6 = p_k between the ends, which are known: by elimination, pivot_k = 1 / (4 - pivot_(k-1)).
- * What has not been moved is found again, jumps of jerk included.
- */
-static void points_to_control(struct trail *t, double *pivot)
+/* The equations for the control points between the ends. */
+struct knots {
+    size_t count;
+    double *band;
+    double *right;
+};
+
+/* d! times the weights of control points at a knot of a curve of degree d = 3 + 2 modes, from the middle one on; and d! */
+static const double knot_weight[MODES_MAX + 1][2 + MODES_MAX] = {
+    {4, 1}, {66, 26, 1}, {2416, 1191, 120, 1}};
+static const double knot_sum[MODES_MAX + 1] = {6, 120, 5040};
+
+/* The right side of control point k, without what is before it, by elimination or known, and what is known behind it. */
+static double eliminated(const struct warp *a, const struct trail *t, const struct knots *of,
+                         size_t k, int axis)
 {
-    double(*c)[3] = t->control;
-    const size_t end = t->intervals;
+    const double *weight = knot_weight[a->modes];
+    const size_t width = 2 + (size_t)a->modes;
+    double sum = knot_sum[a->modes] * t->control[k + a->ends][axis];
 
-    for (size_t k = TRAIL_ENDS; k < end; k++) {
-        const bool is_last = k + 1 == end;
+    for (size_t n = 1; n < width; n++)
+        sum -= k >= n ? of->band[(k - n) * width + n] * of->right[k - n]
+                      : weight[n] * t->control[k + a->ends - n][axis];
+    for (size_t n = 1; n < width; n++)
+        sum -= k + n >= of->count ? weight[n] * t->control[k + a->ends + n][axis] : 0;
+    return sum;
+}
 
-        pivot[k] = 1 / (4 - (k > TRAIL_ENDS ? pivot[k - 1] : 0));
-        for (int i = 0; i < 3; i++)
-            c[k][i] = pivot[k] * (6 * c[k][i] - c[k - 1][i] - (is_last ? c[end][i] : 0));
-    }
-    for (size_t k = end - 1; k-- > TRAIL_ENDS;) {
-        for (int i = 0; i < 3; i++)
-            c[k][i] -= pivot[k] * c[k + 1][i];
+/*
+ * sum_n weight_n c_(k+n) = p_k between the ends, which are known. What has not been moved is found again, jumps of the
+ * highest derivative included.
+ */
+static void points_to_control(const struct warp *a, struct trail *t, const struct knots *of)
+{
+    const size_t width = 2 + (size_t)a->modes;
+
+    for (size_t k = 0; k < of->count; k++)
+        memcpy(of->band + k * width, knot_weight[a->modes], width * sizeof *of->band);
+    band_factor(of->band, width, of->count);
+    for (int i = 0; i < 3; i++) {
+        for (size_t k = 0; k < of->count; k++)
+            of->right[k] = eliminated(a, t, of, k, i);
+        band_back(of->band, width, of->count, of->right);
+        for (size_t k = 0; k < of->count; k++)
+            t->control[k + a->ends][i] = of->right[k];
     }
 }
 
 static void keep_ends(const struct warp *a, struct trail *t)
 {
-    for (size_t k = 0; k < TRAIL_ENDS; k++) {
+    for (size_t k = 0; k < a->ends; k++) {
         vector_copy(a->control[k], t->control[k]);
         vector_copy(a->control[a->cells + k], t->control[t->intervals + k]);
     }
@@ -206,7 +240,7 @@ static void find_feet(const struct ahead_path *path, struct trail *t)
 
 static bool warp_allocate(struct warp *a)
 {
-    a->control = calloc(a->cells + TRAIL_ENDS, sizeof *a->control);
+    a->control = calloc(a->cells + a->ends, sizeof *a->control);
     a->square = calloc(a->cells + TRAIL_ENDS, sizeof *a->square);
     a->time = calloc(a->cells + 1, sizeof *a->time);
     return a->control != NULL && a->square != NULL && a->time != NULL;
@@ -221,23 +255,23 @@ static void warp_free(struct warp *a)
 
 static void move(struct warp *a, double (*change)[4])
 {
-    for (size_t k = 0; k < a->cells + TRAIL_ENDS; k++) {
+    for (size_t k = 0; k < a->cells + a->ends; k++)
         vector_copy(a->w->trail->control[a->w->first + k], a->control[k]);
+    for (size_t k = 0; k < a->cells + TRAIL_ENDS; k++)
         a->square[k] = 1;
-    }
-    for (size_t k = TRAIL_ENDS; k < a->cells; k++) {
+    for (size_t k = a->ends; k < a->cells; k++) {
         for (int i = 0; i < 3; i++)
-            a->control[k][i] += change[k - TRAIL_ENDS][i];
-        a->square[k] += change[k - TRAIL_ENDS][3];
+            a->control[k][i] += change[k - a->ends][i];
+        a->square[k - a->modes] += change[k - a->ends][3];
     }
 }
 
 /* The same knots, moved. */
 static bool take_moved(const struct warp *a, struct trail *t)
 {
-    if (!trail_allocate(t, a->cells))
+    if (!trail_allocate(t, a->cells, a->modes))
         return false;
-    memcpy(t->control, a->control, (a->cells + TRAIL_ENDS) * sizeof *t->control);
+    memcpy(t->control, a->control, (a->cells + a->ends) * sizeof *t->control);
     memcpy(t->place_mm, &a->w->trail->place_mm[2 * a->w->first],
            (2 * a->cells + 1) * sizeof *t->place_mm);
     return true;
@@ -245,34 +279,42 @@ static bool take_moved(const struct warp *a, struct trail *t)
 
 static bool take_warped(struct warp *a, struct trail *t)
 {
-    double *pivot;
+    struct knots of;
+    bool done;
 
-    if (!trail_allocate(t, end_on_a_knot(a)))
+    if (!trail_allocate(t, end_on_a_knot(a), a->modes))
         return false;
-    pivot = calloc(t->intervals, sizeof *pivot);
-    if (pivot == NULL) {
+    of.count = t->intervals - a->ends;
+    of.band = calloc(of.count * (2 + (size_t)a->modes), sizeof *of.band);
+    of.right = calloc(of.count, sizeof *of.right);
+    done = of.band != NULL && of.right != NULL;
+    if (done) {
+        sample(a, t);
+        keep_ends(a, t);
+        points_to_control(a, t, &of);
+    } else {
         trail_free(t);
-        return false;
     }
-    sample(a, t);
-    keep_ends(a, t);
-    points_to_control(t, pivot);
-    free(pivot);
-    return true;
+    free(of.band);
+    free(of.right);
+    return done;
 }
 
 bool warp_window(const struct problem_window *w, size_t cells, double (*change)[4], bool timed,
                  struct trail *result)
 {
-    struct warp a = {.w = w, .cells = cells};
+    struct warp a = {
+        .w = w, .cells = cells, .modes = w->trail->modes, .ends = trail_ends(w->trail->modes)};
     bool done = warp_allocate(&a);
 
     if (done) {
         move(&a, change);
         done = timed ? take_warped(&a, result) : take_moved(&a, result);
     }
-    if (done)
+    if (done) {
+        trail_follow(result, &w->limits->modes);
         find_feet(w->path, result);
+    }
     warp_free(&a);
     return done;
 }

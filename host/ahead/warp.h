@@ -8,7 +8,7 @@
 #include "ahead/problem.h"
 
 /*
- * change: (d, e) of the window's control points TRAIL_ENDS ... cells - 1. The first and last three control points stay. The
+ * change: (d, e) of the window's control points trail_ends ... cells - 1. The first and last ones, so many, stay. The
  * new time is lengthened to a whole number of knots. False: out of memory. The caller frees result.
  */
 bool warp_window(const struct problem_window *w, size_t cells, double (*change)[4], bool timed,

@@ -137,7 +137,8 @@ static enum command_status compile(struct making *m, const struct session *s,
                                    const struct session_totals *totals, uint32_t ceiling_percent,
                                    const struct attempt *attempt, FILE *stream)
 {
-    struct compile_config config = {.cycle_us = s->setup.machine.cycle_us,
+    struct compile_config config = {.vibration = s->setup.vibration,
+                                    .cycle_us = s->setup.machine.cycle_us,
                                     .ceiling_percent = ceiling_percent,
                                     .tolerance_part = attempt->tolerance_part,
                                     .stops = attempt->stops,

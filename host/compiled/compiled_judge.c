@@ -6,6 +6,7 @@
 #include "judge/judge.h"
 #include "motion/handover.h"
 #include "replay/replay.h"
+#include "vibration/vibration.h"
 
 #include <stdarg.h>
 #include <stdio.h>
@@ -37,6 +38,7 @@ struct trial {
     struct motion motion;
     struct replay replay;
     struct tube_judge tube;
+    struct vibration vibration; /* from setpoints to the tool, which the path is for */
     struct plan_limits limits;
     uint32_t look_ahead;
     double rate;
@@ -66,6 +68,21 @@ __attribute__((format(printf, 3, 4))) static void refuse(struct trial *t, uint32
     va_end(arguments);
 }
 
+/* The tool rests where the axes do. */
+static void begin_tool(struct trial *t, const struct point *start)
+{
+    struct point tool = *start;
+
+    vibration_init(&t->vibration, &t->session->setup.vibration, t->limits.cycle_s);
+    vibration_follow(&t->vibration, &tool);
+}
+
+/* At another rate the modes are not met as planned: only limits are judged then. */
+static bool has_path(const struct trial *t)
+{
+    return !t->on_board && (t->rate == 1 || !t->vibration.any);
+}
+
 static void begin(struct trial *t, FILE *stream)
 {
     const struct replay_source compiled = {.context = stream, .read = read_stream};
@@ -87,6 +104,7 @@ static void begin(struct trial *t, FILE *stream)
         replay_init(&t->replay, path_lend(&t->path, sizeof(struct intake)), &compiled);
     }
     t->look_ahead = t->session->setup.machine.look_ahead_blocks;
+    begin_tool(t, &config.start);
     for (int i = 0; i < AXIS_COUNT; i++)
         t->x[i] = config.start.at[i];
 }
@@ -157,13 +175,22 @@ static void judge_axes(struct trial *t, const struct point *cmd)
     t->at_jerk += at[2] ? 1 : 0;
 }
 
+static bool judge_path(struct trial *t, const struct cycle_record *record)
+{
+    struct point tool = record->cmd;
+
+    if (t->vibration.any)
+        vibration_follow(&t->vibration, &tool);
+    return tube_judge_add(&t->tube, &tool, record->block);
+}
+
 static bool judge_cycle(struct trial *t, const struct cycle_record *record)
 {
     judge_axes(t, &record->cmd);
     t->out_of_order = t->out_of_order || record->block < t->block;
     t->block = record->block;
     t->figures->cycles++;
-    return t->on_board || tube_judge_add(&t->tube, &record->cmd, record->block);
+    return !has_path(t) || judge_path(t, record);
 }
 
 /* MOTION_CYCLE: goes on. */
@@ -245,20 +272,27 @@ static void set_shares(const struct trial *t)
     f->at_jerk = (double)t->at_jerk / cycles;
 }
 
-static enum command_status conclude(struct trial *t)
+static bool keeps_path(struct trial *t)
 {
     struct compiled_figures *f = t->figures;
 
+    tube_judge_finish(&t->tube);
+    f->tube = t->tube.figures;
+    f->of_tool = t->vibration.any;
+    if (f->tube.beyond_mm <= BEYOND_MAX_MM)
+        return true;
+    refuse(t, f->tube.beyond_line, "the compiled motion is %.6f mm beyond the tolerance here",
+           f->tube.beyond_mm);
+    return false;
+}
+
+static enum command_status conclude(struct trial *t)
+{
     set_shares(t);
     if (t->on_board)
         return STATUS_DONE;
-    tube_judge_finish(&t->tube);
-    f->tube = t->tube.figures;
-    if (f->tube.beyond_mm > BEYOND_MAX_MM) {
-        refuse(t, f->tube.beyond_line, "the compiled motion is %.6f mm beyond the tolerance here",
-               f->tube.beyond_mm);
+    if (has_path(t) && !keeps_path(t))
         return STATUS_FAILED;
-    }
     if (t->out_of_order) {
         refuse(t, 0, "the compiled motion does not keep the order of blocks");
         return STATUS_FAILED;

@@ -38,6 +38,14 @@ void judge_follow(struct judge *j, const struct machine *machine,
     j->rounds = rounds;
 }
 
+void judge_follow_tool(struct judge *j, const struct vibration_config *modes)
+{
+    struct point tool = j->cmd;
+
+    vibration_init(&j->vibration, modes, 1 / j->rate_hz);
+    vibration_follow(&j->vibration, &tool); /* it rests at the start */
+}
+
 void judge_free(struct judge *j)
 {
     tube_judge_free(&j->tube);
@@ -218,6 +226,15 @@ static void judge_smoothed(struct judge *j, const struct cycle_record *record,
     j->step_inside = false;
 }
 
+static bool judge_tube(struct judge *j, const struct cycle_record *record)
+{
+    struct point place = record->cmd;
+
+    if (j->vibration.any)
+        vibration_follow(&j->vibration, &place);
+    return tube_judge_add(&j->tube, &place, record->block);
+}
+
 bool judge_add(struct judge *j, const struct cycle_record *record, const struct block *block)
 {
     if (record->block != j->block.number && !j->strayed)
@@ -237,7 +254,7 @@ bool judge_add(struct judge *j, const struct cycle_record *record, const struct 
     raise_to(&j->figures.correction_mm, judge_distance(&record->cmd, &record->set));
     j->cmd = record->cmd;
     j->figures.cycles++;
-    return tube_judge_add(&j->tube, &record->cmd, record->block);
+    return judge_tube(j, record);
 }
 
 /* A probing move may end early: where the axes have come to rest. That this is on its way has been seen by judge_path. */

@@ -22,6 +22,7 @@
 #include "offset/offset.h"
 #include "plan/block.h"
 #include "program/program.h"
+#include "vibration/vibration.h"
 
 #include <stdbool.h>
 #include <stdint.h>
@@ -81,8 +82,9 @@ struct judge_axis {
 struct judge {
     struct program program; /* the judge's own reading */
     struct offset offset;
-    struct tube_judge tube; /* with another one */
-    bool rounds;            /* exact motions too are judged by the tube alone */
+    struct tube_judge tube;     /* with another one */
+    bool rounds;                /* exact motions too are judged by the tube alone */
+    struct vibration vibration; /* from setpoints to what the tube judges; none: setpoints */
     bool
         strayed; /* the run executes motions that the program does not have, or not one after the other */
     bool program_ended;
@@ -110,6 +112,11 @@ void judge_init(struct judge *j, const struct machine *machine,
 /* Behind it: the same once more for another reading. rounds: exact motions too may be rounded, as the machine may round. */
 void judge_follow(struct judge *j, const struct machine *machine,
                   const struct program_config *program, const struct source *source, bool rounds);
+/*
+ * And then: the program has been planned ahead on a machine with these modes, so that the path is not the setpoints' but the
+ * tool's, as the modes have it where the drives are at the setpoints.
+ */
+void judge_follow_tool(struct judge *j, const struct vibration_config *modes);
 void judge_free(struct judge *j);
 
 /* The next cycle, and the block that it executed. False: out of memory. */

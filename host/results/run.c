@@ -50,6 +50,8 @@ static void prepare_judge(struct run *run)
     judge_init(&run->judge, machine, &config, &source);
     session_begin_reading(&run->session, &run->reading[1], &config, &source);
     judge_follow(&run->judge, machine, &config, &source, run->session.compiled != NULL);
+    if (run->session.compiled != NULL)
+        judge_follow_tool(&run->judge, &run->session.setup.vibration);
 }
 
 static void set_until(struct run *run)

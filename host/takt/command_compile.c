@@ -30,9 +30,9 @@ static void print_figures(const struct session *s, const struct compiled_figures
             (void)printf("  %c: peak velocity %.4f, acceleration %.4f, jerk %.4f of the limit\n",
                          AXIS_LETTERS[i], f->velocity[i], f->acceleration[i], f->jerk[i]);
     }
-    (void)printf(
-        "  setpoints at most %.6f mm off the path, its corners %.6f mm off the setpoints\n",
-        f->tube.deviation_mm, f->tube.corner_mm);
+    (void)printf("  %s at most %.6f mm off the path, its corners %.6f mm off the %s\n",
+                 f->of_tool ? "tool" : "setpoints", f->tube.deviation_mm, f->tube.corner_mm,
+                 f->of_tool ? "tool" : "setpoints");
 }
 
 static enum command_status compile_into(const struct session *s,

@@ -69,7 +69,7 @@ static uint64_t write_and_read(const struct ahead_path *path)
     size_t read = 0;
 
     TEST_ASSERT_NOT_NULL(file);
-    TEST_ASSERT_TRUE(trail_allocate(&trail, INTERVALS));
+    TEST_ASSERT_TRUE(trail_allocate(&trail, INTERVALS, 0));
     for (size_t site = 0; site <= 2 * trail.intervals; site++)
         trail.place_mm[site] = 0.5 * (double)site;
     encoder_begin(&encoder, file, &header);

@@ -10,7 +10,8 @@
 #include <string.h>
 #include <unity.h>
 
-#define SIZE 40
+#define SIZE  40
+#define WIDTH 16
 
 static const struct ahead_limits limits = {.velocity_mm_s = {100, 100, 100},
                                            .acceleration_mm_s2 = {1000, 1000, 1000},
@@ -28,13 +29,13 @@ void tearDown(void)
 
 static void test_the_band_solver_solves(void)
 {
-    static double a[SIZE][BAND_WIDTH];
+    static double a[SIZE][WIDTH];
     static double full[SIZE][SIZE];
     double x[SIZE];
 
     for (int j = 0; j < SIZE; j++) {
         x[j] = 0;
-        for (int k = 0; k < BAND_WIDTH && j + k < SIZE; k++) {
+        for (int k = 0; k < WIDTH && j + k < SIZE; k++) {
             a[j][k] = k == 0 ? 40 + j : 1.0 / (1 + j + 3 * k);
             full[j + k][j] = full[j][j + k] = a[j][k];
         }
@@ -43,8 +44,8 @@ static void test_the_band_solver_solves(void)
         for (int j = 0; j < SIZE; j++)
             x[i] += full[i][j] * (j - 7);
     }
-    band_factor(a, SIZE);
-    band_solve(a, SIZE, x);
+    band_factor(a[0], WIDTH, SIZE);
+    band_solve(a[0], WIDTH, SIZE, x);
     for (int j = 0; j < SIZE; j++)
         TEST_ASSERT_DOUBLE_WITHIN(1e-9, j - 7, x[j]);
 }
@@ -67,7 +68,7 @@ static void make_square(struct ahead_path *path, double side_mm)
 
 static struct trail solve(const struct ahead_path *path, unsigned workers)
 {
-    struct solver *s = solver_new(workers);
+    struct solver *s = solver_new(workers, 0);
     struct trail t;
 
     TEST_ASSERT_NOT_NULL(s);
@@ -146,7 +147,7 @@ static void test_two_cores_find_the_same_bits_as_one(void)
  */
 static void test_the_place_where_it_is_stuck_is_on_the_path(void)
 {
-    struct solver *s = solver_new(1);
+    struct solver *s = solver_new(1, 0);
     struct ahead_path path;
     struct trail t;
     size_t guessed;

@@ -1,0 +1,34 @@
+/*
+ * A cell's rows (rows.h) in its unknowns x, changes of the curve w and of time. On a stiff machine these are what the rows
+ * are on; else
+ *
+ *     change of the motors' or the tool's point j = sum_k (by_curve_k dw_(j+k) + by_time_k e_(j+k)),   k = 0 ... 2 count
+ *
+ * with the weights of modes.h.
+ */
+#ifndef TAKT_HOST_AHEAD_IMAGE_H
+#define TAKT_HOST_AHEAD_IMAGE_H
+
+#include "ahead/rows.h"
+
+/* Unknowns of a cell with modes: four of each of 4 + 2 count control points. */
+#define IMAGE_UNKNOWNS (4 * (4 + 2 * MODES_MAX))
+
+/* What rows are on, of both sides. */
+struct image {
+    double motor[CELL_UNKNOWNS];
+    double tool[CELL_UNKNOWNS];
+};
+
+/* Valid as long as x and image are. */
+struct rows_at image_of(const struct problem *p, size_t cell, const double *x, struct image *image);
+
+/* b += G^T v in the unknowns; z as image_of has it. */
+void image_transpose(const struct problem *p, size_t cell, const struct rows_at *z,
+                     const double v[CELL_ROWS], double *b);
+
+/* Sets the lower triangle of k, a square of as many unknowns, as rows_normal has it. */
+void image_normal(const struct problem *p, size_t cell, const struct rows_at *z,
+                  const double w[CELL_ROWS], const double m[CELL_ROWS], double *k);
+
+#endif
