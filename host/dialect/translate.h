@@ -77,6 +77,12 @@ struct translator {
     char radius[24];                /* D beside G43 */
     char length[24];                /* H that stood alone */
     bool has_length;                /* G43 is in effect */
+    bool has_height;                /* a cycle of the series in effect has had its R */
+    bool bores_along;               /* and it goes along Z on a lathe */
+    bool cuts_thread;               /* G32 is in effect */
+    char lead[24];                  /* K, the F of it */
+    unsigned turns;                 /* the spindle, by M3 or M4: 3, 4; else 0 */
+    bool polar;                     /* G16 is in effect */
     unsigned side;                  /* G41 or G42 is in effect: 41, 42; else 0 */
     bool surface_is_owed;           /* G96 waits for its S */
     uint32_t program;               /* number of O1000 lines so far */
@@ -133,6 +139,11 @@ bool turning_is_whole(struct line *l);
 /* Only programs for lathes have such a line. */
 bool turning_tells(struct line *l);
 
+/* Cycles without R, of lathes, and of Fagor. */
+void holes_translate(struct translator *t);
+/* G32. */
+void threads_translate(struct translator *t);
+
 /* Has a line a rotary axis? */
 bool upright_turns(struct line *l);
 /* G43.4, G53.1 and G68.2 of a program that has none. */
@@ -140,6 +151,8 @@ void upright_translate(struct translator *t);
 
 /* Systems, and what T, D, H and compensation leave for later lines. */
 void registers_translate(struct translator *t);
+/* G50, or G92 with S and no axis. NULL: no such line. */
+struct line_word *registers_speed_limit(struct line *l);
 /* G50 S, and G96 that waits for its S. */
 void registers_translate_speed(struct translator *t);
 /* G70 and G71 as units. */
