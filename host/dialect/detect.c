@@ -433,6 +433,8 @@ void dialect_guess_line(struct dialect_detector *d, const char *bytes, size_t le
         return;
     d->translates = d->translates || contains(k.line.text, k.line.length, "#<_ini[") ||
                     contains(k.line.text, k.line.length, "#<_hal[");
+    d->translates =
+        d->translates || (codes->values > 0 && contains(k.line.text, k.line.length, "#<_"));
     d->calls = d->calls || line_find_code(&k.line, 'm', 980) != NULL;
     if (is_oword(&k.line)) {
         d->calls = d->calls || contains(k.line.text, k.line.length, "call");

@@ -33,18 +33,24 @@ static bool ends_series(struct line *l)
     return line_find_code(l, 'g', 800) != NULL;
 }
 
-/* Fagor's Z and I, where K would be a dwell and has another unit. */
-static void rename_heights(struct translator *t)
+/* Fagor's G81, where K would be a dwell and has another unit. */
+static bool has_two_heights(struct line *l)
 {
-    struct line *l = &t->line;
+    return line_find_code(l, 'g', 810) != NULL && line_find(l, 'z', 0) != NULL &&
+           line_find(l, 'i', 0) != NULL && line_find(l, 'r', 0) == NULL &&
+           line_find(l, 'k', 0) == NULL;
+}
+
+/* On the line of the cycle and on those that repeat it. */
+static void rename_heights(struct line *l)
+{
     const struct line_word *z = line_find(l, 'z', 0);
     const struct line_word *i = line_find(l, 'i', 0);
 
-    if (z == NULL || i == NULL || line_find_code(l, 'g', 810) == NULL ||
-        line_find(l, 'r', 0) != NULL || line_find(l, 'k', 0) != NULL)
-        return;
-    l->text[z->begin] = 'R';
-    l->text[i->begin] = 'Z';
+    if (z != NULL)
+        l->text[z->begin] = 'R';
+    if (i != NULL)
+        l->text[i->begin] = 'Z';
     (void)line_read(l, l->text, l->length);
 }
 
@@ -88,14 +94,17 @@ void holes_translate(struct translator *t)
     struct line *l = &t->line;
     const bool begins = find_cycle(l) != NULL;
 
+    if (begins)
+        t->has_two_heights = has_two_heights(l);
+    if (t->has_two_heights && !ends_series(l))
+        rename_heights(l);
     if (begins) {
-        rename_heights(t);
         if (!t->has_height)
             give_height(t);
         t->has_height = true;
     } else if (ends_series(l)) {
         if (t->bores_along && line_find_code(l, 'g', 170) == NULL)
             (void)line_append(l, "G18");
-        t->has_height = t->bores_along = false;
+        t->has_height = t->has_two_heights = t->bores_along = false;
     }
 }

@@ -1,6 +1,6 @@
 /*
- * Threads of lathes in one cut: G32 Z-20 F1.5 is G33 Z-20 K1.5. It holds until another motion, and F with it. Along a cone F
- * is measured along one of the axes and K along the cone: those stay as they are, and are told.
+ * Threads of lathes in one cut: G32 Z-20 F1.5 (of some G33 Z-20 F1.5) is G33 Z-20 K1.5. It holds until another motion, and F
+ * with it. Along a cone F is measured along one of the axes and K along the cone: those stay as they are, and are told.
  */
 #include "dialect/translate.h"
 
@@ -20,6 +20,13 @@ static bool is_straight(struct line *l)
     return line_find(l, 'x', 0) == NULL || line_find(l, 'z', 0) == NULL;
 }
 
+static struct line_word *find_thread(struct line *l)
+{
+    struct line_word *w = line_find_code(l, 'g', 320);
+
+    return w == NULL && line_find(l, 'k', 0) == NULL ? line_find_code(l, 'g', 330) : w;
+}
+
 static void keep_lead(struct translator *t)
 {
     const struct line_word *f = line_find(&t->line, 'f', 0);
@@ -32,7 +39,7 @@ static void keep_lead(struct translator *t)
 void threads_translate(struct translator *t)
 {
     struct line *l = &t->line;
-    struct line_word *begin = line_find_code(l, 'g', 320);
+    struct line_word *begin = find_thread(l);
 
     if (begin == NULL && moves_otherwise(l))
         t->cuts_thread = false;

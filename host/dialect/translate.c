@@ -426,22 +426,25 @@ static void follow_spindle(struct translator *t)
         t->turns = 0;
 }
 
-/* T0101 turns the turret, under which the spindle goes on; M6 stops it. */
+/* T0102 turns the turret to tool 1 and takes offset 2, 0 none. The spindle goes on meanwhile; M6 stops it. */
 static void index_turret(struct translator *t, struct line_word *tool)
 {
     struct line *l = &t->line;
-    const unsigned number = (unsigned)line_whole(tool->value / 100.0);
+    const uint32_t both = line_whole(tool->value);
     const bool told = line_find_code(l, 'm', 30) != NULL || line_find_code(l, 'm', 40) != NULL ||
                       line_find_code(l, 'm', 50) != NULL;
-    char text[32];
+    const bool goes_on = t->turns != 0 && !told && line_find_code(l, 'm', 60) == NULL;
+    char offset[24] = "G49";
+    char text[64];
 
-    if (line_find_code(l, 'm', 60) != NULL)
-        (void)snprintf(text, sizeof text, "T%u", number);
-    else if (t->turns == 0 || told)
-        (void)snprintf(text, sizeof text, "T%u M6", number);
-    else
-        (void)snprintf(text, sizeof text, "T%u M6 M%u", number, t->turns);
+    if (both % 100 != 0)
+        (void)snprintf(offset, sizeof offset, "G43 H%u", (unsigned)(both % 100));
+    (void)snprintf(text, sizeof text, "T%u%s %s", (unsigned)(both / 100),
+                   line_find_code(l, 'm', 60) != NULL ? "" : " M6", offset);
     (void)line_replace(l, tool, text);
+    (void)snprintf(text, sizeof text, "M%u", t->turns);
+    if (goes_on)
+        (void)line_append(l, text);
 }
 
 /* Turning: feeds per minute and per turn, T0101 that changes the tool, diameters. */
@@ -529,6 +532,8 @@ static void translate_foreign(struct translator *t)
     if (is(t, MACROS)) {
         upright_translate(t);
         holes_translate(t);
+        if (t->survey.lathe && t->dialect == DIALECT_FANUC)
+            arcs_translate(t);
         registers_translate(t);
         translate_lathe(t);
     }
@@ -574,6 +579,7 @@ static void translate_line(struct translator *t, const char *bytes, size_t lengt
         return;
     }
     flow_note_label(t, t->result->text.length);
+    globals_begin(t);
     values_translate(t);
     polar_translate(t);
     if (is(t, NOT_FOREIGN)) {

@@ -72,13 +72,16 @@ struct translator {
     bool begun;           /* a line with words has passed */
     struct dialect_detector detector;
     bool absolute;                  /* centres of arcs are, and G90.1 has to say so */
+    bool globals_given;             /* those that the machine file knows are set */
     bool feed_given;                /* the F that the machine file declares has been put in */
     char speed_limit[24];           /* G50 S */
     char radius[24];                /* D beside G43 */
     char length[24];                /* H that stood alone */
     bool has_length;                /* G43 is in effect */
     bool has_height;                /* a cycle of the series in effect has had its R */
+    bool has_two_heights;           /* Fagor's G81 */
     bool bores_along;               /* and it goes along Z on a lathe */
+    unsigned arc;                   /* G2 or G3 is in effect: 2, 3; else 0 */
     bool cuts_thread;               /* G32 is in effect */
     char lead[24];                  /* K, the F of it */
     unsigned turns;                 /* the spindle, by M3 or M4: 3, 4; else 0 */
@@ -141,6 +144,10 @@ bool turning_tells(struct line *l);
 
 /* Cycles without R, of lathes, and of Fagor. */
 void holes_translate(struct translator *t);
+/* Arcs of lathes that have no centre. */
+void arcs_translate(struct translator *t);
+/* #<_name> that the machine file knows. */
+void globals_begin(struct translator *t);
 /* G32. */
 void threads_translate(struct translator *t);
 

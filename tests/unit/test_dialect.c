@@ -161,7 +161,7 @@ static void test_more_systems_are_the_last_ones_here(void)
 static void test_turning_has_diameters_and_limits_of_speed(void)
 {
     expect(DIALECT_FANUC, "O1\nG50 S2000\nT0101\nG96 S200\nG99 G1 X5 F.1\n",
-           "O1\nG18 G7\nT1 M6\nG96 S200 D2000\nG95 G1 X5 F.1\n");
+           "O1\nG18 G7\nT1 M6 G43 H1\nG96 S200 D2000\nG95 G1 X5 F.1\n");
 }
 
 static void test_printers_leave_their_way(void)
