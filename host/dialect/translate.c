@@ -414,92 +414,6 @@ static void translate_dwell(struct translator *t)
         set_value(l, p, 'P', 1e-3 * p->value);
 }
 
-/* Which way the spindle turns behind this line. */
-static void follow_spindle(struct translator *t)
-{
-    struct line *l = &t->line;
-
-    for (unsigned code = 3; code <= 4; code++)
-        t->turns = line_find_code(l, 'm', 10 * code) != NULL ? code : t->turns;
-    if (line_find_code(l, 'm', 50) != NULL || line_find_code(l, 'm', 20) != NULL ||
-        line_find_code(l, 'm', 300) != NULL)
-        t->turns = 0;
-}
-
-/* T0102 turns the turret to tool 1 and takes offset 2, 0 none. The spindle goes on meanwhile; M6 stops it. */
-static void index_turret(struct translator *t, struct line_word *tool)
-{
-    struct line *l = &t->line;
-    const uint32_t both = line_whole(tool->value);
-    const bool told = line_find_code(l, 'm', 30) != NULL || line_find_code(l, 'm', 40) != NULL ||
-                      line_find_code(l, 'm', 50) != NULL;
-    const bool goes_on = t->turns != 0 && !told && line_find_code(l, 'm', 60) == NULL;
-    char offset[24] = "G49";
-    char text[64];
-
-    if (both % 100 != 0)
-        (void)snprintf(offset, sizeof offset, "G43 H%u", (unsigned)(both % 100));
-    (void)snprintf(text, sizeof text, "T%u%s %s", (unsigned)(both / 100),
-                   line_find_code(l, 'm', 60) != NULL ? "" : " M6", offset);
-    (void)line_replace(l, tool, text);
-    (void)snprintf(text, sizeof text, "M%u", t->turns);
-    if (goes_on)
-        (void)line_append(l, text);
-}
-
-/* Turning: feeds per minute and per turn, T0101 that changes the tool, diameters. */
-static void translate_lathe(struct translator *t)
-{
-    struct line *l = &t->line;
-    struct line_word *minute = line_find_code(l, 'g', 980);
-    struct line_word *turn = line_find_code(l, 'g', 990);
-    struct line_word *tool = line_find(l, 't', 0);
-
-    if (!t->survey.lathe)
-        return;
-    if (!t->begun && l->words > 0 && l->word[0].letter != '%' && l->word[0].letter != 'o')
-        translate_add(&t->before, "G18 G7");
-    if (minute != NULL)
-        (void)line_replace(l, minute, "G94");
-    if (turn != NULL)
-        (void)line_replace(l, turn, "G95");
-    if (tool != NULL && tool->is_number && tool->value >= 100.0)
-        index_turret(t, tool);
-    follow_spindle(t);
-}
-
-/* PRINT_START BED=60: a macro of the printer. PAUSE waits for somebody. */
-static void leave_macro(struct translator *t)
-{
-    struct line *l = &t->line;
-    const size_t length = line_macro_length(l);
-    const struct line_word name = {.begin = 0, .end = (uint16_t)length};
-
-    if (length == 0)
-        return;
-    if (length == strlen("pause") && line_begins(l->text, "pause")) {
-        (void)line_read(l, "M0", 2);
-        return;
-    }
-    translate_note(t, &name, "macro of the printer");
-    clear_line(t);
-}
-
-static void translate_extruder(struct translator *t)
-{
-    struct line *l = &t->line;
-    struct line_word *shift = line_find_code(l, 'g', 920);
-
-    for (unsigned i = 0; i < l->words; i++) {
-        struct line_word *w = &l->word[i];
-
-        if (w->letter == 'e' && (w->kind == WORD_VALUE || w->kind == WORD_BARE))
-            line_blank(l, w);
-    }
-    if (shift != NULL && !line_has_axis(l))
-        line_blank(l, shift);
-}
-
 /* ---- a line ---- */
 
 static void translate_foreign(struct translator *t)
@@ -508,7 +422,7 @@ static void translate_foreign(struct translator *t)
         siemens_translate(t);
     translate_start(t);
     if (is(t, MARLIN))
-        leave_macro(t);
+        printer_leave_macro(t);
     translate_numbers(t);
     names_begin(t);
     names_translate(t);
@@ -526,7 +440,7 @@ static void translate_foreign(struct translator *t)
     translate_unused(t);
     translate_change(t);
     if (is(t, MARLIN))
-        translate_extruder(t);
+        printer_translate(t);
     if (is(t, MACROS | MARLIN))
         translate_dwell(t);
     if (is(t, MACROS)) {
@@ -535,7 +449,7 @@ static void translate_foreign(struct translator *t)
         if (t->survey.lathe && t->dialect == DIALECT_FANUC)
             arcs_translate(t);
         registers_translate(t);
-        translate_lathe(t);
+        lathe_translate(t);
     }
     registers_translate_speed(t);
     follow_modes(t);

@@ -148,6 +148,11 @@ void holes_translate(struct translator *t);
 void arcs_translate(struct translator *t);
 /* #<_name> that the machine file knows. */
 void globals_begin(struct translator *t);
+/* Diameters, feeds and turret of lathes. */
+void lathe_translate(struct translator *t);
+/* Macros of printers; what is for extruders. */
+void printer_leave_macro(struct translator *t);
+void printer_translate(struct translator *t);
 /* G32. */
 void threads_translate(struct translator *t);
 
