@@ -243,6 +243,7 @@ static bool read_returned(struct program *p, const struct oword *o)
     return true;
 }
 
+/* ENDSUB has the label of its subroutine; RETURN leaves it whatever its own is. */
 bool calls_return(struct program *p, const struct oword *o)
 {
     const struct program_frame *frame = current(p);
@@ -253,8 +254,7 @@ bool calls_return(struct program *p, const struct oword *o)
     if (frame->numbered) {
         return oword_error(p, TAKT_ERROR_SUB_STYLE, o, 0.0);
     }
-    if (!oword_same_label(&p->flow.sub[frame->sub].label, &o->label) &&
-        !(o->kind == OWORD_RETURN && flow_is_in_block(p, o))) {
+    if (o->kind != OWORD_RETURN && !oword_same_label(&p->flow.sub[frame->sub].label, &o->label)) {
         return oword_error(p, TAKT_ERROR_SUB_NOT_INSIDE, o, 0.0);
     }
     const bool good = read_returned(p, o);

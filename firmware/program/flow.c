@@ -51,11 +51,6 @@ static struct program_block *find_block(struct program *p, const struct oword *o
     return NULL;
 }
 
-bool flow_is_in_block(struct program *p, const struct oword *o)
-{
-    return find_block(p, o) != NULL;
-}
-
 static struct program_block *innermost(struct program *p)
 {
     return &p->flow.block[p->flow.blocks - 1];

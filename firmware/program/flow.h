@@ -31,9 +31,6 @@ bool flow_end_of_text(struct program *p);
 /* There has been an error: nothing is repeated from now on, and no subroutine called a second time. */
 void flow_fail(struct program *p);
 
-/* Is the current line in an open block of this call that has o's label? */
-bool flow_is_in_block(struct program *p, const struct oword *o);
-
 /* Goes back to a place, as o says. False: p->error is set. */
 bool flow_jump(struct program *p, const struct program_place *place, const struct oword *o);
 

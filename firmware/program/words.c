@@ -175,6 +175,20 @@ static bool read_assignment(struct program *p, unsigned begin)
     return expression_read(p, &a->value);
 }
 
+/* $0 is the only spindle there is, $-1 all of them. */
+static bool read_spindle(struct program *p, unsigned begin)
+{
+    double number;
+
+    if (!expression_read(p, &number)) {
+        return false;
+    }
+    if (number != 0.0 && number != -1.0) {
+        return report_error(p, TAKT_ERROR_WORD_OUT_OF_RANGE, span_from(p, begin), number);
+    }
+    return true;
+}
+
 static bool read_word(struct program *p)
 {
     const unsigned begin = p->lexer.at++;
@@ -182,6 +196,9 @@ static bool read_word(struct program *p)
 
     if (letter == '#') {
         return read_assignment(p, begin);
+    }
+    if (letter == '$') {
+        return read_spindle(p, begin);
     }
     if (letter < 'a' || letter > 'z') {
         return report_error_at(p, TAKT_ERROR_CHARACTER_UNKNOWN, begin, 0.0);

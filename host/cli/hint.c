@@ -216,6 +216,22 @@ static bool write_value(const struct diagnostic *d, char text[HINT_MAX])
     return asked;
 }
 
+/* #<_NAME>, which another program may have set. */
+static bool write_global(const struct diagnostic *d, char text[HINT_MAX])
+{
+    const bool asked = d->code == TAKT_ERROR_PARAMETER_UNDEFINED && d->word[0] == '_';
+
+    if (asked)
+        (void)snprintf(
+            text, HINT_MAX,
+            "    set it before; or, if another program sets it, what it has from there, to the "
+            "machine file, or as --set values.%s=NUMBER:\n"
+            "    [values]\n"
+            "    %s = NUMBER\n",
+            d->word, d->word);
+    return asked;
+}
+
 /* #NAME, which the sender puts a number for. */
 static bool write_name(const struct diagnostic *d, const char *line, size_t length, size_t at,
                        char text[HINT_MAX])
@@ -256,7 +272,8 @@ void hint_write(const struct diagnostic *d, const char *line, size_t length, siz
     const char *hint = find(d->code);
 
     text[0] = '\0';
-    if (write_value(d, text) || write_tool(d, text) || write_name(d, line, length, at, text))
+    if (write_value(d, text) || write_global(d, text) || write_tool(d, text) ||
+        write_name(d, line, length, at, text))
         return;
     if (hint != NULL)
         write(text, hint);

@@ -152,7 +152,8 @@ static void look_at_code(struct look *k, struct line_word *w)
         note(k, BIT(DIALECT_HAAS), w);
     if (w->letter == 'g' && number == 500 && line_find(&k->line, 's', 0) == NULL)
         note(k, INDUSTRY, w);
-    if (w->letter == 'g' && number == 500 && line_find(&k->line, 's', 0) != NULL)
+    if (w->letter == 'g' && w == registers_speed_limit(&k->line) &&
+        line_find(&k->line, 's', 0) != NULL)
         note(k, BIT(DIALECT_FANUC), w);
     if (w->letter == 'm' &&
         (number == 1040 || number == 1090 || number == 1400 || number == 1900) &&
@@ -432,6 +433,8 @@ void dialect_guess_line(struct dialect_detector *d, const char *bytes, size_t le
         return;
     d->translates = d->translates || contains(k.line.text, k.line.length, "#<_ini[") ||
                     contains(k.line.text, k.line.length, "#<_hal[");
+    d->translates =
+        d->translates || (codes->values > 0 && contains(k.line.text, k.line.length, "#<_"));
     d->calls = d->calls || line_find_code(&k.line, 'm', 980) != NULL;
     if (is_oword(&k.line)) {
         d->calls = d->calls || contains(k.line.text, k.line.length, "call");

@@ -51,9 +51,9 @@ struct dialect_code {
     char subroutine[DIALECT_SUBROUTINE_MAX + 1];
 };
 
-/* What a program asks of LinuxCNC's configuration: #<_ini[SECTION]NAME>, #<_hal[PIN]>; and what senders put for #NAME. */
+/* What a program asks of LinuxCNC's configuration: #<_ini[SECTION]NAME>, #<_hal[PIN]>; what senders put for #NAME; and #<_NAME>. */
 struct dialect_value {
-    char name[64]; /* "_ini[SECTION]NAME", "_hal[PIN]", "NAME" */
+    char name[64]; /* "_ini[SECTION]NAME", "_hal[PIN]", "NAME", "_NAME" */
     double value;
 };
 

@@ -116,11 +116,12 @@ void dialect_code_write(const struct dialect_code *code, char text[DIALECT_CODE_
                        code->subroutine);
 }
 
-/* The name of #NAME. */
+/* The name of #NAME, or of #<_NAME>. */
 static bool is_plain(const char *name)
 {
     static const char letters[] = "abcdefghijklmnopqrstuvwxyz";
 
+    name += name[0] == '_' ? 1 : 0;
     if (name[0] == '\0' || strchr(letters, line_lower(name[0])) == NULL)
         return false;
     for (; *name != '\0'; name++) {
@@ -139,7 +140,7 @@ const char *dialect_value_set(struct dialect_codes *codes, const char *name, con
     if ((strncmp(name, "_ini[", 5) != 0 && strncmp(name, "_hal[", 5) != 0 && !is_plain(name)) ||
         strlen(name) >= sizeof codes->value[0].name)
         return "the name of a value is expected, such as _ini[TRAJ]MAX_LINEAR_VELOCITY, _hal[PIN] "
-               "or that of #NAME";
+               "that of #NAME or _NAME";
     if (end == value || *end != '\0' || !isfinite(number))
         return "a number is expected";
     while (i < codes->values && strcmp(codes->value[i].name, name) != 0)

@@ -328,6 +328,22 @@ bool line_is_directive(const struct line *l)
     return l->text[at] == '[' && is_letter(l->text[at + 1]);
 }
 
+size_t line_macro_length(const struct line *l)
+{
+    const size_t length = line_name_length(l, 0);
+    bool joined = false;
+
+    for (size_t i = 0; i < length; i++) {
+        if (i < 3 && !is_letter(l->text[i]))
+            return 0;
+        joined = joined || l->text[i] == '_';
+    }
+    if (length < 3 || (!joined && strchr("gmnt", line_lower(l->text[0])) != NULL) ||
+        line_is_assigned(l, length))
+        return 0;
+    return length;
+}
+
 struct line_word *line_unit(struct line *l)
 {
     for (unsigned i = 0; i < l->words; i++) {

@@ -86,6 +86,9 @@ const char *line_checksum(const struct line *l);
 /* MSG "text", as Eding CNC has it: the text and its length. NULL: no such line. */
 const char *line_message(const struct line *l, size_t *length);
 
+/* PRINT_START BED=60, as Klipper has it: a name of three letters or more begins the line. 0: no such line. */
+size_t line_macro_length(const struct line *l);
+
 /* [BILLET X62 Z70: what a simulator is told of the stock. */
 bool line_is_directive(const struct line *l);
 

@@ -4,6 +4,7 @@
  *
  *     #<_polar_radius> = [@] #<_polar_angle> = [^]
  *     X = radius cos angle,  Y = radius sin angle
+ * Fanuc's X and Y between G16 and G15 are the same.
  *
  * With G91 they are differences, and so are X and Y; a repeated cycle (L) then is a line for each hole, since the holes may lie
  * on a circle.
@@ -18,6 +19,29 @@
 
 #define RADIUS_HERE "SQRT[#5420*#5420+#5421*#5421]"
 #define ANGLE_HERE  "ATAN[#5421]/[#5420]"
+
+/* From G16 to G15 X is the distance and Y the angle, in G17 and with G90; otherwise G16 stays, and is told. */
+static void rename_words(struct translator *t)
+{
+    struct line *l = &t->line;
+    struct line_word *begin = line_find_code(l, 'g', 160);
+    struct line_word *x = line_find(l, 'x', 0);
+    struct line_word *y = line_find(l, 'y', 0);
+    const bool clear = t->across == 'k' && !t->incremental && line_find_code(l, 'g', 910) == NULL;
+
+    t->polar = (t->polar || begin != NULL) && line_find_code(l, 'g', 150) == NULL;
+    if (!t->polar)
+        return;
+    if (clear && begin != NULL)
+        line_blank(l, begin);
+    else if (!clear && begin == NULL && (x != NULL || y != NULL))
+        (void)line_append(l, "G16");
+    if (clear && x != NULL)
+        l->text[x->begin] = '@';
+    if (clear && y != NULL)
+        l->text[y->begin] = '^';
+    (void)line_read(l, l->text, l->length);
+}
 
 /* 1 with G91, as text: of this line, or of what comes before it. */
 static const char *distance_mode(struct line *l)
@@ -53,6 +77,9 @@ static unsigned take_repeats(struct translator *t)
 void polar_translate(struct translator *t)
 {
     struct line *l = &t->line;
+
+    if (t->dialect == DIALECT_FANUC || t->dialect == DIALECT_HAAS || t->dialect == DIALECT_MACH3)
+        rename_words(t);
     struct line_word *radius = line_find(l, '@', 0);
     struct line_word *angle = line_find(l, '^', 0);
     char text[2][TEXT_MAX];

@@ -110,11 +110,21 @@ static void translate_system(struct translator *t)
     }
 }
 
-/* G50 S2000 is the highest speed for the G96 that follows; without S it ends a scale that is not there. */
+struct line_word *registers_speed_limit(struct line *l)
+{
+    struct line_word *w = line_find_code(l, 'g', 500);
+    struct line_word *other = line_find_code(l, 'g', 920);
+
+    return w == NULL && line_find(l, 's', 0) != NULL && !line_has_axis(l) ? other : w;
+}
+
+/*
+ * G50 S2000, of others G92 S2000, is the highest speed for the G96 that follows; G50 without S ends a scale that is not there.
+ */
 void registers_translate_speed(struct translator *t)
 {
     struct line *l = &t->line;
-    struct line_word *w = line_find_code(l, 'g', 500);
+    struct line_word *w = registers_speed_limit(l);
     struct line_word *s = line_find(l, 's', 0);
     struct line_word *surface = line_find_code(l, 'g', 960);
 
@@ -124,7 +134,7 @@ void registers_translate_speed(struct translator *t)
         (void)line_append(l, "G96");
     t->surface_is_owed = (t->surface_is_owed || surface != NULL) && (s == NULL || w != NULL) &&
                          line_find_code(l, 'g', 970) == NULL;
-    w = line_find_code(l, 'g', 500);
+    w = registers_speed_limit(l);
     s = line_find(l, 's', 0);
     if (w != NULL && s == NULL) {
         line_blank(l, w);

@@ -263,13 +263,23 @@ static void translate_change(struct translator *t)
 
 /* ---- words that mean nothing ---- */
 
-/* A cycle that does not wait has no use for P, nor has M6; of two S the last counts. */
+/* Of several words of a letter the last counts. */
+static void leave_last(struct line *l, char letter)
+{
+    struct line_word *w = line_find(l, letter, 0);
+
+    while (w != NULL && line_find(l, letter, (unsigned)(w - l->word) + 1) != NULL) {
+        line_blank(l, w);
+        w = line_find(l, letter, 0);
+    }
+}
+
+/* A cycle that does not wait has no use for P, nor has M6; of two S and F the last counts. */
 static void translate_unused(struct translator *t)
 {
     static const uint16_t cycles[] = {730, 810, 830, 850};
     struct line *l = &t->line;
     struct line_word *p = line_find(l, 'p', 0);
-    struct line_word *s = line_find(l, 's', 0);
 
     for (size_t i = 0; i < sizeof cycles / sizeof cycles[0] && p != NULL; i++) {
         if (line_find_code(l, 'g', cycles[i]) != NULL && p->kind == WORD_VALUE) {
@@ -280,14 +290,12 @@ static void translate_unused(struct translator *t)
     if (p != NULL && p->kind == WORD_VALUE && line_find_code(l, 'm', 60) != NULL &&
         line_find_code(l, 'g', 40) == NULL)
         line_blank(l, p);
-    for (unsigned i = 1; i < l->words && l->word[0].letter == 'n'; i++) {
+    for (unsigned i = 1; i < l->words && (l->word[0].letter == 'n' || is(t, MACROS)); i++) {
         if (l->word[i].kind == WORD_VALUE && l->word[i].letter == 'n')
             line_blank(l, &l->word[i]);
     }
-    while (s != NULL && line_find(l, 's', (unsigned)(s - l->word) + 1) != NULL) {
-        line_blank(l, s);
-        s = line_find(l, 's', 0);
-    }
+    leave_last(l, 's');
+    leave_last(l, 'f');
 }
 
 static void translate_arc(struct translator *t)
@@ -397,48 +405,13 @@ static void translate_dwell(struct translator *t)
             return;
         }
     }
+    if (p == NULL && dwells && is(t, MARLIN)) { /* until all has moved, as everything here does */
+        line_blank(l, line_find_code(l, 'g', 40));
+        return;
+    }
     if (p != NULL && p->is_number && !p->has_point &&
         (p->value >= DWELL_MS_MIN || (is(t, MARLIN) && dwells)))
         set_value(l, p, 'P', 1e-3 * p->value);
-}
-
-/* Turning: feeds per minute and per turn, T0101 that changes the tool, diameters. */
-static void translate_lathe(struct translator *t)
-{
-    struct line *l = &t->line;
-    struct line_word *minute = line_find_code(l, 'g', 980);
-    struct line_word *turn = line_find_code(l, 'g', 990);
-    struct line_word *tool = line_find(l, 't', 0);
-    char text[32];
-
-    if (!t->survey.lathe)
-        return;
-    if (!t->begun && l->words > 0 && l->word[0].letter != '%' && l->word[0].letter != 'o')
-        translate_add(&t->before, "G18 G7");
-    if (minute != NULL)
-        (void)line_replace(l, minute, "G94");
-    if (turn != NULL)
-        (void)line_replace(l, turn, "G95");
-    if (tool != NULL && tool->is_number && tool->value >= 100.0) {
-        (void)snprintf(text, sizeof text, "T%u%s", (unsigned)line_whole(tool->value / 100.0),
-                       line_find_code(l, 'm', 60) != NULL ? "" : " M6");
-        (void)line_replace(l, tool, text);
-    }
-}
-
-static void translate_extruder(struct translator *t)
-{
-    struct line *l = &t->line;
-    struct line_word *shift = line_find_code(l, 'g', 920);
-
-    for (unsigned i = 0; i < l->words; i++) {
-        struct line_word *w = &l->word[i];
-
-        if (w->letter == 'e' && (w->kind == WORD_VALUE || w->kind == WORD_BARE))
-            line_blank(l, w);
-    }
-    if (shift != NULL && !line_has_axis(l))
-        line_blank(l, shift);
 }
 
 /* ---- a line ---- */
@@ -448,6 +421,8 @@ static void translate_foreign(struct translator *t)
     if (is(t, SIEMENS))
         siemens_translate(t);
     translate_start(t);
+    if (is(t, MARLIN))
+        printer_leave_macro(t);
     translate_numbers(t);
     names_begin(t);
     names_translate(t);
@@ -456,6 +431,8 @@ static void translate_foreign(struct translator *t)
         if (t->survey.lathe)
             turning_translate(t);
         pocket_translate(t);
+        if (t->survey.lathe)
+            threads_translate(t);
         flow_translate(t);
     }
     registers_translate_unit(t);
@@ -463,13 +440,16 @@ static void translate_foreign(struct translator *t)
     translate_unused(t);
     translate_change(t);
     if (is(t, MARLIN))
-        translate_extruder(t);
+        printer_translate(t);
     if (is(t, MACROS | MARLIN))
         translate_dwell(t);
     if (is(t, MACROS)) {
         upright_translate(t);
+        holes_translate(t);
+        if (t->survey.lathe && t->dialect == DIALECT_FANUC)
+            arcs_translate(t);
         registers_translate(t);
-        translate_lathe(t);
+        lathe_translate(t);
     }
     registers_translate_speed(t);
     follow_modes(t);
@@ -513,6 +493,7 @@ static void translate_line(struct translator *t, const char *bytes, size_t lengt
         return;
     }
     flow_note_label(t, t->result->text.length);
+    globals_begin(t);
     values_translate(t);
     polar_translate(t);
     if (is(t, NOT_FOREIGN)) {
@@ -552,7 +533,7 @@ static void survey_line(struct translator *t, const char *bytes, size_t length)
     t->survey.rotary = t->survey.rotary || upright_turns(l);
     t->survey.whole = t->survey.whole || turning_is_whole(l);
     t->survey.lathe = t->survey.lathe || turning_tells(l) ||
-                      (line_find_code(l, 'g', 500) != NULL && line_find(l, 's', 0) != NULL) ||
+                      (registers_speed_limit(l) != NULL && line_find(l, 's', 0) != NULL) ||
                       (line_find_code(l, 'g', 280) != NULL && line_find(l, 'u', 0) != NULL);
 }
 

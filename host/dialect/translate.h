@@ -72,11 +72,20 @@ struct translator {
     bool begun;           /* a line with words has passed */
     struct dialect_detector detector;
     bool absolute;                  /* centres of arcs are, and G90.1 has to say so */
+    bool globals_given;             /* those that the machine file knows are set */
     bool feed_given;                /* the F that the machine file declares has been put in */
     char speed_limit[24];           /* G50 S */
     char radius[24];                /* D beside G43 */
     char length[24];                /* H that stood alone */
     bool has_length;                /* G43 is in effect */
+    bool has_height;                /* a cycle of the series in effect has had its R */
+    bool has_two_heights;           /* Fagor's G81 */
+    bool bores_along;               /* and it goes along Z on a lathe */
+    unsigned arc;                   /* G2 or G3 is in effect: 2, 3; else 0 */
+    bool cuts_thread;               /* G32 is in effect */
+    char lead[24];                  /* K, the F of it */
+    unsigned turns;                 /* the spindle, by M3 or M4: 3, 4; else 0 */
+    bool polar;                     /* G16 is in effect */
     unsigned side;                  /* G41 or G42 is in effect: 41, 42; else 0 */
     bool surface_is_owed;           /* G96 waits for its S */
     uint32_t program;               /* number of O1000 lines so far */
@@ -133,6 +142,20 @@ bool turning_is_whole(struct line *l);
 /* Only programs for lathes have such a line. */
 bool turning_tells(struct line *l);
 
+/* Cycles without R, of lathes, and of Fagor. */
+void holes_translate(struct translator *t);
+/* Arcs of lathes that have no centre. */
+void arcs_translate(struct translator *t);
+/* #<_name> that the machine file knows. */
+void globals_begin(struct translator *t);
+/* Diameters, feeds and turret of lathes. */
+void lathe_translate(struct translator *t);
+/* Macros of printers; what is for extruders. */
+void printer_leave_macro(struct translator *t);
+void printer_translate(struct translator *t);
+/* G32. */
+void threads_translate(struct translator *t);
+
 /* Has a line a rotary axis? */
 bool upright_turns(struct line *l);
 /* G43.4, G53.1 and G68.2 of a program that has none. */
@@ -140,6 +163,8 @@ void upright_translate(struct translator *t);
 
 /* Systems, and what T, D, H and compensation leave for later lines. */
 void registers_translate(struct translator *t);
+/* G50, or G92 with S and no axis. NULL: no such line. */
+struct line_word *registers_speed_limit(struct line *l);
 /* G50 S, and G96 that waits for its S. */
 void registers_translate_speed(struct translator *t);
 /* G70 and G71 as units. */

@@ -24,13 +24,18 @@ static size_t match(const char *text, const char *name)
     return text[at] == '>' ? at + 1 : 0;
 }
 
+static bool is_global(const struct dialect_value *v)
+{
+    return v->name[0] == '_' && strchr(v->name, '[') == NULL;
+}
+
 static bool replace_at(struct translator *t, size_t at)
 {
     struct line *l = &t->line;
 
     for (unsigned i = 0; i < t->codes->values; i++) {
         const struct dialect_value *v = &t->codes->value[i];
-        const size_t length = match(&l->text[at + 2], v->name);
+        const size_t length = is_global(v) ? 0 : match(&l->text[at + 2], v->name);
         char text[48];
 
         if (length > 0) {
@@ -146,6 +151,20 @@ void names_translate(struct translator *t)
         if (t->line.text[at] == '#' && line_name_length(&t->line, at + 1) > 0)
             name_translate(t, at);
     }
+}
+
+/* Global names keep what another program has given them: the machine file can say what. */
+void globals_begin(struct translator *t)
+{
+    if (t->globals_given || t->line.words == 0 || strchr("%(;", t->line.text[0]) != NULL)
+        return;
+    for (unsigned i = 0; i < t->codes->values; i++) {
+        const struct dialect_value *v = &t->codes->value[i];
+
+        if (is_global(v))
+            translate_add(&t->before, "#<%s>=%.9f", v->name, v->value);
+    }
+    t->globals_given = true;
 }
 
 void values_translate(struct translator *t)

@@ -51,21 +51,49 @@ static struct dialect_guess guess_bytes(const char *bytes, size_t length,
     return scan_end(&s);
 }
 
+/* A text without any line feed whose lines end with carriage returns. */
+static bool ends_with_returns(const struct program_text *text)
+{
+    static _Thread_local struct program_text_reader reader;
+    struct source source;
+    char piece[4096];
+    bool returns = false;
+    long got;
+
+    program_text_read(text, &reader, &source);
+    while ((got = source.read(source.context, piece, sizeof piece)) > 0) {
+        if (memchr(piece, '\n', (size_t)got) != NULL)
+            return false;
+        returns = returns || memchr(piece, '\r', (size_t)got) != NULL;
+    }
+    return returns;
+}
+
+static void mend_line_ends(struct text *text)
+{
+    if (memchr(text->bytes, '\n', text->length) != NULL)
+        return;
+    for (size_t i = 0; i < text->length; i++)
+        text->bytes[i] = (char)(text->bytes[i] == '\r' ? '\n' : text->bytes[i]);
+}
+
 /* Without keeping it: a program may be long. */
 static struct dialect_guess guess_text(const struct program_text *text,
                                        const struct dialect_codes *codes, bool *calls)
 {
     static _Thread_local struct program_text_reader reader;
     static _Thread_local struct scan s;
+    const bool returns = ends_with_returns(text);
     struct source source;
     char piece[4096];
     long got;
 
     s = (struct scan){.codes = codes};
+    s.detector.translates = returns;
     program_text_read(text, &reader, &source);
     while ((got = source.read(source.context, piece, sizeof piece)) > 0) {
         for (long i = 0; i < got; i++)
-            scan_byte(&s, piece[i]);
+            scan_byte(&s, (char)(returns && piece[i] == '\r' ? '\n' : piece[i]));
     }
     *calls = s.detector.calls;
     return scan_end(&s);
@@ -345,6 +373,7 @@ static bool bring_in(struct joint *j, const char *label)
         return true;
     if (!text_read(&found, path))
         return false;
+    mend_line_ends(&found);
     const struct dialect_guess guess = guess_bytes(found.bytes, found.length, j->front->codes);
 
     if (!add_piece(j, path, &found)) {
@@ -412,6 +441,7 @@ static bool join(struct joint *j, enum dialect dialect)
 
     if (!read_found(j->text, &found))
         return false;
+    mend_line_ends(&found);
     if (!add_piece(j, j->text->name, &found)) {
         text_free(&found);
         return false;

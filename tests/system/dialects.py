@@ -57,6 +57,39 @@ t.check(status == 2 and err.startswith("macro.nc:5:1: error: "), "the dialect ca
 status, found, err = moves("macro.nc", "--dialect", "fanoc")
 t.check(status == 2 and "known are auto, linuxcnc, grbl, fanuc" in err, "one that is not known", err)
 
+# Lines of old Macintoshes end with carriage returns alone.
+t.write("returns.nc", "G21 G0 X1\rG0 X2\r\rG0 X[\rM30\r")
+status, found, err = moves("returns.nc")
+t.check(status == 2 and "returns.nc:4:5: error" in err, "lines that end with carriage returns", err)
+
+# A lathe's program in one piece: turret, drill, thread, and the spindle that goes on turning.
+t.write("lathe.nc", """\
+%
+O2(LATHE)
+G21 G18 G99
+G50 S2000
+T0101
+G97 S1000 M3
+G0 X0 Z2.
+G83 Z-9. Q5000 F.2
+G0 Z5.
+T0202
+G0 X20.
+G32 Z-10. F1.5
+G0 X30.
+M30
+""")
+status, found, err = moves("lathe.nc")
+t.check(status == 0 and [m for m in found if m.startswith(("feed", "thread", "spindle"))] == [
+    "spindle_cw S1000.000000", "feed X0.000000 Y0.000000 Z-3.000000 F0.200000rev",
+    "feed X0.000000 Y0.000000 Z-8.000000 F0.200000rev", "feed X0.000000 Y0.000000 Z-9.000000 F0.200000rev",
+    "spindle_off", "spindle_cw S1000.000000", "thread X10.000000 Y0.000000 Z-10.000000 F1.500000rev"], "a lathe", found, err)
+
+# Polar coordinates.
+t.write("polar.nc", "G15\nG21 G90 G16\nG0 X10. Y90.\nY180.\nG15\nX1. Y2.\nM30\n")
+status, found, err = moves("polar.nc")
+t.check(found[:3] == [rapid(0, 10), rapid(-10, 0), rapid(1, 2)], "polar coordinates", found, err)
+
 # A loop that one line becomes has the number of this line in every round.
 t.write("pocket.nc", "G0 X1\nG13 I2. K5. Q2. F200\nX9\nM30\n")
 status, out, err = t.run("canon", "pocket.nc")

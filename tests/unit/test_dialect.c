@@ -1,52 +1,8 @@
 /* host/dialect: what a program is written for, and what its lines become. */
-#include "dialect/dialect.h"
-
-#include "unity.h"
+#include "dialect_expect.h"
 
 #include <stdio.h>
 #include <string.h>
-
-static struct dialect_result result;
-static struct dialect_codes codes;
-
-void setUp(void)
-{
-    codes.count = codes.values = 0;
-}
-
-void tearDown(void)
-{
-    dialect_text_free(&result.text);
-}
-
-/* A text becomes another one; "|" begins what goes on with the line before. */
-static void expect(enum dialect dialect, const char *from, const char *to)
-{
-    char found[4096];
-
-    TEST_ASSERT_TRUE(dialect_translate(dialect, &codes, from, strlen(from), &result));
-    TEST_ASSERT_TRUE(result.text.length < sizeof found);
-    memcpy(found, result.text.bytes, result.text.length);
-    found[result.text.length] = '\0';
-    for (char *c = found; *c != '\0'; c++)
-        if (*c == DIALECT_GOES_ON)
-            *c = '|';
-    TEST_ASSERT_EQUAL_STRING(to, found);
-    dialect_text_free(&result.text);
-}
-
-static struct dialect_guess guess(const char *text)
-{
-    struct dialect_detector detector = {0};
-
-    while (*text != '\0') {
-        const size_t length = strcspn(text, "\n");
-
-        dialect_guess_line(&detector, text, length, &codes);
-        text += length + (text[length] == '\n' ? 1 : 0);
-    }
-    return dialect_guess_end(&detector);
-}
 
 static void declare(const char *name, const char *value)
 {
@@ -205,7 +161,7 @@ static void test_more_systems_are_the_last_ones_here(void)
 static void test_turning_has_diameters_and_limits_of_speed(void)
 {
     expect(DIALECT_FANUC, "O1\nG50 S2000\nT0101\nG96 S200\nG99 G1 X5 F.1\n",
-           "O1\nG18 G7\nT1 M6\nG96 S200 D2000\nG95 G1 X5 F.1\n");
+           "O1\nG18 G7\nT1 M6 G43 H1\nG96 S200 D2000\nG95 G1 X5 F.1\n");
 }
 
 static void test_printers_leave_their_way(void)

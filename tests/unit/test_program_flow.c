@@ -234,8 +234,6 @@ static void test_every_o_word_that_fits_nowhere_is_refused(void)
     expect_refused("o1 repeat [1]\no1 if [1]\n", TAKT_ERROR_OWORD_LABEL_USED, 2);
     expect_refused("o1 if [0]\no1 if [1]\n", TAKT_ERROR_OWORD_LABEL_USED, 2);
     expect_refused("o1 endsub\n", TAKT_ERROR_SUB_NOT_INSIDE, 1);
-    expect_refused("o1 sub\no2 return\no1 endsub\no1 call\n", TAKT_ERROR_SUB_NOT_INSIDE, 2);
-    expect_refused("o1 sub\no2 sub\n", TAKT_ERROR_SUB_NESTED, 2);
     expect_refused("M98 P1\nM2\no1\no2 sub\n", TAKT_ERROR_SUB_NESTED, 4);
     expect_refused("o1 sub\no1 endsub\no1 sub\n", TAKT_ERROR_SUB_DEFINED_TWICE, 3);
     expect_refused("o1 call\n", TAKT_ERROR_SUB_UNKNOWN, 1);

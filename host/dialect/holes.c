@@ -1,0 +1,110 @@
+/*
+ * Holes as other controls write them, in the cycles of LinuxCNC:
+ *
+ *     G81 Z-5 F100                  without R, where none of the same series has one, the tool drills from where it is
+ *     G83 X0 Z-30 Q5000 (a lathe)   along Z, whatever the plane of its arcs is, pecks in thousandths
+ *     G81 X1 Y2 Z2 I-5 (Fagor)      Z is the height that R has here, I the bottom
+ */
+#include "dialect/translate.h"
+
+#include <stdio.h>
+#include <string.h>
+
+/* From here on a peck without a point is in thousandths: nothing is bored at one go that is so long. */
+#define WHOLE_MIN 100.0
+
+static struct line_word *find_cycle(struct line *l)
+{
+    for (unsigned code = 810; code <= 890; code += 10) {
+        struct line_word *w = line_find_code(l, 'g', code);
+
+        if (w != NULL)
+            return w;
+    }
+    return line_find_code(l, 'g', 730);
+}
+
+static bool ends_series(struct line *l)
+{
+    for (unsigned code = 0; code <= 30; code += 10) {
+        if (line_find_code(l, 'g', code) != NULL)
+            return true;
+    }
+    return line_find_code(l, 'g', 800) != NULL;
+}
+
+/* Fagor's G81, where K would be a dwell and has another unit. */
+static bool has_two_heights(struct line *l)
+{
+    return line_find_code(l, 'g', 810) != NULL && line_find(l, 'z', 0) != NULL &&
+           line_find(l, 'i', 0) != NULL && line_find(l, 'r', 0) == NULL &&
+           line_find(l, 'k', 0) == NULL;
+}
+
+/* On the line of the cycle and on those that repeat it. */
+static void rename_heights(struct line *l)
+{
+    const struct line_word *z = line_find(l, 'z', 0);
+    const struct line_word *i = line_find(l, 'i', 0);
+
+    if (z != NULL)
+        l->text[z->begin] = 'R';
+    if (i != NULL)
+        l->text[i->begin] = 'Z';
+    (void)line_read(l, l->text, l->length);
+}
+
+/* Thousandths; inches: ten-thousandths. */
+static void write_peck(struct line *l)
+{
+    struct line_word *q = line_find(l, 'q', 0);
+    char text[64];
+
+    if (q == NULL || !q->is_number || q->has_point || q->value < WHOLE_MIN)
+        return;
+    (void)snprintf(text, sizeof text, "Q[%.0f*[0.001-0.0009*#<_imperial>]]", q->value);
+    (void)line_replace(l, q, text);
+}
+
+/* A lathe of Fanuc has a distance in R, one of Haas a height: of a program for either it is not clear. */
+static bool is_clear(struct translator *t)
+{
+    return !t->survey.lathe || t->dialect == DIALECT_HAAS || line_find(&t->line, 'r', 0) == NULL;
+}
+
+static void give_height(struct translator *t)
+{
+    struct line *l = &t->line;
+    const bool incremental = line_find_code(l, 'g', 910) != NULL ||
+                             (t->incremental && line_find_code(l, 'g', 900) == NULL);
+
+    if (!is_clear(t) || line_find(l, 'z', 0) == NULL)
+        return;
+    if (t->survey.lathe) {
+        write_peck(l);
+        (void)line_append(l, "G17");
+    }
+    t->bores_along = t->survey.lathe;
+    if (line_find(l, 'r', 0) == NULL)
+        (void)line_append(l, incremental ? "R0" : "R#<_z>");
+}
+
+void holes_translate(struct translator *t)
+{
+    struct line *l = &t->line;
+    const bool begins = find_cycle(l) != NULL;
+
+    if (begins)
+        t->has_two_heights = has_two_heights(l);
+    if (t->has_two_heights && !ends_series(l))
+        rename_heights(l);
+    if (begins) {
+        if (!t->has_height)
+            give_height(t);
+        t->has_height = true;
+    } else if (ends_series(l)) {
+        if (t->bores_along && line_find_code(l, 'g', 170) == NULL)
+            (void)line_append(l, "G18");
+        t->has_height = t->has_two_heights = t->bores_along = false;
+    }
+}

@@ -1,0 +1,38 @@
+/*
+ * Of a program for a printer the way of the nozzle is left.
+ */
+#include "dialect/translate.h"
+
+#include <string.h>
+
+/* PRINT_START BED=60: a macro of the printer. PAUSE waits for somebody. */
+void printer_leave_macro(struct translator *t)
+{
+    struct line *l = &t->line;
+    const size_t length = line_macro_length(l);
+    const struct line_word name = {.begin = 0, .end = (uint16_t)length};
+
+    if (length == 0)
+        return;
+    if (length == strlen("pause") && line_begins(l->text, "pause")) {
+        (void)line_read(l, "M0", 2);
+        return;
+    }
+    translate_note(t, &name, "macro of the printer");
+    (void)line_read(l, "", 0);
+}
+
+void printer_translate(struct translator *t)
+{
+    struct line *l = &t->line;
+    struct line_word *shift = line_find_code(l, 'g', 920);
+
+    for (unsigned i = 0; i < l->words; i++) {
+        struct line_word *w = &l->word[i];
+
+        if (w->letter == 'e' && (w->kind == WORD_VALUE || w->kind == WORD_BARE))
+            line_blank(l, w);
+    }
+    if (shift != NULL && !line_has_axis(l))
+        line_blank(l, shift);
+}
