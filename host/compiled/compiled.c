@@ -137,8 +137,7 @@ static enum command_status compile(struct making *m, const struct session *s,
                                    const struct session_totals *totals, uint32_t ceiling_percent,
                                    const struct attempt *attempt, FILE *stream)
 {
-    struct compile_config config = {.vibration = s->setup.vibration,
-                                    .cycle_us = s->setup.machine.cycle_us,
+    struct compile_config config = {.cycle_us = s->setup.machine.cycle_us,
                                     .ceiling_percent = ceiling_percent,
                                     .tolerance_part = attempt->tolerance_part,
                                     .stops = attempt->stops,
@@ -155,6 +154,7 @@ static enum command_status compile(struct making *m, const struct session *s,
     program_open(&m->reading.program, &program, &source);
     offset_open(&m->reading.offset, &program);
     compiled_limits(s, &program.start, &config.limits);
+    shaper_planned_modes(&s->setup, &config.vibration);
     set_text(s, &config);
     progress_start(&m->progress, !s->options->quiet);
     result = compile_begin(&m->compile, &config, &program.start, stream);

@@ -3,6 +3,7 @@
 #include "base/maths.h"
 #include "cli/interrupt.h"
 #include "cli/message.h"
+#include "config/shaper.h"
 #include "judge/judge.h"
 #include "motion/handover.h"
 #include "replay/replay.h"
@@ -71,9 +72,11 @@ __attribute__((format(printf, 3, 4))) static void refuse(struct trial *t, uint32
 /* The tool rests where the axes do. */
 static void begin_tool(struct trial *t, const struct point *start)
 {
+    struct vibration_config modes;
     struct point tool = *start;
 
-    vibration_init(&t->vibration, &t->session->setup.vibration, t->limits.cycle_s);
+    shaper_planned_modes(&t->session->setup, &modes);
+    vibration_init(&t->vibration, &modes, t->limits.cycle_s);
     vibration_follow(&t->vibration, &tool);
 }
 

@@ -4,6 +4,7 @@
 #include "controller/controller.h"
 
 #include <stddef.h>
+#include <string.h>
 
 static struct shape_mode mode_of(const double number[VIBRATION_NUMBERS])
 {
@@ -61,6 +62,13 @@ struct shape *shaper_prepare(const struct machine_setup *setup, struct shape *s)
     const struct shape_config config = config_of(setup);
 
     return shape_init(s, &config) == NULL ? s : NULL;
+}
+
+void shaper_planned_modes(const struct machine_setup *setup, struct vibration_config *modes)
+{
+    memset(modes, 0, sizeof *modes);
+    if (setup->shaper == SHAPER_NONE)
+        memcpy(modes->mode, setup->vibration.mode, sizeof modes->mode);
 }
 
 void shaper_plan_limits(const struct machine_setup *setup, struct plan_limits *limits)

@@ -22,6 +22,12 @@ const char *shaper_check(const struct machine_setup *setup);
 /* The setup is good. Fills s, and gives it back; NULL: none is wanted, and s is not touched. */
 struct shape *shaper_prepare(const struct machine_setup *setup, struct shape *s);
 
+/*
+ * The modes that a program planned ahead meets: as they are at their places' ratio of 1, each along its own axis. None where setpoints
+ * are shaped: then that is the shaper's.
+ */
+void shaper_planned_modes(const struct machine_setup *setup, struct vibration_config *modes);
+
 /* The planner's limits of a machine, less what its shaper takes: as the controller has them. */
 void shaper_plan_limits(const struct machine_setup *setup, struct plan_limits *limits);
 

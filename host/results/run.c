@@ -1,6 +1,7 @@
 #include "results/run.h"
 
 #include "cli/message.h"
+#include "config/shaper.h"
 #include "simulation/target_setup.h"
 
 #include <string.h>
@@ -50,7 +51,7 @@ static void prepare_judge(struct run *run)
     judge_init(&run->judge, machine, &config, &source);
     session_begin_reading(&run->session, &run->reading[1], &config, &source);
     judge_follow(&run->judge, machine, &config, &source, run->session.compiled != NULL);
-    if (run->session.compiled != NULL)
+    if (run->session.compiled != NULL && run->session.setup.shaper == SHAPER_NONE)
         judge_follow_tool(&run->judge, &run->session.setup.vibration);
 }
 

@@ -118,6 +118,14 @@ for number in range(FIRST, FIRST + PROGRAMS):
     done, stiff, motors, blocks, text = run("stiff.plan", machine)
     t.check(done == 1 and stiff["path_error_max_mm"] > TOLERANCE_MM, "what knows no modes leaves the path", text)
     t.check(off_path(motors, blocks, path_mm) <= TOLERANCE_MM, "though its motors keep it", about)
+    # With a shaper the modes are its own.
+    shaped = [*options(machine), "--set", "machine.shaper=zv"]
+    done, _, err = t.run("compile", "part.ngc", "-o", "shaped.plan", *shaped)
+    t.check(done == 0, "with a shaper", err)
+    with open("stiff.plan", "rb") as one, open("shaped.plan", "rb") as two:
+        t.check(one.read() == two.read(), "the plan is that of a stiff machine", about)
+    done, _, err = t.run("run", "part.ngc", "--plan", "shaped.plan", *shaped)
+    t.check(done == 0, "and its run is judged by the way it was sent on", about, err)
 
 # In exact path a line ends in a rest in which nothing swings: else the next one would not be straight.
 swings = options([(25, 0.03)] * 3)
