@@ -9,7 +9,7 @@ import sys
 
 import takt_test as t
 
-PROGRAMS = int(sys.argv[1]) if len(sys.argv) > 1 else 3
+PROGRAMS = int(sys.argv[1]) if len(sys.argv) > 1 else 1
 FIRST = int(sys.argv[2]) if len(sys.argv) > 2 else 1
 TOLERANCE_MM = 0.01
 CYCLE_S = 0.001

