@@ -174,14 +174,14 @@ static double time_at(const struct judge *j, size_t piece, double part, const do
     return before[p->motion] + j->motion[p->motion].time_s * (p->from + part * (p->to - p->from));
 }
 
-/* Faster than programmed? In exact path by the time that the way would have taken. */
+/* Faster than programmed? In exact path by the time that the way would have taken: what a tolerance cuts off is no haste. */
 static void judge_exact_feed(const struct judge *j, struct walk *w, size_t k, unsigned line)
 {
     for (size_t i = 0; i < WINDOWS; i++) {
         const size_t n = windows[i];
         const double allowed = (double)n * j->cycle_s * j->feed_factor;
 
-        if (k >= n && !isnan(w->time_s[1][k - n]))
+        if (w->exact_rows > n)
             note(&w->feed_ratio, &w->feed_line, (w->time_s[0][k] - w->time_s[1][k - n]) / allowed,
                  line);
     }
@@ -333,6 +333,7 @@ static void judge_exact(const struct judge *j, struct walk *w, size_t k, size_t 
             least = fmin(least, curve_distance(j, &j->piece[n], j->reach[n], row_of(j, k)));
     }
     note(&w->off_mm, &w->off_line, least, line);
+    w->exact_rows++;
     w->time_s[0][k] = time_at(j, low, j->reach[low].first, before);
     w->time_s[1][k] = time_at(j, high, j->reach[high].last, before);
     judge_exact_feed(j, w, k, line);
@@ -364,10 +365,11 @@ struct walk walk_along(struct judge *j, double factor, bool closely, const doubl
         }
         if (!closely)
             continue;
-        w.time_s[0][k] = w.time_s[1][k] = (double)NAN;
         if (!has_rounded(j, &w))
             judge_exact(j, &w, k, low, high, before);
-        else if (k > 0)
+        else
+            w.exact_rows = 0;
+        if (w.exact_rows == 0 && k > 0)
             judge_feed(j, &w, k);
         if (k > 0) {
             judge_back(j, &w, k);

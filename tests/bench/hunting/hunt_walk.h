@@ -24,7 +24,8 @@ struct walk {
     unsigned feed_line;
     unsigned stops, stop_line;
     size_t standing;   /* cycles */
-    double *time_s[2]; /* along the programmed path, first and last place of each row */
+    size_t exact_rows; /* up to this one without a row that a tolerance is for */
+    double *time_s[2]; /* along the programmed path, first and last place of each of them */
 };
 
 /* One pass with this factor on all tolerances. closely: measures what the places passed say, too. */
