@@ -13,6 +13,12 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+/*
+ * Velocity gain times the loops' period: an inertia that follows its torque at once rings above 1, and is unstable above 2;
+ * half of 1 leaves room for the rest.
+ */
+#define SERVO_LOOP_GAIN_STEP_MAX 0.5
+
 /* What the loops know of the motor, and how they are tuned. */
 struct servo_loop_config {
     double travel_per_revolution_mm; /* of the axis, per turn of the motor: the screw's lead; > 0 */

@@ -160,18 +160,12 @@ static uint32_t check_communication_write(const struct servo *drive, const struc
     return SDO_ABORT_NONE;
 }
 
-/*
- * Velocity gain times the loops' period: an inertia that follows its torque at once rings above 1, and is unstable above 2;
- * half of 1 leaves room for the rest.
- */
-#define GAIN_PERIOD_MAX 0.5
-
 static uint32_t check_loops(const struct servo *drive, const struct object_row *row, int64_t value)
 {
     const double period_s = 1e-6 * drive->config.loop.loop_period_us;
     const double gain_per_s = MATHS_TWO_PI * 1e-3 * ((double)value - 0.5); /* it may be rounded */
-    return row->sub == 2 && gain_per_s * period_s > GAIN_PERIOD_MAX ? SDO_ABORT_TOO_HIGH
-                                                                    : SDO_ABORT_NONE;
+    return row->sub == 2 && gain_per_s * period_s > SERVO_LOOP_GAIN_STEP_MAX ? SDO_ABORT_TOO_HIGH
+                                                                             : SDO_ABORT_NONE;
 }
 
 static uint32_t check_profile_write(const struct servo *drive, const struct object_row *row,

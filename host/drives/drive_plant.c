@@ -104,7 +104,7 @@ static const char *check_loops(const struct drive_plant_config *c)
     CHECK(c->torque_delay_steps < DRIVE_PLANT_DELAY_MAX, torque_delay_steps);
     CHECK(c->loop_period_us >= 1 && c->loop_period_us <= DRIVE_PLANT_LOOP_PERIOD_MAX_US &&
               MATHS_TWO_PI * c->velocity_bandwidth_hz * c->loop_period_us * 1e-6 <=
-                  DRIVE_PLANT_GAIN_STEP_MAX,
+                  SERVO_LOOP_GAIN_STEP_MAX,
           loop_period_us);
     CHECK(is_not_negative(c->following_error_window_mm), following_error_window_mm);
     CHECK(is_positive(c->quick_stop_deceleration_mm_s2), quick_stop_deceleration_mm_s2);

@@ -16,11 +16,7 @@
 #include <stdint.h>
 
 #define DRIVE_PLANT_LOOP_PERIOD_MAX_US 1000
-/*
- * Velocity gain times loop period. The loop rings above 1 and is unstable above 2; half of 1 leaves room for the rest.
- */
-#define DRIVE_PLANT_GAIN_STEP_MAX 0.5
-#define DRIVE_PLANT_DELAY_MAX     64 /* steps; a power of two */
+#define DRIVE_PLANT_DELAY_MAX          64 /* steps; a power of two */
 
 struct drive_plant_config {
     double travel_per_revolution_mm; /* of the axis, per turn of the motor: the screw's lead; > 0 */

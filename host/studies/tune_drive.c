@@ -2,11 +2,7 @@
 
 #include "base/maths.h"
 #include "canopen/nmt.h"
-
-/* Parts of a unit in object 2020. */
-#define G_MM2_PER_KG_M2 1e9
-#define THOUSANDTHS     1e3
-#define MICROSECONDS    1e6
+#include "tuning/loop_object.h"
 
 /* Cycles in which it comes to be enabled. */
 #define ENABLE_CYCLES 100
@@ -62,35 +58,22 @@ bool tune_drive_start(struct tune_drive *drive, int8_t mode)
 
 bool tune_drive_get_gains(struct tune_drive *drive, struct tuning_gains *gains)
 {
-    uint32_t value[6];
+    for (unsigned i = 0; i < LOOP_NUMBERS; i++) {
+        uint32_t value;
 
-    for (uint8_t i = 0; i < 6; i++) {
-        if (!tune_drive_read(drive, 0x2020, (uint8_t)(i + 1), i < 4 ? 32 : 16, &value[i]))
+        if (!tune_drive_read(drive, LOOP_OBJECT, (uint8_t)(i + 1), 8 * loop_number[i].bytes,
+                             &value))
             return false;
+        loop_object_take(gains, i, value);
     }
-    *gains = (struct tuning_gains){
-        .told_inertia_kg_m2 = value[0] / G_MM2_PER_KG_M2,
-        .velocity_bandwidth_hz = value[1] / THOUSANDTHS,
-        .velocity_integral_s = value[2] / MICROSECONDS,
-        .position_gain_per_s = value[3] / THOUSANDTHS,
-        .velocity_forward = value[4] / THOUSANDTHS,
-        .torque_forward = value[5] / THOUSANDTHS,
-    };
     return true;
 }
 
 bool tune_drive_set_gains(struct tune_drive *drive, const struct tuning_gains *gains)
 {
-    const double value[] = {
-        G_MM2_PER_KG_M2 * gains->told_inertia_kg_m2, THOUSANDTHS * gains->velocity_bandwidth_hz,
-        MICROSECONDS * gains->velocity_integral_s,   THOUSANDTHS * gains->position_gain_per_s,
-        THOUSANDTHS * gains->velocity_forward,       THOUSANDTHS * gains->torque_forward,
-    };
-
-    for (uint8_t i = 0; i < 6; i++) {
-        const double rounded = maths_clamp(maths_round(value[i]), 0, UINT32_MAX);
-
-        if (!tune_drive_write(drive, 0x2020, (uint8_t)(i + 1), i < 4 ? 32 : 16, (uint32_t)rounded))
+    for (unsigned i = 0; i < LOOP_NUMBERS; i++) {
+        if (!tune_drive_write(drive, LOOP_OBJECT, (uint8_t)(i + 1), 8 * loop_number[i].bytes,
+                              loop_object_of(gains, i)))
             return false;
     }
     return true;

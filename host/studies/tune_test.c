@@ -33,7 +33,7 @@ static bool is_gantry(const struct machine *machine, unsigned axis)
 /* The highest that the drive takes (drive_plant_check), in whole thousandths of a hertz. */
 static double bandwidth_max_hz(const struct drive_plant_config *plant)
 {
-    const double most = DRIVE_PLANT_GAIN_STEP_MAX / (MATHS_TWO_PI * 1e-6 * plant->loop_period_us);
+    const double most = SERVO_LOOP_GAIN_STEP_MAX / (MATHS_TWO_PI * 1e-6 * plant->loop_period_us);
 
     return maths_floor(1e3 * most) / 1e3;
 }

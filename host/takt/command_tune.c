@@ -6,47 +6,17 @@
 #include "cli/output_file.h"
 #include "studies/tune_test.h"
 #include "takt/command.h"
+#include "tuning/loop_object.h"
 #include "tuning/picture.h"
 
 #include <cjson/cJSON.h>
 #include <math.h>
 #include <stdlib.h>
 
-#define LOOPS   0x2020 /* the object */
-#define NUMBERS 6      /* of it */
-
-struct number {
-    const char *key; /* of the machine file, and of JSON */
-    double per_unit; /* of the object */
-    uint8_t bytes;   /* of the object */
-    size_t field;    /* in struct tuning_gains */
-};
-
-static const struct number numbers[NUMBERS] = {
-    {"told_inertia_kg_m2", 1e9, 4, offsetof(struct tuning_gains, told_inertia_kg_m2)},
-    {"velocity_bandwidth_hz", 1e3, 4, offsetof(struct tuning_gains, velocity_bandwidth_hz)},
-    {"velocity_integral_time_s", 1e6, 4, offsetof(struct tuning_gains, velocity_integral_s)},
-    {"position_gain_per_s", 1e3, 4, offsetof(struct tuning_gains, position_gain_per_s)},
-    {"velocity_feed_forward_ratio", 1e3, 2, offsetof(struct tuning_gains, velocity_forward)},
-    {"torque_feed_forward_ratio", 1e3, 2, offsetof(struct tuning_gains, torque_forward)},
-};
-
-static double field_of(const struct tuning_gains *gains, unsigned i)
-{
-    return *(const double *)(const void *)((const char *)gains + numbers[i].field);
-}
-
-static uint32_t object_of(const struct tuning_gains *gains, unsigned i)
-{
-    const double value = maths_round(field_of(gains, i) * numbers[i].per_unit);
-
-    return (uint32_t)maths_clamp(value, 0, UINT32_MAX);
-}
-
 /* What a drive makes of it: a whole number of the object's unit. */
 static double number_of(const struct tuning_gains *gains, unsigned i)
 {
-    return object_of(gains, i) / numbers[i].per_unit;
+    return loop_object_of(gains, i) / loop_number[i].per_unit;
 }
 
 static bool is_rotary(unsigned axis)
@@ -123,8 +93,8 @@ static void write_section(FILE *file, const struct tune_axis *t, unsigned axis)
         (void)fprintf(file, "[drive %u:%u]\n", t->bus, t->node);
     else
         (void)fprintf(file, "[drive %u]\n", t->node);
-    for (unsigned i = 0; i < NUMBERS; i++)
-        (void)fprintf(file, "%s = %.9g\n", numbers[i].key, number_of(gains_of(t), i));
+    for (unsigned i = 0; i < LOOP_NUMBERS; i++)
+        (void)fprintf(file, "%s = %.9g\n", loop_number[i].key, number_of(gains_of(t), i));
 }
 
 static void write_sections(FILE *file, const struct tune_test *test)
@@ -149,12 +119,12 @@ static void write_dcf(FILE *file, const struct tune_test *test)
     for (unsigned axis = 0; axis < AXIS_COUNT; axis++) {
         if (!test->axis[axis].is_measured)
             continue;
-        write_bytes(file, NUMBERS, 4);
-        for (unsigned i = 0; i < NUMBERS; i++) {
-            write_bytes(file, LOOPS, 2);
+        write_bytes(file, LOOP_NUMBERS, 4);
+        for (unsigned i = 0; i < LOOP_NUMBERS; i++) {
+            write_bytes(file, LOOP_OBJECT, 2);
             write_bytes(file, i + 1, 1);
-            write_bytes(file, numbers[i].bytes, 4);
-            write_bytes(file, object_of(gains_of(&test->axis[axis]), i), numbers[i].bytes);
+            write_bytes(file, loop_number[i].bytes, 4);
+            write_bytes(file, loop_object_of(gains_of(&test->axis[axis]), i), loop_number[i].bytes);
         }
     }
 }
@@ -163,8 +133,8 @@ static cJSON *answer_json(const struct tune_answer *a)
 {
     cJSON *root = cJSON_CreateObject();
 
-    for (unsigned i = 0; i < NUMBERS; i++)
-        cJSON_AddNumberToObject(root, numbers[i].key, number_of(&a->gains, i));
+    for (unsigned i = 0; i < LOOP_NUMBERS; i++)
+        cJSON_AddNumberToObject(root, loop_number[i].key, number_of(&a->gains, i));
     cJSON_AddBoolToObject(root, "is_steady", a->is_steady);
     cJSON_AddNumberToObject(root, "velocity_phase_margin_deg", a->margins.velocity_phase_deg);
     cJSON_AddNumberToObject(root, "position_phase_margin_deg", a->margins.position_phase_deg);
@@ -247,7 +217,7 @@ static void draw_axis(FILE *file, const struct tune_axis *t, unsigned axis)
 static void write_row(FILE *file, const char *name, const struct tune_answer *a, unsigned axis)
 {
     (void)fprintf(file, "<tr><th>%s</th>", name);
-    for (unsigned i = 0; i < NUMBERS; i++)
+    for (unsigned i = 0; i < LOOP_NUMBERS; i++)
         (void)fprintf(file, "<td>%.6g</td>", number_of(&a->gains, i));
     (void)fprintf(file, "<td>%s</td><td>%.1f</td><td>%.1f</td><td>%.1f</td><td>%.3f</td></tr>\n",
                   a->is_steady ? "yes" : "no", a->margins.velocity_phase_deg,
@@ -268,8 +238,8 @@ static void write_report(FILE *file, const struct tune_test *test)
             continue;
         draw_axis(file, t, i);
         (void)fputs("<table><tr><th></th>", file);
-        for (unsigned n = 0; n < NUMBERS; n++)
-            (void)fprintf(file, "<th>%s</th>", numbers[n].key);
+        for (unsigned n = 0; n < LOOP_NUMBERS; n++)
+            (void)fprintf(file, "<th>%s</th>", loop_number[n].key);
         (void)fprintf(file,
                       "<th>comes to rest</th><th>phase margin, velocity, deg</th><th>position</th>"
                       "<th>overshoot, %%</th><th>following error, %s</th></tr>\n",
