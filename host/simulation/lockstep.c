@@ -153,34 +153,19 @@ static void give_up(struct lockstep *lockstep)
     }
 }
 
-/*
- * Waits for frames within what is left of the patience, and takes them. What passes while this process does not run itself, on a
- * busy or halted computer, is not time that the drives had: no more than a slice of it counts.
- */
-static enum link_wait_result wait_patiently(struct lockstep *lockstep, uint64_t *left_ns,
-                                            unsigned *answers)
-{
-    const uint64_t start_ns = link_clock_ns();
-    const uint64_t slice_ns = *left_ns < LOCKSTEP_SLICE_NS ? *left_ns : LOCKSTEP_SLICE_NS;
-    const enum link_wait_result result = link_wait(lockstep->link, start_ns + slice_ns);
-    const uint64_t passed_ns = link_clock_ns() - start_ns;
-
-    *answers = take_frames(lockstep);
-    *left_ns -= passed_ns < slice_ns ? passed_ns : slice_ns;
-    return result;
-}
-
 static bool wait_for_answers(struct lockstep *lockstep)
 {
-    uint64_t left_ns = LOCKSTEP_ANSWER_NS;
-    unsigned answers;
+    uint64_t until_ns = link_clock_ns() + LOCKSTEP_ANSWER_NS;
 
     (void)take_frames(lockstep);
     while (!is_answered(lockstep)) {
-        if (left_ns == 0)
-            give_up(lockstep);
-        else if (wait_patiently(lockstep, &left_ns, &answers) == LINK_BROKEN)
+        enum link_wait_result result = link_wait(lockstep->link, until_ns);
+
+        if (result == LINK_BROKEN)
             return false;
+        (void)take_frames(lockstep);
+        if (result == LINK_TIMEOUT && link_clock_ns() >= until_ns)
+            give_up(lockstep);
     }
     return true;
 }
@@ -188,16 +173,18 @@ static bool wait_for_answers(struct lockstep *lockstep)
 /* Waits until no answer has come for a while: all that were under way are here. */
 static bool wait_for_quiet(struct lockstep *lockstep)
 {
-    uint64_t left_ns = LOCKSTEP_QUIET_NS;
-    unsigned answers;
+    uint64_t until_ns = link_clock_ns() + LOCKSTEP_QUIET_NS;
 
-    while (left_ns > 0) {
-        if (wait_patiently(lockstep, &left_ns, &answers) == LINK_BROKEN)
+    for (;;) {
+        enum link_wait_result result = link_wait(lockstep->link, until_ns);
+
+        if (result == LINK_BROKEN)
             return false;
-        if (answers > 0)
-            left_ns = LOCKSTEP_QUIET_NS;
+        if (result == LINK_TIMEOUT && link_clock_ns() >= until_ns)
+            return true;
+        if (take_frames(lockstep) > 0)
+            until_ns = link_clock_ns() + LOCKSTEP_QUIET_NS;
     }
-    return true;
 }
 
 static bool wait_until(struct lockstep *lockstep, uint64_t time_ns)

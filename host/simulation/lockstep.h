@@ -36,9 +36,6 @@
 /* So long without an answer: none is under way any more. */
 #define LOCKSTEP_QUIET_NS 100000000u
 
-/* Of a longer time in which this process has not run, only so much counts as waiting. */
-#define LOCKSTEP_SLICE_NS 10000000u
-
 struct lockstep_drive {
     uint8_t node;
     bool is_in_step;
