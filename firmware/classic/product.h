@@ -47,10 +47,10 @@ struct product {
 #endif
 };
 
-void product_init(struct product *p, const struct product_config *config);
+void takt_product_init(struct product *p, const struct product_config *config);
 
-/* One cycle instead of motion_cycle, when that says MOTION_HANDED_OVER. Fills everything of the record but set and act. */
-void product_cycle(struct product *p, struct motion *m, const struct motion_operator *wanted,
-                   struct cycle_record *record);
+/* One cycle instead of takt_motion_cycle, when that says MOTION_HANDED_OVER. Fills everything of the record but set and act. */
+void takt_product_cycle(struct product *p, struct motion *m, const struct motion_operator *wanted,
+                        struct cycle_record *record);
 
 #endif

@@ -9,7 +9,7 @@
  */
 #define AHEAD_CYCLES ((double)(DRIVES_LATENCY_CYCLES - 1))
 
-void controller_lock_init(struct controller *c)
+void takt_controller_lock_init(struct controller *c)
 {
     const struct machine *machine = &c->machine;
     const struct lock_config config = {
@@ -23,5 +23,5 @@ void controller_lock_init(struct controller *c)
         .wait_s = machine->spindle_at_speed_s > 0.0 ? machine->spindle_at_speed_s : WAIT_S,
     };
 
-    lock_init(&c->lock, &config);
+    takt_lock_init(&c->lock, &config);
 }

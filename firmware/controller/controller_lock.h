@@ -7,7 +7,7 @@
 #include "controller/controller.h"
 
 /* From the controller's machine. */
-void controller_lock_init(struct controller *c);
+void takt_controller_lock_init(struct controller *c);
 
 /* Every cycle, after the program's events: what a thread asks of the spindle goes before. */
 static inline void controller_lock_command(struct controller *c)

@@ -166,7 +166,7 @@ struct drives {
     uint32_t io_cycles; /* since all outputs were sent */
 
     enum drives_state state;
-    uint32_t cycle;                      /* counts drives_send; wraps */
+    uint32_t cycle;                      /* counts takt_drives_send; wraps */
     uint32_t beat_cycles[CAN_BUSES_MAX]; /* since our last heartbeat */
 
     enum drives_phase phase;

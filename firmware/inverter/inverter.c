@@ -14,7 +14,7 @@
 #define AMPERE_PER_COUNT  0.1
 #define WORD_MAX          65535.0
 
-void inverter_init(struct inverter *inverter, const struct inverter_config *config)
+void takt_inverter_init(struct inverter *inverter, const struct inverter_config *config)
 {
     memset(inverter, 0, sizeof *inverter);
     inverter->config = *config;
@@ -38,7 +38,7 @@ static uint16_t frequency_of(const struct inverter *v, double rpm)
 {
     const double hz = maths_min(maths_abs(rpm) * v->config.pole_pairs / 60.0, v->config.max_hz);
 
-    return (uint16_t)maths_min(maths_round(hz / HZ_PER_COUNT), WORD_MAX);
+    return (uint16_t)maths_min(takt_maths_round(hz / HZ_PER_COUNT), WORD_MAX);
 }
 
 /* What the registers COMMAND and FREQUENCY should hold. */
@@ -174,8 +174,8 @@ static void watch_silence(struct inverter *v)
     v->feedback.silent = v->quiet_us > v->config.silent_after_us;
 }
 
-struct spindle_feedback inverter_cycle(struct inverter *v, const struct registers_port *port,
-                                       double commanded_rpm)
+struct spindle_feedback takt_inverter_cycle(struct inverter *v, const struct registers_port *port,
+                                            double commanded_rpm)
 {
     watch_silence(v);
     follow_ramp(v, commanded_rpm);
@@ -186,18 +186,18 @@ struct spindle_feedback inverter_cycle(struct inverter *v, const struct register
     return v->feedback;
 }
 
-void inverter_stop(struct inverter *inverter)
+void takt_inverter_stop(struct inverter *inverter)
 {
     inverter->ramp_rpm = 0.0;
 }
 
-bool inverter_is_stopped(const struct inverter *inverter)
+bool takt_inverter_is_stopped(const struct inverter *inverter)
 {
     return inverter->feedback.silent ||
            (inverter->is_written && inverter->command[0] == INVERTER_STOP);
 }
 
-void inverter_reset(struct inverter *inverter)
+void takt_inverter_reset(struct inverter *inverter)
 {
     inverter->wants_reset = true;
 }

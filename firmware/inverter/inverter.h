@@ -74,21 +74,22 @@ struct inverter {
     struct spindle_feedback feedback;
 };
 
-void inverter_init(struct inverter *inverter, const struct inverter_config *config);
+void takt_inverter_init(struct inverter *inverter, const struct inverter_config *config);
 
 /*
  * One control cycle. commanded_rpm: positive clockwise. The angle is the integral of the reported speed, no
  * measurement: threads need an encoder.
  */
-struct spindle_feedback inverter_cycle(struct inverter *inverter, const struct registers_port *port,
-                                       double commanded_rpm);
+struct spindle_feedback takt_inverter_cycle(struct inverter *inverter,
+                                            const struct registers_port *port,
+                                            double commanded_rpm);
 
 /* Stops without the ramp of the commands, by the converter's own: STOP is the next that is written. */
-void inverter_stop(struct inverter *inverter);
+void takt_inverter_stop(struct inverter *inverter);
 /* It has been written, or the converter does not answer. */
-bool inverter_is_stopped(const struct inverter *inverter);
+bool takt_inverter_is_stopped(const struct inverter *inverter);
 
 /* Acknowledges a trip: the converter is reset once. */
-void inverter_reset(struct inverter *inverter);
+void takt_inverter_reset(struct inverter *inverter);
 
 #endif

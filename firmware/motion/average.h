@@ -9,7 +9,7 @@
 
 #include <stdint.h>
 
-/* Two boxes of LAW_SMOOTH need most: the second is half as long. Those of LAW_GENTLE are much shorter (law_cycles_max). */
+/* Two boxes of LAW_SMOOTH need most: the second is half as long. Those of LAW_GENTLE are much shorter (takt_law_cycles_max). */
 #define AVERAGE_INPUTS_MAX (LAW_CYCLES_MAX + LAW_CYCLES_MAX / 2)
 
 struct average_box {
@@ -32,12 +32,13 @@ struct average {
 
 /*
  * The lead point is at this position and has always moved by step, path units a cycle. cycles: of the first box,
- * 1 ... law_cycles_max.
+ * 1 ... takt_law_cycles_max.
  */
-void average_start(struct average *a, enum law law, uint32_t cycles, uint64_t at, uint64_t step);
+void takt_average_start(struct average *a, enum law law, uint32_t cycles, uint64_t at,
+                        uint64_t step);
 
 /* The next position of the lead point, path units. */
-void average_push(struct average *a, uint64_t at);
+void takt_average_push(struct average *a, uint64_t at);
 
 /* How far the average follows behind the newest input: path units, >= 0. 0 at rest. */
 static inline double average_lag(const struct average *a)

@@ -7,16 +7,16 @@
 #include "plan/path_unit.h"
 
 /* From where the setpoint is the lead point goes on by itself, at the same feed. */
-void held_end(struct motion *m)
+void takt_held_end(struct motion *m)
 {
     struct lead *l = &m->lead;
     const uint64_t step = (uint64_t)(hold_way(&m->mover.beside.hold) + 0.5);
     const uint64_t at = path_start(m->path, m->mover.beside.hold.block) +
                         (uint64_t)(hold_at(&m->mover.beside.hold) + 0.5);
 
-    lead_follow(l, at + step * ((uint64_t)l->window - 1) / 2, (double)step / PATH_UNITS_PER_MM,
-                m->setpoint);
-    average_start(&m->mover.average, m->path->limits.law, l->cycles, l->at, step);
+    takt_lead_follow(l, at + step * ((uint64_t)l->window - 1) / 2, (double)step / PATH_UNITS_PER_MM,
+                     m->setpoint);
+    takt_average_start(&m->mover.average, m->path->limits.law, l->cycles, l->at, step);
     m->lag = average_lag(&m->mover.average);
     m->holds = false;
 }
@@ -30,7 +30,7 @@ static void follow_hold(struct motion *m)
     const uint64_t ahead = start + (uint64_t)(at + 0.5 * (m->lead.window - 1.0) * hold_way(h));
 
     m->feed = h->moved * h->length / PATH_UNITS_PER_MM;
-    lead_follow(&m->lead, ahead, hold_way(h) / PATH_UNITS_PER_MM, m->setpoint);
+    takt_lead_follow(&m->lead, ahead, hold_way(h) / PATH_UNITS_PER_MM, m->setpoint);
     m->lag = h->place.rate > 0.0 ? (double)(int64_t)(ahead - start) - at : 0.0;
 }
 
@@ -55,15 +55,15 @@ static void begin_hold(struct motion *m)
     const bool anew = !m->looks;
 
     m->looks = may_hold(m);
-    m->holds = m->looks && hold_begin(&m->mover.beside.hold, m->path, &m->lead, at, way, anew);
+    m->holds = m->looks && takt_hold_begin(&m->mover.beside.hold, m->path, &m->lead, at, way, anew);
 }
 
 /* The setpoint is moved by the hold, or the lead point goes on. */
-bool held_move(struct motion *m, bool hold)
+bool takt_held_move(struct motion *m, bool hold)
 {
     m->looks = m->looks && hold;
-    if (m->holds && !hold_step(&m->mover.beside.hold, m->path, &m->lead, hold)) {
-        held_end(m);
+    if (m->holds && !takt_hold_step(&m->mover.beside.hold, m->path, &m->lead, hold)) {
+        takt_held_end(m);
     } else if (!m->holds && hold) {
         begin_hold(m);
     }

@@ -13,9 +13,9 @@
  * over when a hold begins on a smoothed curve and it can brake there, and hands over when it cannot go on by itself, or is
  * up to speed again.
  */
-bool held_move(struct motion *m, bool hold);
+bool takt_held_move(struct motion *m, bool hold);
 
 /* The lead point goes on from where the setpoint is. */
-void held_end(struct motion *m);
+void takt_held_end(struct motion *m);
 
 #endif

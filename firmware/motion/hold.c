@@ -71,7 +71,7 @@ static const float ease_part[EASES] = {0.85f, 0.4f, 0.15f};
 /* The highest rate on a block, whatever the overrides are: pieces a cycle. */
 static float top_rate(const struct hold *h, const struct path *path, uint32_t block)
 {
-    return (float)path_block_top(path_at(path, block)) * h->per_mm_s * (1.0f + TOP_SLACK);
+    return (float)takt_path_block_top(path_at(path, block)) * h->per_mm_s * (1.0f + TOP_SLACK);
 }
 
 /* Of a uniform cubic B-spline: x' = (c2 - c0)/2, x'' = c0 - 2 c1 + c2 where the piece begins. */
@@ -80,7 +80,7 @@ static void read_piece(struct hold *h, const struct path *path, uint32_t block)
     struct hold_piece *p = &h->piece[block % HOLD_PIECES_MAX];
     struct point c[4];
 
-    ring_control(&path->ring, block, c);
+    takt_ring_control(&path->ring, block, c);
     for (unsigned i = 0; i < h->axes; i++) {
         const unsigned axis = h->axis[i];
         const double step0 = c[1].at[axis] - c[0].at[axis];
@@ -200,7 +200,7 @@ static bool tops_allow(const struct hold *h, const struct path *path, const stru
 
 /*
  * The lead point of a setpoint that moves at a constant rate is half the window before it. It takes over at the end of the
- * cycle in which the change comes to 0, and keeps its feed in the next one (lead_follow). To stop it may be faster than the
+ * cycle in which the change comes to 0, and keeps its feed in the next one (takt_lead_follow). To stop it may be faster than the
  * overrides ask for.
  */
 static bool lead_can_take(const struct hold *h, const struct path *path, const struct lead *l,
@@ -211,7 +211,7 @@ static bool lead_can_take(const struct hold *h, const struct path *path, const s
     const uint64_t at = path_start(path, h->block) + (uint64_t)(ahead * h->length);
 
     return (!stop || tops_allow(h, path, l, s, (float)ahead)) &&
-           lead_could_be(l, at, rate * h->length / PATH_UNITS_PER_MM, stop);
+           takt_lead_could_be(l, at, rate * h->length / PATH_UNITS_PER_MM, stop);
 }
 
 /* Does the change go to another one by w within all limits? Neither is on the other side of 0. */
@@ -224,7 +224,7 @@ static bool can_change(const struct hold *h, struct hold_trial *s, float to, flo
 
         try_advance(s, w, t);
         s->change = i + 1 == EASE_PARTS ? to : s->change;
-        if (!hold_can_go(h, &from, s, w)) {
+        if (!takt_hold_can_go(h, &from, s, w)) {
             return false;
         }
     }
@@ -325,7 +325,7 @@ static bool try_step(struct hold *h, const struct path *path, const struct lead 
     advance(&place, by, 1.0);
     const struct hold_trial next = {(float)place.at, (float)place.rate, (float)place.change};
 
-    if (next.rate > h->most || !hold_can_go(h, &here, &next, (float)by)) {
+    if (next.rate > h->most || !takt_hold_can_go(h, &here, &next, (float)by)) {
         return false;
     }
     if (!find_ending(h, path, l, &next, hardest, stop, first, &ending)) {
@@ -374,7 +374,7 @@ static void go_on_ending(struct hold *h)
  */
 static bool find_step(struct hold *h, const struct path *path, const struct lead *l, bool stop)
 {
-    const struct range w = hold_steps(h);
+    const struct range w = takt_hold_steps(h);
     const float wanted = stop ? single_min(w.low, 0.0f) : single_max(w.high, 0.0f);
     const float hardest = stop ? w.high : -w.low;
     const float rate = (float)h->place.rate;
@@ -423,7 +423,7 @@ static void pass_blocks(struct hold *h)
     }
 }
 
-bool hold_step(struct hold *h, const struct path *path, const struct lead *l, bool stop)
+bool takt_hold_step(struct hold *h, const struct path *path, const struct lead *l, bool stop)
 {
     read_pieces(h, path);
     h->clear = stop == h->stops ? h->clear : h->block;
@@ -464,8 +464,8 @@ static void look_ahead(struct hold *h, const struct path *path, bool anew)
 }
 
 /* The last three places lie on u + r t + q t^2/2. Where that has turned back already the axes are as good as at rest. */
-bool hold_begin(struct hold *h, const struct path *path, const struct lead *l, double at,
-                const double way[2], bool anew)
+bool takt_hold_begin(struct hold *h, const struct path *path, const struct lead *l, double at,
+                     const double way[2], bool anew)
 {
     look_ahead(h, path, anew);
     h->step = 1.0f;

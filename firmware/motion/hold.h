@@ -71,11 +71,11 @@ struct hold {
  * has been moved by so many in the last two cycles. anew: it was not asked in the last cycle. Some pieces ahead are read each
  * time, so that it may be able to in a later cycle.
  */
-bool hold_begin(struct hold *h, const struct path *path, const struct lead *l, double at,
-                const double way[2], bool anew);
+bool takt_hold_begin(struct hold *h, const struct path *path, const struct lead *l, double at,
+                     const double way[2], bool anew);
 
 /* One cycle: slows down as hard as it can, or speeds up. False: it cannot go on by itself; the rate is constant. */
-bool hold_step(struct hold *h, const struct path *path, const struct lead *l, bool stop);
+bool takt_hold_step(struct hold *h, const struct path *path, const struct lead *l, bool stop);
 
 /* Path units from the start of its block, and in a cycle. */
 static inline double hold_at(const struct hold *h)

@@ -36,9 +36,9 @@ struct landing_run {
 };
 
 /* Can the joint be landed on from here? Fills ramp, total and the feeds of run. */
-bool landing_solve(const struct landing_case *l, struct landing_run *run);
+bool takt_landing_solve(const struct landing_case *l, struct landing_run *run);
 
 /* Distance of the lead point from the start of the run after so many of its cycles, and its feed then. */
-double landing_distance(const struct landing_run *run, uint32_t cycle, double *feed);
+double takt_landing_distance(const struct landing_run *run, uint32_t cycle, double *feed);
 
 #endif

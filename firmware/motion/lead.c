@@ -5,7 +5,7 @@
 
 #include <string.h>
 
-void lead_init(struct lead *l, enum law law, uint64_t at)
+void takt_lead_init(struct lead *l, enum law law, uint64_t at)
 {
     memset(l, 0, sizeof(*l));
     l->law = law;
@@ -16,7 +16,7 @@ void lead_init(struct lead *l, enum law law, uint64_t at)
     l->standing = true;
 }
 
-void lead_stand(struct lead *l, uint64_t at)
+void takt_lead_stand(struct lead *l, uint64_t at)
 {
     l->at = at;
     l->feed = 0.0;
@@ -24,7 +24,7 @@ void lead_stand(struct lead *l, uint64_t at)
     l->released = false;
 }
 
-void lead_release(struct lead *l)
+void takt_lead_release(struct lead *l)
 {
     l->released = !l->abrupt;
     l->abrupt = false;
@@ -102,7 +102,7 @@ static void run_landing(struct lead *l)
     double feed;
 
     run->cycle++;
-    l->at = run->start + path_units(landing_distance(run, run->cycle, &feed));
+    l->at = run->start + path_units(takt_landing_distance(run, run->cycle, &feed));
     count_changes(l, run->cycle <= run->ramp ? -1.0 : 0.0);
     l->feed = feed;
     run->active = run->cycle < run->total;
@@ -123,16 +123,16 @@ static void slow_down(struct lead *l, const struct lead_brake *b)
 /* One cycle under the ceiling. */
 static void run_on(struct lead *l, uint64_t setpoint, bool hold)
 {
-    const double low = lead_low_feed(l, setpoint);
+    const double low = takt_lead_low_feed(l, setpoint);
     struct lead_brake b;
 
-    lead_brake_ahead(l, low, &b);
+    takt_lead_brake_ahead(l, low, &b);
 
     if (hold) {
         b.feed = 0.0;
     }
     if (l->halt.found) {
-        lead_brake_to_halt(l, &b);
+        takt_lead_brake_to_halt(l, &b);
     } else {
         lead_approach_landing(l, hold, &b);
     }
@@ -145,7 +145,7 @@ static void run_on(struct lead *l, uint64_t setpoint, bool hold)
     if (b.rest || stops || b.feed < l->feed - lead_change_min(b.a, l->feed)) {
         slow_down(l, &b);
     } else {
-        go(l, hold || l->here.late ? l->feed : lead_speed_up(l, b.at_mm, low));
+        go(l, hold || l->here.late ? l->feed : takt_lead_speed_up(l, b.at_mm, low));
     }
 }
 
@@ -165,8 +165,8 @@ static void enter_span(struct lead *l, uint32_t k, uint64_t from, struct lead_st
     start->step = path_units(l->feed);
     l->standing = false;
     l->span = from;
-    l->cycles = ceiling_cycles(l->here.ceiling, k);
-    const uint32_t window = law_window_cycles(l->law, l->cycles);
+    l->cycles = takt_ceiling_cycles(l->here.ceiling, k);
+    const uint32_t window = takt_law_window_cycles(l->law, l->cycles);
 
     l->window = (double)window;
     l->at = from + start->step * (window - 1) / 2;
@@ -177,7 +177,7 @@ static void enter_span(struct lead *l, uint32_t k, uint64_t from, struct lead_st
     l->run.over = false;
     l->abrupt = false;
     start->at = l->at;
-    lead_enter_piece(l, k);
+    takt_lead_enter_piece(l, k);
 }
 
 /*
@@ -231,7 +231,7 @@ static bool begin_span(struct lead *l, bool hold, struct lead_start *start)
     return (l->run.over || !(hold || l->halt.found)) && leave_joint(l, start);
 }
 
-bool lead_step(struct lead *l, uint64_t setpoint, bool hold, struct lead_start *start)
+bool takt_lead_step(struct lead *l, uint64_t setpoint, bool hold, struct lead_start *start)
 {
     if (l->here.ceiling == NULL) {
         return false;
@@ -241,7 +241,7 @@ bool lead_step(struct lead *l, uint64_t setpoint, bool hold, struct lead_start *
     if (l->standing) {
         return false;
     }
-    const bool too_fast = l->halt.on && lead_seek_halt(l);
+    const bool too_fast = l->halt.on && takt_lead_seek_halt(l);
 
     follow_landing(l);
     if (l->run.active) {
@@ -251,7 +251,7 @@ bool lead_step(struct lead *l, uint64_t setpoint, bool hold, struct lead_start *
     } else {
         wait_for_more(l);
     }
-    lead_follow_pieces(l);
+    takt_lead_follow_pieces(l);
     if (has_stopped(l)) {
         l->standing = true;
         l->released = false;

@@ -80,45 +80,45 @@ struct lead {
     struct lead_halt halt;
 };
 
-/* At rest at a position; lead_release lets it leave. */
-void lead_init(struct lead *l, enum law law, uint64_t at);
+/* At rest at a position; takt_lead_release lets it leave. */
+void takt_lead_init(struct lead *l, enum law law, uint64_t at);
 
 /*
  * A new ceiling, over a path that reaches further or under other overrides. It is taken when the lead point's place in it
  * has been found, some cycles later; until then the ceiling in use and the new one stay as they are. Not taken is one that
  * ends too early, for want of pieces.
  */
-void lead_set_ceiling(struct lead *l, const struct ceiling *ceiling);
+void takt_lead_set_ceiling(struct lead *l, const struct ceiling *ceiling);
 
 /* Goes on taking it, once a cycle. True: it is not taken yet. */
-bool lead_find_place(struct lead *l);
+bool takt_lead_find_place(struct lead *l);
 static inline bool lead_take(struct lead *l)
 {
-    return l->coming.ceiling != NULL && lead_find_place(l);
+    return l->coming.ceiling != NULL && takt_lead_find_place(l);
 }
 
 /* At rest, at a stop further on: what lay before it has been done by others. */
-void lead_stand(struct lead *l, uint64_t at);
+void takt_lead_stand(struct lead *l, uint64_t at);
 
 /* The stop at which everything stands has been served. */
-void lead_release(struct lead *l);
+void takt_lead_release(struct lead *l);
 
 /* From now on it halts at the end of every motion that it can come to rest in; or it does not. */
-void lead_end_blocks(struct lead *l, bool on);
+void takt_lead_end_blocks(struct lead *l, bool on);
 /* Is it at rest there? It stays until it is told that the setpoint has come. */
-bool lead_has_halted(const struct lead *l);
-void lead_leave_halt(struct lead *l);
+bool takt_lead_has_halted(const struct lead *l);
+void takt_lead_leave_halt(struct lead *l);
 
 /*
  * Could it be at a position, a little ahead, with this feed, mm/cycle, and meet what is ahead? highest: at the highest
  * overrides, else as they are.
  */
-bool lead_could_be(const struct lead *l, uint64_t at, double feed, bool highest);
+bool takt_lead_could_be(const struct lead *l, uint64_t at, double feed, bool highest);
 /*
  * It is there: the setpoint is moved by others (hold.h), to a position, and has had that feed for a whole window but for one
  * cycle, in which it keeps it: third differences reach over so many more.
  */
-void lead_follow(struct lead *l, uint64_t at, double feed, uint64_t setpoint);
+void takt_lead_follow(struct lead *l, uint64_t at, double feed, uint64_t setpoint);
 
 /* A span that begins: the averages start anew from where the lead point is, as if it had always moved by step. */
 struct lead_start {
@@ -130,6 +130,6 @@ struct lead_start {
  * One cycle. setpoint: where the setpoint was at the end of the last one. hold: come to rest and stay.
  * True when it begins a span, with l->cycles; start is then filled.
  */
-bool lead_step(struct lead *l, uint64_t setpoint, bool hold, struct lead_start *start);
+bool takt_lead_step(struct lead *l, uint64_t setpoint, bool hold, struct lead_start *start);
 
 #endif

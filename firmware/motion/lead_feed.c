@@ -106,9 +106,9 @@ static void brake_to_rest(const struct lead *l, uint64_t position, double a, str
     }
 }
 
-void lead_brake_to_halt(const struct lead *l, struct lead_brake *b)
+void takt_lead_brake_to_halt(const struct lead *l, struct lead_brake *b)
 {
-    brake_to_rest(l, l->halt.end, lead_halt_acceleration(l), b);
+    brake_to_rest(l, l->halt.end, takt_lead_halt_acceleration(l), b);
 }
 
 /* Where the end of piece k is come to rest at: the end of its block exactly, if that is where it ends. */
@@ -176,7 +176,7 @@ static double feed_to_wait(const struct lead *l, double top)
     return gap_mm > 0.0 ? maths_min(top, maths_sqrt(m * m + 2.0 * a * gap_mm) - m) : 0.0;
 }
 
-void lead_brake_ahead(const struct lead *l, double low, struct lead_brake *b)
+void takt_lead_brake_ahead(const struct lead *l, double low, struct lead_brake *b)
 {
     const double s = path_mm(l->here.ceiling->origin, l->at);
 
@@ -243,7 +243,7 @@ static bool landing_from(const struct lead *l, double gap_mm, double feed, doubl
         .window = l->window,
     };
 
-    return landing_solve(&landing, run);
+    return takt_landing_solve(&landing, run);
 }
 
 /* A joint that cannot be landed on in motion any more, because of a hold close to it, is a stop: how hard to brake. */
@@ -364,7 +364,7 @@ static bool must_stop(const struct lead *l)
  * Begins to land when it could not be done any more a cycle later, and no ceiling lies between. Where it cannot be done
  * at all, or a hold can still be obeyed before the joint, the joint becomes a stop.
  */
-void lead_consider_landing(struct lead *l, bool hold, struct lead_brake *b)
+void takt_lead_consider_landing(struct lead *l, bool hold, struct lead_brake *b)
 {
     if (!has_landing(l)) {
         return;
@@ -388,7 +388,7 @@ void lead_consider_landing(struct lead *l, bool hold, struct lead_brake *b)
 /* The highest feed v up to top that can be kept for a window and braked from to where it halts: as in a piece. */
 static double feed_to_halt(const struct lead *l, double top)
 {
-    const double a = lead_halt_acceleration(l);
+    const double a = takt_lead_halt_acceleration(l);
     const double m = a * (l->window + 0.5);
     const double root = m * m + 2.0 * a * (path_mm(l->at, l->halt.end) - 0.5 * l->feed);
 
@@ -430,7 +430,7 @@ static double feed_to_keep(const struct lead *l, double s, double top, double lo
     return 0.0;
 }
 
-double lead_speed_up(const struct lead *l, double at_mm, double low)
+double takt_lead_speed_up(const struct lead *l, double at_mm, double low)
 {
     const double a = lead_acceleration(l);
 

@@ -37,12 +37,12 @@
 /* Blocks that are gone on by in a cycle, at most: twice what the lead point can pass in it (plan/block.c). */
 #define BLOCKS_MAX 16
 
-bool lead_has_halted(const struct lead *l)
+bool takt_lead_has_halted(const struct lead *l)
 {
     return l->halt.found && l->feed == 0.0 && l->at == l->halt.end;
 }
 
-void lead_leave_halt(struct lead *l)
+void takt_lead_leave_halt(struct lead *l)
 {
     l->halt.left = l->halt.end;
     l->halt.found = false;
@@ -60,7 +60,7 @@ static double spare_energy(const struct lead *l, double a)
     return 2.0 * a * (path_mm(l->at, l->halt.end) - l->feed * waiting(l)) - lead_square(l->feed);
 }
 
-bool lead_can_halt(const struct lead *l, double a)
+bool takt_lead_can_halt(const struct lead *l, double a)
 {
     return spare_energy(l, a) >= LEAD_ENERGY_SLACK * lead_square(l->feed);
 }
@@ -97,7 +97,7 @@ static bool is_bound(const struct lead *l)
            keeps_halt(l, free_acceleration(l));
 }
 
-double lead_halt_acceleration(const struct lead *l)
+double takt_lead_halt_acceleration(const struct lead *l)
 {
     const double gap = path_mm(l->at, l->halt.end) - l->feed * waiting(l);
 
@@ -107,12 +107,12 @@ double lead_halt_acceleration(const struct lead *l)
 
 static bool can_rest(const struct lead *l)
 {
-    const double a = lead_halt_acceleration(l);
+    const double a = takt_lead_halt_acceleration(l);
 
-    return l->feed == 0.0 || lead_can_halt(l, a) || (l->halt.found && keeps_halt(l, a));
+    return l->feed == 0.0 || takt_lead_can_halt(l, a) || (l->halt.found && keeps_halt(l, a));
 }
 
-void lead_end_blocks(struct lead *l, bool on)
+void takt_lead_end_blocks(struct lead *l, bool on)
 {
     l->halt.on = on;
     l->halt.begun = l->halt.begun && on;
@@ -122,7 +122,7 @@ void lead_end_blocks(struct lead *l, bool on)
 /* The block begins a motion, or goes on with that of the one before. */
 static void look_at(struct lead *l, const struct path *path, uint32_t block, bool begins)
 {
-    const double a = ceiling_block_acceleration(path, block, l->cycles);
+    const double a = takt_ceiling_block_acceleration(path, block, l->cycles);
 
     l->halt.block = block;
     l->halt.end = path_end(path, block);
@@ -151,7 +151,7 @@ static bool is_end_ahead(const struct lead *l, const struct path *path)
 /* Is it the last one of the span, or of all that is known? */
 static bool is_last(const struct ceiling *c, uint32_t block)
 {
-    return span_stops(c->path, block) || span_lands(c->path, block) ||
+    return takt_span_stops(c->path, block) || takt_span_lands(c->path, block) ||
            block + 1 == c->first + c->piece[c->count - 1].leave;
 }
 
@@ -170,10 +170,10 @@ static bool find_end(struct lead *l, const struct ceiling *c)
         }
         look_at(l, c->path, l->halt.block + 1, !path_at(c->path, l->halt.block)->continues);
     }
-    return is_end_ahead(l, c->path) && !span_stops(c->path, l->halt.block);
+    return is_end_ahead(l, c->path) && !takt_span_stops(c->path, l->halt.block);
 }
 
-bool lead_seek_halt(struct lead *l)
+bool takt_lead_seek_halt(struct lead *l)
 {
     struct lead_halt *h = &l->halt;
     const bool found = h->found;

@@ -38,7 +38,7 @@ static float low_feed_mm_s(struct lead_place *p, uint32_t i)
 static void find_lowest(struct lead_place *p)
 {
     p->low_feed = ceiling_feed(p->ceiling, low_feed_mm_s(p, 0));
-    p->low_leave = ceiling_leave(p->ceiling, low_at(p, 0)->leave);
+    p->low_leave = takt_ceiling_leave(p->ceiling, low_at(p, 0)->leave);
 }
 
 /* Where there is no room for one more the last two become one: the lower feed until the later place. */
@@ -60,7 +60,7 @@ static void low_push(struct lead_place *p, uint32_t k)
     }
 }
 
-double lead_low_feed(struct lead *l, uint64_t setpoint)
+double takt_lead_low_feed(struct lead *l, uint64_t setpoint)
 {
     struct lead_place *p = &l->here;
 
@@ -79,7 +79,7 @@ double lead_low_feed(struct lead *l, uint64_t setpoint)
 /* Is the lead point past the end of piece k? A span's end is exact, the others are where a ceiling begins. */
 static bool has_passed(const struct lead *l, const struct ceiling *c, uint32_t k)
 {
-    return lead_is_last_of_span(&c->piece[k]) ? lead_is_beyond(l->at, ceiling_leave(c, k))
+    return lead_is_last_of_span(&c->piece[k]) ? lead_is_beyond(l->at, takt_ceiling_leave(c, k))
                                               : path_mm(c->origin, l->at) >= c->end_mm[k];
 }
 
@@ -108,7 +108,7 @@ static bool can_meet(const struct ceiling *c, uint32_t k, double x, double energ
 {
     for (uint32_t i = k; i < k + LEAD_PIECES_MAX; i++) {
         const struct ceiling_piece *p = &c->piece[i];
-        const double top = energy_of(c, highest ? ceiling_top_feed(c, i) : p->feed_mm_s);
+        const double top = energy_of(c, highest ? takt_ceiling_top_feed(c, i) : p->feed_mm_s);
         const double end = energy_of(c, highest ? p->end_feed_max_mm_s : p->end_feed_mm_s);
         const bool last = lead_is_last_of_span(p) || i + 1 == c->count;
 
@@ -147,7 +147,7 @@ static bool is_no_lower(const struct lead *l, const struct ceiling *c, uint32_t 
 static bool halts_before(const struct lead *l, const struct ceiling *c, uint32_t k, uint64_t start)
 {
     return l->halt.found && lead_is_beyond(start, l->halt.end) &&
-           !lead_can_halt(l, (double)c->piece[k].acceleration);
+           !takt_lead_can_halt(l, (double)c->piece[k].acceleration);
 }
 
 /* May the lead point come to what begins with piece k and starts at a place for the setpoint? */
@@ -174,7 +174,7 @@ static void come_to(struct lead *l, struct lead_place *p, uint32_t k)
     if (!c->piece[k].opens) {
         return;
     }
-    const uint64_t start = ceiling_start(c, k);
+    const uint64_t start = takt_ceiling_start(c, k);
 
     if (may_enter(l, c, k, start)) {
         l->entered = lead_is_beyond(start, l->entered) ? start : l->entered;
@@ -247,13 +247,13 @@ static void go_through_pieces(struct lead *l)
     }
 }
 
-void lead_follow_pieces(struct lead *l)
+void takt_lead_follow_pieces(struct lead *l)
 {
     go_through_pieces(l);
     note_known(l);
 }
 
-void lead_enter_piece(struct lead *l, uint32_t k)
+void takt_lead_enter_piece(struct lead *l, uint32_t k)
 {
     l->here.piece = k;
     l->here.low_count = 0;
@@ -265,7 +265,7 @@ void lead_enter_piece(struct lead *l, uint32_t k)
 
 /* -- a setpoint that is moved by others -- */
 
-bool lead_could_be(const struct lead *l, uint64_t at, double feed, bool highest)
+bool takt_lead_could_be(const struct lead *l, uint64_t at, double feed, bool highest)
 {
     const struct ceiling *c = l->here.ceiling;
     const double x = path_mm(c->origin, at);
@@ -275,7 +275,7 @@ bool lead_could_be(const struct lead *l, uint64_t at, double feed, bool highest)
         return false;
     }
     for (uint32_t i = 0; i < LEAD_PIECES_MAX && k < c->count && x > c->end_mm[k]; i++, k++) {
-        const float top_mm_s = highest ? ceiling_top_feed(c, k) : c->piece[k].feed_mm_s;
+        const float top_mm_s = highest ? takt_ceiling_top_feed(c, k) : c->piece[k].feed_mm_s;
 
         if (lead_is_last_of_span(&c->piece[k]) || feed > ceiling_feed(c, top_mm_s)) {
             return false;
@@ -300,7 +300,7 @@ static void find_piece(struct lead_place *p, double x)
     }
 }
 
-void lead_follow(struct lead *l, uint64_t at, double feed, uint64_t setpoint)
+void takt_lead_follow(struct lead *l, uint64_t at, double feed, uint64_t setpoint)
 {
     struct lead_place *p = &l->here;
     const struct ceiling *c = p->ceiling;
@@ -311,17 +311,17 @@ void lead_follow(struct lead *l, uint64_t at, double feed, uint64_t setpoint)
     l->abrupt = false;
     l->since_plus = l->since_minus = (uint32_t)l->window - 1;
     find_piece(p, path_mm(c->origin, at));
-    const uint64_t start = ceiling_start(c, p->piece);
+    const uint64_t start = takt_ceiling_start(c, p->piece);
 
     p->late = false;
     l->entered = lead_is_beyond(start, l->entered) ? start : l->entered;
     note_following(l);
-    (void)lead_low_feed(l, setpoint);
+    (void)takt_lead_low_feed(l, setpoint);
 }
 
 /* -- a new ceiling -- */
 
-void lead_set_ceiling(struct lead *l, const struct ceiling *ceiling)
+void takt_lead_set_ceiling(struct lead *l, const struct ceiling *ceiling)
 {
     l->coming.ceiling = ceiling;
     l->coming.piece = 0;
@@ -337,7 +337,7 @@ static bool search(struct lead *l)
     if (p->piece == p->ceiling->count) {
         return false;
     }
-    const uint64_t leave = ceiling_leave(p->ceiling, p->piece);
+    const uint64_t leave = takt_ceiling_leave(p->ceiling, p->piece);
 
     if (lead_is_beyond(l->standing ? l->at : l->span, leave)) {
         p->piece++;
@@ -386,7 +386,7 @@ static void take_place(struct lead *l)
     from->ceiling = NULL;
 }
 
-bool lead_find_place(struct lead *l)
+bool takt_lead_find_place(struct lead *l)
 {
     unsigned looked = 0;
 

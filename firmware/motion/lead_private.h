@@ -64,7 +64,7 @@ static inline double lead_end_mm(const struct lead *l, uint32_t k)
 /* Where the setpoint leaves what piece k is made of. */
 static inline uint64_t lead_leave_of(const struct lead *l, uint32_t k)
 {
-    return ceiling_leave(l->here.ceiling, k);
+    return takt_ceiling_leave(l->here.ceiling, k);
 }
 
 static inline double lead_square(double x)
@@ -108,30 +108,30 @@ static inline double lead_entry_cycles(const struct lead *l)
 }
 
 /* lead_place.c: goes on to the pieces that the lead point has come to. */
-void lead_follow_pieces(struct lead *l);
+void takt_lead_follow_pieces(struct lead *l);
 /* lead_place.c: begins at a piece, of a new span. */
-void lead_enter_piece(struct lead *l, uint32_t k);
+void takt_lead_enter_piece(struct lead *l, uint32_t k);
 /* lead_place.c: forgets ceilings that the setpoint has left, and tells the lowest of the others. */
-double lead_low_feed(struct lead *l, uint64_t setpoint);
+double takt_lead_low_feed(struct lead *l, uint64_t setpoint);
 
 /* lead_feed.c: what is ahead within a cycle: the lowest feed that any piece's end asks for, or the ceiling low. */
-void lead_brake_ahead(const struct lead *l, double low, struct lead_brake *b);
+void takt_lead_brake_ahead(const struct lead *l, double low, struct lead_brake *b);
 /* lead_feed.c: begins to land (run.active) when it is time to, or makes the joint a stop where it cannot be done. */
-void lead_consider_landing(struct lead *l, bool hold, struct lead_brake *b);
+void takt_lead_consider_landing(struct lead *l, bool hold, struct lead_brake *b);
 static inline void lead_approach_landing(struct lead *l, bool hold, struct lead_brake *b)
 {
     if (lead_landing(l) != CEILING_NONE && l->since_plus >= l->window) {
-        lead_consider_landing(l, hold, b);
+        takt_lead_consider_landing(l, hold, b);
     }
 }
 /* lead_halt.c: with halt.on: looks for the end to halt at (halt.found). True: it is too fast for the next one. */
-bool lead_seek_halt(struct lead *l);
+bool takt_lead_seek_halt(struct lead *l);
 /* lead_halt.c: how hard it brakes for it, mm/cycle2; and could it come to rest there if it braked by a? */
-double lead_halt_acceleration(const struct lead *l);
-bool lead_can_halt(const struct lead *l, double a);
+double takt_lead_halt_acceleration(const struct lead *l);
+bool takt_lead_can_halt(const struct lead *l, double a);
 /* lead_feed.c: brakes for the end that it halts at. */
-void lead_brake_to_halt(const struct lead *l, struct lead_brake *b);
+void takt_lead_brake_to_halt(const struct lead *l, struct lead_brake *b);
 /* lead_feed.c: the feed to speed up to in this cycle under the ceiling low; the present one: it may not. */
-double lead_speed_up(const struct lead *l, double at_mm, double low);
+double takt_lead_speed_up(const struct lead *l, double at_mm, double low);
 
 #endif

@@ -19,7 +19,8 @@
 /* Waits without a cycle, and blocks, that one cycle passes at most. */
 #define PASS_MAX 64
 
-void motion_init(struct motion *m, struct path *path, const struct point *start, bool proportional)
+void takt_motion_init(struct motion *m, struct path *path, const struct point *start,
+                      bool proportional)
 {
     memset(m, 0, sizeof(*m));
     m->path = path;
@@ -27,8 +28,8 @@ void motion_init(struct motion *m, struct path *path, const struct point *start,
     m->at = *start;
     m->setpoint = path->position;
     m->proportional = proportional;
-    lead_init(&m->lead, path->limits.law, path->position);
-    average_start(&m->mover.average, path->limits.law, 1, path->position, 0);
+    takt_lead_init(&m->lead, path->limits.law, path->position);
+    takt_average_start(&m->mover.average, path->limits.law, 1, path->position, 0);
     m->rested = 1;
     m->wanted = true;
     m->request = (struct ceiling_request){.lead = m->lead.at,
@@ -53,7 +54,7 @@ static struct ceiling *ceiling_of(const struct motion *m, unsigned which)
     return path_ceiling(m->path, which);
 }
 
-const struct ceiling_request *motion_wanted(struct motion *m)
+const struct ceiling_request *takt_motion_wanted(struct motion *m)
 {
     const bool wanted = handoff_get_flag(&m->wanted) && !handoff_get_flag(&m->built);
 
@@ -61,7 +62,7 @@ const struct ceiling_request *motion_wanted(struct motion *m)
     return wanted ? &m->request : NULL;
 }
 
-uint32_t motion_ahead(struct motion *m)
+uint32_t takt_motion_ahead(struct motion *m)
 {
     if ((int32_t)(m->request.first - m->ahead) > 0) {
         m->ahead = m->request.first;
@@ -109,7 +110,7 @@ static bool is_unchanged(const struct motion *m, const struct ceiling_request *r
            m->made.spindle_rev_s == request->spindle_rev_s;
 }
 
-void motion_build(struct motion *m)
+void takt_motion_build(struct motion *m)
 {
     uint32_t restarts;
     const struct ceiling_request request = take_request(m, &restarts);
@@ -120,7 +121,7 @@ void motion_build(struct motion *m)
         return;
     }
     m->built_restarts = restarts;
-    ceiling_build(ceiling_of(m, 1 - m->active), m->path, &request);
+    takt_ceiling_build(ceiling_of(m, 1 - m->active), m->path, &request);
     m->made = request;
     m->made_closed = m->path->closed;
     m->made_holds = true;
@@ -139,13 +140,13 @@ static void offer_ceiling(struct motion *m)
     if (m->made_holds) {
         m->active = 1 - m->active;
         m->has_ceiling = true;
-        lead_set_ceiling(&m->lead, ceiling_of(m, m->active));
+        takt_lead_set_ceiling(&m->lead, ceiling_of(m, m->active));
     }
     handoff_set_flag(&m->wanted, false);
     handoff_set_flag(&m->built, false);
 }
 
-void motion_prepare(struct motion *m)
+void takt_motion_prepare(struct motion *m)
 {
     if (!m->has_ceiling && m->built) {
         offer_ceiling(m);
@@ -161,7 +162,7 @@ static uint64_t piece_leave(const struct motion *m)
     if (here->ceiling == NULL || here->piece >= here->ceiling->count) {
         return m->lead.at;
     }
-    return ceiling_leave(here->ceiling, here->piece);
+    return takt_ceiling_leave(here->ceiling, here->piece);
 }
 
 /* An override asked for while the lead point brakes waits for the next block (seed 003 section 2). 0 is a hold. */
@@ -232,7 +233,7 @@ static bool waits_for_tool(const struct motion *m, enum move_kind kind, bool too
 static bool is_wait_over(const struct motion *m, enum move_kind kind)
 {
     return kind != MOVE_DWELL ||
-           (double)m->waited >= maths_ceil(first_block(m)->move.dwell_s / m->cycle_s - 1e-9);
+           (double)m->waited >= takt_maths_ceil(first_block(m)->move.dwell_s / m->cycle_s - 1e-9);
 }
 
 static bool turns_rotary(const struct block *b)
@@ -267,7 +268,7 @@ static enum motion_result serve(struct motion *m, const struct motion_operator *
     }
     for (unsigned passed = 0; passed < PASS_MAX; passed++) {
         if (m->done) {
-            path_pass(m->path);
+            takt_path_pass(m->path);
             m->done = false;
         }
         if (m->path->first == m->path->closed) {
@@ -279,7 +280,7 @@ static enum motion_result serve(struct motion *m, const struct motion_operator *
             *block = first_block(m);
             return is_handed_over(m, *block) ? MOTION_HANDED_OVER : MOTION_CYCLE;
         }
-        const enum move_kind kind = path_kind(m->path, m->current);
+        const enum move_kind kind = takt_path_kind(m->path, m->current);
 
         if (kind == MOVE_END) {
             return MOTION_DONE;
@@ -317,19 +318,19 @@ static bool is_held(const struct motion *m, const struct motion_operator *wanted
     if (here->ceiling == NULL || here->piece >= here->ceiling->count) {
         return wanted->hold;
     }
-    return (ceiling_overrides(here->ceiling, here->piece) & holds) != 0;
+    return (takt_ceiling_overrides(here->ceiling, here->piece) & holds) != 0;
 }
 
 /* Is the end of the oldest block a stop? */
 static bool ends_at_rest(const struct motion *m)
 {
-    return span_stops(m->path, m->path->first);
+    return takt_span_stops(m->path, m->path->first);
 }
 
 /* Does the setpoint fall on the joint behind the oldest block in motion, but for rounding? At rest it is there exactly. */
 static bool lands(const struct motion *m)
 {
-    return span_lands(m->path, m->path->first);
+    return takt_span_lands(m->path, m->path->first);
 }
 
 /*
@@ -348,7 +349,7 @@ static double find_block(struct motion *m, const struct block *b, double *length
             (local <= *length + LANDED_UNITS && lands(m))) {
             break;
         }
-        path_pass(m->path);
+        takt_path_pass(m->path);
         local -= *length;
         start = end;
         end = path_end(m->path, m->path->first);
@@ -362,7 +363,7 @@ static double find_block(struct motion *m, const struct block *b, double *length
 /* Has the setpoint come to where the lead point halts? */
 static bool is_halted(const struct motion *m)
 {
-    return lead_has_halted(&m->lead) && m->lag == 0.0;
+    return takt_lead_has_halted(&m->lead) && m->lag == 0.0;
 }
 
 static void place(struct motion *m, const struct block *b, double local, double length,
@@ -375,13 +376,13 @@ static void place(struct motion *m, const struct block *b, double local, double 
         m->done = ends_at_rest(m) && m->lead.standing && m->lag == 0.0;
         m->rested = 0;
         record->landed =
-            (m->done || is_halted(m) || span_lands(m->path, m->current)) && !b->continues;
+            (m->done || is_halted(m) || takt_span_lands(m->path, m->current)) && !b->continues;
         m->at = b->curve.end;
         return;
     }
     const double s_mm = local / PATH_UNITS_PER_MM * b->scale;
 
-    curve_point(&b->curve, maths_clamp(s_mm, 0.0, b->curve.length_mm), &m->at);
+    takt_curve_point(&b->curve, maths_clamp(s_mm, 0.0, b->curve.length_mm), &m->at);
 }
 
 /* Of the way from one setpoint to the next, of A, B, C where they are alone. */
@@ -402,18 +403,19 @@ static double feed_between(const struct motion *m, const struct block *b, const 
 /* The lead point moves and its average with it. */
 static void move_lead(struct motion *m, bool hold)
 {
-    if (held_move(m, hold)) {
+    if (takt_held_move(m, hold)) {
         return;
     }
     struct lead_start start = {.at = m->lead.at};
     double lag = m->lag;
 
-    if (lead_step(&m->lead, m->setpoint, hold, &start)) {
-        average_start(&m->mover.average, m->path->limits.law, m->lead.cycles, start.at, start.step);
+    if (takt_lead_step(&m->lead, m->setpoint, hold, &start)) {
+        takt_average_start(&m->mover.average, m->path->limits.law, m->lead.cycles, start.at,
+                           start.step);
         lag = average_lag(&m->mover.average);
         m->busy = true;
     }
-    average_push(&m->mover.average, m->lead.at);
+    takt_average_push(&m->mover.average, m->lead.at);
     m->lag = average_lag(&m->mover.average);
     m->feed = path_mm(start.at, m->lead.at) - (m->lag - lag) / PATH_UNITS_PER_MM;
 }
@@ -436,13 +438,13 @@ static const struct block *move_on(struct motion *m, const struct motion_operato
     double length;
 
     if (may_leave(m, wanted)) {
-        lead_release(&m->lead);
+        takt_lead_release(&m->lead);
     }
     if (is_halted(m)) {
-        lead_leave_halt(&m->lead);
+        takt_lead_leave_halt(&m->lead);
     }
     if (m->lead.halt.on != wanted->single_block) {
-        lead_end_blocks(&m->lead, wanted->single_block);
+        takt_lead_end_blocks(&m->lead, wanted->single_block);
     }
     m->rested++;
     move_lead(m, is_held(m, wanted));
@@ -478,13 +480,13 @@ static void watch(struct motion *m, const struct motion_operator *wanted, const 
         return;
     }
     m->busy = true;
-    if (!watch_look(m, !is_held(m, wanted) && !wanted->wait)) {
+    if (!takt_watch_look(m, !is_held(m, wanted) && !wanted->wait)) {
         m->watch.line = b->move.line;
         m->ending = true;
     }
 }
 
-uint32_t motion_stalled_line(const struct motion *m)
+uint32_t takt_motion_stalled_line(const struct motion *m)
 {
     return m->watch.line;
 }
@@ -499,10 +501,10 @@ static bool end_path(struct motion *m)
         return m->feed != 0.0;
     }
     if (m->holds) {
-        held_end(m);
+        takt_held_end(m);
     }
-    path_restart(m->path, &m->at, m->lead.at);
-    lead_init(&m->lead, m->path->limits.law, m->lead.at);
+    takt_path_restart(m->path, &m->at, m->lead.at);
+    takt_lead_init(&m->lead, m->path->limits.law, m->lead.at);
     m->setpoint = m->lead.at;
     m->rested = 0;
     m->done = false;
@@ -511,17 +513,17 @@ static bool end_path(struct motion *m)
     return true;
 }
 
-void motion_end_here(struct motion *m)
+void takt_motion_end_here(struct motion *m)
 {
     m->ending = true;
 }
 
-bool motion_rests(const struct motion *m)
+bool takt_motion_rests(const struct motion *m)
 {
     return m->done || m->feed == 0.0 || is_halted(m);
 }
 
-bool motion_is_idle(const struct motion *m)
+bool takt_motion_is_idle(const struct motion *m)
 {
     return m->path->first == m->path->pushed && !m->ending;
 }
@@ -547,8 +549,8 @@ static void read_ahead(struct motion *m)
     }
 }
 
-enum motion_result motion_cycle(struct motion *m, const struct motion_operator *wanted,
-                                struct cycle_record *record)
+enum motion_result takt_motion_cycle(struct motion *m, const struct motion_operator *wanted,
+                                     struct cycle_record *record)
 {
     const struct block *b;
 

@@ -104,36 +104,37 @@ struct motion {
 };
 
 /* start: where the machine stands. The path is read here, and passed; it must outlive m. */
-void motion_init(struct motion *m, struct path *path, const struct point *start, bool proportional);
+void takt_motion_init(struct motion *m, struct path *path, const struct point *start,
+                      bool proportional);
 
 /* Background: what a ceiling is asked for; NULL: none is. Until it has been made the path may smooth motions. */
-const struct ceiling_request *motion_wanted(struct motion *m);
-/* Background: makes it, from all blocks pushed so far. Needs motion_wanted. */
-void motion_build(struct motion *m);
+const struct ceiling_request *takt_motion_wanted(struct motion *m);
+/* Background: makes it, from all blocks pushed so far. Needs takt_motion_wanted. */
+void takt_motion_build(struct motion *m);
 /* Background: blocks that the path has beyond the lead point's, as that was when a ceiling was asked for. */
-uint32_t motion_ahead(struct motion *m);
+uint32_t takt_motion_ahead(struct motion *m);
 
 /* In a control cycle before the first of them: takes the first ceiling, if it is there, so that the first need not. */
-void motion_prepare(struct motion *m);
+void takt_motion_prepare(struct motion *m);
 
 /* One control cycle. Fills everything of the record but set, act and spindle_rev. */
-enum motion_result motion_cycle(struct motion *m, const struct motion_operator *wanted,
-                                struct cycle_record *record);
+enum motion_result takt_motion_cycle(struct motion *m, const struct motion_operator *wanted,
+                                     struct cycle_record *record);
 
 /*
  * The move that is executed ends where the axes come to rest from now on; all other blocks of the path are dropped. The
  * path goes on from there.
  */
-void motion_end_here(struct motion *m);
+void takt_motion_end_here(struct motion *m);
 
 /* Did the setpoint stand at the end of the last cycle? */
-bool motion_rests(const struct motion *m);
+bool takt_motion_rests(const struct motion *m);
 
 /* Where the path is not gone on along: line of the program. After MOTION_STALLED. */
-uint32_t motion_stalled_line(const struct motion *m);
+uint32_t takt_motion_stalled_line(const struct motion *m);
 
 /* Has everything on the path been done? */
-bool motion_is_idle(const struct motion *m);
+bool takt_motion_is_idle(const struct motion *m);
 
 /* The block the last cycle executed. Valid until the next cycle. */
 static inline const struct block *motion_block(const struct motion *m)

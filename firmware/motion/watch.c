@@ -15,14 +15,14 @@ static double explained_cycles(const struct motion *m)
 {
     const uint32_t index = m->path->first;
     const uint32_t cycles = m->lead.standing ? path_at(m->path, index)->cycles : m->lead.cycles;
-    const double feed = ceiling_block_feed(m->path, index, &m->request) * m->cycle_s;
-    const double a = ceiling_block_acceleration(m->path, index, cycles);
+    const double feed = takt_ceiling_block_feed(m->path, index, &m->request) * m->cycle_s;
+    const double a = takt_ceiling_block_acceleration(m->path, index, cycles);
 
-    return path_length(m->path, index) / feed + 2.0 * feed / a + 4.0 * m->lead.window +
+    return takt_path_length(m->path, index) / feed + 2.0 * feed / a + 4.0 * m->lead.window +
            WATCH_EVERY_CYCLES;
 }
 
-bool watch_look(struct motion *m, bool may_move)
+bool takt_watch_look(struct motion *m, bool may_move)
 {
     struct watch *w = &m->watch;
 

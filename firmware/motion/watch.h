@@ -34,6 +34,6 @@ struct watch {
 struct motion;
 
 /* A look every WATCH_EVERY_CYCLES. may_move: nothing keeps the axes where they are. False: for too long. */
-bool watch_look(struct motion *m, bool may_move);
+bool takt_watch_look(struct motion *m, bool may_move);
 
 #endif

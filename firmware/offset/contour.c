@@ -35,12 +35,12 @@ struct crossing {
         far; /* another one is nearer to their corner: this one may belong to the other end of an arc */
 };
 
-struct offset_item *contour_item(struct offset *o, unsigned place)
+struct offset_item *takt_contour_item(struct offset *o, unsigned place)
 {
     return &o->item[(o->first + place) % OFFSET_ITEMS_MAX];
 }
 
-struct offset_live *contour_live(struct offset *o, const struct offset_item *item)
+struct offset_live *takt_contour_live(struct offset *o, const struct offset_item *item)
 {
     return &o->live[item->live];
 }
@@ -52,34 +52,34 @@ static const uint8_t axes_turned[][AXIS_COUNT] = {
     [PLANE_YZ] = {AXIS_Y, AXIS_Z, AXIS_X, AXIS_A, AXIS_B, AXIS_C},
 };
 
-void contour_turned(enum plane plane, const struct point *p, double turned[AXIS_COUNT])
+void takt_contour_turned(enum plane plane, const struct point *p, double turned[AXIS_COUNT])
 {
     for (unsigned i = 0; i < AXIS_COUNT; i++) {
         turned[i] = p->at[axes_turned[plane][i]];
     }
 }
 
-void contour_point(enum plane plane, const double turned[AXIS_COUNT], struct point *p)
+void takt_contour_point(enum plane plane, const double turned[AXIS_COUNT], struct point *p)
 {
     for (unsigned i = 0; i < AXIS_COUNT; i++) {
         p->at[axes_turned[plane][i]] = turned[i];
     }
 }
 
-bool contour_wanted(const struct offset_item *i, struct planar *wanted)
+bool takt_contour_wanted(const struct offset_item *i, struct planar *wanted)
 {
     const struct offset_wanted *w = &i->wanted;
 
     if (i->programmed == MOVE_INVOLUTE_CW || i->programmed == MOVE_INVOLUTE_CCW) {
-        return planar_set_involute(wanted, w->from, w->to, w->centre, w->base_mm,
-                                   i->programmed == MOVE_INVOLUTE_CW);
+        return takt_planar_set_involute(wanted, w->from, w->to, w->centre, w->base_mm,
+                                        i->programmed == MOVE_INVOLUTE_CW);
     }
     if (i->programmed == MOVE_ARC_CW || i->programmed == MOVE_ARC_CCW) {
-        planar_set_arc(wanted, w->from, w->to, w->centre,
-                       i->programmed == MOVE_ARC_CCW ? 1.0 : -1.0, i->turns);
+        takt_planar_set_arc(wanted, w->from, w->to, w->centre,
+                            i->programmed == MOVE_ARC_CCW ? 1.0 : -1.0, i->turns);
         return true;
     }
-    return planar_set_line(wanted, w->from, w->to);
+    return takt_planar_set_line(wanted, w->from, w->to);
 }
 
 static bool is_way(const struct offset_item *i)
@@ -87,10 +87,10 @@ static bool is_way(const struct offset_item *i)
     return i->kind >= OFFSET_CORNER && !i->left_out;
 }
 
-void contour_add(struct offset *o, const struct offset_item *item)
+void takt_contour_add(struct offset *o, const struct offset_item *item)
 {
     assert(o->count < OFFSET_ITEMS_MAX);
-    *contour_item(o, o->count++) = *item;
+    *takt_contour_item(o, o->count++) = *item;
 }
 
 static void append(struct offset *o, struct offset_piece *piece)
@@ -100,12 +100,12 @@ static void append(struct offset *o, struct offset_piece *piece)
         piece->item.live = (uint8_t)((o->live_first + o->ways++) % OFFSET_WAYS_MAX);
         o->live[piece->item.live] = piece->live;
     }
-    contour_add(o, &piece->item);
+    takt_contour_add(o, &piece->item);
 }
 
-void contour_drop_first(struct offset *o)
+void takt_contour_drop_first(struct offset *o)
 {
-    if (is_way(contour_item(o, 0))) {
+    if (is_way(takt_contour_item(o, 0))) {
         o->live_first = (o->live_first + 1) % OFFSET_WAYS_MAX;
         o->ways--;
     }
@@ -113,7 +113,7 @@ void contour_drop_first(struct offset *o)
     o->count--;
 }
 
-struct offset_live *contour_newest(struct offset *o)
+struct offset_live *takt_contour_newest(struct offset *o)
 {
     return o->ways > 0 ? &o->live[(o->live_first + o->ways - 1) % OFFSET_WAYS_MAX] : NULL;
 }
@@ -131,14 +131,14 @@ static void remove_behind(struct offset *o, unsigned place)
     unsigned kept = place + 1;
 
     for (unsigned i = place + 1; i < o->count; i++) {
-        const struct offset_item *item = contour_item(o, i);
+        const struct offset_item *item = takt_contour_item(o, i);
 
         if (item->kind == OFFSET_WAY) {
             warn(o, item);
         }
         o->ways -= is_way(item) ? 1 : 0;
         if (item->kind < OFFSET_CORNER) {
-            *contour_item(o, kept++) = *item;
+            *takt_contour_item(o, kept++) = *item;
         }
     }
     o->count = kept;
@@ -146,7 +146,7 @@ static void remove_behind(struct offset *o, unsigned place)
 
 static bool is_inside(double place_mm, const struct planar *way)
 {
-    return place_mm >= -PLACE_SLACK_MM && place_mm <= planar_length(way) + PLACE_SLACK_MM;
+    return place_mm >= -PLACE_SLACK_MM && place_mm <= takt_planar_length(way) + PLACE_SLACK_MM;
 }
 
 /* As it is, with places beyond the ends. */
@@ -155,8 +155,8 @@ static struct crossing crossing_at(const struct planar *k, const struct planar *
 {
     return (struct crossing){
         .point = {point[0], point[1]},
-        .end_mm = planar_place_near_to(k, point),
-        .begin_mm = planar_place_near_from(e, point),
+        .end_mm = takt_planar_place_near_to(k, point),
+        .begin_mm = takt_planar_place_near_from(e, point),
     };
 }
 
@@ -171,7 +171,7 @@ static bool is_within(const struct planar *k, const struct planar *e, const stru
  */
 static double cut_mm(const struct planar *k, const struct planar *e, const struct crossing *c)
 {
-    const double cut = maths_abs(planar_length(k) - c->end_mm) + maths_abs(c->begin_mm);
+    const double cut = maths_abs(takt_planar_length(k) - c->end_mm) + maths_abs(c->begin_mm);
 
     return is_within(k, e, c) ? cut * (1.0 - CUSP_RATIO) : cut;
 }
@@ -181,7 +181,7 @@ static unsigned sorted_crossings(const struct planar *k, const struct planar *e,
                                  struct crossing found[2])
 {
     double points[2][2];
-    const unsigned count = planar_cross(k, e, points);
+    const unsigned count = takt_planar_cross(k, e, points);
 
     for (unsigned i = 0; i < count; i++) {
         found[i] = crossing_at(k, e, points[i]);
@@ -208,7 +208,7 @@ static unsigned find_crossings(const struct planar *k, const struct planar *e,
     for (unsigned i = 0; i < all; i++) {
         if (is_within(k, e, &found[i])) {
             found[count] = found[i];
-            found[count].end_mm = maths_min(found[i].end_mm, planar_length(k));
+            found[count].end_mm = maths_min(found[i].end_mm, takt_planar_length(k));
             found[count].begin_mm = maths_max(found[i].begin_mm, 0.0);
             count++;
         }
@@ -222,8 +222,9 @@ static double gouge_of(const struct offset_item *item, const struct planar *k,
 {
     struct planar wanted;
 
-    (void)contour_wanted(item, &wanted);
-    return radius_mm - maths_min(planar_distance(k, &wanted), planar_distance(e, &wanted));
+    (void)takt_contour_wanted(item, &wanted);
+    return radius_mm -
+           maths_min(takt_planar_distance(k, &wanted), takt_planar_distance(e, &wanted));
 }
 
 /* The way that is really gone of an item's: the first of a contour comes from where the tool is. */
@@ -234,8 +235,8 @@ static struct planar real_way(const struct offset *o, const struct offset_item *
     double from[2];
 
     if (i->entry && !way->arc) {
-        nose_centre(&o->pattern, i->wanted.from, from);
-        (void)planar_set_line(&real, from, way->to);
+        takt_nose_centre(&o->pattern, i->wanted.from, from);
+        (void)takt_planar_set_line(&real, from, way->to);
     }
     return real;
 }
@@ -251,8 +252,8 @@ static bool turns_inside(const struct offset *o, const struct trial *t)
     double before[2];
     double behind[2];
 
-    planar_tangent_to(&t->k, before);
-    planar_tangent_from(&t->e, behind);
+    takt_planar_tangent_to(&t->k, before);
+    takt_planar_tangent_from(&t->e, behind);
     const double turn = planar_turn(before, behind);
 
     return (o->pattern.cutter_side == CUTTER_LEFT ? turn : -turn) >= -TURN_SLACK;
@@ -264,13 +265,13 @@ static double gouge_before(struct offset *o, unsigned place, const struct planar
 {
     double gouge_mm = 0.0;
 
-    for (unsigned i = place; i > 0 && contour_item(o, i)->kind == OFFSET_CORNER; i--) {
-        const struct offset_item *item = contour_item(o, i - 1);
+    for (unsigned i = place; i > 0 && takt_contour_item(o, i)->kind == OFFSET_CORNER; i--) {
+        const struct offset_item *item = takt_contour_item(o, i - 1);
 
         if (item->kind >= OFFSET_CORNER) {
-            const struct planar way = real_way(o, item, &contour_live(o, item)->way);
+            const struct planar way = real_way(o, item, &takt_contour_live(o, item)->way);
 
-            gouge_mm = maths_max(gouge_mm, radius_mm - planar_distance(&way, wanted));
+            gouge_mm = maths_max(gouge_mm, radius_mm - takt_planar_distance(&way, wanted));
         }
     }
     return gouge_mm;
@@ -283,7 +284,7 @@ static double gouge_before(struct offset *o, unsigned place, const struct planar
 static double gouge_behind(struct offset *o, unsigned place, const struct offset_item *piece,
                            const struct trial *t, bool between)
 {
-    const struct offset_item *at = contour_item(o, place);
+    const struct offset_item *at = takt_contour_item(o, place);
     const struct planar k = real_way(o, at, &t->k);
     struct planar before;
     struct planar behind;
@@ -291,7 +292,7 @@ static double gouge_behind(struct offset *o, unsigned place, const struct offset
     double gouge_mm = 0.0;
 
     for (unsigned i = place + 1; i < o->count; i++) {
-        const struct offset_item *item = contour_item(o, i);
+        const struct offset_item *item = takt_contour_item(o, i);
 
         between = between || item->kind >= OFFSET_CORNER;
         if (item->kind == OFFSET_WAY) {
@@ -300,31 +301,31 @@ static double gouge_behind(struct offset *o, unsigned place, const struct offset
         }
     }
     if (between) {
-        (void)contour_wanted(at, &before);
-        (void)contour_wanted(piece, &behind);
-        gouge_mm = maths_max(gouge_mm, radius_mm - planar_distance(&t->e, &before));
-        gouge_mm = maths_max(gouge_mm, radius_mm - planar_distance(&k, &behind));
+        (void)takt_contour_wanted(at, &before);
+        (void)takt_contour_wanted(piece, &behind);
+        gouge_mm = maths_max(gouge_mm, radius_mm - takt_planar_distance(&t->e, &before));
+        gouge_mm = maths_max(gouge_mm, radius_mm - takt_planar_distance(&k, &behind));
         gouge_mm = maths_max(gouge_mm, gouge_before(o, place, &behind, radius_mm));
     }
     return gouge_mm;
 }
 
 /* Begins or goes on with a gap. The first way in it tells how far the tool is in the way. */
-void contour_leave_out(struct offset *o, struct offset_piece *piece)
+void takt_contour_leave_out(struct offset *o, struct offset_piece *piece)
 {
-    const struct offset_live *newest = contour_newest(o);
+    const struct offset_live *newest = takt_contour_newest(o);
     struct planar wanted;
 
     if (piece->item.kind != OFFSET_WAY) {
         return;
     }
     if (!o->gap) {
-        (void)contour_wanted(&piece->item, &wanted);
+        (void)takt_contour_wanted(&piece->item, &wanted);
         o->gap = true;
         o->gouge_line = piece->item.line;
         o->gouge_mm = newest == NULL ? 0.0
                                      : o->pattern.cutter_radius_mm -
-                                           planar_distance_point(&wanted, newest->way.to);
+                                           takt_planar_distance_point(&wanted, newest->way.to);
     }
     piece->item.left_out = true;
     append(o, piece);
@@ -334,11 +335,11 @@ void contour_leave_out(struct offset *o, struct offset_piece *piece)
 static bool meet_at(struct offset *o, unsigned place, struct offset_piece *piece,
                     const struct crossing *c, bool neighbours)
 {
-    struct planar *k = &contour_live(o, contour_item(o, place))->way;
+    struct planar *k = &takt_contour_live(o, takt_contour_item(o, place))->way;
     struct trial t = {*k, piece->live.way};
 
-    planar_end_at(&t.k, c->end_mm, c->point);
-    planar_begin_at(&t.e, c->begin_mm, c->point);
+    takt_planar_end_at(&t.k, c->end_mm, c->point);
+    takt_planar_begin_at(&t.e, c->begin_mm, c->point);
     const bool far = neighbours && c->far;
     const double most_mm = far ? OFFSET_ROUNDING_MM : OFFSET_GOUGE_MM;
 
@@ -352,12 +353,12 @@ static bool meet_at(struct offset *o, unsigned place, struct offset_piece *piece
 
 static bool join_at(struct offset *o, unsigned place, struct offset_piece *piece, bool neighbours)
 {
-    const struct offset_item *k = contour_item(o, place);
+    const struct offset_item *k = takt_contour_item(o, place);
     struct crossing found[2];
     unsigned count = 0;
 
     if (is_way(k)) {
-        count = find_crossings(&contour_live(o, k)->way, &piece->live.way, found);
+        count = find_crossings(&takt_contour_live(o, k)->way, &piece->live.way, found);
     }
     for (unsigned i = 0; i < count; i++) {
         if (meet_at(o, place, piece, &found[i], neighbours)) {
@@ -373,28 +374,28 @@ static bool join_at(struct offset *o, unsigned place, struct offset_piece *piece
 /* at_corner: the piece begins where the contour's last one ends, in an inner corner. False: it crosses none. */
 static bool join(struct offset *o, struct offset_piece *piece, bool at_corner)
 {
-    const struct offset_live *newest = at_corner && !o->gap ? contour_newest(o) : NULL;
+    const struct offset_live *newest = at_corner && !o->gap ? takt_contour_newest(o) : NULL;
 
     for (unsigned i = o->count; i > 0; i--) {
-        const struct offset_item *k = contour_item(o, i - 1);
+        const struct offset_item *k = takt_contour_item(o, i - 1);
 
-        if (join_at(o, i - 1, piece, is_way(k) && contour_live(o, k) == newest)) {
+        if (join_at(o, i - 1, piece, is_way(k) && takt_contour_live(o, k) == newest)) {
             return true;
         }
     }
     return false;
 }
 
-void contour_continue(struct offset *o, struct offset_piece *piece)
+void takt_contour_continue(struct offset *o, struct offset_piece *piece)
 {
     if (!o->gap) {
         append(o, piece);
     } else if (!join(o, piece, false)) {
-        contour_leave_out(o, piece);
+        takt_contour_leave_out(o, piece);
     }
 }
 
-bool contour_meet_inside(struct offset *o, struct offset_piece *piece)
+bool takt_contour_meet_inside(struct offset *o, struct offset_piece *piece)
 {
     return join(o, piece, true);
 }

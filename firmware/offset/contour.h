@@ -7,40 +7,40 @@
 #include "offset/offset.h"
 
 /* The item at a place, 0 the oldest. */
-struct offset_item *contour_item(struct offset *o, unsigned place);
+struct offset_item *takt_contour_item(struct offset *o, unsigned place);
 
 /* The rest of a corner, or of a way that is not left out. */
-struct offset_live *contour_live(struct offset *o, const struct offset_item *item);
+struct offset_live *takt_contour_live(struct offset *o, const struct offset_item *item);
 
 /* A new item at the end that is no piece of way. Needs room. */
-void contour_add(struct offset *o, const struct offset_item *item);
+void takt_contour_add(struct offset *o, const struct offset_item *item);
 
 /* The programmed way of an item; of a corner, the one before it. False: there is none. */
-bool contour_wanted(const struct offset_item *i, struct planar *wanted);
+bool takt_contour_wanted(const struct offset_item *i, struct planar *wanted);
 
 /* A point's coordinates in a plane, then those across it, the linear axis first; and back. */
-void contour_turned(enum plane plane, const struct point *p, double turned[AXIS_COUNT]);
-void contour_point(enum plane plane, const double turned[AXIS_COUNT], struct point *p);
+void takt_contour_turned(enum plane plane, const struct point *p, double turned[AXIS_COUNT]);
+void takt_contour_point(enum plane plane, const double turned[AXIS_COUNT], struct point *p);
 
 /* Drops the oldest item. */
-void contour_drop_first(struct offset *o);
+void takt_contour_drop_first(struct offset *o);
 
 /* The newest piece of way that is not left out; NULL: none. */
-struct offset_live *contour_newest(struct offset *o);
+struct offset_live *takt_contour_newest(struct offset *o);
 
 /*
  * Adds a piece that goes on where the newest ends, or, after an inner corner, where it crosses one of the contour; it then
  * begins there. A way that crosses none is swallowed, a corner then forgotten.
  */
-void contour_continue(struct offset *o, struct offset_piece *piece);
+void takt_contour_continue(struct offset *o, struct offset_piece *piece);
 
 /*
  * The same for a way behind an inner corner at the start of the programmed way. False: it crosses none, and nothing has
  * changed.
  */
-bool contour_meet_inside(struct offset *o, struct offset_piece *piece);
+bool takt_contour_meet_inside(struct offset *o, struct offset_piece *piece);
 
 /* Such a way is swallowed. */
-void contour_leave_out(struct offset *o, struct offset_piece *piece);
+void takt_contour_leave_out(struct offset *o, struct offset_piece *piece);
 
 #endif

@@ -66,7 +66,7 @@ static bool is_thin(double bend, double left_mm, double angle_rad)
 
 static void turn_cusp(const struct offset *o, const struct planar *next, struct corner *c)
 {
-    const double bend = planar_bend_to(&o->last) + planar_bend_from(next);
+    const double bend = takt_planar_bend_to(&o->last) + takt_planar_bend_from(next);
     const bool inner = cusp_is_inner(bend, c->left_mm, c->angle_rad);
 
     c->thin = inner && !o->gap && is_thin(bend, c->left_mm, c->angle_rad);
@@ -82,11 +82,11 @@ static struct corner corner_between(const struct offset *o, const struct offset_
     struct planar wanted;
     double behind[2];
 
-    (void)contour_wanted(next, &wanted);
+    (void)takt_contour_wanted(next, &wanted);
     memcpy(c.vertex, wanted.from, sizeof(c.vertex));
-    planar_tangent_to(&o->last, c.before);
-    planar_tangent_from(&wanted, behind);
-    c.angle_rad = maths_atan2(planar_turn(c.before, behind), planar_dot(c.before, behind));
+    takt_planar_tangent_to(&o->last, c.before);
+    takt_planar_tangent_from(&wanted, behind);
+    c.angle_rad = takt_maths_atan2(planar_turn(c.before, behind), planar_dot(c.before, behind));
     if (maths_abs(c.angle_rad) > MATHS_PI - OFFSET_CUSP_RAD) {
         turn_cusp(o, &wanted, &c);
     }
@@ -99,7 +99,7 @@ static void point_beside(const struct corner *c, double angle_rad, double left_m
     double sine;
     double cosine;
 
-    maths_sincos(angle_rad, &sine, &cosine);
+    takt_maths_sincos(angle_rad, &sine, &cosine);
     point[0] = c->vertex[0] - left_mm * (c->before[1] * cosine + c->before[0] * sine);
     point[1] = c->vertex[1] + left_mm * (c->before[0] * cosine - c->before[1] * sine);
 }
@@ -107,7 +107,7 @@ static void point_beside(const struct corner *c, double angle_rad, double left_m
 /* How far the tip of a sharp corner is from the circle: |d| (1 / cos(angle / 2) - 1) */
 static double tip_mm(const struct corner *c)
 {
-    return maths_abs(c->left_mm) * (1.0 / maths_cos(0.5 * c->angle_rad) - 1.0);
+    return maths_abs(c->left_mm) * (1.0 / takt_maths_cos(0.5 * c->angle_rad) - 1.0);
 }
 
 static bool is_blunt(const struct corner *c)
@@ -131,10 +131,10 @@ static void cross_beside(const struct planar *k, const struct planar *e, const s
     const double middle[2] = {point[0], point[1]};
     double nearest_mm = 2.0 * maths_abs(c->left_mm * c->angle_rad) + OFFSET_BLUNT_MM;
     double points[2][2];
-    const unsigned count = planar_cross(k, e, points);
+    const unsigned count = takt_planar_cross(k, e, points);
 
     for (unsigned i = 0; i < count; i++) {
-        const double distance_mm = planar_between(points[i], middle);
+        const double distance_mm = takt_planar_between(points[i], middle);
 
         if (distance_mm < nearest_mm) {
             nearest_mm = distance_mm;
@@ -147,7 +147,7 @@ static void cross_beside(const struct planar *k, const struct planar *e, const s
 static bool is_near_vertex(const struct corner *c, const double point[2])
 {
     return is_inner(c->angle_rad, c->left_mm) ||
-           planar_between(point, c->vertex) - maths_abs(c->left_mm) < OFFSET_BLUNT_MM;
+           takt_planar_between(point, c->vertex) - maths_abs(c->left_mm) < OFFSET_BLUNT_MM;
 }
 
 /*
@@ -156,7 +156,7 @@ static bool is_near_vertex(const struct corner *c, const double point[2])
  */
 static bool turn_blunt(struct offset *o, struct offset_piece *next, const struct corner *c)
 {
-    struct offset_live *k = contour_newest(o);
+    struct offset_live *k = takt_contour_newest(o);
     struct planar *way = &next->live.way;
     double point[2];
 
@@ -165,15 +165,15 @@ static bool turn_blunt(struct offset *o, struct offset_piece *next, const struct
     }
     point_beside(c, 0.5 * c->angle_rad, c->left_mm, point);
     cross_beside(&k->way, way, c, point);
-    const double end_mm = planar_place_near_to(&k->way, point);
-    const double begin_mm = planar_place_near_from(way, point);
+    const double end_mm = takt_planar_place_near_to(&k->way, point);
+    const double begin_mm = takt_planar_place_near_from(way, point);
 
-    if (end_mm <= 0.0 || begin_mm >= planar_length(way) || !is_near_vertex(c, point)) {
+    if (end_mm <= 0.0 || begin_mm >= takt_planar_length(way) || !is_near_vertex(c, point)) {
         return false;
     }
-    planar_end_at(&k->way, end_mm, point);
-    planar_begin_at(way, begin_mm, point);
-    contour_continue(o, next);
+    takt_planar_end_at(&k->way, end_mm, point);
+    takt_planar_begin_at(way, begin_mm, point);
+    takt_contour_continue(o, next);
     return true;
 }
 
@@ -183,7 +183,7 @@ static struct offset_piece corner_piece(const struct offset *o, const struct off
     struct offset_piece piece = {.item = next->item, .live.motion = next->live.motion};
     double turned[AXIS_COUNT];
 
-    contour_turned(o->pattern.plane, &o->wanted_at, turned);
+    takt_contour_turned(o->pattern.plane, &o->wanted_at, turned);
     piece.live.motion.across[0] = turned[2];
     piece.item.kind = OFFSET_CORNER;
     if (piece.item.move != MOVE_RAPID) {
@@ -203,17 +203,17 @@ static void turn_round(struct offset *o, struct offset_piece *piece, const struc
 
     point_beside(c, 0.0, c->left_mm, from);
     point_beside(c, c->angle_rad, c->left_mm, to);
-    planar_set_arc(&piece->live.way, from, to, c->vertex, c->angle_rad > 0.0 ? 1.0 : -1.0, 1);
+    takt_planar_set_arc(&piece->live.way, from, to, c->vertex, c->angle_rad > 0.0 ? 1.0 : -1.0, 1);
     piece->live.way.sweep_rad = maths_abs(c->angle_rad);
     piece->item.move = c->angle_rad > 0.0 ? MOVE_ARC_CCW : MOVE_ARC_CW;
-    contour_continue(o, piece);
+    takt_contour_continue(o, piece);
 }
 
 static void turn_sharp(struct offset *o, struct offset_piece *piece, const struct corner *c)
 {
     const unsigned tips = maths_abs(c->angle_rad) > MATHS_HALF_PI * (1.0 + 1e-9) ? TIPS_MAX : 1;
     const double half_rad = 0.5 * c->angle_rad / tips;
-    const double tip_left_mm = c->left_mm / maths_cos(half_rad);
+    const double tip_left_mm = c->left_mm / takt_maths_cos(half_rad);
     double from[2];
     double to[2];
 
@@ -224,8 +224,8 @@ static void turn_sharp(struct offset *o, struct offset_piece *piece, const struc
         } else {
             point_beside(c, c->angle_rad, c->left_mm, to);
         }
-        if (planar_set_line(&piece->live.way, from, to)) {
-            contour_continue(o, piece);
+        if (takt_planar_set_line(&piece->live.way, from, to)) {
+            takt_contour_continue(o, piece);
         }
         memcpy(from, to, sizeof(from));
     }
@@ -247,7 +247,7 @@ static void turn_outside(struct offset *o, const struct offset_piece *next, cons
     }
 }
 
-void corner_turn(struct offset *o, struct offset_piece *next, double left_mm)
+void takt_corner_turn(struct offset *o, struct offset_piece *next, double left_mm)
 {
     struct corner c = corner_between(o, &next->item, left_mm);
 
@@ -255,11 +255,11 @@ void corner_turn(struct offset *o, struct offset_piece *next, double left_mm)
         return;
     }
     if (is_inner(c.angle_rad, left_mm)) {
-        if (contour_meet_inside(o, next)) {
+        if (takt_contour_meet_inside(o, next)) {
             return;
         }
         if (!c.thin) {
-            contour_leave_out(o, next);
+            takt_contour_leave_out(o, next);
             return;
         }
         c.angle_rad = other_way(c.angle_rad);
@@ -267,5 +267,5 @@ void corner_turn(struct offset *o, struct offset_piece *next, double left_mm)
     if (c.angle_rad != 0.0) {
         turn_outside(o, next, &c);
     }
-    contour_continue(o, next);
+    takt_contour_continue(o, next);
 }

@@ -10,6 +10,6 @@
  * Goes on from the contour's last programmed way to the next one: around an outer corner, through an inner one, or
  * straight on. left_mm: the radius, negative on the right side.
  */
-void corner_turn(struct offset *o, struct offset_piece *next, double left_mm);
+void takt_corner_turn(struct offset *o, struct offset_piece *next, double left_mm);
 
 #endif

@@ -12,9 +12,9 @@
 #include "program/move.h"
 
 /* From the nose's centre to the point that is led, first and second axis of the plane. */
-void nose_lead(const struct move *m, double lead_mm[2]);
+void takt_nose_lead(const struct move *m, double lead_mm[2]);
 
 /* Where the nose's centre is when the point that is led is at a point of the plane. */
-void nose_centre(const struct move *m, const double led[2], double centre[2]);
+void takt_nose_centre(const struct move *m, const double led[2], double centre[2]);
 
 #endif

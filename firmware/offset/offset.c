@@ -15,7 +15,7 @@
 /* Below this cosine no arc leads from the tool to the end of an entry arc. */
 #define ENTRY_COSINE_MIN 1e-4
 
-void offset_open(struct offset *o, const struct program_config *config)
+void takt_offset_open(struct offset *o, const struct program_config *config)
 {
     memset(o, 0, sizeof(*o));
     o->sharp_corners = config->sharp_corners;
@@ -23,13 +23,13 @@ void offset_open(struct offset *o, const struct program_config *config)
     o->at = config->start;
 }
 
-bool offset_warning(struct offset *o, struct diagnostic *diagnostic)
+bool takt_offset_warning(struct offset *o, struct diagnostic *diagnostic)
 {
     if (o->warnings == 0) {
         return false;
     }
-    diagnostic_set(diagnostic, TAKT_ERROR_OFFSET_LEFT_OUT, o->warning[0].line, 0, "", 0,
-                   o->warning[0].radius_mm);
+    takt_diagnostic_set(diagnostic, TAKT_ERROR_OFFSET_LEFT_OUT, o->warning[0].line, 0, "", 0,
+                        o->warning[0].radius_mm);
     o->warnings--;
     for (unsigned i = 0; i < o->warnings; i++) {
         o->warning[i] = o->warning[i + 1];
@@ -38,13 +38,13 @@ bool offset_warning(struct offset *o, struct diagnostic *diagnostic)
 }
 
 /* Probing moves are not compensated: where one has come to rest, whatever follows begins. */
-void offset_answer(struct offset *o, struct program *p, const struct program_answer *answer)
+void takt_offset_answer(struct offset *o, struct program *p, const struct program_answer *answer)
 {
     if (p->question == QUESTION_PROBE) {
         o->wanted_at = answer->rest_at;
         o->at = answer->rest_at;
     }
-    program_answer(p, answer);
+    takt_program_answer(p, answer);
 }
 
 static bool is_compensated(const struct move *m)
@@ -59,7 +59,7 @@ static double left_of(const struct move *m)
 
 static bool fail(struct diagnostic *d, enum takt_error code, uint32_t line, double value)
 {
-    diagnostic_set(d, code, line, 0, "", 0, value);
+    takt_diagnostic_set(d, code, line, 0, "", 0, value);
     return false;
 }
 
@@ -74,13 +74,13 @@ static bool bend_entry(const struct offset *o, struct offset_piece *entry)
     struct planar *way = &entry->live.way;
     double c[2];
 
-    nose_centre(&o->pattern, entry->item.wanted.from, c);
+    takt_nose_centre(&o->pattern, entry->item.wanted.from, c);
     const double to_tool[2] = {c[0] - way->to[0], c[1] - way->to[1]};
-    const double radius = planar_between(way->centre, way->to);
+    const double radius = takt_planar_between(way->centre, way->to);
     const double u[2] = {(way->centre[0] - way->to[0]) / radius,
                          (way->centre[1] - way->to[1]) / radius};
     const double towards = planar_dot(to_tool, u);
-    const double distance = planar_between(c, way->to);
+    const double distance = takt_planar_between(c, way->to);
 
     if (towards < ENTRY_COSINE_MIN * distance) {
         return false;
@@ -89,14 +89,14 @@ static bool bend_entry(const struct offset *o, struct offset_piece *entry)
     const double centre[2] = {way->to[0] + new_radius * u[0], way->to[1] + new_radius * u[1]};
     const double to[2] = {way->to[0], way->to[1]};
 
-    planar_set_arc(way, c, to, centre, way->sense, 1);
+    takt_planar_set_arc(way, c, to, centre, way->sense, 1);
     return true;
 }
 
 static bool enter(struct offset *o, struct offset_piece *entry, const struct planar *wanted,
                   struct diagnostic *d)
 {
-    const double distance = planar_between(wanted->from, wanted->to);
+    const double distance = takt_planar_between(wanted->from, wanted->to);
     const double lack_mm = o->pattern.cutter_radius_mm - distance;
 
     if (lack_mm >= 0.0) {
@@ -111,7 +111,7 @@ static bool enter(struct offset *o, struct offset_piece *entry, const struct pla
     entry->item.entry = true;
     o->started = true;
     o->broken = false;
-    contour_continue(o, entry);
+    takt_contour_continue(o, entry);
     return true;
 }
 
@@ -130,13 +130,13 @@ static bool take_way(struct offset *o, struct offset_piece *way, const struct pl
     if (wanted->involute && turns_too_often(wanted)) {
         return fail(d, TAKT_ERROR_OFFSET_TURNS, way->item.line, OFFSET_TURNS_MAX);
     }
-    if (!planar_offset(wanted, left_mm, &way->live.way, &lack_mm)) {
+    if (!takt_planar_offset(wanted, left_mm, &way->live.way, &lack_mm)) {
         return fail(d, TAKT_ERROR_OFFSET_ARC_SMALL, way->item.line, lack_mm);
     }
     if (!o->started) {
         return enter(o, way, wanted, d);
     }
-    corner_turn(o, way, left_mm);
+    takt_corner_turn(o, way, left_mm);
     return true;
 }
 
@@ -159,8 +159,8 @@ static struct offset_piece piece_of(const struct offset *o, struct move *m)
     double from[AXIS_COUNT];
     double to[AXIS_COUNT];
 
-    contour_turned(m->plane, &o->wanted_at, from);
-    contour_turned(m->plane, &m->end, to);
+    takt_contour_turned(m->plane, &o->wanted_at, from);
+    takt_contour_turned(m->plane, &m->end, to);
     memcpy(piece.live.motion.pace, move_pace(m), MOVE_PACE_BYTES);
     memcpy(piece.item.wanted.from, from, sizeof(piece.item.wanted.from));
     memcpy(piece.item.wanted.to, to, sizeof(piece.item.wanted.to));
@@ -177,7 +177,7 @@ static void add_other(struct offset *o, enum offset_kind kind, struct move *m)
     struct offset_item item = {.line = m->line, .kind = (uint8_t)kind, .move = (uint8_t)m->kind};
 
     memcpy(item.event, move_event(m), sizeof(item.event));
-    contour_add(o, &item);
+    takt_contour_add(o, &item);
 }
 
 /* A compensated motion that is no way. */
@@ -189,7 +189,7 @@ static void take_standing(struct offset *o, struct move *m, struct offset_piece 
     }
     piece->item.kind = OFFSET_STANDING;
     piece->item.motion = piece->live.motion;
-    contour_add(o, &piece->item);
+    takt_contour_add(o, &piece->item);
 }
 
 /* A compensated motion. */
@@ -201,7 +201,7 @@ static bool take_motion(struct offset *o, struct move *m, struct diagnostic *d)
     if (!o->started) {
         o->pattern = *m;
     }
-    if (!contour_wanted(&piece.item, &wanted)) {
+    if (!takt_contour_wanted(&piece.item, &wanted)) {
         take_standing(o, m, &piece);
     } else {
         if (!take_way(o, &piece, &wanted, d)) {
@@ -286,24 +286,25 @@ static bool is_ready(struct offset *o)
     if (o->count == 0) {
         return false;
     }
-    return contour_item(o, 0)->kind < OFFSET_CORNER || o->closed || o->ways > OFFSET_LOOK_AHEAD;
+    return takt_contour_item(o, 0)->kind < OFFSET_CORNER || o->closed ||
+           o->ways > OFFSET_LOOK_AHEAD;
 }
 
-/* Turns begun: curve_set_arc adds one turn less than these to the angle from start to end. */
+/* Turns begun: takt_curve_set_arc adds one turn less than these to the angle from start to end. */
 static uint32_t turns_of(const struct planar *way)
 {
-    const double whole = maths_round(way->sweep_rad / MATHS_TWO_PI);
+    const double whole = takt_maths_round(way->sweep_rad / MATHS_TWO_PI);
     const double rest_mm = maths_abs(way->sweep_rad - whole * MATHS_TWO_PI) * way->radius_to;
 
     if (whole >= 1.0 && rest_mm <= ARC_CLOSED_MM) {
         return (uint32_t)whole;
     }
-    return (uint32_t)maths_floor(way->sweep_rad / MATHS_TWO_PI) + 1;
+    return (uint32_t)takt_maths_floor(way->sweep_rad / MATHS_TWO_PI) + 1;
 }
 
 static void set_arc(struct move *m, const struct planar *way, const double lead_mm[2])
 {
-    if (planar_length(way) < ARC_MIN_MM) {
+    if (takt_planar_length(way) < ARC_MIN_MM) {
         m->kind = MOVE_FEED;
         return;
     }
@@ -314,7 +315,7 @@ static void set_arc(struct move *m, const struct planar *way, const double lead_
 
 static void set_involute(struct move *m, const struct planar *way, const double lead_mm[2])
 {
-    if (planar_length(way) < ARC_MIN_MM) {
+    if (takt_planar_length(way) < ARC_MIN_MM) {
         m->kind = MOVE_FEED;
         return;
     }
@@ -326,7 +327,7 @@ static void set_involute(struct move *m, const struct planar *way, const double 
 /* The motion of a contour's item, the tool's centre, or the point that a lathe tool is led by, going its way. */
 static void finish_motion(struct offset *o, const struct offset_item *i, struct move *m)
 {
-    const struct offset_live *live = contour_live(o, i);
+    const struct offset_live *live = takt_contour_live(o, i);
     const bool stands = i->kind == OFFSET_STANDING;
     const struct offset_motion *motion = stands ? &i->motion : &live->motion;
     double lead_mm[2];
@@ -339,14 +340,14 @@ static void finish_motion(struct offset *o, const struct offset_item *i, struct 
     m->overrides = i->overrides;
     m->correction_off = i->correction_off;
     m->cutter_entry = i->cutter_entry;
-    nose_lead(m, lead_mm);
-    contour_turned(m->plane, &o->at, end);
+    takt_nose_lead(m, lead_mm);
+    takt_contour_turned(m->plane, &o->at, end);
     if (!stands) {
         end[0] = live->way.to[0] + lead_mm[0];
         end[1] = live->way.to[1] + lead_mm[1];
     }
     memcpy(&end[2], motion->across, sizeof(motion->across));
-    contour_point(m->plane, end, &m->end);
+    takt_contour_point(m->plane, end, &m->end);
     if (stands) {
         m->kind = move_is_involute(m) ? MOVE_FEED : m->kind;
     } else if (move_is_arc(m)) {
@@ -379,22 +380,22 @@ static bool check_travel(const struct offset *o, const struct program *p, const 
 {
     struct travel_excess excess;
 
-    if (travel_holds(&p->config, &o->at, m, &excess)) {
+    if (takt_travel_holds(&p->config, &o->at, m, &excess)) {
         return true;
     }
-    travel_report(d, m->line, 0, &excess);
+    takt_travel_report(d, m->line, 0, &excess);
     return false;
 }
 
 static bool give_out(struct offset *o, const struct program *p, struct move *move,
                      struct diagnostic *d)
 {
-    const struct offset_item *i = contour_item(o, 0);
+    const struct offset_item *i = takt_contour_item(o, 0);
     const bool checked =
         i->kind > OFFSET_PASSING || (i->kind == OFFSET_PASSING && is_compensated(&o->pattern));
 
     finish_move(o, i, move);
-    contour_drop_first(o);
+    takt_contour_drop_first(o);
     if (checked && !check_travel(o, p, move, d)) {
         return false;
     }
@@ -413,7 +414,7 @@ static bool go_on(struct offset *o, struct program *p, struct diagnostic *d)
         o->is_waiting = false;
         if (settles(&o->waiting)) {
             o->wanted_at = o->at;
-            program_settle(p, &o->at);
+            takt_program_settle(p, &o->at);
         }
         return take(o, &o->waiting, d);
     }
@@ -467,7 +468,7 @@ static enum program_result read_on(struct offset *o, struct program *p, struct d
     if (!has_room(o, d)) {
         return PROGRAM_ERROR;
     }
-    switch (program_next(p, &m, d)) {
+    switch (takt_program_next(p, &m, d)) {
     case PROGRAM_MOVE:
         return take(o, &m, d) ? PROGRAM_MOVE : PROGRAM_ERROR;
     case PROGRAM_ERROR:
@@ -487,7 +488,7 @@ static enum program_result read_on(struct offset *o, struct program *p, struct d
 static enum program_result pass_through(struct offset *o, struct program *p, struct move *move,
                                         struct diagnostic *d, bool *taken)
 {
-    const enum program_result result = program_next(p, move, d);
+    const enum program_result result = takt_program_next(p, move, d);
 
     if (result != PROGRAM_MOVE) {
         return result;
@@ -504,8 +505,8 @@ static enum program_result pass_through(struct offset *o, struct program *p, str
     return PROGRAM_MOVE;
 }
 
-enum program_result offset_next(struct offset *o, struct program *p, struct move *move,
-                                struct diagnostic *diagnostic)
+enum program_result takt_offset_next(struct offset *o, struct program *p, struct move *move,
+                                     struct diagnostic *diagnostic)
 {
     enum program_result result = PROGRAM_MOVE;
     bool taken = false;

@@ -1,7 +1,7 @@
 /*
  * Cutter-radius compensation: programmed moves in, moves of the tool's centre out.
  *
- *     program_next -> [ way | corner | way | ... ] -> offset_next
+ *     takt_program_next -> [ way | corner | way | ... ] -> takt_offset_next
  *
  * Moves without compensation pass unchanged and undelayed. The caller owns struct offset and reads the program through
  * it alone.
@@ -13,19 +13,19 @@
 #include "program/program.h"
 
 /* Makes o ready for a program just opened with config. */
-void offset_open(struct offset *o, const struct program_config *config);
+void takt_offset_open(struct offset *o, const struct program_config *config);
 
 /*
- * The next move, with the contract of program_next: after PROGRAM_ERROR reading may go on; what is left of a contour
+ * The next move, with the contract of takt_program_next: after PROGRAM_ERROR reading may go on; what is left of a contour
  * with an error is dropped. PROGRAM_WAIT comes when everything before it has been given out.
  */
-enum program_result offset_next(struct offset *o, struct program *p, struct move *move,
-                                struct diagnostic *diagnostic);
+enum program_result takt_offset_next(struct offset *o, struct program *p, struct move *move,
+                                     struct diagnostic *diagnostic);
 
-/* program_answer, of a program that is read through o. */
-void offset_answer(struct offset *o, struct program *p, const struct program_answer *answer);
+/* takt_program_answer, of a program that is read through o. */
+void takt_offset_answer(struct offset *o, struct program *p, const struct program_answer *answer);
 
 /* Warnings since the last call: true and *diagnostic while there are any; those of the program come elsewhere. */
-bool offset_warning(struct offset *o, struct diagnostic *diagnostic);
+bool takt_offset_warning(struct offset *o, struct diagnostic *diagnostic);
 
 #endif

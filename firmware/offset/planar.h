@@ -30,55 +30,56 @@ struct planar {
 };
 
 /* A line; false when it has no length. */
-bool planar_set_line(struct planar *c, const double from[2], const double to[2]);
+bool takt_planar_set_line(struct planar *c, const double from[2], const double to[2]);
 
 /* An arc about centre; from = to is a full circle. turns: as in struct move. */
-void planar_set_arc(struct planar *c, const double from[2], const double to[2],
-                    const double centre[2], double sense, unsigned turns);
+void takt_planar_set_arc(struct planar *c, const double from[2], const double to[2],
+                         const double centre[2], double sense, unsigned turns);
 
 /* An involute of the circle about centre with that radius; false when it has no length. */
-bool planar_set_involute(struct planar *c, const double from[2], const double to[2],
-                         const double centre[2], double base_mm, bool clockwise);
+bool takt_planar_set_involute(struct planar *c, const double from[2], const double to[2],
+                              const double centre[2], double base_mm, bool clockwise);
 
 /* Direction of the way at its ends, length 1. */
-void planar_tangent_from(const struct planar *c, double tangent[2]);
-void planar_tangent_to(const struct planar *c, double tangent[2]);
+void takt_planar_tangent_from(const struct planar *c, double tangent[2]);
+void takt_planar_tangent_to(const struct planar *c, double tangent[2]);
 
 /* How the way bends at its ends: 1 / radius, to the left > 0; a line: 0. */
-double planar_bend_from(const struct planar *c);
-double planar_bend_to(const struct planar *c);
+double takt_planar_bend_from(const struct planar *c);
+double takt_planar_bend_to(const struct planar *c);
 
 /*
  * The same piece moved left by left_mm, which may be negative. False when an arc or an involute would have no radius
  * left; *lack_mm is then how much its radius is too small.
  */
-bool planar_offset(const struct planar *c, double left_mm, struct planar *result, double *lack_mm);
+bool takt_planar_offset(const struct planar *c, double left_mm, struct planar *result,
+                        double *lack_mm);
 
-double planar_length(const struct planar *c);
+double takt_planar_length(const struct planar *c);
 
 /*
  * Where a point of the way's line or circle lies on it, in mm from its start: negative before it. On an arc the place
  * nearest to its middle, so of places a turn apart one is chosen.
  */
-double planar_place(const struct planar *c, const double point[2]);
+double takt_planar_place(const struct planar *c, const double point[2]);
 
 /* The same, on an arc of more than half a turn the place that belongs to its end, or to its start. */
-double planar_place_near_to(const struct planar *c, const double point[2]);
-double planar_place_near_from(const struct planar *c, const double point[2]);
+double takt_planar_place_near_to(const struct planar *c, const double point[2]);
+double takt_planar_place_near_from(const struct planar *c, const double point[2]);
 
 /* Lets the way end, or begin, at that place, whose point is given. */
-void planar_end_at(struct planar *c, double place_mm, const double point[2]);
-void planar_begin_at(struct planar *c, double place_mm, const double point[2]);
+void takt_planar_end_at(struct planar *c, double place_mm, const double point[2]);
+void takt_planar_begin_at(struct planar *c, double place_mm, const double point[2]);
 
 /*
  * Where the lines or circles of two ways cross, no matter how long the ways are: 0 to 2 points. Of an arc with two
  * radii the circle of its end counts for a, that of its start for b.
  */
-unsigned planar_cross(const struct planar *a, const struct planar *b, double points[2][2]);
+unsigned takt_planar_cross(const struct planar *a, const struct planar *b, double points[2][2]);
 
 /* Smallest distance of two ways, and of a point from a way. */
-double planar_distance(const struct planar *a, const struct planar *b);
-double planar_distance_point(const struct planar *c, const double point[2]);
+double takt_planar_distance(const struct planar *a, const struct planar *b);
+double takt_planar_distance_point(const struct planar *c, const double point[2]);
 
 static inline double planar_dot(const double a[2], const double b[2])
 {
@@ -92,6 +93,6 @@ static inline double planar_turn(const double a[2], const double b[2])
 }
 
 /* Distance of two points. */
-double planar_between(const double a[2], const double b[2]);
+double takt_planar_between(const double a[2], const double b[2]);
 
 #endif

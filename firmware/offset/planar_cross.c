@@ -42,8 +42,8 @@ static unsigned cross_lines(const struct planar *a, const struct planar *b, doub
     double t[2];
     double u[2];
 
-    planar_tangent_from(a, t);
-    planar_tangent_from(b, u);
+    takt_planar_tangent_from(a, t);
+    takt_planar_tangent_from(b, u);
     const double sine = planar_turn(t, u);
 
     if (maths_abs(sine) < PARALLEL_SINE) {
@@ -62,7 +62,7 @@ static unsigned cross_line_circle(const struct planar *line, const double centre
     const double to_centre[2] = {centre[0] - line->from[0], centre[1] - line->from[1]};
     double t[2];
 
-    planar_tangent_from(line, t);
+    takt_planar_tangent_from(line, t);
     const double s = planar_dot(to_centre, t);
     const double foot[2] = {line->from[0] + s * t[0], line->from[1] + s * t[1]};
     const double h = half_chord(radius, maths_abs(planar_turn(t, to_centre)));
@@ -73,7 +73,7 @@ static unsigned cross_line_circle(const struct planar *line, const double centre
 static unsigned cross_circles(const double c[2], double r, const double d[2], double s,
                               double points[2][2])
 {
-    const double distance = planar_between(c, d);
+    const double distance = takt_planar_between(c, d);
 
     if (distance < TOUCH_MM) {
         return 0;
@@ -88,13 +88,13 @@ static unsigned cross_circles(const double c[2], double r, const double d[2], do
     return h < 0.0 ? 0 : two_points(middle, across, h, points);
 }
 
-unsigned planar_cross(const struct planar *a, const struct planar *b, double points[2][2])
+unsigned takt_planar_cross(const struct planar *a, const struct planar *b, double points[2][2])
 {
     if (a->involute) {
-        return planar_involute_cross(a, b, b->radius_from, true, points);
+        return takt_planar_involute_cross(a, b, b->radius_from, true, points);
     }
     if (b->involute) {
-        return planar_involute_cross(b, a, a->radius_to, false, points);
+        return takt_planar_involute_cross(b, a, a->radius_to, false, points);
     }
     if (!a->arc && !b->arc) {
         return cross_lines(a, b, points);

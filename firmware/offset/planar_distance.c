@@ -12,9 +12,9 @@
 
 static bool is_on(const struct planar *c, const double point[2])
 {
-    const double place = planar_place(c, point);
+    const double place = takt_planar_place(c, point);
 
-    return place >= -PLACE_SLACK_MM && place <= planar_length(c) + PLACE_SLACK_MM;
+    return place >= -PLACE_SLACK_MM && place <= takt_planar_length(c) + PLACE_SLACK_MM;
 }
 
 /* The point of an arc in that direction from its centre; false: the arc does not reach there. */
@@ -33,37 +33,37 @@ static bool point_towards(const struct planar *arc, const double direction[2], d
 
 static double distance_from_line(const struct planar *line, const double point[2])
 {
-    const double length = planar_length(line);
-    const double place = maths_clamp(planar_place(line, point), 0.0, length);
+    const double length = takt_planar_length(line);
+    const double place = maths_clamp(takt_planar_place(line, point), 0.0, length);
     double foot[2];
 
     for (unsigned i = 0; i < 2; i++) {
         foot[i] = line->from[i] + (line->to[i] - line->from[i]) * place / length;
     }
-    return planar_between(point, foot);
+    return takt_planar_between(point, foot);
 }
 
-double planar_distance_point(const struct planar *c, const double point[2])
+double takt_planar_distance_point(const struct planar *c, const double point[2])
 {
     const double direction[2] = {point[0] - c->centre[0], point[1] - c->centre[1]};
     double nearest[2];
 
     if (c->involute) {
-        return planar_involute_distance_point(c, point);
+        return takt_planar_involute_distance_point(c, point);
     }
     if (!c->arc) {
         return distance_from_line(c, point);
     }
     if (point_towards(c, direction, nearest)) {
-        return planar_between(point, nearest);
+        return takt_planar_between(point, nearest);
     }
-    return maths_min(planar_between(point, c->from), planar_between(point, c->to));
+    return maths_min(takt_planar_between(point, c->from), takt_planar_between(point, c->to));
 }
 
 static bool do_cross(const struct planar *a, const struct planar *b)
 {
     double points[2][2];
-    const unsigned count = planar_cross(a, b, points);
+    const unsigned count = takt_planar_cross(a, b, points);
 
     for (unsigned i = 0; i < count; i++) {
         if (is_on(a, points[i]) && is_on(b, points[i])) {
@@ -84,7 +84,7 @@ static double distance_along(const struct planar *arc, const double direction[2]
         double point[2];
 
         if (point_towards(arc, towards, point)) {
-            smallest = maths_min(smallest, planar_distance_point(other, point));
+            smallest = maths_min(smallest, takt_planar_distance_point(other, point));
         }
     }
     return smallest;
@@ -98,7 +98,7 @@ static double distance_inside(const struct planar *arc, const struct planar *oth
     if (!other->arc) {
         double t[2];
 
-        planar_tangent_from(other, t);
+        takt_planar_tangent_from(other, t);
         direction[0] = -t[1];
         direction[1] = t[0];
     }
@@ -109,24 +109,25 @@ static double distance_inside(const struct planar *arc, const struct planar *oth
 static double distance_across(const struct planar *a, const struct planar *b)
 {
     if (a->involute) {
-        return planar_involute_distance(a, b);
+        return takt_planar_involute_distance(a, b);
     }
     if (b->involute) {
-        return planar_involute_distance(b, a);
+        return takt_planar_involute_distance(b, a);
     }
     const double smallest = a->arc ? distance_inside(a, b) : MATHS_INFINITY;
 
     return b->arc ? maths_min(smallest, distance_inside(b, a)) : smallest;
 }
 
-double planar_distance(const struct planar *a, const struct planar *b)
+double takt_planar_distance(const struct planar *a, const struct planar *b)
 {
     if (do_cross(a, b)) {
         return 0.0;
     }
-    double smallest = maths_min(planar_distance_point(a, b->from), planar_distance_point(a, b->to));
+    double smallest =
+        maths_min(takt_planar_distance_point(a, b->from), takt_planar_distance_point(a, b->to));
 
-    smallest = maths_min(smallest, planar_distance_point(b, a->from));
-    smallest = maths_min(smallest, planar_distance_point(b, a->to));
+    smallest = maths_min(smallest, takt_planar_distance_point(b, a->from));
+    smallest = maths_min(smallest, takt_planar_distance_point(b, a->to));
     return maths_min(smallest, distance_across(a, b));
 }

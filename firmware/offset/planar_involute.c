@@ -55,24 +55,24 @@ static void point_at(const struct planar *c, double phi, double point[2])
     double sine;
     double cosine;
 
-    maths_sincos(c->heading_rad + c->hand * phi, &sine, &cosine);
+    takt_maths_sincos(c->heading_rad + c->hand * phi, &sine, &cosine);
     point[0] = c->centre[0] + c->base_mm * (cosine + c->hand * phi * sine);
     point[1] = c->centre[1] + c->base_mm * (sine - c->hand * phi * cosine);
 }
 
-void planar_involute_tangent(const struct planar *c, double unrolled_rad, double result[2])
+void takt_planar_involute_tangent(const struct planar *c, double unrolled_rad, double result[2])
 {
-    maths_sincos(c->heading_rad + c->hand * unrolled_rad, &result[1], &result[0]);
+    takt_maths_sincos(c->heading_rad + c->hand * unrolled_rad, &result[1], &result[0]);
     result[0] *= way_of(c);
     result[1] *= way_of(c);
 }
 
-double planar_involute_bend(const struct planar *c, double unrolled_rad)
+double takt_planar_involute_bend(const struct planar *c, double unrolled_rad)
 {
     return way_of(c) * c->hand / maths_max(c->base_mm * unrolled_rad, RADIUS_MIN_MM);
 }
 
-double planar_involute_offset(struct planar *c, double left_mm)
+double takt_planar_involute_offset(struct planar *c, double left_mm)
 {
     const double by_rad = way_of(c) * c->hand * left_mm / c->base_mm;
 
@@ -82,7 +82,7 @@ double planar_involute_offset(struct planar *c, double left_mm)
     return c->base_mm * maths_min(c->unrolled_from, c->unrolled_to);
 }
 
-double planar_involute_length(const struct planar *c)
+double takt_planar_involute_length(const struct planar *c)
 {
     return 0.5 * c->base_mm * maths_abs(c->unrolled_to - c->unrolled_from) *
            (c->unrolled_to + c->unrolled_from);
@@ -91,7 +91,7 @@ double planar_involute_length(const struct planar *c)
 /* Unrolled angle of a point by its distance from the centre; false: it is in the base circle. */
 static bool unrolled_of(const struct planar *c, const double point[2], double *phi)
 {
-    const double ratio = planar_between(point, c->centre) / c->base_mm;
+    const double ratio = takt_planar_between(point, c->centre) / c->base_mm;
 
     *phi = ratio > 1.0 ? maths_sqrt((ratio - 1.0) * (ratio + 1.0)) : 0.0;
     return ratio > 1.0;
@@ -100,13 +100,13 @@ static bool unrolled_of(const struct planar *c, const double point[2], double *p
 /* The unrolled angle of a point's foot, of all turns the one nearest to the point. */
 static double foot_of(const struct planar *c, const double point[2], double phi)
 {
-    const double angle = maths_atan2(point[1] - c->centre[1], point[0] - c->centre[0]);
-    const double on = c->hand * (angle - c->heading_rad) + maths_atan2(phi, 1.0);
+    const double angle = takt_maths_atan2(point[1] - c->centre[1], point[0] - c->centre[0]);
+    const double on = c->hand * (angle - c->heading_rad) + takt_maths_atan2(phi, 1.0);
 
-    return on + MATHS_TWO_PI * maths_round((phi - on) / MATHS_TWO_PI);
+    return on + MATHS_TWO_PI * takt_maths_round((phi - on) / MATHS_TWO_PI);
 }
 
-double planar_involute_place(const struct planar *c, const double point[2])
+double takt_planar_involute_place(const struct planar *c, const double point[2])
 {
     double phi;
 
@@ -116,7 +116,7 @@ double planar_involute_place(const struct planar *c, const double point[2])
     return way_of(c) * 0.5 * c->base_mm * (on - c->unrolled_from) * (on + c->unrolled_from);
 }
 
-double planar_involute_unrolled(const struct planar *c, double place_mm)
+double takt_planar_involute_unrolled(const struct planar *c, double place_mm)
 {
     return maths_sqrt(maths_max(0.0, c->unrolled_from * c->unrolled_from +
                                          2.0 * way_of(c) * place_mm / c->base_mm));
@@ -132,8 +132,8 @@ static void add_through(struct angles *a, const struct planar *c, const double c
     if (between < CONCENTRIC_MM || maths_abs(c->base_mm - distance_mm) > between) {
         return;
     }
-    const double towards = maths_atan2(to[1], to[0]);
-    const double off = maths_acos((c->base_mm - distance_mm) / between);
+    const double towards = takt_maths_atan2(to[1], to[0]);
+    const double off = takt_maths_acos((c->base_mm - distance_mm) / between);
 
     a->angle_rad[a->count++] = towards + off;
     a->angle_rad[a->count++] = towards - off;
@@ -151,9 +151,9 @@ static struct angles angles_of(const struct planar *c, const struct planar *othe
     } else {
         double t[2];
 
-        planar_tangent_from(other, t);
-        a.angle_rad[a.count++] = maths_atan2(t[1], t[0]);
-        a.angle_rad[a.count++] = maths_atan2(-t[1], -t[0]);
+        takt_planar_tangent_from(other, t);
+        a.angle_rad[a.count++] = takt_maths_atan2(t[1], t[0]);
+        a.angle_rad[a.count++] = takt_maths_atan2(-t[1], -t[0]);
     }
     return a;
 }
@@ -163,7 +163,7 @@ static double next_at(const struct planar *c, double angle_rad, double from_rad)
 {
     const double phi = c->hand * (angle_rad - c->heading_rad);
 
-    return phi + MATHS_TWO_PI * (maths_floor((from_rad - phi) / MATHS_TWO_PI) + 1.0);
+    return phi + MATHS_TWO_PI * (takt_maths_floor((from_rad - phi) / MATHS_TWO_PI) + 1.0);
 }
 
 /* The next place after from_rad where the distance may turn, at most to_rad. */
@@ -190,13 +190,13 @@ static bool side_of(const struct search *s, double phi, double *side_mm)
 
     point_at(s->c, phi, point);
     if (other->arc) {
-        *side_mm = planar_between(point, other->centre) - s->radius_mm;
+        *side_mm = takt_planar_between(point, other->centre) - s->radius_mm;
         return true;
     }
     if (!other->involute) {
         const double off[2] = {point[0] - other->from[0], point[1] - other->from[1]};
 
-        planar_tangent_from(other, t);
+        takt_planar_tangent_from(other, t);
         *side_mm = planar_turn(t, off);
         return true;
     }
@@ -225,10 +225,10 @@ static double bisect(const struct search *s, double low, double high, double low
 /* Keeps the two nearest to the end asked for; they are found in the order of phi. */
 static void keep(struct search *s, const double point[2])
 {
-    const double place = planar_place(s->other, point);
+    const double place = takt_planar_place(s->other, point);
     const bool last_ones = s->near_end == (way_of(s->c) > 0.0);
 
-    if (place < -BEYOND_MM || place > planar_length(s->other) + BEYOND_MM ||
+    if (place < -BEYOND_MM || place > takt_planar_length(s->other) + BEYOND_MM ||
         (s->count == 2 && !last_ones)) {
         return;
     }
@@ -239,13 +239,13 @@ static void keep(struct search *s, const double point[2])
     memcpy(s->points[s->count++], point, sizeof(s->points[0]));
 }
 
-unsigned planar_involute_cross(const struct planar *c, const struct planar *other, double radius_mm,
-                               bool near_end, double points[2][2])
+unsigned takt_planar_involute_cross(const struct planar *c, const struct planar *other,
+                                    double radius_mm, bool near_end, double points[2][2])
 {
     struct search s = {c, other, radius_mm, near_end, 0, points};
     const struct angles angles = angles_of(c, other);
-    const double end = planar_involute_unrolled(c, planar_involute_length(c) + BEYOND_MM);
-    const double start = planar_involute_unrolled(c, -BEYOND_MM);
+    const double end = takt_planar_involute_unrolled(c, takt_planar_involute_length(c) + BEYOND_MM);
+    const double start = takt_planar_involute_unrolled(c, -BEYOND_MM);
     const double last = maths_max(start, end);
     double from = maths_min(start, end);
     double from_mm;
@@ -270,11 +270,12 @@ unsigned planar_involute_cross(const struct planar *c, const struct planar *othe
 }
 
 /* The foot next to the point on either side of it, as far as the way goes. */
-double planar_involute_distance_point(const struct planar *c, const double point[2])
+double takt_planar_involute_distance_point(const struct planar *c, const double point[2])
 {
     const double low = maths_min(c->unrolled_from, c->unrolled_to);
     const double high = maths_max(c->unrolled_from, c->unrolled_to);
-    double nearest = maths_min(planar_between(point, c->from), planar_between(point, c->to));
+    double nearest =
+        maths_min(takt_planar_between(point, c->from), takt_planar_between(point, c->to));
     double phi;
 
     if (!unrolled_of(c, point, &phi)) {
@@ -282,15 +283,15 @@ double planar_involute_distance_point(const struct planar *c, const double point
     }
     double on = foot_of(c, point, phi);
 
-    on += MATHS_TWO_PI * maths_ceil(maths_max(0.0, low - on) / MATHS_TWO_PI);
-    on -= MATHS_TWO_PI * maths_ceil(maths_max(0.0, on - high) / MATHS_TWO_PI);
+    on += MATHS_TWO_PI * takt_maths_ceil(maths_max(0.0, low - on) / MATHS_TWO_PI);
+    on -= MATHS_TWO_PI * takt_maths_ceil(maths_max(0.0, on - high) / MATHS_TWO_PI);
     if (on >= low && on <= high) {
         nearest = maths_min(nearest, c->base_mm * maths_abs(phi - on));
     }
     return nearest;
 }
 
-double planar_involute_distance(const struct planar *c, const struct planar *other)
+double takt_planar_involute_distance(const struct planar *c, const struct planar *other)
 {
     const struct angles angles = angles_of(c, other);
     const double last = maths_max(c->unrolled_from, c->unrolled_to);
@@ -302,7 +303,7 @@ double planar_involute_distance(const struct planar *c, const struct planar *oth
         double point[2];
 
         point_at(c, to, point);
-        nearest = maths_min(nearest, planar_distance_point(other, point));
+        nearest = maths_min(nearest, takt_planar_distance_point(other, point));
         from = to;
     }
     return nearest;

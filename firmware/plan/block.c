@@ -54,7 +54,7 @@ static struct bound block_ceiling(const struct block *b, double share, double pr
         const double j = shape->plane_j_mm_s3 * (1.0 - share);
 
         bound_lower(&c, maths_sqrt(ARC_ACCELERATION * a / shape->second), GOVERNOR_ACCELERATION);
-        bound_lower(&c, maths_cbrt(ARC_JERK * j / shape->third), GOVERNOR_JERK);
+        bound_lower(&c, takt_maths_cbrt(ARC_JERK * j / shape->third), GOVERNOR_JERK);
     }
     return c;
 }
@@ -75,7 +75,7 @@ static void limit_arc_ramp(struct block *b, double share, double v)
 }
 
 /* Limits are found for the highest override, so that they hold while the feed is on its way to a lower one. */
-void block_set_share(struct block *b, double share)
+void takt_block_set_share(struct block *b, double share)
 {
     b->share = share;
     b->feed_max_mm_s = block_ceiling(b, share, BLOCK_OVERRIDE_MAX * b->feed_program_mm_s).feed_mm_s;
@@ -86,21 +86,21 @@ void block_set_share(struct block *b, double share)
     }
 }
 
-void block_cap_feed(struct block *b, double feed_mm_s, enum governor governor)
+void takt_block_cap_feed(struct block *b, double feed_mm_s, enum governor governor)
 {
     if (feed_mm_s < b->feed_cap_mm_s) {
         b->feed_cap_mm_s = feed_mm_s;
         b->cap = governor;
-        block_set_share(b, b->share);
+        takt_block_set_share(b, b->share);
     }
 }
 
-double block_top_feed(const struct block *b)
+double takt_block_top_feed(const struct block *b)
 {
     return block_ceiling(b, 0.0, BLOCK_OVERRIDE_MAX * b->feed_program_mm_s).feed_mm_s;
 }
 
-double block_limit(const struct block *b, enum governor *governor)
+double takt_block_limit(const struct block *b, enum governor *governor)
 {
     const struct bound c = block_ceiling(b, b->share, MATHS_INFINITY);
 
@@ -108,7 +108,7 @@ double block_limit(const struct block *b, enum governor *governor)
     return c.feed_mm_s;
 }
 
-enum governor block_governor(const struct block *b, double program_mm_s)
+enum governor takt_block_governor(const struct block *b, double program_mm_s)
 {
     return block_ceiling(b, b->share, program_mm_s).governor;
 }
@@ -131,7 +131,7 @@ static void limit_line_axis(struct block_shape *shape, struct bound *c,
         const double part_j = 0.5 * SPIRAL_PART * j;
 
         bound_lower(c, maths_sqrt(SPIRAL_PART * a / second), GOVERNOR_ACCELERATION);
-        bound_lower(c, maths_cbrt(part_j / bounds->third[i]), GOVERNOR_JERK);
+        bound_lower(c, takt_maths_cbrt(part_j / bounds->third[i]), GOVERNOR_JERK);
         const double v = c->feed_mm_s;
         const double path_a =
             maths_min((a - 2.0 * second * v * v) / bounds->first[i], part_j / (3.0 * second * v));
@@ -164,7 +164,7 @@ static double chord_ceiling(const struct curve *curve, const struct curve_bounds
     if (curve->kind != CURVE_INVOLUTE) {
         return round;
     }
-    const double cusped = involute_step_max(curve, chord_mm) / limits->cycle_s;
+    const double cusped = takt_involute_step_max(curve, chord_mm) / limits->cycle_s;
 
     return bounds->radius_min_mm <= chord_mm ? cusped : maths_max(cusped, round);
 }
@@ -201,10 +201,10 @@ static void limit_cusp_plane(struct block_shape *shape, enum axis first, enum ax
     const double j = maths_min(limits->jerk_mm_s3[first], limits->jerk_mm_s3[second]);
     const double ratio = bounds->first[first];
 
-    shape->line_a_mm_s2 =
-        maths_min(shape->line_a_mm_s2, a / (ratio * involute_cusp_acceleration(bounds->cusp_rad)));
+    shape->line_a_mm_s2 = maths_min(
+        shape->line_a_mm_s2, a / (ratio * takt_involute_cusp_acceleration(bounds->cusp_rad)));
     shape->line_j_mm_s3 =
-        maths_min(shape->line_j_mm_s3, j / (ratio * involute_cusp_jerk(bounds->cusp_rad)));
+        maths_min(shape->line_j_mm_s3, j / (ratio * takt_involute_cusp_jerk(bounds->cusp_rad)));
 }
 
 /* Derivatives by the path, of which a mm is so much of the curve; the radius stays what it is. */
@@ -228,9 +228,9 @@ static void limit_axes(struct block_shape *shape, struct bound *c, const struct 
     struct curve_bounds bounds;
     enum axis first = AXIS_COUNT;
     enum axis second = AXIS_COUNT;
-    const bool bent = curve_plane(curve, &first, &second);
+    const bool bent = takt_curve_plane(curve, &first, &second);
 
-    curve_bound(curve, &bounds);
+    takt_curve_bound(curve, &bounds);
     scale_bounds(&bounds, scale);
     for (int i = 0; i < AXIS_COUNT; i++) {
         if (bounds.first[i] > 0.0) {
@@ -252,20 +252,20 @@ static void limit_axes(struct block_shape *shape, struct bound *c, const struct 
     }
 }
 
-void block_set_motion(struct block *b, const struct move *move, const struct curve *curve,
-                      const struct plan_limits *limits)
+void takt_block_set_motion(struct block *b, const struct move *move, const struct curve *curve,
+                           const struct plan_limits *limits)
 {
-    const struct scale machine = scale_of_machine(limits);
+    const struct scale machine = takt_scale_of_machine(limits);
     struct bound c = {MATHS_INFINITY, GOVERNOR_VELOCITY};
 
     memset(b, 0, sizeof(*b));
     b->move = *move;
     b->curve = *curve;
-    b->scale = scale_of_curve(curve, &machine);
+    b->scale = takt_scale_of_curve(curve, &machine);
     b->feed_program_mm_s = move->kind == MOVE_RAPID ? MATHS_INFINITY : move->feed_mm_s / b->scale;
     b->length_mm = curve->length_mm / b->scale;
     b->length = path_units(b->length_mm);
-    b->rotary = curve_is_rotary(curve);
+    b->rotary = takt_curve_is_rotary(curve);
     b->end = JOINT_STOP;
     b->shape.line_a_mm_s2 = MATHS_INFINITY;
     b->shape.line_j_mm_s3 = MATHS_INFINITY;
@@ -273,18 +273,18 @@ void block_set_motion(struct block *b, const struct move *move, const struct cur
     bound_lower(&c, CYCLE_BLOCKS_MAX * b->length_mm / limits->cycle_s, GOVERNOR_SHORT);
     b->feed_cap_mm_s = c.feed_mm_s;
     b->cap = c.governor;
-    block_set_share(b, BLOCK_SHARE_MAX);
+    takt_block_set_share(b, BLOCK_SHARE_MAX);
 }
 
 /* Its limits hold for every rate of nominal time up to the highest one. */
-void block_set_smooth(struct block *b, const struct smooth_piece *piece, double unit_mm)
+void takt_block_set_smooth(struct block *b, const struct smooth_piece *piece, double unit_mm)
 {
     const struct smooth_rate *rate = &piece->rate;
 
     memset(b, 0, sizeof(*b));
     b->move = *piece->move;
     b->number = piece->number;
-    curve_set_spline(&b->curve, piece->control, unit_mm * piece->interval_s);
+    takt_curve_set_spline(&b->curve, piece->control, unit_mm * piece->interval_s);
     b->rotary = piece->rotary;
     b->scale = 1.0;
     b->length_mm = b->curve.length_mm;
@@ -295,17 +295,17 @@ void block_set_smooth(struct block *b, const struct smooth_piece *piece, double 
     b->shape.line_a_mm_s2 = piece->change.by * unit_mm;
     b->shape.line_j_mm_s3 = piece->change.rounded * unit_mm;
     b->end = JOINT_STOP;
-    block_set_share(b, 0.0);
+    takt_block_set_share(b, 0.0);
 }
 
-void block_join_smooth(struct block *b, const struct block *next)
+void takt_block_join_smooth(struct block *b, const struct block *next)
 {
     b->end = JOINT_PASSED;
     b->feed_joint_mm_s = MATHS_INFINITY;
     b->continues = b->number == next->number;
 }
 
-void block_set_wait(struct block *b, const struct move *move)
+void takt_block_set_wait(struct block *b, const struct move *move)
 {
     memset(b, 0, sizeof(*b));
     b->move = *move;

@@ -78,35 +78,35 @@ struct block {
 };
 
 /* Fills b from a motion's curve. Its end is a stop until a joint is formed. */
-void block_set_motion(struct block *b, const struct move *move, const struct curve *curve,
-                      const struct plan_limits *limits);
+void takt_block_set_motion(struct block *b, const struct move *move, const struct curve *curve,
+                           const struct plan_limits *limits);
 
 /*
  * Fills b with a piece of a smoothed curve (firmware/smooth), of which unit_mm of path are passed in a second of its
- * nominal time. Its end is a stop until block_join_smooth().
+ * nominal time. Its end is a stop until takt_block_join_smooth().
  */
-void block_set_smooth(struct block *b, const struct smooth_piece *piece, double unit_mm);
+void takt_block_set_smooth(struct block *b, const struct smooth_piece *piece, double unit_mm);
 
 /* The next piece of the same smoothed curve follows: nothing changes at the end of b. */
-void block_join_smooth(struct block *b, const struct block *next);
+void takt_block_join_smooth(struct block *b, const struct block *next);
 
 /* Fills b with something that happens while the axes stand. */
-void block_set_wait(struct block *b, const struct move *move);
+void takt_block_set_wait(struct block *b, const struct move *move);
 
 /* Lowers the ceiling of the feed to feed_mm_s, for the reason given; a higher value changes nothing. */
-void block_cap_feed(struct block *b, double feed_mm_s, enum governor governor);
+void takt_block_cap_feed(struct block *b, double feed_mm_s, enum governor governor);
 
 /* Sets the share left to the joints and what follows from it. */
-void block_set_share(struct block *b, double share);
+void takt_block_set_share(struct block *b, double share);
 
 /* The most this block will ever be allowed: if no joint took a share. */
-double block_top_feed(const struct block *b);
+double takt_block_top_feed(const struct block *b);
 
 /* The ceiling of the feed whatever is programmed, and what governs it; GOVERNOR_PROGRAM: there is none. */
-double block_limit(const struct block *b, enum governor *governor);
+double takt_block_limit(const struct block *b, enum governor *governor);
 
 /* What governs a feed ceiling of program_mm_s (programmed feed with the override) on this block. */
-enum governor block_governor(const struct block *b, double program_mm_s);
+enum governor takt_block_governor(const struct block *b, double program_mm_s);
 
 static inline bool block_is_motion(const struct block *b)
 {

@@ -61,18 +61,18 @@ static double program_feed(const struct path *path, uint32_t index,
 {
     const struct path_block *b = path_at(path, index);
     const double measured =
-        b->per_revolution ? path_feed_rev(path, index) * request->spindle_rev_s : 0.0;
+        b->per_revolution ? takt_path_feed_rev(path, index) * request->spindle_rev_s : 0.0;
 
     return measured > 0.0 ? measured : (double)b->feed_program_mm_s;
 }
 
-double ceiling_block_feed(const struct path *path, uint32_t index,
-                          const struct ceiling_request *request)
+double takt_ceiling_block_feed(const struct path *path, uint32_t index,
+                               const struct ceiling_request *request)
 {
     const struct path_block *b = path_at(path, index);
     const double ratio = b->rapid ? request->rapid_ratio : b->may_feed ? request->feed_ratio : 1.0;
     const double program = program_feed(path, index, request);
-    const double top = path_block_top(b);
+    const double top = takt_path_block_top(b);
 
     if (b->rapid || (request->proportional && ratio < 1.0)) {
         return ratio * maths_min(program, top);
@@ -80,14 +80,14 @@ double ceiling_block_feed(const struct path *path, uint32_t index,
     return maths_min(ratio * program, top);
 }
 
-double ceiling_block_acceleration(const struct path *path, uint32_t index, uint32_t cycles)
+double takt_ceiling_block_acceleration(const struct path *path, uint32_t index, uint32_t cycles)
 {
     const struct path_block *b = path_at(path, index);
     const double t = path->limits.cycle_s;
     const double a =
         maths_min((double)b->a_mm_s2 * (t * t), (double)b->j_mm_s3 * (t * t * t * (double)cycles));
 
-    return (double)maths_float_below(a);
+    return (double)takt_maths_float_below(a);
 }
 
 /*
@@ -117,14 +117,14 @@ static struct span_window find_window(const struct builder *s, uint32_t index)
     if (b->cycles > 0 && (b->cycles_known || is_near(s, b->start))) {
         return (struct span_window){b->cycles, b->cycles_known};
     }
-    return span_window(s->path, request, index);
+    return takt_span_window(s->path, request, index);
 }
 
 static uint32_t promise_window(struct builder *s, uint32_t index)
 {
     const struct span_window window = find_window(s, index);
 
-    path_promise(s->path, index, window.cycles, window.known);
+    takt_path_promise(s->path, index, window.cycles, window.known);
     return window.cycles;
 }
 
@@ -134,7 +134,7 @@ static void begin_span(struct builder *s, uint32_t index)
     const uint64_t start = path_at(s->path, index)->start;
 
     s->cycles = promise_window(s, index);
-    s->behind = 0.5 * ((double)law_window_cycles(s->path->limits.law, s->cycles) - 1.0) +
+    s->behind = 0.5 * ((double)takt_law_window_cycles(s->path->limits.law, s->cycles) - 1.0) +
                 CEILING_MARGIN_CYCLES;
     s->begin_mm = path_mm(s->c->origin, start);
     s->early_mm = s->begin_mm;
@@ -219,7 +219,8 @@ static void lower(struct builder *s, double from_mm, double top_mm_s, double a)
     struct ceiling *c = s->c;
 
     for (uint32_t k = c->count; k-- > 0 && c->end_mm[k] > from_mm;) {
-        if ((double)c->piece[k].acceleration <= a && (double)ceiling_top_feed(c, k) <= top_mm_s) {
+        if ((double)c->piece[k].acceleration <= a &&
+            (double)takt_ceiling_top_feed(c, k) <= top_mm_s) {
             continue;
         }
         if ((k > 0 ? c->end_mm[k - 1] : 0.0) <= from_mm) {
@@ -295,16 +296,17 @@ static bool continues(const struct builder *s, const struct path_block *b, float
 
     return !last->stop && !last->landed && last->feed_mm_s == feed_mm_s &&
            (double)last->acceleration == a &&
-           (double)ceiling_top_feed(s->c, s->c->count - 1) <= path_block_top(b) &&
-           ceiling_overrides(s->c, s->c->count - 1) == block_overrides(b);
+           (double)takt_ceiling_top_feed(s->c, s->c->count - 1) <= takt_path_block_top(b) &&
+           takt_ceiling_overrides(s->c, s->c->count - 1) == block_overrides(b);
 }
 
 static void lay_block(struct builder *s, uint32_t index)
 {
     const struct path_block *b = path_at(s->path, index);
-    const float feed_mm_s = maths_float_below(ceiling_block_feed(s->path, index, s->request));
-    const double top = path_block_top(b) * s->cycle_s;
-    const double a = ceiling_block_acceleration(s->path, index, s->cycles);
+    const float feed_mm_s =
+        takt_maths_float_below(takt_ceiling_block_feed(s->path, index, s->request));
+    const double top = takt_path_block_top(b) * s->cycle_s;
+    const double a = takt_ceiling_block_acceleration(s->path, index, s->cycles);
     const double start_mm = path_mm(s->c->origin, b->start);
     const double end_mm = path_mm(s->c->origin, path_end(s->path, index));
     const double behind_mm = path_whole_mm(top * s->behind);
@@ -318,7 +320,7 @@ static void lay_block(struct builder *s, uint32_t index)
     } else {
         s->early_mm = maths_max(s->early_mm, start_mm - behind_mm);
         begin_ceiling(s, start_mm, ceiling_feed(s->c, feed_mm_s) * s->behind);
-        lower(s, s->early_mm, path_block_top(b), a);
+        lower(s, s->early_mm, takt_path_block_top(b), a);
         append_pieces(s, end_mm, feed_mm_s, a, index + 1);
     }
     add_head(s, a, end_mm + behind_mm);
@@ -343,13 +345,13 @@ static double landing_ramp(double feed, double a, double window)
 static void lay_landed_joint(struct builder *s, uint32_t index)
 {
     const struct path_block *b = path_at(s->path, index);
-    const double a = maths_min(ceiling_block_acceleration(s->path, index, s->cycles),
-                               ceiling_block_acceleration(s->path, index + 1, s->cycles));
+    const double a = maths_min(takt_ceiling_block_acceleration(s->path, index, s->cycles),
+                               takt_ceiling_block_acceleration(s->path, index + 1, s->cycles));
     const double window = 2.0 * (s->behind - CEILING_MARGIN_CYCLES) + 1.0;
-    const double wider =
-        maths_max(window, law_window_cycles(s->path->limits.law, promise_window(s, index + 1)));
+    const double wider = maths_max(
+        window, takt_law_window_cycles(s->path->limits.law, promise_window(s, index + 1)));
     const double shorter_mm =
-        maths_min(path_length(s->path, index), path_length(s->path, index + 1));
+        maths_min(takt_path_length(s->path, index), takt_path_length(s->path, index + 1));
     const double end_mm = path_mm(s->c->origin, path_end(s->path, index));
     double feed = (double)b->feed_joint_mm_s * s->cycle_s;
 
@@ -357,7 +359,8 @@ static void lay_landed_joint(struct builder *s, uint32_t index)
     feed = feed < PASS_WORTH * a ? 0.0 : feed;
     begin_ceiling(s, end_mm, feed * (0.5 * (window + 1.0) + landing_ramp(feed, a, window) + 1.0));
     s->start = index + 1;
-    struct ceiling_piece *p = append(s, end_mm, maths_float_below(feed / s->cycle_s), a, index + 1);
+    struct ceiling_piece *p =
+        append(s, end_mm, takt_maths_float_below(feed / s->cycle_s), a, index + 1);
 
     p->opens = true;
     p->landed = true;
@@ -383,9 +386,9 @@ static void lay_blocks(struct builder *s)
             begin_span(s, i);
         }
         lay_block(s, i);
-        const bool stops = span_stops(s->path, i);
+        const bool stops = takt_span_stops(s->path, i);
 
-        fresh = stops || span_lands(s->path, i);
+        fresh = stops || takt_span_lands(s->path, i);
         if (stops) {
             s->c->piece[s->c->count - 1].stop = true;
         } else if (fresh) {
@@ -412,7 +415,7 @@ static float feed_below(const struct ceiling *c, double energy)
         return 0.0F;
     }
     while (square(ceiling_feed(c, feed_mm_s)) > energy) {
-        feed_mm_s = maths_float_below((double)feed_mm_s * (1.0 - 0x1p-25));
+        feed_mm_s = takt_maths_float_below((double)feed_mm_s * (1.0 - 0x1p-25));
     }
     return feed_mm_s;
 }
@@ -420,7 +423,7 @@ static float feed_below(const struct ceiling *c, double energy)
 /* Ceiling of a piece, and feed at its end: as the overrides are, or at their highest. */
 static float feed_of(const struct ceiling *c, uint32_t k, bool highest)
 {
-    return highest ? ceiling_top_feed(c, k) : c->piece[k].feed_mm_s;
+    return highest ? takt_ceiling_top_feed(c, k) : c->piece[k].feed_mm_s;
 }
 
 static float end_feed_of(const struct ceiling_piece *p, bool highest)
@@ -453,7 +456,8 @@ static float landed_feed(const struct ceiling *c, uint32_t k, enum law law, bool
     if (i == c->count) {
         return feed_mm_s;
     }
-    const double cycles = 0.5 * (double)law_window_cycles(law, ceiling_cycles(c, i)) + 1.0;
+    const double cycles =
+        0.5 * (double)takt_law_window_cycles(law, takt_ceiling_cycles(c, i)) + 1.0;
     const double hold_mm = feed * cycles;
 
     while (i < c->count && c->end_mm[i] - start_mm < hold_mm) {
@@ -471,7 +475,7 @@ static float landed_feed(const struct ceiling *c, uint32_t k, enum law law, bool
         feed = maths_min(feed, ceiling_feed(c, feed_of(c, i, highest)));
         feed = maths_min(feed, maths_sqrt(m * m + maths_max(0.0, energy)) - m);
     }
-    return maths_float_below(feed / c->cycle_s);
+    return takt_maths_float_below(feed / c->cycle_s);
 }
 
 /* What the lead point may do in a piece from which feeds at its end are known; they become those at its beginning. */
@@ -481,7 +485,7 @@ static void plan_piece(struct ceiling *c, uint32_t k, enum law law, float *feed_
     struct ceiling_piece *p = &c->piece[k];
     const float end_mm_s = p->stop ? 0.0F : *feed_mm_s;
     const float end_max_mm_s = p->stop ? 0.0F : *max_mm_s;
-    float top_mm_s = ceiling_top_feed(c, k);
+    float top_mm_s = takt_ceiling_top_feed(c, k);
 
     p->end_feed_mm_s = end_mm_s;
     p->end_feed_max_mm_s = end_max_mm_s;
@@ -532,7 +536,7 @@ static void plan_backward(struct ceiling *c, enum law law)
     }
 }
 
-void ceiling_build(struct ceiling *c, struct path *path, const struct ceiling_request *request)
+void takt_ceiling_build(struct ceiling *c, struct path *path, const struct ceiling_request *request)
 {
     const double t = path->limits.cycle_s;
     struct builder s = {
@@ -556,30 +560,31 @@ static uint32_t kept_block(const struct ceiling *c, unsigned block)
     return (int32_t)(index - kept) < 0 ? kept : index;
 }
 
-uint64_t ceiling_start(const struct ceiling *c, uint32_t k)
+uint64_t takt_ceiling_start(const struct ceiling *c, uint32_t k)
 {
     return path_start(c->path, kept_block(c, c->piece[k].start));
 }
 
-uint64_t ceiling_leave(const struct ceiling *c, uint32_t k)
+uint64_t takt_ceiling_leave(const struct ceiling *c, uint32_t k)
 {
     return path_start(c->path, kept_block(c, c->piece[k].leave));
 }
 
-float ceiling_top_feed(const struct ceiling *c, uint32_t k)
+float takt_ceiling_top_feed(const struct ceiling *c, uint32_t k)
 {
     const struct ceiling_piece *p = &c->piece[k];
 
     return p->landed ? p->feed_mm_s
-                     : maths_float_below(path_block_top(path_at(c->path, kept_block(c, p->start))));
+                     : takt_maths_float_below(
+                           takt_path_block_top(path_at(c->path, kept_block(c, p->start))));
 }
 
-unsigned ceiling_overrides(const struct ceiling *c, uint32_t k)
+unsigned takt_ceiling_overrides(const struct ceiling *c, uint32_t k)
 {
     return block_overrides(path_at(c->path, kept_block(c, c->piece[k].leave - 1U)));
 }
 
-uint32_t ceiling_cycles(const struct ceiling *c, uint32_t k)
+uint32_t takt_ceiling_cycles(const struct ceiling *c, uint32_t k)
 {
     return path_at(c->path, kept_block(c, c->piece[k].start))->cycles;
 }

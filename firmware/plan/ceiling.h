@@ -95,29 +95,30 @@ struct ceiling_request {
  * The ceiling over the closed blocks of the path, from the first that is asked for on. It ends at rest. Notes the windows
  * of spans in their blocks: the lead point may begin a span under the ceiling that was made before.
  */
-void ceiling_build(struct ceiling *c, struct path *path, const struct ceiling_request *request);
+void takt_ceiling_build(struct ceiling *c, struct path *path,
+                        const struct ceiling_request *request);
 
 /*
  * Control cycle: where on the path the setpoint comes to what a piece is made of, and where it leaves it. Of what it had
  * left when a ceiling was asked for last: where the block started that it was in.
  */
-uint64_t ceiling_start(const struct ceiling *c, uint32_t k);
-uint64_t ceiling_leave(const struct ceiling *c, uint32_t k);
+uint64_t takt_ceiling_start(const struct ceiling *c, uint32_t k);
+uint64_t takt_ceiling_leave(const struct ceiling *c, uint32_t k);
 
 /* The highest feed whatever the overrides are, of what a piece begins with, mm/s. */
-float ceiling_top_feed(const struct ceiling *c, uint32_t k);
+float takt_ceiling_top_feed(const struct ceiling *c, uint32_t k);
 
 /* Control cycle: what the operator may do in a piece, CEILING_...: as in the last block that it is made of. */
-unsigned ceiling_overrides(const struct ceiling *c, uint32_t k);
+unsigned takt_ceiling_overrides(const struct ceiling *c, uint32_t k);
 
 /* Cycles of the first averaging box in the span that begins with a piece. */
-uint32_t ceiling_cycles(const struct ceiling *c, uint32_t k);
+uint32_t takt_ceiling_cycles(const struct ceiling *c, uint32_t k);
 
 /* Feed ceiling of one block under a request, mm/s. */
-double ceiling_block_feed(const struct path *path, uint32_t index,
-                          const struct ceiling_request *request);
+double takt_ceiling_block_feed(const struct path *path, uint32_t index,
+                               const struct ceiling_request *request);
 
 /* Acceleration of the lead point in it, by the first averaging box: A tau^2, or J tau^3 N; mm/cycle2, single precision. */
-double ceiling_block_acceleration(const struct path *path, uint32_t index, uint32_t cycles);
+double takt_ceiling_block_acceleration(const struct path *path, uint32_t index, uint32_t cycles);
 
 #endif

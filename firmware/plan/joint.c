@@ -41,8 +41,8 @@ struct joint_steps {
 /* Tangent and curvature by the path, at a place of a block's curve. */
 static void measure_at(const struct block *b, double at_mm, struct point *t, struct point *k)
 {
-    curve_tangent(&b->curve, at_mm, t);
-    curve_curvature(&b->curve, at_mm, k);
+    takt_curve_tangent(&b->curve, at_mm, t);
+    takt_curve_curvature(&b->curve, at_mm, k);
     for (int i = 0; i < AXIS_COUNT; i++) {
         t->at[i] *= b->scale;
         k->at[i] *= b->scale * b->scale;
@@ -135,7 +135,7 @@ static double crowded_feed(const struct joint_steps *steps, double reach_mm_s)
         v = maths_min(v, maths_sqrt(right / p));
     }
     if (q > 0.0) {
-        v = maths_min(v, maths_cbrt(right / q));
+        v = maths_min(v, takt_maths_cbrt(right / q));
     }
     if (p > 0.0 || q > 0.0) {
         v *= maths_sqrt(right / (p * v * v + q * v * v * v));
@@ -149,8 +149,8 @@ static double crowded_feed(const struct joint_steps *steps, double reach_mm_s)
 /* 1/f: how many times shorter than JOINT_CYCLES_APART the shorter block beside a joint lasts at its ceiling. */
 static double joint_crowding(const struct block *before, const struct block *after, double apart_s)
 {
-    const double rate_per_s = maths_max(block_top_feed(before) / before->length_mm,
-                                        block_top_feed(after) / after->length_mm);
+    const double rate_per_s = maths_max(takt_block_top_feed(before) / before->length_mm,
+                                        takt_block_top_feed(after) / after->length_mm);
 
     return maths_max(1.0, apart_s * rate_per_s);
 }
@@ -181,7 +181,7 @@ static double ramp_s(double change_mm_s, double a, double j)
 /* The feed that a ramp from rest over a length reaches, by full acceleration or by full jerk: V T(V) / 2 = L. */
 static double feed_over(double length_mm, double a, double j)
 {
-    return maths_min(maths_sqrt(2.0 * length_mm * a), maths_cbrt(length_mm * length_mm * j));
+    return maths_min(maths_sqrt(2.0 * length_mm * a), takt_maths_cbrt(length_mm * length_mm * j));
 }
 
 /*
@@ -199,7 +199,7 @@ static bool is_worth_passing(const struct block *before, const struct block *aft
     const double j =
         maths_min(before->j_mm_s3 / (1.0 - before->share), after->j_mm_s3 / (1.0 - after->share));
     const double length_mm = maths_min(before->length_mm, after->length_mm);
-    const double top = maths_min(maths_min(block_top_feed(before), block_top_feed(after)),
+    const double top = maths_min(maths_min(takt_block_top_feed(before), takt_block_top_feed(after)),
                                  feed_over(length_mm, a, j));
     const double fall = maths_max(0.0, top - v);
 
@@ -213,12 +213,12 @@ static bool is_worth_passing(const struct block *before, const struct block *aft
  */
 static bool is_too_slow(const struct block *before, const struct block *after, double cycle_s)
 {
-    const double top = block_top_feed(after);
+    const double top = takt_block_top_feed(after);
 
-    return 4.0 * top < block_top_feed(before) && 16.0 * top < before->a_mm_s2 * cycle_s;
+    return 4.0 * top < takt_block_top_feed(before) && 16.0 * top < before->a_mm_s2 * cycle_s;
 }
 
-void joint_stop(struct block *b)
+void takt_joint_stop(struct block *b)
 {
     b->end = JOINT_STOP;
     b->feed_joint_mm_s = 0.0;
@@ -227,14 +227,14 @@ void joint_stop(struct block *b)
 
 static void joint_pass(struct block *before, const struct block *after, double v, double share)
 {
-    const double top = maths_min(block_top_feed(before), block_top_feed(after));
+    const double top = maths_min(takt_block_top_feed(before), takt_block_top_feed(after));
 
     before->end = v >= top ? JOINT_PASSED : JOINT_REDUCED;
     before->feed_joint_mm_s = v;
     before->share_joint = share;
 }
 
-void joint_form(struct block *before, struct block *after, const struct plan_limits *limits)
+void takt_joint_form(struct block *before, struct block *after, const struct plan_limits *limits)
 {
     const double apart_s = JOINT_CYCLES_APART * limits->cycle_s;
     const double shorter_mm = maths_min(before->length_mm, after->length_mm);
@@ -242,12 +242,12 @@ void joint_form(struct block *before, struct block *after, const struct plan_lim
     struct joint_steps steps;
 
     if (before->move.path == PATH_EXACT_STOP) {
-        joint_stop(before);
+        takt_joint_stop(before);
         return;
     }
     joint_measure(before, after, limits, &steps);
     double v = alone_feed(&steps);
-    const double top = maths_min(block_top_feed(before), block_top_feed(after));
+    const double top = maths_min(takt_block_top_feed(before), takt_block_top_feed(after));
 
     if (maths_min(v, top) > reach_mm_s) {
         v = crowded_feed(&steps, reach_mm_s);
@@ -257,10 +257,10 @@ void joint_form(struct block *before, struct block *after, const struct plan_lim
 
     if (is_too_slow(before, after, limits->cycle_s) ||
         (v < top && !is_worth_passing(before, after, v, share, limits->cycle_s))) {
-        joint_stop(before);
+        takt_joint_stop(before);
         return;
     }
-    block_cap_feed(before, short_ceiling(before, v, shorter_mm, apart_s), GOVERNOR_SHORT);
-    block_cap_feed(after, short_ceiling(after, v, shorter_mm, apart_s), GOVERNOR_SHORT);
+    takt_block_cap_feed(before, short_ceiling(before, v, shorter_mm, apart_s), GOVERNOR_SHORT);
+    takt_block_cap_feed(after, short_ceiling(after, v, shorter_mm, apart_s), GOVERNOR_SHORT);
     joint_pass(before, after, v, share);
 }

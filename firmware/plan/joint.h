@@ -11,9 +11,9 @@
  * Forms the joint between two motions that follow each other: sets before->end, feed_joint_mm_s, share_joint and, for
  * blocks of few cycles, the ceiling of both.
  */
-void joint_form(struct block *before, struct block *after, const struct plan_limits *limits);
+void takt_joint_form(struct block *before, struct block *after, const struct plan_limits *limits);
 
 /* The end of b is a stop for good: nothing joins it. */
-void joint_stop(struct block *b);
+void takt_joint_stop(struct block *b);
 
 #endif

@@ -22,15 +22,15 @@ enum law {
 #define LAW_CYCLES_MAX 256
 
 /* Cycles that the first box of a law may have: the averages' sums stay within 64 bits. */
-uint32_t law_cycles_max(enum law law);
+uint32_t takt_law_cycles_max(enum law law);
 
 /* Boxes of a law, 1 ... LAW_BOXES_MAX. */
-unsigned law_boxes(enum law law);
+unsigned takt_law_boxes(enum law law);
 
-/* Cycles of box i < law_boxes when the first one has so many: the others half of it, rounded up. */
-uint32_t law_box_cycles(unsigned i, uint32_t cycles);
+/* Cycles of box i < takt_law_boxes when the first one has so many: the others half of it, rounded up. */
+uint32_t takt_law_box_cycles(unsigned i, uint32_t cycles);
 
 /* Cycles that the averages together reach over: a setpoint depends on so many positions of the lead point. */
-uint32_t law_window_cycles(enum law law, uint32_t cycles);
+uint32_t takt_law_window_cycles(enum law law, uint32_t cycles);
 
 #endif

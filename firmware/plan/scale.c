@@ -52,13 +52,13 @@ static double least_units(const struct plan_limits *limits, unsigned axes)
 /* Likewise in the largest sum: the lead point is half a window ahead. */
 static double largest_sum(const struct plan_limits *limits, unsigned axes)
 {
-    const uint32_t cycles = law_cycles_max(limits->law);
+    const uint32_t cycles = takt_law_cycles_max(limits->law);
     double product = 1.0;
 
-    for (unsigned i = 0; i < law_boxes(limits->law); i++) {
-        product *= (double)law_box_cycles(i, cycles);
+    for (unsigned i = 0; i < takt_law_boxes(limits->law); i++) {
+        product *= (double)takt_law_box_cycles(i, cycles);
     }
-    return 0.5 * (double)law_window_cycles(limits->law, cycles) * product * PATH_UNITS_PER_MM *
+    return 0.5 * (double)takt_law_window_cycles(limits->law, cycles) * product * PATH_UNITS_PER_MM *
            fastest(limits, axes);
 }
 
@@ -77,7 +77,7 @@ static double scale_of_axes(const struct plan_limits *limits, unsigned axes)
     return scale;
 }
 
-struct scale scale_of_machine(const struct plan_limits *limits)
+struct scale takt_scale_of_machine(const struct plan_limits *limits)
 {
     return (struct scale){
         .linear = scale_of_axes(limits, LINEAR),
@@ -99,7 +99,7 @@ static double turning_square(const struct curve *c)
 }
 
 /* A smoothed curve counts its nominal time (block.c). */
-double scale_of_curve(const struct curve *c, const struct scale *machine)
+double takt_scale_of_curve(const struct curve *c, const struct scale *machine)
 {
     if (c->kind == CURVE_SPLINE) {
         return 1.0;

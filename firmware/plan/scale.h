@@ -30,9 +30,9 @@ struct scale {
     double linear, rotary;
 };
 
-struct scale scale_of_machine(const struct plan_limits *limits);
+struct scale takt_scale_of_machine(const struct plan_limits *limits);
 
 /* The scale of a curve on a machine. */
-double scale_of_curve(const struct curve *c, const struct scale *machine);
+double takt_scale_of_curve(const struct curve *c, const struct scale *machine);
 
 #endif

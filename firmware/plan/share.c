@@ -27,7 +27,7 @@ static struct share_block *open_block(struct path *p, uint32_t index)
     return &p->open[index % SHARE_BLOCKS_MAX];
 }
 
-void share_note(struct path *p, uint32_t index, const struct block *b)
+void takt_share_note(struct path *p, uint32_t index, const struct block *b)
 {
     struct share_block *o = open_block(p, index);
 
@@ -36,15 +36,15 @@ void share_note(struct path *p, uint32_t index, const struct block *b)
     o->feed_cap_mm_s = b->feed_cap_mm_s;
     o->cap = b->cap;
     o->share_joint = b->share_joint;
-    o->least_s = b->length_mm > 0.0 ? b->length_mm / block_top_feed(b) : 0.0;
-    ring_limit(&p->ring, index, b);
-    ring_join(&p->ring, index, b);
+    o->least_s = b->length_mm > 0.0 ? b->length_mm / takt_block_top_feed(b) : 0.0;
+    takt_ring_limit(&p->ring, index, b);
+    takt_ring_join(&p->ring, index, b);
 }
 
-void share_begin(struct path *p, uint32_t index, const struct block *b)
+void takt_share_begin(struct path *p, uint32_t index, const struct block *b)
 {
     open_block(p, index)->share_near = 0.0;
-    share_note(p, index, b);
+    takt_share_note(p, index, b);
 }
 
 /* The limits of a block with the share it leaves. */
@@ -58,8 +58,8 @@ static void settle(struct path *p, uint32_t index)
     b.feed_program_mm_s = o->feed_program_mm_s;
     b.feed_cap_mm_s = o->feed_cap_mm_s;
     b.cap = o->cap;
-    block_set_share(&b, o->share_near);
-    ring_limit(&p->ring, index, &b);
+    takt_block_set_share(&b, o->share_near);
+    takt_ring_limit(&p->ring, index, &b);
 }
 
 /* Closes the blocks before this one. */
@@ -84,7 +84,7 @@ static uint32_t settled_end(struct path *p, double near_s)
     return i;
 }
 
-void share_spread(struct path *p)
+void takt_share_spread(struct path *p)
 {
     const double near_s = JOINT_CYCLES_NEAR * p->limits.cycle_s;
     const double share = open_block(p, p->pushed - 2)->share_joint;
@@ -106,7 +106,7 @@ void share_spread(struct path *p)
     assert(p->pushed - p->closed < SHARE_BLOCKS_MAX);
 }
 
-void share_close(struct path *p)
+void takt_share_close(struct path *p)
 {
     close_until(p, p->pushed);
 }

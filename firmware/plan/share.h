@@ -26,18 +26,18 @@ struct share_block {
 };
 
 /* A block is appended: no joint is near. */
-void share_begin(struct path *p, uint32_t index, const struct block *b);
+void takt_share_begin(struct path *p, uint32_t index, const struct block *b);
 
 /* A joint has been formed at its start or its end. */
-void share_note(struct path *p, uint32_t index, const struct block *b);
+void takt_share_note(struct path *p, uint32_t index, const struct block *b);
 
 /*
  * The newest block has been joined to the one before it: tells that joint to the blocks near it, and closes those that
  * no further joint can be near to.
  */
-void share_spread(struct path *p);
+void takt_share_spread(struct path *p);
 
 /* The newest block ends at rest: closes all. */
-void share_close(struct path *p);
+void takt_share_close(struct path *p);
 
 #endif

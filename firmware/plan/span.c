@@ -71,12 +71,12 @@ struct trial {
     struct laid laid[PARTS_MAX];
 };
 
-bool span_stops(const struct path *path, uint32_t index)
+bool takt_span_stops(const struct path *path, uint32_t index)
 {
     return path_at(path, index)->end == JOINT_STOP;
 }
 
-bool span_lands(const struct path *path, uint32_t index)
+bool takt_span_lands(const struct path *path, uint32_t index)
 {
     const struct path_block *b = path_at(path, index);
 
@@ -93,8 +93,8 @@ static bool add_block(struct span *s, const struct path *path, uint32_t index,
     const struct path_block *b = path_at(path, index);
     const double t = s->cycle_s;
     struct part part = {
-        .end_mm = path_length(path, index),
-        .feed = ceiling_block_feed(path, index, asked) * t,
+        .end_mm = takt_path_length(path, index),
+        .feed = takt_ceiling_block_feed(path, index, asked) * t,
         .a = (double)b->a_mm_s2 * t * t,
         .j = (double)b->j_mm_s3 * t * t * t,
     };
@@ -129,8 +129,8 @@ static void survey(struct span *s, const struct path *path, const struct ceiling
             !add_block(s, path, index, &asked) || index == path->closed) {
             return;
         }
-        s->stops = span_stops(path, index);
-        s->known = s->stops || span_lands(path, index);
+        s->stops = takt_span_stops(path, index);
+        s->known = s->stops || takt_span_lands(path, index);
         s->feed_end = s->stops ? 0.0 : (double)b->feed_joint_mm_s * s->cycle_s;
     }
 }
@@ -139,7 +139,7 @@ static void survey(struct span *s, const struct path *path, const struct ceiling
 static double feed_at_start(const struct path *path, const struct ceiling_request *request,
                             uint32_t index)
 {
-    return index == request->first || span_stops(path, index - 1)
+    return index == request->first || takt_span_stops(path, index - 1)
                ? 0.0
                : (double)path_at(path, index - 1)->feed_joint_mm_s * path->limits.cycle_s;
 }
@@ -272,7 +272,7 @@ static void pass_part(struct walk *w, const struct trial *t, unsigned k)
 /* Cycles that the span takes with a first box of so many. */
 static double predict(const struct span *s, uint32_t box)
 {
-    const double window = (double)law_window_cycles(s->law, box);
+    const double window = (double)takt_law_window_cycles(s->law, box);
     const double behind = 0.5 * (window - 1.0);
     struct walk walk = {.cycles = s->known && s->stops ? window - 1.0 : 0.0};
     struct trial t = {
@@ -309,10 +309,10 @@ static uint32_t longest_box(const struct span *s)
         j = maths_min(j, p->j);
     }
     if (s->known) {
-        cycles = maths_min(cycles, maths_cbrt(s->part[s->count - 1].end_mm / (2.0 * j)));
+        cycles = maths_min(cycles, takt_maths_cbrt(s->part[s->count - 1].end_mm / (2.0 * j)));
     }
-    return (uint32_t)maths_clamp(maths_ceil(cycles * (1.0 - SINGLE) - 1e-9), 1.0,
-                                 law_cycles_max(s->law));
+    return (uint32_t)maths_clamp(takt_maths_ceil(cycles * (1.0 - SINGLE) - 1e-9), 1.0,
+                                 takt_law_cycles_max(s->law));
 }
 
 /*
@@ -331,7 +331,8 @@ static uint32_t best_box(const struct span *s)
     uint32_t best = longest;
 
     for (unsigned i = 0; i < sizeof(shorter) / sizeof(shorter[0]); i++) {
-        const uint32_t box = (uint32_t)maths_max(1.0, maths_round(shorter[i] * (double)longest));
+        const uint32_t box =
+            (uint32_t)maths_max(1.0, takt_maths_round(shorter[i] * (double)longest));
         const double cycles = predict(s, box);
 
         if (cycles < least) {
@@ -342,8 +343,8 @@ static uint32_t best_box(const struct span *s)
     return best;
 }
 
-struct span_window span_window(const struct path *path, const struct ceiling_request *request,
-                               uint32_t index)
+struct span_window takt_span_window(const struct path *path, const struct ceiling_request *request,
+                                    uint32_t index)
 {
     struct span s = {.cycle_s = path->limits.cycle_s, .law = path->limits.law};
 

@@ -193,6 +193,6 @@ static inline bool move_is_locked(const struct move *m)
 }
 
 /* The geometry of a motion that starts at start. False when it has no length. */
-bool move_curve(const struct move *m, const struct point *start, struct curve *c);
+bool takt_move_curve(const struct move *m, const struct point *start, struct curve *c);
 
 #endif

@@ -18,8 +18,8 @@ struct shape_mode {
 #define SHAPE_HZ_CYCLE_MAX 0.25
 
 /* Of its free swing, cycles. */
-double zv_period(const struct shape_mode *mode, double cycle_s);
+double takt_zv_period(const struct shape_mode *mode, double cycle_s);
 
-void zv_train(const struct shape_mode *mode, double cycle_s, struct train *t);
+void takt_zv_train(const struct shape_mode *mode, double cycle_s, struct train *t);
 
 #endif

@@ -36,7 +36,7 @@ static void bound_line(const struct route *r, const struct smooth_limits *machin
 {
     float d[AXIS_COUNT];
 
-    (void)route_direction(r, index, route_element(r, index)->start_mm, d);
+    (void)takt_route_direction(r, index, route_element(r, index)->start_mm, d);
     c->acceleration = SINGLE_INFINITY;
     c->jerk = SINGLE_INFINITY;
     for (unsigned i = 0; i < r->slots.count; i++) {
@@ -60,9 +60,9 @@ static float alone_feed(const struct route *r, const struct smooth_limits *machi
     float k[2][AXIS_COUNT];
     float feed = SINGLE_INFINITY;
 
-    route_corner(r, index, d[0], d[1]);
-    (void)route_curvature(r, index - 1, route_element(r, index)->start_mm, k[0]);
-    (void)route_curvature(r, index, route_element(r, index)->start_mm, k[1]);
+    takt_route_corner(r, index, d[0], d[1]);
+    (void)takt_route_curvature(r, index - 1, route_element(r, index)->start_mm, k[0]);
+    (void)takt_route_curvature(r, index, route_element(r, index)->start_mm, k[1]);
     for (unsigned i = 0; i < r->slots.count; i++) {
         const unsigned axis = r->slots.axis[i];
         const float turn = single_abs(d[1][i] - d[0][i]) / r->slots.weight[i];
@@ -119,7 +119,7 @@ static float bend_acceleration(const struct route *r, const struct smooth_limits
     float d[AXIS_COUNT];
     float most = SINGLE_INFINITY;
 
-    (void)route_direction(r, index, route_element(r, index)->start_mm, d);
+    (void)takt_route_direction(r, index, route_element(r, index)->start_mm, d);
     for (unsigned i = 0; i < r->slots.count; i++) {
         const float part = k[i] != 0.0f ? 1.0f : single_abs(d[i]);
         const float a = r->slots.weight[i] * (float)machine->acceleration_mm_s2[r->slots.axis[i]];
@@ -186,13 +186,13 @@ static void bound_bent(const struct route *r, const struct smooth_limits *machin
     const struct route_element *e = route_element(r, index);
     float k[AXIS_COUNT];
     const bool joined = may_pass(r, machine, index) || may_pass(r, machine, index + 1);
-    const float curvature = route_curvature(r, index, e->start_mm, k); /* k is used below */
+    const float curvature = takt_route_curvature(r, index, e->start_mm, k); /* k is used below */
     const struct bend b = {.jerk = (joined ? 1.0f - joint_share : 1.0f) * e->along.jerk,
                            .radius = 1.0f / curvature,
                            .acceleration = bend_acceleration(r, machine, index, k)};
     const float most = hold_time_on_line(r, machine);
 
-    c->feed = single_min(c->feed, single_cbrt(arc_jerk * b.jerk * b.radius * b.radius));
+    c->feed = single_min(c->feed, takt_single_cbrt(arc_jerk * b.jerk * b.radius * b.radius));
     c->feed = single_min(c->feed, single_sqrt(arc_acceleration * b.acceleration * b.radius));
     for (unsigned i = 0; i < SLOWER_MAX && hold_time(&b, c->feed, (float)machine->windows) > most;
          i++) {
@@ -228,7 +228,8 @@ static bool is_worth_passing(const struct course *before, const struct course *a
     const float a = single_min(before->acceleration, after->acceleration);
     const float j = single_min(before->jerk, after->jerk);
     const float length = single_min(before->length, after->length);
-    const float over = single_min(single_sqrt(2.0f * length * a), single_cbrt(length * length * j));
+    const float over =
+        single_min(single_sqrt(2.0f * length * a), takt_single_cbrt(length * length * j));
     const float top = single_min(single_min(before->feed, after->feed), over);
     const float fall = single_max(0.0f, top - feed);
 
@@ -251,7 +252,7 @@ static float joint_feed(const struct route *r, const struct smooth_limits *machi
                : feed;
 }
 
-bool exact_rests(const struct route *r, const struct smooth_limits *machine, uint32_t index)
+bool takt_exact_rests(const struct route *r, const struct smooth_limits *machine, uint32_t index)
 {
     return joint_feed(r, machine, index) == 0.0f;
 }
@@ -309,7 +310,7 @@ static float least_time(const struct route *r, const struct smooth_limits *machi
 {
     const float j = s->jerk / (float)machine->windows;
     const float full = single_min(s->acceleration, single_sqrt(s->feed * j));
-    const float low = single_min(s->acceleration, single_cbrt(s->length * j * j));
+    const float low = single_min(s->acceleration, takt_single_cbrt(s->length * j * j));
 
     return single_min(time_with(r, machine, s, full), time_with(r, machine, s, low));
 }
@@ -341,8 +342,8 @@ static void find_span(const struct route *r, const struct smooth_limits *machine
     }
 }
 
-float exact_time(const struct route *r, const struct smooth_limits *machine, double at_mm,
-                 uint32_t element, uint32_t end)
+float takt_exact_time(const struct route *r, const struct smooth_limits *machine, double at_mm,
+                      uint32_t element, uint32_t end)
 {
     struct span s = {.first = element, .from_mm = at_mm};
     float time = 0.0f;
@@ -360,7 +361,7 @@ float exact_time(const struct route *r, const struct smooth_limits *machine, dou
 static double straight_end(const struct route *r, uint32_t element, double at_mm)
 {
     const float straight =
-        route_straight(r, element, at_mm, STRAIGHT_PART * (float)r->tolerance_mm);
+        takt_route_straight(r, element, at_mm, STRAIGHT_PART * (float)r->tolerance_mm);
 
     return maths_min(route_end_of(r, element), at_mm + (double)straight);
 }
@@ -374,7 +375,7 @@ static bool begins_on_route(const struct route *r, uint32_t element, bool arc)
     float d[AXIS_COUNT];
     bool turns = false;
 
-    (void)route_direction(r, element, route_element(r, element)->start_mm, d);
+    (void)takt_route_direction(r, element, route_element(r, element)->start_mm, d);
     for (unsigned i = 0; i < r->slots.count; i++) {
         turns = turns || (r->slots.axis[i] >= AXIS_LINEAR_COUNT && d[i] != 0.0f);
     }
@@ -395,17 +396,17 @@ static void limit_arc(const struct route *r, const struct smooth_limits *machine
 static bool go_to(const struct route *r, uint32_t element, double to_mm, const struct point *start,
                   double p[], struct move *move, struct curve *curve)
 {
-    route_place(r, element, to_mm, p);
-    route_scatter(r, p, &move->end);
-    return move_curve(move, start, curve);
+    takt_route_place(r, element, to_mm, p);
+    takt_route_scatter(r, p, &move->end);
+    return takt_move_curve(move, start, curve);
 }
 
-bool exact_next(struct window *w, const struct route *r, const struct smooth_limits *machine,
-                struct move *move, struct curve *curve)
+bool takt_exact_next(struct window *w, const struct route *r, const struct smooth_limits *machine,
+                     struct move *move, struct curve *curve)
 {
     const uint32_t element = w->element[0];
     const double at_mm = w->at_mm[0];
-    const bool arc = route_arc(r, element, at_mm, move);
+    const bool arc = takt_route_arc(r, element, at_mm, move);
     const enum move_kind kind = move->kind;
     const enum move_kind line = kind == MOVE_RAPID ? MOVE_RAPID : MOVE_FEED;
     const bool beside = begins_on_route(r, element, arc);
@@ -413,8 +414,8 @@ bool exact_next(struct window *w, const struct route *r, const struct smooth_lim
     struct point start;
     double p[AXIS_COUNT];
 
-    window_sample(w, r, 0, p);
-    route_scatter(r, p, &start);
+    takt_window_sample(w, r, 0, p);
+    takt_route_scatter(r, p, &start);
     move->kind = line;
     bool goes = go_to(r, element, to_mm, &start, p, move, curve);
 
@@ -426,6 +427,6 @@ bool exact_next(struct window *w, const struct route *r, const struct smooth_lim
     if (arc && goes && move->kind == kind) {
         limit_arc(r, machine, element, at_mm, curve, move);
     }
-    window_stand(w, r, p, to_mm, element);
+    takt_window_stand(w, r, p, to_mm, element);
     return goes;
 }

@@ -18,9 +18,9 @@ struct smooth_head {
 };
 
 /* Of a window, so many pieces of which were proved. */
-void head_keep(struct smooth_head *h, const struct window *w, const struct route *r,
-               unsigned proved);
+void takt_head_keep(struct smooth_head *h, const struct window *w, const struct route *r,
+                    unsigned proved);
 /* The window is what was kept again. */
-void head_take(const struct smooth_head *h, struct window *w, const struct route *r);
+void takt_head_take(const struct smooth_head *h, struct window *w, const struct route *r);
 
 #endif

@@ -66,8 +66,8 @@ static void need_of_group(const struct window *w, const struct route *r, unsigne
     }
 }
 
-void judge_need(const struct window *w, const struct route *r, unsigned piece,
-                struct judge_need *need)
+void takt_judge_need(const struct window *w, const struct route *r, unsigned piece,
+                     struct judge_need *need)
 {
     float square[2] = {0.0f, 0.0f};
 
@@ -78,7 +78,7 @@ void judge_need(const struct window *w, const struct route *r, unsigned piece,
     need->rotary_mm_s = single_sqrt(square[1]);
 }
 
-float judge_programmed(const struct judge_need *need, const struct route *r, uint32_t element)
+float takt_judge_programmed(const struct judge_need *need, const struct route *r, uint32_t element)
 {
     const float feed = route_element(r, element)->rotary ? need->rotary_mm_s : need->linear_mm_s;
 
@@ -109,8 +109,8 @@ static double change_of_axis_at_rest(const struct smooth_limits *limits, double 
  * Rounded over what the axes need from no acceleration to all of it, A/J; where that is too long, a change is so much
  * slower that no axis needs more than its part of the jerk for it: V r'/R <= part J.
  */
-void judge_change(const struct smooth_limits *limits, double interval_s,
-                  struct judge_change *change)
+void takt_judge_change(const struct smooth_limits *limits, double interval_s,
+                       struct judge_change *change)
 {
     double rounding_s = limits->cycle_s;
     double most = MATHS_INFINITY;
@@ -164,17 +164,17 @@ static float most_of_axis(const struct judge_need *need, const struct route_slot
     const float j = single_max(0.0f, LIMIT * slots->jerk_mm_s3[i] - first * (float)change->rounded -
                                          3.0f * second * most * by);
 
-    return third * most * most * most > j ? single_cbrt(j / third) : most;
+    return third * most * most * most > j ? takt_single_cbrt(j / third) : most;
 }
 
-void judge_rate(const struct judge_need *need, const struct route *r, uint32_t element,
-                const struct judge_change *change, struct judge_rate *rate)
+void takt_judge_rate(const struct judge_need *need, const struct route *r, uint32_t element,
+                     const struct judge_change *change, struct judge_rate *rate)
 {
     rate->most = RATE_MAX;
     for (unsigned i = 0; i < r->slots.count; i++) {
         rate->most = most_of_axis(need, &r->slots, change, i, rate->most);
     }
-    rate->programmed = judge_programmed(need, r, element);
+    rate->programmed = takt_judge_programmed(need, r, element);
 }
 
 /* What is left at a rate for r' and r'' = r'/R, R the rounding: see most_of_axis(). */
@@ -191,8 +191,8 @@ static float change_of_axis(const struct judge_need *need, const struct route_sl
     return per_by * by > j ? j / per_by : by;
 }
 
-float judge_change_on(const struct judge_need *need, const struct route *r,
-                      const struct judge_change *change, float rate)
+float takt_judge_change_on(const struct judge_need *need, const struct route *r,
+                           const struct judge_change *change, float rate)
 {
     const float rounding_s = (float)change->rounding_s;
     float by = (float)change->by;
@@ -355,12 +355,12 @@ static void find_foot(const struct window *w, const struct route *r, unsigned pi
     double p[AXIS_COUNT];
 
     foot->element = w->element[piece + 1];
-    foot->at_mm = window_at(w, piece, weight);
-    window_reach(w, piece + 1, &from, &ignored);
-    window_reach(w, piece + 2 < w->count - 1 ? piece + 2 : piece + 1, &ignored, &to);
-    window_spot(w, r, piece, weight, &spot);
-    window_place(w, r, &spot, p);
-    route_foot(r, p, from, to, foot);
+    foot->at_mm = takt_window_at(w, piece, weight);
+    takt_window_reach(w, piece + 1, &from, &ignored);
+    takt_window_reach(w, piece + 2 < w->count - 1 ? piece + 2 : piece + 1, &ignored, &to);
+    takt_window_spot(w, r, piece, weight, &spot);
+    takt_window_place(w, r, &spot, p);
+    takt_route_foot(r, p, from, to, foot);
 }
 
 /* How far a place of a piece leaves the tolerance; 0 or less: not at all. */
@@ -371,7 +371,7 @@ static float beyond_of(const struct window *w, const struct route *r, unsigned p
     struct route_foot foot;
     float weight[4];
 
-    window_weights((float)place / (float)look.places, weight);
+    takt_window_weights((float)place / (float)look.places, weight);
     find_foot(w, r, piece, weight, &foot);
     return foot.distance_mm - look.within_mm;
 }
@@ -380,7 +380,7 @@ static float beyond_of(const struct window *w, const struct route *r, unsigned p
 static void set_chord(const struct window *w, const struct route *r, const struct window_spot *from,
                       const struct window_spot *to, struct order_chord *chord)
 {
-    window_place(w, r, from, chord->from);
+    takt_window_place(w, r, from, chord->from);
     for (unsigned i = 0; i < r->slots.count; i++) {
         chord->way[i] = w->weighted_unit_mm[i] * (float)(to->at[i] - from->at[i]);
     }
@@ -402,9 +402,9 @@ static struct pace fastest(const struct route *r, const struct order *order,
     for (unsigned i = 0; i < order->count; i++) {
         const struct order_span *span = &order->span[i];
 
-        e = route_find(r, span->first_mm, e);
+        e = takt_route_find(r, span->first_mm, e);
         do {
-            const float rate = judge_programmed(need, r, e);
+            const float rate = takt_judge_programmed(need, r, e);
 
             most = rate > most.rate ? (struct pace){e, rate} : most;
             e++;
@@ -418,11 +418,11 @@ static struct pace slowest(const struct route *r, const struct order *before,
                            const struct order *after, const struct judge_need *need)
 {
     const double end_mm = after->span[after->count - 1].last_mm;
-    uint32_t e = route_find(r, before->span[0].first_mm, before->element);
-    struct pace least = {.element = e, .rate = judge_programmed(need, r, e)};
+    uint32_t e = takt_route_find(r, before->span[0].first_mm, before->element);
+    struct pace least = {.element = e, .rate = takt_judge_programmed(need, r, e)};
 
     while (++e < r->count && route_element(r, e)->start_mm < end_mm) {
-        const float rate = judge_programmed(need, r, e);
+        const float rate = takt_judge_programmed(need, r, e);
 
         least = rate < least.rate ? (struct pace){e, rate} : least;
     }
@@ -437,7 +437,7 @@ static bool keeps_pace(const struct route *r, const struct order *before,
 
     chord.least_mm_s[0] = need->linear_mm_s > 0.0f ? SAME * rate * need->linear_mm_s : 0.0f;
     chord.least_mm_s[1] = need->rotary_mm_s > 0.0f ? SAME * rate * need->rotary_mm_s : 0.0f;
-    order_go(&o, r, &chord);
+    takt_order_go(&o, r, &chord);
     return o.count > 0;
 }
 
@@ -473,19 +473,19 @@ static unsigned follow_piece(struct window *w, const struct route *r, unsigned p
     float weight[4];
     unsigned k = 1;
 
-    judge_need(w, r, piece, &need);
+    takt_judge_need(w, r, piece, &need);
     struct pace least = fastest(r, order, &need);
 
-    window_weights(0.0f, weight);
-    window_spot(w, r, piece, weight, &a);
+    takt_window_weights(0.0f, weight);
+    takt_window_spot(w, r, piece, weight, &a);
     for (; k <= look.places && order->count > 0; k++) {
         const struct order before = *order;
         struct window_spot b;
 
-        window_weights((float)k / (float)look.places, weight);
-        window_spot(w, r, piece, weight, &b);
+        takt_window_weights((float)k / (float)look.places, weight);
+        takt_window_spot(w, r, piece, weight, &b);
         set_chord(w, r, &a, &b, &chord);
-        order_go(order, r, &chord);
+        takt_order_go(order, r, &chord);
         a = b;
         if (order->count > 0) {
             const struct pace here = pace_on(r, &before, order, &need, &chord);
@@ -505,15 +505,15 @@ static bool is_end(const struct window *w, unsigned piece)
     return w->at_end && piece + 4 == w->count;
 }
 
-void judge_order(struct window *w, const struct route *r, unsigned count, struct order *order)
+void takt_judge_order(struct window *w, const struct route *r, unsigned count, struct order *order)
 {
     for (unsigned i = 0; i < count; i++) {
         (void)follow_piece(w, r, i, order);
     }
 }
 
-void judge_pieces(struct window *w, const struct route *r, unsigned count, unsigned keep,
-                  const struct order *order, struct judge_verdict *v)
+void takt_judge_pieces(struct window *w, const struct route *r, unsigned count, unsigned keep,
+                       const struct order *order, struct judge_verdict *v)
 {
     struct order o = *order;
 

@@ -30,20 +30,20 @@ struct judge_change {
 };
 
 /* What a machine's axes are left for changes of rate, where a piece takes so long. */
-void judge_change(const struct smooth_limits *limits, double interval_s,
-                  struct judge_change *change);
-void judge_need(const struct window *w, const struct route *r, unsigned piece,
-                struct judge_need *need);
+void takt_judge_change(const struct smooth_limits *limits, double interval_s,
+                       struct judge_change *change);
+void takt_judge_need(const struct window *w, const struct route *r, unsigned piece,
+                     struct judge_need *need);
 /*
  * How fast the rate may change on a piece while it is not above a rate, 1/s: at least by change, and a power of two times
  * that, so that neighbours mostly have the same.
  */
-float judge_change_on(const struct judge_need *need, const struct route *r,
-                      const struct judge_change *change, float rate);
-void judge_rate(const struct judge_need *need, const struct route *r, uint32_t element,
-                const struct judge_change *change, struct judge_rate *rate);
+float takt_judge_change_on(const struct judge_need *need, const struct route *r,
+                           const struct judge_change *change, float rate);
+void takt_judge_rate(const struct judge_need *need, const struct route *r, uint32_t element,
+                     const struct judge_change *change, struct judge_rate *rate);
 /* The rate at which a piece is gone along at the programmed feed of an element; infinite for a rapid. */
-float judge_programmed(const struct judge_need *need, const struct route *r, uint32_t element);
+float takt_judge_programmed(const struct judge_need *need, const struct route *r, uint32_t element);
 /* What is said of a window's pieces. */
 struct judge_verdict {
     unsigned good; /* pieces from the first one on that keep the tolerance in order */
@@ -59,9 +59,9 @@ struct judge_verdict {
  * Of the first count pieces, of which so many are to be kept. order: what can have been come to where they begin. Tells the
  * window whose feed is theirs.
  */
-void judge_pieces(struct window *w, const struct route *r, unsigned count, unsigned keep,
-                  const struct order *order, struct judge_verdict *v);
+void takt_judge_pieces(struct window *w, const struct route *r, unsigned count, unsigned keep,
+                       const struct order *order, struct judge_verdict *v);
 /* The order after the first count pieces, and whose feed is theirs. */
-void judge_order(struct window *w, const struct route *r, unsigned count, struct order *order);
+void takt_judge_order(struct window *w, const struct route *r, unsigned count, struct order *order);
 
 #endif

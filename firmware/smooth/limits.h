@@ -49,6 +49,6 @@ static inline double smooth_weight(int axis)
 }
 
 /* What of a machine's limits is of use for a curve within a tolerance; sets chord_mm. */
-void smooth_limit(struct smooth_limits *limits, double tolerance_mm);
+void takt_smooth_limit(struct smooth_limits *limits, double tolerance_mm);
 
 #endif

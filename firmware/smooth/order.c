@@ -87,9 +87,9 @@ static double link_end(const struct route *r, const struct order_chord *chord, s
     const double end_mm = route_end_of(r, l->element);
     const float tolerance_mm = (float)r->tolerance_mm;
     const bool bent = route_element(r, l->element)->bent;
-    const float reach_mm = bent
-                               ? route_straight(r, l->element, l->at_mm, BENT_LEAVES * tolerance_mm)
-                               : chord_mm + 3.0f * tolerance_mm;
+    const float reach_mm =
+        bent ? takt_route_straight(r, l->element, l->at_mm, BENT_LEAVES * tolerance_mm)
+             : chord_mm + 3.0f * tolerance_mm;
 
     l->within_mm = chord->within_mm - (bent ? BENT_OFF * tolerance_mm : 0.0f);
     l->ends = bent || l->at_mm + (double)reach_mm >= end_mm;
@@ -99,8 +99,8 @@ static double link_end(const struct route *r, const struct order_chord *chord, s
 static void set_at(const struct route *r, struct link *l, double at_mm)
 {
     l->at_mm = at_mm;
-    l->element = route_find(r, at_mm, l->element);
-    route_place(r, l->element, at_mm, l->at);
+    l->element = takt_route_find(r, at_mm, l->element);
+    takt_route_place(r, l->element, at_mm, l->at);
 }
 
 /* The route from at_mm on. */
@@ -112,7 +112,7 @@ static void set_link(const struct route *r, const struct order_chord *chord, flo
     l->end_mm = link_end(r, chord, l, chord_mm);
     l->passed =
         route_programmed(r, l->element) < chord->least_mm_s[route_element(r, l->element)->rotary];
-    route_point(r, l->end_mm, &hint, l->end);
+    takt_route_point(r, l->end_mm, &hint, l->end);
     for (unsigned i = 0; i < r->slots.count; i++) {
         l->start[i] = r->slots.weight[i] * (float)(l->at[i] - chord->from[i]);
         l->way[i] = r->slots.weight[i] * (float)(l->end[i] - l->at[i]);
@@ -195,7 +195,7 @@ static void add_link(struct order *o, const struct route *r, const struct order_
     }
 }
 
-void order_start(struct order *o, double at_mm, uint32_t element)
+void takt_order_start(struct order *o, double at_mm, uint32_t element)
 {
     o->count = 1;
     o->element = element;
@@ -208,7 +208,7 @@ void order_start(struct order *o, double at_mm, uint32_t element)
  * the tolerance of the chord's end can be come to then; and its own end, where that is passed after its start. To have come to
  * the end of a link is not to have passed it.
  */
-void order_go(struct order *o, const struct route *r, const struct order_chord *chord)
+void takt_order_go(struct order *o, const struct route *r, const struct order_chord *chord)
 {
     const struct order before = *o;
     const float chord_mm = length_of(r, chord->way);
@@ -242,7 +242,7 @@ void order_go(struct order *o, const struct route *r, const struct order_chord *
     }
 }
 
-double order_place(const struct order *o, double at_mm)
+double takt_order_place(const struct order *o, double at_mm)
 {
     unsigned i = o->count - 1;
 

@@ -121,7 +121,7 @@ static void set_along(struct relax_corners *c, const struct route *r, uint32_t e
     float after[AXIS_COUNT];
     float square = 0.0f;
 
-    route_corner(r, element, before, after);
+    takt_route_corner(r, element, before, after);
     for (unsigned i = 0; i < r->slots.count; i++) {
         before[i] += after[i];
         square += before[i] * before[i];
@@ -140,7 +140,7 @@ static void set_spot(struct relax_corners *c, const struct window *w, const stru
 {
     struct window_spot spot;
 
-    window_nearest(w, r, route_start(r, element), &spot);
+    takt_window_nearest(w, r, route_start(r, element), &spot);
     for (unsigned i = 0; i < r->slots.count; i++) {
         c->spot[i / SMOOTH_LANES * c->capacity + c->count][i % SMOOTH_LANES] = spot.at[i];
     }
@@ -166,7 +166,7 @@ static void add_corner(struct relax_corners *c, const struct window *w, const st
         return;
     }
     c->piece[c->count] = (unsigned char)(i - 1);
-    window_weights((float)(at - w->at_mm[i]) / spacing, c->weight[c->count]);
+    takt_window_weights((float)(at - w->at_mm[i]) / spacing, c->weight[c->count]);
     set_along(c, r, element);
     set_spot(c, w, r, element);
     c->count++;
@@ -199,7 +199,7 @@ static void look_ahead(struct relax_ahead *a, const struct route *r, const struc
                        float tolerance_mm)
 {
     if (foot->element != a->element) {
-        a->per_mm = route_direction(r, foot->element, foot->at_mm, a->along) / tolerance_mm;
+        a->per_mm = takt_route_direction(r, foot->element, foot->at_mm, a->along) / tolerance_mm;
         a->element = route_element(r, foot->element)->bent ? UINT32_MAX : foot->element;
     }
 }
@@ -215,13 +215,13 @@ static void set_foot(struct relax *x, const struct window *w, const struct route
     double to;
     double p[AXIS_COUNT];
 
-    window_reach(w, i, &from, &to);
-    window_spot(w, r, i - 1, at_sample, &spot);
-    window_place(w, r, &spot, p);
-    route_foot(r, p, from, to, &foot);
+    takt_window_reach(w, i, &from, &to);
+    takt_window_spot(w, r, i - 1, at_sample, &spot);
+    takt_window_place(w, r, &spot, p);
+    takt_route_foot(r, p, from, to, &foot);
     look_ahead(ahead, r, &foot, tolerance_mm);
     const float straight =
-        route_straight(r, foot.element, foot.at_mm, BENT * tolerance_mm) / tolerance_mm;
+        takt_route_straight(r, foot.element, foot.at_mm, BENT * tolerance_mm) / tolerance_mm;
     const double start = maths_max(from, route_element(r, foot.element)->start_mm);
     const double end = maths_min(to, route_end_of(r, foot.element));
 
@@ -335,8 +335,8 @@ static void pull_to_route(const struct relax *x, const struct window *w, const s
                w->unit_mm[k] * ((double)x->foot[row][l] +
                                 (double)(x->near[row][l] * x->scale.unit_per_near[g][l]));
     }
-    window_reach(w, i, &from, &to);
-    route_foot(r, p, from, to, &foot);
+    takt_window_reach(w, i, &from, &to);
+    takt_route_foot(r, p, from, to, &foot);
     const float less =
         foot.distance_mm > tolerance_mm ? 1.0f - tolerance_mm / foot.distance_mm : 0.0f;
 
@@ -539,25 +539,26 @@ static void begin(struct relax *x, const struct window *w, const struct route *r
     }
 }
 
-void relax_window(struct relax *x, struct window *w, const struct route *r, double tolerance_mm)
+void takt_relax_window(struct relax *x, struct window *w, const struct route *r,
+                       double tolerance_mm)
 {
     const float tolerance = (float)tolerance_mm;
     struct relax_pass pass = {.over = 1.0f, .calm = 1.0f, .weight = 1.0f};
 
     pass.corner_most = 1.0f - r->chord_mm / tolerance;
     begin(x, w, r, tolerance);
-    bands_build(x, w, r, pass.weight);
+    takt_bands_build(x, w, r, pass.weight);
     project(x, w, r, tolerance, &pass);
     pass.over = OVER;
     pass.calm = 1.0f / (1.0f + CALM);
     pass.keep_boxes = 1.0f;
     for (unsigned i = ITERATIONS; i > 0; i--) {
         for (unsigned g = 0; g < r->slots.groups; g++) {
-            bands_step(x, w, g);
+            takt_bands_step(x, w, g);
         }
         if (i == LAST + 1) {
             pass.weight = LAST_FAVOUR;
-            bands_build(x, w, r, pass.weight);
+            takt_bands_build(x, w, r, pass.weight);
         }
         pass.keep_near = i == LAST + 1 ? 1.0f / LAST_FAVOUR : 1.0f;
         if (i > 1) {

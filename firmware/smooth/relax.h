@@ -56,6 +56,7 @@ struct relax {
     struct relax_corners corners;
 };
 
-void relax_window(struct relax *x, struct window *w, const struct route *r, double tolerance_mm);
+void takt_relax_window(struct relax *x, struct window *w, const struct route *r,
+                       double tolerance_mm);
 
 #endif

@@ -43,7 +43,7 @@ static void route_limit(struct route *r, const struct smooth_limits *limits, dou
     r->tolerance_mm = tolerance_mm;
 }
 
-void route_init(struct route *r, const struct smooth_limits *limits, double tolerance_mm)
+void takt_route_init(struct route *r, const struct smooth_limits *limits, double tolerance_mm)
 {
     route_limit(r, limits, tolerance_mm);
     r->moved = 0;
@@ -67,13 +67,13 @@ static bool has_free_mode(const struct route *r)
     return false;
 }
 
-bool route_has_room(const struct route *r)
+bool takt_route_has_room(const struct route *r)
 {
     return r->count - r->first < r->capacity && r->bent_count - r->bent_first < SMOOTH_BENT_MAX &&
            has_free_mode(r);
 }
 
-double route_end(const struct route *r)
+double takt_route_end(const struct route *r)
 {
     return r->count == 0 ? 0.0 : r->end_mm;
 }
@@ -85,7 +85,7 @@ static void gather(const struct route *r, const struct point *p, double by_slot[
     }
 }
 
-void route_scatter(const struct route *r, const double by_slot[], struct point *p)
+void takt_route_scatter(const struct route *r, const double by_slot[], struct point *p)
 {
     memset(p, 0, sizeof(*p));
     for (unsigned i = 0; i < r->slots.count; i++) {
@@ -122,14 +122,14 @@ static unsigned char find_mode(struct route *r, const struct move *move)
     return (unsigned char)found;
 }
 
-void route_move(const struct route *r, uint32_t index, struct move *move)
+void takt_route_move(const struct route *r, uint32_t index, struct move *move)
 {
     const struct route_element *e = route_element(r, index);
 
     *move = r->mode[e->mode].move;
     move->line = e->line;
     move->feed_mm_s = move->kind == MOVE_RAPID ? move->feed_mm_s : (double)e->programmed_mm_s;
-    route_scatter(r, route_end_point(r, index), &move->end);
+    takt_route_scatter(r, route_end_point(r, index), &move->end);
 }
 
 /* Weighted length for a mm of a curve, or a rad where only rotary axes move: that of the linear axes is 1. */
@@ -161,14 +161,14 @@ static void keep_bent(struct route *r, const struct curve *curve, float per_mm)
     r->bent_count++;
 }
 
-void route_push(struct route *r, const struct move *move, uint32_t number,
-                const struct curve *curve)
+void takt_route_push(struct route *r, const struct move *move, uint32_t number,
+                     const struct curve *curve)
 {
     struct route_element *e = &r->element[route_slot(r, r->count)];
-    const double start_mm = route_end(r);
+    const double start_mm = takt_route_end(r);
     const float per_mm = weighted_length(curve);
 
-    assert(route_has_room(r));
+    assert(takt_route_has_room(r));
     gather(r, &curve->start, &r->start[(size_t)route_slot(r, r->count) * r->slots.count]);
     gather(r, &curve->end, r->end);
     memset(e, 0, sizeof(*e));
@@ -177,19 +177,19 @@ void route_push(struct route *r, const struct move *move, uint32_t number,
     e->line = move->line;
     e->number = number;
     e->mode = find_mode(r, move) & ROUTE_MODES;
-    e->rotary = curve_is_rotary(curve);
+    e->rotary = takt_curve_is_rotary(curve);
     e->bent = curve->kind != CURVE_LINE;
     e->bent_number = (unsigned char)r->bent_count;
     if (e->bent) {
         keep_bent(r, curve, per_mm);
     }
     e->programmed_mm_s = move->kind == MOVE_RAPID ? SINGLE_INFINITY : (float)move->feed_mm_s;
-    nominal_set(e, curve, per_mm, r);
+    takt_nominal_set(e, curve, per_mm, r);
     r->count++;
-    nominal_update(r);
+    takt_nominal_update(r);
 }
 
-void route_forget(struct route *r, double at_mm)
+void takt_route_forget(struct route *r, double at_mm)
 {
     while (r->first + 1 < r->count && route_end_of(r, r->first) < at_mm) {
         const struct route_element *e = route_element(r, r->first);
@@ -200,7 +200,7 @@ void route_forget(struct route *r, double at_mm)
     }
 }
 
-uint32_t route_find(const struct route *r, double at_mm, uint32_t hint)
+uint32_t takt_route_find(const struct route *r, double at_mm, uint32_t hint)
 {
     uint32_t i = hint < r->first ? r->first : hint;
 
@@ -239,8 +239,8 @@ static void bent_curve(const struct route *r, uint32_t index, struct curve *c)
     c->kind = b->kind;
     c->rotary = e->rotary;
     c->length_mm = (route_end_of(r, index) - e->start_mm) / (double)b->per_mm;
-    route_scatter(r, route_start(r, index), &c->start);
-    route_scatter(r, route_end_point(r, index), &c->end);
+    takt_route_scatter(r, route_start(r, index), &c->start);
+    takt_route_scatter(r, route_end_point(r, index), &c->end);
     if (b->kind == CURVE_ARC) {
         c->arc = b->arc;
     } else if (b->kind == CURVE_INVOLUTE) {
@@ -251,7 +251,7 @@ static void bent_curve(const struct route *r, uint32_t index, struct curve *c)
     enum axis first = AXIS_COUNT;
     enum axis second = AXIS_COUNT;
 
-    (void)curve_plane(c, &first, &second);
+    (void)takt_curve_plane(c, &first, &second);
     memset(&c->slope, 0, sizeof c->slope);
     for (unsigned i = 0; i < r->slots.count; i++) {
         const unsigned axis = r->slots.axis[i];
@@ -262,7 +262,7 @@ static void bent_curve(const struct route *r, uint32_t index, struct curve *c)
     }
 }
 
-void route_place(const struct route *r, uint32_t index, double at_mm, double p[])
+void takt_route_place(const struct route *r, uint32_t index, double at_mm, double p[])
 {
     const struct route_element *e = route_element(r, index);
     const double length = route_end_of(r, index) - e->start_mm;
@@ -275,7 +275,7 @@ void route_place(const struct route *r, uint32_t index, double at_mm, double p[]
         struct point q;
 
         bent_curve(r, index, &c);
-        curve_point(&c, bent_place(r, index, &c, at_mm), &q);
+        takt_curve_point(&c, bent_place(r, index, &c, at_mm), &q);
         gather(r, &q, p);
         return;
     }
@@ -284,17 +284,17 @@ void route_place(const struct route *r, uint32_t index, double at_mm, double p[]
     }
 }
 
-void route_point(const struct route *r, double at_mm, uint32_t *hint, double p[])
+void takt_route_point(const struct route *r, double at_mm, uint32_t *hint, double p[])
 {
-    *hint = route_find(r, at_mm, *hint);
-    route_place(r, *hint, at_mm, p);
+    *hint = takt_route_find(r, at_mm, *hint);
+    takt_route_place(r, *hint, at_mm, p);
 }
 
-bool route_arc(const struct route *r, uint32_t index, double at_mm, struct move *move)
+bool takt_route_arc(const struct route *r, uint32_t index, double at_mm, struct move *move)
 {
     const struct route_element *e = route_element(r, index);
 
-    route_move(r, index, move);
+    takt_route_move(r, index, move);
     if (!e->bent || r->bent[e->bent_number % SMOOTH_BENT_MAX].kind != CURVE_ARC) {
         return false;
     }
@@ -314,13 +314,13 @@ static void bent_direction(const struct route *r, uint32_t index, double at_mm, 
     struct point t;
 
     bent_curve(r, index, &c);
-    curve_tangent(&c, bent_place(r, index, &c, at_mm), &t);
+    takt_curve_tangent(&c, bent_place(r, index, &c, at_mm), &t);
     for (unsigned i = 0; i < r->slots.count; i++) {
         direction[i] = (float)t.at[r->slots.axis[i]];
     }
 }
 
-float route_direction(const struct route *r, uint32_t index, double at_mm, float direction[])
+float takt_route_direction(const struct route *r, uint32_t index, double at_mm, float direction[])
 {
     float square = 0.0f;
     float length = 1.0f;
@@ -350,7 +350,7 @@ float route_direction(const struct route *r, uint32_t index, double at_mm, float
     return weighted / length;
 }
 
-float route_curvature(const struct route *r, uint32_t index, double at_mm, float curvature[])
+float takt_route_curvature(const struct route *r, uint32_t index, double at_mm, float curvature[])
 {
     struct curve c;
     struct point k;
@@ -363,7 +363,7 @@ float route_curvature(const struct route *r, uint32_t index, double at_mm, float
     const float per_mm = per_mm_of(r, index);
 
     bent_curve(r, index, &c);
-    curve_curvature(&c, bent_place(r, index, &c, at_mm), &k);
+    takt_curve_curvature(&c, bent_place(r, index, &c, at_mm), &k);
     for (unsigned i = 0; i < r->slots.count; i++) {
         curvature[i] = r->slots.weight[i] * (float)k.at[r->slots.axis[i]] / (per_mm * per_mm);
         square += curvature[i] * curvature[i];
@@ -372,20 +372,20 @@ float route_curvature(const struct route *r, uint32_t index, double at_mm, float
 }
 
 /* s^2 |x''| / 2 = within */
-float route_straight(const struct route *r, uint32_t index, double at_mm, float within_mm)
+float takt_route_straight(const struct route *r, uint32_t index, double at_mm, float within_mm)
 {
     float k[AXIS_COUNT];
-    const float curvature = route_curvature(r, index, at_mm, k);
+    const float curvature = takt_route_curvature(r, index, at_mm, k);
 
     return curvature > 0.0f ? single_sqrt(2.0f * within_mm / curvature) : SINGLE_INFINITY;
 }
 
-void route_corner(const struct route *r, uint32_t index, float before[], float after[])
+void takt_route_corner(const struct route *r, uint32_t index, float before[], float after[])
 {
     const double at_mm = route_element(r, index)->start_mm;
 
-    (void)route_direction(r, index - 1, at_mm, before);
-    (void)route_direction(r, index, at_mm, after);
+    (void)takt_route_direction(r, index - 1, at_mm, before);
+    (void)takt_route_direction(r, index, at_mm, after);
 }
 
 static void set_distance(const struct route *r, struct route_foot *f)
@@ -441,7 +441,7 @@ static void foot_on_bent(const struct route *r, uint32_t index, const double x[]
         float dot = 0.0f;
         float square = 0.0f;
 
-        curve_point_and_tangent(&c, s, &p, &t);
+        takt_curve_point_and_tangent(&c, s, &p, &t);
         for (unsigned i = 0; i < r->slots.count; i++) {
             const unsigned axis = r->slots.axis[i];
             const float w = r->slots.weight[i] * (float)t.at[axis];
@@ -451,7 +451,7 @@ static void foot_on_bent(const struct route *r, uint32_t index, const double x[]
         }
         s = maths_clamp(s + (double)(dot / square), low, high);
     }
-    curve_point(&c, s, &p);
+    takt_curve_point(&c, s, &p);
     for (unsigned i = 0; i < r->slots.count; i++) {
         f->off[i] = r->slots.weight[i] * (float)(p.at[r->slots.axis[i]] - x[i]);
     }
@@ -520,11 +520,11 @@ static void walk(const struct route *r, const double x[], double from_mm, double
     }
 }
 
-void route_foot(const struct route *r, const double x[], double from_mm, double to_mm,
-                struct route_foot *f)
+void takt_route_foot(const struct route *r, const double x[], double from_mm, double to_mm,
+                     struct route_foot *f)
 {
     const double at = maths_clamp(f->at_mm, from_mm, to_mm);
-    const uint32_t index = route_find(r, at, f->element);
+    const uint32_t index = takt_route_find(r, at, f->element);
 
     foot_on(r, index, x, from_mm, to_mm, at, f);
     walk(r, x, from_mm, to_mm, true, f);

@@ -99,13 +99,13 @@ struct route_foot {
     float distance_mm;
 };
 
-void route_init(struct route *r, const struct smooth_limits *limits, double tolerance_mm);
-bool route_has_room(const struct route *r);
+void takt_route_init(struct route *r, const struct smooth_limits *limits, double tolerance_mm);
+bool takt_route_has_room(const struct route *r);
 /* Appends a curve that begins where the last one ended. Needs room. */
-void route_push(struct route *r, const struct move *move, uint32_t number,
-                const struct curve *curve);
+void takt_route_push(struct route *r, const struct move *move, uint32_t number,
+                     const struct curve *curve);
 /* Elements that end before at_mm are no longer asked for. */
-void route_forget(struct route *r, double at_mm);
+void takt_route_forget(struct route *r, double at_mm);
 
 /* Where the element is kept. */
 static inline uint32_t route_slot(const struct route *r, uint32_t index)
@@ -134,35 +134,35 @@ static inline double route_end_of(const struct route *r, uint32_t index)
 {
     return index + 1 < r->count ? route_element(r, index + 1)->start_mm : r->end_mm;
 }
-double route_end(const struct route *r);
+double takt_route_end(const struct route *r);
 /* The motion it belongs to, but for centres and turns of arcs. */
-void route_move(const struct route *r, uint32_t index, struct move *move);
+void takt_route_move(const struct route *r, uint32_t index, struct move *move);
 /* The programmed feed; infinite for a rapid. */
 static inline float route_programmed(const struct route *r, uint32_t index)
 {
     return route_element(r, index)->programmed_mm_s;
 }
 /* Index of the element at a place; the later one at a joint. hint: an index near by. */
-uint32_t route_find(const struct route *r, double at_mm, uint32_t hint);
-void route_point(const struct route *r, double at_mm, uint32_t *hint, double p[]);
+uint32_t takt_route_find(const struct route *r, double at_mm, uint32_t hint);
+void takt_route_point(const struct route *r, double at_mm, uint32_t *hint, double p[]);
 /* On an element; a place outside is its nearer end. */
-void route_place(const struct route *r, uint32_t index, double at_mm, double p[]);
-void route_scatter(const struct route *r, const double by_slot[], struct point *p);
+void takt_route_place(const struct route *r, uint32_t index, double at_mm, double p[]);
+void takt_route_scatter(const struct route *r, const double by_slot[], struct point *p);
 /* The motion of an element, if it is an arc with its centre and the turns from a place on; false: it is none. */
-bool route_arc(const struct route *r, uint32_t index, double at_mm, struct move *move);
+bool takt_route_arc(const struct route *r, uint32_t index, double at_mm, struct move *move);
 /* Second derivative by the route, weighted; 0 on lines. Returns its size, 1/mm. */
-float route_curvature(const struct route *r, uint32_t index, double at_mm, float curvature[]);
+float takt_route_curvature(const struct route *r, uint32_t index, double at_mm, float curvature[]);
 /* Unit vector (weighted) along an element; a place outside is its nearer end. Weighted length for a mm of it. */
-float route_direction(const struct route *r, uint32_t index, double at_mm, float direction[]);
+float takt_route_direction(const struct route *r, uint32_t index, double at_mm, float direction[]);
 /* How far from that place to both sides an element leaves its tangent by no more than so much. */
-float route_straight(const struct route *r, uint32_t index, double at_mm, float within_mm);
+float takt_route_straight(const struct route *r, uint32_t index, double at_mm, float within_mm);
 /* Those at both sides of the start of an element that is not the first. */
-void route_corner(const struct route *r, uint32_t index, float before[], float after[]);
+void takt_route_corner(const struct route *r, uint32_t index, float before[], float after[]);
 /*
  * The nearest place to x between from_mm and to_mm that can be walked to from f->at_mm in f->element without moving
  * away: at a retrace it stays on the branch it is on.
  */
-void route_foot(const struct route *r, const double x[], double from_mm, double to_mm,
-                struct route_foot *f);
+void takt_route_foot(const struct route *r, const double x[], double from_mm, double to_mm,
+                     struct route_foot *f);
 
 #endif

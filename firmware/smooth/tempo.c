@@ -201,7 +201,7 @@ static void sum_pieces(struct tempo *p, const struct route *r, unsigned piece, f
     }
 }
 
-/* Before the first piece (tempo_find) and behind the last one there is none. */
+/* Before the first piece (takt_tempo_find) and behind the last one there is none. */
 static void sum_all(struct tempo *p, const struct route *r, float weight)
 {
     for (unsigned i = 0; i < p->pieces; i += SMOOTH_LANES) {
@@ -403,9 +403,9 @@ static void set_most(struct tempo *p, const struct window *w, const struct route
     for (unsigned i = 0; i < p->pieces; i++) {
         struct judge_need need;
 
-        judge_need(w, r, i, &need);
-        float feed =
-            single_min(single_sqrt(ENERGY_MOST), judge_programmed(&need, r, w->element[i + 1]));
+        takt_judge_need(w, r, i, &need);
+        float feed = single_min(single_sqrt(ENERGY_MOST),
+                                takt_judge_programmed(&need, r, w->element[i + 1]));
 
         for (unsigned k = 0; k < r->slots.count; k++) {
             if (feed * need.first[k] > r->slots.velocity_mm_s[k]) {
@@ -462,7 +462,7 @@ static void set_even(struct tempo *p, const struct window *w)
     }
 }
 
-void tempo_find(struct tempo *p, const struct window *w, const struct route *r)
+void takt_tempo_find(struct tempo *p, const struct window *w, const struct route *r)
 {
     float weight = BARRIER;
 
@@ -485,8 +485,8 @@ void tempo_find(struct tempo *p, const struct window *w, const struct route *r)
     }
 }
 
-void tempo_slow(struct tempo *p, const struct window *w, unsigned piece, unsigned around,
-                float rate)
+void takt_tempo_slow(struct tempo *p, const struct window *w, unsigned piece, unsigned around,
+                     float rate)
 {
     set_even(p, w);
     for (unsigned i = 2; i < p->pieces + 2; i++) {
@@ -496,7 +496,7 @@ void tempo_slow(struct tempo *p, const struct window *w, unsigned piece, unsigne
     }
 }
 
-float tempo_energy(const struct tempo *p, float u, float *slope)
+float takt_tempo_energy(const struct tempo *p, float u, float *slope)
 {
     const float place = single_clamp(u - 1.0f, 0.0f, (float)p->pieces);
     const unsigned i = place < (float)p->pieces ? (unsigned)place : p->pieces - 1;

@@ -46,11 +46,11 @@ struct tempo {
 };
 
 /* The best that is found. It begins as the window does, at rate 1; unless the path ends there, it ends so too. */
-void tempo_find(struct tempo *p, const struct window *w, const struct route *r);
+void takt_tempo_find(struct tempo *p, const struct window *w, const struct route *r);
 /* The same rate everywhere, but for so many pieces to both sides of one. */
-void tempo_slow(struct tempo *p, const struct window *w, unsigned piece, unsigned around,
-                float rate);
+void takt_tempo_slow(struct tempo *p, const struct window *w, unsigned piece, unsigned around,
+                     float rate);
 /* b at u samples from the first one, and its derivative. */
-float tempo_energy(const struct tempo *p, float u, float *slope);
+float takt_tempo_energy(const struct tempo *p, float u, float *slope);
 
 #endif

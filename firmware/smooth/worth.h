@@ -30,8 +30,8 @@ struct worth_since {
  * From rest, is the path itself quicker: to the chain's end, if that is known, or to the last place in the window where it rests?
  * to_mm: that place, or the next one where there is none.
  */
-bool worth_path_from_rest(const struct worth_window *now, double *to_mm);
+bool takt_worth_path_from_rest(const struct worth_window *now, double *to_mm);
 /* Is the path so much quicker to where the pieces end, with what has been taken on the first stretch before, that a change is worth it? */
-bool worth_path(const struct worth_window *now, struct worth_since *since);
+bool takt_worth_path(const struct worth_window *now, struct worth_since *since);
 
 #endif

@@ -26,28 +26,28 @@ static void tune(struct lock *l, double bandwidth_rad_s)
     const double rad_cycle =
         maths_min(bandwidth_rad_s * l->config.cycle_s, ANGLE_BANDWIDTH_RAD_CYCLE);
 
-    angle_tune(&l->angle, rad_cycle);
-    follower_tune(&l->follower, rad_cycle);
+    takt_angle_tune(&l->angle, rad_cycle);
+    takt_follower_tune(&l->follower, rad_cycle);
 }
 
-void lock_init(struct lock *l, const struct lock_config *config)
+void takt_lock_init(struct lock *l, const struct lock_config *config)
 {
     memset(l, 0, sizeof(*l));
     l->config = *config;
-    angle_init(&l->angle);
-    follower_init(&l->follower, config->cycle_s);
+    takt_angle_init(&l->angle);
+    takt_follower_init(&l->follower, config->cycle_s);
     tune(l, ANGLE_BANDWIDTH_RAD_S);
     l->next_block = UINT32_MAX;
 }
 
-void lock_restart(struct lock *l)
+void takt_lock_restart(struct lock *l)
 {
     l->phase = LOCK_IDLE;
     l->alarm.code = TAKT_OK;
     l->next_block = UINT32_MAX;
 }
 
-const struct diagnostic *lock_get_alarm(const struct lock *l)
+const struct diagnostic *takt_lock_get_alarm(const struct lock *l)
 {
     return &l->alarm;
 }
@@ -67,7 +67,7 @@ struct lock_view {
 
 static struct lock_view view(const struct lock *l, double cycles)
 {
-    const struct angle_ahead ahead = angle_look_ahead(&l->angle, cycles);
+    const struct angle_ahead ahead = takt_angle_look_ahead(&l->angle, cycles);
     const double rate = l->sense / l->config.cycle_s;
 
     return (struct lock_view){l->sense * ahead.rev, rate * ahead.speed,
@@ -79,9 +79,9 @@ static void fail(struct lock *l, enum takt_error code, double value, double limi
 {
     const struct block *b = path_first(l->chain.path);
 
-    diagnostic_set(&l->alarm, code, b->move.line, 0, "", 0, value);
-    diagnostic_set_limit(&l->alarm, limit);
-    follower_brake(&l->follower);
+    takt_diagnostic_set(&l->alarm, code, b->move.line, 0, "", 0, value);
+    takt_diagnostic_set_limit(&l->alarm, limit);
+    takt_follower_brake(&l->follower);
     l->stopped = true;
 }
 
@@ -96,15 +96,15 @@ static double bandwidth_of(const struct lock *l)
     const double count_mm = l->at.pitch_mm / l->config.counts;
 
     return maths_min(ANGLE_BANDWIDTH_RAD_S,
-                     maths_cbrt(COUNT_PART * l->chain.limits.jerk_mm_s3 / count_mm));
+                     takt_maths_cbrt(COUNT_PART * l->chain.limits.jerk_mm_s3 / count_mm));
 }
 
 static void begin(struct lock *l, double commanded_rpm)
 {
     const struct block *b = path_first(l->chain.path);
 
-    follower_start(&l->follower, &l->chain.limits);
-    l->at = chain_first_leg(&l->chain, 0.0);
+    takt_follower_start(&l->follower, &l->chain.limits);
+    l->at = takt_chain_first_leg(&l->chain, 0.0);
     tune(l, bandwidth_of(l));
     l->sense = commanded_rpm < 0.0 ? -1.0 : 1.0;
     l->stood = 0;
@@ -123,7 +123,7 @@ static void begin(struct lock *l, double commanded_rpm)
 static bool can_begin(const struct motion *m)
 {
     const struct path *path = m->path;
-    const bool taps = path_kind(path, path->first) == MOVE_TAP;
+    const bool taps = takt_path_kind(path, path->first) == MOVE_TAP;
 
     return m->passed_first == path->first && (!taps || path->closed - path->first >= 2);
 }
@@ -174,8 +174,8 @@ static bool check_length(struct lock *l, double rev_s)
     const double pitch_mm = l->at.pitch_mm;
     const struct brake_state at_speed = {.v_mm_s = pitch_mm * rev_s};
     const double in_mm = 0.5 * pitch_mm * l->lead_in.way_rev;
-    const double out_mm =
-        l->taps ? pitch_mm * tap_turns(&l->tap) : brake_reach(&at_speed, &l->chain.limits);
+    const double out_mm = l->taps ? pitch_mm * takt_tap_turns(&l->tap)
+                                  : takt_brake_reach(&at_speed, &l->chain.limits);
     const bool fits = l->at.end_mm >= in_mm && l->chain.end_mm >= in_mm + out_mm;
 
     if (!fits) {
@@ -193,7 +193,7 @@ static double zero_angle(const struct lock *l, double rev)
     const bool goes_on = l->chain.path->first == l->next_block;
     const double base = goes_on ? l->next_zero_rev : 0.0;
 
-    return base + maths_ceil(rev + 0.5 * l->lead_in.way_rev - base);
+    return base + takt_maths_ceil(rev + 0.5 * l->lead_in.way_rev - base);
 }
 
 /* That the lead-in is made for: one that is below the command now, by more than its room, may come up to it. */
@@ -208,10 +208,10 @@ static void start(struct lock *l)
 {
     const struct lock_view now = view(l, l->config.ahead_cycles);
 
-    chain_extend(&l->chain);
+    takt_chain_extend(&l->chain);
     l->lead_in.pitch_mm = l->at.pitch_mm;
-    l->lead_in.way_rev = lead_in_way(l->at.pitch_mm, lead_in_speed(l, now.speed), &l->chain.limits,
-                                     l->config.cycle_s);
+    l->lead_in.way_rev = takt_lead_in_way(l->at.pitch_mm, lead_in_speed(l, now.speed),
+                                          &l->chain.limits, l->config.cycle_s);
     if (l->taps) {
         set_tap(l);
     }
@@ -243,8 +243,8 @@ static void wait_for_spindle(struct lock *l, const struct motion_operator *wante
 /* The position that belongs to an angle. Out of a hole the thread is left at its start only. */
 static struct lead_in_place place_at(const struct lock *l, double rev)
 {
-    if (!l->out && !lead_in_is_over(&l->lead_in, rev)) {
-        return lead_in_at(&l->lead_in, rev);
+    if (!l->out && !takt_lead_in_is_over(&l->lead_in, rev)) {
+        return takt_lead_in_at(&l->lead_in, rev);
     }
     return (struct lead_in_place){
         .x = l->ahead.start_mm + l->ahead.pitch_mm * (rev - l->ahead.zero_rev),
@@ -333,12 +333,12 @@ static void pass_blocks(struct lock *l, struct motion *m)
 {
     const double rev = view(l, l->config.ahead_cycles).rev;
 
-    if (lead_in_is_over(&l->lead_in, rev) && place_at(l, rev).x >= l->ahead.end_mm) {
-        (void)chain_next_leg(&l->chain, &l->ahead);
+    if (takt_lead_in_is_over(&l->lead_in, rev) && place_at(l, rev).x >= l->ahead.end_mm) {
+        (void)takt_chain_next_leg(&l->chain, &l->ahead);
     }
     while (l->follower.at.x_mm >= l->at.end_mm && l->at.block != l->chain.last) {
-        (void)chain_next_leg(&l->chain, &l->at);
-        handover_pass_block(m);
+        (void)takt_chain_next_leg(&l->chain, &l->at);
+        takt_handover_pass_block(m);
     }
 }
 
@@ -348,10 +348,10 @@ static void follow_tap(struct lock *l, struct motion *m)
     const struct lock_view now = view(l, 0.0);
     const double left = (l->chain.end_mm - place_at(l, now.rev).x) / l->at.pitch_mm;
 
-    command(l, l->sense * SECONDS_PER_MINUTE * tap_command(&l->tap, left, now.speed));
+    command(l, l->sense * SECONDS_PER_MINUTE * takt_tap_command(&l->tap, left, now.speed));
     if (!l->out && l->tap.turned && l->follower.at.v_mm_s <= 0.0) {
         l->out = true;
-        handover_pass_block(m);
+        takt_handover_pass_block(m);
     }
 }
 
@@ -360,7 +360,7 @@ static bool may_hold(const struct lock *l)
 {
     const double rev = view(l, l->config.ahead_cycles + 1.0).rev;
 
-    return lead_in_at(&l->lead_in, rev).x == 0.0 && l->follower.at.x_mm == 0.0;
+    return takt_lead_in_at(&l->lead_in, rev).x == 0.0 && l->follower.at.x_mm == 0.0;
 }
 
 static void follow(struct lock *l, struct motion *m, const struct motion_operator *wanted)
@@ -370,19 +370,19 @@ static void follow(struct lock *l, struct motion *m, const struct motion_operato
         return;
     }
     if (!l->follower.braking) {
-        chain_extend(&l->chain);
+        takt_chain_extend(&l->chain);
         watch(l);
     } else if (l->taps && !l->out && !l->stopped) {
         fail(l, TAKT_ERROR_TAP_DEEP, l->config.tolerance_mm, 0.0);
     }
     if (wanted->stop) {
-        follower_brake(&l->follower);
+        takt_follower_brake(&l->follower);
         l->stopped = true;
     }
     const struct follower_target target = target_of(l);
     const struct follower_end end = end_of(l);
 
-    follower_step(&l->follower, &target, &end);
+    takt_follower_step(&l->follower, &target, &end);
     pass_blocks(l, m);
     if (l->taps && l->stopped) {
         command(l, 0.0);
@@ -399,7 +399,7 @@ static void return_spindle(struct lock *l, struct motion *m)
     command(l, l->before_rpm);
     if (is_turning(l)) {
         l->phase = LOCK_IDLE;
-        handover_end(m);
+        takt_handover_end(m);
     } else if (has_waited(l)) {
         fail(l, TAKT_ERROR_THREAD_WAITS, l->config.wait_s, 0.0);
     }
@@ -415,7 +415,7 @@ static void finish(struct lock *l, struct motion *m)
     l->next_block = l->at.block + 1;
     l->next_zero_rev = l->at.zero_rev + (l->at.end_mm - l->at.start_mm) / l->at.pitch_mm;
     l->phase = LOCK_IDLE;
-    handover_end(m);
+    takt_handover_end(m);
 }
 
 /* -- the cycle -- */
@@ -449,7 +449,7 @@ static void report(struct lock *l, struct motion *m, double before_mm, struct cy
     if (l->phase == LOCK_FOLLOWS && !landed) {
         set_point(l, &at);
     }
-    handover_add_cycle(m, &at, way_mm / l->config.cycle_s, landed, record);
+    takt_handover_add_cycle(m, &at, way_mm / l->config.cycle_s, landed, record);
     if (landed) {
         finish(l, m);
     }
@@ -472,8 +472,9 @@ static void act(struct lock *l, struct motion *m, const struct motion_operator *
     }
 }
 
-enum lock_result lock_cycle(struct lock *l, struct motion *m, const struct motion_operator *wanted,
-                            double commanded_rpm, struct cycle_record *record)
+enum lock_result takt_lock_cycle(struct lock *l, struct motion *m,
+                                 const struct motion_operator *wanted, double commanded_rpm,
+                                 struct cycle_record *record)
 {
     if (l->alarm.code != TAKT_OK) {
         command(l, 0.0);
@@ -482,7 +483,7 @@ enum lock_result lock_cycle(struct lock *l, struct motion *m, const struct motio
         return LOCK_FAILED;
     }
     if (l->phase == LOCK_IDLE && can_begin(m)) {
-        chain_begin(&l->chain, m->path);
+        takt_chain_begin(&l->chain, m->path);
         begin(l, commanded_rpm);
     }
     const double before_mm = l->follower.at.x_mm;

@@ -3,7 +3,7 @@
  *
  *     encoder -> angle.h -> lead_in.h (what position belongs to the angle) -> follower.h (limits) -> setpoint
  *
- * struct motion stops before a block that follows the spindle and hands it over (motion/handover.h); lock_cycle executes
+ * struct motion stops before a block that follows the spindle and hands it over (motion/handover.h); takt_lock_cycle executes
  * it, and hands back at its end. See README.md.
  */
 #ifndef TAKT_SYNC_LOCK_H
@@ -68,15 +68,15 @@ struct lock {
 
 enum lock_result {
     LOCK_CYCLE, /* the record holds this cycle */
-    LOCK_FAILED /* the axes stand, and lock_get_alarm says why: no cycle was made */
+    LOCK_FAILED /* the axes stand, and takt_lock_get_alarm says why: no cycle was made */
 };
 
-void lock_init(struct lock *l, const struct lock_config *config);
+void takt_lock_init(struct lock *l, const struct lock_config *config);
 
 /* A new program: what was being executed is forgotten, the spindle goes on turning. */
-void lock_restart(struct lock *l);
+void takt_lock_restart(struct lock *l);
 
-/* Every control cycle, whatever the axes do. spindle: as long as lock_cycle is called in it. */
+/* Every control cycle, whatever the axes do. spindle: as long as takt_lock_cycle is called in it. */
 static inline void lock_measure(struct lock *l, const struct spindle_feedback *spindle)
 {
     l->spindle = spindle;
@@ -84,9 +84,10 @@ static inline void lock_measure(struct lock *l, const struct spindle_feedback *s
     angle_measure(&l->angle, spindle->angle_rev);
 }
 
-/* Instead of motion_cycle when that says MOTION_HANDED_OVER. commanded_rpm: of the spindle, signed. */
-enum lock_result lock_cycle(struct lock *l, struct motion *m, const struct motion_operator *wanted,
-                            double commanded_rpm, struct cycle_record *record);
+/* Instead of takt_motion_cycle when that says MOTION_HANDED_OVER. commanded_rpm: of the spindle, signed. */
+enum lock_result takt_lock_cycle(struct lock *l, struct motion *m,
+                                 const struct motion_operator *wanted, double commanded_rpm,
+                                 struct cycle_record *record);
 
 /* Does this cycle command the spindle? Then *rpm is the speed, signed. */
 static inline bool lock_get_command(const struct lock *l, double *rpm)
@@ -97,6 +98,6 @@ static inline bool lock_get_command(const struct lock *l, double *rpm)
     return l->commands;
 }
 
-const struct diagnostic *lock_get_alarm(const struct lock *l);
+const struct diagnostic *takt_lock_get_alarm(const struct lock *l);
 
 #endif

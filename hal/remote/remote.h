@@ -82,7 +82,7 @@ struct remote_outputs {
     uint32_t frames;
     uint32_t refused;  /* frames that found no room */
     int32_t fault;     /* code of the fault; 0: none */
-    uint32_t cycle_ns; /* controller_cycle took, by the clock of the image */
+    uint32_t cycle_ns; /* takt_controller_cycle took, by the clock of the image */
     uint32_t background_ns;
     uint32_t blocks;     /* that the background has put on the path so far */
     uint32_t has_record; /* the record is of this cycle */

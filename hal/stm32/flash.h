@@ -28,6 +28,6 @@ struct flash {
 };
 
 /* mapped: where the first sector can be read: FLASH_SECTOR_ADDRESS on the chip. */
-struct flash_port flash_get_port(struct flash *flash, const uint8_t *mapped);
+struct flash_port takt_flash_get_port(struct flash *flash, const uint8_t *mapped);
 
 #endif

@@ -59,8 +59,8 @@ static enum ahead_joint joint_of(const struct curve *before, const struct curve 
     struct point out;
     double cosine;
 
-    curve_tangent(before, before->length_mm, &in);
-    curve_tangent(after, 0, &out);
+    takt_curve_tangent(before, before->length_mm, &in);
+    takt_curve_tangent(after, 0, &out);
     cosine = vector_dot(in.at, out.at);
     if (cosine < SHARP_COSINE)
         return AHEAD_SHARP;
@@ -117,8 +117,8 @@ void ahead_path_at(const struct ahead_path *path, size_t element, double place_m
     struct point p;
     struct point t;
 
-    curve_point(&e->curve, s_mm, &p);
-    curve_tangent(&e->curve, s_mm, &t);
+    takt_curve_point(&e->curve, s_mm, &p);
+    takt_curve_tangent(&e->curve, s_mm, &t);
     for (int i = 0; i < AXIS_LINEAR_COUNT; i++) {
         point[i] = p.at[i];
         tangent[i] = t.at[i];

@@ -85,7 +85,7 @@ static size_t end_on_a_knot(struct warp *a)
 
     a->stretch = 0;
     plain = whole_time(a);
-    knots = (size_t)maths_ceil(plain - 1e-9);
+    knots = (size_t)takt_maths_ceil(plain - 1e-9);
     if (knots < a->ends + 1)
         knots = a->ends + 1;
     a->stretch = 1;

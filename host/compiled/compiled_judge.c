@@ -93,18 +93,18 @@ static void begin(struct trial *t, FILE *stream)
     struct source source;
 
     session_begin_reading(t->session, &t->judge_reading, &config, &source);
-    controller_plan_limits(&t->session->setup.machine, &t->limits);
+    takt_controller_plan_limits(&t->session->setup.machine, &t->limits);
     tube_judge_init(&t->tube, &config, &source, t->limits.chord_error_max_mm);
     session_begin_reading(t->session, &t->reading, &config, &source);
-    program_open(&t->reading.program, &config, &source);
-    offset_open(&t->reading.offset, &config);
+    takt_program_open(&t->reading.program, &config, &source);
+    takt_offset_open(&t->reading.offset, &config);
     compiled_limits(t->session, &config.start, &t->limits);
-    path_init(&t->path, &t->limits, &config.start);
-    motion_init(&t->motion, &t->path, &config.start, false);
+    takt_path_init(&t->path, &t->limits, &config.start);
+    takt_motion_init(&t->motion, &t->path, &config.start, false);
     if (!t->on_board) {
-        handover_allow(&t->motion);
-        handover_allow_linear(&t->motion);
-        replay_init(&t->replay, path_lend(&t->path, sizeof(struct intake)), &compiled);
+        takt_handover_allow(&t->motion);
+        takt_handover_allow_linear(&t->motion);
+        takt_replay_init(&t->replay, takt_path_lend(&t->path, sizeof(struct intake)), &compiled);
     }
     t->look_ahead = t->session->setup.machine.look_ahead_blocks;
     begin_tool(t, &config.start);
@@ -117,30 +117,30 @@ static void read_move(struct trial *t)
     struct diagnostic error;
     struct move move;
 
-    if (offset_next(&t->reading.offset, &t->reading.program, &move, &error) == PROGRAM_MOVE) {
+    if (takt_offset_next(&t->reading.offset, &t->reading.program, &move, &error) == PROGRAM_MOVE) {
         if (!t->on_board)
-            replay_prepare(&move);
-        path_push(&t->path, &move);
+            takt_replay_prepare(&move);
+        takt_path_push(&t->path, &move);
         return;
     }
     t->ended = true;
-    path_finish(&t->path);
+    takt_path_finish(&t->path);
 }
 
 static void background(struct trial *t)
 {
     if (!t->on_board)
-        replay_read(&t->replay, &t->limits);
-    if (motion_wanted(&t->motion) == NULL)
+        takt_replay_read(&t->replay, &t->limits);
+    if (takt_motion_wanted(&t->motion) == NULL)
         return;
-    path_go_on(&t->path);
-    const uint32_t wanted = path_look_ahead(&t->path, t->look_ahead);
+    takt_path_go_on(&t->path);
+    const uint32_t wanted = takt_path_look_ahead(&t->path, t->look_ahead);
 
-    if (motion_ahead(&t->motion) + wanted / TOP_UP_PART <= wanted) {
-        while (!t->ended && path_has_room(&t->path) && motion_ahead(&t->motion) < wanted)
+    if (takt_motion_ahead(&t->motion) + wanted / TOP_UP_PART <= wanted) {
+        while (!t->ended && takt_path_has_room(&t->path) && takt_motion_ahead(&t->motion) < wanted)
             read_move(t);
     }
-    motion_build(&t->motion);
+    takt_motion_build(&t->motion);
 }
 
 static bool is_at(double ratio)
@@ -204,11 +204,11 @@ static enum motion_result cycle(struct trial *t, bool *good)
     enum motion_result result;
 
     background(t);
-    result = motion_cycle(&t->motion, &wanted, &record);
+    result = takt_motion_cycle(&t->motion, &wanted, &record);
     if (result == MOTION_NOT_YET)
         return MOTION_CYCLE;
     if (result == MOTION_HANDED_OVER) {
-        if (replay_cycle(&t->replay, &t->motion, &wanted, &record) == REPLAY_FAILED)
+        if (takt_replay_cycle(&t->replay, &t->motion, &wanted, &record) == REPLAY_FAILED)
             return MOTION_EMPTY;
         result = MOTION_CYCLE;
     }
@@ -234,7 +234,7 @@ static enum command_status replay(struct trial *t)
     if (result == MOTION_DONE)
         return STATUS_DONE;
     if (result == MOTION_STALLED) {
-        refuse(t, motion_stalled_line(&t->motion), "the axes do not go on here");
+        refuse(t, takt_motion_stalled_line(&t->motion), "the axes do not go on here");
         return STATUS_FAILED;
     }
     refuse(t, 0, "the compiled motion does not fit the program after block %u", (unsigned)t->block);

@@ -67,7 +67,7 @@ static bool find_drive(const struct machine_setup *setup, const char *instance, 
             return true;
         }
     }
-    for (unsigned i = 0; i < machine_gantry_count(&setup->machine) && *end == '\0'; i++) {
+    for (unsigned i = 0; i < takt_machine_gantry_count(&setup->machine) && *end == '\0'; i++) {
         if (end != instance && setup->machine.gantry[i].drive_node == node &&
             setup->machine.gantry[i].drive_bus == bus) {
             *index = MACHINE_SECOND_DRIVE + i;
@@ -397,10 +397,10 @@ static bool read_layers(const struct machine_key *key, const char *value, uint32
         size_t length = strcspn(value, " \t,");
         unsigned i = 0;
 
-        while (
-            i < CORRECTION_LAYERS_COUNT &&
-            (strlen(correction_layer_name((enum correction_layer_number)i)) != length ||
-             strncmp(correction_layer_name((enum correction_layer_number)i), value, length) != 0))
+        while (i < CORRECTION_LAYERS_COUNT &&
+               (strlen(takt_correction_layer_name((enum correction_layer_number)i)) != length ||
+                strncmp(takt_correction_layer_name((enum correction_layer_number)i), value,
+                        length) != 0))
             i++;
         if (i == CORRECTION_LAYERS_COUNT) {
             say(wrong, "%s: there is no layer '%.*s': matrix setup axes volume thermal wear",
@@ -518,7 +518,7 @@ static void write_layers(uint32_t layers, char *text, size_t size)
     for (unsigned i = 0; i < CORRECTION_LAYERS_COUNT && used < size; i++) {
         if ((layers & 1U << i) != 0)
             used += (size_t)snprintf(text + used, size - used, "%s%s", used > 0 ? " " : "",
-                                     correction_layer_name((enum correction_layer_number)i));
+                                     takt_correction_layer_name((enum correction_layer_number)i));
     }
 }
 

@@ -175,9 +175,9 @@ static void find_modes(struct arrival *a)
     config.say = arrive;
     config.listener = a;
     a->axes = config.axes;
-    program_open(&reading.program, &config, &source);
+    takt_program_open(&reading.program, &config, &source);
     while ((result == PROGRAM_MOVE || result == PROGRAM_ERROR) && !a->found && !interrupt_asked())
-        result = program_next(&reading.program, &move, &ignored);
+        result = takt_program_next(&reading.program, &move, &ignored);
 }
 
 static void write_modes(const struct lsp_program *p, uint32_t line, bool flows, char *text,

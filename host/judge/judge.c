@@ -13,8 +13,8 @@ void judge_init(struct judge *j, const struct machine *machine,
                 const struct program_config *program, const struct source *source)
 {
     memset(j, 0, sizeof *j);
-    program_open(&j->program, program, source);
-    offset_open(&j->offset, program);
+    takt_program_open(&j->program, program, source);
+    takt_offset_open(&j->offset, program);
     j->rate_hz = 1e6 / (double)machine->cycle_us;
     j->block.end = program->start;
     j->read_end = program->start;
@@ -65,7 +65,7 @@ static bool next_motion(struct judge *j)
     enum program_result result = PROGRAM_END;
 
     while (!j->program_ended) {
-        result = offset_next(&j->offset, &j->program, &move, &diagnostic);
+        result = takt_offset_next(&j->offset, &j->program, &move, &diagnostic);
         j->program_ended = result != PROGRAM_MOVE && result != PROGRAM_WAIT;
         if (result != PROGRAM_MOVE || move_is_motion(&move))
             break;
@@ -80,7 +80,7 @@ static bool next_motion(struct judge *j)
                    move.feed_rev_mm == 0,
         .probing = move.kind == MOVE_PROBE,
         .turning_mm = move.kind == MOVE_TAP ? TUBE_TURNING_REV * move.feed_rev_mm : 0};
-    j->block.has_length = move_curve(&move, &j->read_end, &j->block.curve);
+    j->block.has_length = takt_move_curve(&move, &j->read_end, &j->block.curve);
     j->read_end = move.end;
     return true;
 }
@@ -90,7 +90,7 @@ static double missed_end(const struct judge_block *block)
 {
     struct point end;
 
-    curve_point(&block->curve, block->curve.length_mm, &end);
+    takt_curve_point(&block->curve, block->curve.length_mm, &end);
     return judge_distance(&end, &block->end);
 }
 
@@ -126,7 +126,7 @@ static double evaluate_end(const struct block *block, const struct point *end)
 {
     struct point p;
 
-    curve_point(&block->curve, block->length_mm * block->scale, &p);
+    takt_curve_point(&block->curve, block->length_mm * block->scale, &p);
     return judge_distance(&p, end);
 }
 
@@ -208,7 +208,7 @@ static void judge_axes(struct judge *j, const struct cycle_record *record)
         raise_to(&j->figures.jerk_mm_s3[axis->axis], maths_abs((a - axis->a) * j->rate_hz));
         raise_to(&j->figures.following_error_mm[axis->axis],
                  maths_abs(expected->at[axis->axis] - record->act.at[axis->axis]));
-        j->figures.digest = fnv_add_double(j->figures.digest, x);
+        j->figures.digest = takt_fnv_add_double(j->figures.digest, x);
         axis->x = x;
         axis->v = v;
         axis->a = a;
@@ -278,7 +278,7 @@ void judge_answer(struct judge *j, const struct program_answer *answer)
     j->block.landed = true;
     while (next_motion(j))
         pass_block(j);
-    offset_answer(&j->offset, &j->program, answer);
+    takt_offset_answer(&j->offset, &j->program, answer);
 }
 
 /* What the tube has found. Corners that have not been come to are not judged. */

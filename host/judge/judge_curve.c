@@ -38,7 +38,7 @@ static double arc_fraction(const struct curve_arc *arc, double angle_rad, double
     double turn = MATHS_TWO_PI / maths_abs(arc->sweep_rad);
     double fraction = (angle_rad - arc->angle_start_rad) / arc->sweep_rad;
 
-    fraction += turn * maths_round((near - fraction) / turn);
+    fraction += turn * takt_maths_round((near - fraction) / turn);
     return maths_clamp(fraction, 0, 1);
 }
 
@@ -47,14 +47,14 @@ static double arc_distance(const struct curve *c, const struct point *p, double 
     const struct curve_arc *arc = &c->arc;
     double x = p->at[arc->first] - arc->centre_mm[0];
     double y = p->at[arc->second] - arc->centre_mm[1];
-    double angle = maths_atan2(y, x);
+    double angle = takt_maths_atan2(y, x);
     double f = arc_fraction(arc, angle, *fraction);
     double on = arc->angle_start_rad + f * arc->sweep_rad;
     double radius = arc->radius_start_mm + f * arc->radius_change_mm;
     double sine, cosine, sum;
 
     *fraction = f;
-    maths_sincos(on, &sine, &cosine);
+    takt_maths_sincos(on, &sine, &cosine);
     sum = (x - radius * cosine) * (x - radius * cosine) + (y - radius * sine) * (y - radius * sine);
     for (unsigned i = 0; i < AXIS_COUNT; i++) {
         double off = p->at[i] - c->start.at[i] - f * (c->end.at[i] - c->start.at[i]);
@@ -74,11 +74,11 @@ static double involute_nearest(const struct curve *c, double x, double y)
     const struct curve_involute *i = &c->involute;
     double ratio = maths_sqrt(x * x + y * y) / i->radius_mm;
     double phi = ratio > 1 ? maths_sqrt((ratio - 1) * (ratio + 1)) : 0;
-    double string = maths_atan2(y, x) + i->hand * maths_atan2(phi, 1);
+    double string = takt_maths_atan2(y, x) + i->hand * takt_maths_atan2(phi, 1);
     double on = i->hand * (string - i->heading_rad);
 
-    on += MATHS_TWO_PI * maths_round((phi - on) / MATHS_TWO_PI);
-    return maths_clamp(involute_place(c, maths_max(on, 0)), 0, c->length_mm);
+    on += MATHS_TWO_PI * takt_maths_round((phi - on) / MATHS_TWO_PI);
+    return maths_clamp(takt_involute_place(c, maths_max(on, 0)), 0, c->length_mm);
 }
 
 static double involute_distance(const struct curve *c, const struct point *p, double *fraction)
@@ -89,7 +89,7 @@ static double involute_distance(const struct curve *c, const struct point *p, do
     struct point on;
 
     *fraction = s / c->length_mm;
-    curve_point(c, s, &on);
+    takt_curve_point(c, s, &on);
     return judge_distance(p, &on);
 }
 
@@ -104,8 +104,8 @@ static double quintic_distance(const struct curve *c, const struct point *p, dou
     for (unsigned k = 0; k < NEAREST_STEPS; k++) {
         double dot = 0, square = 0;
 
-        curve_point(c, s, &on);
-        curve_tangent(c, s, &tangent);
+        takt_curve_point(c, s, &on);
+        takt_curve_tangent(c, s, &tangent);
         for (int i = 0; i < AXIS_COUNT; i++) {
             dot += (p->at[i] - on.at[i]) * tangent.at[i];
             square += tangent.at[i] * tangent.at[i];
@@ -113,7 +113,7 @@ static double quintic_distance(const struct curve *c, const struct point *p, dou
         s = maths_clamp(s + dot / square, 0, c->length_mm);
     }
     *fraction = s / c->length_mm;
-    curve_point(c, s, &on);
+    takt_curve_point(c, s, &on);
     return judge_distance(p, &on);
 }
 
@@ -166,17 +166,18 @@ static double involute_chord_error(const struct curve *c, const struct point *fr
     double fraction = 0, begin, end, largest = 0;
 
     (void)involute_distance(c, from, &fraction);
-    begin = involute_unrolled(c, fraction * c->length_mm);
+    begin = takt_involute_unrolled(c, fraction * c->length_mm);
     (void)involute_distance(c, to, &fraction);
-    end = involute_unrolled(c, fraction * c->length_mm);
+    end = takt_involute_unrolled(c, fraction * c->length_mm);
     for (unsigned half = 0; half < 2; half++) {
-        double phi = i->hand * (maths_atan2(off[1], off[0]) - i->heading_rad) + half * MATHS_PI;
+        double phi =
+            i->hand * (takt_maths_atan2(off[1], off[0]) - i->heading_rad) + half * MATHS_PI;
         struct point p;
 
-        phi += MATHS_TWO_PI * maths_floor((maths_max(begin, end) - phi) / MATHS_TWO_PI);
+        phi += MATHS_TWO_PI * takt_maths_floor((maths_max(begin, end) - phi) / MATHS_TWO_PI);
         if (length == 0 || phi <= maths_min(begin, end))
             continue;
-        curve_point(c, involute_place(c, phi), &p);
+        takt_curve_point(c, takt_involute_place(c, phi), &p);
         largest = maths_max(largest, maths_abs((p.at[i->first] - from->at[i->first]) * off[1] -
                                                (p.at[i->second] - from->at[i->second]) * off[0]) /
                                          length);
@@ -193,7 +194,7 @@ static double quintic_chord_error(const struct curve *c, const struct point *fro
     struct curve chord;
     double begin = 0, end = 1, largest = 0;
 
-    if (!curve_set_line(&chord, from, to))
+    if (!takt_curve_set_line(&chord, from, to))
         return 0;
     (void)quintic_distance(c, from, &begin);
     (void)quintic_distance(c, to, &end);
@@ -201,7 +202,7 @@ static double quintic_chord_error(const struct curve *c, const struct point *fro
         double fraction = 0;
         struct point p;
 
-        curve_point(c, (begin + (end - begin) * k / CHORD_PLACES) * c->length_mm, &p);
+        takt_curve_point(c, (begin + (end - begin) * k / CHORD_PLACES) * c->length_mm, &p);
         largest = maths_max(largest, line_distance(&chord, &p, &fraction));
     }
     return largest;

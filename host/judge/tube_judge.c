@@ -244,9 +244,9 @@ static double curve_distance(const struct tube_piece *piece, double part, const 
         struct point on, tangent;
         double along = 0, square = 0;
 
-        curve_point(c, s_mm, &on);
+        takt_curve_point(c, s_mm, &on);
         least = maths_min(least, judge_distance(&on, p));
-        curve_tangent(c, s_mm, &tangent);
+        takt_curve_tangent(c, s_mm, &tangent);
         for (int i = 0; i < AXIS_COUNT; i++) {
             along += (p->at[i] - on.at[i]) * tangent.at[i];
             square += tangent.at[i] * tangent.at[i];
@@ -349,8 +349,9 @@ static double length_before(const struct tube_piece *piece, double part)
 {
     const struct tube_motion *m = piece->motion;
 
-    return curve_is_rotary(&m->curve) ? m->travel_mm
-                                      : m->travel_mm + piece->from_mm + part * piece->length_mm;
+    return takt_curve_is_rotary(&m->curve)
+               ? m->travel_mm
+               : m->travel_mm + piece->from_mm + part * piece->length_mm;
 }
 
 /* Is the setpoint on the motion that is executed, as is said? */

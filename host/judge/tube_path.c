@@ -104,8 +104,8 @@ void tube_path_init(struct tube_path *p, const struct program_config *program,
                     const struct source *source, double exact_mm)
 {
     memset(p, 0, sizeof *p);
-    program_open(&p->program, program, source);
-    offset_open(&p->offset, program);
+    takt_program_open(&p->program, program, source);
+    takt_offset_open(&p->offset, program);
     p->exact_mm = exact_mm;
     p->end = program->start;
     append_point(p);
@@ -140,7 +140,7 @@ static double straight_length(const struct tube_motion *m, double at_mm)
     struct point k;
     double square = 0;
 
-    curve_curvature(&m->curve, at_mm, &k);
+    takt_curve_curvature(&m->curve, at_mm, &k);
     for (int i = 0; i < AXIS_COUNT; i++)
         square += k.at[i] * k.at[i];
     return maths_sqrt(8 * m->cut_mm / maths_sqrt(square));
@@ -166,7 +166,7 @@ static bool take_motion(struct tube_path *p, const struct move *move, const stru
         motion.even_mm =
             maths_min(straight_length(&motion, 0), straight_length(&motion, curve->length_mm));
     p->cut_to = curve->start;
-    if (!curve_is_rotary(curve))
+    if (!takt_curve_is_rotary(curve))
         p->travel_mm += curve->length_mm;
     return begin_motion(p, &motion);
 }
@@ -181,7 +181,7 @@ static bool read_motion(struct tube_path *p)
         struct curve curve;
         const struct point start = p->end;
 
-        result = offset_next(&p->offset, &p->program, &move, &error);
+        result = takt_offset_next(&p->offset, &p->program, &move, &error);
         p->ended = result != PROGRAM_MOVE && result != PROGRAM_WAIT;
         if (result != PROGRAM_MOVE)
             break;
@@ -189,7 +189,7 @@ static bool read_motion(struct tube_path *p)
             continue;
         p->motions++;
         p->end = move.end;
-        if (move_curve(&move, &start, &curve))
+        if (takt_move_curve(&move, &start, &curve))
             return take_motion(p, &move, &curve);
     }
     return false;
@@ -226,7 +226,7 @@ bool tube_path_extend(struct tube_path *p)
     to_mm = next_cut(p);
     end = c->end;
     if (to_mm < c->length_mm)
-        curve_point(c, to_mm, &end);
+        takt_curve_point(c, to_mm, &end);
     piece = append(p, &p->cut_to, &end);
     if (piece == NULL)
         return false;
@@ -257,11 +257,11 @@ void tube_path_answer(struct tube_path *p, const struct program_answer *answer)
     const struct tube_motion *m = p->motion;
 
     if (m->probing) {
-        if (!curve_is_rotary(&m->curve))
+        if (!takt_curve_is_rotary(&m->curve))
             p->travel_mm = m->travel_mm + place_on_line(&m->curve, &answer->rest_at);
         p->end = answer->rest_at;
     }
     drop_all(p);
     append_point(p);
-    offset_answer(&p->offset, &p->program, answer);
+    takt_offset_answer(&p->offset, &p->program, answer);
 }

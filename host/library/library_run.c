@@ -32,13 +32,13 @@ static bool keep(struct takt_job *job, unsigned keeps)
     struct plan_limits limits;
 
     job->keeps_trace = (keeps & TAKT_KEEPS_TRACE) != 0;
-    columns_init(&job->columns, machine_axes(machine), 1e-6 * (double)machine->cycle_us,
+    columns_init(&job->columns, takt_machine_axes(machine), 1e-6 * (double)machine->cycle_us,
                  simulation_get_tool(job->run.simulation) != NULL);
     if (keeps != 0)
         job->run.watcher = (struct run_watcher){see, job};
     if ((keeps & TAKT_KEEPS_REPORT) == 0)
         return true;
-    controller_plan_limits(machine, &limits);
+    takt_controller_plan_limits(machine, &limits);
     job->report = report_open(&limits);
     if (job->report == NULL)
         message_command_error("out of memory");
@@ -215,11 +215,11 @@ void takt_get_state(const struct takt_job *job, struct takt_state *state)
     const struct cycle_record *record = &job->last;
     struct point actual;
 
-    controller_get_actual(&s->controller, &actual);
-    *state = (struct takt_state){.state = (int)controller_get_state(&s->controller),
+    takt_controller_get_actual(&s->controller, &actual);
+    *state = (struct takt_state){.state = (int)takt_controller_get_state(&s->controller),
                                  .cycles = job->run.judge.figures.cycles,
                                  .cycles_since_power = s->cycles,
-                                 .axes = machine_axes(machine),
+                                 .axes = takt_machine_axes(machine),
                                  .cycle_s = 1e-6 * (double)machine->cycle_us,
                                  .override_percent = s->inputs.feed_override_percent,
                                  .digest = job->run.judge.figures.digest};

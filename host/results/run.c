@@ -84,7 +84,7 @@ enum command_status run_prepare(struct run *run)
 static void tell_answers(struct run *run)
 {
     struct program_answer answer;
-    uint32_t answers = controller_get_answers(&run->simulation->controller, &answer);
+    uint32_t answers = takt_controller_get_answers(&run->simulation->controller, &answer);
 
     if (answers != run->answers)
         judge_answer(&run->judge, &answer);
@@ -105,7 +105,7 @@ bool run_cycle(struct run *run)
 
     tell_answers(run);
     record = simulation_get_record(run->simulation);
-    block = controller_get_block(&run->simulation->controller);
+    block = takt_controller_get_block(&run->simulation->controller);
     if (record != NULL && block != NULL) /* a target may differ, which is told */
         good = judge_add(&run->judge, record, block) && good;
     see(run, record, block);
@@ -114,7 +114,7 @@ bool run_cycle(struct run *run)
 
 bool run_is_over(const struct run *run)
 {
-    return controller_get_state(&run->simulation->controller) >= CONTROLLER_COMPLETED ||
+    return takt_controller_get_state(&run->simulation->controller) >= CONTROLLER_COMPLETED ||
            run->judge.figures.cycles >= run->until_cycles;
 }
 
@@ -147,7 +147,7 @@ void run_end_drives(struct run *run)
 
 static enum summary_outcome outcome_of(const struct run *run)
 {
-    enum controller_state state = controller_get_state(&run->simulation->controller);
+    enum controller_state state = takt_controller_get_state(&run->simulation->controller);
 
     if (run->cut != STATUS_DONE)
         return OUTCOME_INTERRUPTED;
@@ -169,7 +169,7 @@ void run_finish(struct run *run, enum command_status cut)
 
     run->cut = cut;
     source.outcome = outcome_of(run);
-    run->fault = *controller_get_fault(&run->simulation->controller);
+    run->fault = *takt_controller_get_fault(&run->simulation->controller);
     if (cut != STATUS_DONE)
         run_end_drives(run);
     judge_finish(&run->judge, source.outcome == OUTCOME_COMPLETED);

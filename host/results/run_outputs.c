@@ -143,7 +143,7 @@ static bool open_trace(struct run_outputs *o, const struct machine *machine)
     o->trace = malloc(sizeof *o->trace);
     if (o->trace == NULL)
         return false;
-    trace_writer_init(o->trace, o->file[RUN_TRACE].stream, machine_axes(machine),
+    trace_writer_init(o->trace, o->file[RUN_TRACE].stream, takt_machine_axes(machine),
                       1e-6 * (double)machine->cycle_us, o->tool != NULL);
     return true;
 }
@@ -154,7 +154,7 @@ static bool open_report(struct run_outputs *o, const struct machine *machine)
 
     if (report_get_plots_missing() != NULL)
         (void)fprintf(stderr, "takt run: warning: %s\n", report_get_plots_missing());
-    controller_plan_limits(machine, &limits);
+    takt_controller_plan_limits(machine, &limits);
     o->report = report_open(&limits);
     return o->report != NULL;
 }

@@ -218,7 +218,7 @@ static void set_fault(struct summary *summary, const struct diagnostic *fault)
     const char *remedy = drives_table_remedy(fault);
     char text[DIAGNOSTIC_TEXT_MAX];
 
-    (void)diagnostic_text(fault, text);
+    (void)takt_diagnostic_text(fault, text);
     (void)snprintf(summary->fault, sizeof summary->fault, "%s%s%s", text,
                    remedy[0] != '\0' ? ": " : "", remedy);
 }
@@ -227,7 +227,7 @@ void summary_set(struct summary *summary, const struct summary_source *source)
 {
     const struct simulation *simulation = source->simulation;
     const struct machine *machine = &source->session->setup.machine;
-    const struct drives *drives = controller_get_drives(&simulation->controller);
+    const struct drives *drives = takt_controller_get_drives(&simulation->controller);
 
     *summary = (struct summary){
         .program = source->session->program.name,
@@ -240,12 +240,12 @@ void summary_set(struct summary *summary, const struct summary_source *source)
         .correction = simulation->correction,
         .tool_point = simulation->tool_point,
         .steppers = &simulation->field.steppers,
-        .interpolator = *controller_get_interpolator_errors(&simulation->controller),
+        .interpolator = *takt_controller_get_interpolator_errors(&simulation->controller),
     };
     tool_point_finish(&summary->tool_point);
     drives_table_set(&summary->drives, drives);
     if (source->outcome == OUTCOME_FAULTED)
-        set_fault(summary, controller_get_fault(&simulation->controller));
+        set_fault(summary, takt_controller_get_fault(&simulation->controller));
     set_cost(summary, &simulation->cost);
     for (unsigned i = 0; i < AXIS_COUNT; i++) {
         if (machine->axis[i].present)

@@ -67,19 +67,19 @@ static void open_service(struct serving *s)
         .correction = s->session.correction,
         .shape = shaper_prepare(&s->session.setup, &s->shape),
         .programs = {program_store_read, program_store_adopt, &s->store},
-        .plans = plan_queue_get_plans(&s->plan),
+        .plans = takt_plan_queue_get_plans(&s->plan),
         .lines = serving_console_get_lines(s),
         .exact_path = s->session.options->exact_path,
     };
 
-    plan_queue_init(&s->plan, &s->service);
-    service_init(&s->service, &config);
-    field_watch_drives(&s->field, controller_get_drives(&s->service.controller));
+    takt_plan_queue_init(&s->plan, &s->service);
+    takt_service_init(&s->service, &config);
+    field_watch_drives(&s->field, takt_controller_get_drives(&s->service.controller));
     message_controller_warning(&s->service.controller);
     if (s->store.program != NULL)
-        service_set_program(&s->service, (uint32_t)s->store.size,
-                            crc32_add(CRC32_START, s->store.program, s->store.size));
-    service_set_start_line(&s->service, s->session.options->from_line);
+        takt_service_set_program(&s->service, (uint32_t)s->store.size,
+                                 takt_crc32_add(CRC32_START, s->store.program, s->store.size));
+    takt_service_set_start_line(&s->service, s->session.options->from_line);
     serving_state_restore(&s->state, &s->service);
     s->has_service = true;
 }
@@ -120,7 +120,7 @@ static enum command_status open_server(struct serving *s)
     const struct panel_config panel = {
         .port = exchange_get_port(&s->exchange),
         .store = program_store_get_staging(&s->store),
-        .plans = plan_queue_get_store(&s->plan),
+        .plans = takt_plan_queue_get_store(&s->plan),
         .password = s->session.setup.panel.password,
     };
     struct server_config config = {.host = panel_host_get(&s->panel)};
@@ -130,7 +130,7 @@ static enum command_status open_server(struct serving *s)
     s->has_exchange = exchange_open(&s->exchange);
     if (!serving_options_read(&s->options, &s->session, &config))
         return STATUS_INPUT;
-    service_look(&s->service, exchange_next_snapshot(&s->exchange));
+    takt_service_look(&s->service, exchange_next_snapshot(&s->exchange));
     exchange_publish(&s->exchange);
     s->has_server = s->has_exchange;
     if (s->has_server && server_open(&s->server, &config, &problem))
@@ -182,10 +182,10 @@ void serving_close(struct serving *s)
 
 static void step_spindle(struct serving *s)
 {
-    if (service_take_spindle_reset(&s->service))
+    if (takt_service_take_spindle_reset(&s->service))
         serving_spindle_reset(&s->spindle);
     s->inputs.spindle =
-        serving_spindle_cycle(&s->spindle, service_get_outputs(&s->service).spindle_speed_rpm,
+        serving_spindle_cycle(&s->spindle, takt_service_get_outputs(&s->service).spindle_speed_rpm,
                               cutting_feed_mm_s(&s->service.controller));
 }
 
@@ -200,14 +200,14 @@ static void update_health(struct serving *s)
         .overruns = (uint32_t)s->field.pace.overruns,
     };
 
-    service_set_health(&s->service, &health);
+    takt_service_set_health(&s->service, &health);
 }
 
 static void control(struct serving *s)
 {
     const uint64_t start_ns = stopwatch_now_ns();
 
-    service_cycle(&s->service, &s->inputs);
+    takt_service_cycle(&s->service, &s->inputs);
     cycle_cost_add(&s->cost, stopwatch_now_ns() - start_ns);
     if (s->cycles++ % HEALTH_CYCLES == 0)
         update_health(s);
@@ -217,14 +217,14 @@ static void control(struct serving *s)
 static void tell_drives(struct serving *s)
 {
     if (!s->has_told_drives)
-        s->has_told_drives = drives_table_tell(controller_get_drives(&s->service.controller),
+        s->has_told_drives = drives_table_tell(takt_controller_get_drives(&s->service.controller),
                                                s->session.options->quiet);
 }
 
 /* Once it ends nothing is begun any more. */
 static enum panel_verdict give_order(struct serving *s, const struct panel_order *order)
 {
-    return s->ending.way == ENDING_NOT ? service_order(&s->service, order) : PANEL_WRONG_STATE;
+    return s->ending.way == ENDING_NOT ? takt_service_order(&s->service, order) : PANEL_WRONG_STATE;
 }
 
 /* An order is answered when a snapshot shows what came of it. */
@@ -236,12 +236,12 @@ static void serve_cycle(struct serving *s)
     if (order != NULL)
         verdict = give_order(s, order);
     if (exchange_take_alive(&s->exchange))
-        service_alive(&s->service);
-    service_background(&s->service);
+        takt_service_alive(&s->service);
+    takt_service_background(&s->service);
     control(s);
     step_spindle(s);
     tell_drives(s);
-    service_look(&s->service, exchange_next_snapshot(&s->exchange));
+    takt_service_look(&s->service, exchange_next_snapshot(&s->exchange));
     exchange_publish(&s->exchange);
     serving_page_cycle(s);
     if (order != NULL)
@@ -289,7 +289,7 @@ enum command_status serving_run(struct serving *s)
         serving_state_keep(&s->state, &s->service, link_clock_ns());
         (void)field_end_cycle(&s->field);
         if (field_is_lost(&s->field))
-            service_lose_bus(&s->service, field_get_lost_bus(&s->field));
+            takt_service_lose_bus(&s->service, field_get_lost_bus(&s->field));
         look_for_end(s);
     }
     return how_it_ended(s);

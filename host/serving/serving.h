@@ -1,8 +1,8 @@
 /*
  * `takt serve` at work: the controller as a service, paced by the wall clock, on its bus, with spindle and panel.
  *
- *     panel's thread  --- orders --->  exchange  --->  service_order      control thread
- *                     <-- snapshots -            <---  service_cycle  ->  field (bus, drives)
+ *     panel's thread  --- orders --->  exchange  --->  takt_service_order      control thread
+ *                     <-- snapshots -            <---  takt_service_cycle  ->  field (bus, drives)
  *                                                                     ->  spindle
  */
 #ifndef TAKT_HOST_SERVING_H

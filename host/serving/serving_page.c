@@ -102,14 +102,14 @@ static bool draw_move(struct page_path *path, const struct move *move, const str
     struct curve curve;
     unsigned chords = 1;
 
-    if (!move_curve(move, at, &curve))
+    if (!takt_move_curve(move, at, &curve))
         return true;
     if (curve.kind != CURVE_LINE)
         chords = (unsigned)maths_clamp(curve.length_mm / CHORD_MM, CHORDS_MIN, CHORDS_MAX);
     for (unsigned i = 1; i <= chords; i++) {
         struct point point;
 
-        curve_point(&curve, curve.length_mm * (double)i / (double)chords, &point);
+        takt_curve_point(&curve, curve.length_mm * (double)i / (double)chords, &point);
         if (!page_path_add(path, &point, move->line, move->kind == MOVE_RAPID))
             return false;
     }
@@ -125,7 +125,8 @@ static void draw_moves(struct drawing *d, const struct program_config *config,
     struct move move;
 
     (void)page_path_add(path, &at, 0, true);
-    while ((result = offset_next(&d->offset, &d->program, &move, &diagnostic)) == PROGRAM_MOVE) {
+    while ((result = takt_offset_next(&d->offset, &d->program, &move, &diagnostic)) ==
+           PROGRAM_MOVE) {
         if (!move_is_motion(&move))
             continue;
         if (!draw_move(path, &move, &at))
@@ -133,7 +134,7 @@ static void draw_moves(struct drawing *d, const struct program_config *config,
         at = move.end;
     }
     if (result == PROGRAM_ERROR)
-        (void)diagnostic_text(&diagnostic, path->problem);
+        (void)takt_diagnostic_text(&diagnostic, path->problem);
 }
 
 /* In a thread of its own, on copies of all that the control thread changes. */
@@ -152,12 +153,12 @@ static void draw(void *context, const struct page_source *page, struct page_path
                                                  .tools = &d->tools,
                                                  .parameters = &parameters,
                                                  .exact_path = s->session.options->exact_path};
-    controller_program_config(&controller, &config);
+    takt_controller_program_config(&controller, &config);
     config.waits = false;
     config.repeats_max = OPTIONS_LINES_MAX;
-    source_open_text(&source, &d->text, page->text, page->size);
-    program_open(&d->program, &config, &source);
-    offset_open(&d->offset, &config);
+    takt_source_open_text(&source, &d->text, page->text, page->size);
+    takt_program_open(&d->program, &config, &source);
+    takt_offset_open(&d->offset, &config);
     draw_moves(d, &config, path);
     free(d);
 }
@@ -220,7 +221,7 @@ static void read_objects(struct serving *s, struct page_job *job)
     values->count = dictionary->count < PAGE_OBJECTS_MAX ? dictionary->count : PAGE_OBJECTS_MAX;
     for (unsigned i = 0; i < values->count; i++) {
         const struct object_row *row = &dictionary->row[i];
-        const unsigned bytes = object_type_bytes((enum object_type)row->type);
+        const unsigned bytes = takt_object_type_bytes((enum object_type)row->type);
 
         values->is_there[i] =
             bytes > 0 && row->access != OBJECT_WO &&
@@ -310,7 +311,7 @@ static void put_cycle(struct serving *s)
     struct page_cycle cycle = {.number = service->cycles, .set = service->sent[0]};
     struct point actual;
 
-    controller_get_actual(&service->controller, &actual);
+    takt_controller_get_actual(&service->controller, &actual);
     for (unsigned i = 0; i < AXIS_COUNT; i++)
         cycle.following.at[i] = service->sent[DRIVES_LATENCY_CYCLES - 1].at[i] - actual.at[i];
     page_link_put(&s->page.link, &cycle);

@@ -39,7 +39,7 @@ static void open_inverter(struct serving_spindle *s, const struct machine_setup 
         .silent_after_us = SILENT_AFTER_US,
     };
 
-    inverter_init(&s->inverter, &config);
+    takt_inverter_init(&s->inverter, &config);
 }
 
 static bool open_outside(struct serving_spindle *s, const struct machine_setup *setup,
@@ -84,7 +84,7 @@ struct spindle_feedback serving_spindle_cycle(struct serving_spindle *s, double 
                                               double cut_mm_s)
 {
     if (s->is_outside)
-        return inverter_cycle(&s->inverter, &s->port, commanded_rpm);
+        return takt_inverter_cycle(&s->inverter, &s->port, commanded_rpm);
     return virtual_spindle_step(
         &s->inside, s->cycle_s, commanded_rpm,
         virtual_spindle_cut_nm(&s->inside, cut_mm_s, s->inside.config.cut_depth_mm));
@@ -94,14 +94,14 @@ bool serving_spindle_stop(struct serving_spindle *s)
 {
     if (!s->is_outside)
         return true;
-    inverter_stop(&s->inverter);
-    return inverter_is_stopped(&s->inverter);
+    takt_inverter_stop(&s->inverter);
+    return takt_inverter_is_stopped(&s->inverter);
 }
 
 void serving_spindle_reset(struct serving_spindle *s)
 {
     if (s->is_outside)
-        inverter_reset(&s->inverter);
+        takt_inverter_reset(&s->inverter);
     else
         virtual_spindle_set_trip(&s->inside, VIRTUAL_SPINDLE_GOOD);
 }

@@ -69,7 +69,7 @@ static bool open_serial(struct spindle_service *s, const char *where, struct ser
         return false;
     }
     config->serial = serial_line_open(&s->serial);
-    config->serial_gap_us = modbus_rtu_gap_us(s->serial.bauds, SERIAL_BITS);
+    config->serial_gap_us = takt_modbus_rtu_gap_us(s->serial.bauds, SERIAL_BITS);
     if (config->serial < 0)
         message_command_error("%s: %s", s->serial.path, strerror(errno));
     return config->serial >= 0;

@@ -76,7 +76,7 @@ static double stretch_at(const struct block *block, double part)
 
     if (block->curve.kind != CURVE_SPLINE)
         return 1;
-    curve_tangent(&block->curve, part * block->curve.length_mm, &tangent);
+    takt_curve_tangent(&block->curve, part * block->curve.length_mm, &tangent);
     for (int axis = from; axis < to; axis++)
         square += tangent.at[axis] * tangent.at[axis];
     return maths_sqrt(square);

@@ -193,7 +193,7 @@ static enum command_status open_link(struct field *field, const struct machine_s
     struct link_config config = {.bitrate = rates.nominal, .data_bitrate = rates.data};
     struct link_error error;
     uint8_t nodes[MACHINE_NODES_MAX];
-    const unsigned count = machine_bus_nodes(&setup->machine, bus, nodes);
+    const unsigned count = takt_machine_bus_nodes(&setup->machine, bus, nodes);
 
     outside->bus = bus;
     outside->link = link_open(outside->address, &config, &error);
@@ -259,7 +259,7 @@ enum command_status field_open(struct field *field, const struct machine_setup *
     enum command_status status = STATUS_DONE;
 
     memset(field, 0, sizeof *field);
-    field->buses = machine_bus_count(&setup->machine);
+    field->buses = takt_machine_bus_count(&setup->machine);
     field->cycle_ns = (uint64_t)setup->machine.cycle_us * 1000;
     field->script = options->script;
     field->returns = options->returns;

@@ -1,7 +1,7 @@
 /*
  * The machine a program runs on, cycle by cycle: firmware, CAN bus and drives.
  *
- *     controller_background, controller_cycle -> frames -> bus -> drives -> motors -> frames -> controller
+ *     takt_controller_background, takt_controller_cycle -> frames -> bus -> drives -> motors -> frames -> controller
  */
 #ifndef TAKT_HOST_SIMULATION_H
 #define TAKT_HOST_SIMULATION_H

@@ -52,7 +52,7 @@ void inverter_registers_step(struct inverter_registers *r, double dt_s)
 
 static uint16_t word_of(double value)
 {
-    return (uint16_t)maths_clamp(maths_round(value), 0.0, WORD_MAX);
+    return (uint16_t)maths_clamp(takt_maths_round(value), 0.0, WORD_MAX);
 }
 
 static uint16_t frequency_of(const struct inverter_registers *r, double rpm)

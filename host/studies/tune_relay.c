@@ -192,7 +192,7 @@ const char *tune_relay_run(struct tune_axis *result, struct tune_drive *drive,
 
         if (is_found && agree(&before, &result->plant, result->relay.cycle_s))
             return NULL;
-        torque = (int32_t)maths_round(1e3 * result->torque_nm / plant->torque_rated_nm);
+        torque = (int32_t)takt_maths_round(1e3 * result->torque_nm / plant->torque_rated_nm);
         if (torque >= TORQUE_LAST)
             return "tests of its torque do not agree on an inertia and a delay: is friction near "
                    "its rated torque?";

@@ -64,7 +64,7 @@ static bool set_test(struct circle_job *job, const struct options *options)
     test->feed_mm_min = given->feed > 0 ? given->feed : FEED_MM_MIN;
     if (!read_plane(given->plane, &test->plane) || !read_centre(given->centre, test))
         return false;
-    plane_axes(test->plane, &job->axis[0], &job->axis[1]);
+    takt_plane_axes(test->plane, &job->axis[0], &job->axis[1]);
     return true;
 }
 

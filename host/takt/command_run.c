@@ -49,7 +49,7 @@ static bool is_bus_lost(const struct run *run)
 /* Drives on a bus outside are others' drives: what they do without is told before they have done it, not after. */
 static void tell_drives(struct run_command *c)
 {
-    const struct drives *drives = controller_get_drives(&c->run.simulation->controller);
+    const struct drives *drives = takt_controller_get_drives(&c->run.simulation->controller);
 
     c->has_told_drives = !c->run.simulation->field.is_outside ||
                          drives_table_tell(drives, c->run.session.options->quiet);
@@ -143,7 +143,7 @@ static enum command_status tell_why(const struct run *run)
 static enum command_status cut_by_signal(const struct run *run)
 {
     if (!interrupt_asked() ||
-        controller_get_state(&run->simulation->controller) >= CONTROLLER_COMPLETED)
+        takt_controller_get_state(&run->simulation->controller) >= CONTROLLER_COMPLETED)
         return STATUS_DONE;
     return (enum command_status)interrupt_status();
 }

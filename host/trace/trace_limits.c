@@ -101,7 +101,7 @@ static void watch_row(struct limits_watch *w)
     if (w->rows == 0)
         w->first_time_s = time_s;
     if (w->rows == 1) /* whole microseconds, as cycles are */
-        w->cycle_s = maths_round((time_s - w->first_time_s) * 1e6) * 1e-6;
+        w->cycle_s = takt_maths_round((time_s - w->first_time_s) * 1e6) * 1e-6;
     w->last_time_s = time_s;
     for (unsigned i = 0; i < w->axes; i++)
         watch_axis(w, &w->axis[i]);

@@ -20,7 +20,7 @@ const char *chip_model_broken(void);
 /* Reads of registers since the reset. */
 uint64_t chip_model_reads(void);
 
-/* Depth of chip_lock. */
+/* Depth of takt_chip_lock. */
 int chip_model_locks(void);
 
 /* For the models of the peripherals. */

@@ -97,7 +97,7 @@ static void random_machine(struct run *r)
 
 static void add_move(struct run *r, const struct move *m)
 {
-    r->has_length[r->moves] = move_curve(m, &r->end, &r->curve[r->moves]);
+    r->has_length[r->moves] = takt_move_curve(m, &r->end, &r->curve[r->moves]);
     r->move[r->moves++] = *m;
     r->end = m->end;
 }
@@ -128,7 +128,7 @@ static enum compile_result compile_program(struct run *r)
     const struct point start = {{0}};
     const struct compile_config config = {.limits = r->limits,
                                           .cycle_us =
-                                              (uint32_t)maths_round(1e6 * r->limits.cycle_s),
+                                              (uint32_t)takt_maths_round(1e6 * r->limits.cycle_s),
                                           .ceiling_percent = r->ceiling_percent,
                                           .tolerance_part = 1,
                                           .tolerance_mm = r->tolerance_mm,
@@ -169,10 +169,10 @@ static void push_next(struct run *r)
 {
     struct move m = r->pushed < r->moves ? r->move[r->pushed] : end_of_program;
 
-    replay_prepare(&m);
-    path_push(&path, &m);
+    takt_replay_prepare(&m);
+    takt_path_push(&path, &m);
     if (r->pushed++ >= r->moves) {
-        path_finish(&path);
+        takt_path_finish(&path);
     }
 }
 
@@ -193,15 +193,15 @@ static void receive(struct run *r)
 static void background(struct run *r)
 {
     receive(r);
-    replay_read(&replay, &r->limits);
-    if (motion_wanted(&motion) == NULL) {
+    takt_replay_read(&replay, &r->limits);
+    if (takt_motion_wanted(&motion) == NULL) {
         return;
     }
-    path_go_on(&path);
-    while (!path.finished && path_has_room(&path)) {
+    takt_path_go_on(&path);
+    while (!path.finished && takt_path_has_room(&path)) {
         push_next(r);
     }
-    motion_build(&motion);
+    takt_motion_build(&motion);
 }
 
 /* A schedule's operator, who now and then wants single block, and then goes on when it pleases. */
@@ -245,7 +245,7 @@ static void look_at_landing(struct run *r, const struct motion_operator *wanted,
     if (!record->landed) {
         return;
     }
-    r->stands_well = r->stands_well && motion_rests(&motion) && record->block > r->last_landed;
+    r->stands_well = r->stands_well && takt_motion_rests(&motion) && record->block > r->last_landed;
     r->last_landed = record->block;
     r->landed++;
     if (wanted->single_block) {
@@ -260,11 +260,11 @@ static void begin_replay(struct run *r, bool is_stream)
         .context = r, .read = read_compiled, .is_lost = is_stream ? is_never_lost : NULL};
 
     rewind(r->compiled);
-    path_init(&path, &r->limits, &start);
-    motion_init(&motion, &path, &start, false);
-    handover_allow(&motion);
-    handover_allow_linear(&motion);
-    replay_init(&replay, path_lend(&path, sizeof(struct intake)), &source);
+    takt_path_init(&path, &r->limits, &start);
+    takt_motion_init(&motion, &path, &start, false);
+    takt_handover_allow(&motion);
+    takt_handover_allow_linear(&motion);
+    takt_replay_init(&replay, takt_path_lend(&path, sizeof(struct intake)), &source);
     memset(&r->schedule, 0, sizeof(r->schedule));
     r->schedule.now = (struct motion_operator){.feed_ratio = 1.0, .rapid_ratio = 1.0};
     r->schedule.target = 1.0;
@@ -292,9 +292,9 @@ static enum motion_result cycle(struct run *r)
     enum motion_result result;
 
     background(r);
-    result = motion_cycle(&motion, &wanted, &record);
+    result = takt_motion_cycle(&motion, &wanted, &record);
     if (result == MOTION_HANDED_OVER) {
-        if (replay_cycle(&replay, &motion, &wanted, &record) == REPLAY_FAILED) {
+        if (takt_replay_cycle(&replay, &motion, &wanted, &record) == REPLAY_FAILED) {
             return MOTION_EMPTY;
         }
         result = MOTION_CYCLE;
@@ -408,13 +408,14 @@ static void test_single_block_stops_at_the_end_of_every_block(void)
         struct cycle_record record = {0};
 
         background(&run);
-        result = motion_cycle(&motion, &wanted, &record);
+        result = takt_motion_cycle(&motion, &wanted, &record);
         if (result == MOTION_HANDED_OVER) {
-            TEST_ASSERT_EQUAL_INT(REPLAY_CYCLE, replay_cycle(&replay, &motion, &wanted, &record));
+            TEST_ASSERT_EQUAL_INT(REPLAY_CYCLE,
+                                  takt_replay_cycle(&replay, &motion, &wanted, &record));
         }
         if (record.landed) {
             TEST_ASSERT_EQUAL_UINT32(next, record.block);
-            TEST_ASSERT_TRUE(motion_rests(&motion));
+            TEST_ASSERT_TRUE(takt_motion_rests(&motion));
             TEST_ASSERT_TRUE(chain_distance(&record.cmd, &run.move[next - 1].end) <=
                              2.0 * run.tolerance_mm);
             next++;

@@ -117,17 +117,17 @@ static struct move move_of(struct chain *c, const struct piece *p, double cycle_
     c->heading_rad += p->turn_rad;
     m.end = c->at;
     if (p->bend == 0.0) {
-        m.end.at[AXIS_X] += length_mm * maths_cos(c->heading_rad);
-        m.end.at[AXIS_Y] += length_mm * maths_sin(c->heading_rad);
+        m.end.at[AXIS_X] += length_mm * takt_maths_cos(c->heading_rad);
+        m.end.at[AXIS_Y] += length_mm * takt_maths_sin(c->heading_rad);
     } else {
         const double radius = length_mm / p->bend; /* its sign is the side of the centre */
         const double end_rad = c->heading_rad + p->bend;
 
         m.kind = p->bend < 0.0 ? MOVE_ARC_CW : MOVE_ARC_CCW;
-        m.centre_mm[0] = c->at.at[AXIS_X] - radius * maths_sin(c->heading_rad);
-        m.centre_mm[1] = c->at.at[AXIS_Y] + radius * maths_cos(c->heading_rad);
-        m.end.at[AXIS_X] = m.centre_mm[0] + radius * maths_sin(end_rad);
-        m.end.at[AXIS_Y] = m.centre_mm[1] - radius * maths_cos(end_rad);
+        m.centre_mm[0] = c->at.at[AXIS_X] - radius * takt_maths_sin(c->heading_rad);
+        m.centre_mm[1] = c->at.at[AXIS_Y] + radius * takt_maths_cos(c->heading_rad);
+        m.end.at[AXIS_X] = m.centre_mm[0] + radius * takt_maths_sin(end_rad);
+        m.end.at[AXIS_Y] = m.centre_mm[1] - radius * takt_maths_cos(end_rad);
         c->heading_rad = end_rad;
     }
     c->at = m.end;
@@ -144,12 +144,12 @@ static void push_all(const struct search *s)
     memset(&c, 0, sizeof(c));
     for (unsigned i = 0; i < BLOCKS; i++) {
         m = move_of(&c, &s->piece[i], s->limits.cycle_s);
-        path_push(&path, &m);
+        takt_path_push(&path, &m);
     }
     memset(&m, 0, sizeof(m));
     m.kind = MOVE_END;
-    path_push(&path, &m);
-    path_finish(&path);
+    takt_path_push(&path, &m);
+    takt_path_finish(&path);
 }
 
 static struct chain_judge judge(const struct search *s)
@@ -161,14 +161,14 @@ static struct chain_judge judge(const struct search *s)
     enum motion_result result;
 
     memset(&seen, 0, sizeof(seen));
-    path_init(&path, &s->limits, &start);
-    motion_init(&motion, &path, &start, false);
+    takt_path_init(&path, &s->limits, &start);
+    takt_motion_init(&motion, &path, &start, false);
     push_all(s);
     do {
-        if (motion_wanted(&motion) != NULL) {
-            motion_build(&motion);
+        if (takt_motion_wanted(&motion) != NULL) {
+            takt_motion_build(&motion);
         }
-        result = motion_cycle(&motion, &as_programmed, &record);
+        result = takt_motion_cycle(&motion, &as_programmed, &record);
         if (result == MOTION_CYCLE) {
             chain_judge_setpoint(&seen, &s->limits, &record.cmd);
         }

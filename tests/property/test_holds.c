@@ -82,7 +82,7 @@ static void random_machine(struct run *r)
     struct plan_limits *l = &r->limits;
     const double v = chain_decades(&r->chain, 1.0, 2.7);
     const double braking = chain_decades(&r->chain, -0.5, 2.0); /* V J/A^2 */
-    const double t = maths_power(2.0, (double)(int)chain_between(&r->chain, -2, 3)) * 1e-3;
+    const double t = takt_maths_power(2.0, (double)(int)chain_between(&r->chain, -2, 3)) * 1e-3;
     const double rounding = chain_decades(&r->chain, -2.0, 0.5); /* tau J/A */
 
     l->axes = 7;
@@ -146,22 +146,22 @@ static void push_next(struct run *r)
         memset(&m, 0, sizeof(m));
         m.kind = MOVE_END;
     }
-    path_push(&path, &m);
+    takt_path_push(&path, &m);
     if (m.kind == MOVE_END) {
-        path_finish(&path);
+        takt_path_finish(&path);
     }
 }
 
 static void plan(struct run *r)
 {
-    if (motion_wanted(&motion) == NULL) {
+    if (takt_motion_wanted(&motion) == NULL) {
         return;
     }
-    path_go_on(&path);
-    while (!path.finished && path_has_room(&path)) {
+    takt_path_go_on(&path);
+    while (!path.finished && takt_path_has_room(&path)) {
         push_next(r);
     }
-    motion_build(&motion);
+    takt_motion_build(&motion);
 }
 
 static void count_hold(struct run *r)
@@ -182,12 +182,12 @@ static void count_hold(struct run *r)
 /* Holds until the axes are at rest, and for a little while; then not, for a random time. */
 static void follow(struct run *r)
 {
-    if (r->holds ? motion_rests(&motion) && motion.cycles > r->change + 2
+    if (r->holds ? takt_motion_rests(&motion) && motion.cycles > r->change + 2
                  : motion.cycles >= r->change) {
         if (r->holds && r->moved) {
             count_hold(r);
         }
-        r->moved = !motion_rests(&motion);
+        r->moved = !takt_motion_rests(&motion);
         r->holds = !r->holds;
         r->change = motion.cycles;
         if (!r->holds) {
@@ -218,13 +218,13 @@ static enum motion_result run_program(struct run *r)
     struct cycle_record record;
     enum motion_result result;
 
-    path_init(&path, &r->limits, &start);
-    motion_init(&motion, &path, &start, false);
+    takt_path_init(&path, &r->limits, &start);
+    takt_motion_init(&motion, &path, &start, false);
     do {
         plan(r);
         follow(r);
         now.hold = r->holds;
-        result = motion_cycle(&motion, &now, &record);
+        result = takt_motion_cycle(&motion, &now, &record);
         if (result == MOTION_CYCLE) {
             chain_judge_setpoint(&r->judge, &r->limits, &record.cmd);
             judge_feed(r, &record.cmd);

@@ -65,24 +65,24 @@ static void push_next(enum chain_family family, unsigned number)
 
     if (number < MOVES) {
         m = chain_next(&chain, family, number);
-        path_push(&path, &m);
+        takt_path_push(&path, &m);
         return;
     }
     memset(&m, 0, sizeof(m));
     m.kind = MOVE_END;
-    path_push(&path, &m);
-    path_finish(&path);
+    takt_path_push(&path, &m);
+    takt_path_finish(&path);
 }
 
 static void plan(enum chain_family family, uint32_t look_ahead, unsigned *pushed)
 {
-    if (motion_wanted(&motion) == NULL) {
+    if (takt_motion_wanted(&motion) == NULL) {
         return;
     }
-    while (!path.finished && path_has_room(&path) && motion_ahead(&motion) < look_ahead) {
+    while (!path.finished && takt_path_has_room(&path) && takt_motion_ahead(&motion) < look_ahead) {
         push_next(family, (*pushed)++);
     }
-    motion_build(&motion);
+    takt_motion_build(&motion);
 }
 
 static void judge(const struct plan_limits *limits, const struct cycle_record *record)
@@ -106,11 +106,11 @@ static void run_chain(enum chain_family family, uint64_t chain_seed,
     chain = (struct chain){.seed = chain_seed};
     memset(&seen, 0, sizeof(seen));
     landing_mm = 0.0;
-    path_init(&path, limits, &chain.at);
-    motion_init(&motion, &path, &chain.at, false);
+    takt_path_init(&path, limits, &chain.at);
+    takt_motion_init(&motion, &path, &chain.at, false);
     for (;;) {
         plan(family, look_ahead, &pushed);
-        result = motion_cycle(&motion, &asked, &record);
+        result = takt_motion_cycle(&motion, &asked, &record);
         if (result != MOTION_CYCLE || motion.cycles > CYCLES_MAX) {
             break;
         }

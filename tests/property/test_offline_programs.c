@@ -70,10 +70,10 @@ void setUp(void)
     struct diagnostic wrong;
 
     make_table();
-    TEST_ASSERT_TRUE(grid_set(&tables.volume, &table, &wrong));
+    TEST_ASSERT_TRUE(takt_grid_set(&tables.volume, &table, &wrong));
     session = (struct session){.options = &options, .correction = &tables};
     machine_setup_set_default(&session.setup);
-    parameters_clear(&session.parameters.values);
+    takt_parameters_clear(&session.parameters.values);
     state = 1;
 }
 
@@ -332,12 +332,12 @@ static bool read_motions(const char *from, size_t size, struct motions *m)
     struct move move;
 
     parameters = session.parameters.values;
-    controller_program_config(&controller, &config);
-    source_open_text(&source, &reader, from, size);
-    program_open(&program, &config, &source);
+    takt_controller_program_config(&controller, &config);
+    takt_source_open_text(&source, &reader, from, size);
+    takt_program_open(&program, &config, &source);
     at = config.start;
     m->count = m->spindle = 0;
-    while ((result = program_next(&program, &move, &error)) == PROGRAM_MOVE) {
+    while ((result = takt_program_next(&program, &move, &error)) == PROGRAM_MOVE) {
         m->spindle += move.kind == MOVE_SPINDLE;
         if (!move_is_motion(&move))
             continue;
@@ -360,7 +360,7 @@ static void corrected(const struct move *move, const struct point *at, struct po
 {
     struct point k;
 
-    correction_evaluate(&correction, at, move, &k);
+    takt_correction_evaluate(&correction, at, move, &k);
     for (unsigned i = 0; i < AXIS_COUNT; i++)
         to->at[i] = at->at[i] + k.at[i];
 }
@@ -379,7 +379,7 @@ static double distance_at(const struct curve *c, const struct move *move, double
 {
     struct point at, to;
 
-    curve_point(c, s, &at);
+    takt_curve_point(c, s, &at);
     corrected(move, &at, &to);
     return distance(&to, from);
 }
@@ -410,12 +410,12 @@ static double judge_piece(const struct curve *c, const struct move *move, unsign
     struct curve w;
     double worst = 0;
 
-    if (!move_curve(&written.move[piece], &written.start[piece], &w))
+    if (!takt_move_curve(&written.move[piece], &written.start[piece], &w))
         return 0;
     for (unsigned i = 1; i <= SAMPLES; i++) {
         struct point at;
 
-        curve_point(&w, w.length_mm * i / SAMPLES, &at);
+        takt_curve_point(&w, w.length_mm * i / SAMPLES, &at);
         worst = maths_max(worst, nearest(c, move, w.length_mm / SAMPLES, &at, s));
     }
     return worst;
@@ -450,7 +450,7 @@ static unsigned judge_thread(unsigned motion, unsigned piece, const struct curve
 
     corrected(move, &move->end, &end);
     TEST_ASSERT_TRUE_MESSAGE(ends_at(as_written, &end), place);
-    TEST_ASSERT_TRUE_MESSAGE(move_curve(as_written, &written.start[piece], &w), place);
+    TEST_ASSERT_TRUE_MESSAGE(takt_move_curve(as_written, &written.start[piece], &w), place);
     TEST_ASSERT_DOUBLE_WITHIN_MESSAGE(1e-5, c->length_mm / move->feed_rev_mm,
                                       w.length_mm / as_written->feed_rev_mm, place);
     return piece + 1;
@@ -463,7 +463,7 @@ static unsigned judge_motion(unsigned motion, unsigned piece, double *worst)
     struct point end;
     struct curve c;
     double s = 0;
-    const bool has_curve = move_curve(move, &wanted.start[motion], &c);
+    const bool has_curve = takt_move_curve(move, &wanted.start[motion], &c);
 
     if (has_curve && is_thread(move))
         return judge_thread(motion, piece, &c);
@@ -508,7 +508,7 @@ static double judge_program(void)
     if (!read_motions(out, size, &written)) {
         char why[DIAGNOSTIC_TEXT_MAX];
 
-        (void)diagnostic_text(&error, why);
+        (void)takt_diagnostic_text(&error, why);
         printf("%s: what is written, line %u: %s\n", place, (unsigned)error.line, why);
         TEST_FAIL();
     }
@@ -529,7 +529,7 @@ static void test_what_is_written_follows_the_corrected_path(void)
     unsigned judged = 0, motions = 0, pieces = 0;
     double worst = 0;
 
-    correction_init(&correction, &session.setup.machine.correction, 7, 0.001, &tables, &start);
+    takt_correction_init(&correction, &session.setup.machine.correction, 7, 0.001, &tables, &start);
     for (unsigned seed = first_seed; seed < first_seed + programs; seed++) {
         say_program(seed);
         if (!is_good())

@@ -180,10 +180,10 @@ static void open_program(const struct layout *l)
         config.travel_max[i] = 1e6;
     }
     config.sharp_corners = l->sharp;
-    parameters_clear(&parameters);
-    source_open_text(&source, &source_text, text, strlen(text));
-    program_open(&program, &config, &source);
-    offset_open(&offset, &config);
+    takt_parameters_clear(&parameters);
+    takt_source_open_text(&source, &source_text, text, strlen(text));
+    takt_program_open(&program, &config, &source);
+    takt_offset_open(&offset, &config);
 }
 
 static struct piece piece_of(const struct move *m, const struct point *start, unsigned plane)
@@ -209,7 +209,7 @@ static void read_wanted(const struct layout *l)
 
     wanted_count = 0;
     open_program(l);
-    while (program_next(&program, &m, &diagnostic) == PROGRAM_MOVE) {
+    while (takt_program_next(&program, &m, &diagnostic) == PROGRAM_MOVE) {
         if (!move_is_motion(&m)) {
             continue;
         }
@@ -371,7 +371,7 @@ static bool judge_contour(const struct layout *l, struct verdict *v)
 
     *v = (struct verdict){0};
     open_program(l);
-    while ((result = offset_next(&offset, &program, &m, &diagnostic)) == PROGRAM_MOVE) {
+    while ((result = takt_offset_next(&offset, &program, &m, &diagnostic)) == PROGRAM_MOVE) {
         if (move_is_motion(&m)) {
             motions++;
             if (motions > 2) {

@@ -52,7 +52,7 @@ static double random_between(double low, double high)
     return low + (high - low) * (double)(seed >> 11) * 0x1p-53;
 }
 
-static void involute_point(double phi, double p[2])
+static void takt_involute_point(double phi, double p[2])
 {
     const double t = contour.turned_rad + contour.hand * phi;
 
@@ -65,7 +65,7 @@ static void beyond(double phi, double corner_rad, double length, double p[2])
 {
     const double t = contour.turned_rad + contour.hand * phi + corner_rad;
 
-    involute_point(phi, p);
+    takt_involute_point(phi, p);
     p[0] += length * cos(t);
     p[1] += length * sin(t);
 }
@@ -96,8 +96,8 @@ static void write_program(void)
     double a[2], b[2], entry[2];
     int length;
 
-    involute_point(contour.from_rad, a);
-    involute_point(contour.to_rad, b);
+    takt_involute_point(contour.from_rad, a);
+    takt_involute_point(contour.to_rad, b);
     for (unsigned i = 0; i < 2; i++) {
         entry[i] = contour.begin[i] + (contour.begin[i] - a[i]) / 2.0;
     }
@@ -120,10 +120,10 @@ static void open_program(void)
         config.travel_min[i] = -1e6;
         config.travel_max[i] = 1e6;
     }
-    parameters_clear(&parameters);
-    source_open_text(&source, &source_text, text, strlen(text));
-    program_open(&program, &config, &source);
-    offset_open(&offset, &config);
+    takt_parameters_clear(&parameters);
+    takt_source_open_text(&source, &source_text, text, strlen(text));
+    takt_program_open(&program, &config, &source);
+    takt_offset_open(&offset, &config);
 }
 
 static double line_distance(const double a[2], const double b[2], const double q[2])
@@ -139,7 +139,7 @@ static double distance_at(double phi, const double q[2])
 {
     double p[2];
 
-    involute_point(phi, p);
+    takt_involute_point(phi, p);
     return hypot(q[0] - p[0], q[1] - p[1]);
 }
 
@@ -176,8 +176,8 @@ static double wanted_distance(const double q[2])
 {
     double a[2], b[2];
 
-    involute_point(contour.from_rad, a);
-    involute_point(contour.to_rad, b);
+    takt_involute_point(contour.from_rad, a);
+    takt_involute_point(contour.to_rad, b);
     return fmin(involute_distance(q),
                 fmin(line_distance(contour.begin, a, q), line_distance(b, contour.end, q)));
 }
@@ -191,14 +191,14 @@ static void judge_move(const struct move *m, const struct point *start)
 {
     struct curve c;
 
-    if (!move_curve(m, start, &c)) {
+    if (!takt_move_curve(m, start, &c)) {
         return;
     }
     seen.involutes += move_is_involute(m) ? 1 : 0;
     for (int i = 0; i <= SAMPLES; i++) {
         struct point p;
 
-        curve_point(&c, c.length_mm * i / SAMPLES, &p);
+        takt_curve_point(&c, c.length_mm * i / SAMPLES, &p);
         const double off = wanted_distance((double[2]){p.at[0], p.at[1]}) - contour.radius;
 
         seen.nearest = fmin(seen.nearest, off);
@@ -217,7 +217,7 @@ static bool run_contour(void)
 
     memset(&seen, 0, sizeof seen);
     open_program();
-    while ((result = offset_next(&offset, &program, &m, &d)) == PROGRAM_MOVE) {
+    while ((result = takt_offset_next(&offset, &program, &m, &d)) == PROGRAM_MOVE) {
         if (!move_is_motion(&m)) {
             continue;
         }

@@ -76,24 +76,25 @@ static void push_next(struct run *r)
     if (r->pushed < r->moves) {
         m = chain_next(&r->chain, r->family, r->pushed);
         r->pushed++;
-        path_push(&path, &m);
+        takt_path_push(&path, &m);
         return;
     }
     memset(&m, 0, sizeof(m));
     m.kind = MOVE_END;
-    path_push(&path, &m);
-    path_finish(&path);
+    takt_path_push(&path, &m);
+    takt_path_finish(&path);
 }
 
 static void plan(struct run *r)
 {
-    if (motion_wanted(&motion) == NULL) {
+    if (takt_motion_wanted(&motion) == NULL) {
         return;
     }
-    while (!path.finished && path_has_room(&path) && motion_ahead(&motion) < r->look_ahead) {
+    while (!path.finished && takt_path_has_room(&path) &&
+           takt_motion_ahead(&motion) < r->look_ahead) {
         push_next(r);
     }
-    motion_build(&motion);
+    takt_motion_build(&motion);
 }
 
 static double distance(const struct point *a, const struct point *b)
@@ -152,12 +153,12 @@ static enum motion_result run_program(struct run *r)
     struct cycle_record record;
     enum motion_result result;
 
-    path_init(&path, &r->limits, &start);
-    motion_init(&motion, &path, &start, r->proportional);
+    takt_path_init(&path, &r->limits, &start);
+    takt_motion_init(&motion, &path, &start, r->proportional);
     do {
         schedule_follow(&r->schedule, &r->chain, motion.cycles);
         plan(r);
-        result = motion_cycle(&motion, &r->schedule.now, &record);
+        result = takt_motion_cycle(&motion, &r->schedule.now, &record);
         if (result == MOTION_CYCLE) {
             judge(r, &record);
         }

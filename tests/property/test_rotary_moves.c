@@ -105,7 +105,7 @@ static void draw_machine(void)
     struct plan_limits *l = &run.limits;
 
     memset(l, 0, sizeof(*l));
-    l->cycle_s = 0.25e-3 * maths_power(2.0, maths_floor(between(0.0, 5.0)));
+    l->cycle_s = 0.25e-3 * takt_maths_power(2.0, takt_maths_floor(between(0.0, 5.0)));
     l->chord_error_max_mm = decades(-3.0, 0.0);
     l->law = laws[(unsigned)between(0.0, 5.0)];
     l->landing = chance(0.2) ? LANDING_BLOCK : LANDING_SPAN;
@@ -175,10 +175,10 @@ static void draw_arc(struct move *m, const struct point *from)
 
     draw_line(m, from);
     m->kind = way < 0 ? MOVE_ARC_CW : MOVE_ARC_CCW;
-    m->centre_mm[0] = from->at[AXIS_X] - radius * maths_cos(heading);
-    m->centre_mm[1] = from->at[AXIS_Y] - radius * maths_sin(heading);
-    m->end.at[AXIS_X] = m->centre_mm[0] + radius * off_circle * maths_cos(heading + way);
-    m->end.at[AXIS_Y] = m->centre_mm[1] + radius * off_circle * maths_sin(heading + way);
+    m->centre_mm[0] = from->at[AXIS_X] - radius * takt_maths_cos(heading);
+    m->centre_mm[1] = from->at[AXIS_Y] - radius * takt_maths_sin(heading);
+    m->end.at[AXIS_X] = m->centre_mm[0] + radius * off_circle * takt_maths_cos(heading + way);
+    m->end.at[AXIS_Y] = m->centre_mm[1] + radius * off_circle * takt_maths_sin(heading + way);
     if (chance(0.5)) {
         m->end.at[AXIS_Z] = from->at[AXIS_Z];
     }
@@ -215,7 +215,7 @@ static double least_time(const struct move *m, const struct curve *c)
     double a = MATHS_INFINITY;
     struct curve_bounds b;
 
-    curve_bound(c, &b);
+    takt_curve_bound(c, &b);
     for (unsigned i = 0; i < AXIS_COUNT; i++) {
         if (b.first[i] > 0.0) {
             a = maths_min(a, l->acceleration_mm_s2[i] / b.first[i]);
@@ -239,7 +239,7 @@ static double most_time(const struct move *m, const struct curve *c)
     double j = MATHS_INFINITY;
     struct curve_bounds b;
 
-    curve_bound(c, &b);
+    takt_curve_bound(c, &b);
     for (unsigned i = 0; i < AXIS_COUNT; i++) {
         if (has_axis(i) && b.first[i] > 0.0) {
             v = maths_min(v, l->velocity_mm_s[i] / b.first[i]);
@@ -248,13 +248,13 @@ static double most_time(const struct move *m, const struct curve *c)
         }
         if (has_axis(i) && b.second[i] > 0.0) {
             v = maths_min(v, maths_sqrt(0.1 * l->acceleration_mm_s2[i] / b.second[i]));
-            v = maths_min(v, maths_cbrt(0.05 * l->jerk_mm_s3[i] / b.third[i]));
+            v = maths_min(v, takt_maths_cbrt(0.05 * l->jerk_mm_s3[i] / b.third[i]));
         }
     }
     if (bent && b.radius_min_mm > l->chord_error_max_mm) {
         v = maths_min(v, maths_sqrt(b.radius_min_mm * l->chord_error_max_mm) / l->cycle_s);
     }
-    a = maths_min(a, j * l->cycle_s * (double)law_cycles_max(l->law));
+    a = maths_min(a, j * l->cycle_s * (double)takt_law_cycles_max(l->law));
     return c->length_mm / v + 2.0 * v / a + 2.0 * a / j + 300.0 * l->cycle_s;
 }
 
@@ -285,7 +285,7 @@ static void draw_program(void)
         struct curve c;
 
         draw_move(m, &before, &at);
-        if (move_curve(m, &at, &c)) {
+        if (takt_move_curve(m, &at, &c)) {
             draw_feed(m, &c);
             run.least_s += least_time(m, &c);
             run.most_s += most_time(m, &c);
@@ -363,25 +363,25 @@ static void push(unsigned *pushed)
     struct move end;
 
     if (*pushed < run.moves && !run.hands.reset) {
-        path_push(&path, &run.move[(*pushed)++]);
+        takt_path_push(&path, &run.move[(*pushed)++]);
         return;
     }
     memset(&end, 0, sizeof(end));
     end.kind = MOVE_END;
-    path_push(&path, &end);
-    path_finish(&path);
+    takt_path_push(&path, &end);
+    takt_path_finish(&path);
 }
 
 static void fill(unsigned *pushed)
 {
-    if (motion_wanted(&motion) == NULL) {
+    if (takt_motion_wanted(&motion) == NULL) {
         return;
     }
-    while (!path.finished && !motion.ending && path_has_room(&path) &&
-           motion_ahead(&motion) < run.look_ahead) {
+    while (!path.finished && !motion.ending && takt_path_has_room(&path) &&
+           takt_motion_ahead(&motion) < run.look_ahead) {
         push(pushed);
     }
-    motion_build(&motion);
+    takt_motion_build(&motion);
 }
 
 static void change(void)
@@ -406,12 +406,12 @@ static enum motion_result run_program(void)
     unsigned pushed = 0;
 
     memset(&seen, 0, sizeof(seen));
-    path_init(&path, &run.limits, &record.cmd);
-    motion_init(&motion, &path, &record.cmd, false);
+    takt_path_init(&path, &run.limits, &record.cmd);
+    takt_motion_init(&motion, &path, &record.cmd, false);
     while (result == MOTION_CYCLE && (double)motion.cycles <= most_cycles) {
         fill(&pushed);
         change();
-        result = motion_cycle(&motion, &run.asked, &record);
+        result = takt_motion_cycle(&motion, &run.asked, &record);
         if (result == MOTION_CYCLE) {
             judge(&record);
             hands_hold_at_end(&run.hands, &motion, &record);

@@ -137,7 +137,7 @@ static struct move short_line(struct chain *c)
     m.kind = MOVE_FEED;
     m.feed_mm_s = chain_decades(c, 0, 2.3);
     for (int i = 0; i < CHAIN_AXES; i++) {
-        m.end.at[i] = 0.001 * maths_round(1000.0 * m.end.at[i]);
+        m.end.at[i] = 0.001 * takt_maths_round(1000.0 * m.end.at[i]);
     }
     c->at = m.end;
     return m;
@@ -153,7 +153,7 @@ static struct move next_move(struct run *r)
 
     m.path = r->tolerance_mm > 0.0 ? PATH_BLEND : PATH_EXACT;
     m.tolerance_mm = r->tolerance_mm;
-    kept->has_length = move_curve(&m, &r->end, &kept->curve);
+    kept->has_length = takt_move_curve(&m, &r->end, &kept->curve);
     kept->corner_mm = MATHS_INFINITY;
     if (kept->has_length && r->tolerance_mm > 0.0) {
         second_add_motion(&m);
@@ -170,26 +170,26 @@ static void push_next(struct run *r)
 
     if (r->pushed < r->moves && !r->hands.reset) {
         m = next_move(r);
-        path_push(&path, &m);
+        takt_path_push(&path, &m);
         return;
     }
     memset(&m, 0, sizeof(m));
     m.kind = MOVE_END;
-    path_push(&path, &m);
-    path_finish(&path);
+    takt_path_push(&path, &m);
+    takt_path_finish(&path);
 }
 
 static void plan(struct run *r)
 {
-    if (motion_wanted(&motion) == NULL) {
+    if (takt_motion_wanted(&motion) == NULL) {
         return;
     }
-    path_go_on(&path);
-    while (!path.finished && !motion.ending && path_has_room(&path) &&
-           (r->tolerance_mm > 0.0 || motion_ahead(&motion) < r->look_ahead)) {
+    takt_path_go_on(&path);
+    while (!path.finished && !motion.ending && takt_path_has_room(&path) &&
+           (r->tolerance_mm > 0.0 || takt_motion_ahead(&motion) < r->look_ahead)) {
         push_next(r);
     }
-    motion_build(&motion);
+    takt_motion_build(&motion);
 }
 
 /* -- judging -- */
@@ -203,8 +203,8 @@ static double place_on(const struct curve *c, const struct point *p, double s)
     for (int k = 0; k < 4; k++) {
         double along = 0.0;
 
-        curve_point(c, s, &on);
-        curve_tangent(c, s, &t);
+        takt_curve_point(c, s, &on);
+        takt_curve_tangent(c, s, &t);
         for (int i = 0; i < CHAIN_AXES; i++) {
             along += (p->at[i] - on.at[i]) * t.at[i];
         }
@@ -220,7 +220,7 @@ static void judge_exact(struct run *r, const struct cycle_record *record)
     const double s_mm = place_on(c, &record->cmd, record->block == r->block ? r->s_mm : 0.0);
     struct point on;
 
-    curve_point(c, s_mm, &on);
+    takt_curve_point(c, s_mm, &on);
     r->path_mm = maths_max(r->path_mm, chain_distance(&on, &record->cmd));
     r->backward +=
         record->block < r->block || (record->block == r->block && s_mm < r->s_mm - PLACE_MM);
@@ -268,7 +268,7 @@ static void judge_landing(struct run *r, const struct cycle_record *record)
         return;
     }
     r->landing_mm = maths_max(r->landing_mm, off_mm);
-    if (motion_rests(&motion) && !r->move[record->block - 1].rested) {
+    if (takt_motion_rests(&motion) && !r->move[record->block - 1].rested) {
         r->move[record->block - 1].rested = true;
         r->rests++;
     }
@@ -308,12 +308,12 @@ static bool run_program(struct run *r)
     struct cycle_record record;
     enum motion_result result;
 
-    path_init(&path, &r->limits, &start);
-    motion_init(&motion, &path, &start, r->proportional);
+    takt_path_init(&path, &r->limits, &start);
+    takt_motion_init(&motion, &path, &start, r->proportional);
     do {
         hands_follow(&r->hands, &motion);
         plan(r);
-        result = motion_cycle(&motion, &r->hands.schedule.now, &record);
+        result = takt_motion_cycle(&motion, &r->hands.schedule.now, &record);
         if (result == MOTION_CYCLE) {
             judge(r, &record);
             hands_hold_at_end(&r->hands, &motion, &record);

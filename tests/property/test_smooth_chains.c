@@ -128,7 +128,7 @@ static struct move next_move(struct run *r)
     m.path = r->exact ? PATH_EXACT : PATH_BLEND;
     m.tolerance_mm = r->tolerance_mm;
     m.merge_mm = r->merge_mm;
-    kept->has_length = move_curve(&m, &r->end, &kept->curve);
+    kept->has_length = takt_move_curve(&m, &r->end, &kept->curve);
     kept->corner_mm = MATHS_INFINITY;
     r->end = m.end;
     r->pushed++;
@@ -141,25 +141,25 @@ static void push_next(struct run *r)
 
     if (r->pushed < r->moves) {
         m = next_move(r);
-        path_push(&path, &m);
+        takt_path_push(&path, &m);
         return;
     }
     memset(&m, 0, sizeof(m));
     m.kind = MOVE_END;
-    path_push(&path, &m);
-    path_finish(&path);
+    takt_path_push(&path, &m);
+    takt_path_finish(&path);
 }
 
 static void plan(struct run *r)
 {
-    if (motion_wanted(&motion) == NULL) {
+    if (takt_motion_wanted(&motion) == NULL) {
         return;
     }
-    path_go_on(&path);
-    while (!path.finished && path_has_room(&path)) {
+    takt_path_go_on(&path);
+    while (!path.finished && takt_path_has_room(&path)) {
         push_next(r);
     }
-    motion_build(&motion);
+    takt_motion_build(&motion);
 }
 
 /* No place on a curve is farther from its start: its length, and what the rotary axes turn by. */
@@ -228,7 +228,7 @@ static void judge_landing(struct run *r, const struct cycle_record *record)
 static void count_rests(struct run *r)
 {
     const bool rests =
-        motion_rests(&motion) && r->schedule.now.single_block && r->schedule.free > 0;
+        takt_motion_rests(&motion) && r->schedule.now.single_block && r->schedule.free > 0;
 
     r->singles += rests && !r->rests ? 1 : 0;
     r->rests = rests;
@@ -253,14 +253,14 @@ static enum motion_result run_program(struct run *r)
     struct cycle_record record;
     enum motion_result result;
 
-    path_init(&path, &r->limits, &start);
-    motion_init(&motion, &path, &start, false);
+    takt_path_init(&path, &r->limits, &start);
+    takt_motion_init(&motion, &path, &start, false);
     do {
         plan(r);
         schedule_follow(&r->schedule, &r->chain, motion.cycles);
         r->schedule.now.single_block =
             r->single_cycles > 0 && motion.cycles / r->single_cycles % 2 == 1;
-        result = motion_cycle(&motion, &r->schedule.now, &record);
+        result = takt_motion_cycle(&motion, &r->schedule.now, &record);
         if (result == MOTION_CYCLE) {
             chain_judge_setpoint(&r->judge, &r->limits, &record.cmd);
             judge_place(r, &record);

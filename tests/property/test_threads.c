@@ -73,7 +73,7 @@ static double between(double low, double high)
 
 static double decades(double from, double to)
 {
-    return maths_power(10.0, between(from, to));
+    return takt_maths_power(10.0, between(from, to));
 }
 
 static void random_machine(void)
@@ -96,7 +96,7 @@ static void random_machine(void)
     s->inertia_kg_m2 = decades(-4.0, -2.0);
     s->rated_torque_nm = s->inertia_kg_m2 * s->ramp_rpm_s * decades(-0.9, 0.5);
     s->ripple_percent = between(0, 1) < 0.5 ? between(0, 20) : 0.0;
-    s->ripple_per_revolution = maths_floor(between(1, 12));
+    s->ripple_per_revolution = takt_maths_floor(between(1, 12));
     s->overload_percent = 1000.0;
 }
 
@@ -124,7 +124,8 @@ static void random_program(bool taps)
 
 static double bandwidth(void)
 {
-    return -maths_ln(1.0 - maths_cbrt(bench.lock.angle.gain_acceleration)) / bench.limits.cycle_s;
+    return -takt_maths_ln(1.0 - takt_maths_cbrt(bench.lock.angle.gain_acceleration)) /
+           bench.limits.cycle_s;
 }
 
 /* Along a thread nobody goes back, from its very start on, if the spindle turns evenly. */
@@ -158,7 +159,7 @@ static void look(void)
         const double zero = bench.lock.at.zero_rev;
 
         seen.off_mm = maths_max(seen.off_mm, maths_abs(bench_off_mm(&bench)));
-        seen.is_at_index = seen.is_at_index && zero == maths_round(zero);
+        seen.is_at_index = seen.is_at_index && zero == takt_maths_round(zero);
     }
 }
 

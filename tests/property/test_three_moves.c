@@ -66,12 +66,12 @@ static void push_all(const struct move *move, unsigned count)
     struct move end;
 
     for (unsigned i = 0; i < count; i++) {
-        path_push(&path, &move[i]);
+        takt_path_push(&path, &move[i]);
     }
     memset(&end, 0, sizeof(end));
     end.kind = MOVE_END;
-    path_push(&path, &end);
-    path_finish(&path);
+    takt_path_push(&path, &end);
+    takt_path_finish(&path);
 }
 
 static struct result run_moves(const struct plan_limits *limits, const struct move *move,
@@ -83,14 +83,14 @@ static struct result run_moves(const struct plan_limits *limits, const struct mo
     struct result r = {0.0, 0};
     enum motion_result cycle;
 
-    path_init(&path, limits, &start);
-    motion_init(&motion, &path, &start, false);
+    takt_path_init(&path, limits, &start);
+    takt_motion_init(&motion, &path, &start, false);
     push_all(move, count);
     do {
-        if (motion_wanted(&motion) != NULL) {
-            motion_build(&motion);
+        if (takt_motion_wanted(&motion) != NULL) {
+            takt_motion_build(&motion);
         }
-        cycle = motion_cycle(&motion, &as_programmed, &record);
+        cycle = takt_motion_cycle(&motion, &as_programmed, &record);
         r.landed += cycle == MOTION_CYCLE && record.landed ? 1 : 0;
     } while (cycle == MOTION_CYCLE && motion.cycles < CYCLES_MAX);
     TEST_ASSERT_EQUAL(MOTION_DONE, cycle);

@@ -75,25 +75,25 @@ void bench_start(struct bench *b)
     b->lock_config.counts = maths_max(1.0, (double)b->spindle_config.encoder_counts_per_revolution);
     b->lock_config.ramp_rpm_s = b->spindle_config.ramp_rpm_s;
     b->lock_config.max_rpm = b->spindle_config.max_rpm;
-    lock_init(&b->lock, &b->lock_config);
-    path_init(&b->path, &b->limits, &start);
-    motion_init(&b->motion, &b->path, &start, false);
-    handover_allow(&b->motion);
+    takt_lock_init(&b->lock, &b->lock_config);
+    takt_path_init(&b->path, &b->limits, &start);
+    takt_motion_init(&b->motion, &b->path, &start, false);
+    takt_handover_allow(&b->motion);
 }
 
 static void bench_plan(struct bench *b)
 {
-    if (motion_wanted(&b->motion) == NULL) {
+    if (takt_motion_wanted(&b->motion) == NULL) {
         return;
     }
-    while (b->pushed < b->moves && path_has_room(&b->path) &&
-           motion_ahead(&b->motion) < b->look_ahead) {
-        path_push(&b->path, &b->move[b->pushed++]);
+    while (b->pushed < b->moves && takt_path_has_room(&b->path) &&
+           takt_motion_ahead(&b->motion) < b->look_ahead) {
+        takt_path_push(&b->path, &b->move[b->pushed++]);
     }
     if (b->pushed == b->moves) {
-        path_finish(&b->path);
+        takt_path_finish(&b->path);
     }
-    motion_build(&b->motion);
+    takt_motion_build(&b->motion);
 }
 
 static void bench_judge(struct bench *b)
@@ -149,10 +149,10 @@ bool bench_cycle(struct bench *b)
     lock_measure(&b->lock, &b->feedback);
     b->is_locked = false;
     b->locked = LOCK_CYCLE;
-    b->result = motion_cycle(&b->motion, &b->operator, & b->record);
+    b->result = takt_motion_cycle(&b->motion, &b->operator, & b->record);
     if (b->result == MOTION_HANDED_OVER) {
         b->is_locked = true;
-        b->locked = lock_cycle(&b->lock, &b->motion, &b->operator, b->command_rpm, &b->record);
+        b->locked = takt_lock_cycle(&b->lock, &b->motion, &b->operator, b->command_rpm, &b->record);
     }
     bench_apply_events(b);
     if (b->locked == LOCK_FAILED || b->result == MOTION_DONE) {
@@ -181,5 +181,5 @@ bool bench_is_on_thread(const struct bench *b)
     const double rev = b->lock.sense * b->true_rev[BENCH_AHEAD];
 
     return b->is_locked && b->lock.phase == LOCK_FOLLOWS && !b->lock.follower.braking &&
-           lead_in_is_over(&b->lock.lead_in, rev);
+           takt_lead_in_is_over(&b->lock.lead_in, rev);
 }

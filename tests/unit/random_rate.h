@@ -31,8 +31,8 @@ static inline struct plan_limits random_rate_machine(void)
     l.axes = 7;
     l.cycle_s = RANDOM_RATE_CYCLE_S;
     for (int i = 0; i < AXIS_LINEAR_COUNT; i++) {
-        l.velocity_mm_s[i] = maths_power(10.0, random_rate_between(1.3, 2.7));
-        l.acceleration_mm_s2[i] = maths_power(10.0, random_rate_between(2.3, 4.0));
+        l.velocity_mm_s[i] = takt_maths_power(10.0, random_rate_between(1.3, 2.7));
+        l.acceleration_mm_s2[i] = takt_maths_power(10.0, random_rate_between(2.3, 4.0));
         l.jerk_mm_s3[i] =
             l.acceleration_mm_s2[i] / (RANDOM_RATE_CYCLE_S * random_rate_between(5.0, 100.0));
     }

@@ -55,9 +55,9 @@ static inline void judged_cycles(unsigned count)
 
 static inline void judged_wait_for(enum panel_state state)
 {
-    for (unsigned i = 0; i < BENCH_CYCLES_MAX && service_get_state(&service) != state; i++)
+    for (unsigned i = 0; i < BENCH_CYCLES_MAX && takt_service_get_state(&service) != state; i++)
         judged_cycle();
-    TEST_ASSERT_EQUAL_INT(state, service_get_state(&service));
+    TEST_ASSERT_EQUAL_INT(state, takt_service_get_state(&service));
 }
 
 /* And the axes have moved. */

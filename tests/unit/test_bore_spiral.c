@@ -106,8 +106,8 @@ static void test_the_start_may_be_in_any_direction(void)
         const double angle = i * MATHS_PI / 12.0;
         double p[2];
 
-        job.start_mm[0] = 33.0 * maths_cos(angle);
-        job.start_mm[1] = 33.0 * maths_sin(angle);
+        job.start_mm[0] = 33.0 * takt_maths_cos(angle);
+        job.start_mm[1] = 33.0 * takt_maths_sin(angle);
         bore_set_spiral(&job, BORE_FINISHING, &spiral);
         bore_spiral_point(&spiral, spiral.start_rad, p);
         TEST_ASSERT_DOUBLE_WITHIN(1e-12, job.start_mm[0], p[0]);

@@ -83,7 +83,7 @@ void setUp(void)
     virtual_spindle_set_default(&spindle);
     inverter_registers_init(&registers, &spindle);
     map = inverter_registers_get_map(&registers);
-    inverter_init(&inverter, &config);
+    takt_inverter_init(&inverter, &config);
     left = 0;
     is_cut = false;
     requests = commands = 0;
@@ -99,7 +99,7 @@ static void run_for(double time_s, double commanded_rpm)
     const int cycles = (int)(time_s / CYCLE_S + 0.5);
 
     for (int i = 0; i < cycles; i++) {
-        feedback = inverter_cycle(&inverter, &port, commanded_rpm);
+        feedback = takt_inverter_cycle(&inverter, &port, commanded_rpm);
         inverter_registers_step(&registers, CYCLE_S);
     }
 }
@@ -159,7 +159,7 @@ static void test_a_trip_is_told_and_reset_when_acknowledged(void)
     TEST_ASSERT_TRUE(feedback.tripped);
     TEST_ASSERT_FALSE(feedback.at_speed);
     TEST_ASSERT_EQUAL_UINT16(VIRTUAL_SPINDLE_OVERHEAT, inverter.error);
-    inverter_reset(&inverter);
+    takt_inverter_reset(&inverter);
     run_for(3, 12000);
     TEST_ASSERT_FALSE(feedback.tripped);
     TEST_ASSERT_TRUE(feedback.at_speed);

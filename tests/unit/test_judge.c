@@ -20,9 +20,9 @@ static struct block executed;
 
 void setUp(void)
 {
-    machine_set_default(&machine);
-    parameters_clear(&parameters[0]);
-    parameters_clear(&parameters[1]);
+    takt_machine_set_default(&machine);
+    takt_parameters_clear(&parameters[0]);
+    takt_parameters_clear(&parameters[1]);
     memset(&judge, 0, sizeof judge);
     memset(&record, 0, sizeof record);
     memset(&executed, 0, sizeof executed);
@@ -37,7 +37,7 @@ void tearDown(void)
 /* A judge of this program, before its first cycle. */
 static void begin_as(const char *program, bool waits)
 {
-    struct program_config config = {.axes = machine_axes(&machine),
+    struct program_config config = {.axes = takt_machine_axes(&machine),
                                     .parameters = &parameters[0],
                                     .waits = waits,
                                     .spindle_encoder = true};
@@ -48,10 +48,10 @@ static void begin_as(const char *program, bool waits)
         config.travel_max[i] = 500;
     }
     judge_free(&judge);
-    source_open_text(&source, &text[0], program, strlen(program));
+    takt_source_open_text(&source, &text[0], program, strlen(program));
     judge_init(&judge, &machine, &config, &source);
     config.parameters = &parameters[1];
-    source_open_text(&source, &text[1], program, strlen(program));
+    takt_source_open_text(&source, &text[1], program, strlen(program));
     judge_follow(&judge, &machine, &config, &source, false);
 }
 
@@ -195,7 +195,7 @@ static void test_a_passed_end_is_where_the_executed_path_leads(void)
     struct point start = {{0}}, end = {{10}};
 
     begin("G0 X10\nG0 X20\n");
-    TEST_ASSERT_TRUE(curve_set_line(&executed.curve, &start, &end));
+    TEST_ASSERT_TRUE(takt_curve_set_line(&executed.curve, &start, &end));
     executed.end = JOINT_PASSED;
     executed.length_mm = 9.75;
     executed.scale = 1;
@@ -316,9 +316,9 @@ static void test_the_distance_to_a_helix_finds_its_turn(void)
     double fraction = 0;
     struct curve helix;
 
-    TEST_ASSERT_TRUE(curve_set_arc(&helix, &start, &end, PLANE_XY, centre, false, 3));
+    TEST_ASSERT_TRUE(takt_curve_set_arc(&helix, &start, &end, PLANE_XY, centre, false, 3));
     for (int i = 0; i <= 300; i++) {
-        curve_point(&helix, helix.length_mm * i / 300, &p);
+        takt_curve_point(&helix, helix.length_mm * i / 300, &p);
         TEST_ASSERT_DOUBLE_WITHIN(1e-12, 0, judge_curve_distance(&helix, &p, &fraction));
         TEST_ASSERT_DOUBLE_WITHIN(1e-12, i / 300.0, fraction);
     }
@@ -333,9 +333,9 @@ static void test_an_arc_of_changing_radius_is_on_its_own_path(void)
     double fraction = 0;
     struct curve spiral;
 
-    TEST_ASSERT_TRUE(curve_set_arc(&spiral, &start, &end, PLANE_XY, centre, false, 1));
+    TEST_ASSERT_TRUE(takt_curve_set_arc(&spiral, &start, &end, PLANE_XY, centre, false, 1));
     for (int i = 0; i <= 100; i++) {
-        curve_point(&spiral, spiral.length_mm * i / 100, &p);
+        takt_curve_point(&spiral, spiral.length_mm * i / 100, &p);
         TEST_ASSERT_DOUBLE_WITHIN(1e-12, 0, judge_curve_distance(&spiral, &p, &fraction));
     }
 }

@@ -10,10 +10,10 @@
 /* r 2, four turns from the base circle; 30 mm along Z meanwhile. */
 static struct curve curve;
 
-static void involute_point(double phi, double x_y[2])
+static void takt_involute_point(double phi, double x_y[2])
 {
-    x_y[0] = 2.0 * (maths_cos(phi) + phi * maths_sin(phi));
-    x_y[1] = 2.0 * (maths_sin(phi) - phi * maths_cos(phi));
+    x_y[0] = 2.0 * (takt_maths_cos(phi) + phi * takt_maths_sin(phi));
+    x_y[1] = 2.0 * (takt_maths_sin(phi) - phi * takt_maths_cos(phi));
 }
 
 void setUp(void)
@@ -21,10 +21,10 @@ void setUp(void)
     struct point start = {{2.0, 0.0, 0.0}};
     struct point end = {{0}};
 
-    involute_point(4.0 * MATHS_TWO_PI, end.at);
+    takt_involute_point(4.0 * MATHS_TWO_PI, end.at);
     end.at[AXIS_Z] = 30.0;
     TEST_ASSERT_TRUE(
-        curve_set_involute(&curve, &start, &end, PLANE_XY, (double[2]){0.0, 0.0}, 2.0, false));
+        takt_curve_set_involute(&curve, &start, &end, PLANE_XY, (double[2]){0.0, 0.0}, 2.0, false));
 }
 
 void tearDown(void)
@@ -38,7 +38,7 @@ static void test_a_point_of_an_involute_is_on_it(void)
         struct point p = {{0}};
         double fraction = 0.0;
 
-        involute_point(phi, p.at);
+        takt_involute_point(phi, p.at);
         p.at[AXIS_Z] = 30.0 * (i / 100.0) * (i / 100.0);
         TEST_ASSERT_DOUBLE_WITHIN(1e-12, 0.0, judge_curve_distance(&curve, &p, &fraction));
         TEST_ASSERT_DOUBLE_WITHIN(1e-9, (i / 100.0) * (i / 100.0), fraction);
@@ -54,9 +54,9 @@ static void test_a_point_beside_an_involute_is_as_far_as_it_was_moved(void)
         struct point p = {{0}};
         double fraction = 0.0;
 
-        involute_point(phi, p.at);
-        p.at[AXIS_X] += 0.3 * maths_sin(phi);
-        p.at[AXIS_Y] -= 0.3 * maths_cos(phi);
+        takt_involute_point(phi, p.at);
+        p.at[AXIS_X] += 0.3 * takt_maths_sin(phi);
+        p.at[AXIS_Y] -= 0.3 * takt_maths_cos(phi);
         p.at[AXIS_Z] = 30.0 * share * share;
         TEST_ASSERT_DOUBLE_WITHIN(1e-12, 0.3, judge_curve_distance(&curve, &p, &fraction));
         p.at[AXIS_Z] += 0.4;
@@ -75,15 +75,15 @@ static void test_a_chord_error_is_the_largest_distance_from_the_chord(void)
         struct point b = {{0}};
         double most = 0.0;
 
-        involute_point(ends[i][0], a.at);
-        involute_point(ends[i][1], b.at);
+        takt_involute_point(ends[i][0], a.at);
+        takt_involute_point(ends[i][1], b.at);
         const double x = b.at[0] - a.at[0];
         const double y = b.at[1] - a.at[1];
 
         for (int k = 0; k <= 20000; k++) {
             double p[2];
 
-            involute_point(ends[i][0] + (ends[i][1] - ends[i][0]) * k / 20000, p);
+            takt_involute_point(ends[i][0] + (ends[i][1] - ends[i][0]) * k / 20000, p);
             most = maths_max(most, maths_abs((p[0] - a.at[0]) * y - (p[1] - a.at[1]) * x) /
                                        maths_sqrt(x * x + y * y));
         }

@@ -25,7 +25,7 @@ static char program_text[400000];
 
 void setUp(void)
 {
-    parameters_clear(&parameters);
+    takt_parameters_clear(&parameters);
     memset(&judge, 0, sizeof judge);
     motion = UINT32_MAX / 2; /* none to be believed */
 }
@@ -46,7 +46,7 @@ static void begin_as(const char *program, bool waits)
         config.travel_max[i] = 500;
     }
     tube_judge_free(&judge);
-    source_open_text(&source, &text, program, strlen(program));
+    takt_source_open_text(&source, &text, program, strlen(program));
     tube_judge_init(&judge, &config, &source, EXACT_MM);
 }
 

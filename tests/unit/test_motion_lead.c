@@ -44,8 +44,8 @@ static uint64_t cycles;
 
 void setUp(void)
 {
-    lead_init(&lead, LAW_JERK, 0);
-    average_start(&average, LAW_JERK, 1, 0, 0);
+    takt_lead_init(&lead, LAW_JERK, 0);
+    takt_average_start(&average, LAW_JERK, 1, 0, 0);
     active = 0;
     setpoint = 0;
     cycles = 0;
@@ -64,7 +64,7 @@ static double square(double x)
 
 static float single_feed(double feed)
 {
-    return maths_float_below(feed / CYCLE_S);
+    return takt_maths_float_below(feed / CYCLE_S);
 }
 
 /* The block of a stretch, at the end of the ceiling's path. */
@@ -87,7 +87,7 @@ static void append_piece(struct ceiling *c, double end_mm, float feed_mm_s, doub
     c->end_mm[c->count] = end_mm;
     c->piece[c->count++] = (struct ceiling_piece){
         .feed_mm_s = feed_mm_s,
-        .acceleration = maths_float_below(a),
+        .acceleration = takt_maths_float_below(a),
         .start = c->path->pushed & 0x1ffU,
         .leave = leave & 0x1ffU,
         .landing = CEILING_NONE,
@@ -138,7 +138,7 @@ static void plan(struct ceiling *c)
         p->end_feed_mm_s = feed_mm_s;
         p->end_feed_max_mm_s = p->landed ? p->feed_mm_s : max_mm_s;
         feed_mm_s = feed_before(p, p->feed_mm_s, feed_mm_s, length_mm);
-        max_mm_s = feed_before(p, ceiling_top_feed(c, k), max_mm_s, length_mm);
+        max_mm_s = feed_before(p, takt_ceiling_top_feed(c, k), max_mm_s, length_mm);
     }
 }
 
@@ -167,7 +167,7 @@ static void take(const struct stretch *s, unsigned count, double ratio, bool sto
 {
     active = 1 - active;
     lay(&ceilings[active], s, count, ratio, stops);
-    lead_set_ceiling(&lead, &ceilings[active]);
+    takt_lead_set_ceiling(&lead, &ceilings[active]);
     while (lead_take(&lead)) {
     }
 }
@@ -182,7 +182,7 @@ static double at_mm(void)
 /* Where the setpoint is: the average of the lead point. */
 static void follow(void)
 {
-    average_push(&average, lead.at);
+    takt_average_push(&average, lead.at);
     setpoint = lead.at - (uint64_t)average_lag(&average);
 }
 
@@ -203,8 +203,8 @@ static void step(bool hold, double a_max)
     struct lead_start start;
     const double before = lead.feed;
 
-    if (lead_step(&lead, setpoint, hold, &start)) {
-        average_start(&average, LAW_JERK, lead.cycles, start.at, start.step);
+    if (takt_lead_step(&lead, setpoint, hold, &start)) {
+        takt_average_start(&average, LAW_JERK, lead.cycles, start.at, start.step);
     }
     follow();
     cycles++;
@@ -221,7 +221,7 @@ static double ceiling_here(void)
 
 static void run_to_stop(double a_max, unsigned cycles_max)
 {
-    lead_release(&lead);
+    takt_lead_release(&lead);
     for (unsigned i = 0; i < cycles_max; i++) {
         step(false, a_max);
         if (lead.standing) {
@@ -238,7 +238,7 @@ static const struct stretch dip[] = {{20.0, FEED, A}, {5.0, 0.3 * FEED, A}, {20.
 static void test_it_is_never_above_the_ceiling_of_its_piece(void)
 {
     take(dip, 3, 1.0, true);
-    lead_release(&lead);
+    takt_lead_release(&lead);
     do {
         step(false, A);
         TEST_ASSERT_TRUE(lead.feed <= ceiling_here() * (1.0 + 1e-9) || lead.standing);
@@ -250,7 +250,7 @@ static void test_it_is_never_above_the_ceiling_of_its_piece(void)
 static void test_a_slow_stretch_binds_until_the_setpoint_has_left_it(void)
 {
     take(dip, 3, 1.0, true);
-    lead_release(&lead);
+    takt_lead_release(&lead);
     do {
         const uint64_t before = setpoint;
 
@@ -277,7 +277,7 @@ static void test_it_keeps_its_feed_for_a_window_between_opposite_changes(void)
     unsigned slowed_down = 2 * WINDOW;
 
     take(dip, 3, 1.0, true);
-    lead_release(&lead);
+    takt_lead_release(&lead);
     do {
         const double before = lead.feed;
 
@@ -322,7 +322,7 @@ static void test_it_rests_in_a_hold_and_goes_on_after_it(void)
     for (unsigned held = 1; held < 400; held += 7) {
         setUp();
         take(dip, 3, 1.0, true);
-        lead_release(&lead);
+        takt_lead_release(&lead);
         while (cycles < held) {
             step(false, A);
         }
@@ -344,7 +344,7 @@ static void test_it_brakes_at_once_and_fully_for_a_lower_override(void)
     const struct stretch way = {100.0, FEED, A};
 
     take(&way, 1, 1.0, true);
-    lead_release(&lead);
+    takt_lead_release(&lead);
     while (cycles < 200) {
         step(false, A);
     }
@@ -365,7 +365,7 @@ static void test_it_speeds_up_for_a_higher_override(void)
     const struct stretch way = {100.0, FEED, A};
 
     take(&way, 1, 0.25, true);
-    lead_release(&lead);
+    takt_lead_release(&lead);
     while (cycles < 100) {
         step(false, A);
     }
@@ -386,7 +386,7 @@ static void run_with_change(const struct stretch *way, double ratio, unsigned ch
 {
     setUp();
     take(way, 2, ratio, true);
-    lead_release(&lead);
+    takt_lead_release(&lead);
     do {
         step(false, A);
     } while (cycles < change && !lead.standing);
@@ -423,7 +423,7 @@ static void test_it_does_not_rest_while_the_path_goes_on(void)
 
         setUp();
         take(&way, 1, 1.0, false);
-        lead_release(&lead);
+        takt_lead_release(&lead);
         step(false, A);
         for (unsigned i = 0; i < 400; i++) {
             for (unsigned n = 0; n < 16; n++) {
@@ -442,7 +442,7 @@ static void test_it_rests_exactly_at_the_end_of_what_is_known_and_goes_on_from_t
     struct stretch way = {5.0, FEED, A};
 
     take(&way, 1, 1.0, false);
-    lead_release(&lead);
+    takt_lead_release(&lead);
     for (unsigned i = 0; i < 600; i++) {
         step(false, A);
     }
@@ -486,11 +486,11 @@ static void test_the_setpoint_falls_on_a_landed_joint_in_motion(void)
 
         setUp();
         lay_joint(&ceilings[0], 0.004 * i);
-        lead_set_ceiling(&lead, &ceilings[0]);
+        takt_lead_set_ceiling(&lead, &ceilings[0]);
         TEST_ASSERT_FALSE(lead_take(&lead));
-        lead_release(&lead);
+        takt_lead_release(&lead);
         step(false, A);
-        while (!lead_step(&lead, setpoint, false, &start)) {
+        while (!takt_lead_step(&lead, setpoint, false, &start)) {
             TEST_ASSERT_TRUE(lead.feed > 0.0);
             follow();
         }
@@ -503,9 +503,9 @@ static void test_the_setpoint_falls_on_a_landed_joint_in_motion(void)
 static void test_a_landed_joint_is_rested_at_in_a_hold_close_to_it(void)
 {
     lay_joint(&ceilings[0], 0.05);
-    lead_set_ceiling(&lead, &ceilings[0]);
+    takt_lead_set_ceiling(&lead, &ceilings[0]);
     (void)lead_take(&lead);
-    lead_release(&lead);
+    takt_lead_release(&lead);
     while (at_mm() < 4.0) {
         step(false, A);
     }
@@ -538,11 +538,12 @@ static void run_random(uint64_t seed)
     random_state = seed;
     setUp();
     for (unsigned i = 0; i < STRETCHES; i++) {
-        way[i] = (struct stretch){maths_power(10.0, between(-3, 1)), FEED * between(0.05, 1.0), A};
+        way[i] =
+            (struct stretch){takt_maths_power(10.0, between(-3, 1)), FEED * between(0.05, 1.0), A};
         end_mm += way[i].length_mm;
     }
     take(way, STRETCHES, 1.0, true);
-    lead_release(&lead);
+    takt_lead_release(&lead);
     step(false, A);
     do {
         const double ratio = between(0.1, 1.0);
@@ -554,7 +555,7 @@ static void run_random(uint64_t seed)
         take(way, STRETCHES, ratio, true);
         TEST_ASSERT_TRUE_MESSAGE(cycles < 400000, "does not come to the stop");
     } while (!lead.standing);
-    TEST_ASSERT_EQUAL_UINT64(ceiling_leave(&ceilings[active], STRETCHES - 1), lead.at);
+    TEST_ASSERT_EQUAL_UINT64(takt_ceiling_leave(&ceilings[active], STRETCHES - 1), lead.at);
     TEST_ASSERT_DOUBLE_WITHIN(1e-9, end_mm, at_mm());
 }
 

@@ -14,13 +14,13 @@ static struct offset offset;
 static void open_text(const char *text)
 {
     reader_open(&reader, text);
-    offset_open(&offset, &reader.config);
+    takt_offset_open(&offset, &reader.config);
 }
 
 static enum program_result next(struct move *m)
 {
     memset(m, 0, sizeof(*m));
-    return offset_next(&offset, &reader.program, m, &reader.diagnostic);
+    return takt_offset_next(&offset, &reader.program, m, &reader.diagnostic);
 }
 
 static struct move expect(enum move_kind kind, double x, double y, double z)
@@ -187,7 +187,7 @@ static void test_moves_of_a_contour_keep_what_is_their_own(void)
     reader.config.correction_layers = 3;
     reader_text(&reader, "G64 P0.05 M49\nM70\nG64 P0.1 Q0.02 M48\nG41.1 D2\nG1 X10 F600\nX20\n"
                          "G4 P1.5\nT5\nM72\nG1 X30 F1200\nM121\nZ5 F60\nX40 F1200\nG40 X50\n");
-    offset_open(&offset, &reader.config);
+    takt_offset_open(&offset, &reader.config);
     for (unsigned x = 10; x <= 20; x += 10) {
         m = expect(MOVE_FEED, x, 1.0, 0.0);
         expect_own(&m, 0.1, 0.02, OVERRIDE_FEED | OVERRIDE_SPINDLE | OVERRIDE_HOLD, 0);
@@ -225,11 +225,11 @@ static void test_a_step_lower_than_the_tool_is_passed_over_with_a_warning(void)
     (void)expect(MOVE_ARC_CW, 60.0, 6.0, 0.0);
     (void)expect(MOVE_FEED, 100.0, 6.0, 0.0);
     expect_end();
-    TEST_ASSERT_TRUE(offset_warning(&offset, &warning));
+    TEST_ASSERT_TRUE(takt_offset_warning(&offset, &warning));
     TEST_ASSERT_EQUAL_INT(TAKT_ERROR_OFFSET_LEFT_OUT, warning.code);
     TEST_ASSERT_EQUAL_UINT32(4, warning.line);
     TEST_ASSERT_DOUBLE_WITHIN(1e-12, 5.0, warning.value);
-    TEST_ASSERT_FALSE(offset_warning(&offset, &warning));
+    TEST_ASSERT_FALSE(takt_offset_warning(&offset, &warning));
 }
 
 static void test_a_short_bottom_is_left_out(void)
@@ -343,7 +343,7 @@ static void test_sharp_corners_stand_off_by_no_more_than_a_right_angle_gives(voi
     reader_prepare(&reader);
     reader.config.sharp_corners = true;
     reader_text(&reader, "G41.1 D6\nG1 X20 F60\nY-20\nY0\nG40 X0\n");
-    offset_open(&offset, &reader.config);
+    takt_offset_open(&offset, &reader.config);
     (void)expect(MOVE_FEED, 20.0, 3.0, 0.0);
     (void)expect(MOVE_FEED, 23.0, 3.0, 0.0);
     (void)expect(MOVE_FEED, 23.0, 0.0, 0.0);

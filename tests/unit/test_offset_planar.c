@@ -15,7 +15,7 @@ static struct planar line(double x0, double y0, double x1, double y1)
     const double to[2] = {x1, y1};
     struct planar c;
 
-    TEST_ASSERT_TRUE(planar_set_line(&c, from, to));
+    TEST_ASSERT_TRUE(takt_planar_set_line(&c, from, to));
     return c;
 }
 
@@ -23,12 +23,13 @@ static struct planar line(double x0, double y0, double x1, double y1)
 static struct planar arc(double from_deg, double to_deg, double sense, unsigned turns)
 {
     const double rad = MATHS_PI / 180.0;
-    const double from[2] = {10.0 * maths_cos(from_deg * rad), 10.0 * maths_sin(from_deg * rad)};
-    const double to[2] = {10.0 * maths_cos(to_deg * rad), 10.0 * maths_sin(to_deg * rad)};
+    const double from[2] = {10.0 * takt_maths_cos(from_deg * rad),
+                            10.0 * takt_maths_sin(from_deg * rad)};
+    const double to[2] = {10.0 * takt_maths_cos(to_deg * rad), 10.0 * takt_maths_sin(to_deg * rad)};
     const double centre[2] = {0.0, 0.0};
     struct planar c;
 
-    planar_set_arc(&c, from, to, centre, sense, turns);
+    takt_planar_set_arc(&c, from, to, centre, sense, turns);
     return c;
 }
 
@@ -52,7 +53,7 @@ static void test_a_line_moves_to_its_left(void)
     struct planar moved;
     double lack;
 
-    TEST_ASSERT_TRUE(planar_offset(&c, 3.0, &moved, &lack));
+    TEST_ASSERT_TRUE(takt_planar_offset(&c, 3.0, &moved, &lack));
     expect_point(moved.from, 0.0, 3.0);
     expect_point(moved.to, 10.0, 3.0);
 }
@@ -63,12 +64,12 @@ static void test_left_of_a_counter_clockwise_arc_is_inside(void)
     struct planar moved;
     double lack;
 
-    TEST_ASSERT_TRUE(planar_offset(&c, 3.0, &moved, &lack));
+    TEST_ASSERT_TRUE(takt_planar_offset(&c, 3.0, &moved, &lack));
     expect_point(moved.from, 7.0, 0.0);
     expect_point(moved.to, 0.0, 7.0);
-    TEST_ASSERT_TRUE(planar_offset(&c, -3.0, &moved, &lack));
+    TEST_ASSERT_TRUE(takt_planar_offset(&c, -3.0, &moved, &lack));
     expect_point(moved.from, 13.0, 0.0);
-    TEST_ASSERT_DOUBLE_WITHIN(NEAR, 13.0 * MATHS_HALF_PI, planar_length(&moved));
+    TEST_ASSERT_DOUBLE_WITHIN(NEAR, 13.0 * MATHS_HALF_PI, takt_planar_length(&moved));
 }
 
 static void test_an_arc_smaller_than_the_tool_lacks_the_difference(void)
@@ -77,9 +78,9 @@ static void test_an_arc_smaller_than_the_tool_lacks_the_difference(void)
     struct planar moved;
     double lack = 0.0;
 
-    TEST_ASSERT_FALSE(planar_offset(&c, -12.5, &moved, &lack));
+    TEST_ASSERT_FALSE(takt_planar_offset(&c, -12.5, &moved, &lack));
     TEST_ASSERT_DOUBLE_WITHIN(NEAR, 2.5, lack);
-    TEST_ASSERT_FALSE(planar_offset(&c, -10.0, &moved, &lack));
+    TEST_ASSERT_FALSE(takt_planar_offset(&c, -10.0, &moved, &lack));
 }
 
 static void test_sweeps_count_turns(void)
@@ -96,12 +97,12 @@ static void test_tangents_and_bends(void)
     const struct planar c = arc(0.0, 90.0, -1.0, 1);
     double tangent[2];
 
-    planar_tangent_from(&c, tangent);
+    takt_planar_tangent_from(&c, tangent);
     expect_point(tangent, 0.0, -1.0);
-    planar_tangent_to(&c, tangent);
+    takt_planar_tangent_to(&c, tangent);
     expect_point(tangent, 1.0, 0.0);
-    TEST_ASSERT_DOUBLE_WITHIN(NEAR, -0.1, planar_bend_to(&c));
-    TEST_ASSERT_DOUBLE_WITHIN(NEAR, -0.1, planar_bend_from(&c));
+    TEST_ASSERT_DOUBLE_WITHIN(NEAR, -0.1, takt_planar_bend_to(&c));
+    TEST_ASSERT_DOUBLE_WITHIN(NEAR, -0.1, takt_planar_bend_from(&c));
 }
 
 static void test_two_lines_cross_once_and_parallels_never(void)
@@ -111,9 +112,9 @@ static void test_two_lines_cross_once_and_parallels_never(void)
     const struct planar c = line(0.0, 1.0, 1.0, 1.0);
     double points[2][2];
 
-    TEST_ASSERT_EQUAL_UINT(1, planar_cross(&a, &b, points));
+    TEST_ASSERT_EQUAL_UINT(1, takt_planar_cross(&a, &b, points));
     expect_point(points[0], 5.0, 0.0);
-    TEST_ASSERT_EQUAL_UINT(0, planar_cross(&a, &c, points));
+    TEST_ASSERT_EQUAL_UINT(0, takt_planar_cross(&a, &c, points));
 }
 
 static void test_a_line_crosses_touches_or_misses_a_circle(void)
@@ -124,12 +125,12 @@ static void test_a_line_crosses_touches_or_misses_a_circle(void)
     const struct planar beside = line(-3.0, 10.001, 1.0, 10.001);
     double points[2][2];
 
-    TEST_ASSERT_EQUAL_UINT(2, planar_cross(&through, &circle, points));
+    TEST_ASSERT_EQUAL_UINT(2, takt_planar_cross(&through, &circle, points));
     expect_point(points[0], -8.0, 6.0);
     expect_point(points[1], 8.0, 6.0);
-    TEST_ASSERT_EQUAL_UINT(1, planar_cross(&circle, &touching, points));
+    TEST_ASSERT_EQUAL_UINT(1, takt_planar_cross(&circle, &touching, points));
     expect_point(points[0], 0.0, 10.0);
-    TEST_ASSERT_EQUAL_UINT(0, planar_cross(&circle, &beside, points));
+    TEST_ASSERT_EQUAL_UINT(0, takt_planar_cross(&circle, &beside, points));
 }
 
 static void test_circles_cross_touch_or_miss(void)
@@ -139,30 +140,30 @@ static void test_circles_cross_touch_or_miss(void)
     double points[2][2];
 
     b.centre[0] = 12.0;
-    TEST_ASSERT_EQUAL_UINT(2, planar_cross(&a, &b, points));
+    TEST_ASSERT_EQUAL_UINT(2, takt_planar_cross(&a, &b, points));
     expect_point(points[0], 6.0, -8.0);
     expect_point(points[1], 6.0, 8.0);
     b.centre[0] = 20.0;
-    TEST_ASSERT_EQUAL_UINT(1, planar_cross(&a, &b, points));
+    TEST_ASSERT_EQUAL_UINT(1, takt_planar_cross(&a, &b, points));
     expect_point(points[0], 10.0, 0.0);
     b.centre[0] = 6.0;
     b.radius_from = 4.0;
-    TEST_ASSERT_EQUAL_UINT(1, planar_cross(&a, &b, points));
+    TEST_ASSERT_EQUAL_UINT(1, takt_planar_cross(&a, &b, points));
     expect_point(points[0], 10.0, 0.0);
     b.centre[0] = 21.0;
     b.radius_from = 10.0;
-    TEST_ASSERT_EQUAL_UINT(0, planar_cross(&a, &b, points));
-    TEST_ASSERT_EQUAL_UINT(0, planar_cross(&a, &a, points));
+    TEST_ASSERT_EQUAL_UINT(0, takt_planar_cross(&a, &b, points));
+    TEST_ASSERT_EQUAL_UINT(0, takt_planar_cross(&a, &a, points));
 }
 
 static void test_places_on_an_arc_are_lengths_from_its_start(void)
 {
     const struct planar c = arc(0.0, 90.0, 1.0, 1);
     const double middle[2] = {10.0 * maths_sqrt(0.5), 10.0 * maths_sqrt(0.5)};
-    const double before[2] = {10.0 * maths_cos(0.1), -10.0 * maths_sin(0.1)};
+    const double before[2] = {10.0 * takt_maths_cos(0.1), -10.0 * takt_maths_sin(0.1)};
 
-    TEST_ASSERT_DOUBLE_WITHIN(1e-9, 2.5 * MATHS_PI, planar_place(&c, middle));
-    TEST_ASSERT_DOUBLE_WITHIN(1e-9, -1.0, planar_place(&c, before));
+    TEST_ASSERT_DOUBLE_WITHIN(1e-9, 2.5 * MATHS_PI, takt_planar_place(&c, middle));
+    TEST_ASSERT_DOUBLE_WITHIN(1e-9, -1.0, takt_planar_place(&c, before));
 }
 
 static void test_the_ends_of_a_full_circle_are_told_apart(void)
@@ -170,18 +171,18 @@ static void test_the_ends_of_a_full_circle_are_told_apart(void)
     const struct planar c = arc(0.0, 0.0, 1.0, 2);
     const double end[2] = {10.0, 0.0};
 
-    TEST_ASSERT_DOUBLE_WITHIN(1e-9, 0.0, planar_place_near_from(&c, end));
-    TEST_ASSERT_DOUBLE_WITHIN(1e-9, 40.0 * MATHS_PI, planar_place_near_to(&c, end));
+    TEST_ASSERT_DOUBLE_WITHIN(1e-9, 0.0, takt_planar_place_near_from(&c, end));
+    TEST_ASSERT_DOUBLE_WITHIN(1e-9, 40.0 * MATHS_PI, takt_planar_place_near_to(&c, end));
 }
 
 static void test_a_cut_arc_is_shorter_by_what_was_cut(void)
 {
     struct planar c = arc(0.0, 90.0, 1.0, 1);
-    const double begin[2] = {10.0 * maths_cos(0.2), 10.0 * maths_sin(0.2)};
-    const double end[2] = {10.0 * maths_cos(1.2), 10.0 * maths_sin(1.2)};
+    const double begin[2] = {10.0 * takt_maths_cos(0.2), 10.0 * takt_maths_sin(0.2)};
+    const double end[2] = {10.0 * takt_maths_cos(1.2), 10.0 * takt_maths_sin(1.2)};
 
-    planar_end_at(&c, 12.0, end);
-    planar_begin_at(&c, 2.0, begin);
+    takt_planar_end_at(&c, 12.0, end);
+    takt_planar_begin_at(&c, 2.0, begin);
     TEST_ASSERT_DOUBLE_WITHIN(NEAR, 1.0, c.sweep_rad);
     expect_point(c.from, begin[0], begin[1]);
     expect_point(c.to, end[0], end[1]);
@@ -199,12 +200,12 @@ static void test_distances_between_ways(void)
     beside.centre[0] = beside.from[0] = 25.0;
     beside.from[0] = 35.0;
     beside.to[0] = 15.0;
-    TEST_ASSERT_DOUBLE_WITHIN(NEAR, 5.0, planar_distance(&half, &above));
-    TEST_ASSERT_DOUBLE_WITHIN(NEAR, 4.0, planar_distance(&below, &half));
-    TEST_ASSERT_DOUBLE_WITHIN(NEAR, 0.0, planar_distance(&through, &half));
-    TEST_ASSERT_DOUBLE_WITHIN(NEAR, 5.0, planar_distance(&half, &beside));
-    TEST_ASSERT_DOUBLE_WITHIN(NEAR, 9.0, planar_distance_point(&half, inside));
-    TEST_ASSERT_DOUBLE_WITHIN(NEAR, 5.0, planar_distance_point(&below, inside));
+    TEST_ASSERT_DOUBLE_WITHIN(NEAR, 5.0, takt_planar_distance(&half, &above));
+    TEST_ASSERT_DOUBLE_WITHIN(NEAR, 4.0, takt_planar_distance(&below, &half));
+    TEST_ASSERT_DOUBLE_WITHIN(NEAR, 0.0, takt_planar_distance(&through, &half));
+    TEST_ASSERT_DOUBLE_WITHIN(NEAR, 5.0, takt_planar_distance(&half, &beside));
+    TEST_ASSERT_DOUBLE_WITHIN(NEAR, 9.0, takt_planar_distance_point(&half, inside));
+    TEST_ASSERT_DOUBLE_WITHIN(NEAR, 5.0, takt_planar_distance_point(&below, inside));
 }
 
 int main(void)

@@ -13,25 +13,25 @@ void tearDown(void)
 
 static void test_each_smoother_law_has_one_box_more(void)
 {
-    TEST_ASSERT_EQUAL(1, law_boxes(LAW_JERK));
-    TEST_ASSERT_EQUAL(2, law_boxes(LAW_SMOOTH));
-    TEST_ASSERT_EQUAL(3, law_boxes(LAW_GENTLE));
+    TEST_ASSERT_EQUAL(1, takt_law_boxes(LAW_JERK));
+    TEST_ASSERT_EQUAL(2, takt_law_boxes(LAW_SMOOTH));
+    TEST_ASSERT_EQUAL(3, takt_law_boxes(LAW_GENTLE));
 }
 
 static void test_further_boxes_are_half_as_long_rounded_up(void)
 {
-    TEST_ASSERT_EQUAL(21, law_box_cycles(0, 21));
-    TEST_ASSERT_EQUAL(11, law_box_cycles(1, 21));
-    TEST_ASSERT_EQUAL(11, law_box_cycles(2, 21));
+    TEST_ASSERT_EQUAL(21, takt_law_box_cycles(0, 21));
+    TEST_ASSERT_EQUAL(11, takt_law_box_cycles(1, 21));
+    TEST_ASSERT_EQUAL(11, takt_law_box_cycles(2, 21));
 }
 
 /* Boxes of n and m cycles one after the other reach over n + m - 1 inputs. */
 static void test_the_window_is_what_all_boxes_reach_over(void)
 {
-    TEST_ASSERT_EQUAL(20, law_window_cycles(LAW_JERK, 20));
-    TEST_ASSERT_EQUAL(29, law_window_cycles(LAW_SMOOTH, 20));
-    TEST_ASSERT_EQUAL(38, law_window_cycles(LAW_GENTLE, 20));
-    TEST_ASSERT_EQUAL(1, law_window_cycles(LAW_GENTLE, 1));
+    TEST_ASSERT_EQUAL(20, takt_law_window_cycles(LAW_JERK, 20));
+    TEST_ASSERT_EQUAL(29, takt_law_window_cycles(LAW_SMOOTH, 20));
+    TEST_ASSERT_EQUAL(38, takt_law_window_cycles(LAW_GENTLE, 20));
+    TEST_ASSERT_EQUAL(1, takt_law_window_cycles(LAW_GENTLE, 1));
 }
 
 /* 2^38 units a mm times the product of the boxes leaves 2^63 room for 64 mm at least. */
@@ -40,8 +40,8 @@ static void test_sums_of_the_longest_boxes_stay_within_64_bits(void)
     for (int law = LAW_JERK; law <= LAW_GENTLE; law++) {
         double product = 64.0 * 274877906944.0;
 
-        for (unsigned i = 0; i < law_boxes((enum law)law); i++) {
-            product *= law_box_cycles(i, law_cycles_max((enum law)law));
+        for (unsigned i = 0; i < takt_law_boxes((enum law)law); i++) {
+            product *= takt_law_box_cycles(i, takt_law_cycles_max((enum law)law));
         }
         TEST_ASSERT_TRUE(product < 9223372036854775808.0);
     }

@@ -21,7 +21,7 @@ static struct point at;
 void setUp(void)
 {
     memset(&at, 0, sizeof(at));
-    path_init(&path, &limits, &at);
+    takt_path_init(&path, &limits, &at);
 }
 
 void tearDown(void)
@@ -38,10 +38,10 @@ static void push(double length_mm, double heading_rad, double feed_mm_s)
     m.feed_mm_s = feed_mm_s;
     m.overrides = OVERRIDE_FEED | OVERRIDE_HOLD;
     m.turns = 1;
-    at.at[AXIS_X] += length_mm * maths_cos(heading_rad);
-    at.at[AXIS_Y] += length_mm * maths_sin(heading_rad);
+    at.at[AXIS_X] += length_mm * takt_maths_cos(heading_rad);
+    at.at[AXIS_Y] += length_mm * takt_maths_sin(heading_rad);
     m.end = at;
-    path_push(&path, &m);
+    takt_path_push(&path, &m);
 }
 
 /* What a line among the first blocks leaves to joints of its jerk. */
@@ -57,11 +57,12 @@ static void test_a_straight_line_of_short_blocks_leaves_nothing(void)
         push(0.05, 0.3, 100.0);
     }
     push(10.0, 0.3, 100.0);
-    path_finish(&path);
+    takt_path_finish(&path);
     for (uint32_t i = 0; i < path.pushed; i++) {
         TEST_ASSERT_TRUE(share_of(i) < NOTHING);
     }
-    TEST_ASSERT_DOUBLE_WITHIN(1.0, 50000.0 / maths_cos(0.3), (double)path_at(&path, 0)->j_mm_s3);
+    TEST_ASSERT_DOUBLE_WITHIN(1.0, 50000.0 / takt_maths_cos(0.3),
+                              (double)path_at(&path, 0)->j_mm_s3);
 }
 
 /* A turn that a joint between blocks of 6 cycles and more takes half of its share for. */
@@ -71,7 +72,7 @@ static void test_a_joint_takes_what_its_turn_costs(void)
 
     push(1.0, 0.0, 10.0);
     push(1.0, turn_rad, 10.0);
-    path_finish(&path);
+    takt_path_finish(&path);
     TEST_ASSERT_EQUAL(JOINT_PASSED, path_at(&path, 0)->end);
     TEST_ASSERT_DOUBLE_WITHIN(1e-3, 0.25 * BLOCK_OVERRIDE_MAX, path.open[0].share_joint);
     TEST_ASSERT_DOUBLE_WITHIN(1e-3, 0.25 * BLOCK_OVERRIDE_MAX, share_of(0));
@@ -87,7 +88,7 @@ static void test_a_joint_is_told_to_blocks_nearer_than_three_cycles(void)
     for (int i = 0; i < 10; i++) {
         push(length_mm, i < 5 ? 0.0 : turn_rad, 10.0);
     }
-    path_finish(&path);
+    takt_path_finish(&path);
     const double share = path.open[4].share_joint;
 
     TEST_ASSERT_TRUE(share > 1e-4);
@@ -108,7 +109,7 @@ static void test_a_block_is_closed_when_three_cycles_are_known_behind_it(void)
     TEST_ASSERT_EQUAL(1, path.closed);
     push(10.0, 0.0, 100.0);
     TEST_ASSERT_EQUAL(4, path.closed);
-    path_finish(&path);
+    takt_path_finish(&path);
     TEST_ASSERT_EQUAL(5, path.closed);
 }
 
@@ -141,7 +142,7 @@ static void test_a_turn_that_costs_more_than_a_stop_is_stopped_at(void)
     push(10.0, half_rad / 10.0, 100.0);
     push(10.0, half_rad / 10.0 + half_rad / 50.0, 100.0);
     push(10.0, half_rad / 10.0 + half_rad / 50.0, 100.0);
-    path_finish(&path);
+    takt_path_finish(&path);
     TEST_ASSERT_EQUAL(JOINT_STOP, path_at(&path, 0)->end);
     TEST_ASSERT_EQUAL(JOINT_REDUCED, path_at(&path, 1)->end);
     TEST_ASSERT_EQUAL(JOINT_PASSED, path_at(&path, 2)->end);

@@ -78,7 +78,7 @@ static void test_a_layer_switched_in_a_cut_fades_within_the_limits(void)
     judged_cycles(1000);
     must(REGISTER_CORRECTION_MATRIX, 0);
     judged_cycles(2900);
-    TEST_ASSERT_EQUAL_INT(PANEL_RUNNING, service_get_state(&service));
+    TEST_ASSERT_EQUAL_INT(PANEL_RUNNING, takt_service_get_state(&service));
     TEST_ASSERT_DOUBLE_WITHIN(1e-6, 0, correction_now());
     judged_wait_for(PANEL_IDLE);
     expect_limits_kept();
@@ -147,18 +147,18 @@ static void test_a_set_up_beyond_what_is_reserved_is_an_alarm(void)
     judged_cycles(SETTLED);
     start_line("G10 L13 X900");
     for (unsigned i = 0;
-         i < SETTLED && controller_get_state(&service.controller) != CONTROLLER_FAULTED; i++)
+         i < SETTLED && takt_controller_get_state(&service.controller) != CONTROLLER_FAULTED; i++)
         judged_cycles(1);
-    TEST_ASSERT_EQUAL_INT(CONTROLLER_FAULTED, controller_get_state(&service.controller));
+    TEST_ASSERT_EQUAL_INT(CONTROLLER_FAULTED, takt_controller_get_state(&service.controller));
     TEST_ASSERT_EQUAL_INT(TAKT_ERROR_SETUP_RESERVE,
-                          controller_get_fault(&service.controller)->code);
+                          takt_controller_get_fault(&service.controller)->code);
 }
 
 static void test_after_a_fault_correction_fades_in_from_where_the_drives_stand(void)
 {
     run_line("G0 X300");
     judged_cycles(SETTLED);
-    drives_stop_at_once(&service.controller.drives, TAKT_ERROR_DRIVE_FAULT);
+    takt_drives_stop_at_once(&service.controller.drives, TAKT_ERROR_DRIVE_FAULT);
     judged_wait_for(PANEL_ALARM);
     must(REGISTER_RESET, 1);
     wait_for(PANEL_IDLE);

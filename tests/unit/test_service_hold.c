@@ -19,7 +19,7 @@ static void cut(void)
     load("G21 F3000\nG1 X200\nM2\n");
     must(REGISTER_CYCLE_START, 1);
     judged_cycles(500);
-    TEST_ASSERT_EQUAL_INT(PANEL_RUNNING, service_get_state(&service));
+    TEST_ASSERT_EQUAL_INT(PANEL_RUNNING, takt_service_get_state(&service));
     TEST_ASSERT_GREATER_THAN(10, service.at.at[AXIS_X]);
 }
 
@@ -41,7 +41,7 @@ static void test_a_hold_rests_on_the_path_and_resume_goes_on_to_its_end(void)
 {
     cut();
     must(REGISTER_FEED_HOLD, 1);
-    TEST_ASSERT_EQUAL_INT(PANEL_HELD, service_get_state(&service));
+    TEST_ASSERT_EQUAL_INT(PANEL_HELD, takt_service_get_state(&service));
     (void)expect_rest();
     TEST_ASSERT_EQUAL_INT64(PANEL_HOLD_OPERATOR, shown(REGISTER_HOLD_REASON));
     TEST_ASSERT_EQUAL_INT64(PANEL_OVERRIDE_HELD, shown(REGISTER_OVERRIDE_REASON));
@@ -56,7 +56,7 @@ static void test_a_program_given_up_rests_within_the_limits_and_another_begins_t
 {
     cut();
     must(REGISTER_RESET, 1);
-    TEST_ASSERT_EQUAL_INT(PANEL_STOPPING, service_get_state(&service));
+    TEST_ASSERT_EQUAL_INT(PANEL_STOPPING, takt_service_get_state(&service));
     judged_wait_for(PANEL_IDLE);
     TEST_ASSERT_EQUAL_INT64(PANEL_OUTCOME_ABORTED, shown(REGISTER_OUTCOME));
     TEST_ASSERT_TRUE(service.at.at[AXIS_X] < 199);
@@ -81,7 +81,7 @@ static void test_a_feed_override_of_0_rests_and_of_more_goes_on(void)
     cut();
     must(REGISTER_FEED_OVERRIDE, 0);
     (void)expect_rest();
-    TEST_ASSERT_EQUAL_INT(PANEL_RUNNING, service_get_state(&service));
+    TEST_ASSERT_EQUAL_INT(PANEL_RUNNING, takt_service_get_state(&service));
     must(REGISTER_FEED_OVERRIDE, 500);
     judged_cycles(500);
     TEST_ASSERT_INT64_WITHIN(1, 15000, shown(REGISTER_FEED));
@@ -107,7 +107,7 @@ static void test_a_spindle_lost_in_a_cut_rests_the_axes_until_acknowledged(void)
     TEST_ASSERT_EQUAL_INT(PANEL_WRONG_STATE, order(REGISTER_RESUME, 1));
     must(REGISTER_ACKNOWLEDGE, 1);
     judged_cycles(100);
-    TEST_ASSERT_EQUAL_INT(PANEL_HELD, service_get_state(&service));
+    TEST_ASSERT_EQUAL_INT(PANEL_HELD, takt_service_get_state(&service));
     must(REGISTER_RESUME, 1);
     judged_wait_for(PANEL_IDLE);
     TEST_ASSERT_EQUAL_INT64(200000, shown(REGISTER_POSITION_X));
@@ -120,7 +120,7 @@ static void test_a_silent_panel_in_control_rests_the_axes(void)
     cut();
     must(REGISTER_WATCHDOG, 200);
     (void)expect_rest();
-    TEST_ASSERT_EQUAL_INT(PANEL_HELD, service_get_state(&service));
+    TEST_ASSERT_EQUAL_INT(PANEL_HELD, takt_service_get_state(&service));
     TEST_ASSERT_EQUAL_INT64(PANEL_HOLD_PANEL, shown(REGISTER_HOLD_REASON));
     expect_limits_kept();
 }
@@ -133,7 +133,7 @@ static void test_a_jog_ends_when_it_is_let_go(void)
     must(REGISTER_JOG_PLUS, 1);
     judged_cycles(500);
     must(REGISTER_JOG_PLUS, 0);
-    TEST_ASSERT_EQUAL_INT(PANEL_STOPPING, service_get_state(&service));
+    TEST_ASSERT_EQUAL_INT(PANEL_STOPPING, takt_service_get_state(&service));
     judged_wait_for(PANEL_IDLE);
     TEST_ASSERT_TRUE(service.at.at[AXIS_X] > 10 && service.at.at[AXIS_X] < 60);
     TEST_ASSERT_EQUAL_INT64(PANEL_OUTCOME_COMPLETED, shown(REGISTER_OUTCOME));

@@ -48,7 +48,7 @@ static double expect_held(unsigned tenths)
     judged_wait_for(PANEL_HELD);
     TEST_ASSERT_EQUAL_INT64(PANEL_HOLD_SINGLE_BLOCK, shown(REGISTER_HOLD_REASON));
     const double held = service.at.at[AXIS_X];
-    const double blocks = maths_round(held * 10.0 / tenths);
+    const double blocks = takt_maths_round(held * 10.0 / tenths);
 
     judged_cycles(100);
     TEST_ASSERT_EQUAL_DOUBLE(held, service.at.at[AXIS_X]);
@@ -95,7 +95,7 @@ static void test_switched_off_it_holds_no_more(void)
     must(REGISTER_SINGLE_BLOCK, 0);
     must(REGISTER_CYCLE_START, 1);
     judged_cycles(400);
-    TEST_ASSERT_EQUAL_INT(PANEL_RUNNING, service_get_state(&service));
+    TEST_ASSERT_EQUAL_INT(PANEL_RUNNING, takt_service_get_state(&service));
     TEST_ASSERT_TRUE(service.at.at[AXIS_X] > 5.0 * blocks + 10.0);
     TEST_ASSERT_TRUE(most_velocity > 49);
     judged_wait_for(PANEL_IDLE);
@@ -110,7 +110,7 @@ static void test_a_switch_that_was_on_for_a_moment_changes_nothing(void)
     judged_cycle();
     must(REGISTER_SINGLE_BLOCK, 0);
     judged_cycles(1000);
-    TEST_ASSERT_EQUAL_INT(PANEL_RUNNING, service_get_state(&service));
+    TEST_ASSERT_EQUAL_INT(PANEL_RUNNING, takt_service_get_state(&service));
     judged_wait_for(PANEL_IDLE);
     TEST_ASSERT_EQUAL_INT64(300000, shown(REGISTER_POSITION_X));
 }
@@ -128,8 +128,8 @@ static void write_random_program(char *text)
 
         x = maths_clamp(x + reach * (0.001 * draw(2001) - 1.0), 0.0, 90.0);
         y = maths_clamp(y + reach * (0.001 * draw(2001) - 1.0), 0.0, 90.0);
-        x = 0.001 * maths_round(1000 * x);
-        y = 0.001 * maths_round(1000 * y);
+        x = 0.001 * takt_maths_round(1000 * x);
+        y = 0.001 * takt_maths_round(1000 * y);
         corner[k][0] = x;
         corner[k][1] = y;
         length += sprintf(text + length, "G1 X%.3f Y%.3f\n", x, y);
@@ -149,7 +149,7 @@ static bool is_at_corner(void)
 /* What an operator with restless hands does; true while there is something to do. */
 static bool play(bool *on)
 {
-    const enum panel_state state = service_get_state(&service);
+    const enum panel_state state = takt_service_get_state(&service);
 
     if (state == PANEL_HELD) {
         if (shown(REGISTER_HOLD_REASON) == PANEL_HOLD_SINGLE_BLOCK) {
@@ -181,7 +181,7 @@ static void run_random_program(uint64_t seed)
     do
         judged_cycles(1 + draw(300));
     while (play(&on));
-    TEST_ASSERT_EQUAL_INT(PANEL_IDLE, service_get_state(&service));
+    TEST_ASSERT_EQUAL_INT(PANEL_IDLE, takt_service_get_state(&service));
     TEST_ASSERT_EQUAL_INT64(PANEL_OUTCOME_COMPLETED, shown(REGISTER_OUTCOME));
     TEST_ASSERT_DOUBLE_WITHIN(PLACE_MM, corner[CORNERS - 1][0], service.at.at[AXIS_X]);
     TEST_ASSERT_DOUBLE_WITHIN(PLACE_MM, corner[CORNERS - 1][1], service.at.at[AXIS_Y]);
@@ -214,9 +214,9 @@ static void test_switched_on_in_any_cycle_of_short_blocks_it_keeps_the_limits(vo
         must(REGISTER_CYCLE_START, 1);
         judged_cycles(cycles);
         must(REGISTER_SINGLE_BLOCK, 1);
-        for (unsigned i = 0; i < 3 && service_get_state(&service) != PANEL_IDLE; i++) {
+        for (unsigned i = 0; i < 3 && takt_service_get_state(&service) != PANEL_IDLE; i++) {
             judged_cycles(150);
-            if (service_get_state(&service) == PANEL_HELD)
+            if (takt_service_get_state(&service) == PANEL_HELD)
                 must(REGISTER_CYCLE_START, 1);
         }
         judged_wait_for(PANEL_IDLE);

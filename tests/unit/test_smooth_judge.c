@@ -32,8 +32,8 @@ static void set_machine(double velocity, double acceleration, double jerk)
     limits.velocity_mm_s[AXIS_X] = velocity;
     limits.acceleration_mm_s2[AXIS_X] = acceleration;
     limits.jerk_mm_s3[AXIS_X] = jerk;
-    judge_change(&limits, INTERVAL_S, &change);
-    route_init(&route, &limits, 0.01);
+    takt_judge_change(&limits, INTERVAL_S, &change);
+    takt_route_init(&route, &limits, 0.01);
 }
 
 static double rate_of(double first, double second, double third)
@@ -43,7 +43,7 @@ static double rate_of(double first, double second, double third)
     need.first[0] = (float)first;
     need.second[0] = (float)second;
     need.third[0] = (float)third;
-    judge_rate(&need, &route, 0, &change, &rate);
+    takt_judge_rate(&need, &route, 0, &change, &rate);
     return (double)rate.most;
 }
 
@@ -69,11 +69,11 @@ static void test_a_change_is_rounded_over_the_time_that_the_acceleration_takes(v
 static void test_shorter_pieces_leave_more_for_changes_up_to_half(void)
 {
     set_machine(100.0, 250.0, 50000.0);
-    judge_change(&limits, 20e-3, &change);
+    takt_judge_change(&limits, 20e-3, &change);
     TEST_ASSERT_DOUBLE_WITHIN(1e-12, 0.06 * 2.5, change.by);
-    judge_change(&limits, 6e-3, &change);
+    takt_judge_change(&limits, 6e-3, &change);
     TEST_ASSERT_DOUBLE_WITHIN(1e-12, 1.0 / (2.0 * 0.7 * 256.0 * 6e-3), change.by);
-    judge_change(&limits, 1e-3, &change);
+    takt_judge_change(&limits, 1e-3, &change);
     TEST_ASSERT_DOUBLE_WITHIN(1e-12, 0.5 * 2.5, change.by);
 }
 

@@ -32,7 +32,7 @@ static void run_to_the_end(void)
 static void check_completed(void)
 {
     run_to_the_end();
-    TEST_ASSERT_EQUAL(TAKT_OK, lock_get_alarm(&bench.lock)->code);
+    TEST_ASSERT_EQUAL(TAKT_OK, takt_lock_get_alarm(&bench.lock)->code);
     TEST_ASSERT_EQUAL(MOTION_DONE, bench.result);
 }
 
@@ -40,8 +40,8 @@ static void check_alarm(enum takt_error code)
 {
     run_to_the_end();
     TEST_ASSERT_EQUAL(LOCK_FAILED, bench.locked);
-    TEST_ASSERT_EQUAL(code, lock_get_alarm(&bench.lock)->code);
-    TEST_ASSERT_EQUAL_UINT32(2, lock_get_alarm(&bench.lock)->line);
+    TEST_ASSERT_EQUAL(code, takt_lock_get_alarm(&bench.lock)->code);
+    TEST_ASSERT_EQUAL_UINT32(2, takt_lock_get_alarm(&bench.lock)->line);
     TEST_ASSERT_EQUAL_DOUBLE(0.0, bench.command_rpm);
 }
 
@@ -62,7 +62,8 @@ static void test_a_thread_is_in_phase_with_the_index_and_ends_exactly(void)
     while (bench_cycle(&bench)) {
         if (bench_is_on_thread(&bench)) {
             most_mm = maths_max(most_mm, maths_abs(bench_off_mm(&bench)));
-            TEST_ASSERT_EQUAL_DOUBLE(maths_round(bench.lock.at.zero_rev), bench.lock.at.zero_rev);
+            TEST_ASSERT_EQUAL_DOUBLE(takt_maths_round(bench.lock.at.zero_rev),
+                                     bench.lock.at.zero_rev);
             seen++;
         }
     }
@@ -79,7 +80,7 @@ static double groove_rev(void)
     const double rev =
         bench.lock.sense * bench.true_rev[1] - bench.sent_mm[BENCH_AHEAD] / bench.lock.at.pitch_mm;
 
-    return rev - maths_round(rev);
+    return rev - takt_maths_round(rev);
 }
 
 static void test_passes_at_different_speeds_cut_the_same_groove(void)
@@ -172,7 +173,7 @@ static void test_a_thread_goes_on_in_phase_behind_a_corner(void)
         if (bench_is_on_thread(&bench) && bench.sent_mm[BENCH_AHEAD] > 15.0) {
             const double zero = bench.lock.at.zero_rev;
 
-            *(bench.path.first == 1 ? &first : &second) = zero - maths_floor(zero);
+            *(bench.path.first == 1 ? &first : &second) = zero - takt_maths_floor(zero);
         }
     }
     TEST_ASSERT_EQUAL(MOTION_DONE, bench.result);
@@ -216,7 +217,7 @@ static void test_a_stop_for_a_fault_is_obeyed_in_the_middle_of_a_thread(void)
     while (bench_cycle(&bench) && bench.point.at[AXIS_Z] > -5.0) {
     }
     bench.operator.stop = true;
-    while (bench_cycle(&bench) && !motion_rests(&bench.motion)) {
+    while (bench_cycle(&bench) && !takt_motion_rests(&bench.motion)) {
     }
     TEST_ASSERT_TRUE(bench.point.at[AXIS_Z] > -5.6);
     bench_check_limits(&bench);
@@ -241,7 +242,7 @@ static void check_tap(double rpm, double pitch_mm, double ratio)
             TEST_ASSERT_TRUE(maths_abs(bench_off_mm(&bench)) < 0.05);
         }
     }
-    TEST_ASSERT_EQUAL(TAKT_OK, lock_get_alarm(&bench.lock)->code);
+    TEST_ASSERT_EQUAL(TAKT_OK, takt_lock_get_alarm(&bench.lock)->code);
     TEST_ASSERT_EQUAL(MOTION_DONE, bench.result);
     TEST_ASSERT_TRUE(deepest >= -15.0);
     TEST_ASSERT_DOUBLE_WITHIN(0.06 * pitch_mm, -15.0, deepest);
@@ -300,8 +301,8 @@ static void test_a_pitch_and_speed_that_an_axis_cannot_do_are_an_alarm_before_an
     set_thread(600, 1.5);
     bench_start(&bench);
     check_alarm(TAKT_ERROR_THREAD_FAST);
-    TEST_ASSERT_DOUBLE_WITHIN(0.5, 15.0, lock_get_alarm(&bench.lock)->value);
-    TEST_ASSERT_DOUBLE_WITHIN(0.02, 14.0, lock_get_alarm(&bench.lock)->limit);
+    TEST_ASSERT_DOUBLE_WITHIN(0.5, 15.0, takt_lock_get_alarm(&bench.lock)->value);
+    TEST_ASSERT_DOUBLE_WITHIN(0.02, 14.0, takt_lock_get_alarm(&bench.lock)->limit);
     TEST_ASSERT_EQUAL_DOUBLE(0.0, bench.point.at[AXIS_Z]);
 }
 
@@ -346,7 +347,8 @@ static void test_a_spindle_that_jerks_away_from_the_axes_is_an_alarm(void)
     come_to_the_middle();
     bench.spindle.locked = true;
     check_alarm(TAKT_ERROR_THREAD_LAG);
-    TEST_ASSERT_TRUE(lock_get_alarm(&bench.lock)->value > lock_get_alarm(&bench.lock)->limit);
+    TEST_ASSERT_TRUE(takt_lock_get_alarm(&bench.lock)->value >
+                     takt_lock_get_alarm(&bench.lock)->limit);
     TEST_ASSERT_TRUE(bench.point.at[AXIS_Z] > -21.0);
 }
 

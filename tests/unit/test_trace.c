@@ -128,7 +128,7 @@ static enum command_status limits_of(const double x[], unsigned count)
     struct machine machine;
     enum command_status status;
 
-    machine_set_default(&machine);
+    takt_machine_set_default(&machine);
     write_trace(path[0], x, count);
     TEST_ASSERT_TRUE(trace_reader_open(&reader, path[0]));
     status = trace_check_limits(&reader, &machine);

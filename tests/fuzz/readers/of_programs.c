@@ -91,9 +91,9 @@ static void open_program(const struct source *source, struct program_config *con
         config->travel_min[axis] = -TRAVEL_MM;
         config->travel_max[axis] = TRAVEL_MM;
     }
-    parameters_clear(&parameters);
-    program_open(&program, config, source);
-    offset_open(&offset, config);
+    takt_parameters_clear(&parameters);
+    takt_program_open(&program, config, source);
+    takt_offset_open(&offset, config);
 }
 
 static void write_moves(struct convert *convert)
@@ -105,7 +105,7 @@ static void write_moves(struct convert *convert)
     unsigned errors = 0;
 
     while (moves < MOVES_MAX && errors < ERRORS_MAX &&
-           (result = offset_next(&offset, &program, &move, &error)) != PROGRAM_END) {
+           (result = takt_offset_next(&offset, &program, &move, &error)) != PROGRAM_END) {
         require(result != PROGRAM_WAIT);
         if (result == PROGRAM_ERROR) {
             errors++;
@@ -128,7 +128,7 @@ static void read_moves(const char *bytes, size_t length, enum dialect to)
     FILE *out = open_memstream(&written, &size);
 
     require(out != NULL);
-    source_open_text(&text.source, &text.text, bytes, length);
+    takt_source_open_text(&text.source, &text.text, bytes, length);
     open_program(&source, &config);
     convert_open(&convert, out, to, config.axes, &config.start);
     write_moves(&convert);
