@@ -2,7 +2,7 @@
 
 Frames and calls are read from the disassembly, so libraries count, too; where the compiler has told a frame (-fstack-usage)
 the larger counts. Calls through pointers are those of the table below: who calls, and what may be behind the pointer. A
-call that is in no row, and a recursion without a stated bound, are errors.
+call that is in no row, and a recursion without a stated bound, are errors. The table's names are without takt_.
 """
 
 import collections
@@ -19,43 +19,43 @@ NESTED = "takt_expression_read"
 PORT = r"(cortex_)?(un)?lock|now_us|now_ns|reply|write_log"
 LAYER = r"(axes|matrix|setup|volume|thermal|wear)_(add|begin|follow|need|prepare)"
 CODES = (r"(events|modes|coordinates|cutter|cycles|straight|circular|involute|probe|saved_modes|setting|threading|spline)_.*"
-         r"|takt_calls_run_code")
+         r"|calls_run_code")
 OPERATORS = (r"function_.*|add|subtract|multiply|divide|modulo|power|equal|not_equal|greater|greater_or_equal|less"
              r"|less_or_equal|logic_.*")
 STORE = r"begin|begin_stream|bring|prepare|place|room|end|look|order|hear|settings_.*|may_load"
 CALLS = (
     (r"axes_add|axes_need", r"geometry_.*"),  # no machine of a target has errors of units
-    (r"answer_.*|takt_modbus_answer", r"takt_panel_read|takt_panel_write"),
+    (r"answer_.*|modbus_answer", r"panel_read|panel_write"),
     (r".*_layers?|exchange_.*|weigh|correction_.*", LAYER),
-    (r"takt_comment_run", r"say"),  # nobody listens on a target
-    (r"takt_controller_background", r"refuse_line"),
-    (r"takt_decimal_read", r"wide_.*"),
+    (r"comment_run", r"say"),  # nobody listens on a target
+    (r"controller_background", r"refuse_line"),
+    (r"decimal_read", r"wide_.*"),
     (r"embedded_.*|hear|order|log_.*|serve_line|refuse|forward|lock|unlock", PORT),
     (r"expression_.*|read_.*", OPERATORS),
     (r"fill.*|has", r"read_bytes|text_read"),
-    (r"takt_findings_next", r"find_.*"),
+    (r"findings_next", r"find_.*"),
     (r"lexer_.*", r"seek|text_seek|read_bytes|text_read"),
     (r"flow_.*", r"take_(do|else|elseif|endif|endrepeat|endwhile|if|repeat|while)|calls_.*|leave_round"),
     (r"give_order|decide|panel_(?!look).*", STORE),
-    (r"takt_panel_look", r"look|hear"),
+    (r"panel_look", r"look|hear"),
     (r"predefined_.*", r"get_.*"),
-    (r"refuse_line", r"takt_lines_refuse"),  # nobody has a console on a target
-    (r"takt_replay_read|intake_.*", r"take|is_lost"),
+    (r"refuse_line", r"lines_refuse"),  # nobody has a console on a target
+    (r"replay_read|intake_.*", r"take|is_lost"),
     (r"run_line|run_step.*", CODES),
     (r"send_.*", r"send"),
     (r"begin|take|prepare|place", r"drives_are_off|write_log|borrow_tables"),
     (r"store_.*", r"erase|program"),
-    (r"takt_usart_interrupt", r"take_(panel|log)_byte"),
+    (r"usart_interrupt", r"take_(panel|log)_byte"),
     (r"drives_.*", r"receive|send|sdo_.*"),
-    (r"receive", r"takt_slcan_can_take|take_panel_byte"),
+    (r"receive", r"slcan_can_take|take_panel_byte"),
     (r"service_.*", r"text_queue_.*|open|announce|forget"),
     (r"steps_.*|read_encoders", r"step_.*"),
     # The image of a drive, to which nobody listens, and with which no test meddles.
-    (r"takt_servo_tell|takt_servo_read_row|find", r"nobody"),
-    (r"takt_servo_send", r"send"),
+    (r"servo_tell|servo_read_row|find", r"nobody"),
+    (r"servo_send", r"send"),
     (r"sdo_server_.*", r"send_sdo|servo_(read|may_write|write)_sdo"),
-    (r"set_stored|takt_servo_take_lss", r"keep"),
-    (r"takt_drive_node_cycle|main", r"receive"),
+    (r"set_stored|servo_take_lss", r"keep"),
+    (r"drive_node_cycle|main", r"receive"),
     (r"turn|look", r"turn_axis|sense_axis"),
     (r"turn_axis|sense_axis", r"turn_motor|sense_motor"),
 )
@@ -136,17 +136,22 @@ def add_usage(functions, files):
                     functions[known].frame = max(functions[known].frame, int(size))
 
 
+def plain(name):
+    """As the table has it: without an address behind it, and without the prefix that the linker sees."""
+    return re.sub(r"\..*", "", name).removeprefix("takt_")
+
+
 def add_pointers(functions):
     """Calls through pointers, by the table. Returns the names of those that are in no row."""
     unknown = []
     for name, function in functions.items():
         if not function.indirect:
             continue
-        rows = [behind for caller, behind in CALLS if re.fullmatch(caller, re.sub(r"\..*", "", name))]
+        rows = [behind for caller, behind in CALLS if re.fullmatch(caller, plain(name))]
         if not rows:
             unknown.append(name)
         for behind in rows:
-            function.calls.update(other for other in functions if re.fullmatch(behind, re.sub(r"\..*", "", other)))
+            function.calls.update(other for other in functions if re.fullmatch(behind, plain(other)))
     return unknown
 
 
