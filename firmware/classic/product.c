@@ -45,12 +45,12 @@ static struct diagram_limits limits_of(const struct path *path, uint32_t index)
 static double end_feed(const struct path *path, uint32_t index, double next_start_mm_s)
 {
     const struct path_block *b = path_at(path, index);
-    const double joint_mm_s = b->end == JOINT_STOP ? 0.0 : (double)b->feed_joint_mm_s;
+    const double junction_mm_s = b->end == JUNCTION_STOP ? 0.0 : (double)b->feed_junction_mm_s;
 
     if (!path_at(path, index + 1)->motion) {
         return 0.0;
     }
-    return maths_min(maths_min(joint_mm_s, next_start_mm_s), limits_of(path, index).feed_mm_s);
+    return maths_min(maths_min(junction_mm_s, next_start_mm_s), limits_of(path, index).feed_mm_s);
 }
 
 /* The feed at the end of the oldest block from which the rest can still be stopped (look-ahead). */
@@ -156,7 +156,7 @@ static bool is_last(const struct motion *m)
 {
     const struct path *path = m->path;
 
-    return first_block(m)->end == JOINT_STOP || path->first + 1 == path->closed ||
+    return first_block(m)->end == JUNCTION_STOP || path->first + 1 == path->closed ||
            !path_at(path, path->first + 1)->motion;
 }
 

@@ -4,7 +4,7 @@
  *     F = F_diagram kl %Fz K                                             (5), (12)
  *
  * F_diagram kl is diagram.h; %Fz follows the override %F by an S-curve, and stands still while a block brakes; K is
- * limiter.h, of the cycle before. For comparison: a product passes limits, and the judge says by how much. Chosen by
+ * limiter.h, of the cycle before. For comparison: a product passes limits, and the verifier says by how much. Chosen by
  * landing=scale or limiter=threshold|smooth in the machine file.
  *
  * struct motion serves what happens at rest, and hands over the blocks (motion/handover.h). End feeds are found when a

@@ -2,8 +2,8 @@
 
 #include "base/maths.h"
 #include "controller/controller_feed.h"
-#include "controller/controller_lock.h"
 #include "controller/controller_shape.h"
+#include "controller/controller_spindle_sync.h"
 #include "controller/controller_steps.h"
 #include "controller/outputs.h"
 #include "controller/restart.h"
@@ -20,7 +20,7 @@ void takt_controller_plan_limits(const struct machine *machine, struct plan_limi
     memset(limits, 0, sizeof(*limits));
     limits->axes = takt_machine_axes(machine);
     limits->cycle_s = cycle_s(machine);
-    limits->law = (enum law)machine->law;
+    limits->profile = (enum ramp_profile)machine->profile;
     limits->landing = (enum landing)machine->landing;
     limits->chord_error_max_mm = 1.0 / machine->resolution_per_mm;
     for (int i = 0; i < AXIS_COUNT; i++) {
@@ -90,7 +90,7 @@ void takt_controller_init(struct controller *c, const struct controller_config *
     takt_spindle_watch_init(&c->spindle, cycle_s(&c->machine),
                             c->machine.spindle_load_limit_percent, c->machine.spindle_at_speed_s);
     takt_tool_changer_init(&c->changer, cycle_s(&c->machine), c->machine.tool_change_s);
-    takt_controller_lock_init(c);
+    takt_controller_spindle_sync_init(c);
     c->dcf = config->dcf;
     takt_controller_drives_config(&c->machine, c->dcf, &drives);
     takt_drives_init(&c->drives, &drives);
@@ -156,7 +156,8 @@ static void read_move(struct controller *c)
 {
     struct move move;
 
-    switch (takt_offset_next(&c->reader->offset, &c->reader->program, &move, &c->program_error)) {
+    switch (takt_cutter_compensation_next(&c->reader->offset, &c->reader->program, &move,
+                                          &c->program_error)) {
     case PROGRAM_MOVE:
         take_move(c, &move);
         break;
@@ -214,7 +215,7 @@ static void take_answer(struct controller *c)
         takt_path_finish(&c->path);
         return;
     }
-    takt_offset_answer(&c->reader->offset, &c->reader->program, &answer);
+    takt_cutter_compensation_answer(&c->reader->offset, &c->reader->program, &answer);
 }
 
 static bool can_read(struct controller *c)
@@ -318,7 +319,7 @@ static void follow_drives(struct controller *c)
 /* The spindle's angle, speed and load. */
 static void follow_spindle(struct controller *c, const struct spindle_feedback *spindle)
 {
-    lock_measure(&c->lock, spindle);
+    spindle_sync_measure(&c->sync, spindle);
     if (c->state == CONTROLLER_RUNNING && !spindle_watch_cycle(&c->spindle, spindle)) {
         controller_fail(c, &(const struct diagnostic){.code = TAKT_ERROR_SPINDLE_SLOW});
     }
@@ -388,13 +389,13 @@ static void end_program(struct controller *c)
 /* A thread: the setpoint follows the spindle's angle. */
 static void follow_angle(struct controller *c, const struct motion_operator *asked)
 {
-    const enum lock_result result =
-        takt_lock_cycle(&c->lock, &c->motion, asked, c->outputs.spindle_speed_rpm, &c->record);
+    const enum spindle_sync_result result = takt_spindle_sync_cycle(
+        &c->sync, &c->motion, asked, c->outputs.spindle_speed_rpm, &c->record);
 
-    if (result == LOCK_FAILED) {
-        controller_fail(c, takt_lock_get_alarm(&c->lock));
+    if (result == SPINDLE_SYNC_FAILED) {
+        controller_fail(c, takt_spindle_sync_get_alarm(&c->sync));
     }
-    c->has_record = result == LOCK_CYCLE;
+    c->has_record = result == SPINDLE_SYNC_CYCLE;
 }
 
 /* A compiled program: the setpoint is on its curve. */
@@ -509,7 +510,7 @@ static void complete_record(struct controller *c, const struct inputs *in)
 
     interpolate(c, block);
     takt_correction_cycle(&c->correction, &c->record.cmd, &block->move, &c->record.set);
-    controller_shape_cycle(c, move_is_locked(&block->move));
+    controller_shape_cycle(c, move_is_synchronized(&block->move));
     takt_controller_get_actual(c, &c->record.act);
     c->record.spindle_rev = in->spindle.angle_rev;
 }
@@ -564,7 +565,7 @@ void takt_controller_cycle(struct controller *c, const struct inputs *inputs)
     } else {
         stand(c);
     }
-    controller_lock_command(c);
+    controller_spindle_sync_command(c);
     if (drives_get_state(&c->drives) == DRIVES_STOPPING && c->state == CONTROLLER_RUNNING &&
         !stands_still(c)) {
         drives_await_rest(&c->drives);

@@ -24,5 +24,5 @@ void takt_controller_feed_init(struct controller *c, const struct replay_source 
 
 bool takt_controller_feed_is_product(const struct controller *c)
 {
-    return !move_kind_is_locked(takt_path_kind(&c->path, c->path.first));
+    return !move_kind_is_synchronized(takt_path_kind(&c->path, c->path.first));
 }

@@ -10,7 +10,7 @@
  *       program says PROGRAM_WAIT               ...
  *                                               takt_controller_probe_rest    nothing moves any more; true: answered
  *       takt_controller_probe_take    ←──────────
- *       takt_offset_answer, and on from where the axes rest
+ *       takt_cutter_compensation_answer, and on from where the axes rest
  *
  * Nobody else is asked meanwhile: the program reads nothing until it is answered. struct controller_probe passes from
  * the background to the cycle by ask and back when it is answered; nobody touches it out of turn.

@@ -15,14 +15,14 @@ void takt_controller_start_program(struct controller *c, const struct controller
     takt_controller_program_config(config, &program);
     program.start = *start;
     takt_program_open(&c->reader->program, &program, &config->source);
-    takt_offset_open(&c->reader->offset, &program);
+    takt_cutter_compensation_open(&c->reader->offset, &program);
     takt_controller_plan_limits(&c->machine, &limits);
     controller_shape_leave(c, &limits);
     takt_controller_reserve_correction(&c->correction, &c->machine, &limits);
     takt_path_init(&c->path, &limits, start);
     takt_motion_init(&c->motion, &c->path, start, c->machine.override_proportional != 0);
     takt_controller_feed_init(c, config->compiled);
-    takt_lock_restart(&c->lock);
+    takt_spindle_sync_restart(&c->sync);
     takt_correction_forget_setup(&c->correction);
     c->keeps_outputs = config->keeps_outputs;
     c->program_waits = false;

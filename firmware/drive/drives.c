@@ -19,7 +19,7 @@ static void init_axis(struct drives *d, unsigned index)
     const unsigned bus = drives_bus_of(d, index);
     axis->is_paired = takt_target_pdo_members(d->on_bus[bus], axis->place, d->group) > 1;
     axis->reported = d->cycle - 1;
-    axis->beaten = d->cycle - 1;
+    axis->heartbeat = d->cycle - 1;
     axis->follow_mode = axis->mode = CIA402_MODE_CYCLIC_SYNC_POSITION;
     axis->reset_pending = true;
     takt_drives_forget_pdos(axis);
@@ -31,7 +31,7 @@ static void take_times(struct drives *d, const struct drives_config *config)
     d->cycle_us = config->cycle_us;
     d->heartbeat_ms = config->heartbeat_ms;
     d->heartbeat_cycles = (uint32_t)config->heartbeat_ms * 1000 / config->cycle_us;
-    d->heartless_most_cycles =
+    d->heartbeat_age_max_cycles =
         d->heartbeat_cycles > 0 ? d->heartbeat_cycles * DRIVES_HEARTBEATS_LOST : UINT32_MAX;
     d->boot_timeout_cycles = config->boot_timeout_cycles;
     d->start_timeout_cycles = config->start_timeout_cycles;

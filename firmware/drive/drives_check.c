@@ -42,7 +42,7 @@ static void raise_link(struct drives *d, unsigned index)
                           takt_drives_cycles_ms(d, drives_silent_cycles(d, axis)), NULL);
     else
         takt_drives_raise(d, index, TAKT_ERROR_DRIVE_HEARTBEAT,
-                          takt_drives_cycles_ms(d, drives_heartless_cycles(d, axis)), NULL);
+                          takt_drives_cycles_ms(d, drives_heartbeat_age_cycles(d, axis)), NULL);
 }
 
 static inline bool check_links(struct drives *d, unsigned index)
@@ -93,13 +93,13 @@ static inline void check_following(struct drives *d, unsigned index, double set_
  */
 static unsigned count_well(struct drives *d, const double *set_mm)
 {
-    const uint32_t cycle = d->cycle, most = d->heartless_most_cycles;
+    const uint32_t cycle = d->cycle, most = d->heartbeat_age_max_cycles;
     unsigned i = 0;
     for (; i < d->count; i++) {
         struct drives_axis *axis = &d->axis[i];
         double lag_mm = maths_abs(set_mm[i] - axis->actual_mm);
         if (!cia402_is_enabled(axis->statusword) || axis->reported != cycle ||
-            cycle - axis->beaten > most || lag_mm > axis->config.following_error_max_mm)
+            cycle - axis->heartbeat > most || lag_mm > axis->config.following_error_max_mm)
             break;
         axis->lag_mm = lag_mm;
     }

@@ -333,7 +333,7 @@ void takt_drives_io_send_start(struct drives *d, const struct can_port *port)
         io->started = send_nmt(d, port, i, NMT_START);
         takt_drives_begin_guard(d, &io->guard);
         io->heard = false;
-        io->reported = io->beaten = d->cycle;
+        io->reported = io->heartbeat = d->cycle;
         return;
     }
 }
@@ -365,7 +365,7 @@ static void take_heartbeat(struct drives *d, unsigned i, const struct can_frame 
     if (!nmt_read_state(frame, &state))
         return;
     if (drives_takes_beat(&io->guard, frame))
-        io->beaten = d->cycle;
+        io->heartbeat = d->cycle;
     if (state == NMT_BOOTED && d->state == DRIVES_STARTING && d->phase < DRIVES_IO)
         io->booted = !io->reset_pending;
     else if (state == NMT_BOOTED || (state != NMT_OPERATIONAL && are_watched(d)))
@@ -405,11 +405,11 @@ void takt_drives_io_take(struct drives *d, unsigned index, const struct can_fram
 static void check_silence(struct drives *d, unsigned i)
 {
     const struct drives_io *io = &d->io[i];
-    const uint32_t silent = d->cycle - io->reported, heartless = d->cycle - io->beaten;
+    const uint32_t silent = d->cycle - io->reported, heartbeat_age = d->cycle - io->heartbeat;
     if (io->by_sync && silent > d->answer_timeout_cycles)
         raise(d, i, TAKT_ERROR_IO_SILENT, takt_drives_cycles_ms(d, silent), NULL);
-    if (heartless > d->heartless_most_cycles)
-        raise(d, i, TAKT_ERROR_IO_HEARTBEAT, takt_drives_cycles_ms(d, heartless), NULL);
+    if (heartbeat_age > d->heartbeat_age_max_cycles)
+        raise(d, i, TAKT_ERROR_IO_HEARTBEAT, takt_drives_cycles_ms(d, heartbeat_age), NULL);
 }
 
 /* Limit inputs stop when they become low, so that an axis can be driven off; and not while drives look for home there. */

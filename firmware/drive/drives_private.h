@@ -84,10 +84,10 @@ static inline uint32_t drives_silent_cycles(const struct drives *d, const struct
 {
     return d->cycle - axis->reported;
 }
-static inline uint32_t drives_heartless_cycles(const struct drives *d,
-                                               const struct drives_axis *axis)
+static inline uint32_t drives_heartbeat_age_cycles(const struct drives *d,
+                                                   const struct drives_axis *axis)
 {
-    return d->cycle - axis->beaten;
+    return d->cycle - axis->heartbeat;
 }
 
 /* A fault that is not of a drive: name says of whom. The same otherwise as takt_drives_raise. */
@@ -266,7 +266,7 @@ static inline bool drives_is_linked(const struct drives *d, const struct drives_
 {
     return cia402_is_enabled(axis->statusword) &&
            drives_silent_cycles(d, axis) <= d->answer_timeout_cycles &&
-           drives_heartless_cycles(d, axis) <= d->heartless_most_cycles;
+           drives_heartbeat_age_cycles(d, axis) <= d->heartbeat_age_max_cycles;
 }
 
 /* Touch probes: a cycle in which they are armed or read. */

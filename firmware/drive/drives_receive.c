@@ -38,7 +38,7 @@ static void take_report(struct drives *d, struct drives_axis *axis, const struct
         axis->statusword = little_endian_read16(frame->data + axis->status_end - 2);
         axis->heard = true;
         if (axis->beats_by_status)
-            axis->beaten = d->cycle;
+            axis->heartbeat = d->cycle;
     }
     if (has_position)
         set_position(d, axis, little_endian_read32(frame->data + axis->position_end - 4));
@@ -70,7 +70,7 @@ static void take_heartbeat(struct drives *d, unsigned index, const struct can_fr
     if (!nmt_read_state(frame, &state))
         return;
     if (drives_takes_beat(&axis->guard, frame))
-        axis->beaten = d->cycle;
+        axis->heartbeat = d->cycle;
     if (state == NMT_BOOTED && d->state == DRIVES_STARTING)
         takt_drives_start_again(d, index);
     else if (state == NMT_BOOTED)

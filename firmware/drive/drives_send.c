@@ -151,7 +151,7 @@ static void send_start(struct drives *d, const struct can_port *port)
     takt_drives_begin_guard(d, &axis->guard);
     axis->heard = false;
     axis->reported = d->cycle;
-    axis->beaten = d->cycle;
+    axis->heartbeat = d->cycle;
 }
 
 /*

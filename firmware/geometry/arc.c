@@ -186,7 +186,7 @@ bool takt_curve_set_arc(struct curve *c, const struct point *start, const struct
     return takt_curve_end_arc(c, clockwise, turns);
 }
 
-static bool is_bent(const struct curve *c)
+static bool is_curved(const struct curve *c)
 {
     return c->arc.bend_start != 0.0 || c->arc.bend_end != 0.0;
 }
@@ -194,7 +194,7 @@ static bool is_bent(const struct curve *c)
 /* f, u = s / L */
 static double fraction(const struct curve *c, double u)
 {
-    if (!is_bent(c)) {
+    if (!is_curved(c)) {
         return u;
     }
     return u + u * (1.0 - u) * (c->arc.bend_start * (1.0 - u) - c->arc.bend_end * u);

@@ -19,7 +19,7 @@
 
 enum curve_kind { CURVE_LINE, CURVE_ARC, CURVE_INVOLUTE, CURVE_QUINTIC, CURVE_SPLINE };
 
-/* The plane of a bent curve: its first and second axis in the sense of G17 (X, Y), G18 (Z, X), G19 (Y, Z). */
+/* The plane of a curved curve: its first and second axis in the sense of G17 (X, Y), G18 (Z, X), G19 (Y, Z). */
 enum plane { PLANE_XY, PLANE_ZX, PLANE_YZ };
 
 /*
@@ -82,7 +82,7 @@ struct curve {
     double length_mm; /* > 0 */
     struct point start, end;
     struct point
-        slope; /* d axis / d s of every axis (of an arc: d axis / d (f length)); 0 in the plane of a bent curve */
+        slope; /* d axis / d s of every axis (of an arc: d axis / d (f length)); 0 in the plane of a curved curve */
     union {
         struct curve_arc arc;           /* kind CURVE_ARC alone */
         struct curve_involute involute; /* kind CURVE_INVOLUTE alone */
@@ -98,7 +98,7 @@ struct curve_bounds {
     double third
         [AXIS_COUNT]; /* max |d3x_i/ds3|, 1/mm2; in an involute's plane its part along the path */
     double radius_min_mm; /* smallest radius of curvature; 0: straight */
-    /* The plane of a bent curve: how far from a circle's. Both are 0 for a circle. */
+    /* The plane of a curved curve: how far from a circle's. Both are 0 for a circle. */
     double second_along; /* max part of d2x/ds2 along the path, 1/mm */
     double third_across; /* max part of d3x/ds3 across it, 1/mm2 */
     /*
@@ -166,7 +166,7 @@ void takt_curve_cut(const struct curve *c, double from_mm, double to_mm, struct 
 bool takt_curve_starts_at_cusp(const struct curve *c);
 bool takt_curve_ends_at_cusp(const struct curve *c);
 
-/* The plane of a bent curve; false: a line. */
+/* The plane of a curved curve; false: a line. */
 bool takt_curve_plane(const struct curve *c, enum axis *first, enum axis *second);
 
 /* True when s counts radians of rotary axes, because no linear axis moves. */

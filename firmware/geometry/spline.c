@@ -56,9 +56,9 @@ void takt_spline_point(const struct curve *c, double s_mm, struct point *p)
     *p = c->start;
     for (int i = 0; i < AXIS_COUNT; i++) {
         if ((c->spline.moves & 1U << i) != 0) {
-            const double bent = c->spline.square.at[i] + c->spline.cube.at[i] * s_mm;
+            const double curved = c->spline.square.at[i] + c->spline.cube.at[i] * s_mm;
 
-            p->at[i] += (c->slope.at[i] + bent * s_mm) * s_mm;
+            p->at[i] += (c->slope.at[i] + curved * s_mm) * s_mm;
         }
     }
 }
@@ -66,9 +66,9 @@ void takt_spline_point(const struct curve *c, double s_mm, struct point *p)
 void takt_spline_tangent(const struct curve *c, double s_mm, struct point *t)
 {
     for (int i = 0; i < AXIS_COUNT; i++) {
-        const double bent = 2.0 * c->spline.square.at[i] + 3.0 * c->spline.cube.at[i] * s_mm;
+        const double curved = 2.0 * c->spline.square.at[i] + 3.0 * c->spline.cube.at[i] * s_mm;
 
-        t->at[i] = c->slope.at[i] + bent * s_mm;
+        t->at[i] = c->slope.at[i] + curved * s_mm;
     }
 }
 

@@ -89,7 +89,7 @@ struct machine {
     uint32_t sharp_corners;   /* 1: cutter compensation does not round outer corners */
     uint32_t
         override_proportional; /* 1: the feed override scales the whole diagram, not the programmed feed alone */
-    uint32_t law;              /* enum law, of ramps */
+    uint32_t profile;           /* enum law, of ramps */
     uint32_t landing;           /* enum landing */
     uint32_t limiter;           /* enum limiter_form, classic/limiter.h */
     uint32_t look_ahead_blocks; /* 1 ... MACHINE_LOOK_AHEAD_MAX */

@@ -21,9 +21,10 @@ void takt_handover_add_cycle(struct motion *m, const struct point *at, double fe
                              bool landed, struct cycle_record *record)
 {
     const struct block *b = path_first(m->path);
-    struct lead_start start;
+    struct reference_start start;
 
-    (void)takt_lead_step(&m->lead, m->setpoint, true, &start); /* it stands, and takes ceilings */
+    (void)takt_reference_step(&m->reference, m->setpoint, true,
+                              &start); /* it stands, and takes ceilings */
     m->current = m->path->first;
     m->at = *at;
     m->feed = feed_mm_s * m->cycle_s;
@@ -48,8 +49,8 @@ void takt_handover_end(struct motion *m)
 {
     const struct block *b = path_first(m->path);
 
-    takt_lead_stand(&m->lead, b->start + b->length);
-    m->setpoint = m->lead.at;
+    takt_reference_stand(&m->reference, b->start + b->length);
+    m->setpoint = m->reference.at;
     m->feed = 0.0;
     m->at = b->curve.end;
     m->done = true;

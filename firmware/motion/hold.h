@@ -13,7 +13,7 @@
 #ifndef TAKT_MOTION_HOLD_H
 #define TAKT_MOTION_HOLD_H
 
-#include "motion/lead.h"
+#include "motion/reference.h"
 #include "plan/path.h"
 
 #include <stdbool.h>
@@ -60,7 +60,7 @@ struct hold {
     float most;        /* no higher does the rate get in coming to rest */
     float step;        /* the hardest w that was found last, in parts of the hardest the axes can */
     unsigned turn;     /* counts cycles */
-    unsigned refusals; /* of the lead point, in this cycle */
+    unsigned refusals; /* of the trapezoidal reference, in this cycle */
     bool stops;        /* it was to stop in the last cycle */
     double top;        /* rate that the curve was made for, or more */
     struct hold_piece piece[HOLD_PIECES_MAX];
@@ -71,11 +71,11 @@ struct hold {
  * has been moved by so many in the last two cycles. anew: it was not asked in the last cycle. Some pieces ahead are read each
  * time, so that it may be able to in a later cycle.
  */
-bool takt_hold_begin(struct hold *h, const struct path *path, const struct lead *l, double at,
+bool takt_hold_begin(struct hold *h, const struct path *path, const struct reference *l, double at,
                      const double way[2], bool anew);
 
 /* One cycle: slows down as hard as it can, or speeds up. False: it cannot go on by itself; the rate is constant. */
-bool takt_hold_step(struct hold *h, const struct path *path, const struct lead *l, bool stop);
+bool takt_hold_step(struct hold *h, const struct path *path, const struct reference *l, bool stop);
 
 /* Path units from the start of its block, and in a cycle. */
 static inline double hold_at(const struct hold *h)

@@ -2,16 +2,16 @@
 
 #include "base/handoff.h"
 #include "base/maths.h"
-#include "plan/joint.h"
+#include "plan/jerk_budget.h"
+#include "plan/junction.h"
 #include "plan/path_unit.h"
 #include "plan/scale.h"
-#include "plan/share.h"
 
 #include <assert.h>
 #include <stddef.h>
 #include <string.h>
 
-static_assert(SHARE_BLOCKS_MAX <= PATH_MODES_MAX,
+static_assert(JERK_BUDGET_BLOCKS_MAX <= PATH_MODES_MAX,
               "blocks that are not closed leave room for more, without which they never are");
 
 /* Path counts as much as the fastest axis goes in that time: a length that looks like mm. */
@@ -19,7 +19,8 @@ static void init_smooth(struct path *p)
 {
     struct smooth_limits limits = {.axes = p->limits.axes,
                                    .cycle_s = p->limits.cycle_s,
-                                   .windows = 0.5 + 0.5 * takt_law_boxes(p->limits.law)};
+                                   .windows =
+                                       0.5 + 0.5 * takt_ramp_profile_boxes(p->limits.profile)};
 
     for (int i = 0; i < AXIS_COUNT; i++) {
         limits.velocity_mm_s[i] = p->limits.velocity_mm_s[i];
@@ -110,9 +111,9 @@ void takt_path_promise(struct path *p, uint32_t index, uint32_t cycles, bool kno
 static void close_newest(struct path *p)
 {
     if (p->closed < p->pushed) {
-        takt_joint_stop(edge(p, p->pushed - 1));
-        takt_share_note(p, p->pushed - 1, edge(p, p->pushed - 1));
-        takt_share_close(p);
+        takt_junction_stop(edge(p, p->pushed - 1));
+        takt_jerk_budget_note(p, p->pushed - 1, edge(p, p->pushed - 1));
+        takt_jerk_budget_close(p);
     }
 }
 
@@ -120,7 +121,7 @@ static void close_newest(struct path *p)
 static void append(struct path *p, const struct block *b, const struct point control[4])
 {
     takt_ring_push(&p->ring, handoff_get_count(&p->kept), p->pushed, b, control);
-    takt_share_begin(p, p->pushed, b);
+    takt_jerk_budget_begin(p, p->pushed, b);
     handoff_set_count(&p->pushed, p->pushed + 1U);
     handoff_order(); /* until then position is the end of the block before */
     p->position += b->length;
@@ -143,12 +144,12 @@ static void append_joined(struct path *p, struct block *b)
 {
     b->start = p->position;
     if (p->closed < p->pushed) {
-        takt_joint_form(edge(p, p->pushed - 1), b, &p->limits);
-        takt_share_note(p, p->pushed - 1, edge(p, p->pushed - 1));
+        takt_junction_form(edge(p, p->pushed - 1), b, &p->limits);
+        takt_jerk_budget_note(p, p->pushed - 1, edge(p, p->pushed - 1));
     }
     append(p, b, NULL);
     if (p->pushed - p->closed > 1) {
-        takt_share_spread(p);
+        takt_jerk_budget_spread(p);
     }
 }
 
@@ -214,8 +215,8 @@ static void push_smooth_piece(struct path *p, const struct smooth_piece *piece)
     b->start = p->position;
     if (p->smoothing) {
         takt_block_join_smooth(edge(p, p->pushed - 1), b);
-        takt_share_note(p, p->pushed - 1, edge(p, p->pushed - 1));
-        takt_share_close(p);
+        takt_jerk_budget_note(p, p->pushed - 1, edge(p, p->pushed - 1));
+        takt_jerk_budget_close(p);
     } else {
         close_newest(p);
     }
@@ -298,7 +299,8 @@ static bool is_divided(const struct path *p, const struct move *move)
     const struct move *newest = &p->edge[(p->pushed - 1) % 2].move;
 
     return p->closed < p->pushed &&
-           (newest->kind == MOVE_TAP_OUT || move_is_locked(newest) != move_is_locked(move) ||
+           (newest->kind == MOVE_TAP_OUT ||
+            move_is_synchronized(newest) != move_is_synchronized(move) ||
             (p->divides_rotary && turns_rotary(p, move) != p->newest_turns));
 }
 

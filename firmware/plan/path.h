@@ -4,16 +4,16 @@
  *     push -> [ block | block | ... | block ] -> pass
  *
  * Only the background writes blocks, and count; only the cycle moves first. A block is closed, and seen by
- * others, when the joints at its end and near it are known: what is there has been pushed, or nothing will be.
+ * others, when the junctions at its end and near it are known: what is there has been pushed, or nothing will be.
  */
 #ifndef TAKT_PLAN_PATH_H
 #define TAKT_PLAN_PATH_H
 
 #include "plan/block.h"
 #include "plan/ceiling.h"
+#include "plan/jerk_budget.h"
 #include "plan/limits.h"
 #include "plan/ring.h"
-#include "plan/share.h"
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -68,7 +68,7 @@ struct path {
     uint64_t position; /* likewise, on the path */
     struct block
         edge[2]; /* the newest block, whose end may still change, and the one before or behind it */
-    struct share_block open[SHARE_BLOCKS_MAX]; /* those that are not closed */
+    struct jerk_budget_block open[JERK_BUDGET_BLOCKS_MAX]; /* those that are not closed */
     struct path_ring ring;
     struct smooth smooth; /* motions that are not in the ring yet: a chain being smoothed */
     union path_area area; /* of the ceiling in use and the next one */

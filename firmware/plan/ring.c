@@ -7,7 +7,7 @@
 #include <string.h>
 
 static_assert(PATH_BYTES_MAX / PATH_BYTES_STEP <= 1 << 12, "places fit into path_block.record");
-static_assert(LAW_CYCLES_MAX < 1 << 9, "windows fit into path_block.cycles");
+static_assert(RAMP_PROFILE_CYCLES_MAX < 1 << 9, "windows fit into path_block.cycles");
 static_assert(sizeof(struct path_block) == 32, "no padding");
 
 double takt_path_block_top(const struct path_block *b)
@@ -137,7 +137,7 @@ void takt_ring_join(struct path_ring *r, uint32_t index, const struct block *b)
 {
     struct path_block *to = &r->block[index % PATH_BLOCKS_MAX];
 
-    to->feed_joint_mm_s = takt_maths_float_below(b->feed_joint_mm_s);
+    to->feed_junction_mm_s = takt_maths_float_below(b->feed_junction_mm_s);
     to->end = (unsigned)b->end & 3U;
     to->continues = b->continues;
 }
@@ -171,8 +171,8 @@ static void read_limits(const struct path_block *from, uint64_t end, struct bloc
     b->feed_max_mm_s = takt_path_block_top(from);
     b->a_mm_s2 = (double)from->a_mm_s2;
     b->j_mm_s3 = (double)from->j_mm_s3;
-    b->feed_joint_mm_s = (double)from->feed_joint_mm_s;
-    b->end = (enum joint_kind)from->end;
+    b->feed_junction_mm_s = (double)from->feed_junction_mm_s;
+    b->end = (enum junction_kind)from->end;
     b->rotary = from->rotary;
     b->continues = from->continues;
 }

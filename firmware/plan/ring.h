@@ -15,7 +15,7 @@
 #include <stdint.h>
 
 /*
- * Blocks in the ring: the look-ahead of 256, those between the setpoint and the lead point that runs ahead of it
+ * Blocks in the ring: the look-ahead of 256, those between the setpoint and the trapezoidal reference that runs ahead of it
  * (firmware/motion), both ends included, and RECORD_BEFORE that have been passed.
  */
 #define PATH_BLOCKS_MAX 320
@@ -37,14 +37,14 @@ struct path_block {
     uint64_t start;          /* path position, path units (path_unit.h) */
     float feed_program_mm_s; /* as programmed; infinite for a rapid */
     float feed_limit_mm_s;   /* never exceeded, whatever is programmed and the override */
-    float a_mm_s2; /* along the path, what curvature and share leave at the highest feed */
+    float a_mm_s2; /* along the path, what curvature and jerk budget leave at the highest feed */
     float j_mm_s3;
-    float feed_joint_mm_s; /* highest feed at which the joint at the end may be passed */
-    unsigned record : 12;  /* where it is, in PATH_BYTES_STEP */
+    float feed_junction_mm_s; /* highest feed at which the junction at the end may be passed */
+    unsigned record : 12;     /* where it is, in PATH_BYTES_STEP */
     unsigned
         cycles : 9; /* averaging window of the span that begins here, as planned last; 0: not yet */
     unsigned cycles_known : 1; /* found with all of the span known */
-    unsigned end : 2;          /* enum joint_kind */
+    unsigned end : 2;          /* enum junction_kind */
     unsigned motion : 1;       /* else a wait, the axes stand */
     unsigned rapid : 1;
     unsigned continues : 1;      /* another piece of the same move follows */

@@ -11,7 +11,7 @@
 #define ACCELERATION_UNITS 262144.0
 #define JERK_UNITS         65536.0
 
-/* The sums of the averages: product of the boxes times the way between lead point and setpoint. */
+/* The sums of the averages: product of the boxes times the way between trapezoidal reference and setpoint. */
 #define SUM_UNITS 9223372036854775808.0
 
 /* Of one block: with what is ahead of it (path.c) differences of positions stay within 63 bits. */
@@ -49,17 +49,17 @@ static double least_units(const struct plan_limits *limits, unsigned axes)
     return least * PATH_UNITS_PER_MM;
 }
 
-/* Likewise in the largest sum: the lead point is half a window ahead. */
+/* Likewise in the largest sum: the trapezoidal reference is half a window ahead. */
 static double largest_sum(const struct plan_limits *limits, unsigned axes)
 {
-    const uint32_t cycles = takt_law_cycles_max(limits->law);
+    const uint32_t cycles = takt_ramp_profile_cycles_max(limits->profile);
     double product = 1.0;
 
-    for (unsigned i = 0; i < takt_law_boxes(limits->law); i++) {
-        product *= (double)takt_law_box_cycles(i, cycles);
+    for (unsigned i = 0; i < takt_ramp_profile_boxes(limits->profile); i++) {
+        product *= (double)takt_ramp_profile_box_cycles(i, cycles);
     }
-    return 0.5 * (double)takt_law_window_cycles(limits->law, cycles) * product * PATH_UNITS_PER_MM *
-           fastest(limits, axes);
+    return 0.5 * (double)takt_ramp_profile_window_cycles(limits->profile, cycles) * product *
+           PATH_UNITS_PER_MM * fastest(limits, axes);
 }
 
 static double scale_of_axes(const struct plan_limits *limits, unsigned axes)

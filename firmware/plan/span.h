@@ -17,7 +17,7 @@ struct span_window {
 /* Does a span end with a block, at a stop? */
 bool takt_span_stops(const struct path *path, uint32_t index);
 
-/* Or at a joint that is passed and landed on? */
+/* Or at a junction that is passed and landed on? */
 bool takt_span_lands(const struct path *path, uint32_t index);
 
 /*

@@ -142,7 +142,7 @@ static bool follow_spindle(struct program *p, struct move *m)
     if (!(rpm > 0.0)) {
         return takt_report_error(p, TAKT_ERROR_SPINDLE_STANDS, span, 0.0);
     }
-    if (move_is_locked(m) && !p->config.spindle_encoder) {
+    if (move_is_synchronized(m) && !p->config.spindle_encoder) {
         return takt_report_error(p, TAKT_ERROR_SPINDLE_NO_ENCODER, span, 0.0);
     }
     m->feed_mm_s = m->feed_rev_mm * rpm / SECONDS_PER_MINUTE;

@@ -94,7 +94,7 @@ static bool check_quintic(const struct travel *t, const struct curve *c)
     return true;
 }
 
-static bool check_bent(const struct travel *t, const struct point *start, const struct move *m)
+static bool check_curved(const struct travel *t, const struct point *start, const struct move *m)
 {
     struct curve c;
 
@@ -125,7 +125,7 @@ bool takt_travel_holds(const struct program_config *config, const struct point *
             return false;
         }
     }
-    return !move_is_bent(m) || check_bent(&t, start, m);
+    return !move_is_curved(m) || check_curved(&t, start, m);
 }
 
 void takt_travel_report(struct diagnostic *d, uint32_t line, uint32_t column,

@@ -1,5 +1,5 @@
 /*
- * Slowing down along a path under an acceleration and a jerk: what the nominal feed is judged by.
+ * Slowing down along a path under an acceleration and a jerk: what the nominal feed is verified by.
  *
  *     feed |‾‾\                 acceleration |  \        /
  *          |   \                             |   \______/      -p, at most A

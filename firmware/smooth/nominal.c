@@ -6,7 +6,7 @@
 #define ALONG 0.95f
 
 /* Part of the axes' limits for the curvature of arcs. */
-#define BENT 0.9f
+#define CURVED 0.9f
 
 /* A corner may use the tolerance on both sides: the curve swings out before it and cuts in at it. */
 #define SIDES 2.0f
@@ -42,10 +42,10 @@ static float feed_of(const struct curve_bounds *b, const struct route_slots *slo
             feed = single_min(feed, slots->velocity_mm_s[i] / first);
         }
         if (second > 0.0f) {
-            feed = single_min(feed, single_sqrt(BENT * slots->acceleration_mm_s2[i] / second));
+            feed = single_min(feed, single_sqrt(CURVED * slots->acceleration_mm_s2[i] / second));
         }
         if (third > 0.0f) {
-            feed = single_min(feed, takt_single_cbrt(BENT * slots->jerk_mm_s3[i] / third));
+            feed = single_min(feed, takt_single_cbrt(CURVED * slots->jerk_mm_s3[i] / third));
         }
     }
     return feed;

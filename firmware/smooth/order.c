@@ -4,11 +4,11 @@
 
 #include <string.h>
 
-/* A bent element is gone along in lines that leave it by this part of the tolerance at most. */
-#define BENT_OFF 0.01f
+/* A curved element is gone along in lines that leave it by this part of the tolerance at most. */
+#define CURVED_OFF 0.01f
 
 /* A line as long as its arc leaves its tangent stays within a quarter of that of it; half of it, lest the bend grows. */
-#define BENT_LEAVES (2.0f * BENT_OFF)
+#define CURVED_LEAVES (2.0f * CURVED_OFF)
 
 /* Lines of the route beside one chord, at most: what lies farther on is come to with the next ones. */
 #define LINKS_MAX 256
@@ -41,7 +41,7 @@ static bool is_there(struct parts p)
     return p.first <= p.last;
 }
 
-/* Where a line is within a distance of a point: |f - g| <= sqrt((within^2 - d^2) / way^2), g the foot, d away. */
+/* Where a line is within a distance of a point: |f - g| <= sqrt((within^2 - d^2) / way^2), g the closest point, d away. */
 static struct parts near_point(const struct route *r, const float start[], const float way[],
                                const float point[], float within_mm)
 {
@@ -53,10 +53,10 @@ static struct parts near_point(const struct route *r, const float start[], const
         dot += (point[i] - start[i]) * way[i];
         square += way[i] * way[i];
     }
-    const float foot = square > 0.0f ? dot / square : 0.0f;
+    const float closest = square > 0.0f ? dot / square : 0.0f;
 
     for (unsigned i = 0; i < r->slots.count; i++) {
-        const float off = point[i] - start[i] - foot * way[i];
+        const float off = point[i] - start[i] - closest * way[i];
 
         off_square += off * off;
     }
@@ -67,7 +67,7 @@ static struct parts near_point(const struct route *r, const float start[], const
     }
     const float half = square > 0.0f ? single_sqrt(room / square) : 1.0f;
 
-    return (struct parts){single_max(foot - half, 0.0f), single_min(foot + half, 1.0f)};
+    return (struct parts){single_max(closest - half, 0.0f), single_min(closest + half, 1.0f)};
 }
 
 static float length_of(const struct route *r, const float way[])
@@ -86,13 +86,13 @@ static double link_end(const struct route *r, const struct order_chord *chord, s
 {
     const double end_mm = route_end_of(r, l->element);
     const float tolerance_mm = (float)r->tolerance_mm;
-    const bool bent = route_element(r, l->element)->bent;
+    const bool curved = route_element(r, l->element)->curved;
     const float reach_mm =
-        bent ? takt_route_straight(r, l->element, l->at_mm, BENT_LEAVES * tolerance_mm)
-             : chord_mm + 3.0f * tolerance_mm;
+        curved ? takt_route_straight(r, l->element, l->at_mm, CURVED_LEAVES * tolerance_mm)
+               : chord_mm + 3.0f * tolerance_mm;
 
-    l->within_mm = chord->within_mm - (bent ? BENT_OFF * tolerance_mm : 0.0f);
-    l->ends = bent || l->at_mm + (double)reach_mm >= end_mm;
+    l->within_mm = chord->within_mm - (curved ? CURVED_OFF * tolerance_mm : 0.0f);
+    l->ends = curved || l->at_mm + (double)reach_mm >= end_mm;
     return l->at_mm + (double)reach_mm >= end_mm ? end_mm : l->at_mm + (double)reach_mm;
 }
 
@@ -131,8 +131,8 @@ static void go_on(const struct route *r, struct link *l)
 static bool is_corner(const struct route *r, uint32_t element)
 {
     return element < r->count &&
-           (route_turn(r, element) > CORNER_MIN || route_element(r, element)->bent ||
-            route_element(r, element - 1)->bent);
+           (route_turn(r, element) > CORNER_MIN || route_element(r, element)->curved ||
+            route_element(r, element - 1)->curved);
 }
 
 /*

@@ -43,8 +43,8 @@ void takt_smooth_set_piece(struct smooth *s, struct smooth_piece *piece)
     const unsigned i = s->taken;
     const uint32_t element = w->element[i + 1];
     const uint32_t told = takt_smooth_tell(s, element);
-    struct judge_need need;
-    struct judge_rate rate;
+    struct verifier_need need;
+    struct verifier_rate rate;
 
     takt_route_move(&s->route, told, &s->move);
     piece->move = &s->move;
@@ -54,12 +54,12 @@ void takt_smooth_set_piece(struct smooth *s, struct smooth_piece *piece)
     for (unsigned k = 0; k < 4; k++) {
         set_control(s, i + k, &piece->control[k]);
     }
-    takt_judge_need(w, &s->route, i, &need);
-    takt_judge_rate(&need, &s->route, s->route.first + w->paced[i], &s->change, &rate);
+    takt_verifier_need(w, &s->route, i, &need);
+    takt_verifier_rate(&need, &s->route, s->route.first + w->paced[i], &s->change, &rate);
     piece->rate.most = maths_min((double)rate.most, 1.0);
     piece->rate.programmed = (double)rate.programmed;
     piece->change.by =
-        (double)takt_judge_change_on(&need, &s->route, &s->change, (float)piece->rate.most);
+        (double)takt_verifier_change_on(&need, &s->route, &s->change, (float)piece->rate.most);
     piece->change.rounded = piece->change.by / s->change.rounding_s;
     piece->stop = s->stops && s->taken + 1 == s->ready;
     piece->last = s->finished && w->at_end && i + 4 == w->count;

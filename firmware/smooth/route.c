@@ -49,8 +49,8 @@ void takt_route_init(struct route *r, const struct smooth_limits *limits, double
     r->moved = 0;
     r->first = 0;
     r->count = 0;
-    r->bent_first = 0;
-    r->bent_count = 0;
+    r->curved_first = 0;
+    r->curved_count = 0;
     r->capacity = r->slots.count > 3 ? SMOOTH_ELEMENTS_MAX / 2 : SMOOTH_ELEMENTS_MAX;
     for (unsigned i = 0; i < SMOOTH_MODES_MAX; i++) {
         r->mode[i].used = 0;
@@ -69,8 +69,8 @@ static bool has_free_mode(const struct route *r)
 
 bool takt_route_has_room(const struct route *r)
 {
-    return r->count - r->first < r->capacity && r->bent_count - r->bent_first < SMOOTH_BENT_MAX &&
-           has_free_mode(r);
+    return r->count - r->first < r->capacity &&
+           r->curved_count - r->curved_first < SMOOTH_CURVED_MAX && has_free_mode(r);
 }
 
 double takt_route_end(const struct route *r)
@@ -145,9 +145,9 @@ static float weighted_length(const struct curve *curve)
     return single_sqrt(square);
 }
 
-static void keep_bent(struct route *r, const struct curve *curve, float per_mm)
+static void keep_curved(struct route *r, const struct curve *curve, float per_mm)
 {
-    struct route_bent *b = &r->bent[r->bent_count % SMOOTH_BENT_MAX];
+    struct route_curved *b = &r->curved[r->curved_count % SMOOTH_CURVED_MAX];
 
     b->kind = curve->kind;
     b->per_mm = per_mm;
@@ -158,7 +158,7 @@ static void keep_bent(struct route *r, const struct curve *curve, float per_mm)
     } else {
         b->quintic = curve->quintic;
     }
-    r->bent_count++;
+    r->curved_count++;
 }
 
 void takt_route_push(struct route *r, const struct move *move, uint32_t number,
@@ -178,10 +178,10 @@ void takt_route_push(struct route *r, const struct move *move, uint32_t number,
     e->number = number;
     e->mode = find_mode(r, move) & ROUTE_MODES;
     e->rotary = takt_curve_is_rotary(curve);
-    e->bent = curve->kind != CURVE_LINE;
-    e->bent_number = (unsigned char)r->bent_count;
-    if (e->bent) {
-        keep_bent(r, curve, per_mm);
+    e->curved = curve->kind != CURVE_LINE;
+    e->curved_number = (unsigned char)r->curved_count;
+    if (e->curved) {
+        keep_curved(r, curve, per_mm);
     }
     e->programmed_mm_s = move->kind == MOVE_RAPID ? SINGLE_INFINITY : (float)move->feed_mm_s;
     takt_nominal_set(e, curve, per_mm, r);
@@ -195,7 +195,7 @@ void takt_route_forget(struct route *r, double at_mm)
         const struct route_element *e = route_element(r, r->first);
 
         r->mode[e->mode].used--;
-        r->bent_first += e->bent ? 1 : 0;
+        r->curved_first += e->curved ? 1 : 0;
         r->first++;
     }
 }
@@ -216,25 +216,26 @@ uint32_t takt_route_find(const struct route *r, double at_mm, uint32_t hint)
     return i;
 }
 
-/* Route for a mm of a bent element. */
+/* Route for a mm of a curved element. */
 static float per_mm_of(const struct route *r, uint32_t index)
 {
-    return r->bent[route_element(r, index)->bent_number % SMOOTH_BENT_MAX].per_mm;
+    return r->curved[route_element(r, index)->curved_number % SMOOTH_CURVED_MAX].per_mm;
 }
 
 /* Its own length at a place on the route. */
-static double bent_place(const struct route *r, uint32_t index, const struct curve *c, double at_mm)
+static double curved_place(const struct route *r, uint32_t index, const struct curve *c,
+                           double at_mm)
 {
     const double s = (at_mm - route_element(r, index)->start_mm) / (double)per_mm_of(r, index);
 
     return maths_clamp(s, 0.0, c->length_mm);
 }
 
-/* The curve of a bent element: outside its plane every axis goes in proportion to the length. */
-static void bent_curve(const struct route *r, uint32_t index, struct curve *c)
+/* The curve of a curved element: outside its plane every axis goes in proportion to the length. */
+static void curved_curve(const struct route *r, uint32_t index, struct curve *c)
 {
     const struct route_element *e = route_element(r, index);
-    const struct route_bent *b = &r->bent[e->bent_number % SMOOTH_BENT_MAX];
+    const struct route_curved *b = &r->curved[e->curved_number % SMOOTH_CURVED_MAX];
 
     c->kind = b->kind;
     c->rotary = e->rotary;
@@ -270,12 +271,12 @@ void takt_route_place(const struct route *r, uint32_t index, double at_mm, doubl
     const double *start = route_start(r, index);
     const double *end = route_end_point(r, index);
 
-    if (e->bent && part < 1.0) {
+    if (e->curved && part < 1.0) {
         struct curve c;
         struct point q;
 
-        bent_curve(r, index, &c);
-        takt_curve_point(&c, bent_place(r, index, &c, at_mm), &q);
+        curved_curve(r, index, &c);
+        takt_curve_point(&c, curved_place(r, index, &c, at_mm), &q);
         gather(r, &q, p);
         return;
     }
@@ -295,10 +296,10 @@ bool takt_route_arc(const struct route *r, uint32_t index, double at_mm, struct 
     const struct route_element *e = route_element(r, index);
 
     takt_route_move(r, index, move);
-    if (!e->bent || r->bent[e->bent_number % SMOOTH_BENT_MAX].kind != CURVE_ARC) {
+    if (!e->curved || r->curved[e->curved_number % SMOOTH_CURVED_MAX].kind != CURVE_ARC) {
         return false;
     }
-    const struct curve_arc *arc = &r->bent[e->bent_number % SMOOTH_BENT_MAX].arc;
+    const struct curve_arc *arc = &r->curved[e->curved_number % SMOOTH_CURVED_MAX].arc;
     const double left = (route_end_of(r, index) - at_mm) / (route_end_of(r, index) - e->start_mm);
     const double turns = maths_abs(arc->sweep_rad) * left / (2.0 * MATHS_PI);
 
@@ -308,13 +309,13 @@ bool takt_route_arc(const struct route *r, uint32_t index, double at_mm, struct 
     return true;
 }
 
-static void bent_direction(const struct route *r, uint32_t index, double at_mm, float direction[])
+static void curved_direction(const struct route *r, uint32_t index, double at_mm, float direction[])
 {
     struct curve c;
     struct point t;
 
-    bent_curve(r, index, &c);
-    takt_curve_tangent(&c, bent_place(r, index, &c, at_mm), &t);
+    curved_curve(r, index, &c);
+    takt_curve_tangent(&c, curved_place(r, index, &c, at_mm), &t);
     for (unsigned i = 0; i < r->slots.count; i++) {
         direction[i] = (float)t.at[r->slots.axis[i]];
     }
@@ -325,8 +326,8 @@ float takt_route_direction(const struct route *r, uint32_t index, double at_mm, 
     float square = 0.0f;
     float length = 1.0f;
 
-    if (route_element(r, index)->bent) {
-        bent_direction(r, index, at_mm, direction);
+    if (route_element(r, index)->curved) {
+        curved_direction(r, index, at_mm, direction);
         length = per_mm_of(r, index);
     } else {
         const double *start = route_start(r, index);
@@ -357,13 +358,13 @@ float takt_route_curvature(const struct route *r, uint32_t index, double at_mm, 
     float square = 0.0f;
 
     memset(curvature, 0, r->slots.count * sizeof curvature[0]);
-    if (!route_element(r, index)->bent) {
+    if (!route_element(r, index)->curved) {
         return 0.0f;
     }
     const float per_mm = per_mm_of(r, index);
 
-    bent_curve(r, index, &c);
-    takt_curve_curvature(&c, bent_place(r, index, &c, at_mm), &k);
+    curved_curve(r, index, &c);
+    takt_curve_curvature(&c, curved_place(r, index, &c, at_mm), &k);
     for (unsigned i = 0; i < r->slots.count; i++) {
         curvature[i] = r->slots.weight[i] * (float)k.at[r->slots.axis[i]] / (per_mm * per_mm);
         square += curvature[i] * curvature[i];
@@ -388,7 +389,7 @@ void takt_route_corner(const struct route *r, uint32_t index, float before[], fl
     (void)takt_route_direction(r, index, at_mm, after);
 }
 
-static void set_distance(const struct route *r, struct route_foot *f)
+static void set_distance(const struct route *r, struct route_closest *f)
 {
     float square = 0.0f;
 
@@ -399,8 +400,8 @@ static void set_distance(const struct route *r, struct route_foot *f)
 }
 
 /* x + (start - x) + s/length (end - start), s from the nearest place of the whole line. */
-static void foot_on_line(const struct route *r, uint32_t index, const double x[], float low,
-                         float high, struct route_foot *f)
+static void closest_on_line(const struct route *r, uint32_t index, const double x[], float low,
+                            float high, struct route_closest *f)
 {
     const double *start = route_start(r, index);
     const double *end = route_end_point(r, index);
@@ -425,14 +426,14 @@ static void foot_on_line(const struct route *r, uint32_t index, const double x[]
 }
 
 /* By Newton's method: s += (x - p) t / (t t), weighted. */
-static void foot_on_bent(const struct route *r, uint32_t index, const double x[], double low,
-                         double high, double s, struct route_foot *f)
+static void closest_on_curved(const struct route *r, uint32_t index, const double x[], double low,
+                              double high, double s, struct route_closest *f)
 {
     const double per_mm = (double)per_mm_of(r, index);
     struct curve c;
     struct point p;
 
-    bent_curve(r, index, &c);
+    curved_curve(r, index, &c);
     low /= per_mm;
     high /= per_mm;
     s = maths_clamp(s / per_mm, low, high);
@@ -460,8 +461,8 @@ static void foot_on_bent(const struct route *r, uint32_t index, const double x[]
 }
 
 /* The nearest point of one element between two places of the route, looked for from at_mm on. */
-static void foot_on(const struct route *r, uint32_t index, const double x[], double from_mm,
-                    double to_mm, double at_mm, struct route_foot *f)
+static void closest_on(const struct route *r, uint32_t index, const double x[], double from_mm,
+                       double to_mm, double at_mm, struct route_closest *f)
 {
     const struct route_element *e = route_element(r, index);
     const double length = route_end_of(r, index) - e->start_mm;
@@ -469,49 +470,49 @@ static void foot_on(const struct route *r, uint32_t index, const double x[], dou
     const double high = maths_clamp(to_mm - e->start_mm, 0.0, length);
 
     f->element = index;
-    if (e->bent) {
-        foot_on_bent(r, index, x, low, high, at_mm - e->start_mm, f);
+    if (e->curved) {
+        closest_on_curved(r, index, x, low, high, at_mm - e->start_mm, f);
     } else {
-        foot_on_line(r, index, x, (float)low, (float)high, f);
+        closest_on_line(r, index, x, (float)low, (float)high, f);
     }
     set_distance(r, f);
 }
 
 /*
- * Can the element on the other side of a joint be nearer than the foot? From a foot before the joint, a line that goes on
- * at an angle t cannot, unless the joint is within distance tan t; and tan t < 1.2 |turn| of slight turns.
+ * Can the element on the other side of a junction be nearer than the closest point? From a closest point before the junction, a line that goes on
+ * at an angle t cannot, unless the junction is within distance tan t; and tan t < 1.2 |turn| of slight turns.
  */
-static bool is_near_joint(const struct route *r, uint32_t next, double joint, float turn,
-                          const struct route_foot *f)
+static bool is_near_junction(const struct route *r, uint32_t next, double junction, float turn,
+                             const struct route_closest *f)
 {
-    const float away = single_abs((float)(joint - f->at_mm));
+    const float away = single_abs((float)(junction - f->at_mm));
 
-    return f->at_mm == joint || turn > SLIGHT || away < SLIGHT_REACH * turn * f->distance_mm ||
-           route_element(r, next)->bent || route_element(r, f->element)->bent;
+    return f->at_mm == junction || turn > SLIGHT || away < SLIGHT_REACH * turn * f->distance_mm ||
+           route_element(r, next)->curved || route_element(r, f->element)->curved;
 }
 
 /*
- * Goes to the neighbour while that is nearer: by more than rounding of a corner can make it, unless the foot is at the
- * joint already. Near a reversal both sides are near, and the curve is on the first until it has turned.
+ * Goes to the neighbour while that is nearer: by more than rounding of a corner can make it, unless the closest point is at the
+ * junction already. Near a reversal both sides are near, and the curve is on the first until it has turned.
  */
 static void walk(const struct route *r, const double x[], double from_mm, double to_mm, bool onward,
-                 struct route_foot *f)
+                 struct route_closest *f)
 {
     for (;;) {
         const uint32_t next = onward ? f->element + 1 : f->element - 1;
-        const double joint =
+        const double junction =
             onward ? route_end_of(r, f->element) : route_element(r, f->element)->start_mm;
-        struct route_foot other;
+        struct route_closest other;
 
-        if (onward ? next >= r->count || joint > to_mm
-                   : f->element == r->first || joint < from_mm) {
+        if (onward ? next >= r->count || junction > to_mm
+                   : f->element == r->first || junction < from_mm) {
             return;
         }
-        if (!is_near_joint(r, next, joint, route_turn(r, onward ? next : f->element), f)) {
+        if (!is_near_junction(r, next, junction, route_turn(r, onward ? next : f->element), f)) {
             return;
         }
-        foot_on(r, next, x, from_mm, to_mm, joint, &other);
-        const float more = f->at_mm == joint ? 0.0f : NEARER * (float)r->tolerance_mm;
+        closest_on(r, next, x, from_mm, to_mm, junction, &other);
+        const float more = f->at_mm == junction ? 0.0f : NEARER * (float)r->tolerance_mm;
 
         if (!(other.distance_mm + more < f->distance_mm)) {
             return;
@@ -520,13 +521,13 @@ static void walk(const struct route *r, const double x[], double from_mm, double
     }
 }
 
-void takt_route_foot(const struct route *r, const double x[], double from_mm, double to_mm,
-                     struct route_foot *f)
+void takt_route_closest(const struct route *r, const double x[], double from_mm, double to_mm,
+                        struct route_closest *f)
 {
     const double at = maths_clamp(f->at_mm, from_mm, to_mm);
     const uint32_t index = takt_route_find(r, at, f->element);
 
-    foot_on(r, index, x, from_mm, to_mm, at, f);
+    closest_on(r, index, x, from_mm, to_mm, at, f);
     walk(r, x, from_mm, to_mm, true, f);
     if (f->element == index) {
         walk(r, x, from_mm, to_mm, false, f);

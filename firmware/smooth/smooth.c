@@ -76,13 +76,13 @@ static double merged_within(const struct move *move)
 }
 
 /* How the rate may change: as the axes allow that move on the route. What others do is nothing to it. */
-static void find_change(const struct smooth *s, double interval_s, struct judge_change *change)
+static void find_change(const struct smooth *s, double interval_s, struct verifier_change *change)
 {
     struct smooth_limits limits = s->limits;
 
     limits.axes &= s->route.moved;
     takt_smooth_limit(&limits, s->route.tolerance_mm);
-    takt_judge_change(&limits, interval_s, change);
+    takt_verifier_change(&limits, interval_s, change);
 }
 
 /* What merging uses of the tolerance makes no interval shorter. */
@@ -217,7 +217,7 @@ static void forget_end(struct smooth *s)
 static bool needs_other_interval(struct smooth *s)
 {
     const bool more = s->moved != s->route.moved;
-    struct judge_change change;
+    struct verifier_change change;
 
     s->moved = s->route.moved;
     if (!more) {
@@ -284,9 +284,9 @@ static unsigned wanted(const struct smooth *s)
     return s->window.at_end || pieces < enough ? pieces : enough;
 }
 
-static void judged(struct smooth *s, struct judge_verdict *v)
+static void verified(struct smooth *s, struct verifier_verdict *v)
 {
-    takt_judge_pieces(&s->window, &s->route, wanted(s), kept_most(s), &s->order, v);
+    takt_verifier_pieces(&s->window, &s->route, wanted(s), kept_most(s), &s->order, v);
 }
 
 /* Do so many pieces come to the end of the chain? */
@@ -325,14 +325,14 @@ static void fall_back(struct smooth *s)
 }
 
 /* The curve as it is, timed once more: where it does not keep the tolerance so, it stays as it was. */
-static void time_last(struct smooth *s, union smooth_scratch *scratch, struct judge_verdict *v)
+static void time_last(struct smooth *s, union smooth_scratch *scratch, struct verifier_verdict *v)
 {
-    struct judge_verdict again;
+    struct verifier_verdict again;
 
     takt_timing_again(&scratch->timing, &s->window, &s->route);
     takt_window_extend(&s->window, &s->route);
     takt_window_locate(&s->window, &s->route);
-    judged(s, &again);
+    verified(s, &again);
     if (again.good >= wanted(s)) {
         *v = again;
         return;
@@ -345,11 +345,11 @@ static void time_last(struct smooth *s, union smooth_scratch *scratch, struct ju
  * them. Where that brings it no nearer the curve would only come there later and later. A corner that was left out is
  * noticed some way behind it: it is slow where all was whole.
  */
-static void slow_down(struct smooth *s, union smooth_scratch *scratch, struct judge_verdict *v)
+static void slow_down(struct smooth *s, union smooth_scratch *scratch, struct verifier_verdict *v)
 {
     float before_mm = SINGLE_INFINITY;
 
-    judged(s, v);
+    verified(s, v);
     for (unsigned i = 0; i < ATTEMPTS && v->good < wanted(s); i++) {
         if (v->beyond_mm > NEARER * before_mm) {
             break;
@@ -358,17 +358,17 @@ static void slow_down(struct smooth *s, union smooth_scratch *scratch, struct ju
         takt_timing_slow(&scratch->timing, &s->window, &s->route, v->whole[v->good]);
         takt_window_extend(&s->window, &s->route);
         relax_and_locate(s, scratch);
-        judged(s, v);
+        verified(s, v);
     }
 }
 
 /* The order goes on to the end of what is handed on; where the axes went back to the route it begins there. */
-static void follow_ready(struct smooth *s, const struct judge_verdict *v)
+static void follow_ready(struct smooth *s, const struct verifier_verdict *v)
 {
     if (s->ready == v->followed && !s->stops) {
         s->order = v->order;
     } else {
-        takt_judge_order(&s->window, &s->route, s->ready, &s->order);
+        takt_verifier_order(&s->window, &s->route, s->ready, &s->order);
     }
     if (s->order.count == 0) {
         takt_order_start(&s->order, s->window.at_mm[s->ready + 1], s->window.element[s->ready + 1]);
@@ -422,7 +422,7 @@ static void choose(struct smooth *s)
 
 /* What comes well before a piece that leaves the tolerance is kept, the rest is tried again with the next window. */
 static void find_way(struct smooth *s, union smooth_scratch *scratch, unsigned rounds,
-                     struct judge_verdict *v)
+                     struct verifier_verdict *v)
 {
     for (unsigned i = 0; i < rounds; i++) {
         relax_and_locate(s, scratch);
@@ -443,7 +443,7 @@ static void find_way(struct smooth *s, union smooth_scratch *scratch, unsigned r
 static void smooth_window(struct smooth *s, union smooth_scratch *scratch)
 {
     const bool goes_on = s->head.proved > 0;
-    struct judge_verdict v;
+    struct verifier_verdict v;
 
     find_way(s, scratch, goes_on ? ROUNDS : ROUNDS_FIRST, &v);
     if (goes_on && is_stuck(s)) {

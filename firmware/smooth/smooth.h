@@ -9,11 +9,11 @@
 #define TAKT_SMOOTH_SMOOTH_H
 
 #include "smooth/head.h"
-#include "smooth/judge.h"
 #include "smooth/merge.h"
 #include "smooth/relax.h"
 #include "smooth/route.h"
 #include "smooth/timing.h"
+#include "smooth/verifier.h"
 #include "smooth/window.h"
 #include "smooth/worth.h"
 
@@ -68,7 +68,7 @@ struct smooth {
     struct window window;
     struct smooth_head head;
     struct merge merge; /* the newest line, not on the route yet */
-    struct judge_change change;
+    struct verifier_change change;
     struct order
         order; /* where the pieces that are ready end; before there are any, where the window begins */
     struct move move; /* of the piece taken last, */

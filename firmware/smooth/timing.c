@@ -10,7 +10,7 @@
 struct spot {
     unsigned piece;
     float fraction;
-    float energy;
+    float rate_squared;
     float slope; /* b' */
 };
 
@@ -18,7 +18,7 @@ static float rate_at(const struct tempo *p, float u)
 {
     float slope;
 
-    return single_sqrt(takt_tempo_energy(p, u, &slope));
+    return single_sqrt(takt_tempo_rate_squared(p, u, &slope));
 }
 
 /* One interval on, u' = r(u), by Runge and Kutta's rule of fourth order. */
@@ -38,7 +38,7 @@ static struct spot spot_at(const struct timing *t, float u)
     const unsigned piece = u - 1.0f < (float)last ? (unsigned)(u - 1.0f) : last;
     struct spot s = {.piece = piece, .fraction = single_min(1.0f, u - 1.0f - (float)piece)};
 
-    s.energy = takt_tempo_energy(&t->tempo, u, &s.slope);
+    s.rate_squared = takt_tempo_rate_squared(&t->tempo, u, &s.slope);
     return s;
 }
 
@@ -57,7 +57,7 @@ static void stand_off(const struct window *from, unsigned group, const struct sp
     const lanes second = step1 - step0 + s->fraction * third;
     const lanes first =
         0.5f * (step0 + step1) + s->fraction * (step1 - step0 + (0.5f * s->fraction) * third);
-    const lanes off = (second * s->energy + first * (0.5f * s->slope)) * (1.0f / 6.0f);
+    const lanes off = (second * s->rate_squared + first * (0.5f * s->slope)) * (1.0f / 6.0f);
 
     for (unsigned k = 0; k < SMOOTH_LANES; k++) {
         spot->group[group][k] -= single_round(off[k]);

@@ -360,18 +360,18 @@ static bool passes_near(const struct window *w, const struct route *r, uint32_t 
  */
 static void stop_at_corner(const struct window *w, const struct route *r, unsigned i,
                            const struct window_spot *before, const struct window_spot *here,
-                           struct route_foot *foot)
+                           struct route_closest *closest)
 {
-    for (uint32_t e = w->element[i - 1] + 1; e <= foot->element; e++) {
+    for (uint32_t e = w->element[i - 1] + 1; e <= closest->element; e++) {
         if (route_turn(r, e) > SHARP && !passes_near(w, r, e, before, here)) {
-            foot->element = e - 1;
-            foot->at_mm = route_element(r, e)->start_mm;
+            closest->element = e - 1;
+            closest->at_mm = route_element(r, e)->start_mm;
             return;
         }
     }
 }
 
-/* Fixed samples have their place already; places never go back, nor do elements at the joint of two. */
+/* Fixed samples have their place already; places never go back, nor do elements at the junction of two. */
 void takt_window_locate(struct window *w, const struct route *r)
 {
     static const float at_sample[4] = {1.0f / 6.0f, 4.0f / 6.0f, 1.0f / 6.0f, 0.0f};
@@ -379,7 +379,7 @@ void takt_window_locate(struct window *w, const struct route *r)
 
     takt_window_spot(w, r, SMOOTH_FIXED - 2, at_sample, &before);
     for (unsigned i = SMOOTH_FIXED; i + SMOOTH_FIXED < w->count; i++) {
-        struct route_foot foot = {.element = w->element[i], .at_mm = w->at_mm[i]};
+        struct route_closest closest = {.element = w->element[i], .at_mm = w->at_mm[i]};
         struct window_spot here;
         double from;
         double to;
@@ -388,11 +388,11 @@ void takt_window_locate(struct window *w, const struct route *r)
         takt_window_reach(w, i, &from, &to);
         takt_window_spot(w, r, i - 1, at_sample, &here);
         takt_window_place(w, r, &here, p);
-        takt_route_foot(r, p, maths_max(from, w->at_mm[i - 1]), maths_max(to, w->at_mm[i - 1]),
-                        &foot);
-        stop_at_corner(w, r, i, &before, &here, &foot);
-        w->at_mm[i] = foot.at_mm;
-        w->element[i] = foot.element > w->element[i - 1] ? foot.element : w->element[i - 1];
+        takt_route_closest(r, p, maths_max(from, w->at_mm[i - 1]), maths_max(to, w->at_mm[i - 1]),
+                           &closest);
+        stop_at_corner(w, r, i, &before, &here, &closest);
+        w->at_mm[i] = closest.at_mm;
+        w->element[i] = closest.element > w->element[i - 1] ? closest.element : w->element[i - 1];
         before = here;
     }
 }

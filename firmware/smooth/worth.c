@@ -7,11 +7,11 @@
 static float piece_time(const struct worth_window *now, unsigned piece)
 {
     const struct window *w = now->window;
-    struct judge_need need;
-    struct judge_rate rate;
+    struct verifier_need need;
+    struct verifier_rate rate;
 
-    takt_judge_need(w, now->route, piece, &need);
-    takt_judge_rate(&need, now->route, now->route->first + w->paced[piece], now->change, &rate);
+    takt_verifier_need(w, now->route, piece, &need);
+    takt_verifier_rate(&need, now->route, now->route->first + w->paced[piece], now->change, &rate);
     return (float)w->interval_s / single_min(1.0f, single_min(rate.most, rate.programmed));
 }
 

@@ -4,7 +4,7 @@
 #ifndef TAKT_SMOOTH_WORTH_H
 #define TAKT_SMOOTH_WORTH_H
 
-#include "smooth/judge.h"
+#include "smooth/verifier.h"
 #include "smooth/window.h"
 
 /* The first so many pieces of a window. */
@@ -12,7 +12,7 @@ struct worth_window {
     const struct window *window;
     const struct route *route;
     const struct smooth_limits *machine;
-    const struct judge_change *change;
+    const struct verifier_change *change;
     unsigned pieces;
     unsigned kept;    /* of them: these are handed on */
     float standing_s; /* what a curve takes longer where it begins and ends at rest */

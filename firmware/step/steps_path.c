@@ -118,7 +118,7 @@ bool takt_steps_path_begin(struct steps *s, const struct steps_target *target)
 
     memset(&s->path, 0, sizeof(s->path));
     s->path.curve = *c;
-    s->path.bent = c->kind == CURVE_ARC;
+    s->path.curved = c->kind == CURVE_ARC;
     if (!to_lattice(s, &c->start, start) || !to_lattice(s, &c->end, end)) {
         return false;
     }
@@ -158,7 +158,7 @@ double takt_steps_path_place(const struct steps *s, const struct point *p)
 /* False: the end has been reached. */
 static bool next_tick(struct steps_path *path, struct evaluate_tick *tick)
 {
-    if (path->bent) {
+    if (path->curved) {
         const bool any = takt_evaluate_helix_next(&path->helix, tick);
 
         path->due = takt_evaluate_helix_due(&path->helix);

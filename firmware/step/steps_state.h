@@ -10,7 +10,7 @@
 /* A block followed by an evaluation function. */
 struct steps_path {
     bool active;
-    bool bent; /* helix, else line */
+    bool curved; /* helix, else line */
     struct curve curve;
     double part;         /* of the curve, 0 ... 1, that has been stepped */
     double due;          /* part at which the next tick is due */

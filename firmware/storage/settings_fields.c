@@ -60,7 +60,7 @@ const struct settings_field takt_settings_fields[] = {
     FROM(4, path_tolerance_mm, 0, 100),
     COUNT(5, sharp_corners, 0, 1),
     COUNT(6, override_proportional, 0, 1),
-    COUNT(7, law, 0, 2),
+    COUNT(7, profile, 0, 2),
     COUNT(8, landing, 0, 2),
     COUNT(9, look_ahead_blocks, 1, MACHINE_LOOK_AHEAD_MAX),
     COUNT(10, interpolator, 0, 2),

@@ -331,7 +331,7 @@ static bool take_pairs(const uint8_t *bytes, const struct table_rules *rules, un
     return points == tables->points;
 }
 
-/* The correction at a knot, for both directions: a slope is judged from knot to knot. */
+/* The correction at a knot, for both directions: a slope is verified from knot to knot. */
 static bool check_knot(const struct axis_tables *tables, const struct axis_pair *pair, unsigned k,
                        const struct table_rules *rules)
 {

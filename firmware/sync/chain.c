@@ -28,13 +28,13 @@ static bool goes_on(const struct chain *c)
     const struct path_block *b = path_at(c->path, c->last);
     const struct path_block *next = path_at(c->path, c->last + 1);
 
-    if (takt_path_kind(c->path, c->last) != MOVE_THREAD || b->end != JOINT_PASSED ||
+    if (takt_path_kind(c->path, c->last) != MOVE_THREAD || b->end != JUNCTION_PASSED ||
         c->last + 1 == c->path->closed) {
         return false;
     }
     const struct brake_limits limits = limits_of(next);
 
-    return (double)b->feed_joint_mm_s >= LIMIT_PART * c->limits.velocity_mm_s &&
+    return (double)b->feed_junction_mm_s >= LIMIT_PART * c->limits.velocity_mm_s &&
            limits.velocity_mm_s >= LIMIT_PART * c->limits.velocity_mm_s &&
            limits.acceleration_mm_s2 >= LIMIT_PART * c->limits.acceleration_mm_s2 &&
            limits.jerk_mm_s3 >= LIMIT_PART * c->limits.jerk_mm_s3;

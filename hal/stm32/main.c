@@ -360,7 +360,7 @@ static void open_embedded(const struct machine *machine)
 }
 
 /* All problems are logged; the first is the alarm. */
-static void judge(void)
+static void verifier(void)
 {
     struct diagnostic problem;
     unsigned at = 0;
@@ -394,7 +394,7 @@ static void start(void)
     open_can(&machine);
     open_steps(&machine);
     open_embedded(&machine);
-    judge();
+    verifier();
     open_panel();
     (void)takt_watchdog_start(BOARD_WATCHDOG_MS);
     cortex_set_priority(BOARD_CYCLE, BOARD_PRIORITY_CYCLE);

@@ -6,7 +6,7 @@
 
 #include <string.h>
 
-/* A foot is beside the curve when the way to it is across the path but for this. */
+/* A closest point is beside the curve when the way to it is across the path but for this. */
 #define BESIDE_PART 0.05
 #define BESIDE_MM   1e-6
 
@@ -100,8 +100,8 @@ static double lag_of(const struct problem_window *w, size_t k)
 }
 
 /*
- * In interval k, between places t knots apart, the tool's curve bends away by a t^2 / 8: half a knot for the path, a cycle for its joints, which are
- * judged by the straight lines between setpoints. It is the acceleration that there is, not the limit: else a higher limit
+ * In interval k, between places t knots apart, the tool's curve bends away by a t^2 / 8: half a knot for the path, a cycle for its junctions, which are
+ * verified by the straight lines between setpoints. It is the acceleration that there is, not the limit: else a higher limit
  * would narrow the tolerance.
  */
 static double radius_of(const struct problem_window *w, const struct ahead_element *e, size_t k,
@@ -114,7 +114,7 @@ static double radius_of(const struct problem_window *w, const struct ahead_eleme
                                          EXCESS_TOLERANCE_PART * e->tolerance_mm - sag_mm));
 }
 
-/* Is x beside its foot, not before or behind it as at a corner? */
+/* Is x beside its closest point, not before or behind it as at a corner? */
 static bool is_beside(const struct problem_ball *ball)
 {
     const double along = vector_dot(ball->offset, ball->along);
@@ -122,19 +122,19 @@ static bool is_beside(const struct problem_ball *ball)
     return maths_abs(along) <= BESIDE_PART * vector_length(ball->offset) + BESIDE_MM;
 }
 
-/* Within reach of its foot: the path may be left sideways only; a corner in no direction. */
+/* Within reach of its closest point: the path may be left sideways only; a corner in no direction. */
 static void set_tube(const struct problem_window *w, struct problem_ball *ball, size_t k,
                      const double weight[4], double place_mm, size_t *hint)
 {
     const struct ahead_element *e;
-    double foot[3];
+    double closest[3];
     double x[3];
 
     *hint = ahead_path_find(w->path, place_mm, *hint);
     e = &w->path->element[*hint];
-    ahead_path_at(w->path, *hint, place_mm, foot, ball->along);
+    ahead_path_at(w->path, *hint, place_mm, closest, ball->along);
     trail_sum(w->trail->tool + k, weight, x);
-    vector_from_to(foot, x, ball->offset);
+    vector_from_to(closest, x, ball->offset);
     if (!is_beside(ball))
         memset(ball->along, 0, sizeof ball->along);
     memcpy(ball->weight, weight, sizeof ball->weight);
@@ -194,9 +194,9 @@ static size_t nearest_site(const struct trail *t, const double corner[3], size_t
     return site;
 }
 
-/* The curve at u comes within reach of a joint; of a bent one sideways, so that it may still move along. */
-static void add_joint(struct problem *p, const struct problem_window *w,
-                      const struct ahead_element *e, double u)
+/* The curve at u comes within reach of a junction; of a curved one sideways, so that it may still move along. */
+static void add_junction(struct problem *p, const struct problem_window *w,
+                         const struct ahead_element *e, double u)
 {
     const size_t k = (size_t)u;
     struct problem_ball *ball;
@@ -213,14 +213,14 @@ static void add_joint(struct problem *p, const struct problem_window *w,
     trail_sum(w->trail->tool + k, ball->weight, ball->along);
     length = vector_length(ball->along);
     for (int i = 0; i < 3; i++)
-        ball->along[i] = e->joint == AHEAD_BENT && length > 0 ? ball->along[i] / length : 0;
+        ball->along[i] = e->junction == AHEAD_CURVED && length > 0 ? ball->along[i] / length : 0;
     trail_weights(u - (double)k, ball->weight);
     trail_sum(w->trail->tool + k, ball->weight, x);
     vector_from_to(e->curve.end.at, x, ball->offset);
     ball->radius_mm = radius_of(w, e, k, w->limits->cycle_s / w->limits->step_s);
 }
 
-static void set_joints(struct problem *p, const struct problem_window *w)
+static void set_junctions(struct problem *p, const struct problem_window *w)
 {
     const struct trail *t = w->trail;
     const size_t last = 2 * (w->first + p->cells);
@@ -233,12 +233,12 @@ static void set_joints(struct problem *p, const struct problem_window *w)
         const double at_mm = w->path->element[k + 1].start_mm;
         const double *end = e->curve.end.at;
 
-        if (e->joint == AHEAD_SMOOTH)
+        if (e->junction == AHEAD_SMOOTH)
             continue;
         while (site < last && t->place_mm[site] < at_mm)
             site++;
-        add_joint(p, w, e,
-                  nearest_knot(t, end, 0.5 * (double)nearest_site(t, end, site, first, last)));
+        add_junction(p, w, e,
+                     nearest_knot(t, end, 0.5 * (double)nearest_site(t, end, site, first, last)));
     }
 }
 
@@ -296,5 +296,5 @@ void problem_build(struct problem *p, const struct problem_window *w)
         if (p->modes > 0)
             set_map(&p->map[i], &w->limits->modes, w->trail->control + w->first + i);
     }
-    set_joints(p, w);
+    set_junctions(p, w);
 }

@@ -371,7 +371,7 @@ static bool is_exact(const struct move *move)
     return move->path != PATH_BLEND || !(move->tolerance_mm > 0);
 }
 
-/* Is the joint between the last element collected and a curve passed without a change of direction? */
+/* Is the junction between the last element collected and a curve passed without a change of direction? */
 static bool is_tangent(const struct compile *c, const struct curve *next)
 {
     const struct curve *last = &c->path.element[c->path.count - 1].curve;
@@ -387,7 +387,7 @@ static bool is_tangent(const struct compile *c, const struct curve *next)
     return true;
 }
 
-/* An exact stop, or a joint that may not be rounded. */
+/* An exact stop, or a junction that may not be rounded. */
 static bool begins_section(const struct compile *c, const struct ahead_element *e)
 {
     if (c->path.count == 0)

@@ -9,7 +9,7 @@
 /* Blocks beyond the setpoint that are planned. */
 #define LOOK_AHEAD 128
 
-/* Rounding of differences, as the judge has it of jerk. */
+/* Rounding of differences, as the verifier has it of jerk. */
 #define LIMIT_ROOM 1.001
 
 /* The curve is off a bend's setpoints by v^2 step^2 / 6R, a chord by v^2 step^2 / 8R. */

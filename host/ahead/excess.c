@@ -5,13 +5,13 @@
 /* What rounding and the solver's last step may leave above the limits the optimiser is given. */
 #define LIMIT_SLACK 3e-4
 
-/* Joints may be farther off than their ball's radius by the solver's last step. */
-#define JOINT_PART 0.99
+/* Junctions may be farther off than their ball's radius by the solver's last step. */
+#define JUNCTION_PART 0.99
 
 /* Places of an interval at which the distance is measured. */
 #define PARTS 12
 
-/* How far along the path a foot is looked for. */
+/* How far along the path a closest point is looked for. */
 #define REACH_MM 0.3
 
 /* Differences of control points over their limits. */
@@ -50,19 +50,20 @@ static double distance_of(const struct problem_window *w, size_t interval, size_
 
     for (int i = 0; i < PARTS; i++) {
         const double part = (double)i / PARTS;
-        struct ahead_foot foot;
+        struct ahead_closest closest;
         double x[3];
 
         trail_at(t, (double)interval + part, x);
-        ahead_path_foot(w->path, x, from_mm + part * way_mm, REACH_MM, *hint, &foot);
-        *hint = foot.element;
-        most = maths_max(most, foot.distance_mm / w->path->element[foot.element].tolerance_mm);
+        ahead_path_closest(w->path, x, from_mm + part * way_mm, REACH_MM, *hint, &closest);
+        *hint = closest.element;
+        most =
+            maths_max(most, closest.distance_mm / w->path->element[closest.element].tolerance_mm);
     }
     return most / EXCESS_TOLERANCE_PART;
 }
 
-/* Joints that the curve has to come close to, as the problem has them. */
-static double joint_of(const struct problem_cell *cell)
+/* Junctions that the curve has to come close to, as the problem has them. */
+static double junction_of(const struct problem_cell *cell)
 {
     double most = 0;
 
@@ -70,7 +71,7 @@ static double joint_of(const struct problem_cell *cell)
         if (cell->ball[i].radius_mm > 0)
             most = maths_max(most, vector_length(cell->ball[i].offset) / cell->ball[i].radius_mm);
     }
-    return most * JOINT_PART;
+    return most * JUNCTION_PART;
 }
 
 double excess_measure(const struct problem_window *w, const struct problem *p)
@@ -86,7 +87,7 @@ double excess_measure(const struct problem_window *w, const struct problem *p)
 
         here = maths_max(here, limits_of(w->limits, control));
         here = maths_max(here, feed_of(w->limits, control, feed_mm_s));
-        here = maths_max(here, joint_of(&p->cell[i]));
+        here = maths_max(here, junction_of(&p->cell[i]));
         w->trail->beyond[w->first + i] = here;
         most = maths_max(most, here);
     }

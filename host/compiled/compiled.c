@@ -12,7 +12,7 @@
 #include "cli/progress.h"
 #include "cli/stopwatch.h"
 #include "cli/text.h"
-#include "compiled/compiled_judge.h"
+#include "compiled/compiled_verifier.h"
 #include "config/shaper.h"
 #include "replay/fit.h"
 
@@ -112,7 +112,8 @@ static enum compile_result add_moves(struct making *m)
     struct move move;
 
     while (result == COMPILE_DONE &&
-           takt_offset_next(&m->reading.offset, &m->reading.program, &move, &error) == PROGRAM_MOVE)
+           takt_cutter_compensation_next(&m->reading.offset, &m->reading.program, &move, &error) ==
+               PROGRAM_MOVE)
         result = compile_add(&m->compile, &move);
     return result == COMPILE_DONE ? compile_end(&m->compile) : result;
 }
@@ -152,7 +153,7 @@ static enum command_status compile(struct making *m, const struct session *s,
 
     session_begin_reading(s, &m->reading, &program, &source);
     takt_program_open(&m->reading.program, &program, &source);
-    takt_offset_open(&m->reading.offset, &program);
+    takt_cutter_compensation_open(&m->reading.offset, &program);
     compiled_limits(s, &program.start, &config.limits);
     shaper_planned_modes(&s->setup, &config.vibration);
     set_text(s, &config);
@@ -171,7 +172,7 @@ static bool empty(FILE *stream)
     return ftruncate(fileno(stream), 0) == 0;
 }
 
-/* Compiled and judged. */
+/* Compiled and verified. */
 static enum command_status make(const struct session *s, const struct session_totals *totals,
                                 uint32_t ceiling_percent, const struct attempt *attempt,
                                 FILE *stream, struct compiled_figures *figures)
@@ -189,14 +190,14 @@ static enum command_status make(const struct session *s, const struct session_to
     figures->bytes = m->compile.encoder.bytes;
     compile_free(&m->compile);
     free(m);
-    return status == STATUS_DONE ? compiled_judge(s, stream, figures) : status;
+    return status == STATUS_DONE ? compiled_verifier(s, stream, figures) : status;
 }
 
 enum command_status compiled_make(const struct session *s, const struct session_totals *totals,
                                   uint32_t ceiling_percent, FILE *stream,
                                   struct compiled_figures *figures)
 {
-    /* What the judge refuses is made with less of the tolerance, then on the exact path, at last with a stop at each joint. */
+    /* What the verifier refuses is made with less of the tolerance, then on the exact path, at last with a stop at each junction. */
     static const struct attempt attempts[] = {
         {1, false}, {0.8, false}, {0.4, false}, {0, false}, {0, true}};
     const uint64_t start_ns = stopwatch_now_ns();
@@ -237,8 +238,9 @@ static uint64_t digest_of(const struct session *s)
 
     session_begin_reading(s, &reading, &config, &source);
     takt_program_open(&reading.program, &config, &source);
-    takt_offset_open(&reading.offset, &config);
-    while (takt_offset_next(&reading.offset, &reading.program, &move, &error) == PROGRAM_MOVE)
+    takt_cutter_compensation_open(&reading.offset, &config);
+    while (takt_cutter_compensation_next(&reading.offset, &reading.program, &move, &error) ==
+           PROGRAM_MOVE)
         digest = compile_digest(digest, &move);
     return digest;
 }

@@ -275,7 +275,7 @@ static const char *const *words_of(const struct machine_key *key)
     static const char *const step_forms[] = {"even", "improved", "plain", NULL};
     static const char *const shapers[] = {"none", "neutral", "zv", "mzv", "ei", NULL};
     static const char *const interpolators[] = {"exact", "integrate", "rotate", NULL};
-    static const char *const laws[] = {"jerk", "smooth", "gentle", NULL};
+    static const char *const profiles[] = {"jerk", "smooth", "gentle", NULL};
     static const char *const landings[] = {"span", "block", "scale", NULL};
     static const char *const limiters[] = {"ceiling", "threshold", "smooth", NULL};
     static const char *const methods[] = {"adaptive", "proportional", NULL};
@@ -284,8 +284,8 @@ static const char *const *words_of(const struct machine_key *key)
         return drive_types;
     if (key->type == KEY_SHAPER)
         return shapers;
-    if (key->type == KEY_LAW)
-        return laws;
+    if (key->type == KEY_RAMP_PROFILE)
+        return profiles;
     if (key->type == KEY_LANDING)
         return landings;
     if (key->type == KEY_LIMITER)
@@ -438,7 +438,7 @@ bool machine_key_set(struct machine_setup *setup, struct machine_place place,
     case KEY_DRIVE_TYPE:
     case KEY_STEP_FORM:
     case KEY_SHAPER:
-    case KEY_LAW:
+    case KEY_RAMP_PROFILE:
     case KEY_LANDING:
     case KEY_LIMITER:
     case KEY_OVERRIDE_METHOD:
@@ -542,7 +542,7 @@ void machine_key_get(const struct machine_setup *setup, struct machine_place pla
     case KEY_DRIVE_TYPE:
     case KEY_STEP_FORM:
     case KEY_SHAPER:
-    case KEY_LAW:
+    case KEY_RAMP_PROFILE:
     case KEY_LANDING:
     case KEY_LIMITER:
     case KEY_OVERRIDE_METHOD:

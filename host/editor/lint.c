@@ -150,7 +150,7 @@ static void look_at_motion(struct lint *l, const struct move *m, bool mill)
 {
     if (m->kind == MOVE_RAPID && mill)
         look_at_rapid(l, m);
-    else if (m->kind == MOVE_FEED || move_is_bent(m))
+    else if (m->kind == MOVE_FEED || move_is_curved(m))
         look_at_cut(l, m);
     l->z_known = l->z_known || m->end.at[AXIS_Z] != l->at.at[AXIS_Z];
     l->at = m->end;

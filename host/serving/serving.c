@@ -57,9 +57,9 @@ static void open_service(struct serving *s)
 {
     const struct service_config config = {
         .machine = &s->session.setup.machine,
-        .can = field_get_port(&s->field),
+        .can = drive_network_get_port(&s->network),
         .dcf = s->session.configurations.dcf,
-        .step = field_get_step_port(&s->field),
+        .step = drive_network_get_step_port(&s->network),
         .tools = s->session.tools.tools,
         .tools_count = s->session.tools.table.count,
         .reader = &s->reader,
@@ -74,7 +74,7 @@ static void open_service(struct serving *s)
 
     takt_plan_queue_init(&s->plan, &s->service);
     takt_service_init(&s->service, &config);
-    field_watch_drives(&s->field, takt_controller_get_drives(&s->service.controller));
+    drive_network_watch_drives(&s->network, takt_controller_get_drives(&s->service.controller));
     message_controller_warning(&s->service.controller);
     if (s->store.program != NULL)
         takt_service_set_program(&s->service, (uint32_t)s->store.size,
@@ -84,23 +84,23 @@ static void open_service(struct serving *s)
     s->has_service = true;
 }
 
-static enum command_status open_field(struct serving *s)
+static enum command_status open_network(struct serving *s)
 {
     const struct options *options = s->session.options;
-    const struct field_options field = {.bus = options->bus,
-                                        .drives = options->drives,
-                                        .drive_image = options->drive_image,
-                                        .is_paced = true,
-                                        .returns = true};
-    enum command_status status = field_check_options(&field)
-                                     ? field_open(&s->field, &s->session.setup, &field)
+    const struct drive_network_options network = {.bus = options->bus,
+                                                  .drives = options->drives,
+                                                  .drive_image = options->drive_image,
+                                                  .is_paced = true,
+                                                  .returns = true};
+    enum command_status status = drive_network_check_options(&network)
+                                     ? drive_network_open(&s->network, &s->session.setup, &network)
                                      : STATUS_INPUT;
 
     s->has_field = status == STATUS_DONE;
     if (status == STATUS_DONE && !bus_log_open(&s->bus_log, options->bus_log))
         status = STATUS_ENVIRONMENT;
     if (status == STATUS_DONE)
-        bus_log_observe_field(&s->bus_log, &s->field);
+        bus_log_observe_network(&s->bus_log, &s->network);
     return status;
 }
 
@@ -148,7 +148,7 @@ enum command_status serving_open(struct serving *s, const struct options *option
     if (status == STATUS_DONE)
         status = open_store(s);
     if (status == STATUS_DONE)
-        status = open_field(s);
+        status = open_network(s);
     if (status == STATUS_DONE)
         status = open_spindle(s);
     if (status != STATUS_DONE)
@@ -175,7 +175,7 @@ void serving_close(struct serving *s)
     serving_spindle_close(&s->spindle);
     (void)bus_log_close(&s->bus_log);
     if (s->has_field)
-        field_close(&s->field);
+        drive_network_close(&s->network);
     program_store_close(&s->store);
     session_close(&s->session);
 }
@@ -193,11 +193,11 @@ static void update_health(struct serving *s)
 {
     const struct cycle_cost *cost = &s->cost;
     const struct service_health health = {
-        .bus_load_percent = field_get_highest_load_percent(&s->field),
+        .bus_load_percent = drive_network_get_highest_load_percent(&s->network),
         .cycle_min_ns = (uint32_t)cost->min_ns,
         .cycle_mean_ns = (uint32_t)(cost->sum_ns / cost->count),
         .cycle_max_ns = (uint32_t)cost->max_ns,
-        .overruns = (uint32_t)s->field.pace.overruns,
+        .overruns = (uint32_t)s->network.pace.overruns,
     };
 
     takt_service_set_health(&s->service, &health);
@@ -262,7 +262,7 @@ static void look_for_end(struct serving *s)
 static bool has_ended(struct serving *s)
 {
     if (s->ending.way == ENDING_NOT ||
-        !(field_is_lost(&s->field) || ending_is_over(&s->ending, &s->service.controller)))
+        !(drive_network_is_lost(&s->network) || ending_is_over(&s->ending, &s->service.controller)))
         return false;
     return serving_spindle_stop(&s->spindle);
 }
@@ -287,9 +287,9 @@ enum command_status serving_run(struct serving *s)
         serve_cycle(s);
         bus_log_keep(&s->bus_log);
         serving_state_keep(&s->state, &s->service, link_clock_ns());
-        (void)field_end_cycle(&s->field);
-        if (field_is_lost(&s->field))
-            takt_service_lose_bus(&s->service, field_get_lost_bus(&s->field));
+        (void)drive_network_end_cycle(&s->network);
+        if (drive_network_is_lost(&s->network))
+            takt_service_lose_bus(&s->service, drive_network_get_lost_bus(&s->network));
         look_for_end(s);
     }
     return how_it_ended(s);

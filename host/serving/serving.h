@@ -23,8 +23,8 @@
 #include "session/session.h"
 #include "simulation/bus_log.h"
 #include "simulation/cycle_cost.h"
+#include "simulation/drive_network.h"
 #include "simulation/ending.h"
-#include "simulation/field.h"
 
 #include <stdbool.h>
 #include <stdint.h>
@@ -33,7 +33,7 @@
 struct serving {
     struct session session;
     struct serving_options options;
-    struct field field;
+    struct drive_network network;
     struct service service;
     struct controller_reader reader; /* of the service */
     struct shape shape;              /* likewise, if the machine has a shaper */

@@ -129,7 +129,7 @@ static void begin_check(struct serving *s)
     takt_controller_program_config(&controller, &config);
     config.waits = false;
     takt_program_open(&c->program, &config, &source);
-    takt_offset_open(&c->offset, &config);
+    takt_cutter_compensation_open(&c->offset, &config);
 }
 
 /* TAKT_OK: the line is right, or it ends the program, and the next one begins another. */
@@ -142,7 +142,7 @@ static enum takt_error read_moves(struct serving *s)
     struct move move;
 
     do {
-        result = takt_offset_next(&c->offset, &c->program, &move, &diagnostic);
+        result = takt_cutter_compensation_next(&c->offset, &c->program, &move, &diagnostic);
         if (result == PROGRAM_ERROR)
             error = diagnostic.code;
     } while (result == PROGRAM_MOVE || result == PROGRAM_ERROR);

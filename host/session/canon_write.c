@@ -14,9 +14,9 @@ enum command_status canon_write(FILE *stream, const struct session *session)
 
     session_begin_reading(session, &reading, &config, &source);
     takt_program_open(&reading.program, &config, &source);
-    takt_offset_open(&reading.offset, &config);
+    takt_cutter_compensation_open(&reading.offset, &config);
     at = config.start;
-    while (takt_offset_next(&reading.offset, &reading.program, &move, &diagnostic) ==
+    while (takt_cutter_compensation_next(&reading.offset, &reading.program, &move, &diagnostic) ==
                PROGRAM_MOVE &&
            !interrupt_asked()) {
         char text[CANON_TEXT_MAX];

@@ -219,7 +219,7 @@ static void put_centre(const struct convert *c, const struct move *m, const enum
 }
 
 /* G2, G3 and, with the base circle's radius, G2.2, G3.2. Inches allow an end that is further off its circle. */
-static const char *bent(struct convert *c, const struct move *m)
+static const char *curved(struct convert *c, const struct move *m)
 {
     const bool clockwise = m->kind == MOVE_ARC_CW || m->kind == MOVE_INVOLUTE_CW;
     enum axis axis[2];
@@ -274,7 +274,7 @@ static const char *motion(struct convert *c, const struct move *m)
         return straight(c, m, m->kind == MOVE_RAPID ? "G0" : "G1");
     if (m->kind == MOVE_THREAD)
         return thread(c, m);
-    return m->kind == MOVE_PROBE ? probe(c, m) : bent(c, m);
+    return m->kind == MOVE_PROBE ? probe(c, m) : curved(c, m);
 }
 
 /* ---- what happens in between ---- */

@@ -18,7 +18,7 @@ struct plan_row {
     unsigned pieces;                          /* of a smoothed curve; 0: the programmed curve */
     double length;                            /* mm or rad */
     double feed_start, feed_cruise, feed_end; /* along the curve, mm/s or rad/s */
-    enum joint_kind end;
+    enum junction_kind end;
     enum governor governor;
     double governed_s; /* time of the longest piece, which it is the governor of */
     double time_s;
@@ -56,7 +56,7 @@ static const char *governor_name(enum governor governor)
     return names[governor];
 }
 
-static const char *end_name(enum joint_kind end)
+static const char *end_name(enum junction_kind end)
 {
     static const char *const names[] = {"passed", "reduced", "stop"};
 

@@ -41,7 +41,7 @@ static void start_planner(struct planner *p, const struct session *s)
 
     session_begin_reading(s, &p->reading, &config, &source);
     takt_program_open(&p->reading.program, &config, &source);
-    takt_offset_open(&p->reading.offset, &config);
+    takt_cutter_compensation_open(&p->reading.offset, &config);
     shaper_plan_limits(&s->setup, &limits);
     reserve_for_correction(s, &config.start, &limits);
     p->look_ahead = s->setup.machine.look_ahead_blocks;
@@ -58,7 +58,8 @@ static void read_move(struct planner *p)
     struct diagnostic diagnostic;
     struct move move;
 
-    switch (takt_offset_next(&p->reading.offset, &p->reading.program, &move, &diagnostic)) {
+    switch (takt_cutter_compensation_next(&p->reading.offset, &p->reading.program, &move,
+                                          &diagnostic)) {
     case PROGRAM_MOVE:
         takt_path_push(&p->path, &move);
         break;
@@ -112,7 +113,7 @@ static double passed_at(const struct planner *p, const struct block *block)
     const double now_s = p->cycle_s * (double)p->motion.cycles;
     const double beyond_mm = path_mm(block->start + block->length, p->motion.setpoint);
 
-    if (block->end == JOINT_STOP)
+    if (block->end == JUNCTION_STOP)
         return p->cycle_s * (double)p->cycles_before;
     if (!(feed_mm_s > 0))
         return now_s;
@@ -135,7 +136,7 @@ static void leave(struct planner *p, uint32_t index, double feed_mm_s,
     const double now_s = passed_at(p, block);
 
     p->planned.block = block;
-    p->planned.feed_end_mm_s = block->end == JOINT_STOP ? 0 : feed_mm_s;
+    p->planned.feed_end_mm_s = block->end == JUNCTION_STOP ? 0 : feed_mm_s;
     p->planned.time_s = maths_max(0, now_s - p->entered_s);
     if (block_is_motion(block))
         p->planned.governor = governor_of(&p->path, index, &p->planned);
@@ -163,7 +164,7 @@ static enum motion_result walk(struct planner *p,
         result = step(p, &record);
         for (uint32_t i = p->motion.passed_first; i != p->path.first; i++) {
             totals->stops +=
-                path_at(&p->path, i)->motion && path_at(&p->path, i)->end == JOINT_STOP;
+                path_at(&p->path, i)->motion && path_at(&p->path, i)->end == JUNCTION_STOP;
             leave(p, i, record.feed_mm_s, take, context);
         }
         p->planned.feed_cruise_mm_s = maths_max(p->planned.feed_cruise_mm_s, record.feed_mm_s);

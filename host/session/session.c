@@ -116,7 +116,7 @@ static void print_warnings(const struct session *s, struct session_reading *read
     struct diagnostic warning;
 
     while (takt_program_warning(&reading->program, &warning) ||
-           takt_offset_warning(&reading->offset, &warning)) {
+           takt_cutter_compensation_warning(&reading->offset, &warning)) {
         if (totals->warnings++ < SESSION_WARNINGS_MAX)
             message_program_warning(&s->program, &warning);
     }
@@ -149,13 +149,14 @@ static bool check_move(const struct session *s, struct session_reading *reading,
     struct diagnostic error;
     struct move move;
     enum program_result result =
-        takt_offset_next(&reading->offset, &reading->program, &move, &error);
+        takt_cutter_compensation_next(&reading->offset, &reading->program, &move, &error);
 
     print_warnings(s, reading, totals);
     if (result == PROGRAM_MOVE)
         count_move(totals, &move, at);
     if (result == PROGRAM_WAIT && reading->program.question == QUESTION_SETUP) {
-        takt_offset_answer(&reading->offset, &reading->program, &(const struct program_answer){0});
+        takt_cutter_compensation_answer(&reading->offset, &reading->program,
+                                        &(const struct program_answer){0});
         return true;
     }
     totals->is_open = totals->is_open || result == PROGRAM_WAIT;
@@ -191,7 +192,7 @@ enum command_status session_check(const struct session *s, unsigned errors_max,
     config.say = say_abort;
     config.listener = &program;
     takt_program_open(&reading.program, &config, &source);
-    takt_offset_open(&reading.offset, &config);
+    takt_cutter_compensation_open(&reading.offset, &config);
     at = config.start;
     *totals = (struct session_totals){0};
     while (check_move(s, &reading, errors_max, totals, &at)) {

@@ -43,7 +43,7 @@ static void start_controller(struct simulation *s, const struct session *session
         .machine = &session->setup.machine,
         .can = can,
         .dcf = session->configurations.dcf,
-        .step = field_get_step_port(&s->field),
+        .step = drive_network_get_step_port(&s->network),
         .tools = &session->tools.table,
         .correction = session->correction,
         .shape = shaper_prepare(&session->setup, &s->shape),
@@ -67,7 +67,7 @@ static void start_controller(struct simulation *s, const struct session *session
 /* The one of this process; with a target, that as well. */
 static enum command_status start_controllers(struct simulation *s, const struct session *session)
 {
-    const struct can_buses can = field_get_port(&s->field);
+    const struct can_buses can = drive_network_get_port(&s->network);
     enum command_status status;
 
     s->has_target = session->options->target != NULL;
@@ -125,10 +125,10 @@ static void free_files(struct simulation *s)
 enum command_status simulation_open(const struct session *session, struct simulation **opened)
 {
     const struct options *options = session->options;
-    struct field_options field = {.bus = options->bus,
-                                  .drives = options->drives,
-                                  .drive_image = options->drive_image,
-                                  .is_paced = options->realtime};
+    struct drive_network_options network = {.bus = options->bus,
+                                            .drives = options->drives,
+                                            .drive_image = options->drive_image,
+                                            .is_paced = options->realtime};
     struct simulation *s = calloc(1, sizeof *s);
     struct virtual_spindle_config spindle;
     enum command_status status;
@@ -143,7 +143,7 @@ enum command_status simulation_open(const struct session *session, struct simula
     spindle = machine_setup_get_spindle(&session->setup);
     virtual_spindle_init(&s->spindle, &spindle);
     if (options->inject != NULL)
-        field.script = &s->script;
+        network.script = &s->script;
     status = load_faults(s, session);
     if (status == STATUS_DONE &&
         !(probe_file_load(&s->probe, options->probe) && stock_file_load(&s->stock, options->stock)))
@@ -153,7 +153,7 @@ enum command_status simulation_open(const struct session *session, struct simula
           override_file_load(&s->rapid_override, options->rapid_override, RAPID_PERCENT_MAX)))
         status = STATUS_INPUT;
     if (status == STATUS_DONE)
-        status = field_open(&s->field, &session->setup, &field);
+        status = drive_network_open(&s->network, &session->setup, &network);
     if (status != STATUS_DONE) {
         free_files(s);
         free(s);
@@ -164,12 +164,12 @@ enum command_status simulation_open(const struct session *session, struct simula
         simulation_close(s);
         return status;
     }
-    field_watch_drives(&s->field, takt_controller_get_drives(&s->controller));
-    probe_contact_wire(&s->contact, &s->probe, &session->setup.machine, &s->field.drives);
+    drive_network_watch_drives(&s->network, takt_controller_get_drives(&s->controller));
+    probe_contact_wire(&s->contact, &s->probe, &session->setup.machine, &s->network.drives);
     tool_point_init(&s->tool_point, &session->setup);
     correction_watch_init(&s->correction, s->tool_point.cycle_s);
     s->program = session->program.name;
-    s->tool_point.is_watched = s->tool_point.is_watched && !s->field.is_outside;
+    s->tool_point.is_watched = s->tool_point.is_watched && !s->network.is_outside;
     *opened = s;
     return STATUS_DONE;
 }
@@ -181,7 +181,7 @@ void simulation_close(struct simulation *s)
     if (s->has_target)
         target_close(&s->target);
     announcer_close(&s->announcer);
-    field_close(&s->field);
+    drive_network_close(&s->network);
     free_files(s);
     free(s);
 }
@@ -217,7 +217,7 @@ bool simulation_add_faults(struct simulation *s, const char *name, const char *b
     }
     for (unsigned i = 0; i < added.count; i++)
         s->script.fault[s->script.count++] = added.fault[i];
-    return field_add_faults(&s->field, &s->script, first);
+    return drive_network_add_faults(&s->network, &s->script, first);
 }
 
 static void measured_cycle(struct simulation *s)
@@ -250,7 +250,7 @@ static void follow_tool_point(struct simulation *s)
 
     if (!t->is_watched)
         return;
-    field_get_axes(&s->field, &s->controller.machine, &at);
+    drive_network_get_axes(&s->network, &s->controller.machine, &at);
     tool_point_follow(t, &at, (double)s->cycles * t->cycle_s,
                       takt_controller_get_record(&s->controller),
                       takt_controller_get_block(&s->controller));
@@ -322,11 +322,11 @@ static void count_responses(struct simulation *s)
 {
     if (!s->has_begun && takt_controller_get_record(&s->controller) != NULL) {
         s->has_begun = true;
-        field_clear_responses(&s->field);
+        drive_network_clear_responses(&s->network);
     }
     if (s->has_begun &&
         drives_get_state(takt_controller_get_drives(&s->controller)) != DRIVES_ENABLED)
-        field_end_responses(&s->field);
+        drive_network_end_responses(&s->network);
 }
 
 bool simulation_step(struct simulation *s)
@@ -339,7 +339,7 @@ bool simulation_step(struct simulation *s)
     s->cycles++;
     if (takt_controller_get_state(&s->controller) == CONTROLLER_STARTING)
         s->begun = s->cycles;
-    if (!field_end_cycle(&s->field))
+    if (!drive_network_end_cycle(&s->network))
         return false;
     follow_tool_point(s);
     watch_correction(s);

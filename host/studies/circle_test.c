@@ -49,7 +49,7 @@ static struct point true_point(const struct machine_setup *setup, const struct s
 
     if (tool != NULL)
         return *tool;
-    field_get_axes(&s->field, &setup->machine, &at);
+    drive_network_get_axes(&s->network, &setup->machine, &at);
     return at;
 }
 

@@ -128,7 +128,7 @@ static void begin_line(struct ramps *r, const struct cycle_record *record,
 /* The cycle ends at rest, or is one: its mean feed is not that of its end. */
 static bool is_rest(const struct cycle_record *record, const struct block *block)
 {
-    return block == NULL || (record->landed && block->end == JOINT_STOP);
+    return block == NULL || (record->landed && block->end == JUNCTION_STOP);
 }
 
 void ramps_add(struct ramps *r, const struct cycle_record *record, const struct block *block)

@@ -68,7 +68,7 @@ static bool set_test(struct circle_job *job, const struct options *options)
     return true;
 }
 
-static void judge(struct circle_job *job)
+static void verifier(struct circle_job *job)
 {
     const struct circle_turn *const turn[] = {&job->test.turn[CIRCLE_CCW],
                                               &job->test.turn[CIRCLE_CW]};
@@ -211,7 +211,7 @@ static enum command_status execute(struct circle_job *job, const struct options 
                      ? circle_test_run(&job->test, options)
                      : STATUS_ENVIRONMENT;
     if (status == STATUS_DONE) {
-        judge(job);
+        verifier(job);
         status = finish(job, options, &picture, &json);
     }
     output_file_discard(&picture);

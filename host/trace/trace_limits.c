@@ -4,7 +4,7 @@
 #include "base/maths.h"
 #include "cli/axis_unit.h"
 #include "cli/message.h"
-#include "judge/judge.h"
+#include "verifier/verifier.h"
 
 #include <stdio.h>
 
@@ -51,10 +51,10 @@ static void find_axes(struct limits_watch *w, const struct machine *machine)
         w->axis[w->axes++] = (struct axis_watch){
             .axis = i,
             .column = column,
-            .watch = {{.limit = axis->max_velocity_mm_s * unit, .ratio = JUDGE_VELOCITY_RATIO},
+            .watch = {{.limit = axis->max_velocity_mm_s * unit, .ratio = VERIFIER_VELOCITY_RATIO},
                       {.limit = axis->max_acceleration_mm_s2 * unit,
-                       .ratio = JUDGE_ACCELERATION_RATIO},
-                      {.limit = axis->max_jerk_mm_s3 * unit, .ratio = JUDGE_JERK_RATIO}},
+                       .ratio = VERIFIER_ACCELERATION_RATIO},
+                      {.limit = axis->max_jerk_mm_s3 * unit, .ratio = VERIFIER_JERK_RATIO}},
         };
     }
 }

@@ -7,7 +7,7 @@
  */
 #define _DEFAULT_SOURCE
 
-#include "offset/offset.h"
+#include "cutter_compensation/cutter_compensation.h"
 #include "program/program.h"
 #include "smooth/smooth.h"
 
@@ -36,7 +36,7 @@ struct yield {
 
 static struct program program;
 static struct parameters parameters;
-static struct offset offset;
+static struct cutter_compensation offset;
 static struct smooth smooth;
 static union smooth_scratch scratch;
 
@@ -102,8 +102,9 @@ static void read_moves(FILE *file)
     }
     takt_parameters_clear(&parameters);
     takt_program_open(&program, &config, &source);
-    takt_offset_open(&offset, &config);
-    while ((result = takt_offset_next(&offset, &program, &move, &error)) == PROGRAM_MOVE) {
+    takt_cutter_compensation_open(&offset, &config);
+    while ((result = takt_cutter_compensation_next(&offset, &program, &move, &error)) ==
+           PROGRAM_MOVE) {
         keep_move(&move);
     }
     if (result == PROGRAM_ERROR) {

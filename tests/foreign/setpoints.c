@@ -3,8 +3,8 @@
  * to be built for another processor in seconds. Reads the program from the file it is given.
  */
 #include "base/fnv.h"
+#include "cutter_compensation/cutter_compensation.h"
 #include "motion/motion.h"
-#include "offset/offset.h"
 #include "plan/path.h"
 
 #include <inttypes.h>
@@ -16,11 +16,12 @@
 #define CYCLES_MAX 1000000
 
 static const struct plan_limits limits = {
-    7, {100, 60, 20}, {1000, 400, 2000}, {50000, 8000, 200000}, 1e-3, 1e-3, LAW_JERK, LANDING_SPAN};
+    7,    {100, 60, 20}, {1000, 400, 2000}, {50000, 8000, 200000},
+    1e-3, 1e-3,          RAMP_PROFILE_JERK, LANDING_SPAN};
 
 struct bench {
     struct program program;
-    struct offset offset;
+    struct cutter_compensation offset;
     struct parameters parameters;
     struct source_text text;
     struct path path;
@@ -52,7 +53,7 @@ static void begin(struct bench *b)
     }
     takt_source_open_text(&source, &b->text, b->bytes, b->text.length);
     takt_program_open(&b->program, &config, &source);
-    takt_offset_open(&b->offset, &config);
+    takt_cutter_compensation_open(&b->offset, &config);
     takt_path_init(&b->path, &limits, &config.start);
     takt_motion_init(&b->motion, &b->path, &config.start, false);
 }
@@ -62,7 +63,8 @@ static void read_move(struct bench *b)
     struct diagnostic diagnostic;
     struct move move;
 
-    if (takt_offset_next(&b->offset, &b->program, &move, &diagnostic) == PROGRAM_MOVE) {
+    if (takt_cutter_compensation_next(&b->offset, &b->program, &move, &diagnostic) ==
+        PROGRAM_MOVE) {
         takt_path_push(&b->path, &move);
         return;
     }

@@ -7,8 +7,8 @@
  * are read, so that one corpus serves for all.
  */
 #include "base/maths.h"
+#include "cutter_compensation/cutter_compensation.h"
 #include "motion/motion.h"
-#include "offset/offset.h"
 #include "program/program.h"
 
 #include <stdio.h>
@@ -43,7 +43,7 @@ struct fuzz_source {
 };
 
 static struct program program;
-static struct offset offset;
+static struct cutter_compensation offset;
 static struct parameters parameters;
 /* A program may be slow: what its plan is run for at most. */
 #define ROOM_TRIES    20
@@ -183,7 +183,8 @@ static void check_warnings(void)
 {
     struct diagnostic warning;
 
-    while (takt_program_warning(&program, &warning) || takt_offset_warning(&offset, &warning)) {
+    while (takt_program_warning(&program, &warning) ||
+           takt_cutter_compensation_warning(&offset, &warning)) {
         check_diagnostic(&warning);
     }
 }
@@ -202,7 +203,7 @@ static void answer(const struct move *asked, const struct point *from)
         a.contact_at.at[axis] = 0.5 * (from->at[axis] + asked->end.at[axis]);
         a.rest_at.at[axis] = 0.4 * from->at[axis] + 0.6 * asked->end.at[axis];
     }
-    takt_offset_answer(&offset, &program, &a);
+    takt_cutter_compensation_answer(&offset, &program, &a);
 }
 
 /* Where a motion leads, and what was asked of the world last. */
@@ -234,7 +235,8 @@ static void read_program(struct point at)
     unsigned errors = 0;
 
     while (moves < MOVES_MAX && errors < ERRORS_MAX &&
-           (result = takt_offset_next(&offset, &program, &move, &error)) != PROGRAM_END) {
+           (result = takt_cutter_compensation_next(&offset, &program, &move, &error)) !=
+               PROGRAM_END) {
         if (result == PROGRAM_ERROR) {
             check_diagnostic(&error);
             errors++;
@@ -326,7 +328,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     takt_parameters_clear(&parameters);
     takt_source_open_text(&text.source, &text.text, (const char *)data, size);
     takt_program_open(&program, &config, &source);
-    takt_offset_open(&offset, &config);
+    takt_cutter_compensation_open(&offset, &config);
     open_path(&config);
     read_program(config.start);
     return 0;

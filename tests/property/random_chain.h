@@ -1,5 +1,5 @@
 /*
- * Random chains of moves from a fixed seed, and setpoints judged by their differences: for tests of planner and motion
+ * Random chains of moves from a fixed seed, and setpoints verified by their differences: for tests of planner and motion
  * together. The families are chosen for what breaks planners: corners of any angle, nearly collinear blocks, blocks
  * shorter than a cycle, zigzags, arcs into arcs, helices, arcs whose two radii differ.
  */
@@ -126,13 +126,13 @@ static inline struct move chain_next(struct chain *c, enum chain_family family, 
 }
 
 /* The largest ratios to the limits so far, of setpoints handed over one by one. */
-struct chain_judge {
+struct chain_verifier {
     double history[AXIS_COUNT][4]; /* newest first */
     double velocity, acceleration, jerk;
 };
 
-static inline void chain_judge_axis(struct chain_judge *seen, const struct plan_limits *limits,
-                                    int axis, double x)
+static inline void chain_verifier_axis(struct chain_verifier *seen,
+                                       const struct plan_limits *limits, int axis, double x)
 {
     const double t = limits->cycle_s;
     double *h = seen->history[axis];
@@ -148,12 +148,13 @@ static inline void chain_judge_axis(struct chain_judge *seen, const struct plan_
     seen->jerk = maths_max(seen->jerk, j / limits->jerk_mm_s3[axis]);
 }
 
-static inline void chain_judge_setpoint(struct chain_judge *seen, const struct plan_limits *limits,
-                                        const struct point *cmd)
+static inline void chain_verifier_setpoint(struct chain_verifier *seen,
+                                           const struct plan_limits *limits,
+                                           const struct point *cmd)
 {
     for (int axis = 0; axis < AXIS_COUNT; axis++) {
         if (axis < CHAIN_AXES || (limits->axes & 1U << axis) != 0) {
-            chain_judge_axis(seen, limits, axis, cmd->at[axis]);
+            chain_verifier_axis(seen, limits, axis, cmd->at[axis]);
         }
     }
 }

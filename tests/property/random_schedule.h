@@ -27,7 +27,7 @@ static inline void schedule_random_control(struct chain *c, struct plan_limits *
     l->axes = 7;
     l->cycle_s = cycles_s[(unsigned)chain_between(c, 0, 4)];
     l->chord_error_max_mm = chain_decades(c, -4, -2);
-    l->law = (enum law)chain_between(c, 0, 3);
+    l->profile = (enum ramp_profile)chain_between(c, 0, 3);
 }
 
 static inline void schedule_random_axes(struct chain *c, struct plan_limits *l)

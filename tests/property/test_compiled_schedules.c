@@ -61,7 +61,7 @@ struct run {
     uint64_t start_at;     /* cycle in which the operator goes on after a block */
     unsigned landed;       /* blocks that ended at rest */
     uint32_t last_landed;
-    struct chain_judge judge;
+    struct chain_verifier verifier;
     struct point last;
     double path_mm;
     bool stands_well; /* whatever record said to be landed on stood still */
@@ -220,7 +220,7 @@ static struct motion_operator operator_at(struct run *r)
     return wanted;
 }
 
-static void judge_cycle(struct run *r, const struct cycle_record *record)
+static void verifier_cycle(struct run *r, const struct cycle_record *record)
 {
     const unsigned first = record->block > AROUND ? record->block - AROUND : 0;
     const unsigned last = record->block + AROUND < r->moves ? record->block + AROUND : r->moves;
@@ -234,7 +234,7 @@ static void judge_cycle(struct run *r, const struct cycle_record *record)
     if (least < MATHS_INFINITY) {
         r->path_mm = maths_max(r->path_mm, least);
     }
-    chain_judge_setpoint(&r->judge, &r->limits, &record->cmd);
+    chain_verifier_setpoint(&r->verifier, &r->limits, &record->cmd);
     r->last = record->cmd;
 }
 
@@ -280,7 +280,7 @@ static void begin_replay(struct run *r, bool is_stream)
     r->landed = 0;
     r->last_landed = 0;
     r->stands_well = true;
-    memset(&r->judge, 0, sizeof(r->judge));
+    memset(&r->verifier, 0, sizeof(r->verifier));
     memset(&r->last, 0, sizeof(r->last));
     r->path_mm = 0.0;
 }
@@ -300,7 +300,7 @@ static enum motion_result cycle(struct run *r)
         result = MOTION_CYCLE;
     }
     if (result == MOTION_CYCLE) {
-        judge_cycle(r, &record);
+        verifier_cycle(r, &record);
         look_at_landing(r, &wanted, &record);
     }
     return result;
@@ -340,19 +340,19 @@ static void check_run(const struct run *r, enum motion_result result, unsigned s
                    "seed %u schedule %u family %d moves %u cycle %g s P %g: %llu cycles, %u stops, "
                    "v %.5f a %.5f j %.5f, path %.4f P, alarm %d",
                    seed, schedule, (int)r->family, r->moves, r->limits.cycle_s, r->tolerance_mm,
-                   (unsigned long long)motion.cycles, r->landed, r->judge.velocity,
-                   r->judge.acceleration, r->judge.jerk, r->path_mm / r->tolerance_mm,
+                   (unsigned long long)motion.cycles, r->landed, r->verifier.velocity,
+                   r->verifier.acceleration, r->verifier.jerk, r->path_mm / r->tolerance_mm,
                    (int)replay.alarm.code);
     TEST_ASSERT_EQUAL_INT_MESSAGE(MOTION_DONE, result, message);
-    TEST_ASSERT_TRUE_MESSAGE(r->judge.velocity <= 1.0001, message);
-    TEST_ASSERT_TRUE_MESSAGE(r->judge.acceleration <= 1.0001, message);
-    TEST_ASSERT_TRUE_MESSAGE(r->judge.jerk <= 1.001, message);
+    TEST_ASSERT_TRUE_MESSAGE(r->verifier.velocity <= 1.0001, message);
+    TEST_ASSERT_TRUE_MESSAGE(r->verifier.acceleration <= 1.0001, message);
+    TEST_ASSERT_TRUE_MESSAGE(r->verifier.jerk <= 1.001, message);
     TEST_ASSERT_TRUE_MESSAGE(r->path_mm <= r->tolerance_mm, message);
     TEST_ASSERT_TRUE_MESSAGE(r->stands_well, message);
     TEST_ASSERT_TRUE_MESSAGE(chain_distance(&r->last, &r->end) == 0.0, message);
 }
 
-/* What the compiler finds no motion for, or its judge refuses, it says so: that is no matter of the replay. */
+/* What the compiler finds no motion for, or its verifier refuses, it says so: that is no matter of the replay. */
 static void test_limits_and_path_are_kept_under_any_schedule(void)
 {
     unsigned compiled = 0;

@@ -61,7 +61,7 @@ struct run {
     double feed_part;  /* the highest feed that was gone along with, as a part of that */
     double longest;    /* in parts of that */
     unsigned held;
-    struct chain_judge judge;
+    struct chain_verifier verifier;
 };
 
 static struct run run;
@@ -89,7 +89,7 @@ static void random_machine(struct run *r)
     l->cycle_s = t;
     l->chord_error_max_mm = 0.01;
     l->landing = LANDING_SPAN;
-    l->law = (enum law)chain_between(&r->chain, 0, 3);
+    l->profile = (enum ramp_profile)chain_between(&r->chain, 0, 3);
     for (int i = 0; i < CHAIN_AXES; i++) {
         const double part = chain_decades(&r->chain, -0.5, 0.0);
 
@@ -197,7 +197,7 @@ static void follow(struct run *r)
 }
 
 /* No chord is longer than the curve between its ends. */
-static void judge_feed(struct run *r, const struct point *cmd)
+static void verifier_feed(struct run *r, const struct point *cmd)
 {
     double square = 0.0;
 
@@ -226,8 +226,8 @@ static enum motion_result run_program(struct run *r)
         now.hold = r->holds;
         result = takt_motion_cycle(&motion, &now, &record);
         if (result == MOTION_CYCLE) {
-            chain_judge_setpoint(&r->judge, &r->limits, &record.cmd);
-            judge_feed(r, &record.cmd);
+            chain_verifier_setpoint(&r->verifier, &r->limits, &record.cmd);
+            verifier_feed(r, &record.cmd);
         }
     } while ((result == MOTION_CYCLE || result == MOTION_NOT_YET) && motion.cycles < r->cycles_max);
     return result;
@@ -243,12 +243,12 @@ static void test_axes_come_to_rest_within_what_their_limits_tell_and_break_none(
         set_up_run(&run, seed);
         const enum motion_result result = run_program(&run);
 
-        if (result != MOTION_DONE || run.judge.velocity > 1.0001 ||
-            run.judge.acceleration > 1.0001 || run.judge.jerk > 1.001) {
+        if (result != MOTION_DONE || run.verifier.velocity > 1.0001 ||
+            run.verifier.acceleration > 1.0001 || run.verifier.jerk > 1.001) {
             failed++;
             printf("seed %u: %s in %llu cycles, %u holds, v %.5f a %.5f j %.5f\n", seed,
                    result == MOTION_DONE ? "done" : "not done", (unsigned long long)motion.cycles,
-                   run.held, run.judge.velocity, run.judge.acceleration, run.judge.jerk);
+                   run.held, run.verifier.velocity, run.verifier.acceleration, run.verifier.jerk);
         }
         if (run.longest > longest) {
             longest = run.longest;
@@ -273,10 +273,11 @@ static void test_no_programmed_feed_is_exceeded(void)
     for (unsigned seed = first_seed; seed < first_seed + programs; seed++) {
         set_up_slow_run(&run, seed);
         (void)run_program(&run);
-        if (run.feed_part > 1.001 || run.judge.acceleration > 1.0001 || run.judge.jerk > 1.001) {
+        if (run.feed_part > 1.001 || run.verifier.acceleration > 1.0001 ||
+            run.verifier.jerk > 1.001) {
             failed++;
             printf("seed %u: %u holds, %.5f of the feed, a %.5f j %.5f\n", seed, run.held,
-                   run.feed_part, run.judge.acceleration, run.judge.jerk);
+                   run.feed_part, run.verifier.acceleration, run.verifier.jerk);
         }
     }
     TEST_ASSERT_EQUAL_UINT(0, failed);

@@ -24,7 +24,7 @@ static const struct plan_limits machines[] = {
      {50000, 50000, 50000},
      CYCLE_S,
      1e-3,
-     LAW_JERK,
+     RAMP_PROFILE_JERK,
      LANDING_SPAN},
     {7,
      {100, 60, 20},
@@ -32,23 +32,30 @@ static const struct plan_limits machines[] = {
      {50000, 8000, 200000},
      CYCLE_S,
      1e-3,
-     LAW_JERK,
+     RAMP_PROFILE_JERK,
      LANDING_SPAN},
-    {7, {500, 500, 500}, {200, 5000, 5000}, {1e6, 1e6, 1e5}, CYCLE_S, 1e-2, LAW_JERK, LANDING_SPAN},
+    {7,
+     {500, 500, 500},
+     {200, 5000, 5000},
+     {1e6, 1e6, 1e5},
+     CYCLE_S,
+     1e-2,
+     RAMP_PROFILE_JERK,
+     LANDING_SPAN},
     {7,
      {500, 500, 500},
      {20000, 20000, 20000},
      {2e6, 2e6, 2e6},
      CYCLE_S,
      1e-4,
-     LAW_JERK,
+     RAMP_PROFILE_JERK,
      LANDING_SPAN},
 };
 
 static unsigned seeds = SEEDS;
 static struct path path;
 static struct motion motion;
-static struct chain_judge seen;
+static struct chain_verifier seen;
 
 /* What a run is about. */
 struct task {
@@ -170,7 +177,7 @@ static void run(const struct task *t, const struct plan_limits *limits, uint32_t
         if (result != MOTION_CYCLE) {
             break;
         }
-        chain_judge_setpoint(&seen, limits, &record.cmd);
+        chain_verifier_setpoint(&seen, limits, &record.cmd);
         if (each != NULL) {
             each(t, &record);
         }

@@ -35,7 +35,7 @@ static struct parameters parameters;
 static struct program program;
 static uint64_t state;
 static char text[TEXT_MAX];
-static char place[80]; /* what is judged, for messages */
+static char place[80]; /* what is verified, for messages */
 static size_t length;
 
 /* ---- a machine with a curved field of errors ---- */
@@ -354,7 +354,7 @@ static bool is_good(void)
     return read_motions(text, length, &wanted);
 }
 
-/* ---- judging ---- */
+/* ---- verifying ---- */
 
 static void corrected(const struct move *move, const struct point *at, struct point *to)
 {
@@ -405,7 +405,8 @@ static double nearest(const struct curve *c, const struct move *move, double ste
 #define SAMPLES 7
 
 /* One piece of the written program along the corrected path of a motion, from *s on. */
-static double judge_piece(const struct curve *c, const struct move *move, unsigned piece, double *s)
+static double verifier_piece(const struct curve *c, const struct move *move, unsigned piece,
+                             double *s)
 {
     struct curve w;
     double worst = 0;
@@ -441,7 +442,7 @@ static bool is_thread(const struct move *move)
 }
 
 /* A thread stays one motion, and has as many turns as programmed. */
-static unsigned judge_thread(unsigned motion, unsigned piece, const struct curve *c)
+static unsigned verifier_thread(unsigned motion, unsigned piece, const struct curve *c)
 {
     const struct move *move = &wanted.move[motion];
     const struct move *as_written = &written.move[piece];
@@ -457,7 +458,7 @@ static unsigned judge_thread(unsigned motion, unsigned piece, const struct curve
 }
 
 /* The pieces of one motion; returns the number of the one behind them. */
-static unsigned judge_motion(unsigned motion, unsigned piece, double *worst)
+static unsigned verifier_motion(unsigned motion, unsigned piece, double *worst)
 {
     const struct move *move = &wanted.move[motion];
     struct point end;
@@ -466,7 +467,7 @@ static unsigned judge_motion(unsigned motion, unsigned piece, double *worst)
     const bool has_curve = takt_move_curve(move, &wanted.start[motion], &c);
 
     if (has_curve && is_thread(move))
-        return judge_thread(motion, piece, &c);
+        return verifier_thread(motion, piece, &c);
     corrected(move, &move->end, &end);
     for (;; piece++) {
         TEST_ASSERT_TRUE_MESSAGE(piece < written.count, place);
@@ -475,7 +476,7 @@ static unsigned judge_motion(unsigned motion, unsigned piece, double *worst)
                                           place);
         TEST_ASSERT_EQUAL_UINT_MESSAGE(move->overrides, written.move[piece].overrides, place);
         if (has_curve && move->kind != MOVE_RAPID)
-            *worst = maths_max(*worst, judge_piece(&c, move, piece, &s));
+            *worst = maths_max(*worst, verifier_piece(&c, move, piece, &s));
         if (ends_at(&written.move[piece], &end) &&
             (!has_curve || move->kind == MOVE_RAPID || s > c.length_mm - 0.02))
             return piece + 1;
@@ -496,7 +497,7 @@ static void correct(char **out, size_t *size, struct offline_totals *totals)
     TEST_ASSERT_EQUAL_INT(0, fclose(config.out));
 }
 
-static double judge_program(void)
+static double verifier_program(void)
 {
     struct offline_totals totals;
     double worst = 0;
@@ -513,7 +514,7 @@ static double judge_program(void)
         TEST_FAIL();
     }
     for (unsigned i = 0; i < wanted.count; i++)
-        piece = judge_motion(i, piece, &worst);
+        piece = verifier_motion(i, piece, &worst);
     TEST_ASSERT_EQUAL_UINT_MESSAGE(written.count, piece, place);
     TEST_ASSERT_EQUAL_UINT_MESSAGE(wanted.spindle, written.spindle, place);
     TEST_ASSERT_TRUE_MESSAGE(worst <= TOLERANCE_MM + ROUNDING_MM, place);
@@ -526,7 +527,7 @@ static unsigned programs = PROGRAMS, first_seed;
 static void test_what_is_written_follows_the_corrected_path(void)
 {
     const struct point start = {{0}};
-    unsigned judged = 0, motions = 0, pieces = 0;
+    unsigned verified = 0, motions = 0, pieces = 0;
     double worst = 0;
 
     takt_correction_init(&correction, &session.setup.machine.correction, 7, 0.001, &tables, &start);
@@ -535,15 +536,15 @@ static void test_what_is_written_follows_the_corrected_path(void)
         if (!is_good())
             continue;
         (void)snprintf(place, sizeof place, "seed %u", seed);
-        worst = maths_max(worst, judge_program());
-        judged++;
+        worst = maths_max(worst, verifier_program());
+        verified++;
         motions += wanted.count;
         pieces += written.count;
     }
-    printf("%u programs, %u motions in %u pieces, at most %.6f mm off the corrected path\n", judged,
-           motions, pieces, worst);
+    printf("%u programs, %u motions in %u pieces, at most %.6f mm off the corrected path\n",
+           verified, motions, pieces, worst);
     TEST_ASSERT_TRUE_MESSAGE(100 * lines < pieces, "arcs and involutes stay what they are");
-    TEST_ASSERT_GREATER_THAN(programs / 2, judged);
+    TEST_ASSERT_GREATER_THAN(programs / 2, verified);
 }
 
 int main(int argc, char **argv)

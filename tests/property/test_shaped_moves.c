@@ -28,7 +28,7 @@ static struct path path;
 static struct motion motion;
 static struct shape shape;
 static struct vibration swings;
-static struct chain_judge seen;
+static struct chain_verifier seen;
 
 /* Lengths in mm, times in s. */
 struct task {
@@ -78,7 +78,7 @@ static struct task random_task(uint64_t task_seed)
     const double a = chain_decades(&c, 2.0, 4.0);
 
     t.limits.cycle_s = t.shape.cycle_s = cycle_s;
-    t.limits.law = chain_between(&c, 0, 1) < 0.7 ? LAW_JERK : LAW_SMOOTH;
+    t.limits.profile = chain_between(&c, 0, 1) < 0.7 ? RAMP_PROFILE_JERK : RAMP_PROFILE_SMOOTH;
     for (unsigned i = 0; i < CHAIN_AXES; i++) {
         t.limits.acceleration_mm_s2[i] = a * chain_decades(&c, -0.3, 0.3);
         t.limits.jerk_mm_s3[i] = a / ramp_s * chain_decades(&c, -0.3, 0.3);
@@ -131,11 +131,11 @@ static void check_rest(const struct task *t, uint64_t seed)
     }
 }
 
-/* What is sent instead of the setpoint, judged and followed by the modes; also when the program is done. */
+/* What is sent instead of the setpoint, verified and followed by the modes; also when the program is done. */
 static void send(const struct task *t, struct point at)
 {
     takt_shape_cycle(&shape, &at);
-    chain_judge_setpoint(&seen, &t->limits, &at);
+    chain_verifier_setpoint(&seen, &t->limits, &at);
     vibration_follow(&swings, &at);
 }
 

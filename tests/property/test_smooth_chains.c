@@ -56,7 +56,7 @@ struct run {
     uint64_t single_cycles; /* single block is switched every so many; 0: never */
     bool rests;
     unsigned singles; /* times the axes have come to rest under single block alone */
-    struct chain_judge judge;
+    struct chain_verifier verifier;
     struct point last;
     double path_mm;
     uint64_t path_cycle;
@@ -112,7 +112,7 @@ static void turn(struct run *r, const struct point *from, struct move *m)
     r->chain.at = m->end;
 }
 
-/* The next move, kept to judge by. */
+/* The next move, kept to verify by. */
 static struct move next_move(struct run *r)
 {
     struct programmed *kept = &r->move[r->pushed];
@@ -174,14 +174,14 @@ static double reach_of(const struct curve *c)
 }
 
 /* Lowers *least to the distance of p from the curve. */
-static void judge_curve(const struct curve *c, const struct point *p, double *least)
+static void verifier_curve(const struct curve *c, const struct point *p, double *least)
 {
     if (chain_distance(p, &c->start) - reach_of(c) < *least) {
         *least = maths_min(*least, chain_distance_from(c, p));
     }
 }
 
-static void judge_corner(struct programmed *m, const struct point *from, const struct point *to)
+static void verifier_corner(struct programmed *m, const struct point *from, const struct point *to)
 {
     if (chain_distance(to, &m->curve.end) - chain_distance(from, to) < m->corner_mm) {
         m->corner_mm = maths_min(m->corner_mm, chain_corner_distance(&m->curve.end, from, to));
@@ -189,7 +189,7 @@ static void judge_corner(struct programmed *m, const struct point *from, const s
 }
 
 /* Its own motion first: what is farther away is not looked at. */
-static void judge_place(struct run *r, const struct cycle_record *record)
+static void verifier_place(struct run *r, const struct cycle_record *record)
 {
     const unsigned first = record->block > AROUND ? record->block - AROUND : 0;
     const unsigned last = record->block + AROUND < r->pushed ? record->block + AROUND : r->pushed;
@@ -197,16 +197,16 @@ static void judge_place(struct run *r, const struct cycle_record *record)
     double least = MATHS_INFINITY;
 
     if (own < last && r->move[own].has_length) {
-        judge_curve(&r->move[own].curve, &record->cmd, &least);
+        verifier_curve(&r->move[own].curve, &record->cmd, &least);
     }
     for (unsigned i = first; i < last; i++) {
         struct programmed *m = &r->move[i];
 
         if (m->has_length && i != own) {
-            judge_curve(&m->curve, &record->cmd, &least);
+            verifier_curve(&m->curve, &record->cmd, &least);
         }
         if (m->has_length) {
-            judge_corner(m, &r->last, &record->cmd);
+            verifier_corner(m, &r->last, &record->cmd);
         }
     }
     if (least < MATHS_INFINITY && least > r->path_mm) {
@@ -216,7 +216,7 @@ static void judge_place(struct run *r, const struct cycle_record *record)
     r->last = record->cmd;
 }
 
-static void judge_landing(struct run *r, const struct cycle_record *record)
+static void verifier_landing(struct run *r, const struct cycle_record *record)
 {
     if (record->landed && record->block > 0) {
         struct programmed *m = &r->move[record->block - 1];
@@ -262,9 +262,9 @@ static enum motion_result run_program(struct run *r)
             r->single_cycles > 0 && motion.cycles / r->single_cycles % 2 == 1;
         result = takt_motion_cycle(&motion, &r->schedule.now, &record);
         if (result == MOTION_CYCLE) {
-            chain_judge_setpoint(&r->judge, &r->limits, &record.cmd);
-            judge_place(r, &record);
-            judge_landing(r, &record);
+            chain_verifier_setpoint(&r->verifier, &r->limits, &record.cmd);
+            verifier_place(r, &record);
+            verifier_landing(r, &record);
             count_rests(r);
         }
     } while ((result == MOTION_CYCLE || result == MOTION_NOT_YET) && motion.cycles < CYCLES_MAX);
@@ -284,14 +284,14 @@ static void check_run(const struct run *r, enum motion_result result, unsigned s
         message, sizeof(message),
         "seed %u family %d law %d moves %u cycle %g s P %g: %llu cycles, v %.5f a %.5f j %.5f, "
         "path %.4f P at %llu, corner %.4f P",
-        seed, (int)r->family, (int)r->limits.law, r->moves, r->limits.cycle_s, r->tolerance_mm,
-        (unsigned long long)motion.cycles, r->judge.velocity, r->judge.acceleration, r->judge.jerk,
-        r->path_mm / r->tolerance_mm, (unsigned long long)r->path_cycle,
+        seed, (int)r->family, (int)r->limits.profile, r->moves, r->limits.cycle_s, r->tolerance_mm,
+        (unsigned long long)motion.cycles, r->verifier.velocity, r->verifier.acceleration,
+        r->verifier.jerk, r->path_mm / r->tolerance_mm, (unsigned long long)r->path_cycle,
         r->corner_mm / r->tolerance_mm);
     TEST_ASSERT_EQUAL_INT_MESSAGE(MOTION_DONE, result, message);
-    TEST_ASSERT_TRUE_MESSAGE(r->judge.velocity <= 1.0001, message);
-    TEST_ASSERT_TRUE_MESSAGE(r->judge.acceleration <= 1.0001, message);
-    TEST_ASSERT_TRUE_MESSAGE(r->judge.jerk <= 1.001, message);
+    TEST_ASSERT_TRUE_MESSAGE(r->verifier.velocity <= 1.0001, message);
+    TEST_ASSERT_TRUE_MESSAGE(r->verifier.acceleration <= 1.0001, message);
+    TEST_ASSERT_TRUE_MESSAGE(r->verifier.jerk <= 1.001, message);
     TEST_ASSERT_TRUE_MESSAGE(r->path_mm <= r->tolerance_mm, message);
     TEST_ASSERT_TRUE_MESSAGE(r->corner_mm <= r->tolerance_mm, message);
     TEST_ASSERT_TRUE_MESSAGE(chain_distance(&r->last, &r->end) == 0.0, message);

@@ -21,7 +21,7 @@
 static unsigned seeds = SEEDS;
 static struct path path;
 static struct motion motion;
-static struct chain_judge seen;
+static struct chain_verifier seen;
 
 /* What a run is about. */
 struct task {
@@ -168,7 +168,7 @@ static void run(const struct task *t, uint32_t look_ahead, bool overrides)
         }
         result = takt_motion_cycle(&motion, &person, &record);
         if (result == MOTION_CYCLE) {
-            chain_judge_setpoint(&seen, &t->limits, &record.cmd);
+            chain_verifier_setpoint(&seen, &t->limits, &record.cmd);
         }
     } while (result == MOTION_CYCLE);
     TEST_ASSERT_EQUAL(MOTION_DONE, result);
@@ -216,7 +216,7 @@ static void test_smoothed_splines_keep_the_limits(void)
     check_limits(256, false, 0.02);
 }
 
-/* A curve so gentle that no limit binds: in between the ramps, every step is feed times cycle, over every joint. */
+/* A curve so gentle that no limit binds: in between the ramps, every step is feed times cycle, over every junction. */
 static void test_the_feed_is_even_from_piece_to_piece(void)
 {
     struct task t = {.limits = {.axes = 7, .cycle_s = CYCLE_S, .chord_error_max_mm = 1.0},

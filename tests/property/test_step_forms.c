@@ -221,7 +221,7 @@ static double leading_way(double angle_rad)
            (odd ? maths_sqrt(0.5) - takt_maths_sin(0.25 * MATHS_PI - rest) : takt_maths_sin(rest));
 }
 
-/* Ticks beyond what the leading coordinate of the true arc moves; a rounded joint between octants may cost one. */
+/* Ticks beyond what the leading coordinate of the true arc moves; a rounded junction between octants may cost one. */
 static void check_ticks(const struct arc_case *c, int64_t ticks)
 {
     double start = c->start_rad * (c->config.clockwise ? -1.0 : 1.0) + MATHS_TWO_PI;

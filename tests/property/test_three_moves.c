@@ -106,7 +106,7 @@ static void random_machine(struct chain *c, struct plan_limits *l)
     l->axes = 7;
     l->cycle_s = chain_between(c, 0, 1) < 0.5 ? 1e-3 : 2.5e-4;
     l->chord_error_max_mm = 1e-3;
-    l->law = LAW_JERK;
+    l->profile = RAMP_PROFILE_JERK;
     l->landing = LANDING_SPAN;
     for (int i = 0; i < CHAIN_AXES; i++) {
         l->velocity_mm_s[i] = chain_between(c, 50, 200);
@@ -196,7 +196,7 @@ static void random_chain(struct chain *c, const struct plan_limits *limits,
     for (int i = 0; i < OPTIMUM_MOVES; i++) {
         if (i > 0 && chain_between(c, 0, 1) < 0.2) {
             random_direction(c, direction);
-            along[i - 1].joint_feed = 0.0;
+            along[i - 1].junction_feed = 0.0;
         }
         random_line(c, limits, direction, shortest_mm, &move[i], &along[i]);
     }
@@ -212,7 +212,7 @@ static void note(unsigned seed, const struct optimum_move along[OPTIMUM_MOVES], 
         printf("seed %u: %.4f of the least time:", seed, ratio);
         for (int i = 0; i < OPTIMUM_MOVES; i++) {
             printf(" %.4f mm at %.1f mm/s%s", along[i].length, along[i].feed,
-                   along[i].joint_feed > 0.0 ? "," : ", stop,");
+                   along[i].junction_feed > 0.0 ? "," : ", stop,");
         }
         printf(" %.0f mm/s2, %.0f mm/s3\n", along[0].acceleration, along[0].jerk);
     }

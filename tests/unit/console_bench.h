@@ -8,7 +8,7 @@
 #include "console/console.h"
 #include "console/numbers.h"
 #include "panel/panel.h"
-#include "service_judge.h"
+#include "service_verifier.h"
 
 #include <stdlib.h>
 
@@ -121,7 +121,7 @@ static void console_bench_set_up(uint32_t password)
 /* One cycle, and the console after it. */
 static void step(void)
 {
-    judged_cycle();
+    verified_cycle();
     takt_console_step(&console);
 }
 

@@ -8,8 +8,8 @@
 
 /* A/J is 20 cycles. */
 static const struct plan_limits limits = {
-    7,    {100, 100, 100}, {1000, 1000, 1000}, {50000, 50000, 50000}, 1e-3,
-    1e-3, LAW_JERK,        LANDING_SPAN};
+    7,    {100, 100, 100},   {1000, 1000, 1000}, {50000, 50000, 50000}, 1e-3,
+    1e-3, RAMP_PROFILE_JERK, LANDING_SPAN};
 
 static struct path path;
 static double x_mm; /* where it ends */

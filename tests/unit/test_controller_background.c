@@ -101,13 +101,13 @@ static void test_a_background_that_stops_is_waited_for_at_rest_and_counted(void)
     TEST_ASSERT_DOUBLE_WITHIN(1e-9, 55.0, controller.record.set.at[AXIS_X]);
 }
 
-/* The lead point is made to wait at the first stop in every cycle: nothing that the controller knows of explains it. */
+/* The trapezoidal reference is made to wait at the first stop in every cycle: nothing that the controller knows of explains it. */
 static void test_a_path_that_is_not_gone_on_along_is_a_fault_with_its_line(void)
 {
     start("G21 F3000\nG1 X1\nM2\n");
     for (unsigned i = 0;
          i < CYCLES_MAX && takt_controller_get_state(&controller) < CONTROLLER_COMPLETED; i++) {
-        controller.motion.lead.abrupt = true;
+        controller.motion.reference.abrupt = true;
         takt_controller_background(&controller);
         cycle();
     }

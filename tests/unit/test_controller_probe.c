@@ -4,7 +4,7 @@
  */
 #include "controller/controller_probe.h"
 
-#include "offset/offset.h"
+#include "cutter_compensation/cutter_compensation.h"
 
 #include "program_reader.h"
 
@@ -14,7 +14,7 @@
 #define LAG_MM 0.25
 
 static struct reader reader;
-static struct offset offset;
+static struct cutter_compensation offset;
 static struct controller_probe probe;
 static struct inputs inputs;
 static struct drives drives; /* none: there is no touch probe */
@@ -42,7 +42,7 @@ static void open_text(const char *text)
     reader_prepare(&reader);
     reader.config.waits = true;
     reader_text(&reader, text);
-    takt_offset_open(&offset, &reader.config);
+    takt_cutter_compensation_open(&offset, &reader.config);
 }
 
 /* Reads on to the next move that asks for something. */
@@ -50,8 +50,8 @@ static void read_question(void)
 {
     enum program_result result;
 
-    while ((result = takt_offset_next(&offset, &reader.program, &executed, &reader.diagnostic)) ==
-           PROGRAM_MOVE) {
+    while ((result = takt_cutter_compensation_next(&offset, &reader.program, &executed,
+                                                   &reader.diagnostic)) == PROGRAM_MOVE) {
         (void)takt_controller_probe_ask(&probe, &executed, CYCLE_S, false);
         if (probe.state == PROBE_ASKED) {
             break;
@@ -100,7 +100,7 @@ static void answer_program(void)
 
     TEST_ASSERT_TRUE(takt_controller_probe_take(&probe, &answer, &error));
     TEST_ASSERT_FALSE(takt_controller_probe_take(&probe, &answer, &error));
-    takt_offset_answer(&offset, &reader.program, &answer);
+    takt_cutter_compensation_answer(&offset, &reader.program, &answer);
 }
 
 static void probe_and_answer(void)
@@ -115,8 +115,8 @@ static void expect_rapid_to(double x)
 {
     struct move m;
 
-    TEST_ASSERT_EQUAL_INT(PROGRAM_MOVE,
-                          takt_offset_next(&offset, &reader.program, &m, &reader.diagnostic));
+    TEST_ASSERT_EQUAL_INT(PROGRAM_MOVE, takt_cutter_compensation_next(&offset, &reader.program, &m,
+                                                                      &reader.diagnostic));
     TEST_ASSERT_EQUAL_INT(MOVE_RAPID, m.kind);
     TEST_ASSERT_DOUBLE_WITHIN(1e-12, x, m.end.at[AXIS_X]);
 }

@@ -1,5 +1,5 @@
 /*
- * Wear of tools that point anywhere. Judged by the worn tool itself: corrected, it is to touch the floor and the wall that
+ * Wear of tools that point anywhere. Verified by the worn tool itself: corrected, it is to touch the floor and the wall that
  * the unworn one has touched. The head turns by Rodrigues' formula, and the wall's normal is what is left of "to the right"
  * when the way and the tool have been taken out of it (Gram-Schmidt).
  */

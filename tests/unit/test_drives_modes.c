@@ -78,7 +78,7 @@ static void test_a_profile_takes_the_time_of_its_trapezoid(void)
     TEST_ASSERT_EQUAL_INT(20000, lone_actual(&lone));
 }
 
-/* Judged by differences of the command, cycle by cycle. */
+/* Verified by differences of the command, cycle by cycle. */
 static void test_a_profile_keeps_velocity_and_accelerations_and_never_overshoots(void)
 {
     double x = 0, v = 0, v_max = 0, up = 0, down = 0;

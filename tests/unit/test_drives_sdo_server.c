@@ -258,7 +258,7 @@ static void test_an_unknown_command_is_an_abort(void)
 
 /* ---- Blocks ---- */
 
-/* CRC-16 of CiA 301, bit by bit from its definition, to judge the server's. */
+/* CRC-16 of CiA 301, bit by bit from its definition, to verify the server's. */
 static uint16_t crc_of(const uint8_t *bytes, size_t length)
 {
     uint32_t remainder = 0;

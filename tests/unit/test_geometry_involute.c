@@ -137,7 +137,7 @@ static void test_derivatives_are_those_of_the_points(void)
 }
 
 /* G2 and no more: curvature goes on, its derivative steps by 1 / (phi R^2). */
-static void test_the_joint_with_the_circle_keeps_curvature_and_not_its_derivative(void)
+static void test_the_junction_with_the_circle_keeps_curvature_and_not_its_derivative(void)
 {
     const struct curve c = page_curve(ROUGH_BASE, 0.0, ROUGH_PHI, 0.0, 1.0);
     const struct involute_bending bend = takt_involute_bend(&c, c.length_mm);
@@ -432,7 +432,7 @@ int main(void)
     RUN_TEST(test_winding_inward_is_the_same_curve_backwards);
     RUN_TEST(test_the_roughing_spiral_is_as_long_as_the_page_says);
     RUN_TEST(test_derivatives_are_those_of_the_points);
-    RUN_TEST(test_the_joint_with_the_circle_keeps_curvature_and_not_its_derivative);
+    RUN_TEST(test_the_junction_with_the_circle_keeps_curvature_and_not_its_derivative);
     RUN_TEST(test_the_third_derivative_is_larger_than_a_circles_by_the_pages_factor);
     RUN_TEST(test_another_axis_moves_in_proportion_to_the_length);
     RUN_TEST(test_ends_that_no_involute_joins_are_refused);

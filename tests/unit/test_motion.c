@@ -8,8 +8,8 @@
 #include <unity.h>
 
 static const struct plan_limits limits = {
-    7,    {100, 100, 100}, {1000, 1000, 1000}, {50000, 50000, 50000}, 1e-3,
-    1e-3, LAW_JERK,        LANDING_SPAN};
+    7,    {100, 100, 100},   {1000, 1000, 1000}, {50000, 50000, 50000}, 1e-3,
+    1e-3, RAMP_PROFILE_JERK, LANDING_SPAN};
 
 static struct path path;
 static struct motion motion;
@@ -321,7 +321,7 @@ static void test_no_cycle_is_made_before_anything_is_planned(void)
 }
 
 /*
- * Over blocks so short that the lead point's place in a new ceiling takes more than a cycle to find, both are in use until
+ * Over blocks so short that the trapezoidal reference's place in a new ceiling takes more than a cycle to find, both are in use until
  * then, and nobody may make another one.
  */
 static void test_no_ceiling_is_made_while_both_are_in_use(void)
@@ -337,7 +337,7 @@ static void test_no_ceiling_is_made_while_both_are_in_use(void)
     }
     takt_path_finish(&path);
     do {
-        if (motion.lead.coming.ceiling != NULL) {
+        if (motion.reference.coming.ceiling != NULL) {
             TEST_ASSERT_NULL(takt_motion_wanted(&motion));
             taking++;
         }

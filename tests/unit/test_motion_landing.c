@@ -1,4 +1,4 @@
-/* Landing in motion: the lead point's way to a joint on which a setpoint falls exactly. */
+/* Landing in motion: the trapezoidal reference's way to a junction on which a setpoint falls exactly. */
 #include "motion/landing.h"
 
 #include <unity.h>
@@ -11,7 +11,7 @@ void tearDown(void)
 {
 }
 
-/* Mean of the lead point's last window positions, the newest at the end of the run. */
+/* Mean of the trapezoidal reference's last window positions, the newest at the end of the run. */
 static double setpoint_mm(const struct landing_run *run, unsigned window)
 {
     double sum = 0.0;
@@ -34,7 +34,7 @@ static void check(const struct landing_case *l)
     TEST_ASSERT_DOUBLE_WITHIN(1e-12, l->gap_mm, setpoint_mm(&run, (unsigned)l->window));
 }
 
-static void test_the_average_falls_on_the_joint_exactly(void)
+static void test_the_average_falls_on_the_junction_exactly(void)
 {
     for (int i = 0; i < 200; i++) {
         const struct landing_case l = {.gap_mm = 4.0 + 0.0123 * i,
@@ -47,7 +47,7 @@ static void test_the_average_falls_on_the_joint_exactly(void)
     }
 }
 
-static void test_a_joint_that_is_too_near_is_refused(void)
+static void test_a_junction_that_is_too_near_is_refused(void)
 {
     const struct landing_case near = {1.0, 0.1, 0.08, 1e-3, 20};
     const struct landing_case standing = {1.0, 0.0, 0.08, 1e-3, 20};
@@ -75,8 +75,8 @@ static void test_the_run_starts_at_its_feed_and_ends_at_constant_feed(void)
 int main(void)
 {
     UNITY_BEGIN();
-    RUN_TEST(test_the_average_falls_on_the_joint_exactly);
-    RUN_TEST(test_a_joint_that_is_too_near_is_refused);
+    RUN_TEST(test_the_average_falls_on_the_junction_exactly);
+    RUN_TEST(test_a_junction_that_is_too_near_is_refused);
     RUN_TEST(test_the_run_starts_at_its_feed_and_ends_at_constant_feed);
     return UNITY_END();
 }

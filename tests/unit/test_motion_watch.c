@@ -8,8 +8,8 @@
 #define LONG_CYCLES 300000U
 
 static const struct plan_limits limits = {
-    7,    {100, 100, 100}, {1000, 1000, 1000}, {50000, 50000, 50000}, 1e-3,
-    1e-3, LAW_JERK,        LANDING_SPAN};
+    7,    {100, 100, 100},   {1000, 1000, 1000}, {50000, 50000, 50000}, 1e-3,
+    1e-3, RAMP_PROFILE_JERK, LANDING_SPAN};
 
 static struct path path;
 static struct motion motion;
@@ -78,13 +78,13 @@ static uint64_t run_to_alarm(void (*spoil)(void))
 
 static void never_leave_a_stop(void)
 {
-    motion.lead.abrupt = true;
+    motion.reference.abrupt = true;
 }
 
 static void never_speed_up(void)
 {
     if (motion.cycles > 2) {
-        motion.lead.since_minus = 0;
+        motion.reference.since_minus = 0;
     }
 }
 

@@ -9,8 +9,8 @@
 #include <unity.h>
 
 static const struct plan_limits limits = {
-    7,    {100, 100, 100}, {1000, 1000, 1000}, {50000, 50000, 50000}, 1e-3,
-    1e-3, LAW_JERK,        LANDING_SPAN};
+    7,    {100, 100, 100},   {1000, 1000, 1000}, {50000, 50000, 50000}, 1e-3,
+    1e-3, RAMP_PROFILE_JERK, LANDING_SPAN};
 
 static struct path path;
 static struct ceiling ceiling;
@@ -66,7 +66,7 @@ static double random_part(uint32_t *state)
     return (double)(*state >> 8) / 16777216.0;
 }
 
-/* Lines to and fro in a fan of 6 degrees, 1e-3 to 1 mm long, each at a feed of its own: pieces, joints and stops of all sorts. */
+/* Lines to and fro in a fan of 6 degrees, 1e-3 to 1 mm long, each at a feed of its own: pieces, junctions and stops of all sorts. */
 static void push_crooked_way(uint32_t seed, int blocks)
 {
     struct move m;
@@ -115,7 +115,7 @@ static void test_what_a_ceiling_asks_for_does_not_depend_on_the_block_it_is_coun
         request.first = 0;
         build();
         request.first = 10;
-        request.lead = path_at(&path, 10)->start;
+        request.reference = path_at(&path, 10)->start;
         takt_ceiling_build(&later, &path, &request);
         TEST_ASSERT_TRUE(later.origin > ceiling.origin);
         TEST_ASSERT_TRUE(equal_from_mm(&later, &ceiling) < 2.5);
@@ -147,11 +147,11 @@ static void test_feed_squared_falls_linearly_towards_a_stop(void)
     TEST_ASSERT_TRUE(ceiling.piece[1].end_feed_mm_s == 0.0F);
     const double length = ceiling.end_mm[1] - ceiling.end_mm[0];
     const double a = (double)ceiling.piece[1].acceleration;
-    const double energy = maths_min(0.099 * 0.099, 2.0 * a * length);
+    const double feed_squared = maths_min(0.099 * 0.099, 2.0 * a * length);
     const double feed = ceiling_feed(&ceiling, ceiling.piece[0].end_feed_mm_s);
 
-    TEST_ASSERT_TRUE(feed * feed <= energy);
-    TEST_ASSERT_DOUBLE_WITHIN(1e-6 * energy, energy, feed * feed);
+    TEST_ASSERT_TRUE(feed * feed <= feed_squared);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-6 * feed_squared, feed_squared, feed * feed);
 }
 
 /* Where a lower acceleration counts from is the same under every override: by the highest feed, 1.2 times the programmed. */
@@ -217,7 +217,7 @@ static void test_a_short_span_has_a_short_window(void)
     TEST_ASSERT_EQUAL(20, takt_ceiling_cycles(&ceiling, 1));
 }
 
-/* However it is rounded, or the lead point would brake where nothing asks for it. */
+/* However it is rounded, or the trapezoidal reference would brake where nothing asks for it. */
 static void test_a_piece_of_constant_feed_ends_with_exactly_that_feed(void)
 {
     push(MOVE_FEED, 20.0, 100.0 / 3.0);

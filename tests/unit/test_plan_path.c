@@ -1,4 +1,4 @@
-/* The ring of blocks: room, positions, joints, waits, restart. */
+/* The ring of blocks: room, positions, junctions, waits, restart. */
 #include "plan/path.h"
 
 #include "plan/path_unit.h"
@@ -7,8 +7,8 @@
 #include <unity.h>
 
 static const struct plan_limits limits = {
-    7,    {100, 100, 100}, {1000, 1000, 1000}, {50000, 50000, 50000}, 1e-3,
-    1e-3, LAW_JERK,        LANDING_SPAN};
+    7,    {100, 100, 100},   {1000, 1000, 1000}, {50000, 50000, 50000}, 1e-3,
+    1e-3, RAMP_PROFILE_JERK, LANDING_SPAN};
 
 static struct path path;
 
@@ -56,15 +56,15 @@ static void test_a_block_is_closed_when_its_end_is_known(void)
     TEST_ASSERT_EQUAL(2, path.closed);
 }
 
-static void test_a_straight_joint_is_passed_and_a_corner_is_a_stop(void)
+static void test_a_straight_junction_is_passed_and_a_corner_is_a_stop(void)
 {
     push(MOVE_FEED, 10.0, 0.0);
     push(MOVE_FEED, 20.0, 0.0);
     push(MOVE_FEED, 20.0, 10.0);
     takt_path_finish(&path);
-    TEST_ASSERT_EQUAL(JOINT_PASSED, path_at(&path, 0)->end);
-    TEST_ASSERT_EQUAL(JOINT_STOP, path_at(&path, 1)->end);
-    TEST_ASSERT_EQUAL(JOINT_STOP, path_at(&path, 2)->end);
+    TEST_ASSERT_EQUAL(JUNCTION_PASSED, path_at(&path, 0)->end);
+    TEST_ASSERT_EQUAL(JUNCTION_STOP, path_at(&path, 1)->end);
+    TEST_ASSERT_EQUAL(JUNCTION_STOP, path_at(&path, 2)->end);
 }
 
 static void test_a_wait_stops_the_block_before_it(void)
@@ -73,7 +73,7 @@ static void test_a_wait_stops_the_block_before_it(void)
     push(MOVE_DWELL, 0.0, 0.0);
     push(MOVE_FEED, 20.0, 0.0);
     TEST_ASSERT_EQUAL(2, path.closed);
-    TEST_ASSERT_EQUAL(JOINT_STOP, path_at(&path, 0)->end);
+    TEST_ASSERT_EQUAL(JUNCTION_STOP, path_at(&path, 0)->end);
     TEST_ASSERT_EQUAL_UINT64(0, path_end(&path, 1) - path_at(&path, 1)->start);
     TEST_ASSERT_EQUAL(1, path_read(&path, 1)->number);
 }
@@ -163,7 +163,7 @@ int main(void)
     UNITY_BEGIN();
     RUN_TEST(test_blocks_lie_end_to_end);
     RUN_TEST(test_a_block_is_closed_when_its_end_is_known);
-    RUN_TEST(test_a_straight_joint_is_passed_and_a_corner_is_a_stop);
+    RUN_TEST(test_a_straight_junction_is_passed_and_a_corner_is_a_stop);
     RUN_TEST(test_a_wait_stops_the_block_before_it);
     RUN_TEST(test_a_motion_without_length_is_counted_and_dropped);
     RUN_TEST(test_room_is_bounded_by_what_must_be_kept);

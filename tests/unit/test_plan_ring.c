@@ -14,7 +14,7 @@ static const struct plan_limits limits = {63,
                                           {50000, 50000, 50000, 5000, 5000, 5000},
                                           1e-3,
                                           1e-3,
-                                          LAW_JERK,
+                                          RAMP_PROFILE_JERK,
                                           LANDING_SPAN};
 
 static struct path path;
@@ -254,7 +254,7 @@ static void test_limits_are_never_above_the_exact_ones(void)
         }
         TEST_ASSERT_TRUE(takt_move_curve(&m, &from, &curve));
         takt_block_set_motion(&exact, &m, &curve, &limits);
-        takt_block_set_share(&exact, BLOCK_SHARE_MAX * uniform());
+        takt_block_set_jerk_budget(&exact, BLOCK_JERK_BUDGET_MAX * uniform());
         takt_ring_push(&path.ring, i, i, &exact, NULL);
         takt_ring_limit(&path.ring, i, &exact);
         const struct path_block *b = ring_at(&path.ring, i);

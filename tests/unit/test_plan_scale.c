@@ -1,6 +1,6 @@
 /* How much of a curve a mm of path is. */
 #include "base/maths.h"
-#include "plan/joint.h"
+#include "plan/junction.h"
 #include "plan/path_unit.h"
 #include "plan/scale.h"
 
@@ -99,7 +99,7 @@ static void test_nor_in_its_acceleration(void)
 
 static void test_nor_does_it_beside_linear_axes_that_leave_no_room_for_smaller_ones(void)
 {
-    limits.law = LAW_GENTLE;
+    limits.profile = RAMP_PROFILE_GENTLE;
     limits.velocity_mm_s[AXIS_Y] = 20000.0;
     limits.jerk_mm_s3[AXIS_C] = 1.0;
     const struct scale s = takt_scale_of_machine(&limits);
@@ -113,17 +113,19 @@ static void test_nor_does_it_beside_linear_axes_that_leave_no_room_for_smaller_o
 
 static void test_sums_over_the_longest_window_stay_within_64_bits(void)
 {
-    static const enum law laws[] = {LAW_JERK, LAW_SMOOTH, LAW_GENTLE};
+    static const enum ramp_profile profiles[] = {RAMP_PROFILE_JERK, RAMP_PROFILE_SMOOTH,
+                                                 RAMP_PROFILE_GENTLE};
 
     limits.cycle_s = 4e-3;
     limits.velocity_mm_s[AXIS_Y] = 20000.0;
     for (unsigned i = 0; i < 3; i++) {
-        const uint32_t cycles = takt_law_cycles_max(laws[i]);
-        double sum = 0.5 * 80.0 * PATH_UNITS_PER_MM * takt_law_window_cycles(laws[i], cycles);
+        const uint32_t cycles = takt_ramp_profile_cycles_max(profiles[i]);
+        double sum =
+            0.5 * 80.0 * PATH_UNITS_PER_MM * takt_ramp_profile_window_cycles(profiles[i], cycles);
 
-        limits.law = laws[i];
-        for (unsigned box = 0; box < takt_law_boxes(laws[i]); box++) {
-            sum *= takt_law_box_cycles(box, cycles);
+        limits.profile = profiles[i];
+        for (unsigned box = 0; box < takt_ramp_profile_boxes(profiles[i]); box++) {
+            sum *= takt_ramp_profile_box_cycles(box, cycles);
         }
         TEST_ASSERT_TRUE(sum / takt_scale_of_machine(&limits).linear < 9.3e18);
     }
@@ -135,17 +137,17 @@ static void test_the_longest_way_fits_into_path_positions(void)
     TEST_ASSERT_INT64_WITHIN(1024, SCALE_LENGTH_UNITS, block_to(1e-9, 1e18, 1.0).length);
 }
 
-/* The lead point would come to it too late, and be beyond it before the setpoint has slowed down. */
+/* The trapezoidal reference would come to it too late, and be beyond it before the setpoint has slowed down. */
 static void test_what_is_far_slower_than_a_cycle_of_braking_is_come_to_at_rest(void)
 {
     struct block fast = block_to(10.0, 0.0, 50.0);
     struct block slow = block_to(1e-6, 0.0, 1e-5);
 
-    takt_joint_form(&fast, &slow, &limits);
-    TEST_ASSERT_EQUAL(JOINT_STOP, fast.end);
+    takt_junction_form(&fast, &slow, &limits);
+    TEST_ASSERT_EQUAL(JUNCTION_STOP, fast.end);
     slow = block_to(10.0, 0.0, 1.0);
-    takt_joint_form(&fast, &slow, &limits);
-    TEST_ASSERT_EQUAL(JOINT_PASSED, fast.end);
+    takt_junction_form(&fast, &slow, &limits);
+    TEST_ASSERT_EQUAL(JUNCTION_PASSED, fast.end);
 }
 
 int main(void)

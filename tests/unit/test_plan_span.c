@@ -12,8 +12,10 @@ static struct ceiling_request request;
 void setUp(void)
 {
     begin_path();
-    request = (struct ceiling_request){
-        .lead = path.position, .span = path.position - 1, .feed_ratio = 1.0, .rapid_ratio = 1.0};
+    request = (struct ceiling_request){.reference = path.position,
+                                       .span = path.position - 1,
+                                       .feed_ratio = 1.0,
+                                       .rapid_ratio = 1.0};
 }
 
 void tearDown(void)
@@ -87,7 +89,7 @@ static void test_a_window_is_known_when_the_end_of_the_span_is(void)
     TEST_ASSERT_TRUE(takt_span_window(&path, &request, 0).known);
 }
 
-/* The window that a ceiling was made with is kept when more of the span is seen, by a lead point close to it. */
+/* The window that a ceiling was made with is kept when more of the span is seen, by a trapezoidal reference close to it. */
 static void test_a_window_once_promised_is_kept_close_by(void)
 {
     push(0.5, 50.0);

@@ -1,7 +1,7 @@
 /* Programs planned ahead, brought through the panel's mailbox while they run. */
 #include "ahead/compile.h"
+#include "cutter_compensation/cutter_compensation.h"
 #include "embedded_bench.h"
-#include "offset/offset.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -58,7 +58,7 @@ static struct compile_config compile_config(void)
 static void add_moves(struct compile *compile)
 {
     static struct program program;
-    static struct offset offset;
+    static struct cutter_compensation offset;
     static struct parameters parameters;
     const struct controller_config controller = {.machine = &machine, .parameters = &parameters};
     struct program_config config;
@@ -71,8 +71,8 @@ static void add_moves(struct compile *compile)
     takt_controller_program_config(&controller, &config);
     takt_source_open_text(&source, &whole, text, text_size);
     takt_program_open(&program, &config, &source);
-    takt_offset_open(&offset, &config);
-    while (takt_offset_next(&offset, &program, &move, &error) == PROGRAM_MOVE)
+    takt_cutter_compensation_open(&offset, &config);
+    while (takt_cutter_compensation_next(&offset, &program, &move, &error) == PROGRAM_MOVE)
         TEST_ASSERT_EQUAL_INT(COMPILE_DONE, compile_add(compile, &move));
 }
 

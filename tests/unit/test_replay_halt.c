@@ -25,12 +25,12 @@ void tearDown(void)
 {
 }
 
-/* What the last cycles have led, judged by differences as setpoints are at a place where the axes move evenly. */
+/* What the last cycles have led, verified by differences as setpoints are at a place where the axes move evenly. */
 struct differences {
     double way[4];
 };
 
-static double judged(struct differences *d, const struct plan_limits *l, double here)
+static double verified(struct differences *d, const struct plan_limits *l, double here)
 {
     double most = 0.0;
 
@@ -75,7 +75,7 @@ static int drive_so(struct rate *r, const struct plan_limits *limits, double to,
         const double here = takt_halt_step(&h, r, to, way);
 
         TEST_ASSERT_TRUE(here >= 0.0 && here <= way);
-        TEST_ASSERT_TRUE(judged(d, limits, here) <= 1.0);
+        TEST_ASSERT_TRUE(verified(d, limits, here) <= 1.0);
         way -= here;
         if (way == 0.0 && rate_rests(r)) {
             return n;
@@ -166,7 +166,7 @@ static void test_from_any_state_the_way_it_says_is_enough(void)
             const int cycles = (int)takt_maths_power(10.0, random_rate_between(0.0, 3.3));
 
             for (int i = 0; i < cycles || !takt_halt_is_possible(&r); i++) {
-                judged(&d, &limits, takt_rate_step(&r, to));
+                verified(&d, &limits, takt_rate_step(&r, to));
             }
             TEST_ASSERT_TRUE(drive(&r, &limits, to, takt_halt_way(&r) * (1.0 + ROUNDING), &d) > 0);
         }

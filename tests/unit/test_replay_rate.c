@@ -23,8 +23,8 @@ void tearDown(void)
 {
 }
 
-/* One cycle, judged with the largest of what the rate was and is. */
-static double judged_step(struct rate *r, const struct plan_limits *l, double to)
+/* One cycle, verified with the largest of what the rate was and is. */
+static double verified_step(struct rate *r, const struct plan_limits *l, double to)
 {
     const struct rate before = *r;
     double most = 0.0;
@@ -49,7 +49,7 @@ static void test_no_change_of_the_rate_needs_more_than_the_limits(void)
             const int cycles = (int)takt_maths_power(10.0, random_rate_between(0, 3.3));
 
             for (int i = 0; i < cycles; i++) {
-                TEST_ASSERT_TRUE(judged_step(&r, &limits, to) <= 1.0 + ROUNDING);
+                TEST_ASSERT_TRUE(verified_step(&r, &limits, to) <= 1.0 + ROUNDING);
                 TEST_ASSERT_TRUE(r.now >= 0.0 && r.now <= 1.0);
             }
         }

@@ -1,7 +1,7 @@
 /*
  * The ordered end of a service: on the path or at once, and what the drives are left in.
  */
-#include "service_judge.h"
+#include "service_verifier.h"
 
 #include "drives/virtual_drives.h"
 #include "simulation/ending.h"
@@ -28,7 +28,7 @@ static void run_into_motion(void)
 {
     load(WINDING);
     must(REGISTER_CYCLE_START, 1);
-    judged_cycles(1000);
+    verified_cycles(1000);
     TEST_ASSERT_EQUAL_INT(PANEL_RUNNING, takt_service_get_state(&service));
 }
 
@@ -38,7 +38,7 @@ static unsigned end(enum ending_way way)
 
     ending_ask(&ending, &service.controller, way);
     while (!ending_is_over(&ending, &service.controller) && cycles < END_CYCLES_MAX) {
-        judged_cycle();
+        verified_cycle();
         cycles++;
     }
     TEST_ASSERT_TRUE(cycles < END_CYCLES_MAX);
@@ -88,7 +88,7 @@ static void test_the_spindle_turns_as_long_as_the_axes_are_on_the_path(void)
     while (drives_get_state(&service.controller.drives) <= DRIVES_STOPPING) {
         TEST_ASSERT_TRUE(takt_service_get_outputs(&service).spindle_speed_rpm == 1000);
         (void)ending_is_over(&ending, &service.controller);
-        judged_cycle();
+        verified_cycle();
     }
 }
 
@@ -96,7 +96,7 @@ static void test_asked_twice_the_drives_brake_at_once(void)
 {
     run_into_motion();
     ending_ask(&ending, &service.controller, ENDING_ON_PATH);
-    judged_cycles(5);
+    verified_cycles(5);
     TEST_ASSERT_EQUAL_INT(DRIVES_STOPPING, drives_get_state(&service.controller.drives));
     const double from_mm = virtual_drive_get_position_mm(&drives.drive[0]);
     (void)end(ENDING_AT_ONCE);
@@ -134,7 +134,7 @@ static void test_an_end_after_an_alarm_of_the_program_switches_the_drives_off(vo
 {
     load("G21 F600\nG1 X1\nG1 Q5\nM2\n");
     must(REGISTER_CYCLE_START, 1);
-    judged_wait_for(PANEL_ALARM);
+    verified_wait_for(PANEL_ALARM);
     expect_drives(CIA402_ENABLED);
     (void)end(ENDING_ON_PATH);
     expect_drives(CIA402_SWITCH_ON_DISABLED);
@@ -153,7 +153,7 @@ static void test_a_program_that_comes_to_its_end_has_no_such_line(void)
 {
     load("G21 F600\nG1 X1\nM2\n");
     must(REGISTER_CYCLE_START, 1);
-    judged_wait_for(PANEL_IDLE);
+    verified_wait_for(PANEL_IDLE);
     TEST_ASSERT_EQUAL_UINT32(0, takt_service_get_cut_line(&service));
 }
 

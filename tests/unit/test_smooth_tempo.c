@@ -80,7 +80,7 @@ static struct used used_at(unsigned piece, bool end)
 {
     const double d = INTERVAL_S;
     const unsigned k = piece + (end ? 1 : 0);
-    const float *e = tempo.energy + piece;
+    const float *e = tempo.rate_squared + piece;
     const double b = 0.5 * (double)(end ? e[1] + e[2] : e[0] + e[1]);
     const double slope = (double)(end ? e[2] - e[1] : e[1] - e[0]) / d;
     const double bow = (double)(e[2] - 2.0f * e[1] + e[0]) / (d * d);
@@ -125,7 +125,8 @@ static double time_of_all(void)
     for (unsigned i = 0; i < tempo.pieces; i++) {
         float slope;
 
-        sum += 1.0 / (double)maths_sqrt((double)takt_tempo_energy(&tempo, (float)i + 1.5f, &slope));
+        sum += 1.0 /
+               (double)maths_sqrt((double)takt_tempo_rate_squared(&tempo, (float)i + 1.5f, &slope));
     }
     return sum / tempo.pieces;
 }
@@ -148,10 +149,10 @@ static void test_a_window_begins_and_ends_at_the_rate_that_its_neighbours_have(v
     set_machine(100.0, 1000.0, 50000.0);
     run_at(40.0, 0.0);
     takt_tempo_find(&tempo, &window, &route);
-    TEST_ASSERT_EQUAL_FLOAT(1.0f, tempo.energy[0]);
-    TEST_ASSERT_EQUAL_FLOAT(1.0f, tempo.energy[1]);
-    TEST_ASSERT_EQUAL_FLOAT(1.0f, tempo.energy[tempo.pieces]);
-    TEST_ASSERT_EQUAL_FLOAT(1.0f, tempo.energy[tempo.pieces + 1]);
+    TEST_ASSERT_EQUAL_FLOAT(1.0f, tempo.rate_squared[0]);
+    TEST_ASSERT_EQUAL_FLOAT(1.0f, tempo.rate_squared[1]);
+    TEST_ASSERT_EQUAL_FLOAT(1.0f, tempo.rate_squared[tempo.pieces]);
+    TEST_ASSERT_EQUAL_FLOAT(1.0f, tempo.rate_squared[tempo.pieces + 1]);
 }
 
 /* The curve brakes by 1.3 A; the way is hardly long enough to brake by less. */
@@ -162,7 +163,7 @@ static void test_what_is_exceeded_is_drawn_inside_and_nothing_else_goes_beyond(v
     memset(&tempo, 0, sizeof tempo);
     tempo.pieces = window.count - SMOOTH_FIXED;
     for (unsigned i = 0; i < tempo.pieces + 2; i++)
-        tempo.energy[i] = 1.0f;
+        tempo.rate_squared[i] = 1.0f;
     const struct used before = used_most();
 
     takt_tempo_find(&tempo, &window, &route);
@@ -213,10 +214,10 @@ static void test_a_slower_stretch_is_slow_and_the_rest_as_it_was(void)
     set_machine(100.0, 1000.0, 50000.0);
     run_at(40.0, 0.0);
     takt_tempo_slow(&tempo, &window, 30, 8, 0.5f);
-    TEST_ASSERT_EQUAL_FLOAT(0.25f, takt_tempo_energy(&tempo, 31.5f, &slope));
+    TEST_ASSERT_EQUAL_FLOAT(0.25f, takt_tempo_rate_squared(&tempo, 31.5f, &slope));
     TEST_ASSERT_EQUAL_FLOAT(0.0f, slope);
-    TEST_ASSERT_EQUAL_FLOAT(1.0f, takt_tempo_energy(&tempo, 10.0f, &slope));
-    TEST_ASSERT_EQUAL_FLOAT(1.0f, takt_tempo_energy(&tempo, 50.0f, &slope));
+    TEST_ASSERT_EQUAL_FLOAT(1.0f, takt_tempo_rate_squared(&tempo, 10.0f, &slope));
+    TEST_ASSERT_EQUAL_FLOAT(1.0f, takt_tempo_rate_squared(&tempo, 50.0f, &slope));
 }
 
 int main(void)

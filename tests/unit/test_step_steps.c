@@ -294,8 +294,8 @@ static void test_lines_by_evaluation_functions_end_exactly_and_miss_no_step(void
     }
 }
 
-/* A chain of arcs and lines, passed at full feed: at their joints a form has a step or two left over. */
-static void test_no_joint_asks_a_drive_for_more_than_its_rate(void)
+/* A chain of arcs and lines, passed at full feed: at their junctions a form has a step or two left over. */
+static void test_no_junction_asks_a_drive_for_more_than_its_rate(void)
 {
     static const enum steps_form forms[] = {STEPS_EVEN, STEPS_IMPROVED, STEPS_PLAIN};
 
@@ -475,7 +475,7 @@ int main(void)
     RUN_TEST(test_at_a_constant_rate_path_speed_would_swing_by_root_2);
     RUN_TEST(test_the_even_form_is_off_by_half_a_step_at_most);
     RUN_TEST(test_lines_by_evaluation_functions_end_exactly_and_miss_no_step);
-    RUN_TEST(test_no_joint_asks_a_drive_for_more_than_its_rate);
+    RUN_TEST(test_no_junction_asks_a_drive_for_more_than_its_rate);
     RUN_TEST(test_an_improved_line_takes_as_many_ticks_as_its_leading_axis_has_steps);
     RUN_TEST(test_helices_by_evaluation_functions_end_exactly);
     RUN_TEST(test_a_setpoint_beside_its_curve_is_followed_all_the_same);

@@ -29,7 +29,7 @@ void tearDown(void)
 {
 }
 
-static void judge(double x)
+static void verifier(double x)
 {
     memmove(history + 1, history, 3 * sizeof(double));
     history[0] = x;
@@ -46,7 +46,7 @@ static void judge(double x)
 static void step(const struct follower_target *target, const struct follower_end *end)
 {
     takt_follower_step(&follower, target, end);
-    judge(follower.at.x_mm);
+    verifier(follower.at.x_mm);
 }
 
 static void check_limits(void)

@@ -4,8 +4,8 @@
 #include "readers.h"
 
 #include "base/maths.h"
+#include "cutter_compensation/cutter_compensation.h"
 #include "dialect/dialect.h"
-#include "offset/offset.h"
 #include "program/program.h"
 #include "session/convert.h"
 
@@ -76,7 +76,7 @@ static void write_move(struct convert *c, const struct move *move)
 }
 
 static struct program program;
-static struct offset offset;
+static struct cutter_compensation offset;
 static struct parameters parameters;
 
 static void open_program(const struct source *source, struct program_config *config)
@@ -93,7 +93,7 @@ static void open_program(const struct source *source, struct program_config *con
     }
     takt_parameters_clear(&parameters);
     takt_program_open(&program, config, source);
-    takt_offset_open(&offset, config);
+    takt_cutter_compensation_open(&offset, config);
 }
 
 static void write_moves(struct convert *convert)
@@ -105,7 +105,8 @@ static void write_moves(struct convert *convert)
     unsigned errors = 0;
 
     while (moves < MOVES_MAX && errors < ERRORS_MAX &&
-           (result = takt_offset_next(&offset, &program, &move, &error)) != PROGRAM_END) {
+           (result = takt_cutter_compensation_next(&offset, &program, &move, &error)) !=
+               PROGRAM_END) {
         require(result != PROGRAM_WAIT);
         if (result == PROGRAM_ERROR) {
             errors++;
