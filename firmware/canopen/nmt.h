@@ -45,7 +45,7 @@ void takt_nmt_write_heartbeat(struct can_frame *frame, uint8_t node, enum nmt_st
 bool takt_nmt_read_heartbeat(const struct can_frame *frame, uint8_t *node, enum nmt_state *state);
 /* An answer to a guarding master is the same frame with this bit, which changes from each answer to the next (7.2.8.3.2.1). */
 #define NMT_TOGGLE 0x80u
-/* Of a frame that has the identifier of a heartbeat. False: its length or its state is none that CiA 301 knows. */
+/* Reads a frame that has the identifier of a heartbeat. False: its length or its state is none that CiA 301 knows. */
 static inline bool nmt_read_state(const struct can_frame *frame, enum nmt_state *state)
 {
     if (frame->length != 1)

@@ -2,10 +2,10 @@
 
 #include "base/maths.h"
 
-/* Of a swing, what EI leaves at the mode's own frequency. */
+/* What EI leaves of a swing at the mode's own frequency. */
 #define EI_LEFT 0.05
 
-/* What is left of a swing after so many periods: exp(-2 pi damping n / sqrt(1 - damping^2)). */
+/* What is left of a swing after n periods: exp(-2 pi damping n / sqrt(1 - damping^2)). */
 static double left_after(const struct shape_mode *mode, double periods)
 {
     return takt_maths_exp(-2.0 * MATHS_PI * periods * mode->damping /

@@ -23,7 +23,7 @@
 /* Longest line without its end: that of a program. */
 #define LINES_LENGTH_MAX 256
 
-/* Of a line that has been done: the number of its error, 0: none. Else: */
+/* Mark of a line that has been done: the number of its error, 0: none. Else: */
 enum lines_mark {
     LINES_NEW = 0xff,  /* not done yet */
     LINES_OWN = 0xfe,  /* the console has answered it */

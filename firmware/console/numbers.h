@@ -49,7 +49,7 @@ enum console_alarm {
     CONSOLE_ALARM_DRIVE = 17
 };
 
-/* Of a line of a program that is refused. */
+/* Error of a line of a program that is refused. */
 enum console_error takt_console_error_of(enum takt_error error);
 
 /* Why a program has failed. */

@@ -32,7 +32,7 @@ enum realtime {
 /* What is known of the spindle is older than what it is told by less than this, and a snapshot by one more. */
 #define FEEDBACK_CYCLES 5
 
-/* What the bytes of a group of five do: to 100 %, and so many counts more. */
+/* What the bytes of a group of five do: set 100 %, or add this many counts. */
 static const int steps[] = {0, 100, -100, 10, -10};
 
 static void look(const struct console *c, struct panel_snapshot *now)

@@ -2,7 +2,7 @@
 
 #include "base/decimal.h"
 
-/* Of 64 bits, with sign and point. */
+/* Characters of a number of 64 bits, with sign and point. */
 #define DIGITS_MAX 24
 
 void takt_reply_send(struct reply *r)

@@ -5,7 +5,7 @@
 
 #define MM_PER_INCH 25.4
 
-/* Of positions in registers: 0.001 mm. */
+/* Decimals of positions in registers, whose unit is 0.001 mm. */
 #define POSITION_DECIMALS 3
 
 static void text(struct console *c, const char *words)
@@ -100,7 +100,7 @@ static void report_position(struct console *c, const struct panel_snapshot *now)
     axes(c, now, machine ? REGISTER_POSITION_X : REGISTER_WORK_POSITION_X, REGISTER_COUNT);
 }
 
-/* The planner takes lines as it needs them: so many more of eight characters find room. */
+/* The planner takes lines as it needs them: room is told in lines of this many characters. */
 #define BYTES_PER_LINE 8U
 
 static void report_buffer(struct console *c)

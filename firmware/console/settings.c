@@ -10,7 +10,7 @@
 #define S_PER_MIN       60.0
 #define DEGREES_PER_RAD (180.0 / MATHS_PI)
 
-/* Of a group, one for each axis. */
+/* Numbers of settings; of a group, which has one for each axis, the first. */
 enum {
     SETTING_MASK = 10,
     SETTING_INCHES = 13,

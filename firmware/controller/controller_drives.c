@@ -100,7 +100,7 @@ static uint8_t find_drive(const struct drives_config *config, unsigned axis)
     return i;
 }
 
-/* Of its own is no more than what its place on the gantry asks for. */
+/* The second drive differs from the first only in what its place on the gantry asks for. */
 static void add_second(struct drives_config *config, const struct machine *machine,
                        const struct machine_gantry *gantry)
 {

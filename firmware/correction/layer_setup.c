@@ -15,7 +15,7 @@
 
 #define SIDE AXIS_LINEAR_COUNT
 
-/* Of the numbers of a set-up: offset, turns about X, Y, Z, and this. */
+/* Places among the numbers of a set-up: offset, turns about X, Y, Z, and this. */
 enum { TURN = 2 * SIDE };
 
 /* m = a m, a the rotation by an angle about an axis. */

@@ -103,7 +103,7 @@ struct drives_config {
 
 #define DRIVES_SDO_REPEATS 2
 
-/* A drive that hears no heartbeat for so many periods takes its partner for lost; so do we. */
+/* A drive that hears no heartbeat for this many periods takes its partner for lost; so do we. */
 #define DRIVES_HEARTBEATS_LOST 3
 
 enum drives_state {
@@ -202,7 +202,7 @@ bool takt_drives_are_homed(const struct drives *d);
 
 /* Bits 1 << enum drives_given_up of an axis; 0 too for axes without a drive. Complete once the drives are enabled. */
 uint32_t takt_drives_get_given_up(const struct drives *d, enum axis axis);
-/* Of any axis. */
+/* Bits that any axis has: all axes' together. */
 uint32_t takt_drives_get_all_given_up(const struct drives *d);
 
 /* Last statusword (object 6041) of every axis; 0 for axes without a drive, or before it has reported. */

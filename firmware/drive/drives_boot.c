@@ -51,7 +51,7 @@ bool takt_drives_next_ask(struct drives *d, struct drives_step *step)
     return true;
 }
 
-/* Of another type it is a drive all the same, if it tells modes or names no profile: see take_modes. */
+/* A node of another type is a drive all the same, if it tells modes or names no profile: see take_modes. */
 static void take_type(struct drives *d, const struct drives_answer *answer)
 {
     const bool is_told = answer->abort_code == SDO_ABORT_NONE;

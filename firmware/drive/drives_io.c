@@ -544,7 +544,7 @@ void takt_drives_send_outputs(struct drives *d, const struct can_port *port,
         d->io_cycles = 0;
 }
 
-/* Of a bus: inputs and analogue outputs of every node, and the longest outputs, since they do not change in every cycle. */
+/* Load of a bus: inputs and analogue outputs of every node, and the longest outputs: they do not change every cycle. */
 struct io_load {
     uint32_t cyclic_bits, output_bits;
 };

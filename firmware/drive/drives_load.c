@@ -87,7 +87,7 @@ bool takt_drives_predict_load(unsigned count, const struct drives_rates *rates, 
     return takt_drives_predict_whole_load(&traffic, cycle_us, load);
 }
 
-/* Of a TPDO with something that ends at this byte: one that the drive keeps may hold more. */
+/* Length at most of a TPDO with something that ends at this byte: one that the drive keeps may hold more. */
 static uint8_t length_at_most(const struct drives *d, unsigned i, unsigned end)
 {
     const struct drives_axis *axis = &d->axis[i];

@@ -52,7 +52,7 @@ double takt_drives_axis_shown(const struct drives_axis *axis, double value_mm);
 bool takt_drives_axis_is_enabled(const struct drives_axis *axis);
 double takt_drives_cycles_ms(const struct drives *d, uint32_t cycles);
 
-/* Setpoints of all drives, of so many cycles ago: mm or rad. */
+/* Setpoints of all drives, of this many cycles ago: mm or rad. */
 static inline const double *drives_sent(const struct drives *d, unsigned ago)
 {
     return d->sent_mm[(d->cycle - ago) & (DRIVES_HISTORY - 1)];
@@ -154,14 +154,14 @@ bool takt_drives_io_boot(struct drives *d);
 void takt_drives_io_start(struct drives *d);
 void takt_drives_io_send_start(struct drives *d, const struct can_port *port);
 void takt_drives_io_send_resets(struct drives *d, const struct can_port *port);
-/* Of their frames on a bus in a cycle, at worst. */
+/* Bits of their frames on a bus in a cycle, at worst. */
 uint32_t takt_drives_io_bits(const struct drives *d, unsigned bus);
 /* The same of nodes that have no more than what is wired. */
 uint32_t takt_drives_io_wired_bits(const struct io_wiring *wiring, unsigned count, unsigned bus,
                                    const struct drives_rates *rates);
 /*
- * Node guarding. Every node that is guarded is asked in one cycle of so many: a heartbeat's period, or as many as there are
- * nodes. life_ms: after which the node takes us for lost, and too soon where that is less than two periods.
+ * Node guarding. Every node that is guarded is asked in one of this many cycles: a heartbeat's period, or as many as
+ * there are nodes. life_ms: after which the node takes us for lost, and too soon where that is less than two periods.
  */
 uint32_t takt_drives_guard_cycles(const struct drives *d);
 uint32_t takt_drives_guard_ms(const struct drives *d);
@@ -183,7 +183,7 @@ static inline bool drives_takes_beat(struct drives_guard *guard, const struct ca
     return counts;
 }
 void takt_drives_send_guard(struct drives *d, const struct can_port *port);
-/* Of a question and its answer at worst; 0: nobody is guarded on this bus. */
+/* Bits of a question and its answer at worst; 0: nobody is guarded on this bus. */
 uint32_t takt_drives_guard_bits(const struct drives *d, unsigned bus);
 
 static inline bool drives_send_frame(const struct can_port *port, const struct can_frame *frame)

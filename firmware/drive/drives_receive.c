@@ -28,7 +28,7 @@ static inline void take_status(struct drives *d, struct drives_axis *axis,
     set_position(d, axis, little_endian_read32(frame->data + 2));
 }
 
-/* Of any form, of one of them or of both; a frame that is too short for its position counts for nothing. */
+/* A report of any form: statusword, position or both; a frame too short for its position counts for nothing. */
 static void take_report(struct drives *d, struct drives_axis *axis, const struct can_frame *frame)
 {
     bool has_position = frame->id == axis->position_id;

@@ -149,7 +149,7 @@ static bool is_axis_node(const struct machine *machine, unsigned bus, unsigned n
     return is_one;
 }
 
-/* Of the second drive of one of the first gantries. */
+/* Is it the node of the second drive of one of the first gantries? */
 static bool is_gantry_node(const struct machine *machine, unsigned count, unsigned bus,
                            unsigned node)
 {

@@ -55,10 +55,10 @@ static const float ease_part[EASES] = {0.85f, 0.4f, 0.15f};
 /* Blocks up to what begins at the trapezoidal reference that are looked at for each state tried, at most. */
 #define BLOCKS_MAX 16
 
-/* Of these, so many are found to be fast enough in a cycle. */
+/* How many of these are found to be fast enough in a cycle, at most. */
 #define CLEAR_MAX 8
 
-/* After so many states in a cycle that the trapezoidal reference could not go on from, no other is looked for. */
+/* After this many states in a cycle that the trapezoidal reference could not go on from, no other is looked for. */
 #define REFUSALS_MAX 2
 
 /* Rounding. */
@@ -74,7 +74,7 @@ static float top_rate(const struct hold *h, const struct path *path, uint32_t bl
     return (float)takt_path_block_top(path_at(path, block)) * h->per_mm_s * (1.0f + TOP_SLACK);
 }
 
-/* Of a uniform cubic B-spline: x' = (c2 - c0)/2, x'' = c0 - 2 c1 + c2 where the piece begins. */
+/* Derivatives of a uniform cubic B-spline: x' = (c2 - c0)/2, x'' = c0 - 2 c1 + c2 where the piece begins. */
 static void read_piece(struct hold *h, const struct path *path, uint32_t block)
 {
     struct hold_piece *p = &h->piece[block % HOLD_PIECES_MAX];

@@ -22,7 +22,7 @@
 /* Pieces of the curve that are looked at, from the setpoint's on. */
 #define HOLD_PIECES_MAX 24
 
-/* Of a piece of the curve, by axis: mm (rad) per piece and per piece^2. The second derivative is straight between its ends. */
+/* Derivatives of a piece, by axis: mm (rad) per piece and per piece^2. The second one is linear between its ends. */
 struct hold_piece {
     float first[AXIS_COUNT];
     float second[2][AXIS_COUNT];
@@ -68,8 +68,8 @@ struct hold {
 
 /*
  * Can it take over in this cycle, and slow down? The setpoint is at a position of the path's first block, path units, and
- * has been moved by so many in the last two cycles. anew: it was not asked in the last cycle. Some pieces ahead are read each
- * time, so that it may be able to in a later cycle.
+ * has been moved by these ways in the last two cycles. anew: it was not asked in the last cycle. Some pieces ahead are
+ * read each time, so that it may be able to in a later cycle.
  */
 bool takt_hold_begin(struct hold *h, const struct path *path, const struct reference *l, double at,
                      const double way[2], bool anew);

@@ -142,7 +142,7 @@ static struct range left_of(const struct hold *h, unsigned i, float x1, float x2
                           single_min(h->jerk[i] - j, h->acceleration[i] - a)};
 }
 
-/* Of w, what x' w in a range allows. */
+/* The part of the range of w that a range of x' w allows. */
 static struct range over(struct range left, float x1, struct range w)
 {
     const struct range by = x1 < 0.0f ? (struct range){-left.high, -left.low} : left;

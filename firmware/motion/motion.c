@@ -385,7 +385,7 @@ static void place(struct motion *m, const struct block *b, double local, double 
     takt_curve_point(&b->curve, maths_clamp(s_mm, 0.0, b->curve.length_mm), &m->at);
 }
 
-/* Of the way from one setpoint to the next, of A, B, C where they are alone. */
+/* Feed on the way from one setpoint to the next, of A, B, C where they are alone. */
 static double feed_between(const struct motion *m, const struct block *b, const struct point *from)
 {
     const int first = b->rotary ? AXIS_LINEAR_COUNT : 0;

@@ -19,7 +19,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-/* Of 10,000 random programs, of axes up to 100 apart, under random overrides no block takes more than 5. */
+/* In 10,000 random programs, with axes up to 100 apart, no block takes more than 5 under random overrides. */
 #define WATCH_PARTS 16.0F
 
 /* Four exchanges with the background. */

@@ -22,12 +22,12 @@ static_assert(PATH_BLOCKS_MAX < 1 << 9, "blocks fit into ceiling_piece.start");
 static_assert(sizeof(struct ceiling_piece) == 20, "no padding");
 
 /*
- * Between being asked for and being taken a ceiling grows so many cycles old at most (MOTION_EXCHANGE_CYCLES and the
+ * Between being asked for and being taken a ceiling grows this many cycles old at most (MOTION_EXCHANGE_CYCLES and the
  * cycles of taking it).
  */
 #define AGE_CYCLES 64.0
 
-/* Lower accelerations of blocks left behind, that the setpoint still has to keep: at most so many at once. */
+/* Lower accelerations of blocks left behind, that the setpoint still has to keep: at most this many at once. */
 #define TRAILING_MAX 16
 
 /* A junction feed that the trapezoidal reference reaches from rest in this many cycles is not worth passing: it comes to rest. */
@@ -167,8 +167,8 @@ static struct ceiling_piece *append(struct builder *s, double end_mm, float feed
 }
 
 /*
- * Of the pieces from k on, those that nothing is left of go, or a cycle would come to more than it looks at: all but the
- * first of a ceiling, which still binds until the setpoint has left it.
+ * Drops the pieces from k on that nothing is left of, or a cycle would come to more than it looks at: all but the first
+ * of a ceiling, which still binds until the setpoint has left it.
  */
 static void drop_empty(struct ceiling *c, uint32_t k)
 {

@@ -165,7 +165,7 @@ static void push_piece(struct path *p, const struct curve *curve, double to_mm)
     p->split_mm = to_mm;
 }
 
-/* Of the whole curve. At a cusp the axes stand. */
+/* Pushes pieces of the whole curve. At a cusp the axes stand. */
 static void push_pieces(struct path *p, const struct curve *whole)
 {
     const uint32_t size = whole->kind == CURVE_INVOLUTE || whole->kind == CURVE_QUINTIC

@@ -87,7 +87,7 @@ void *takt_path_lend(struct path *p, size_t size);
 /* Room for one more move? */
 bool takt_path_has_room(const struct path *p);
 /*
- * How many blocks there should be ahead where so many are asked for: pieces of a smoothed chain are not blocks of the
+ * How many blocks there should be ahead where this many are asked for: pieces of a smoothed chain are not blocks of the
  * program, and are needed to brake on.
  */
 uint32_t takt_path_look_ahead(const struct path *p, uint32_t blocks);
@@ -119,7 +119,7 @@ static inline struct ceiling *path_ceiling(struct path *p, unsigned which)
 {
     return which == 0 ? &p->area.low.ceiling : &p->area.high.ceiling;
 }
-/* Of its move: what it is, and its feed per revolution, 0: none. */
+/* Kind of its move, and its feed per revolution, 0: none. */
 enum move_kind takt_path_kind(const struct path *p, uint32_t index);
 double takt_path_feed_rev(const struct path *p, uint32_t index);
 /* Its move, but for its feed: that is 0. */

@@ -301,7 +301,7 @@ static unsigned flags_of(const struct block *b, bool spline, const struct record
 }
 
 /*
- * Of a piece of a smoothed curve: its control points. Which coordinates of a last one alone there are is said in place of
+ * Control points of a piece of a smoothed curve. Which coordinates of a last one alone there are is said in place of
  * those of an end, unless there is one.
  */
 static unsigned put_spline(uint8_t *bytes, uint8_t **to, const struct point control[4],
@@ -455,7 +455,7 @@ static const uint8_t *read_head(const uint8_t *record, const struct record_modes
     return from;
 }
 
-/* Of a piece within a motion only the geometry knows where the motion ends. */
+/* For a piece within a motion only the geometry knows where the motion ends. */
 static void forget_end(struct move *move)
 {
     for (int i = 0; i < AXIS_COUNT; i++) {
@@ -475,8 +475,8 @@ void takt_record_read_move(const uint8_t *record, const struct record_modes *mod
 }
 
 /*
- * Of so many control points the last ones, as a record of a piece has them: one, or up to four. Returns how many are still
- * missing before those.
+ * Reads the last of count control points, as a record of a piece has them: one, or up to four. Returns how many are
+ * still missing before those.
  */
 static unsigned read_control(const uint8_t *record, struct point control[], unsigned count)
 {

@@ -20,10 +20,10 @@
 /* Bytes of a record at most: an involute of six axes with start, end and a feed per revolution takes 314. */
 #define RECORD_MAX 320
 
-/* Of what is no piece of an involute, of a spline or of a smoothed curve: an arc of six axes with start, end and turns takes 133. */
+/* Without pieces of involutes, splines and smoothed curves: an arc of six axes with start, end and turns takes 133. */
 #define RECORD_SHORT_MAX 136
 
-/* Control points that a piece shares with those before it: so many records back must be kept. */
+/* Control points that a piece shares with those before it: this many records back must be kept. */
 #define RECORD_BEFORE 3
 
 /* What many blocks in a row have in common. No padding: compared as bytes. */
@@ -45,7 +45,7 @@ struct record_modes {
 /* The same bits? What is remade from a record is to be what it was, 0 and -0 too. Of what has no padding. */
 bool takt_record_is_same(const void *a, const void *b, size_t size);
 
-/* Of a block; smooth: a piece of a smoothed curve. */
+/* Modes of a block; smooth: it is a piece of a smoothed curve. */
 void takt_record_modes_of(const struct block *b, bool smooth, struct record_modes *modes);
 
 /* What the record before leaves for the next one. */
@@ -67,7 +67,7 @@ uint32_t takt_record_write(uint8_t bytes[RECORD_MAX], const struct block *b,
 /* Parts of records that are needed alone. */
 enum move_kind takt_record_kind(const uint8_t *record);
 unsigned takt_record_modes_number(const uint8_t *record);
-/* Of path for a revolution; 0: the feed does not follow the spindle. */
+/* Path for a revolution; 0: the feed does not follow the spindle. */
 double takt_record_feed_rev(const uint8_t *record);
 void takt_record_set_governor(uint8_t *record, enum governor governor);
 

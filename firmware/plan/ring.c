@@ -60,7 +60,7 @@ bool takt_ring_has_room(const struct path_ring *r, uint32_t kept, uint32_t pushe
 
 /* -- writing -- */
 
-/* Of the new modes, which are most often those of the newest block. */
+/* Place of the new modes, which are most often those of the newest block. */
 static unsigned find_modes(struct path_ring *r, uint32_t kept, const struct record_modes *modes)
 {
     unsigned k = r->modes_newest;

@@ -26,7 +26,7 @@
 /* Records begin at multiples of this. */
 #define PATH_BYTES_STEP 4
 
-/* So many different modes may be in the ring at the same time: one for each block that is not closed, at least (path.h). */
+/* Different modes that may be in the ring at once: one for each block that is not closed, at least (path.h). */
 #define PATH_MODES_MAX 28
 
 /*

@@ -19,7 +19,10 @@
 
 #include <stdint.h>
 
-/* Path units of a curve at most. No more are appended to so many: differences of positions stay within 63 bits. */
+/*
+ * Path units of a curve at most. With this many ahead nothing is appended: differences of positions stay within 63
+ * bits.
+ */
 #define SCALE_LENGTH_UNITS (UINT64_C(1) << 61)
 
 /*

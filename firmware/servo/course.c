@@ -62,7 +62,7 @@ static int64_t place_of(double at_mm)
     return (int64_t)takt_maths_round(at_mm * COURSE_PLACES_PER_MM);
 }
 
-/* Of this many cycles in which the axis has moved evenly, so that their average is where it is now. */
+/* Begins with this many cycles in which the axis has moved evenly, so that their average is where it is now. */
 static void begin(struct course_average *average, const struct course *command, uint32_t count,
                   double cycle_s)
 {

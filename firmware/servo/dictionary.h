@@ -2,9 +2,9 @@
  * The object dictionary of a drive: takt's own (object_table.h), or that of an electronic data sheet (CiA 306), so
  * that a master can be tried against a drive that is not there.
  *
- * Of a data sheet count: which objects there are, their access, defaults and limits, what may be mapped where, the number
- * of PDOs and of their entries, dummies, and the modes. Objects that takt's own drive has, of the same size, do what they
- * do there; all others are memory.
+ * What counts of a data sheet: which objects there are, their access, defaults and limits, what may be mapped where,
+ * the number of PDOs and of their entries, dummies, and the modes. Objects that takt's own drive has, of the same size,
+ * do what they do there; all others are memory.
  */
 #ifndef TAKT_SERVO_DICTIONARY_H
 #define TAKT_SERVO_DICTIONARY_H
@@ -20,7 +20,7 @@ struct dictionary {
 };
 
 extern const struct dictionary takt_dictionary_own;
-/* Of an I/O node (CiA 401) with so many bytes of inputs, and as many of outputs. */
+/* That of an I/O node (CiA 401) with this many bytes of inputs, and as many of outputs. */
 extern const struct dictionary takt_dictionary_io;
 #define DICTIONARY_IO_BYTES     2
 #define DICTIONARY_IO_ANALOGUES 4 /* outputs of 16 bits */

@@ -48,7 +48,7 @@ void takt_servo_tell(const struct servo *drive, enum drive_event_kind kind, uint
         drive->observer.on_event(drive->observer.context, &event);
 }
 
-/* Of an object that says more about it in its upper bits. */
+/* Identifier in an object that says more about it in its upper bits. */
 static unsigned identifier_of(uint32_t cob_id)
 {
     return cob_id & CAN_ID_MASK;

@@ -12,7 +12,7 @@
 #define DRIVE_NEVER    UINT64_MAX
 #define MILLISECOND_NS 1000000u
 
-#define TORQUE_PER_RATED 1000.0      /* 6071, 6077: so many are the rated torque */
+#define TORQUE_PER_RATED 1000.0      /* 6071, 6077: counts of the rated torque */
 #define TIME_CONSUMED    0x80000000u /* object 1012 */
 
 /* Groups of objects that are computed when they are asked for. */
@@ -114,7 +114,7 @@ uint32_t takt_servo_write_sdo(void *drive, uint32_t object, const uint8_t *bytes
 void takt_servo_init_objects(struct servo *drive);
 /* What the position loop needs, from the settings. */
 void takt_servo_derive(struct servo *drive);
-/* Of object 2020. */
+/* What the loops need, from object 2020. */
 void takt_servo_derive_loops(struct servo *drive);
 void takt_servo_derive_torque(struct servo *drive);
 

@@ -37,7 +37,7 @@ static uint32_t unsigned_increments(const struct servo *drive, double value_mm)
     return unsigned_round(value_mm * servo_scale(drive));
 }
 
-/* Of a velocity or an acceleration. */
+/* A velocity or an acceleration as objects tell it. */
 static uint32_t unsigned_velocity(const struct servo *drive, double value_mm_s)
 {
     return unsigned_round(value_mm_s * servo_velocity_scale(drive));

@@ -62,7 +62,10 @@ void takt_servo_run_cyclic_velocity(struct servo *drive, uint32_t cycle_ns)
 
 /* ---- Torque ---- */
 
-/* Of the rated torque, as the motor turns. A motor at its highest speed (6080) gets none that would make it faster. */
+/*
+ * Torque in parts of the rated one, as the motor turns. At its highest speed (6080) a motor gets none that speeds it
+ * up.
+ */
 static void push(struct servo *drive, double ratio, uint32_t cycle_ns)
 {
     struct servo_loop *loop = &drive->loop;

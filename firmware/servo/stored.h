@@ -10,7 +10,7 @@
 
 #include "servo/servo.h"
 
-/* Of all objects of a drive's own dictionary. */
+/* Bytes of all objects of a drive's own dictionary. */
 #define SERVO_STORED_MAX 4096
 
 /* All that can be written, and does not change from cycle to cycle. */

@@ -150,7 +150,7 @@ void takt_shape_restart(struct shape *s, const struct point *at)
     s->still = s->cycles;
 }
 
-/* What came in so many cycles ago. */
+/* What came in this many cycles ago. */
 static const struct point *past(const struct shape *s, uint32_t cycles)
 {
     return cycles < s->known ? &s->input[(s->newest - cycles) % SHAPE_CYCLES_MAX] : &s->start;

@@ -1,5 +1,5 @@
 /*
- * A train of impulses: a weighted mean of what came in so many cycles ago. Weights add up to 1.
+ * A train of impulses: a weighted mean of what came in c_i cycles ago. Weights add up to 1.
  *
  *     y(n) = w_0 x(n - c_0) + w_1 x(n - c_1) + ...
  *
@@ -10,7 +10,10 @@
 
 #include <stdint.h>
 
-/* Of two modes 3 x 3 (or 5 x 5 of those that stand between cycles), times 3 that keep the way, times 2 of a delay. */
+/*
+ * Impulses for two modes: 3 x 3 (or 5 x 5 of those that stand between cycles), times 3 that keep the way, times 2 of a
+ * delay.
+ */
 #define TRAIN_IMPULSES_MAX 64
 
 struct impulse {

@@ -30,7 +30,7 @@ struct course {
     float jerk;
 };
 
-/* Of a line: what each axis leaves along it. */
+/* Bounds on a line: what each axis leaves along it. */
 static void bound_line(const struct route *r, const struct smooth_limits *machine, uint32_t index,
                        struct course *c)
 {

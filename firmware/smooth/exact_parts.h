@@ -14,7 +14,7 @@
 /* Limits of a block are found for overrides up to this. */
 #define BLOCK_OVERRIDE_MAX 1.2
 
-/* Of jerk that blocks leave to junctions at most, and of acceleration that a junction may use with all of that. */
+/* Part of jerk that blocks leave to junctions at most, and of acceleration that a junction may use with all of that. */
 #define BLOCK_JERK_BUDGET_MAX 0.5
 #define JUNCTION_ACCELERATION 0.1
 
@@ -23,8 +23,8 @@
 #define JUNCTION_CYCLES_APART (2.0 * JUNCTION_CYCLES_NEAR)
 
 /*
- * A junction feed below so many times jerk x cycle^2, the jerk that the largest share leaves, is too slow to be landed at: the
- * axes stop.
+ * A junction feed below this many times jerk x cycle^2, the jerk that the largest share leaves, is too slow to be
+ * landed at: the axes stop.
  */
 #define JUNCTION_LEAST_CYCLES 4.0
 

@@ -30,7 +30,7 @@ static double longest_ramp(const struct smooth_limits *limits, unsigned axes)
     return longest;
 }
 
-/* Of the axis that crosses the tolerance soonest. */
+/* Interval by the axis that crosses the tolerance soonest. */
 static double soonest_interval(const struct smooth_limits *curve, unsigned axes,
                                double tolerance_mm)
 {

@@ -5,7 +5,7 @@
 /* Part of the tolerance that the chords between setpoints may take, for each axis. */
 #define CHORD_PART 0.25
 
-/* Of the acceleration that a corner within the tolerance comes to by jerk alone, cbrt(P J^2). */
+/* Acceleration at a corner within the tolerance, in parts of what jerk alone comes to, cbrt(P J^2). */
 #define CORNER_PART 1.5
 
 /*
