@@ -2,7 +2,7 @@
  * A concise device configuration (CiA 302-3, object 1F22): what a node is to be told, as its maker's tool or a generator has
  * written it. All numbers have the lowest byte first.
  *
- *     number of entries, 4 bytes; each: index 2, sub-index 1, size 4, and so many bytes of the value
+ *     number of entries, 4 bytes; each: index 2, sub-index 1, size 4, and the value, of that size
  */
 #ifndef TAKT_CANOPEN_CONCISE_DCF_H
 #define TAKT_CANOPEN_CONCISE_DCF_H

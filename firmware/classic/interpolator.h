@@ -38,8 +38,8 @@ struct interpolator_config {
 #define INTERPOLATOR_ANGLE_BITS_MAX 24
 
 /*
- * What the last bit of a signed word of so many bits is worth, when it counts a range: the increment times a power of two,
- * the least with which the range fits. All > 0.
+ * What the last bit of a signed word of word_bits bits is worth, when it counts a range: the increment times a power of
+ * two, the least with which the range fits. All > 0.
  */
 double takt_interpolator_unit_mm(double increment_mm, double range_mm, unsigned word_bits);
 

@@ -34,7 +34,7 @@ struct grid_input {
     float mm_per_step;
 };
 
-/* Derivatives up to the third order, by any of four inputs: so many are told apart. */
+/* Number of different derivatives up to the third order, by any of four inputs. */
 #define GRID_ORDERS 35
 
 struct grid {

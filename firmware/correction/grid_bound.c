@@ -12,7 +12,7 @@ struct grid_order {
 /* (-1)^(n-i) over i of n, of differences of up to third order. */
 static const float binomial[4][4] = {{1}, {-1, 1}, {1, -2, 1}, {-1, 3, -3, 1}};
 
-/* What is summed along an input: so many coefficients, from one that stands a little before or at the place. */
+/* What is summed along an input: count coefficients, from one that stands a little before or at the place. */
 struct taps {
     unsigned count;
     unsigned before;

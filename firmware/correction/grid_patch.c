@@ -32,7 +32,7 @@ enum { STAGE_NONE, STAGE_CELL, STAGE_WEIGHTS, STAGE_LINES };
 static const float share[GOING] = {0.0F,          1.0F / 96.0F,  8.0F / 96.0F,  25.0F / 96.0F,
                                    48.0F / 96.0F, 71.0F / 96.0F, 88.0F / 96.0F, 95.0F / 96.0F};
 
-/* So many times as far as GRID_PATCH_FAR, axes do not come to by moving: their place has been set anew. */
+/* Axes never come this many times as far as GRID_PATCH_FAR by moving: their place has been set anew. */
 #define LOST_RATIO 2.0F
 
 #define W1 (2.0F / (float)GOING)
@@ -139,7 +139,7 @@ static void get_inputs(const struct grid *grid, const struct point *at,
     }
 }
 
-/* Its anchor: so many cycles ahead, but within the table. */
+/* Its anchor: this many cycles ahead, but within the table. */
 static void begin_patch(const struct grid *grid, struct grid_patches *p, const struct point *at,
                         const float step[GRID_PATCH_INPUTS], float cycles)
 {

@@ -25,7 +25,7 @@
  */
 #define GRID_PATCH_NEAR_MM 4e-9
 
-/* So many times as far as it is that good, a patch is used at most, by axes that go fast; its error there. */
+/* A patch is used at most this many times as far as it is that good, by axes that go fast; its error there. */
 #define GRID_PATCH_FAR      18
 #define GRID_PATCH_ERROR_MM (GRID_PATCH_NEAR_MM * GRID_PATCH_FAR * GRID_PATCH_FAR * GRID_PATCH_FAR)
 

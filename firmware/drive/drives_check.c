@@ -6,7 +6,7 @@
 #include "canopen/emcy.h"
 #include "drive/drives_private.h"
 
-/* A drive stands when for so many reports it has moved no more than this in each, mm or rad, or an increment. */
+/* A drive stands when in each of this many reports it has moved by REST_MM (mm or rad), or an increment, at most. */
 #define REST_REPORTS 10
 #define REST_MM      1e-5
 

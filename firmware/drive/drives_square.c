@@ -83,14 +83,14 @@ static double square_cycles(const struct drives *d, const struct drives_axis *se
     return 1e6 / d->cycle_us * maths_max(by_velocity_s, by_acceleration_s);
 }
 
-/* u of so many cycles after the beginning. */
+/* u this many cycles after the beginning. */
 static double part_of_way(double cycles, double whole_cycles)
 {
     const double u = cycles < whole_cycles ? maths_max(cycles, 0) / whole_cycles : 1;
     return u * u * u * (10 + u * (6 * u - 15));
 }
 
-/* To where it is in this cycle of a way that takes so many. */
+/* To where it is in this cycle, on a way that takes this many cycles. */
 static void move_second(struct drives *d, unsigned index, double way_inc, double cycles)
 {
     struct drives_axis *second = &d->axis[index];

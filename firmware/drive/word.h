@@ -15,7 +15,7 @@ struct word {
 
 void takt_word_add_text(struct word *word, const char *text);
 void takt_word_add_number(struct word *word, uint32_t number);
-/* With so many digits, 1 ... 8. */
+/* With this many digits, 1 ... 8. */
 void takt_word_add_hex(struct word *word, uint32_t number, unsigned digits);
 
 #endif

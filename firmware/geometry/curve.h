@@ -109,7 +109,7 @@ struct curve_bounds {
 };
 
 /*
- * Line from start to end. False when it is shorter than CURVE_LENGTH_MIN_MM (or so many rad): *c is then not usable.
+ * Line from start to end. False when it is shorter than CURVE_LENGTH_MIN_MM (or as many rad): *c is then not usable.
  */
 bool takt_curve_set_line(struct curve *c, const struct point *start, const struct point *end);
 

@@ -23,7 +23,7 @@
 
 struct nurbs {
     uint32_t order;              /* degree + 1 */
-    uint32_t points, knots;      /* so many have come */
+    uint32_t points, knots;      /* that have come */
     bool within;                 /* the span of the newest knot is not finished */
     double at;                   /* parameter up to which there are pieces */
     double point[NURBS_KEPT][3]; /* both coordinates times the weight, and the weight */

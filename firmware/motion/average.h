@@ -16,7 +16,7 @@ struct average_box {
     uint64_t sum;        /* of the inputs that the box reaches over */
     uint32_t first, end; /* their places */
     uint32_t next;       /* of these places: the oldest input, that of the next one */
-    uint32_t old;        /* so many of them are older than the start: not in their places */
+    uint32_t old;        /* how many of them are older than the start: not in their places */
     uint64_t oldest;     /* of those, the oldest, and from each to the next */
     uint64_t step;
 };

@@ -38,7 +38,7 @@ struct landing_run {
 /* Can the junction be landed on from here? Fills ramp, total and the feeds of run. */
 bool takt_landing_solve(const struct landing_case *l, struct landing_run *run);
 
-/* Distance of the trapezoidal reference from the start of the run after so many of its cycles, and its feed then. */
+/* Distance of the trapezoidal reference from the start of the run after this many of its cycles, and its feed then. */
 double takt_landing_distance(const struct landing_run *run, uint32_t cycle, double *feed);
 
 #endif

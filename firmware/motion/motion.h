@@ -3,8 +3,8 @@
  *
  *     trapezoidal reference (reference.h) -> average (average.h) -> position on the path -> curve -> setpoint
  *
- * The cycle asks for a new ceiling every MOTION_EXCHANGE_CYCLES and takes the answer so many cycles later, so that every
- * build makes the same setpoints as long as its background is not later than that.
+ * The cycle asks for a new ceiling every MOTION_EXCHANGE_CYCLES and takes the answer that many cycles later, so that
+ * every build makes the same setpoints as long as its background is not later than that.
  */
 #ifndef TAKT_MOTION_MOTION_H
 #define TAKT_MOTION_MOTION_H

@@ -18,7 +18,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
-/* Ceilings that bind until the setpoint has left what they are made of: at most so many are told apart. */
+/* Ceilings that bind until the setpoint has left what they are made of: at most this many are told apart. */
 #define REFERENCE_LOW_MAX 32
 
 /* Pieces that the trapezoidal reference comes to, or that are looked at, in one cycle at most. */
@@ -117,7 +117,7 @@ void takt_reference_leave_halt(struct reference *l);
 bool takt_reference_could_be(const struct reference *l, uint64_t at, double feed, bool highest);
 /*
  * It is there: the setpoint is moved by others (hold.h), to a position, and has had that feed for a whole window but for one
- * cycle, in which it keeps it: third differences reach over so many more.
+ * cycle, in which it keeps it: third differences reach over that many more.
  */
 void takt_reference_follow(struct reference *l, uint64_t at, double feed, uint64_t setpoint);
 

@@ -32,7 +32,7 @@
 
 /* -- braking -- */
 
-/* Feed at the end of a piece: 0 at a junction that is only come to rest at, whatever follows. */
+/* Feed at the end of a piece: 0 at a junction where the axes only come to rest, whatever follows. */
 static double end_feed(const struct reference *l, const struct ceiling_piece *p)
 {
     return p->feed_mm_s == 0.0F ? 0.0 : reference_feed(l, p->end_feed_mm_s);
@@ -78,7 +78,7 @@ static double cycle_way(const struct reference *l, const struct reference_brake 
 }
 
 /*
- * Brakes for it. True: it is to be come to rest at in this cycle, a little early perhaps, so that no feed is left that is
+ * Brakes for it. True: it is to stop there in this cycle, a little early perhaps, so that no feed is left that is
  * lost in the rounding of positions; but not by a longer way than a cycle may have, where the axes could do much more.
  */
 static bool brake_for(const struct reference *l, const struct place *p, struct reference_brake *b)
@@ -113,7 +113,7 @@ void takt_reference_brake_to_halt(const struct reference *l, struct reference_br
     brake_to_rest(l, l->halt.end, takt_reference_halt_acceleration(l), b);
 }
 
-/* Where the end of piece k is come to rest at: the end of its block exactly, if that is where it ends. */
+/* Where it stops at the end of piece k: the end of its block exactly, if that is where it ends. */
 static uint64_t rest_position(const struct reference *l, uint32_t k)
 {
     const uint64_t end = l->here.ceiling->origin + path_units(reference_end_mm(l, k));
@@ -163,7 +163,7 @@ static bool is_open(const struct reference *l)
 
 /*
  * The highest feed v up to top that can be kept for K cycles and then be braked from to the end of what is known:
- * v K + v^2 / 2a <= x_end - x, x = s + (w + v)/2. So it is neared ever slower, and not come to rest at as long as more
+ * v K + v^2 / 2a <= x_end - x, x = s + (w + v)/2. So it is neared ever slower, and not stopped at as long as more
  * comes in time.
  */
 static double feed_to_wait(const struct reference *l, double top)
@@ -212,7 +212,7 @@ void takt_reference_brake_ahead(const struct reference *l, double low, struct re
 
 /* -- landing -- */
 
-/* A junction that nothing is known behind is only come to rest at: the ceiling ends with it. */
+/* At a junction behind which nothing is known it only comes to rest: the ceiling ends with it. */
 static bool has_landing(const struct reference *l)
 {
     const uint32_t k = reference_landing(l);

@@ -1,6 +1,6 @@
 /*
- * Goal: every motion that can still be come to rest in ends at rest, exactly at its end, whenever that is asked for and
- * taken back (single block).
+ * Goal: every motion in which it can still come to rest ends at rest, exactly at its end, whenever that is asked for
+ * and taken back (single block).
  *
  * The ceilings know nothing of it: in them the motion is passed. The trapezoidal reference alone halts, as in a hold, but at the next
  * end E of a motion in its span, if it can come to rest there:

@@ -124,7 +124,7 @@ static bool can_meet(const struct ceiling *c, uint32_t k, double x, double feed_
             return false;
         }
     }
-    return true; /* so many pieces within a window: what ends the last one counts for those behind */
+    return true; /* this many pieces within a window: what ends the last one counts for those behind */
 }
 
 /* Can the trapezoidal reference in piece k do what the ceiling asks for from here on, but for rounding? */

@@ -24,7 +24,7 @@ struct reference_brake {
     double at_mm; /* the trapezoidal reference, from the ceiling's origin */
     double feed;
     double low;      /* the feed it may have at most here, */
-    uint32_t pieces; /* and so many from here on that have been braked for */
+    uint32_t pieces; /* and how many from here on have been braked for */
     double a;
     bool rest;
     uint64_t rest_at;

@@ -27,10 +27,12 @@ uint32_t takt_ramp_profile_cycles_max(enum ramp_profile profile);
 /* Boxes of a profile, 1 ... LAW_BOXES_MAX. */
 unsigned takt_ramp_profile_boxes(enum ramp_profile profile);
 
-/* Cycles of box i < takt_ramp_profile_boxes when the first one has so many: the others half of it, rounded up. */
+/* Cycles of box i < takt_ramp_profile_boxes when the first one has this many: the others half of it, rounded up. */
 uint32_t takt_ramp_profile_box_cycles(unsigned i, uint32_t cycles);
 
-/* Cycles that the averages together reach over: a setpoint depends on so many positions of the trapezoidal reference. */
+/*
+ * Cycles that the averages together reach over: a setpoint depends on this many positions of the trapezoidal reference.
+ */
 uint32_t takt_ramp_profile_window_cycles(enum ramp_profile profile, uint32_t cycles);
 
 #endif

@@ -228,7 +228,7 @@ static void plan_energies(struct trial *t)
 
 struct walk {
     double cycles; /* so far */
-    bool rose;     /* and has kept its feed since for so many mm */
+    bool rose;     /* and has kept its feed since for kept_mm */
     double kept_mm;
 };
 
@@ -272,7 +272,7 @@ static void pass_part(struct walk *w, const struct trial *t, unsigned k)
     }
 }
 
-/* Cycles that the span takes with a first box of so many. */
+/* Cycles that the span takes with a first box of this many. */
 static double predict(const struct span *s, uint32_t box)
 {
     const double window = (double)takt_ramp_profile_window_cycles(s->profile, box);

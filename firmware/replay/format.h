@@ -52,7 +52,7 @@
 
 #define REPLAY_RICE_BITS 3
 
-/* So many ends in an interval are told no more closely. */
+/* From this number of ends in an interval on they are told no more closely. */
 #define REPLAY_ENDS_CROWD 8
 
 #define REPLAY_SECTION_BYTES 36
@@ -98,7 +98,7 @@ struct replay_bits {
 void takt_replay_put_bits(struct replay_bits *b, unsigned value, unsigned count);
 unsigned takt_replay_get_bits(struct replay_bits *b, unsigned count);
 
-/* Numbers of so many bytes. */
+/* Numbers of size bytes. */
 void takt_replay_put(uint8_t *bytes, uint64_t value, unsigned size);
 uint64_t takt_replay_get(const uint8_t *bytes, unsigned size);
 

@@ -52,7 +52,7 @@ double takt_rate_bend(const struct rate *r, double to, double room, double most)
 /* How far on the curve it leads to come to rest from the rate 1, in cycles of the curve, at most. */
 double takt_rate_brake_cycles(const struct rate *r);
 
-/* The highest rate, up to 1, from which it comes to rest within so many cycles of the curve, 500 or more. */
+/* The highest rate, up to 1, from which it comes to rest within this many cycles of the curve, 500 or more. */
 double takt_rate_highest(const struct rate *r, double cycles);
 
 /* Does it stand? */

@@ -186,7 +186,7 @@ static double wanted_rate(const struct replay *r, const struct block *b,
     return maths_clamp(ratio / compiled, 0.0, r->highest);
 }
 
-/* Nothing must be driven that could not be come to rest on: the stream is late. */
+/* Nothing must be driven on which it could not come to rest: the stream is late. */
 static bool is_starving(const struct replay *r)
 {
     const struct intake *s = r->intake;

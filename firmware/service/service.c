@@ -7,7 +7,7 @@
 #include <string.h>
 
 /*
- * So many cycles without motion after a hold was asked for are rest: the first may be the last one before the hold is
+ * This many cycles without motion after a hold was asked for are rest: the first may be the last one before the hold is
  * seen, and a stretch may begin with a cycle too slow to move any axis by a bit.
  */
 #define REST_CYCLES 3

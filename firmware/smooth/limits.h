@@ -32,7 +32,7 @@ struct smooth_limits {
     double jerk_mm_s3[AXIS_COUNT];
     double cycle_s; /* control cycle */
     double
-        windows; /* in all windows of its ramp law there are so many of the first one (plan/ramp_profile.h) */
+        windows; /* all windows of its ramp law together, as a multiple of the first one (plan/ramp_profile.h) */
     double
         chord_mm; /* the line through setpoints leaves the curve by it: A cycle^2/8; the smoother's */
 };

@@ -14,7 +14,7 @@
 /* Where directions differ by less, rounding of them is what differs. */
 #define TURN_MIN 1e-6f
 
-/* How many elements a corner is looked at together with, and when: so many elements after it have come. */
+/* How many elements a corner is looked at together with, and how many after it must have come. */
 #define NEIGHBOURS 8
 #define BEHIND     4
 

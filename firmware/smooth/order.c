@@ -80,7 +80,9 @@ static float length_of(const struct route *r, const float way[])
     return single_sqrt(square);
 }
 
-/* Of a line as far as anything on it can be near the chord, of a bend as far as it is straight. */
+/*
+ * Where a link ends: on a line where nothing can be near the chord any more, on a bend where it is no longer straight.
+ */
 static double link_end(const struct route *r, const struct order_chord *chord, struct link *l,
                        float chord_mm)
 {
@@ -181,7 +183,7 @@ static void add_span(struct order *o, double first_mm, double last_mm, double be
     o->count++;
 }
 
-/* Of a link the places near the end of the chord. */
+/* Adds the places of a link that are near the end of the chord. */
 static void add_link(struct order *o, const struct route *r, const struct order_chord *chord,
                      const struct link *l)
 {

@@ -5,7 +5,7 @@
  * With K the rows, z the nearest values that are allowed, u the sums of what was missing, R the weights and a the
  * over-relaxation, one iteration is
  *     c += (K' R K)^-1 K' R (z - u - K c),    t = a K c + (1 - a) z + u,    z = nearest(t),    u = t - z.
- * Of z and u only p = (1 - a) z + u is kept. The rows are counted so that R is 1 but for the tolerance. The matrix has
+ * Only p = (1 - a) z + u is kept of z and u. The rows are counted so that R is 1 but for the tolerance. The matrix has
  * three bands beside its diagonal (bands.c). Where the timing asks for too much there is no such c; the last iterations
  * then favour the tolerance, and the timing is changed.
  */
@@ -21,7 +21,7 @@
 /* Over-relaxation. */
 #define ALPHA 1.6f
 
-/* The last iterations weigh the tolerance so many times more. */
+/* The last iterations, and how many times more they weigh the tolerance. */
 #define LAST             4
 #define LAST_TUBE_WEIGHT 30.0f
 
@@ -40,10 +40,10 @@
 /* Rows that count more than this, relative to the tolerance, would leave too few digits. */
 #define SCALE_MAX 300.0f
 
-/* Rows of second differences count so many times more than the others: along straights they alone find the ramps. */
+/* Rows of second differences count this many times more than the others: along straights they alone find the ramps. */
 #define BEND_COUNTS 2.0f
 
-/* What the axis of the least acceleration needs counts for all, up to so many times what that of the most needs. */
+/* What the axis of the least acceleration needs counts for all, up to this many times what that of the most needs. */
 #define BEND_SPAN 4.0f
 
 /* What a curved route may leave its tangent by for that to stand for it, as a part of the tolerance. */
@@ -59,7 +59,7 @@ struct relax_pass {
     float corner_most; /* tolerance of corners, as a part of the tolerance */
 };
 
-/* Of the slots of a group, the least and the most that a row counts. */
+/* The least and the most that a row counts, over the slots of a group. */
 struct relax_span {
     float least, most;
 };
@@ -72,7 +72,8 @@ static void widen(struct relax_span *span, float per_near)
 
 /*
  * What rows of second and third differences count is the same for all axes of a group, so that one matrix serves them all.
- * Of machines that were tried, with axes up to ten times as quick as others, these came nearest to a matrix for each axis.
+ * On machines that were tried, with axes up to ten times as quick as others, these came nearest to a matrix for each
+ * axis.
  */
 static void set_rows(struct relax_scale *s, const struct route *r, unsigned group,
                      float tolerance_mm, float d)

@@ -15,7 +15,7 @@
 #define ROUNDS       1
 #define ROUNDS_FIRST 4
 
-/* So many sixteenths of the window's pieces are kept each time. */
+/* Sixteenths of the window's pieces that are kept each time. */
 #define KEPT_SIXTEENTHS 9U
 /* Lines are merged within this part of the tolerance at most. */
 #define MERGED 0.05
@@ -26,7 +26,7 @@
 /* Times that a window is slowed down because a piece leaves the tolerance. */
 #define ATTEMPTS 16
 
-/* Of what it left the tolerance by before, a slower piece leaves it by so much at most, or slower is no help. */
+/* A slower piece leaves the tolerance by at most this part of what it left it by before, or slower is no help. */
 #define NEARER 0.95f
 
 /* What a microcontroller is ready to give for smoothing. */
@@ -264,7 +264,7 @@ static void relax_and_locate(struct smooth *s, union smooth_scratch *scratch)
     takt_window_locate(&s->window, &s->route);
 }
 
-/* With all known of a longer route in the window, one of so many pieces is kept: the others slow down to its end. */
+/* With all known of a longer route in the window, one of this many pieces is kept: the others slow down to its end. */
 #define BLIND_PART 2
 
 /* Pieces before one that leaves the tolerance that are tried again with it: what they begin with binds it. */
@@ -289,13 +289,13 @@ static void verified(struct smooth *s, struct verifier_verdict *v)
     takt_verifier_pieces(&s->window, &s->route, wanted(s), kept_most(s), &s->order, v);
 }
 
-/* Do so many pieces come to the end of the chain? */
+/* Do this many pieces come to the end of the chain? */
 static bool is_end(const struct smooth *s, unsigned pieces)
 {
     return s->finished && s->window.at_end && pieces == s->window.count - 3;
 }
 
-/* Pieces to keep when so many from the first on are good. */
+/* Pieces to keep when this many from the first on are good. */
 static unsigned kept(const struct smooth *s, unsigned good)
 {
     const struct window *w = &s->window;

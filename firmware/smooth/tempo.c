@@ -25,7 +25,7 @@
 #define BARRIER_LESS 0.4f
 #define STEP_FAR     0.3f
 
-/* Of the way to the first limit in its direction so much is gone. */
+/* Part of the way to the first limit in its direction that a step goes. */
 #define STEP_PART 0.95f
 
 /* Rates between 0.15 and 1.5: what is farther off is left to the next window. */
@@ -135,7 +135,10 @@ static inline void rows_of(const struct tempo *p, unsigned slot, unsigned piece,
     row[2].by[2] = m1.jerk * (m1.half + 1.5f * m1.second + 0.5f * third) + faster1;
 }
 
-/* Of pieces' rows: for each of their three coefficients the gradient, and its products with itself and with those behind. */
+/*
+ * Sums over pieces' rows: for each of their three coefficients the gradient, and its products with itself and with
+ * those behind.
+ */
 struct sums {
     lanes of[TEMPO_SUMS];
 };
@@ -168,7 +171,7 @@ static inline void add_row(struct sums *s, const struct row *row, float weight)
     }
 }
 
-/* Of the slots that lie in a lane. */
+/* Sums over the slots that lie in a lane. */
 static inline void sum_lane(const struct tempo *p, const struct route *r, unsigned lane,
                             unsigned piece, const struct end end[2], float weight, struct sums *s)
 {
@@ -185,7 +188,7 @@ static inline void sum_lane(const struct tempo *p, const struct route *r, unsign
     }
 }
 
-/* Of the pieces from one on, as many as there are lanes, all slots: in the order of lanes_sum(). */
+/* Sums of the pieces from one on, as many as there are lanes, over all slots: in the order of lanes_sum(). */
 static void sum_pieces(struct tempo *p, const struct route *r, unsigned piece, float weight)
 {
     const struct end end[2] = {end_of(p->rate_squared + piece),
@@ -229,7 +232,7 @@ static inline lanes sum_at(const struct tempo *p, unsigned as, unsigned n, unsig
     return lanes_at(&p->sum[sums_of[as] + n][i + 2 - as]);
 }
 
-/* Of the three pieces that each coefficient belongs to; and of itself: d/db of -1/sqrt(b) and of its bounds. */
+/* Adds up the three pieces that each coefficient belongs to, and its own part: d/db of -1/sqrt(b) and of its bounds. */
 static void set_coefficients(struct tempo *p, unsigned i, float weight)
 {
     const lanes b = lanes_at(p->rate_squared + i);
@@ -309,7 +312,7 @@ static void solve(struct tempo *p)
     }
 }
 
-/* Of what is left from i on. */
+/* Lanes that what is left from i on takes. */
 static unsigned lanes_used(unsigned count, unsigned i)
 {
     return count - i < SMOOTH_LANES ? count - i : SMOOTH_LANES;

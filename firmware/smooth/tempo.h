@@ -47,7 +47,7 @@ struct tempo {
 
 /* The best that is found. It begins as the window does, at rate 1; unless the path ends there, it ends so too. */
 void takt_tempo_find(struct tempo *p, const struct window *w, const struct route *r);
-/* The same rate everywhere, but for so many pieces to both sides of one. */
+/* The same rate everywhere, but for this many pieces on both sides of one. */
 void takt_tempo_slow(struct tempo *p, const struct window *w, unsigned piece, unsigned around,
                      float rate);
 /* b at u samples from the first one, and its derivative. */

@@ -37,8 +37,8 @@
 #define PLACES_MAX 8
 
 /*
- * Of a group of slots. The derivative is a parabola in a piece: it exceeds both its ends by |third difference| / 8 at most.
- * square: of the first derivative, over the linear axes and over the others.
+ * Need of a group of slots. The derivative is a parabola in a piece: it exceeds both its ends by |third difference| / 8
+ * at most. square: of the first derivative, over the linear axes and over the others.
  */
 static void need_of_group(const struct window *w, const struct route *r, unsigned group,
                           unsigned piece, struct verifier_need *need, float square[2])
@@ -393,7 +393,7 @@ struct pace {
     float rate;
 };
 
-/* Of the motions that the curve can be on here the one whose feed is the highest. */
+/* The motion whose feed is the highest, among those that the curve can be on here. */
 static struct pace fastest(const struct route *r, const struct order *order,
                            const struct verifier_need *need)
 {
@@ -414,7 +414,7 @@ static struct pace fastest(const struct route *r, const struct order *order,
     return most;
 }
 
-/* Of all motions from the first to the last that the curve can be on before or after a chord. */
+/* The slowest motion from the first to the last that the curve can be on before or after a chord. */
 static struct pace slowest(const struct route *r, const struct order *before,
                            const struct order *after, const struct verifier_need *need)
 {

@@ -50,15 +50,15 @@ struct verifier_verdict {
     unsigned good; /* pieces from the first one on that keep the tolerance in order */
     float
         beyond_mm; /* how far the next piece leaves the tolerance; 0 or less if it does not, but breaks the order */
-    /* of so many pieces those after which the curve can have come as far as it is thought to be: no corner is left out */
+    /* by number of pieces, those after which the curve can be as far as it is thought to be: no corner is left out */
     unsigned char whole[SMOOTH_SAMPLES_MAX];
     unsigned followed;  /* the last of those of the pieces that were to be kept, */
     struct order order; /* and what can have been come to there */
 };
 
 /*
- * Of the first count pieces, of which so many are to be kept. order: what can have been come to where they begin. Tells the
- * window whose feed is theirs.
+ * Verifies the first count pieces, of which keep are to be kept. order: what can have been come to where they begin.
+ * Tells the window whose feed is theirs.
  */
 void takt_verifier_pieces(struct window *w, const struct route *r, unsigned count, unsigned keep,
                           const struct order *order, struct verifier_verdict *v);

@@ -17,10 +17,10 @@
 /* A corner that turns by more than this must be passed by the curve before its samples are beyond it. */
 #define SHARP 0.2f
 
-/* So many tolerances from a corner is near it: the chord of two samples cannot tell more. */
+/* Up to this many tolerances from a corner is near it: the chord of two samples cannot tell more. */
 #define NEAR_CORNER 3.0f
 
-/* A window as long as the fastest feed makes it takes so many units; coordinates may be a few times that. */
+/* A window as long as the fastest feed makes it takes this many units; coordinates may be a few times that. */
 #define UNITS 268435456.0
 
 /* Coordinates are never farther from the origin. */

@@ -3,7 +3,7 @@
  *
  *     q(u) = sum of b_k(f) x[i + k], k = 0..3, for u = i + 1 + f: the piece i lies between samples i + 1 and i + 2
  *
- * Coordinates are integers: so many units from the window's origin, a unit being a power of two that is small enough for
+ * Coordinates are integers: units from the window's origin, a unit being a power of two that is small enough for
  * differences of every order to be exact. What is handed on is rounded in this way once and for all, so pieces of
  * different windows fit together.
  *

@@ -3,7 +3,7 @@
 #include "smooth/exact.h"
 #include "smooth/single.h"
 
-/* Of a piece at its rate, s. */
+/* Time of a piece at its rate, s. */
 static float piece_time(const struct worth_window *now, unsigned piece)
 {
     const struct window *w = now->window;
@@ -68,7 +68,7 @@ static float go(const struct worth_window *now, struct passed *last)
     return time;
 }
 
-/* Of a stretch at its nominal feed: neither a curve nor the path is quicker. */
+/* Time of a stretch at its nominal feed: neither a curve nor the path is quicker. */
 static float time_between(const struct worth_window *now, uint32_t element, double from_mm,
                           double to_mm)
 {

@@ -7,7 +7,7 @@
 #include "smooth/verifier.h"
 #include "smooth/window.h"
 
-/* The first so many pieces of a window. */
+/* The first pieces of a window. */
 struct worth_window {
     const struct window *window;
     const struct route *route;

@@ -49,7 +49,7 @@ static_assert(sizeof(double) == 8, "stored as IEEE-754");
 
 #define CORRECTION_MOST 1e6
 
-/* Of any build: takt_machine_check knows how many this one has. */
+/* Highest bus of any build: takt_machine_check knows how many this one has. */
 #define BUS_MOST 255
 
 /* clang-format off */

@@ -22,7 +22,7 @@
 uint32_t takt_settings_volume_bytes(const struct grid *grid);
 uint32_t takt_settings_axes_bytes(const struct axis_tables *tables);
 
-/* Writes so many bytes. */
+/* Writes this number of bytes. */
 void takt_settings_volume_put(const struct grid *grid, uint8_t *bytes);
 void takt_settings_axes_put(const struct axis_tables *tables, uint8_t *bytes);
 

@@ -33,7 +33,7 @@ struct lead_in_place {
     double first, second, third;
 };
 
-/* The way that a spindle of so many rev/s > 0 needs: the axes then keep their acceleration and jerk. */
+/* The way that a spindle of speed_rev_s > 0 needs: the axes then keep their acceleration and jerk. */
 double takt_lead_in_way(double pitch_mm, double speed_rev_s, const struct brake_limits *limits,
                         double cycle_s);
 
