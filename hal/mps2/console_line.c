@@ -13,7 +13,7 @@ static struct {
     bool is_unread;
 } line;
 
-/* After so many interrupts without a byte sent nobody reads: a control cycle has at least one, so that is 0.2 s at 1 ms. */
+/* After this many interrupts without a byte sent nobody reads: each control cycle has one or more, so 0.2 s at 1 ms. */
 #define STILL_MAX 200
 
 /*

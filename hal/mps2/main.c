@@ -33,7 +33,7 @@
 /* Until somebody is heard on the bus. */
 #define TICKS_ANNOUNCE 200U
 
-/* Until all drives are in step a cycle takes so many ticks: they boot by the clock of their own side. */
+/* Until all drives are in step a cycle takes this many ticks: they boot by the clock of their own side. */
 #define TICKS_STARTING 5U
 /* One that has been in step and does not answer for so long is given up. */
 #define TICKS_PATIENCE 5000U

@@ -78,7 +78,7 @@ struct can_port takt_slcan_can_get_port(struct slcan_can *can)
     return (struct can_port){.send = send, .receive = receive, .context = can};
 }
 
-/* So many hexadecimal digits; -1: they are none. */
+/* Reads count hexadecimal digits; -1: they are none. */
 static int32_t read_digits(const char *text, unsigned count)
 {
     int32_t value = 0;

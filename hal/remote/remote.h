@@ -40,9 +40,9 @@ struct remote_hello {
  */
 struct remote_setup {
     uint32_t magic;
-    uint32_t parameters; /* so many */
-    uint32_t tools;      /* so many */
-    uint32_t tables;     /* so many stored tables follow */
+    uint32_t parameters; /* number of them */
+    uint32_t tools;      /* number of them */
+    uint32_t tables;     /* number of stored tables that follow */
     uint32_t from_line;  /* of struct controller_config, as the others */
     uint8_t exact_path;
     uint8_t block_delete;

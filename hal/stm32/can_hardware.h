@@ -37,7 +37,7 @@ bool takt_can_hardware_is_off(void); /* thrown out by its errors */
 void takt_can_hardware_leave(void);
 bool takt_can_hardware_rejoin(void);
 
-/* Of mailboxes 0 ... CAN_MAILBOXES - 1: the most urgent one is sent first, until it is acknowledged. */
+/* Loads one of the mailboxes 0 ... CAN_MAILBOXES - 1: the most urgent one is sent first, until it is acknowledged. */
 void takt_can_hardware_load(unsigned i, const struct can_frame *frame);
 void takt_can_hardware_take_back(unsigned i);
 /* Bit i: the request to mailbox i is over; in sent: its frame has been sent. */

@@ -8,7 +8,7 @@
 
 #include "hal/flash.h"
 
-/* Of the watchdog while a sector is erased, and otherwise. */
+/* Timeout of the watchdog while a sector is erased, and otherwise. */
 #define FLASH_WATCHDOG_MS     8000U
 #define FLASH_WATCHDOG_MS_RUN 250U
 

@@ -47,7 +47,7 @@ void takt_quadrature_open(struct quadrature *quadrature)
     takt_chip_write(CR1, CR1_ON);
 }
 
-/* Of two counts of 16 bits, which are less than half a round apart. */
+/* Way between two counts of 16 bits, which are less than half a round apart. */
 static int64_t way(uint16_t from, uint16_t to)
 {
     return (int16_t)(uint16_t)(to - from);

@@ -20,7 +20,7 @@ struct quadrature {
 /* Counts from 0. */
 void takt_quadrature_open(struct quadrature *quadrature);
 
-/* So many counts up since it was opened. */
+/* Counts up since it was opened. */
 int64_t takt_quadrature_read(struct quadrature *quadrature);
 
 /*

@@ -8,7 +8,7 @@
 /* Divider of a clock at 16 samples a bit. */
 #define DIVIDER_MIN 16U
 #define DIVIDER_MAX 0xFFFFU
-#define ERROR_MAX   50U /* one part of so many: 2 % */
+#define ERROR_MAX   50U /* one part of this many: 2 % */
 
 /* Steps at one time: the longest frame, and what comes meanwhile. */
 #define SERVED_MAX (USART_SEND_MAX + 16U)

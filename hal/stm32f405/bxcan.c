@@ -27,7 +27,7 @@ static void write(uint32_t offset, uint32_t value)
 
 /* ---- bit timing ---- */
 
-/* Thousandths of a bit between the sample point of quanta with so many behind it and 7/8. */
+/* Thousandths of a bit between the sample point of quanta with this many behind it and 7/8. */
 static uint32_t sample_error(uint32_t quanta, uint32_t behind)
 {
     const uint32_t sample = 1000U * (quanta - behind) / quanta;

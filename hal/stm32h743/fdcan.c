@@ -48,7 +48,7 @@ static const struct limits nominal_limits = {256, 128, 512}, data_limits = {32, 
 
 #define QUANTA_MIN 8U
 
-/* Of the delay of a transceiver, which is measured: only for quanta of up to two clocks (ISO 11898-1, 11.3.3). */
+/* A transceiver's delay is measured, and compensated, only for quanta of up to two clocks (ISO 11898-1, 11.3.3). */
 #define DELAY_DIVIDER_MAX 2U
 #define DELAY_OFFSET_MAX  127U
 

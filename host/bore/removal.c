@@ -186,7 +186,9 @@ static bool advance(struct bore_removal *r, struct sweep *s, const double at_mm[
     return true;
 }
 
-/* A level where the cutter stands, and its way since, for so many turns. first_mm2: what its first disc has removed. */
+/*
+ * A level where the cutter stands, and its way since, for this many turns. first_mm2: what its first disc has removed.
+ */
 static bool sweep_level(struct bore_removal *r, const struct bore_track *t, size_t first,
                         double cutter_mm, double turns, double *first_mm2)
 {
@@ -227,7 +229,7 @@ static size_t reached(const struct bore_track *t, double down_mm)
     return i;
 }
 
-/* A level's part of the mean; it begins behind in the turn by so many windows. */
+/* A level's part of the mean; it begins this many windows behind in the turn. */
 static void add_level(struct bore_removal *r, const struct bore_removal *level, size_t behind)
 {
     for (size_t i = 0; i < level->count && i < BORE_WINDOWS_PER_TURN; i++) {
@@ -254,7 +256,7 @@ static bool make_level(struct bore_removal *level, const struct bore_track *t, d
     return true;
 }
 
-/* Windows of so many turns, the first turn's as they are in the others. */
+/* Windows of this many turns, the first turn's as they are in the others. */
 static bool add_turns(struct bore_removal *r, unsigned turns)
 {
     for (size_t i = 0; i < (size_t)turns * BORE_WINDOWS_PER_TURN; i++) {

@@ -9,7 +9,7 @@
 #define HEIGHT    760
 #define RADIUS_PX 200.0 /* of the programmed circle */
 #define STEP_PX   25.0  /* of a division, */
-#define STEPS     4     /* of which so many are drawn to either side */
+#define STEPS     4     /* of which this many are drawn to either side */
 
 /* Places drawn of a turn: more would not be seen. */
 #define PLACES 7200

@@ -15,7 +15,7 @@
 /* Words have six decimals: what is written is this far from what was meant, at most, in each axis. */
 #define WRITTEN_STEPS_PER_MM 1e6
 
-/* So many of them are no change of a length. */
+/* Up to this many of them are no change of a length. */
 #define WRITTEN_STEPS 4.0
 
 /* Arcs and involutes of more than a third of a turn are never written. */
@@ -28,8 +28,8 @@
 #define INVOLUTE_CLOSED_MM 4e-6
 
 /*
- * A piece is compared with the corrected path at so many places, less one. Between them it may be a little farther off: of
- * a parabola nothing, of a cubic of the same three points 0.4 % of the largest distance.
+ * A piece is compared with the corrected path at this many places, less one. Between them it may be a little farther
+ * off: of a parabola nothing, of a cubic of the same three points 0.4 % of the largest distance.
  */
 #define SAMPLES      8
 #define BETWEEN_PART 0.98

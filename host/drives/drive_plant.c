@@ -232,7 +232,7 @@ static void hit_stop(struct drive_plant *plant)
     plant->velocity_mm_s = 0;
 }
 
-/* What the loops asked for so many steps ago. */
+/* What the loops asked for torque_delay_steps ago. */
 static double delayed(struct drive_plant *plant, double asked_mm_s2)
 {
     const uint32_t now = plant->asked++;

@@ -223,7 +223,7 @@ static const char *meaning_of_word(const struct line_word *w)
     return w->kind == WORD_VALUE ? meaning_of_letter(w->letter) : NULL;
 }
 
-/* Of a code that takt does not have the machine file may say what becomes of it. */
+/* The machine file may say what becomes of a code that takt does not have. */
 static const char *meaning_declared(const struct lsp_program *p, const struct line_word *w,
                                     char text[DIALECT_CODE_TEXT_MAX])
 {

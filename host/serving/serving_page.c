@@ -13,7 +13,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Chords of a curve that is drawn: about so long, so many at least and at most. */
+/* Chords of a curve that is drawn: about this long, this many at least and at most. */
 #define CHORD_MM   0.5
 #define CHORDS_MIN 8
 #define CHORDS_MAX 96
@@ -191,7 +191,7 @@ static void read_responses(const struct drive_network *network, struct page_bus 
     }
 }
 
-/* Of several buses: their frames together, the highest load, the longest response. */
+/* Figures of several buses: their frames together, the highest load, the longest response. */
 static void read_bus(const struct serving *s, struct page_bus *shown)
 {
     const struct inject_clock *clock = virtual_drives_get_clock(&s->network.drives);

@@ -229,7 +229,7 @@ enum command_status serving_state_start(struct serving_state *st)
     return !st->is_kept || state_keeper_start(&st->keeper) ? STATUS_DONE : refuse(st, "no thread");
 }
 
-/* Of the tools of the table, in the state's order of use. */
+/* Wear of the tools of the table, in the state's order of use. */
 static void fill_wear(struct state *state, const struct correction *correction)
 {
     state->wears = 0;

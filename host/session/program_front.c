@@ -193,7 +193,7 @@ static void note_line(struct junction *j, const char *bytes, size_t length)
     }
 }
 
-/* Of a file that is no program by itself '%' means nothing; a program ends with its second one. */
+/* In a file that is no program by itself '%' means nothing; a program ends with its second one. */
 static bool take_line(struct junction *j, const char *bytes, size_t length, bool program)
 {
     const bool percent = length > 0 && bytes[0] == '%';

@@ -126,7 +126,7 @@ const char *drive_network_get_problem(struct drive_network *network);
 void drive_network_log(struct drive_network *network, struct frame_buffer *frames,
                        struct candump *log);
 
-/* Of buses inside: bus_clear_responses, bus_end_responses. */
+/* For buses inside: bus_clear_responses, bus_end_responses. */
 void drive_network_clear_responses(struct drive_network *network);
 void drive_network_end_responses(struct drive_network *network);
 
@@ -139,7 +139,7 @@ uint64_t drive_network_get_frames(const struct drive_network *network, unsigned 
  * say.
  */
 double drive_network_get_load_percent(const struct drive_network *network, unsigned bus);
-/* Of the bus that has the most. */
+/* Load of the bus that has the most. */
 double drive_network_get_highest_load_percent(const struct drive_network *network);
 
 #endif

@@ -169,7 +169,7 @@ static void write_json(FILE *file, const struct circle_job *job)
     cJSON_free(text);
 }
 
-/* Of files that are open: all of them or none. */
+/* Writes files that are open: all of them or none. */
 static bool write_files(const struct circle_job *job, struct output_file *picture,
                         struct output_file *json)
 {

@@ -5,20 +5,22 @@
 
 #include <string.h>
 
-/* How far ahead of what has been left the path is looked for: so many steps, and so many tolerances. */
+/* How far ahead of what has been left the path is looked for: this many steps, and this many tolerances. */
 #define REACH_STEPS      4
 #define REACH_TOLERANCES 20
 
 /*
- * Where the setpoint is within the tolerance of the path up to so many motions beyond the one that is executed, no more are
- * gone to; so many behind it are not left yet. What the planner on board rounds at once has fewer (smooth/route.h), and there
- * a circle is one, which is cut into many pieces here.
+ * Where the setpoint is within the tolerance of the path up to this many motions beyond the one that is executed, no
+ * more are gone to; as many behind it are not left yet. What the planner on board rounds at once has fewer
+ * (smooth/route.h), and there a circle is one, which is cut into many pieces here.
  */
 #define CROWD 128
-/* And no more than so many pieces: circles of many turns within the tolerance would make the work grow with their square. */
+/*
+ * And no more than this many pieces: for circles of many turns within the tolerance work would grow with their square.
+ */
 #define CROWD_PIECES 1024
 
-/* The motion that is said to be executed may be so many off: curves over several have the number of one. */
+/* The motion that is said to be executed may be this many off: curves over several have the number of one. */
 #define NUMBER_ROOM 16
 
 /* Steps to the nearest place of a curved curve. */
@@ -365,7 +367,7 @@ static bool is_believed(const struct tube_piece *piece, const struct stride *ste
                piece->motion->tolerance_mm;
 }
 
-/* Of the pieces far ahead of the first one, the first that is believed; t->active: there is none. */
+/* The first piece that is believed, of those far ahead of the first one; t->active: there is none. */
 static size_t find_believed(struct tube_verifier *t, const struct stride *step)
 {
     const uint32_t first = tube_path_at(&t->path, 0)->motion->number;

@@ -185,7 +185,7 @@ static double involute_chord_error(const struct curve *c, const struct point *fr
     return largest;
 }
 
-/* The largest of so many places between both. */
+/* Places between both, of which the largest counts. */
 #define CHORD_PLACES 16
 
 static double quintic_chord_error(const struct curve *c, const struct point *from,
