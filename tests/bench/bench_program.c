@@ -22,7 +22,7 @@
 #define LINES_FEW  1000UL
 #define LINES_MANY 1000000UL
 #define ROUNDS     3
-/* Of a child that could not be started. */
+/* Exit status of a child that could not be started. */
 #define STATUS_NO_PROGRAM 127
 
 /* What a process of its own has taken. */

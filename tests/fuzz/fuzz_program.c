@@ -18,11 +18,11 @@
 #define TRAVEL_MM    500.0
 #define TRAVEL_RAD   (20.0 * MATHS_PI)
 #define TRAVEL_SLACK 1e-5
-/* A loop may make moves for ever; so many are enough. */
+/* A loop may make moves for ever; this many are enough. */
 #define MOVES_MAX 1000
-/* Of errors there are never more than lines, and lines repeat only in loops. */
+/* There are never more errors than lines, and lines repeat only in loops. */
 #define ERRORS_MAX 1000
-/* After so many bytes the source fails: of loops that move nothing, and that is a fault of its own to be tried. */
+/* After this many bytes the source fails, in loops that move nothing: that is a fault of its own to be tried. */
 #define READ_MAX 200000U
 
 /* Called by libFuzzer with every input. */
@@ -120,7 +120,7 @@ static void check_diagnostic(const struct diagnostic *d)
     CHECK(takt_diagnostic_text(d, text) > 0);
 }
 
-/* Runs what has been planned for so many cycles, or to its end. */
+/* Runs what has been planned for this many cycles, or to its end. */
 static void run_cycles(unsigned cycles)
 {
     const struct motion_operator as_programmed = {.feed_ratio = 1.0, .rapid_ratio = 1.0};

@@ -63,7 +63,7 @@ static inline double chain_distance_from(const struct curve *c, const struct poi
     return least;
 }
 
-/* Of a corner from the straight line between two setpoints. */
+/* Distance of a corner from the straight line between two setpoints. */
 static inline double chain_corner_distance(const struct point *corner, const struct point *a,
                                            const struct point *b)
 {

@@ -2,7 +2,7 @@
  * The start angle of a hole-milling spiral, found from the distance of its start: for random base circles, numbers of
  * turns and starts, also within a nanometre of the centre and of the circle.
  *
- * test_bore_inversion NUMBER tries so many instead of RUNS.
+ * test_bore_inversion NUMBER tries this many instead of RUNS.
  */
 #include "base/maths.h"
 #include "bore/spiral.h"

@@ -3,8 +3,8 @@
  * random schedules of overrides, holds and single block, the file as a stream that is now and then late. The setpoints keep every axis's limits by differences, are within
  * the tolerance of the programmed path, stop only on it, and end in the programmed end.
  *
- * test_compiled_schedules NUMBER runs so many programs instead of PROGRAMS, test_compiled_schedules NUMBER FIRST from that
- * seed on.
+ * test_compiled_schedules NUMBER runs this many programs instead of PROGRAMS, test_compiled_schedules NUMBER FIRST from
+ * that seed on.
  */
 #include "ahead/compile.h"
 #include "chain_distance.h"
@@ -50,7 +50,7 @@ struct run {
     FILE *compiled;
     /* of one schedule */
     bool
-        is_stream; /* the compiled program comes while it runs: so many bytes a cycle from a cycle on */
+        is_stream; /* the compiled program comes while it runs: bytes_a_cycle in each, from a cycle on */
     size_t came, taken;
     double bytes_a_cycle;
     uint64_t comes_from;

@@ -3,7 +3,7 @@
  * size. Each chain is changed a little again and again, and a change is kept if the jerk comes nearer to its limit;
  * whatever the search finds, setpoints keep the limits.
  *
- * test_crowded_junctions NUMBER [FIRST] searches from so many chains, from a seed on.
+ * test_crowded_junctions NUMBER [FIRST] searches from this many chains, from a seed on.
  */
 #include "motion/motion.h"
 #include "plan/path.h"

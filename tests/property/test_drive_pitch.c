@@ -36,7 +36,7 @@ static double any(void)
     return (double)((z ^ (z >> 31)) >> 11) * 0x1p-53;
 }
 
-/* Of any size and shape, both directions of counting; the steepest are steeper than is allowed. */
+/* A table of any size and shape, both directions of counting; the steepest are steeper than is allowed. */
 static void make_any(struct pitch *pitch)
 {
     memset(pitch, 0, sizeof *pitch);

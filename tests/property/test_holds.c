@@ -2,8 +2,8 @@
  * Feed holds on smoothed paths, from any moment: on machines drawn by their dimensionless numbers the axes come to rest
  * within a time that their limits tell, and go on afterwards, and no limit is broken.
  *
- * test_holds NUMBER runs so many programs instead of PROGRAMS, test_holds NUMBER FIRST from that seed on. It prints how
- * long the holds took, in parts of V/A + A/J.
+ * test_holds NUMBER runs this many programs instead of PROGRAMS, test_holds NUMBER FIRST from that seed on. It prints
+ * how long the holds took, in parts of V/A + A/J.
  */
 #include "motion/motion.h"
 #include "plan/path.h"
@@ -22,13 +22,14 @@
 /* A program that takes longer stands still for ever. */
 #define CYCLES_MAX 2000000
 
-/* Of a program at a feed far below what the axes can do so many cycles are looked at, and setpoints have this rounding. */
+/* Cycles looked at of a program at a feed far below what the axes can do, and the rounding of setpoints. */
 #define SLOW_CYCLES 20000
 #define ROUNDING_MM 1e-10
 
 /*
- * A hold takes up to so many parts of V/A + A/J, and cycles beside it; so many of a thousand holds may take more. Not counted
- * are those of machines that stop in less than HOLD_CYCLES_MIN: what rounds to cycles is most of them.
+ * A hold takes up to HOLD_PARTS of V/A + A/J, and HOLD_CYCLES beside it; SLOW_OF_THOUSAND of a thousand holds may take
+ * more. Not counted are those of machines that stop in less than HOLD_CYCLES_MIN: what rounds to cycles is most of
+ * them.
  */
 #define HOLD_CYCLES_MIN  4.0
 #define HOLD_PARTS       1.5

@@ -3,7 +3,7 @@
  * differences, through the start and the end on the base circle too; the end is hit; and wherever no limit binds, equal
  * cycles go equal lengths.
  *
- * test_involutes NUMBER runs so many seeds of each family and machine instead of SEEDS.
+ * test_involutes NUMBER runs this many seeds of each family and machine instead of SEEDS.
  */
 #include "motion/motion.h"
 #include "plan/path.h"

@@ -6,7 +6,7 @@
  * what breaks planners: corners of any angle, nearly collinear blocks, blocks shorter than a cycle, zigzags, arcs into
  * arcs, helices, arcs whose two radii differ (random_chain.h).
  *
- * test_limits_on_random_moves NUMBER runs so many seeds of each family and machine instead of SEEDS.
+ * test_limits_on_random_moves NUMBER runs this many seeds of each family and machine instead of SEEDS.
  */
 #include "motion/motion.h"
 #include "plan/path.h"

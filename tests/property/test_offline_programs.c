@@ -427,7 +427,7 @@ static bool ends_at(const struct move *move, const struct point *end)
     return distance(&move->end, end) < ROUNDING_MM;
 }
 
-/* Of an arc that hardly turns, errors leave no arc. */
+/* Errors leave no arc of one that hardly turns. */
 static bool is_kind(const struct move *move, const struct move *as_written)
 {
     const bool curved = move_is_arc(move) || move_is_involute(move);

@@ -3,7 +3,7 @@
  * override, rapid override and hold. The setpoints keep every axis's limits by differences, landed ends are hit, the
  * program is completed, and nothing stops that neither the program nor the operator asked to.
  *
- * test_overrides NUMBER runs so many programs instead of PROGRAMS, test_overrides NUMBER FIRST from that seed on,
+ * test_overrides NUMBER runs this many programs instead of PROGRAMS, test_overrides NUMBER FIRST from that seed on,
  * test_overrides NUMBER FIRST BLOCKS with this look-ahead instead of a random one.
  */
 #include "motion/motion.h"

@@ -4,7 +4,7 @@
  * differences, every landed end is hit, and the program ends in the time that its feeds and the limits explain. So they do
  * whatever the operator does: overrides, holds, single block, stops and resets in any cycle.
  *
- *     test_rotary_moves NUMBER FIRST        so many programs, from this seed on, of each test
+ *     test_rotary_moves NUMBER FIRST        NUMBER programs, from this seed on, of each test
  *
  * Machines and programs are drawn by dimensionless numbers on a log scale.
  */
@@ -82,8 +82,8 @@ static bool chance(double part)
 /* -- machines -- */
 
 /*
- * Of one axis: velocity, the time in which it is reached at full acceleration, and that in which full acceleration is
- * reached. The latter is what a ramp profile's longest box allows, at most.
+ * Limits of one axis: velocity, the time in which it is reached at full acceleration, and that in which full
+ * acceleration is reached. The latter is what a ramp profile's longest box allows, at most.
  */
 static void draw_axis(unsigned axis, double unit)
 {
@@ -138,7 +138,7 @@ static bool has_axis(unsigned axis)
     return (run.limits.axes & 1U << axis) != 0;
 }
 
-/* Of a line: each kind of axes from nothing to the longest way. */
+/* A line: each kind of axes from nothing to the longest way. */
 static void draw_line(struct move *m, const struct point *from)
 {
     const double linear_mm = chance(0.2) ? 0.0 : decades(-9.0, 2.0);

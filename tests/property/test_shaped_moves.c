@@ -2,7 +2,7 @@
  * Planner, motion and shaping together, on random chains and random machines with random modes: setpoints that are sent keep
  * the axes' limits by differences, and where they come to rest nothing of any mode is left.
  *
- * test_shaped_moves NUMBER [FIRST] runs so many seeds from FIRST on instead of SEEDS.
+ * test_shaped_moves NUMBER [FIRST] runs this many seeds from FIRST on instead of SEEDS.
  */
 #include "motion/motion.h"
 #include "plan/path.h"

@@ -5,8 +5,8 @@
  * landed ends are hit exactly, and the motion ends. Switched on for good, every motion ends at rest. Smoothed paths are
  * verified a second time by the walk of `hunt`: is there a monotone match within the tolerance?
  *
- * test_single_block NUMBER runs so many programs of each kind instead of PROGRAMS, test_single_block NUMBER FIRST from
- * that seed on.
+ * test_single_block NUMBER runs this many programs of each kind instead of PROGRAMS, test_single_block NUMBER FIRST
+ * from that seed on.
  */
 #include "chain_distance.h"
 #include "motion/motion.h"

@@ -4,7 +4,8 @@
  * path, pass every programmed corner within it, and end in the programmed end. So they do with rotary axes, up to six in
  * all, and beside motions on the exact path whose every end is landed on.
  *
- * test_smooth_chains NUMBER runs so many programs instead of PROGRAMS, test_smooth_chains NUMBER FIRST from that seed on.
+ * test_smooth_chains NUMBER runs this many programs instead of PROGRAMS, test_smooth_chains NUMBER FIRST from that seed
+ * on.
  */
 #include "chain_distance.h"
 #include "motion/motion.h"
@@ -53,7 +54,7 @@ struct run {
     struct schedule schedule;
     bool exact;             /* the newest move is not smoothed */
     unsigned rotary;        /* bit i set: axis i turns */
-    uint64_t single_cycles; /* single block is switched every so many; 0: never */
+    uint64_t single_cycles; /* between switches of single block; 0: there are none */
     bool rests;
     unsigned singles; /* times the axes have come to rest under single block alone */
     struct chain_verifier verifier;

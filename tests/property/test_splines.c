@@ -2,7 +2,7 @@
  * Planner and motion on splines: whatever the order, the control points and weights, the size and the feed, setpoints keep
  * the axes' limits by differences, the end is hit, and where no limit binds the feed is even.
  *
- * test_splines NUMBER runs so many seeds on each machine instead of SEEDS.
+ * test_splines NUMBER runs this many seeds on each machine instead of SEEDS.
  */
 #include "geometry/nurbs.h"
 #include "motion/motion.h"

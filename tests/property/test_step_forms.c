@@ -3,7 +3,7 @@
  * (an arc not by more than a step radially), the end is exact, and the improved form takes no more ticks than the
  * leading axis has steps. Every shape is a fixed seed; a failure names it.
  *
- * test_step_forms NUMBER tries so many of each shape instead of SHAPES.
+ * test_step_forms NUMBER tries this many of each shape instead of SHAPES.
  */
 #include "base/maths.h"
 #include "property_arguments.h"

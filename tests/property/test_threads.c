@@ -7,7 +7,7 @@
  *
  * once they have caught up; all passes, whatever their speeds, begin at a whole revolution; a tap comes back to its start exactly.
  *
- * test_threads NUMBER runs so many machines, test_threads NUMBER FIRST from that seed on.
+ * test_threads NUMBER runs this many machines, test_threads NUMBER FIRST from that seed on.
  */
 #include "property_arguments.h"
 #include "support/thread_bench.h"
@@ -31,10 +31,10 @@
 
 #define PASSES 3
 
-/* What was is forgotten in so many parts of the bandwidth. */
+/* What was is forgotten in this many parts of the bandwidth. */
 #define FORGETS 6.0
 
-/* The lead-in is forgotten in so many. */
+/* The lead-in is forgotten in this many. */
 #define SETTLES 8.0
 
 static struct bench bench;

@@ -2,9 +2,9 @@
  * The planner's times against the least ones there are: single moves against the closed form, chains of three moves
  * against a slow search (support/optimum.h).
  *
- * test_three_moves NUMBER [FIRST [SHORTEST]] tries so many chains from a seed on, of moves from SHORTEST mm to 100 mm, tells
- * each that takes too long, and how near the planner comes. The planner is known not to keep this for moves shorter than
- * SHORTEST_MM: test_three_moves 400 1000 0.01.
+ * test_three_moves NUMBER [FIRST [SHORTEST]] tries this many chains from a seed on, of moves from SHORTEST mm to 100
+ * mm, tells each that takes too long, and how near the planner comes. The planner is known not to keep this for moves
+ * shorter than SHORTEST_MM: test_three_moves 400 1000 0.01.
  */
 #include "motion/motion.h"
 #include "plan/path.h"
@@ -22,7 +22,7 @@
 #define CHAINS  6
 #define SINGLES 2000
 
-/* Of the moves of chains in each run of all tests. */
+/* Lengths of the moves of chains in each run of all tests. */
 #define SHORTEST_MM 10.0
 #define LONGEST_MM  100.0
 

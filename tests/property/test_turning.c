@@ -2,7 +2,7 @@
  * The turning cycles on random profiles of lines and arcs: wherever a cycle goes, at feed or at rapid, it stays at least its
  * distance above the profile, and finishing keeps exactly that distance. Roughing cuts no deeper than a level at once.
  *
- * test_turning NUMBER FIRST: so many profiles, the first of this seed.
+ * test_turning NUMBER FIRST: this many profiles, the first of this seed.
  */
 #include "base/maths.h"
 #include "program/turning.h"
@@ -20,7 +20,10 @@
 #define GAP_MM 1e-2
 /* Levels meet the profile within 1e-6 mm, which a shallow slope makes more. */
 #define NEAR_MM 1e-5
-/* Centres with so many decimals lie aside by half of the last, along each axis; radii that differ by it mean 1.5 of it at most. */
+/*
+ * Centres with four decimals lie aside by half of the last, along each axis; radii that differ by it mean 1.5 of it at
+ * most.
+ */
 #define DECIMALS_MM 1e-4
 #define ROUNDED_MM  (2.0 * DECIMALS_MM)
 

@@ -156,7 +156,7 @@ static unsigned answers(void)
     return count_of("ok\r\n") + count_of("error:");
 }
 
-/* Until there are so many answers. */
+/* Until there are this many answers. */
 static void await(unsigned count)
 {
     for (unsigned i = 0; i < BENCH_CYCLES_MAX && answers() < count; i++)

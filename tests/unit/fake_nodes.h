@@ -23,7 +23,7 @@ struct fake_rule {
     uint32_t abort_code; /* not 0: the request is aborted */
     uint32_t write_code; /* not 0: so it is if it writes */
     uint32_t taken_from; /* not 0: what it writes is taken all the same from this value on */
-    unsigned silent;     /* so many requests are not answered */
+    unsigned silent;     /* how many requests are not answered */
 };
 
 struct fake_written {

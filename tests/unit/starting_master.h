@@ -51,7 +51,7 @@ static inline uint16_t bits_of_following(unsigned node)
     return is_cyclic && shown[node] == CIA402_ENABLED ? CIA402_FOLLOWS_TARGET : 0;
 }
 
-static unsigned deaf_edges;  /* so many fault resets come too early */
+static unsigned deaf_edges;  /* how many fault resets come too early */
 static uint16_t before[128]; /* controlwords */
 
 static inline enum cia402_state next_state(unsigned node)

@@ -191,7 +191,7 @@ static void test_every_spiral_leads_from_the_centre_around_the_circle(void)
     }
 }
 
-/* Of two poles: 2 n - 1 half circles whose radii grow by R / (2 n). */
+/* With two poles there are 2 n - 1 half circles whose radii grow by R / (2 n). */
 static void test_joined_arcs_grow_evenly(void)
 {
     bore_rival_path(BORE_RIVAL_TWO_POLES, 24.0, 8, 1e-3, 0.0, &path);

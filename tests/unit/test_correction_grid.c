@@ -52,7 +52,7 @@ static double polynomial(unsigned output, const double *x)
 
 typedef double field(unsigned output, const double *x);
 
-/* inputs of the axes X, Y, Z, C with so many points from -100 to 300 (or rad). */
+/* inputs of the axes X, Y, Z, C with these numbers of points from -100 to 300 (or rad). */
 static void make(unsigned inputs, const uint16_t *points, const uint8_t *axes, field *f)
 {
     struct diagnostic wrong;
@@ -339,7 +339,7 @@ static struct point near_a_corner(void)
     return at;
 }
 
-/* Of K itself, and of its slope along an input: by the step of a table, over a thousandth of one. */
+/* Bounds of K itself, and of its slope along an input: by the step of a table, over a thousandth of one. */
 static void test_the_bounds_of_value_and_slope_hold_beyond_the_ends_of_a_table_as_well(void)
 {
     const double step_mm[3] = {400.0 / 8, 400.0 / 6, 400.0 / 5};

@@ -110,7 +110,7 @@ struct peaks {
     double velocity_mm_s, acceleration_mm_s2, jerk_mm_s3, place_mm;
 };
 
-/* Of the command, by differences over so many cycles, from rest at x on. */
+/* Peaks of the command, by differences over this many cycles, from rest at x on. */
 static struct peaks follow_command(unsigned cycles)
 {
     struct peaks most = {0, 0, 0, 0};

@@ -83,7 +83,7 @@ static void test_a_unit_does_not_show_in_the_jerk_of_a_slow_axis(void)
     }
 }
 
-/* Of a second difference, 2 units, and 16 where one is put on an end: 1e-4 of the limit at most. */
+/* A second difference is off by 2 units, and 16 where one is put on an end: 1e-4 of the limit at most. */
 static void test_nor_in_its_acceleration(void)
 {
     limits.jerk_mm_s3[AXIS_C] = 1e6;

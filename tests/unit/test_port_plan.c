@@ -10,7 +10,7 @@
 #define TEXT_MAX      4096
 #define PLAN_MAX      65536
 #define CYCLES_LATE   3000
-#define PLANNED_BYTES 12000 /* so many at least: more than what is kept of it anywhere */
+#define PLANNED_BYTES 12000 /* this many at least: more than what is kept of it anywhere */
 
 static char text[TEXT_MAX];
 static size_t text_size;

@@ -281,7 +281,7 @@ static void test_words_that_cannot_be_read_are_refused(void)
     expect_refused("M98 P-1\n", TAKT_ERROR_WORD_OUT_OF_RANGE, 1);
 }
 
-/* Writes more behind the text, so many times; there is room. */
+/* Writes more behind the text, this many times; there is room. */
 static void append(char *text, const char *more, unsigned times)
 {
     size_t length = strlen(text);

@@ -7,7 +7,7 @@
 /* K_X = X / 2000 by the matrix: 0.05 mm at X 100. */
 #define PITCH 5e-4
 
-/* All fades have ended after so many cycles. */
+/* All fades have ended after this many cycles. */
 #define SETTLED 4000U
 
 void setUp(void)

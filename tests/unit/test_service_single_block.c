@@ -28,7 +28,7 @@ static unsigned draw(unsigned below)
     return (unsigned)(chance >> 33) % below;
 }
 
-/* 300 mm along X at 50 mm/s in blocks of so many tenths of a mm, on their way for half a second. */
+/* 300 mm along X at 50 mm/s in blocks of this many tenths of a mm, on their way for half a second. */
 static void cut(unsigned tenths)
 {
     static char text[60000];

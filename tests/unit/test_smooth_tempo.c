@@ -117,7 +117,7 @@ static struct used used_most(void)
     return most;
 }
 
-/* Of the pieces as they are timed now, in parts of what they take. */
+/* Time of all pieces as they are timed now, in parts of what they take. */
 static double time_of_all(void)
 {
     double sum = 0.0;

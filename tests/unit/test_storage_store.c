@@ -27,7 +27,7 @@ static struct {
 
 #define NEVER 1000000U
 
-/* Of the longest set: an erasure, and all words. */
+/* Steps of storing the longest set: an erasure, and all words. */
 #define STEPS (1U + SECTOR_BYTES / FLASH_WORD_BYTES)
 
 static uint8_t *sector(unsigned i)

@@ -189,7 +189,7 @@ static void test_the_last_block_must_land(void)
     TEST_ASSERT_DOUBLE_WITHIN(1e-12, 0.5, verifier.figures.landing_error_mm);
 }
 
-/* Of a block that is passed, the executed curve counts at the end of its block. */
+/* Where a block is passed, the executed curve counts at the end of its block. */
 static void test_a_passed_end_is_where_the_executed_path_leads(void)
 {
     struct point start = {{0}}, end = {{10}};

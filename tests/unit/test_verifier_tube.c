@@ -448,7 +448,7 @@ static void test_a_program_that_is_not_done_to_its_end_is_seen(void)
     TEST_ASSERT_DOUBLE_WITHIN(1e-6, 10, verifier.figures.corner_part);
 }
 
-/* So many motions in a loop of a few tolerances; looks that its setpoints need. */
+/* Looks that the setpoints of this many motions in a loop of a few tolerances need. */
 static uint64_t looks_of(const char *loop[2], unsigned motions, double way_x, double way_y)
 {
     size_t size = (size_t)snprintf(program_text, sizeof program_text, "G64 P0.1\nF100\n");

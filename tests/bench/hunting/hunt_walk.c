@@ -4,7 +4,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-/* Feed is compared over so many cycles. */
+/* Feed is compared over each of these numbers of cycles. */
 static const size_t windows[] = {1, 16, 256};
 #define WINDOWS (sizeof windows / sizeof windows[0])
 
@@ -268,7 +268,7 @@ static void verifier_back(const struct verifier *j, struct walk *w, size_t k)
              j->motion[j->piece[w->first].motion].line);
 }
 
-/* Of a piece that is touched, but left, nothing. */
+/* The part of a piece; nothing of one that is touched, but left. */
 static double part_of(double part)
 {
     return part >= 0 && part <= 1 ? part : 0;

@@ -140,7 +140,7 @@ static void open_master(struct drives *drives)
     takt_drives_init(drives, &config);
 }
 
-/* Of the frames of a cycle the first is the one that says how many cycles come before it. */
+/* The first of the frames of a cycle is the one that says how many cycles come before it. */
 static bool receive_next(void *context, struct can_frame *frame)
 {
     struct frames *frames = context;

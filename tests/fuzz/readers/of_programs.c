@@ -15,7 +15,7 @@
 #define TRAVEL_MM  500.0
 #define MOVES_MAX  300
 #define ERRORS_MAX 300
-/* After so many bytes the source fails: of loops that move nothing. */
+/* After this many bytes the source fails, in loops that move nothing. */
 #define READ_MAX 50000U
 
 static const struct tool tools[] = {
