@@ -52,7 +52,7 @@
 
 #define REPLAY_RICE_BITS 3
 
-/* From this number of ends in an interval on they are told no more closely. */
+/* From this number of ends in an interval on only their number is told. */
 #define REPLAY_ENDS_CROWD 8
 
 #define REPLAY_SECTION_BYTES 36

@@ -12,7 +12,7 @@ static const struct plan_limits limits = {
     7,    {100, 100, 100},   {1000, 1000, 1000}, {50000, 50000, 50000}, 1e-3,
     1e-3, RAMP_PROFILE_JERK, LANDING_SPAN};
 
-/* Shares of straight lines, at most: the rounding of their directions. */
+/* Rounding of the shares of straight lines: that of their directions. */
 #define NOTHING 1e-6
 
 static struct path path;
