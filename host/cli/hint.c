@@ -27,8 +27,7 @@ static const struct hint hints[] = {
                              "--tools auto takes what the program says"},
     {TAKT_ERROR_TRAVEL_EXCEEDED, "look at the units (G20, G21), the work offsets (--parameters), "
                                  "G91, and the travel in the machine file"},
-    {TAKT_ERROR_AXIS_MISSING,
-     "an axis is added to a machine file by [axis A]; U V W there are none"},
+    {TAKT_ERROR_AXIS_MISSING, "an axis is added to a machine file by [axis A]"},
     {TAKT_ERROR_SUB_UNKNOWN,
      "its file (NAME.ngc, O1000.nc) is looked for beside the program, and in folders given by "
      "--subroutines"},
@@ -266,6 +265,21 @@ static bool write_tool(const struct diagnostic *d, char text[HINT_MAX])
     return asked;
 }
 
+/* U V W of LinuxCNC, which have no axes of their own here. */
+static bool write_letter(const struct diagnostic *d, char text[HINT_MAX])
+{
+    const bool asked = d->code == TAKT_ERROR_AXIS_MISSING && strchr("UVW", d->word[0]) != NULL;
+
+    if (asked)
+        (void)snprintf(text, HINT_MAX,
+                       "    if an axis of this machine bears another letter, or it can do without, "
+                       "add to the machine file, or as --set codes.%c=ignore:\n"
+                       "    [codes]\n"
+                       "    %c = ignore         (or: A, the axis that it drives)\n",
+                       d->word[0], d->word[0]);
+    return asked;
+}
+
 void hint_write(const struct diagnostic *d, const char *line, size_t length, size_t at,
                 char text[HINT_MAX])
 {
@@ -273,7 +287,7 @@ void hint_write(const struct diagnostic *d, const char *line, size_t length, siz
 
     text[0] = '\0';
     if (write_value(d, text) || write_global(d, text) || write_tool(d, text) ||
-        write_name(d, line, length, at, text))
+        write_name(d, line, length, at, text) || write_letter(d, text))
         return;
     if (hint != NULL)
         write(text, hint);

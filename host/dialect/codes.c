@@ -24,15 +24,41 @@ static void drop_code(struct translator *t, struct line_word *w)
     }
 }
 
-static const struct dialect_code *declared(const struct translator *t, const struct line_word *w)
+static bool is_letter(const struct line_word *w)
 {
-    const int number = line_code(w);
+    return w->kind == WORD_VALUE && strchr("uvw", w->letter) != NULL;
+}
 
-    for (unsigned i = 0; i < t->codes->count && number >= 0; i++) {
-        if (t->codes->code[i].letter == w->letter && t->codes->code[i].number_x10 == number)
-            return &t->codes->code[i];
+const struct dialect_code *codes_find(const struct dialect_codes *codes, const struct line_word *w)
+{
+    const int number = is_letter(w) ? 0 : line_code(w);
+
+    for (unsigned i = 0; i < codes->count && number >= 0; i++) {
+        if (codes->code[i].letter == w->letter && codes->code[i].number_x10 == number)
+            return &codes->code[i];
     }
     return NULL;
+}
+
+/*
+ * A letter whose axis bears another one. U V W are lengths: in inches where X is, while A B C count the same in all units.
+ */
+static void use_axis(struct translator *t, struct line_word *w, const struct dialect_code *code)
+{
+    struct line *l = &t->line;
+    const bool converts = strchr("ABC", code->axis) != NULL;
+    const char *inch = line_find_code(l, 'g', 200) != NULL   ? "1"
+                       : line_find_code(l, 'g', 210) != NULL ? "0"
+                                                             : "#<_imperial>";
+    char text[LINE_MAX_BYTES];
+
+    if (converts)
+        (void)snprintf(text, sizeof text, "%c[[%.*s]*[1+24.4*%s]]", code->axis,
+                       (int)(w->end - w->value_begin), &l->text[w->value_begin], inch);
+    else
+        (void)snprintf(text, sizeof text, "%c%.*s", code->axis, (int)(w->end - w->value_begin),
+                       &l->text[w->value_begin]);
+    (void)line_replace(l, w, text);
 }
 
 /* The value of a word behind the code, which the code has for itself. */
@@ -80,8 +106,14 @@ static void use_declared(struct translator *t, struct line_word *w, const struct
     case DIALECT_SUBROUTINE:
         call_subroutine(t, w, code);
         break;
+    case DIALECT_AXIS:
+        use_axis(t, w, code);
+        return;
     }
-    drop_code(t, w);
+    if (is_letter(w))
+        line_blank(&t->line, w);
+    else
+        drop_code(t, w);
 }
 
 /* False: nothing is left of the line. */
@@ -141,7 +173,7 @@ void codes_translate(struct translator *t)
     translate_feed(t);
     for (unsigned i = 0; i < l->words; i++) {
         struct line_word *w = &l->word[i];
-        const struct dialect_code *code = declared(t, w);
+        const struct dialect_code *code = codes_find(t->codes, w);
         const int number = line_code(w);
 
         if (code != NULL) {

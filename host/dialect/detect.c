@@ -243,17 +243,11 @@ static void look_at_centre(struct look *k)
 
 static bool is_declared(const struct line_word *w, const struct dialect_codes *codes)
 {
-    const int number = line_code(w);
-
     for (unsigned i = 0; i < codes->count; i++) {
         if (codes->code[i].use == DIALECT_FEED)
             return true;
     }
-    for (unsigned i = 0; i < codes->count && number >= 0; i++) {
-        if (codes->code[i].letter == w->letter && codes->code[i].number_x10 == number)
-            return true;
-    }
-    return false;
+    return codes_find(codes, w) != NULL;
 }
 
 /*

@@ -36,18 +36,20 @@ enum dialect_use {
     DIALECT_STOP,      /* M0 */
     DIALECT_OUTPUT_ON, /* M64 P number */
     DIALECT_OUTPUT_OFF,
-    DIALECT_FEED,      /* F: what it is before the program gives one, mm/min */
-    DIALECT_SUBROUTINE /* O<name> call, behind the rest of its line, with P, Q and R as #1, #2 and #3 */
+    DIALECT_FEED,       /* F: what it is before the program gives one, mm/min */
+    DIALECT_SUBROUTINE, /* O<name> call, behind the rest of its line, with P, Q and R as #1, #2 and #3 */
+    DIALECT_AXIS        /* U V W: the axis of the machine that this letter drives */
 };
 
 #define DIALECT_SUBROUTINE_MAX 63
 #define DIALECT_CODES_MAX      64
 
 struct dialect_code {
-    char letter;         /* 'g', 'm' or 'f' */
+    char letter;         /* 'g', 'm', 'f', 'u', 'v' or 'w' */
     uint16_t number_x10; /* M31: 310 */
     enum dialect_use use;
     unsigned number; /* of an output; a feed */
+    char axis;       /* DIALECT_AXIS: in upper case */
     char subroutine[DIALECT_SUBROUTINE_MAX + 1];
 };
 
@@ -68,7 +70,7 @@ struct dialect_codes {
 /* Adds a value, or changes it. NULL: it is right; else what is wrong. */
 const char *dialect_value_set(struct dialect_codes *codes, const char *name, const char *value);
 
-/* "M31" and "ignore", "output 3 on", "output 3 off", "subroutine NAME", "stop"; "F" and "600". NULL: it is right; else what is wrong. */
+/* "M31" and "ignore", "output 3 on", "output 3 off", "subroutine NAME", "stop"; "F" and "600"; "U" and "A" or "ignore". NULL: it is right; else what is wrong. */
 const char *dialect_code_read(struct dialect_code *code, const char *name, const char *value);
 
 /* "M31 = ignore", as in a machine file. */

@@ -63,6 +63,19 @@ static const char *read_feed(struct dialect_code *code, const char *value)
                : "a feed in whole mm/min is expected";
 }
 
+/* A letter that no axis of its own answers. */
+static const char *read_letter(struct dialect_code *code, const char *name, const char *value)
+{
+    code->letter = line_lower(name[0]);
+    if (strcmp(value, "ignore") == 0)
+        return NULL;
+    code->use = DIALECT_AXIS;
+    code->axis = value[0];
+    return strchr("ABCXYZ", value[0]) != NULL && value[0] != '\0' && value[1] == '\0'
+               ? NULL
+               : "the letter of an axis of the machine is expected, or ignore";
+}
+
 const char *dialect_code_read(struct dialect_code *code, const char *name, const char *value)
 {
     char state[4];
@@ -71,8 +84,10 @@ const char *dialect_code_read(struct dialect_code *code, const char *name, const
     *code = (struct dialect_code){0};
     if (line_lower(name[0]) == 'f' && name[1] == '\0')
         return read_feed(code, value);
+    if (strchr("uvw", line_lower(name[0])) != NULL && name[1] == '\0')
+        return read_letter(code, name, value);
     if (!read_name(code, name))
-        return "a code is expected, such as M31 or G187, or F";
+        return "a code is expected, such as M31 or G187, or F, U, V or W";
     if (strcmp(value, "ignore") == 0)
         return NULL;
     if (strcmp(value, "stop") == 0) {
@@ -96,12 +111,19 @@ void dialect_code_write(const struct dialect_code *code, char text[DIALECT_CODE_
 {
     static const char *const uses[] = {"ignore", "stop", "output", "output", "", "subroutine"};
 
+    const char letter = (char)(code->letter - 'a' + 'A');
+
     if (code->use == DIALECT_FEED) {
         (void)snprintf(text, DIALECT_CODE_TEXT_MAX, "F = %u", code->number);
         return;
     }
-    int length = snprintf(text, DIALECT_CODE_TEXT_MAX, "%c%u", code->letter - 'a' + 'A',
-                          code->number_x10 / 10U);
+    if (strchr("uvw", code->letter) != NULL) {
+        (void)snprintf(text, DIALECT_CODE_TEXT_MAX, "%c = %.*s", letter,
+                       code->use == DIALECT_AXIS ? 1 : 6,
+                       code->use == DIALECT_AXIS ? &code->axis : uses[code->use]);
+        return;
+    }
+    int length = snprintf(text, DIALECT_CODE_TEXT_MAX, "%c%u", letter, code->number_x10 / 10U);
 
     if (code->number_x10 % 10U != 0)
         length += snprintf(text + length, DIALECT_CODE_TEXT_MAX - (size_t)length, ".%u",

@@ -134,6 +134,8 @@ void polar_translate(struct translator *t);
 
 /* What becomes of the G and M words of the line. */
 void codes_translate(struct translator *t);
+/* What the machine file declares a word as; NULL: nothing. */
+const struct dialect_code *codes_find(const struct dialect_codes *codes, const struct line_word *w);
 
 /* G70, G71, G72, G74, G75 and G76 of lathes. */
 void turning_translate(struct translator *t);

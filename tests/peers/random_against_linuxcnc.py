@@ -26,11 +26,21 @@ encoder_counts_per_revolution = 4000
               for axes, unit in (("XYZ", "mm"), ("ABC", "deg")) for axis in axes)
 
 
-def compare(takt, seed):
+def knows_clearance():
+    """Does this LinuxCNC know D of G83? Since 2.10."""
+    with open("clearance.ngc", "w") as file:
+        file.write("G0 Z1\nG83 X1 Z-1 R1 Q0.5 D0.1 F100\nM2\n")
+    try:
+        return bool(linuxcnc.moves("clearance.ngc"))
+    except linuxcnc.Refused:
+        return False
+
+
+def compare(takt, seed, *, has_clearance):
     """None: they agree; "": LinuxCNC refuses it; else what differs."""
     path = f"{seed}.ngc"
     with open(path, "w") as file:
-        file.write(random_programs.program(seed))
+        file.write(random_programs.program(seed, has_clearance=has_clearance))
     try:
         theirs = canon.with_length(linuxcnc.moves(path, {"six_axes": True}))
     except linuxcnc.Refused:
@@ -52,7 +62,8 @@ def main(takt, number=NUMBER, first=1):
         return canon.SKIPPED
     with open("wide.ini", "w") as file:
         file.write(MACHINE)
-    verdicts = [compare(os.path.abspath(takt), seed) for seed in range(first, first + number)]
+    has_clearance = knows_clearance()
+    verdicts = [compare(os.path.abspath(takt), seed, has_clearance=has_clearance) for seed in range(first, first + number)]
     wrong = [verdict for verdict in verdicts if verdict]
     print("\n".join(wrong))
     print(f"{number} programs: LinuxCNC takes {sum(v != '' for v in verdicts)}, of those {len(wrong)} differ")

@@ -15,8 +15,9 @@ SYSTEMS = ("G54", "G55", "G56", "G57", "G58", "G59", "G59.1", "G59.2", "G59.3")
 class Writer:
     """One program: where its axes are in its own words, what is in effect, and its lines."""
 
-    def __init__(self, seed):
+    def __init__(self, seed, *, has_clearance):
         self.random = random.Random(seed)
+        self.has_clearance = has_clearance
         self.lines = []
         self.at = dict.fromkeys("XYZABC", 0.0)
         self.plane = "G17"
@@ -184,9 +185,11 @@ class Writer:
         # Bites that divide the depth leave it to rounding whether there is one more.
         code = code.format(f"{self.between(0.3, 3.0):.4f}7")
         words = self.go({axis: self.between(-40.0, 40.0) for axis in "XY"})
+        # LinuxCNC 2.9 knows no D; without it 2.10 has a number of its configuration, whatever the unit of the program.
+        if self.has_clearance and "Q" in code:
+            words += f" D{self.between(0.05, 0.5):.4f}"
         self.line(f"{self.random.choice(('G98', 'G99'))} {code} {words} Z{self.number(self.between(-10.0, 0.0))}"
                   f" R{self.number(self.between(1.0, 4.0))}{self.feed(needed=True)}")
-        # How far pecks go back without D is a matter of LinuxCNC's configuration from 2.10 on.
         for _ in range(0 if "Q" in code else self.random.randint(0, 3)):
             self.line(self.go({axis: self.between(-40.0, 40.0) for axis in "XY"}))
         self.line("G80")
@@ -285,6 +288,9 @@ class Writer:
     # -- lathe --
 
     def lathe_contour(self):
+        # Diameters would turn the corners by another angle, and give the arcs decimals more.
+        self.line("G8")
+        self.settle_lathe()
         self.contour(self.random.choice(("", " L0", *(f" L{n}" for n in range(1, 10)))))
 
     def profile(self):
@@ -381,9 +387,9 @@ class Writer:
             self.random.choice(makers)()
 
 
-def program(seed):
-    """The text of one program; every third is for a lathe."""
-    writer = Writer(seed)
+def program(seed, *, has_clearance=False):
+    """The text of one program; every third is for a lathe. Pecks have a D where LinuxCNC knows it."""
+    writer = Writer(seed, has_clearance=has_clearance)
     if seed % 3 == 2:
         writer.lathe()
     else:

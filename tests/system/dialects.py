@@ -172,7 +172,21 @@ t.check(status == 0 and "stop" not in found, "--set declares codes too", found, 
 status, out, err = t.run("machine", "mill.ini")
 t.check(status == 0 and out.endswith("\n[codes]\nM31 = ignore\nM32 = subroutine conveyor\nM33 = output 3 on\nM34 = stop\n"),
         "a machine file is printed with them", out[-200:])
-for line, wrong in (("M31 = maybe", "known are ignore"), ("X31 = stop", "a code is expected")):
+
+# U V W are other axes' letters: the message has the line to add; A counts their millimetres as degrees.
+t.write("foam.ngc", "G21 F100\nG1 X1 U2 V3\nG20 G0 U1\nM2\n")
+status, found, err = moves("foam.ngc")
+t.check(status == 2 and "foam.ngc:2:7: error: the machine has no axis U" in err and "\n    [codes]\n    U = ignore " in err,
+        "the message has the line for a letter", err)
+t.write("foam.ini", "[codes]\nU = A\nV = ignore\n"
+        "[axis X]\ntravel_min_mm = -500\ntravel_max_mm = 500\n[axis A]\ntravel_min_deg = -500\ntravel_max_deg = 500\n")
+status, found, err = moves("foam.ngc", "--machine", "foam.ini")
+t.check((status, err) == (0, "") and [line.split()[2] for line in found[:2]] == ["A2.000000", "A25.400000"],
+        "letters that drive an axis", found, err)
+status, out, err = t.run("machine", "foam.ini")
+t.check(status == 0 and out.endswith("\n[codes]\nU = A\nV = ignore\n"), "they are printed", out[-100:])
+
+for line, wrong in (("M31 = maybe", "known are ignore"), ("W = Q", "the letter of an axis"), ("X31 = stop", "a code is expected")):
     t.write("bad.ini", "[codes]\n" + line + "\n")
     status, out, err = t.run("machine", "bad.ini")
     t.check(status == 2 and "bad.ini:2:1: error: " in err and wrong in err, "a wrong declaration", err)

@@ -234,6 +234,21 @@ static void test_a_feed_can_be_declared_for_programs_without_one(void)
     TEST_ASSERT_NOT_NULL(dialect_code_read(&codes.code[1], "F", "1x"));
 }
 
+static void test_letters_without_an_axis_drive_one_or_are_left_out(void)
+{
+    declare("U", "A");
+    declare("v", "Y");
+    declare("W", "ignore");
+    TEST_ASSERT_TRUE(guess("G1 U1").translates);
+    expect(DIALECT_LINUXCNC, "G1 X1 u-2.5 V#3 W[4] F5\nG20 U1\nG21 G92 U[#1+1]\n",
+           "G1 X1 A[[-2.5]*[1+24.4*#<_imperial>]] Y#3      F5\nG20 A[[1]*[1+24.4*1]]\n"
+           "G21 G92 A[[[#1+1]]*[1+24.4*0]]\n");
+    TEST_ASSERT_NOT_NULL(dialect_code_read(&codes.code[3], "U", "D"));
+    TEST_ASSERT_NOT_NULL(dialect_code_read(&codes.code[3], "U", "AB"));
+    TEST_ASSERT_NOT_NULL(dialect_code_read(&codes.code[3], "U", ""));
+    TEST_ASSERT_NOT_NULL(dialect_code_read(&codes.code[3], "UV", "A"));
+}
+
 static void test_names_without_brackets_are_parameters_or_values(void)
 {
     TEST_ASSERT_NULL(dialect_value_set(&codes, "safe_z", "7"));
@@ -518,6 +533,7 @@ int main(void)
     RUN_TEST(test_polar_words_become_x_and_y);
     RUN_TEST(test_values_of_the_machine_file_are_numbers);
     RUN_TEST(test_a_feed_can_be_declared_for_programs_without_one);
+    RUN_TEST(test_letters_without_an_axis_drive_one_or_are_left_out);
     RUN_TEST(test_names_without_brackets_are_parameters_or_values);
     RUN_TEST(test_centres_that_only_fit_as_absolute_are_absolute);
     RUN_TEST(test_axis_words_before_a_motion_move_at_rapid);
