@@ -134,6 +134,15 @@ static void write_shared(const char *line, size_t length, char text[HINT_MAX])
         (void)snprintf(text, HINT_MAX, "    give these codes lines of their own: %s\n", codes);
 }
 
+/* A hole along Z of a program for lathes, whose R may be two things. */
+static bool is_turned_hole(const struct diagnostic *d, struct line *l, const struct line_word *code)
+{
+    const int number = line_code(code);
+
+    return d->word[0] == 'Y' && code->letter == 'g' &&
+           (number == 730 || (number >= 810 && number <= 890)) && line_find(l, 'r', 0) != NULL;
+}
+
 /* The code that stands where the error is. */
 static void write_missing(const struct diagnostic *d, const char *line, size_t length, size_t at,
                           char text[HINT_MAX])
@@ -145,9 +154,18 @@ static void write_missing(const struct diagnostic *d, const char *line, size_t l
     for (unsigned i = 0; i < l.words; i++) {
         const struct line_word *w = &l.word[i];
 
-        if (w->begin <= at && at < w->end)
-            (void)snprintf(text, HINT_MAX, "    %.*s needs %s on its line\n",
-                           (int)(w->end - w->begin), &l.text[w->begin], d->word);
+        if (w->begin > at || at >= w->end)
+            continue;
+        (void)snprintf(text, HINT_MAX, "    %.*s needs %s on its line\n", (int)(w->end - w->begin),
+                       &l.text[w->begin], d->word);
+        if (is_turned_hole(d, &l, w))
+            (void)snprintf(text, HINT_MAX,
+                           "    %.*s drills along Y in G18, along Z in G17; of a lathe of Fanuc or "
+                           "Haas say what its R is, to the\n"
+                           "    machine file, or as --set codes.R=distance:\n"
+                           "    [codes]\n"
+                           "    R = distance         (from where the tool is; or: height)\n",
+                           (int)(w->end - w->begin), &l.text[w->begin]);
     }
 }
 

@@ -159,7 +159,9 @@ static uint32_t message_column(const struct program_text *program, const struct 
                               : 0;
     const size_t at = d->column > 0 ? d->column - 1 : 0;
 
-    if (length == 0 || (at < length && message_goes_on(line + at, length - at, d->word)))
+    /* A word that is missing stands nowhere: the place is that of its code. */
+    if (length == 0 || (d->code == TAKT_ERROR_WORD_MISSING && at < length) ||
+        (at < length && message_goes_on(line + at, length - at, d->word)))
         return d->column;
     for (size_t i = 0; i < length && d->word[0] != '\0'; i++) {
         if (line[i] != ' ' && message_goes_on(line + i, length - i, d->word))

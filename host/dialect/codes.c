@@ -102,6 +102,8 @@ static void use_declared(struct translator *t, struct line_word *w, const struct
                       code->number);
         break;
     case DIALECT_FEED:
+    case DIALECT_HEIGHT:
+    case DIALECT_DISTANCE:
         return;
     case DIALECT_SUBROUTINE:
         call_subroutine(t, w, code);

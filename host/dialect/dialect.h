@@ -38,14 +38,16 @@ enum dialect_use {
     DIALECT_OUTPUT_OFF,
     DIALECT_FEED,       /* F: what it is before the program gives one, mm/min */
     DIALECT_SUBROUTINE, /* O<name> call, behind the rest of its line, with P, Q and R as #1, #2 and #3 */
-    DIALECT_AXIS        /* U V W: the axis of the machine that this letter drives */
+    DIALECT_AXIS,       /* U V W: the axis of the machine that this letter drives */
+    DIALECT_HEIGHT,  /* R of drilling on lathes: a coordinate, */
+    DIALECT_DISTANCE /* or from where the tool is when the cycle begins */
 };
 
 #define DIALECT_SUBROUTINE_MAX 63
 #define DIALECT_CODES_MAX      64
 
 struct dialect_code {
-    char letter;         /* 'g', 'm', 'f', 'u', 'v' or 'w' */
+    char letter;         /* 'g', 'm', 'f', 'r', 'u', 'v' or 'w' */
     uint16_t number_x10; /* M31: 310 */
     enum dialect_use use;
     unsigned number; /* of an output; a feed */
@@ -70,11 +72,11 @@ struct dialect_codes {
 /* Adds a value, or changes it. NULL: it is right; else what is wrong. */
 const char *dialect_value_set(struct dialect_codes *codes, const char *name, const char *value);
 
-/* "M31" and "ignore", "output 3 on", "output 3 off", "subroutine NAME", "stop"; "F" and "600"; "U" and "A" or "ignore". NULL: it is right; else what is wrong. */
+/* "M31" and "ignore", "output 3 on", "output 3 off", "subroutine NAME", "stop"; "F" and "600"; "U" and "A" or "ignore"; "R" and "height" or "distance". NULL: it is right; else what is wrong. */
 const char *dialect_code_read(struct dialect_code *code, const char *name, const char *value);
 
 /* "M31 = ignore", as in a machine file. */
-#define DIALECT_CODE_TEXT_MAX 64
+#define DIALECT_CODE_TEXT_MAX 96
 void dialect_code_write(const struct dialect_code *code, char text[DIALECT_CODE_TEXT_MAX]);
 
 /* What a program says of itself. */

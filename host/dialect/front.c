@@ -76,6 +76,15 @@ static const char *read_letter(struct dialect_code *code, const char *name, cons
                : "the letter of an axis of the machine is expected, or ignore";
 }
 
+static const char *read_height(struct dialect_code *code, const char *value)
+{
+    code->letter = 'r';
+    code->use = strcmp(value, "distance") == 0 ? DIALECT_DISTANCE : DIALECT_HEIGHT;
+    return code->use == DIALECT_DISTANCE || strcmp(value, "height") == 0
+               ? NULL
+               : "height or distance is expected";
+}
+
 const char *dialect_code_read(struct dialect_code *code, const char *name, const char *value)
 {
     char state[4];
@@ -84,10 +93,12 @@ const char *dialect_code_read(struct dialect_code *code, const char *name, const
     *code = (struct dialect_code){0};
     if (line_lower(name[0]) == 'f' && name[1] == '\0')
         return read_feed(code, value);
+    if (line_lower(name[0]) == 'r' && name[1] == '\0')
+        return read_height(code, value);
     if (strchr("uvw", line_lower(name[0])) != NULL && name[1] == '\0')
         return read_letter(code, name, value);
     if (!read_name(code, name))
-        return "a code is expected, such as M31 or G187, or F, U, V or W";
+        return "a code is expected, such as M31 or G187, or F, R, U, V or W";
     if (strcmp(value, "ignore") == 0)
         return NULL;
     if (strcmp(value, "stop") == 0) {
@@ -109,33 +120,34 @@ const char *dialect_code_read(struct dialect_code *code, const char *name, const
 
 void dialect_code_write(const struct dialect_code *code, char text[DIALECT_CODE_TEXT_MAX])
 {
-    static const char *const uses[] = {"ignore", "stop", "output", "output", "", "subroutine"};
-
-    const char letter = (char)(code->letter - 'a' + 'A');
-
-    if (code->use == DIALECT_FEED) {
-        (void)snprintf(text, DIALECT_CODE_TEXT_MAX, "F = %u", code->number);
-        return;
-    }
-    if (strchr("uvw", code->letter) != NULL) {
-        (void)snprintf(text, DIALECT_CODE_TEXT_MAX, "%c = %.*s", letter,
-                       code->use == DIALECT_AXIS ? 1 : 6,
-                       code->use == DIALECT_AXIS ? &code->axis : uses[code->use]);
-        return;
-    }
-    int length = snprintf(text, DIALECT_CODE_TEXT_MAX, "%c%u", letter, code->number_x10 / 10U);
+    static const char *const uses[] = {[DIALECT_IGNORE] = "ignore",
+                                       [DIALECT_STOP] = "stop",
+                                       [DIALECT_OUTPUT_ON] = "output",
+                                       [DIALECT_FEED] = "",
+                                       [DIALECT_OUTPUT_OFF] = "output",
+                                       [DIALECT_SUBROUTINE] = "subroutine",
+                                       [DIALECT_AXIS] = "",
+                                       [DIALECT_HEIGHT] = "height",
+                                       [DIALECT_DISTANCE] = "distance"};
+    char number[16] = "";
+    char behind[DIALECT_SUBROUTINE_MAX + 2] = "";
 
     if (code->number_x10 % 10U != 0)
-        length += snprintf(text + length, DIALECT_CODE_TEXT_MAX - (size_t)length, ".%u",
-                           code->number_x10 % 10U);
-    length +=
-        snprintf(text + length, DIALECT_CODE_TEXT_MAX - (size_t)length, " = %s", uses[code->use]);
+        (void)snprintf(number, sizeof number, "%u.%u", code->number_x10 / 10U,
+                       code->number_x10 % 10U);
+    else if (code->letter == 'g' || code->letter == 'm')
+        (void)snprintf(number, sizeof number, "%u", code->number_x10 / 10U);
+    if (code->use == DIALECT_FEED)
+        (void)snprintf(behind, sizeof behind, "%u", code->number);
+    if (code->use == DIALECT_AXIS)
+        (void)snprintf(behind, sizeof behind, "%c", code->axis);
     if (code->use == DIALECT_OUTPUT_ON || code->use == DIALECT_OUTPUT_OFF)
-        (void)snprintf(text + length, DIALECT_CODE_TEXT_MAX - (size_t)length, " %u %s",
-                       code->number, code->use == DIALECT_OUTPUT_ON ? "on" : "off");
+        (void)snprintf(behind, sizeof behind, " %u %s", code->number,
+                       code->use == DIALECT_OUTPUT_ON ? "on" : "off");
     if (code->use == DIALECT_SUBROUTINE)
-        (void)snprintf(text + length, DIALECT_CODE_TEXT_MAX - (size_t)length, " %s",
-                       code->subroutine);
+        (void)snprintf(behind, sizeof behind, " %s", code->subroutine);
+    (void)snprintf(text, DIALECT_CODE_TEXT_MAX, "%c%s = %s%s", code->letter - 'a' + 'A', number,
+                   uses[code->use], behind);
 }
 
 /* The name of #NAME, or of #<_NAME>. */

@@ -3,6 +3,7 @@
  *
  *     G81 Z-5 F100                  without R, where none of the same series has one, the tool drills from where it is
  *     G83 X0 Z-30 Q5000 (a lathe)   along Z, whatever the plane of its arcs is, pecks in thousandths
+ *     G83 Z-30 R-5 (a lathe)        R may be a height or a distance: the machine file says so
  *     G81 X1 Y2 Z2 I-5 (Fagor)      Z is the height that R has here, I the bottom
  */
 #include "dialect/translate.h"
@@ -66,24 +67,57 @@ static void write_peck(struct line *l)
     (void)line_replace(l, q, text);
 }
 
-/* A lathe of Fanuc has a distance in R, one of Haas a height: of a program for either it is not clear. */
-static bool is_clear(struct translator *t)
+/*
+ * A lathe of Fanuc has a distance in R, one of Haas a height: of a program for either it is not clear. False then, unless
+ * the machine file says so.
+ */
+static bool read_meaning(const struct translator *t, bool *distance)
 {
-    return !t->survey.lathe || t->dialect == DIALECT_HAAS || line_find(&t->line, 'r', 0) == NULL;
+    *distance = false;
+    for (unsigned i = 0; i < t->codes->count; i++) {
+        if (t->codes->code[i].letter == 'r') {
+            *distance = t->codes->code[i].use == DIALECT_DISTANCE;
+            return true;
+        }
+    }
+    return t->dialect == DIALECT_HAAS;
+}
+
+static bool is_incremental(struct translator *t)
+{
+    return line_find_code(&t->line, 'g', 910) != NULL ||
+           (t->incremental && line_find_code(&t->line, 'g', 900) == NULL);
+}
+
+/* R-5 as a height, of the line that begins a series and of those that go on with it. */
+static void write_height(struct line *l)
+{
+    struct line_word *r = line_find(l, 'r', 0);
+    char text[LINE_MAX_BYTES];
+
+    if (r == NULL)
+        return;
+    (void)snprintf(text, sizeof text, "R[#<_level>+[%.*s]]", (int)(r->end - r->value_begin),
+                   &l->text[r->value_begin]);
+    (void)line_replace(l, r, text);
 }
 
 static void give_height(struct translator *t)
 {
     struct line *l = &t->line;
-    const bool incremental = line_find_code(l, 'g', 910) != NULL ||
-                             (t->incremental && line_find_code(l, 'g', 900) == NULL);
+    const bool incremental = is_incremental(t);
+    bool distance;
 
-    if (!is_clear(t) || line_find(l, 'z', 0) == NULL)
+    if (line_find(l, 'z', 0) == NULL ||
+        (t->survey.lathe && !read_meaning(t, &distance) && line_find(l, 'r', 0) != NULL))
         return;
     if (t->survey.lathe) {
         write_peck(l);
         (void)line_append(l, "G17");
+        t->has_level = distance && !incremental;
     }
+    if (t->has_level)
+        translate_add(&t->before, "#<_level>=#<_z>");
     t->bores_along = t->survey.lathe;
     if (line_find(l, 'r', 0) == NULL)
         (void)line_append(l, incremental ? "R0" : "R#<_z>");
@@ -105,6 +139,8 @@ void holes_translate(struct translator *t)
     } else if (ends_series(l)) {
         if (t->bores_along && line_find_code(l, 'g', 170) == NULL)
             (void)line_append(l, "G18");
-        t->has_height = t->has_two_heights = t->bores_along = false;
+        t->has_height = t->has_two_heights = t->bores_along = t->has_level = false;
     }
+    if (t->has_level)
+        write_height(l);
 }

@@ -81,6 +81,7 @@ struct translator {
     bool has_height;                /* a cycle of the series in effect has had its R */
     bool has_two_heights;           /* Fagor's G81 */
     bool bores_along;               /* and it goes along Z on a lathe */
+    bool has_level;                 /* its R counts from #<_level>, where the tool was before */
     unsigned arc;                   /* G2 or G3 is in effect: 2, 3; else 0 */
     bool cuts_thread;               /* G32 is in effect */
     char lead[24];                  /* K, the F of it */

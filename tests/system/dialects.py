@@ -186,6 +186,14 @@ t.check((status, err) == (0, "") and [line.split()[2] for line in found[:2]] == 
 status, out, err = t.run("machine", "foam.ini")
 t.check(status == 0 and out.endswith("\n[codes]\nU = A\nV = ignore\n"), "they are printed", out[-100:])
 
+# What R of a lathe's drilling is, the machine file says: the message has the line.
+t.write("bore.nc", "G50 S900\nG28 U0\nM3 S500\nG0 X0 Z5\nG83 Z-9. R-2. Q5000 F.1\nG80\nM30\n")
+status, found, err = moves("bore.nc", "--dialect", "fanuc")
+t.check(status == 2 and "\n    [codes]\n    R = distance " in err, "the message asks for the meaning of R", err)
+for use, height in ("distance", 3), ("height", -2):
+    status, found, err = moves("bore.nc", "--dialect", "fanuc", "--set", f"codes.R={use}")
+    t.check(status == 0 and any(line == f"rapid X0.000000 Y0.000000 Z{height}.000000" for line in found), use, found, err)
+
 for line, wrong in (("M31 = maybe", "known are ignore"), ("W = Q", "the letter of an axis"), ("X31 = stop", "a code is expected")):
     t.write("bad.ini", "[codes]\n" + line + "\n")
     status, out, err = t.run("machine", "bad.ini")

@@ -31,6 +31,14 @@ static void test_a_lathe_drills_along_z(void)
     expect(DIALECT_HAAS, "G50 S9\nG83 X0 Z-9 R1 Q2 F.1\nG80\n",
            "G18 G7\nG83 X0 Z-9 R1 Q2 F.1 G17\nG80 G18\n");
     expect(DIALECT_FANUC, "G50 S9\nG83 X0 Z-9 R1 Q2 F.1\n", "G18 G7\nG83 X0 Z-9 R1 Q2 F.1\n");
+    codes.count = 1;
+    TEST_ASSERT_NULL(dialect_code_read(&codes.code[0], "R", "height"));
+    expect(DIALECT_FANUC, "G50 S9\nG83 X0 Z-9 R1 Q2 F.1\n", "G18 G7\nG83 X0 Z-9 R1 Q2 F.1 G17\n");
+    TEST_ASSERT_NULL(dialect_code_read(&codes.code[0], "r", "distance"));
+    expect(DIALECT_FANUC, "G50 S9\nG83 X0 Z-9 R-1 Q2 F.1\nZ-12 R-2\nG80\nG2 Z1 R5\n",
+           "G18 G7\n#<_level>=#<_z>\n|G83 X0 Z-9 R[#<_level>+[-1]] Q2 F.1 G17\n"
+           "Z-12 R[#<_level>+[-2]]\nG80 G18\nG2 Z1 R5\n");
+    TEST_ASSERT_NOT_NULL(dialect_code_read(&codes.code[0], "R", "low"));
 }
 
 static void test_fagor_drills_from_z_to_i(void)
