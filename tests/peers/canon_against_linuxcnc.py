@@ -158,6 +158,15 @@ def is_near(piece, point):
     return piece.off(point, 0.0) <= piece.length + 1e-3
 
 
+def along(pieces, at, point):
+    """The piece that the point is on, looked for from one on, where the point before it was; None: it is on none."""
+    for i in range(len(pieces)):
+        piece = pieces[(at + i) % len(pieces)]
+        if is_near(piece, point) and piece.distance(point) <= TOLERANCE_SPLINE_MM:
+            return (at + i) % len(pieces)
+    return None
+
+
 def without_splines(ours, theirs):
     """Both lists with a run of pieces, and their lines along it, as one feed to its end; or what is off the curve."""
     mine, yours, at, k = [], [], (0.0,) * len(linuxcnc.AXES), 0
@@ -174,10 +183,10 @@ def without_splines(ours, theirs):
         at = move.end
         if i + 1 < len(ours) and ours[i + 1].kind == "spline":
             continue
+        on = 0
         while k < len(theirs) and theirs[k].kind == "feed":
-            point = theirs[k].end
-            near = min((p.distance(point) for p in pieces if is_near(p, point)), default=math.inf)
-            if near > TOLERANCE_SPLINE_MM:
+            on = along(pieces, on, theirs[k].end)
+            if on is None:
                 break
             k += 1
         if k == 0 or distance(theirs[k - 1].end, at) > TOLERANCE_SPLINE_MM:
