@@ -40,6 +40,8 @@ struct lint {
     double hole[2], hole_z; /* where the tool has last been down at feed, and how far */
     struct feed feed[FEEDS_MAX];
     unsigned feeds;
+    double program_mm_s[FEEDS_MAX]; /* the different feeds of the program */
+    unsigned left;                  /* of them, those that are not known to be reached */
 };
 
 __attribute__((format(printf, 3, 4))) static void tell(struct lint *l, uint32_t line,
@@ -146,8 +148,23 @@ static void look_at_modes(struct lint *l, const struct program *p, uint32_t line
     l->radius_told = idle;
 }
 
+/* Another feed than those before? As the planner counts them. */
+static void count_feed(struct lint *l, const struct move *m)
+{
+    if (m->kind == MOVE_RAPID || m->feed_rev_mm != 0.0)
+        return;
+    for (unsigned i = 0; i < l->left; i++) {
+        if (l->program_mm_s[i] == m->feed_mm_s)
+            return;
+    }
+    if (l->left < FEEDS_MAX)
+        l->program_mm_s[l->left++] = m->feed_mm_s;
+}
+
 static void look_at_motion(struct lint *l, const struct move *m, bool mill)
 {
+    count_feed(l, m);
+
     if (m->kind == MOVE_RAPID && mill)
         look_at_rapid(l, m);
     else if (m->kind == MOVE_FEED || move_is_curved(m))
@@ -250,32 +267,47 @@ static void look_at_lines(struct lint *l)
 
 /* ---- feeds ---- */
 
-static struct feed *find_feed(struct lint *l, double feed_mm_s, uint32_t line)
+static struct feed *find_feed(struct lint *l, double feed_mm_s)
 {
     for (unsigned i = 0; i < l->feeds; i++) {
         if (l->feed[i].program_mm_s == feed_mm_s)
             return &l->feed[i];
     }
-    if (l->feeds == FEEDS_MAX)
-        return NULL;
-    l->feed[l->feeds] = (struct feed){.program_mm_s = feed_mm_s, .line = line};
-    return &l->feed[l->feeds++];
+    return NULL;
 }
 
+static bool is_reached(const struct feed *f)
+{
+    return f->best_mm_s >= REACHED * f->program_mm_s;
+}
+
+/* The first block of a feed, or one that comes nearer to it. */
 static void take_block(void *context, const struct planned_block *planned)
 {
-    const struct block *b = planned->block;
+    struct lint *l = context;
+    const double program = planned->program_mm_s;
     const double best = planned->feed_cruise_mm_s;
-    struct feed *feed;
+    struct feed *feed = program > 0.0 ? find_feed(l, program) : NULL;
 
-    if (b->length == 0 || b->rotary || b->move.feed_rev_mm != 0.0 || b->move.kind == MOVE_RAPID ||
-        !move_is_motion(&b->move))
-        return;
-    feed = find_feed(context, b->feed_program_mm_s, b->move.line);
-    if (feed != NULL && best > feed->best_mm_s) {
-        feed->best_mm_s = best;
-        feed->governor = planned->governor;
+    if (program > 0.0 && feed == NULL && l->feeds < FEEDS_MAX) {
+        feed = &l->feed[l->feeds++];
+        *feed = (struct feed){.program_mm_s = program, .line = planned->block->move.line};
     }
+    if (feed == NULL || best <= feed->best_mm_s)
+        return;
+    l->left -= !is_reached(feed) && best >= REACHED * program ? 1U : 0U;
+    feed->best_mm_s = best;
+    feed->governor = planned->governor;
+}
+
+/* Once all feeds of the program have been reached, its rest, which may take days, has no more to say. */
+static bool wants_more(void *context, const struct planned_block *planned)
+{
+    struct lint *l = context;
+
+    if (planned->program_mm_s > 0.0 && planned->feed_cruise_mm_s >= REACHED * planned->program_mm_s)
+        take_block(l, planned);
+    return l->left > 0;
 }
 
 static const char *reason(enum governor governor)
@@ -299,12 +331,14 @@ static const char *reason(enum governor governor)
 static enum command_status look_at_feeds(struct lint *l)
 {
     struct planner_totals totals;
-    const enum command_status status = planner_walk(l->session, take_block, l, &totals);
+    const struct planner_listener listener = {
+        .context = l, .take = take_block, .wants_more = wants_more};
+    const enum command_status status = planner_walk(l->session, &listener, &totals);
 
     for (unsigned i = 0; i < l->feeds && status == STATUS_DONE; i++) {
         const struct feed *f = &l->feed[i];
 
-        if (f->best_mm_s < REACHED * f->program_mm_s)
+        if (!is_reached(f))
             tell(l, f->line, "F%.6g mm/min is never reached, %.4g at most: %s",
                  f->program_mm_s * SECONDS_PER_MINUTE, f->best_mm_s * SECONDS_PER_MINUTE,
                  reason(f->governor));

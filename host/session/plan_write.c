@@ -280,7 +280,8 @@ enum command_status plan_write(const struct session *session, const struct sessi
     enum command_status status;
 
     print_heads(&print, session);
-    status = planner_walk(session, take_block, &print, &totals);
+    status = planner_walk(
+        session, &(struct planner_listener){.context = &print, .take = take_block}, &totals);
     if (status != STATUS_DONE)
         return status;
     print_row(&print);

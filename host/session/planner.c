@@ -20,6 +20,10 @@ struct planner {
     uint64_t cycles_before;       /* made before the last one */
     struct planned_block planned; /* the block being passed */
     double entered_s;             /* when its start was passed */
+    double *
+        program_mm_s; /* of each motion by its number: as planned_block has it, but for what turns */
+    size_t room;
+    bool failed; /* out of memory */
 };
 
 /* As the controller does. */
@@ -53,6 +57,38 @@ static void start_planner(struct planner *p, const struct session *s)
 static_assert(SMOOTH_AHEAD_PIECES == MACHINE_LOOK_AHEAD_MAX,
               "smoothing leaves so much for a stop within the blocks that are known");
 
+/* What the program asks of the newest motion: a smoothed path has feeds in nominal time alone. */
+static void note_feed(struct planner *p, const struct move *move)
+{
+    const bool counts = move->kind != MOVE_RAPID && move->feed_rev_mm == 0.0;
+
+    if (p->path.motions >= p->room) {
+        const size_t room = 2 * (size_t)p->path.motions + 1024;
+        double *grown = realloc(p->program_mm_s, room * sizeof *grown);
+
+        p->failed = p->failed || grown == NULL;
+        if (grown == NULL)
+            return;
+        p->program_mm_s = grown;
+        p->room = room;
+    }
+    p->program_mm_s[p->path.motions] = counts ? move->feed_mm_s : 0;
+}
+
+static void push(struct planner *p, const struct move *move)
+{
+    takt_path_push(&p->path, move);
+    if (move_is_motion(move))
+        note_feed(p, move);
+}
+
+static double program_feed(const struct planner *p, const struct block *block)
+{
+    const bool counts = block_is_motion(block) && !block->rotary && block->number < p->room;
+
+    return counts ? p->program_mm_s[block->number] : 0;
+}
+
 static void read_move(struct planner *p)
 {
     struct diagnostic diagnostic;
@@ -61,7 +97,7 @@ static void read_move(struct planner *p)
     switch (takt_cutter_compensation_next(&p->reading.offset, &p->reading.program, &move,
                                           &diagnostic)) {
     case PROGRAM_MOVE:
-        takt_path_push(&p->path, &move);
+        push(p, &move);
         break;
     case PROGRAM_WAIT:
         break; /* a plan takes it that a probing move reaches its end, and an input has come */
@@ -130,7 +166,7 @@ static void enter(struct planner *p, double feed_mm_s, double now_s)
 
 /* Hands on one block that this cycle has passed. */
 static void leave(struct planner *p, uint32_t index, double feed_mm_s,
-                  void (*take)(void *context, const struct planned_block *planned), void *context)
+                  const struct planner_listener *listener)
 {
     const struct block *block = path_read(&p->path, index);
     const double now_s = passed_at(p, block);
@@ -140,7 +176,8 @@ static void leave(struct planner *p, uint32_t index, double feed_mm_s,
     p->planned.time_s = maths_max(0, now_s - p->entered_s);
     if (block_is_motion(block))
         p->planned.governor = governor_of(&p->path, index, &p->planned);
-    take(context, &p->planned);
+    p->planned.program_mm_s = program_feed(p, block);
+    listener->take(listener->context, &p->planned);
     enter(p, p->planned.feed_end_mm_s, now_s);
 }
 
@@ -153,25 +190,42 @@ static enum motion_result step(struct planner *p, struct cycle_record *record)
     return takt_motion_cycle(&p->motion, &as_programmed, record);
 }
 
-static enum motion_result walk(struct planner *p,
-                               void (*take)(void *context, const struct planned_block *planned),
-                               void *context, struct planner_totals *totals)
+static void leave_passed(struct planner *p, double feed_mm_s,
+                         const struct planner_listener *listener, struct planner_totals *totals)
+{
+    for (uint32_t i = p->motion.passed_first; i != p->path.first; i++) {
+        totals->stops += path_at(&p->path, i)->motion && path_at(&p->path, i)->end == JUNCTION_STOP;
+        leave(p, i, feed_mm_s, listener);
+    }
+}
+
+/* Tells of the cycle that has been made, in the block that it has come to. */
+static bool wants_more(struct planner *p, const struct planner_listener *listener)
+{
+    if (listener->wants_more == NULL || p->path.first == p->path.closed)
+        return true;
+    p->planned.block = path_first(&p->path);
+    p->planned.program_mm_s = program_feed(p, p->planned.block);
+    return listener->wants_more(listener->context, &p->planned);
+}
+
+static enum motion_result walk(struct planner *p, const struct planner_listener *listener,
+                               struct planner_totals *totals)
 {
     struct cycle_record record = {0};
     enum motion_result result = MOTION_CYCLE;
+    bool wanted = true;
 
-    while ((result == MOTION_CYCLE || result == MOTION_NOT_YET) && !interrupt_asked()) {
+    while ((result == MOTION_CYCLE || result == MOTION_NOT_YET) && wanted && !p->failed &&
+           !interrupt_asked()) {
         result = step(p, &record);
-        for (uint32_t i = p->motion.passed_first; i != p->path.first; i++) {
-            totals->stops +=
-                path_at(&p->path, i)->motion && path_at(&p->path, i)->end == JUNCTION_STOP;
-            leave(p, i, record.feed_mm_s, take, context);
-        }
+        leave_passed(p, record.feed_mm_s, listener, totals);
         p->planned.feed_cruise_mm_s = maths_max(p->planned.feed_cruise_mm_s, record.feed_mm_s);
         p->planned.path_feed_mm_s = maths_max(p->planned.path_feed_mm_s, path_feed(p));
+        wanted = wants_more(p, listener);
     }
     if (result == MOTION_DONE) /* the end of the program itself is never passed */
-        leave(p, p->motion.current, 0, take, context);
+        leave(p, p->motion.current, 0, listener);
     totals->cycles = p->motion.cycles;
     return result;
 }
@@ -197,21 +251,27 @@ static enum command_status end_planner(const struct session *s, struct planner *
 
     takt_diagnostic_set(&why, TAKT_ERROR_STALLED, takt_motion_stalled_line(&p->motion), 0, "", 0,
                         0.0);
+    const bool failed = p->failed;
+
     if (stalled)
         message_program_error(&s->program, &why);
+    if (failed)
+        message_command_error("out of memory");
+    free(p->program_mm_s);
     free(p);
     if (stalled)
         return STATUS_FAILED;
+    if (failed)
+        return STATUS_ENVIRONMENT;
     return interrupt_asked() ? STATUS_INTERRUPTED : STATUS_DONE;
 }
 
-enum command_status planner_walk(const struct session *s,
-                                 void (*take)(void *context, const struct planned_block *planned),
-                                 void *context, struct planner_totals *totals)
+enum command_status planner_walk(const struct session *s, const struct planner_listener *listener,
+                                 struct planner_totals *totals)
 {
     struct planner *p = begin_planner(s, totals);
 
     if (p == NULL)
         return STATUS_ENVIRONMENT;
-    return end_planner(s, p, walk(p, take, context, totals));
+    return end_planner(s, p, walk(p, listener, totals));
 }

@@ -9,6 +9,7 @@
 #include "plan/block.h"
 #include "session/session.h"
 
+#include <stdbool.h>
 #include <stdint.h>
 
 /* A block as it has been passed. */
@@ -19,6 +20,8 @@ struct planned_block {
     double feed_end_mm_s;
     double
         path_feed_mm_s; /* likewise the highest, by the path: a smoothed one counts nominal time */
+    double
+        program_mm_s; /* F of the program, of a motion of linear axes; 0: a rapid, a feed per revolution, none */
     double time_s;
     enum governor governor;
 };
@@ -28,10 +31,17 @@ struct planner_totals {
     uint64_t cycles;
 };
 
-/* Plans the whole program and calls take for every block, in order. STATUS_DONE, STATUS_FAILED or STATUS_ENVIRONMENT
- * after a message, STATUS_INTERRUPTED. The program has been checked. */
-enum command_status planner_walk(const struct session *s,
-                                 void (*take)(void *context, const struct planned_block *planned),
-                                 void *context, struct planner_totals *totals);
+struct planner_listener {
+    void *context;
+    /* Hears of every block, in order. */
+    void (*take)(void *context, const struct planned_block *planned);
+    /* NULL, or asked in every cycle: is more of the program wanted? planned has the feeds so far of the block being passed. */
+    bool (*wants_more)(void *context, const struct planned_block *planned);
+};
+
+/* Plans the program. STATUS_DONE, STATUS_FAILED or STATUS_ENVIRONMENT after a message, STATUS_INTERRUPTED. The program has
+ * been checked. */
+enum command_status planner_walk(const struct session *s, const struct planner_listener *listener,
+                                 struct planner_totals *totals);
 
 #endif

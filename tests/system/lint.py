@@ -43,6 +43,11 @@ expect("lines that are never reached", HEAD + "o1 if [0]\nG1 X9\n(nothing)\nG1 X
 expect("feeds that are never reached", HEAD + "G1 X1 F9000\nX1.5\nX2 Y1\nX50 Y9 F600\n",
        (3, "F9000 mm/min is never reached"))
 
+expect("feeds of smoothed paths are the program's", "G64 P0.05 " + HEAD + "G1 X10 F9000\n" +
+       "".join(f"X{10 + i} Y{i % 2}\n" for i in range(40)) + "G0 Z5\n",
+       (3, "F9000 mm/min is never reached"))
+expect("hundreds of hours at a feed that is reached at once", "G64 P0.01 " + HEAD + "F1\n" + "G2 X0 Y0 I2 P100\n" * 100)
+
 status, found = findings("G1 X1\n")
 t.check(status == 2 and not found, "a program with errors", status, found)
 status, out, err = t.run("lint", "part.ngc", "--stock-top", "x")
