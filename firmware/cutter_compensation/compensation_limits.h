@@ -1,6 +1,6 @@
 /*
  * Every fixed size of the compensation, the same in all builds: what a contour comes to depends on them. struct cutter_compensation takes
- * about OFFSET_ITEMS_MAX * 80 + OFFSET_WAYS_MAX * 152 bytes.
+ * about COMPENSATION_ITEMS_MAX * 80 + COMPENSATION_WAYS_MAX * 152 bytes.
  */
 #ifndef TAKT_CUTTER_COMPENSATION_LIMITS_H
 #define TAKT_CUTTER_COMPENSATION_LIMITS_H

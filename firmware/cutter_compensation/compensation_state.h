@@ -40,7 +40,7 @@ struct compensation_motion {
 struct compensation_item {
     uint32_t line;
     uint32_t turns; /* of the programmed way */
-    uint8_t kind;   /* enum offset_kind */
+    uint8_t kind;   /* enum compensation_kind */
     uint8_t move; /* enum move_kind it is given out as; a way or a corner may still become a line */
     uint8_t programmed; /* enum move_kind of the programmed way */
     uint8_t path;       /* enum move_path */
@@ -54,8 +54,8 @@ struct compensation_item {
     bool across : 1;       /* moves other axes too */
     union {
         struct compensation_wanted wanted;     /* of a way; of a corner, of the way before it */
-        struct compensation_motion motion;     /* OFFSET_STANDING */
-        unsigned char event[MOVE_EVENT_BYTES]; /* OFFSET_COMMAND: of its move */
+        struct compensation_motion motion;     /* COMPENSATION_STANDING */
+        unsigned char event[MOVE_EVENT_BYTES]; /* COMPENSATION_COMMAND: of its move */
     };
 };
 

@@ -9,7 +9,7 @@
 
 #include <stdint.h>
 
-/* Two boxes of LAW_SMOOTH need most: the second is half as long. Those of LAW_GENTLE are much shorter (takt_ramp_profile_cycles_max). */
+/* Two boxes of RAMP_PROFILE_SMOOTH need most: the second is half as long. Those of RAMP_PROFILE_GENTLE are much shorter (takt_ramp_profile_cycles_max). */
 #define AVERAGE_INPUTS_MAX (RAMP_PROFILE_CYCLES_MAX + RAMP_PROFILE_CYCLES_MAX / 2)
 
 struct average_box {

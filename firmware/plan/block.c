@@ -122,7 +122,7 @@ enum governor takt_block_governor(const struct block *b, double program_mm_s)
 /*
  * Limits of one axis that moves straight along the path, or, beside an arc of two radii, nearly so: with
  * u = second v^2 / A and w = (third v^3 + 3 second v a) / J it keeps u <= SPIRAL_PART and both terms of w <= SPIRAL_PART / 2
- * at the highest feed v, and leaves 1 - 2u and 1 - 2w to a and j. The factor 2 = 1 / (1 - BLOCK_SHARE_MAX): what junctions
+ * at the highest feed v, and leaves 1 - 2u and 1 - 2w to a and j. The factor 2 = 1 / (1 - BLOCK_JERK_BUDGET_MAX): what junctions
  * take is taken from a and j alone.
  */
 static void limit_line_axis(struct block_shape *shape, struct bound *c,

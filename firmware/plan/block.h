@@ -73,7 +73,8 @@ struct block {
 
     double
         jerk_budget_junction; /* part of the jerk limit that blocks near the junction at the end must leave */
-    double jerk_budget; /* part left to junctions: BLOCK_SHARE_MAX until the block is closed */
+    double
+        jerk_budget; /* part left to junctions: BLOCK_JERK_BUDGET_MAX until the block is closed */
     double feed_junction_mm_s; /* highest feed at which the junction at the end may be passed */
 };
 

@@ -150,7 +150,7 @@ static double crowded_feed(const struct junction_steps *steps, double reach_mm_s
     return maths_min(v, maths_sqrt(reach_mm_s * steps->within_mm_s));
 }
 
-/* 1/f: how many times shorter than JOINT_CYCLES_APART the shorter block beside a junction lasts at its ceiling. */
+/* 1/f: how many times shorter than JUNCTION_CYCLES_APART the shorter block beside a junction lasts at its ceiling. */
 static double junction_crowding(const struct block *before, const struct block *after,
                                 double apart_s)
 {

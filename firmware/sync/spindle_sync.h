@@ -3,7 +3,7 @@
  *
  *     encoder -> angle.h -> lead_in.h (what position belongs to the angle) -> follower.h (limits) -> setpoint
  *
- * struct motion stops before a block that follows the spindle and hands it over (motion/handover.h); takt_lock_cycle executes
+ * struct motion stops before a block that follows the spindle and hands it over (motion/handover.h); takt_spindle_sync_cycle executes
  * it, and hands back at its end. See README.md.
  */
 #ifndef TAKT_SYNC_SPINDLE_SYNC_H
@@ -68,7 +68,7 @@ struct spindle_sync {
 
 enum spindle_sync_result {
     SPINDLE_SYNC_CYCLE, /* the record holds this cycle */
-    SPINDLE_SYNC_FAILED /* the axes stand, and takt_lock_get_alarm says why: no cycle was made */
+    SPINDLE_SYNC_FAILED /* the axes stand, and takt_spindle_sync_get_alarm says why: no cycle was made */
 };
 
 void takt_spindle_sync_init(struct spindle_sync *l, const struct spindle_sync_config *config);
@@ -76,7 +76,7 @@ void takt_spindle_sync_init(struct spindle_sync *l, const struct spindle_sync_co
 /* A new program: what was being executed is forgotten, the spindle goes on turning. */
 void takt_spindle_sync_restart(struct spindle_sync *l);
 
-/* Every control cycle, whatever the axes do. spindle: as long as takt_lock_cycle is called in it. */
+/* Every control cycle, whatever the axes do. spindle: as long as takt_spindle_sync_cycle is called in it. */
 static inline void spindle_sync_measure(struct spindle_sync *l,
                                         const struct spindle_feedback *spindle)
 {

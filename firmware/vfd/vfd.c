@@ -61,7 +61,7 @@ static double rpm_of(const struct vfd *v, uint16_t frequency)
     return (double)frequency * HZ_PER_COUNT * 60.0 / v->config.pole_pairs;
 }
 
-/* INVERTER_ERROR and the four registers behind it. */
+/* VFD_ERROR and the four registers behind it. */
 static void take_status(struct vfd *v, const uint16_t *word)
 {
     const double speed_rpm = rpm_of(v, word[VFD_OUTPUT - VFD_ERROR]);

@@ -15,7 +15,7 @@
 #include <stdint.h>
 
 /* Registers (Delta VFD-B user manual, communication addresses; MS300 has the same). */
-#define VFD_COMMAND   0x2000 /* INVERTER_STOP, _FORWARD, _REVERSE, and one of 2002 */
+#define VFD_COMMAND   0x2000 /* VFD_STOP, _FORWARD, _REVERSE, and one of 2002 */
 #define VFD_FREQUENCY 0x2001 /* commanded, 0.01 Hz */
 #define VFD_CONTROL   0x2002 /* bit 1: reset a trip */
 #define VFD_ERROR     0x2100 /* low byte: number of the trip, 0: none; high byte: of a warning */
@@ -29,11 +29,11 @@
 #define VFD_STOP    0x01
 #define VFD_FORWARD 0x12
 #define VFD_REVERSE 0x22
-#define VFD_RESET   0x02 /* of INVERTER_CONTROL */
+#define VFD_RESET   0x02 /* of VFD_CONTROL */
 
 #define VFD_ERROR_MASK 0x00FFU
 
-/* Bits of INVERTER_STATUS. Direction in bits 4 and 3: 00 forward, 01 from reverse to forward, 10 from forward to reverse,
+/* Bits of VFD_STATUS. Direction in bits 4 and 3: 00 forward, 01 from reverse to forward, 10 from forward to reverse,
  * 11 reverse: so bit 3 tells how it turns, bit 4 what is commanded. */
 #define VFD_RUNS             0x0003U /* bits 1 and 0: 00 stopped, 01 stopping, 10 standby, 11 running */
 #define VFD_STOPS            0x0001U
@@ -55,8 +55,8 @@ struct vfd_config {
 enum vfd_request {
     VFD_NOTHING,
     VFD_WRITES_COMMAND,
-    VFD_READS_STATUS, /* INVERTER_ERROR ... INVERTER_CURRENT */
-    VFD_READS_LOAD,   /* INVERTER_TORQUE, INVERTER_RPM */
+    VFD_READS_STATUS, /* VFD_ERROR ... VFD_CURRENT */
+    VFD_READS_LOAD,   /* VFD_TORQUE, VFD_RPM */
     VFD_RESETS
 };
 

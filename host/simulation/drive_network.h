@@ -102,7 +102,7 @@ struct step_port drive_network_get_step_port(struct drive_network *network);
 
 /*
  * The controller has done its part of a cycle: frames travel, drives move. False: an outside bus is gone, see
- * field_get_problem; if it returns, cycles go on meanwhile.
+ * drive_network_get_problem; if it returns, cycles go on meanwhile.
  */
 bool drive_network_end_cycle(struct drive_network *network);
 

@@ -59,7 +59,7 @@ enum command_status simulation_open(const struct session *session, struct simula
 void simulation_close(struct simulation *s); /* NULL: nothing */
 
 /*
- * One control cycle of everything. False: an outside bus is gone (field_get_problem), or the target is
+ * One control cycle of everything. False: an outside bus is gone (drive_network_get_problem), or the target is
  * (its problem).
  */
 bool simulation_step(struct simulation *s);

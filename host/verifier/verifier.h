@@ -61,7 +61,7 @@ struct verifier_block {
     struct curve curve; /* when it has length */
     struct point end;
     double fraction; /* of the block, where the last setpoint was */
-    bool probing;    /* it may end early: judge_answer */
+    bool probing;    /* it may end early: verifier_answer */
     double
         turning_mm; /* into a hole the axes turn round with the spindle, so far above its end at most; 0: no hole */
     bool
@@ -95,12 +95,12 @@ struct verifier {
     double rate_hz; /* 1 / cycle time */
     unsigned axes;
     struct verifier_axis axis[AXIS_COUNT];
-    struct point
-        sent[VERIFIER_HISTORY]; /* setpoints of the last cycles, newest at cycles % JUDGE_HISTORY */
-    struct point cmd;           /* of the last cycle */
-    bool step_inside;           /* from that cycle on one curve has been followed */
-    double feed_mm_s;           /* of the last cycle, as distance between setpoints */
-    unsigned junction_near;     /* cycles from here on that a junction may show in */
+    struct point sent
+        [VERIFIER_HISTORY]; /* setpoints of the last cycles, newest at cycles % VERIFIER_HISTORY */
+    struct point cmd;       /* of the last cycle */
+    bool step_inside;       /* from that cycle on one curve has been followed */
+    double feed_mm_s;       /* of the last cycle, as distance between setpoints */
+    unsigned junction_near; /* cycles from here on that a junction may show in */
     struct verifier_figures figures;
 };
 

@@ -18,7 +18,7 @@ NESTED = "takt_expression_read"
 
 PORT = r"(cortex_)?(un)?lock|now_us|now_ns|reply|write_log"
 LAYER = r"(axes|matrix|setup|volume|thermal|wear)_(add|begin|follow|need|prepare)"
-CODES = (r"(events|modes|coordinates|cutter|cycles|straight|circular|involute|probe|saved_modes|setting|threading|spline)_.*"
+CODES = (r"(events|modes|coordinates|cutter(?!_compensation)|cycles|straight|circular|involute|probe|saved_modes|setting|threading|spline)_.*"
          r"|calls_run_code")
 OPERATORS = (r"function_.*|add|subtract|multiply|divide|modulo|power|equal|not_equal|greater|greater_or_equal|less"
              r"|less_or_equal|logic_.*")
