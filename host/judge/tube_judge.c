@@ -61,6 +61,11 @@ void tube_judge_init(struct tube_judge *t, const struct program_config *program,
     t->before = program->start;
 }
 
+void tube_judge_widen(struct tube_judge *t, double tolerances)
+{
+    t->path.tolerances = tolerances;
+}
+
 void tube_judge_free(struct tube_judge *t)
 {
     tube_path_free(&t->path);

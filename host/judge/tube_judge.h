@@ -49,6 +49,8 @@ struct tube_judge {
 /* exact_mm: what motions in exact path may be off. source: its context stays the caller's. */
 void tube_judge_init(struct tube_judge *t, const struct program_config *program,
                      const struct source *source, double exact_mm);
+/* Before the first setpoint: motions within a tolerance may be off so many of it. */
+void tube_judge_widen(struct tube_judge *t, double tolerances);
 void tube_judge_free(struct tube_judge *t);
 /* The next setpoint, and the motion it is said to be of. False: out of memory. */
 bool tube_judge_add(struct tube_judge *t, const struct point *setpoint, uint32_t motion);
